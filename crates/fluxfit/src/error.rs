@@ -1,0 +1,168 @@
+//! The only error of this library: misuse, or data that cannot be read as a log.
+//!
+//! Each variant carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them from a file knows their lines
+//! ([`Error::row`], [`Error::column`]).
+
+/// What went wrong.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Columns of a log differ in length.
+    #[error("column {column} has {rows} rows where t has {expected}; give every column the same length")]
+    ColumnLength {
+        /// Canonical name.
+        column: &'static str,
+        /// Its length.
+        rows: usize,
+        /// Length of `t`.
+        expected: usize,
+    },
+    /// Fewer rows than anything can be found from.
+    #[error("the log has {rows} rows; at least {least} are needed")]
+    TooShort {
+        /// Rows given.
+        rows: usize,
+        /// Rows needed.
+        least: usize,
+    },
+    /// A value that is not a finite number.
+    #[error("{column} is {value}; remove the row or write a finite number")]
+    NotFinite {
+        /// Canonical name.
+        column: &'static str,
+        /// Row, from 0.
+        row: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A value that no drive has.
+    #[error("{column} is {value:e}, beyond the {limit:e} that any drive can have; check the column's unit or remove the row")]
+    Implausible {
+        /// Canonical name.
+        column: &'static str,
+        /// Row, from 0.
+        row: usize,
+        /// The value.
+        value: f64,
+        /// Largest magnitude accepted.
+        limit: f64,
+    },
+    /// Time stands still or runs backward.
+    #[error(
+        "time goes from {before} s to {after} s; it must increase from row to row: remove repeated rows, or give the parts as separate logs"
+    )]
+    TimeOrder {
+        /// Row, from 0, of the later row.
+        row: usize,
+        /// Its predecessor's time, s.
+        before: f64,
+        /// Its own time, s.
+        after: f64,
+    },
+    /// A channel without which nothing can be found is zero in every row.
+    #[error("{what} zero in every row; check the mapping of columns, or log the drive while it turns and carries current")]
+    AllZero {
+        /// The channels, with their verb.
+        what: &'static str,
+    },
+    /// No steady operating point.
+    #[error(
+        "no steady stretch of at least {least} rows was found while the motor carried current; hold speed and current constant for a while, or name a stretch with --window T0:T1"
+    )]
+    NoOperatingPoint {
+        /// Rows that a window needs.
+        least: usize,
+    },
+    /// A window that holds too few rows.
+    #[error(
+        "the window {from}:{to} s holds {rows} consecutive rows of the log, which runs from {start} s to {end} s; a window needs at least {least}"
+    )]
+    Window {
+        /// Start asked for, s.
+        from: f64,
+        /// End asked for, s.
+        to: f64,
+        /// Rows found.
+        rows: usize,
+        /// Rows needed.
+        least: usize,
+        /// First time of the log, s.
+        start: f64,
+        /// Last time of the log, s.
+        end: f64,
+    },
+    /// A setting outside its range.
+    #[error("{setting} is {value}; it must be {range}")]
+    Setting {
+        /// Name of the setting.
+        setting: &'static str,
+        /// Value given.
+        value: f64,
+        /// Values allowed.
+        range: &'static str,
+    },
+    /// Every parameter was given.
+    #[error("all four parameters are fixed; leave at least one to be identified")]
+    NothingToIdentify,
+    /// Bounds of different lengths, or none.
+    #[error("the search box has {lower} lower and {upper} upper bounds; give as many of each, at least one")]
+    BoundsShape {
+        /// Lower bounds given.
+        lower: usize,
+        /// Upper bounds given.
+        upper: usize,
+    },
+    /// A bound that is no interval.
+    #[error("the search box of dimension {dimension} runs from {lower} to {upper}; both must be finite numbers, the lower below the upper")]
+    Bounds {
+        /// Dimension, from 0.
+        dimension: usize,
+        /// Lower bound.
+        lower: f64,
+        /// Upper bound.
+        upper: f64,
+    },
+    /// Box and objective do not match.
+    #[error("the search box has {bounds} dimensions, the objective {objective}; give a box of the objective's dimension")]
+    Dimension {
+        /// Of the box.
+        bounds: usize,
+        /// Of the objective.
+        objective: usize,
+    },
+    /// Too few candidates for the method's moves.
+    #[error("a population of {given} is too small for {method}, which needs at least {least}")]
+    Population {
+        /// The method.
+        method: &'static str,
+        /// Candidates asked for.
+        given: usize,
+        /// Candidates needed.
+        least: usize,
+    },
+    /// A start without any finite cost.
+    #[error("none of the {population} candidates of the start has a finite cost; check the objective or narrow the search box")]
+    NonFiniteStart {
+        /// Candidates tried.
+        population: usize,
+    },
+}
+
+impl Error {
+    /// The row of the log, from 0, that the error is about.
+    pub fn row(&self) -> Option<usize> {
+        match self {
+            Self::NotFinite { row, .. } | Self::Implausible { row, .. } | Self::TimeOrder { row, .. } => Some(*row),
+            _ => None,
+        }
+    }
+
+    /// The canonical name of the column that the error is about.
+    pub fn column(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFinite { column, .. } | Self::Implausible { column, .. } | Self::ColumnLength { column, .. } => Some(column),
+            Self::TimeOrder { .. } => Some("t"),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The three frames in which a three-phase quantity is written, as types.
+//!
+//! The convention, stated once: **amplitude-invariant**. A balanced three-phase system of peak value `A` is a vector of
+//! length `A` in [`AlphaBeta`] and in [`Dq`]; power is `3/2 (u_d i_d + u_q i_q)`. The alpha axis lies on phase a; the d axis lies on the
+//! magnet, at the electrical angle `theta_e` from alpha; q leads d by 90 electrical degrees. A zero-sequence part
+//! (the mean of the three phases) has no image in the other two frames and is dropped.
+
+/// Three phase quantities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Abc {
+    /// Phase a.
+    pub a: f64,
+    /// Phase b.
+    pub b: f64,
+    /// Phase c.
+    pub c: f64,
+}
+
+/// A vector in the stator's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AlphaBeta {
+    /// Component along phase a.
+    pub alpha: f64,
+    /// Component 90 electrical degrees ahead.
+    pub beta: f64,
+}
+
+/// A vector in the rotor's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Dq {
+    /// Component along the magnet.
+    pub d: f64,
+    /// Component 90 electrical degrees ahead of the magnet.
+    pub q: f64,
+}
+
+impl Abc {
+    /// Clarke transform, amplitude-invariant.
+    pub fn to_alpha_beta(self) -> AlphaBeta {
+        AlphaBeta { alpha: (2.0 * self.a - self.b - self.c) / 3.0, beta: (self.b - self.c) / 3.0_f64.sqrt() }
+    }
+}
+
+impl AlphaBeta {
+    /// Inverse Clarke transform; the three phases sum to zero.
+    pub fn to_abc(self) -> Abc {
+        let half_beta = 0.5 * 3.0_f64.sqrt() * self.beta;
+        Abc { a: self.alpha, b: -0.5 * self.alpha + half_beta, c: -0.5 * self.alpha - half_beta }
+    }
+
+    /// Park transform: the same vector seen from a rotor at `theta_e` electrical radians.
+    pub fn to_dq(self, theta_e: f64) -> Dq {
+        let (sin, cos) = theta_e.sin_cos();
+        Dq { d: cos * self.alpha + sin * self.beta, q: cos * self.beta - sin * self.alpha }
+    }
+}
+
+impl Dq {
+    /// Inverse Park transform.
+    pub fn to_alpha_beta(self, theta_e: f64) -> AlphaBeta {
+        let (sin, cos) = theta_e.sin_cos();
+        AlphaBeta { alpha: cos * self.d - sin * self.q, beta: sin * self.d + cos * self.q }
+    }
+
+    /// Length of the vector: the phase peak value.
+    pub fn magnitude(self) -> f64 {
+        self.d.hypot(self.q)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_balanced_system_keeps_its_peak_value_and_turns_with_the_rotor() {
+        // Phase a at its peak when the rotor stands on it: all of the vector is d.
+        let phases = |angle: f64| Abc { a: 5.0 * angle.cos(), b: 5.0 * (angle - TAU / 3.0).cos(), c: 5.0 * (angle + TAU / 3.0).cos() };
+        for degrees in [0.0_f64, 17.0, 90.0, 200.0, 359.0] {
+            let angle = degrees.to_radians();
+            let dq = phases(angle).to_alpha_beta().to_dq(angle);
+            assert!((dq.d - 5.0).abs() < 1e-14 && dq.q.abs() < 1e-14, "{degrees}: {dq:?}");
+            let ahead = phases(angle + TAU / 4.0).to_alpha_beta().to_dq(angle);
+            assert!(ahead.d.abs() < 1e-14 && (ahead.q - 5.0).abs() < 1e-14, "{degrees}: {ahead:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn transforms_undo_each_other(d in -1e3..1e3, q in -1e3..1e3, theta in -10.0..10.0) {
+            let there = Dq { d, q }.to_alpha_beta(theta).to_abc();
+            prop_assert!((there.a + there.b + there.c).abs() < 1e-10);
+            let back = there.to_alpha_beta().to_dq(theta);
+            prop_assert!((back.d - d).abs() < 1e-10 && (back.q - q).abs() < 1e-10);
+        }
+
+        #[test]
+        fn power_is_three_halves_of_the_dot_product(ud in -1e2..1e2, uq in -1e2..1e2, id in -1e2..1e2, iq in -1e2..1e2, theta in -10.0..10.0) {
+            let u = Dq { d: ud, q: uq }.to_alpha_beta(theta).to_abc();
+            let i = Dq { d: id, q: iq }.to_alpha_beta(theta).to_abc();
+            let phases = u.a * i.a + u.b * i.b + u.c * i.c;
+            prop_assert!((phases - 1.5 * (ud * id + uq * iq)).abs() < 1e-9);
+        }
+    }
+}

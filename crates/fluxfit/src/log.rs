@@ -1,0 +1,218 @@
+//! The log: what a drive recorded, in SI units, checked on the way in.
+//!
+//! Whoever holds a [`Log`] knows: equal columns, finite plausible numbers, increasing time, some current and voltage. Time may jump: a jump ends a [segment](Log::segments),
+//! and nothing is ever computed across one. Several logs of one motor [join](Log::join) into one.
+
+use crate::error::Error;
+use std::ops::Range;
+
+/// The columns of a log, row by row in SI units; canonical names. Voltages and currents in the dq frame of [`frames`](crate::frames).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Columns {
+    /// Time, s.
+    pub t: Vec<f64>,
+    /// Voltage along d, V.
+    pub ud: Vec<f64>,
+    /// Voltage along q, V.
+    pub uq: Vec<f64>,
+    /// Current along d, A.
+    pub id: Vec<f64>,
+    /// Current along q, A.
+    pub iq: Vec<f64>,
+    /// Speed, electrical rad/s.
+    pub omega_e: Vec<f64>,
+}
+
+impl Columns {
+    /// Canonical names and columns, `t` first.
+    pub fn named(&self) -> [(&'static str, &Vec<f64>); 6] {
+        [("t", &self.t), ("ud", &self.ud), ("uq", &self.uq), ("id", &self.id), ("iq", &self.iq), ("omega_e", &self.omega_e)]
+    }
+}
+
+/// Fewest rows of a log: two make a sample period.
+const MIN_ROWS: usize = 2;
+
+/// Largest magnitude of any value. No drive has a gigavolt; squares and sums of such numbers stay far from overflow.
+const MAX_MAGNITUDE: f64 = 1e9;
+
+/// A time step this many times the median one is a gap: one lost row (2) is not, two (3) are.
+const GAP_FACTOR: f64 = 2.5;
+
+/// A checked log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    columns: Columns,
+    segments: Vec<Segment>,
+}
+
+/// Rows without a gap between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    /// Its rows.
+    pub rows: Range<usize>,
+    /// Median time step of the log it came from, s.
+    pub sample_period: f64,
+}
+
+impl Log {
+    /// Checks columns and splits them at gaps.
+    ///
+    /// # Errors
+    /// If a column is shorter than another, a value is not finite or implausibly large, time does not increase, there are less than two rows, or the currents, the voltages or
+    /// the speed are zero throughout.
+    pub fn new(columns: Columns) -> Result<Self, Error> {
+        let rows = columns.t.len();
+        for (column, values) in columns.named() {
+            if values.len() != rows {
+                return Err(Error::ColumnLength { column, rows: values.len(), expected: rows });
+            }
+        }
+        if rows < MIN_ROWS {
+            return Err(Error::TooShort { rows, least: MIN_ROWS });
+        }
+        check_values(&columns)?;
+        check_time(&columns.t)?;
+        let silent = |columns: [&Vec<f64>; 2]| columns.iter().all(|column| column.iter().all(|value| *value == 0.0));
+        if silent([&columns.id, &columns.iq]) {
+            return Err(Error::AllZero { what: "the currents id and iq are" });
+        }
+        if silent([&columns.ud, &columns.uq]) {
+            return Err(Error::AllZero { what: "the voltages ud and uq are" });
+        }
+        if silent([&columns.omega_e; 2]) {
+            return Err(Error::AllZero { what: "the speed omega_e is" });
+        }
+        let segments = split(&columns.t);
+        Ok(Self { columns, segments })
+    }
+
+    /// Several logs of one motor as one; no segment reaches from one into the next.
+    ///
+    /// # Errors
+    /// If there is no log.
+    pub fn join(logs: impl IntoIterator<Item = Self>) -> Result<Self, Error> {
+        let mut logs = logs.into_iter();
+        let mut joined = logs.next().ok_or(Error::TooShort { rows: 0, least: MIN_ROWS })?;
+        for log in logs {
+            let offset = joined.rows();
+            joined.segments.extend(
+                log.segments.into_iter().map(|segment| Segment { rows: segment.rows.start + offset..segment.rows.end + offset, ..segment }),
+            );
+            let (to, from) = (&mut joined.columns, log.columns);
+            to.t.extend(from.t);
+            to.ud.extend(from.ud);
+            to.uq.extend(from.uq);
+            to.id.extend(from.id);
+            to.iq.extend(from.iq);
+            to.omega_e.extend(from.omega_e);
+        }
+        Ok(joined)
+    }
+
+    /// The columns.
+    pub fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.t.len()
+    }
+
+    /// Stretches without a gap, in order.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Time covered by the segments, s: gaps do not count, each segment's last row counts one sample period.
+    pub fn duration(&self) -> f64 {
+        let t = &self.columns.t;
+        self.segments.iter().map(|segment| t[segment.rows.end - 1] - t[segment.rows.start] + segment.sample_period).sum()
+    }
+
+    /// Largest length of the current vector in the log, A.
+    pub fn peak_current(&self) -> f64 {
+        self.columns.id.iter().zip(&self.columns.iq).map(|(d, q)| d.hypot(*q)).fold(0.0, f64::max)
+    }
+}
+
+fn check_values(columns: &Columns) -> Result<(), Error> {
+    for row in 0..columns.t.len() {
+        for (column, values) in columns.named() {
+            let value = values[row];
+            if !value.is_finite() {
+                return Err(Error::NotFinite { column, row, value });
+            }
+            // Times may be seconds since 1970.
+            if value.abs() > MAX_MAGNITUDE && column != "t" || value.abs() > MAX_MAGNITUDE * 1e3 {
+                return Err(Error::Implausible { column, row, value, limit: MAX_MAGNITUDE });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_time(t: &[f64]) -> Result<(), Error> {
+    match t.windows(2).position(|pair| pair[1] <= pair[0]) {
+        Some(at) => Err(Error::TimeOrder { row: at + 1, before: t[at], after: t[at + 1] }),
+        None => Ok(()),
+    }
+}
+
+fn split(t: &[f64]) -> Vec<Segment> {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let sample_period = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let mut segments = Vec::new();
+    let mut start = 0;
+    for end in 1..=t.len() {
+        if end == t.len() || t[end] - t[end - 1] > GAP_FACTOR * sample_period {
+            segments.push(Segment { rows: start..end, sample_period });
+            start = end;
+        }
+    }
+    segments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns(t: &[f64]) -> Columns {
+        let ones = vec![1.0; t.len()];
+        Columns { t: t.to_vec(), ud: ones.clone(), uq: ones.clone(), id: ones.clone(), iq: ones.clone(), omega_e: ones }
+    }
+
+    #[test]
+    fn a_jump_in_time_ends_a_segment_and_one_lost_row_does_not() {
+        let log = Log::new(columns(&[0.0, 0.1, 0.3, 0.4, 1.0, 1.1])).unwrap();
+        let rows: Vec<_> = log.segments().iter().map(|segment| segment.rows.clone()).collect();
+        assert_eq!(rows, [0..4, 4..6]);
+        assert!((log.duration() - (0.5 + 0.2)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn joined_logs_keep_their_segments() {
+        let log = Log::join([columns(&[0.0, 0.1, 0.2]), columns(&[0.1, 0.2])].map(|c| Log::new(c).unwrap())).unwrap();
+        let rows: Vec<_> = log.segments().iter().map(|segment| segment.rows.clone()).collect();
+        assert_eq!(rows, [0..3, 3..5]);
+        assert_eq!(log.rows(), 5);
+        assert!(Log::join([]).is_err());
+    }
+
+    #[test]
+    fn what_no_drive_records_is_refused_by_name_and_row() {
+        let broken = |change: fn(&mut Columns)| {
+            let mut columns = columns(&[0.0, 0.1, 0.2]);
+            change(&mut columns);
+            Log::new(columns).unwrap_err()
+        };
+        assert_eq!(broken(|c| c.uq[1] = f64::INFINITY), Error::NotFinite { column: "uq", row: 1, value: f64::INFINITY });
+        assert_eq!(broken(|c| c.id[2] = -1e300), Error::Implausible { column: "id", row: 2, value: -1e300, limit: MAX_MAGNITUDE });
+        assert_eq!(broken(|c| c.t[2] = 0.1), Error::TimeOrder { row: 2, before: 0.1, after: 0.1 });
+        assert_eq!(broken(|c| c.iq.truncate(2)), Error::ColumnLength { column: "iq", rows: 2, expected: 3 });
+        assert!(matches!(broken(|c| (c.id.fill(0.0), c.iq.fill(0.0)).1), Error::AllZero { .. }));
+        assert!(matches!(Log::new(columns(&[0.0])), Err(Error::TooShort { rows: 1, .. })));
+    }
+}

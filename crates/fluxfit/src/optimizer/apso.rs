@@ -1,0 +1,52 @@
+//! APSO: particle swarm whose inertia weight follows each particle's cost.
+//!
+//! Idea: a particle better than the average settles, one worse than the average keeps flying.
+//!
+//! ```text
+//! w_i = w_min + (w_max - w_min) (f_i - f_min) / (f_avg - f_min)   if f_i <= f_avg
+//! w_i = w_max                                                     otherwise
+//! ```
+//!
+//! `f_min` and `f_avg` are taken over the current costs; with all costs equal the weight is `w_min`. The name "APSO" covers several methods; this is the one usual beside LPSO in
+//! the literature of motor identification. The flight itself: [`Flight`].
+//!
+//! When to use it: the strongest of the paper's baselines on smooth, single-valleyed fitness functions.
+
+use super::{particles::Flight, population::Population};
+use serde::{Deserialize, Serialize};
+
+/// Settings of APSO.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Apso {
+    /// The flight underneath.
+    pub flight: Flight,
+    /// Inertia weight of the best particle. 0.4.
+    pub inertia_min: f64,
+    /// Inertia weight of those worse than the average. 0.9.
+    pub inertia_max: f64,
+}
+
+impl Default for Apso {
+    fn default() -> Self {
+        Self { flight: Flight::default(), inertia_min: 0.4, inertia_max: 0.9 }
+    }
+}
+
+impl Apso {
+    /// The inertia weight of each particle.
+    pub(super) fn inertia(&self, swarm: &Population) -> impl Fn(f64) -> f64 + use<> {
+        let costs = swarm.costs();
+        let lowest = costs.iter().copied().fold(f64::INFINITY, f64::min);
+        let average = costs.iter().map(|cost| cost / costs.len() as f64).sum::<f64>();
+        let Self { inertia_min, inertia_max, .. } = *self;
+        move |cost| {
+            if average <= lowest {
+                inertia_min
+            } else if cost > average {
+                inertia_max
+            } else {
+                inertia_min + (inertia_max - inertia_min) * (cost - lowest) / (average - lowest)
+            }
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The search box.
+
+use super::draws::Draws;
+use crate::error::Error;
+use serde::{Deserialize, Serialize};
+
+/// A box of finite, non-empty intervals, one per dimension.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Bounds {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+}
+
+impl Bounds {
+    /// # Errors
+    /// If there is no dimension, the lengths differ, a bound is not finite or a lower one is not below its upper one.
+    pub fn new(lower: Vec<f64>, upper: Vec<f64>) -> Result<Self, Error> {
+        if lower.is_empty() || lower.len() != upper.len() {
+            return Err(Error::BoundsShape { lower: lower.len(), upper: upper.len() });
+        }
+        for (dimension, (&lower, &upper)) in lower.iter().zip(&upper).enumerate() {
+            // The width must be finite too: it scales every step.
+            if !(lower < upper && (upper - lower).is_finite()) {
+                return Err(Error::Bounds { dimension, lower, upper });
+            }
+        }
+        Ok(Self { lower, upper })
+    }
+
+    /// Number of dimensions.
+    pub fn dimension(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// `(lower, upper)` of each dimension.
+    pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.lower.iter().copied().zip(self.upper.iter().copied())
+    }
+
+    /// Positions uniform in the box, row after row.
+    pub(super) fn uniform_start(&self, population: usize, draws: &mut Draws) -> Vec<f64> {
+        (0..population).flat_map(|_| self.iter()).map(|(lower, upper)| lower + draws.uniform() * (upper - lower)).collect()
+    }
+
+    /// Moves each coordinate outside the box to the nearest face; one that is not a number, to the lower face.
+    pub fn clamp(&self, position: &mut [f64]) {
+        for (x, (lower, upper)) in position.iter_mut().zip(self.iter()) {
+            *x = x.max(lower).min(upper);
+        }
+    }
+
+    /// Whether a position lies in the box, faces included.
+    pub fn contains(&self, position: &[f64]) -> bool {
+        position.iter().zip(self.iter()).all(|(x, (lower, upper))| (lower..=upper).contains(x))
+    }
+}

@@ -1,0 +1,124 @@
+//! Where every random number of an optimizer comes from.
+//!
+//! One named, portable generator (ChaCha with 8 rounds) with one stream per run: a run's numbers depend on its seed and its stream alone, never on which thread
+//! it ran or what ran before. A recorded list can take the generator's place, so that an independent program fed the same numbers can check a step.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal, StudentT};
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+
+/// A source of random numbers.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Draws(Source);
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+// One Draws per optimizer: the size of the generator does not matter, an indirection at every draw would.
+#[allow(clippy::large_enum_variant)]
+enum Source {
+    Generator(ChaCha8Rng),
+    Recorded(VecDeque<f64>),
+}
+
+impl Draws {
+    /// The stream number `stream` of the generator seeded with `seed`.
+    pub fn seeded(seed: u64, stream: u64) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(stream);
+        Self(Source::Generator(generator))
+    }
+
+    /// Numbers written down beforehand, each returned as it stands whatever distribution is asked for (a partner as its index), from the front again after the last.
+    pub fn replay(numbers: Vec<f64>) -> Self {
+        Self(Source::Recorded(numbers.into()))
+    }
+
+    /// Uniform on [0, 1).
+    pub fn uniform(&mut self) -> f64 {
+        self.draw(|generator| generator.random())
+    }
+
+    /// Standard normal.
+    pub fn normal(&mut self) -> f64 {
+        self.draw(|generator| generator.sample(StandardNormal))
+    }
+
+    /// Student's t with `degrees` degrees of freedom; zero if there are none.
+    pub fn student_t(&mut self, degrees: usize) -> f64 {
+        self.draw(|generator| StudentT::new(degrees as f64).map_or(0.0, |t| t.sample(generator)))
+    }
+
+    /// `K` indices below `population`, different from each other and from `i`. `population` must exceed `K`.
+    pub fn partners<const K: usize>(&mut self, i: usize, population: usize) -> [usize; K] {
+        let mut partners = [0; K];
+        for chosen in 0..K {
+            let left = population - 1 - chosen;
+            partners[chosen] = match &mut self.0 {
+                Source::Recorded(_) => self.uniform() as usize,
+                Source::Generator(generator) => {
+                    // An index among those left, moved past each taken one that lies below or at it, smallest first.
+                    let mut index = generator.random_range(0..left);
+                    let mut taken = [i; K];
+                    taken[1..=chosen.min(K - 1)].copy_from_slice(&partners[..chosen.min(K - 1)]);
+                    let taken = &mut taken[..=chosen];
+                    taken.sort_unstable();
+                    for other in taken.iter() {
+                        index += usize::from(index >= *other);
+                    }
+                    index
+                }
+            };
+        }
+        partners
+    }
+
+    fn draw(&mut self, from: impl FnOnce(&mut ChaCha8Rng) -> f64) -> f64 {
+        match &mut self.0 {
+            Source::Generator(generator) => from(generator),
+            Source::Recorded(numbers) => {
+                numbers.rotate_left(usize::from(!numbers.is_empty()));
+                numbers.back().copied().unwrap_or(0.0)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn partners_are_uniform_over_the_others() {
+        let mut draws = Draws::seeded(3, 0);
+        let mut counts = [[0u32; 6]; 3];
+        for _ in 0..60_000 {
+            for (count, j) in counts.iter_mut().zip(draws.partners::<3>(2, 6)) {
+                count[j] += 1;
+            }
+        }
+        for count in counts {
+            assert_eq!(count[2], 0);
+            // Each of the five others 12000 times, binomial, 5 sigma = 490.
+            assert!(count.iter().enumerate().all(|(j, n)| j == 2 || n.abs_diff(12_000) < 490), "{count:?}");
+        }
+    }
+
+    #[test]
+    fn streams_of_one_seed_differ_and_repeat() {
+        let first = |stream| Draws::seeded(1, stream).uniform();
+        assert_eq!(first(0), first(0));
+        assert_ne!(first(0), first(1));
+    }
+
+    proptest! {
+        #[test]
+        fn partners_differ_from_each_other_and_from_the_flower(seed: u64, population in 4usize..60, of in 0usize..60) {
+            let i = of % population;
+            let [j, k, l] = Draws::seeded(seed, 0).partners::<3>(i, population);
+            prop_assert!(j < population && k < population && l < population);
+            prop_assert!(i != j && i != k && i != l && j != k && j != l && k != l);
+        }
+    }
+}

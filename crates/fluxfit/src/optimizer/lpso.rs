@@ -1,0 +1,53 @@
+//! LPSO: particle swarm with a linearly falling inertia weight.
+//!
+//! Idea: fly far at first, settle later.
+//!
+//! ```text
+//! w(t) = w_start + (w_end - w_start) (t - 1) / (iterations - 1),  t = 1 .. iterations
+//! ```
+//!
+//! Y. Shi and R. Eberhart, "A modified particle swarm optimizer", CEC 1998, doi:10.1109/ICEC.1998.699146; the flight itself: [`Flight`].
+//!
+//! When to use it: as the paper's second baseline.
+
+use super::particles::Flight;
+use serde::{Deserialize, Serialize};
+
+/// Settings of LPSO.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Lpso {
+    /// The flight underneath.
+    pub flight: Flight,
+    /// Inertia weight of the first iteration. 0.9.
+    pub inertia_start: f64,
+    /// Inertia weight of the last iteration. 0.4.
+    pub inertia_end: f64,
+}
+
+impl Default for Lpso {
+    fn default() -> Self {
+        Self { flight: Flight::default(), inertia_start: 0.9, inertia_end: 0.4 }
+    }
+}
+
+impl Lpso {
+    /// The inertia weight of iteration `iteration` (from 1) out of `iterations`; past the last one it stays.
+    pub(super) fn inertia(&self, iteration: usize, iterations: usize) -> f64 {
+        let fraction = (iteration.saturating_sub(1) as f64 / iterations.saturating_sub(1).max(1) as f64).min(1.0);
+        self.inertia_start + (self.inertia_end - self.inertia_start) * fraction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weight_falls_from_start_to_end() {
+        let lpso = Lpso::default();
+        assert_eq!(lpso.inertia(1, 300), 0.9);
+        assert!((lpso.inertia(151, 301) - 0.65).abs() < 1e-15);
+        assert_eq!(lpso.inertia(300, 300), 0.4);
+        assert_eq!(lpso.inertia(1, 1), 0.9);
+    }
+}
