@@ -20,7 +20,8 @@ pub fn logistic_start(population: usize, bounds: &Bounds, draws: &mut Draws) -> 
     let mut positions = Vec::with_capacity(population * chain.len());
     for _ in 0..population {
         for (b, (lower, upper)) in chain.iter_mut().zip(bounds.iter()) {
-            positions.push(lower + *b * (upper - lower));
+            // At the map's peak, b = 1, rounding can lead past the face.
+            positions.push((lower + *b * (upper - lower)).min(upper));
             *b = MU * *b * (1.0 - *b);
         }
     }

@@ -1,0 +1,96 @@
+//! What a log's columns are called: here, and elsewhere.
+
+use crate::{
+    error::{FileError, Problem},
+    quantity::Dimension,
+    wording::nearest,
+};
+
+/// A column of a log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Channel {
+    T,
+    Ud,
+    Uq,
+    Id,
+    Iq,
+    OmegaE,
+    /// Known, and read by nothing yet.
+    ThetaE,
+}
+
+impl Channel {
+    /// Those that a log must have, in the order of `fluxfit::log::Columns`.
+    pub(crate) const NEEDED: [Self; 6] = [Self::T, Self::Ud, Self::Uq, Self::Id, Self::Iq, Self::OmegaE];
+
+    /// The canonical name.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::T => "t",
+            Self::Ud => "ud",
+            Self::Uq => "uq",
+            Self::Id => "id",
+            Self::Iq => "iq",
+            Self::OmegaE => "omega_e",
+            Self::ThetaE => "theta_e",
+        }
+    }
+
+    pub(crate) fn dimension(self) -> Dimension {
+        match self {
+            Self::T => Dimension::Time,
+            Self::Ud | Self::Uq => Dimension::Voltage,
+            Self::Id | Self::Iq => Dimension::Current,
+            Self::OmegaE => Dimension::Speed,
+            Self::ThetaE => Dimension::Angle,
+        }
+    }
+
+    /// What drives and their tools call it, in lower case without punctuation: only to propose a column, never to take one.
+    pub(crate) fn spellings(self) -> &'static [&'static str] {
+        match self {
+            Self::T => &["t", "time", "timestamp", "mstoday", "seconds"],
+            Self::Ud => &["ud", "vd", "daxisvoltage", "voltaged", "voltagedaxis"],
+            Self::Uq => &["uq", "vq", "qaxisvoltage", "voltageq", "voltageqaxis"],
+            Self::Id => &["id", "daxiscurrent", "currentd", "currentdaxis"],
+            Self::Iq => &["iq", "qaxiscurrent", "currentq", "currentqaxis"],
+            Self::OmegaE => &["omega", "omegae", "omegael", "omegam", "speed", "velocity", "rpm", "erpm"],
+            Self::ThetaE => &["theta", "thetae"],
+        }
+    }
+
+    /// From its canonical name, or `omega` and `theta`.
+    pub(crate) fn from_name(name: &str) -> Result<Self, FileError> {
+        match name {
+            "omega" => return Ok(Self::OmegaE),
+            "theta" => return Ok(Self::ThetaE),
+            _ => {}
+        }
+        let known = Self::NEEDED.into_iter().chain([Self::ThetaE]);
+        known.clone().find(|channel| channel.name() == name).ok_or_else(|| {
+            let by_spelling = known.clone().find(|channel| channel.spellings().contains(&name)).map(Self::name);
+            let nearest = by_spelling.or_else(|| nearest(name, known.map(Self::name)));
+            Problem::Channel { name: name.to_owned(), known: Self::NEEDED.map(Self::name).to_vec(), nearest }.into()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_nearest() {
+        assert_eq!(Channel::from_name("omega"), Ok(Channel::OmegaE));
+        let refusal = |name| Channel::from_name(name).unwrap_err().to_string();
+        assert_eq!(refusal("speed"), "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e; did you mean omega_e?");
+        assert_eq!(refusal("time"), "\"time\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e; did you mean t?");
+        assert_eq!(refusal("flux_density"), "\"flux_density\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e");
+    }
+
+    #[test]
+    fn the_order_is_that_of_the_library() {
+        let names = fluxfit::log::Columns::default().named().map(|(name, _)| name);
+        assert_eq!(names, Channel::NEEDED.map(Channel::name));
+    }
+}

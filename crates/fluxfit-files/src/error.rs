@@ -1,0 +1,241 @@
+//! The only error of this crate: one sentence on one line that says where, what, and what to do.
+//!
+//! `drive.csv, line 17, column 'uq': "abc" is not a number; correct it or remove the row`
+//!
+//! The place is told once, by [`FileError`]; the sentence once, by the problem.
+
+use crate::wording::{choice, columns, did_you_mean, list, one_line, quote, shorten};
+use std::fmt;
+
+/// What could not be read, written or understood, and where. Its `Display` is one line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileError(Box<Located>);
+
+#[derive(Debug, Clone, PartialEq)]
+struct Located {
+    file: Option<String>,
+    line: Option<u64>,
+    field: Option<Field>,
+    problem: Problem,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Field {
+    Column(String),
+    Key(String),
+}
+
+impl FileError {
+    /// The file as it was named, or `standard input`; none for an argument.
+    pub fn file(&self) -> Option<&str> {
+        self.0.file.as_deref()
+    }
+
+    /// The line of the file, from 1, counted as an editor counts.
+    pub fn line(&self) -> Option<u64> {
+        self.0.line
+    }
+
+    /// The column's name in the file's header, or the key of a motor or truth file.
+    pub fn column(&self) -> Option<&str> {
+        self.0.field.as_ref().map(|Field::Column(name) | Field::Key(name)| name.as_str())
+    }
+
+    pub(crate) fn in_file(mut self, name: &str) -> Self {
+        self.0.file.get_or_insert_with(|| name.to_owned());
+        self
+    }
+
+    pub(crate) fn at_line(mut self, line: u64) -> Self {
+        self.0.line.get_or_insert(line);
+        self
+    }
+
+    pub(crate) fn in_column(mut self, header: &str) -> Self {
+        self.0.field.get_or_insert_with(|| Field::Column(header.to_owned()));
+        self
+    }
+
+    pub(crate) fn in_key(mut self, key: &str) -> Self {
+        self.0.field.get_or_insert_with(|| Field::Key(key.to_owned()));
+        self
+    }
+}
+
+impl From<Problem> for FileError {
+    fn from(problem: Problem) -> Self {
+        Self(Box::new(Located { file: None, line: None, field: None, problem }))
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Located { file, line, field, problem } = &*self.0;
+        let place: Vec<String> = [
+            file.as_ref().map(|file| one_line(file)),
+            line.map(|line| format!("line {line}")),
+            field.as_ref().map(|field| match field {
+                Field::Column(header) => format!("column '{}'", shorten(header)),
+                Field::Key(key) => format!("key '{}'", shorten(key)),
+            }),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        if place.is_empty() { write!(f, "{problem}") } else { write!(f, "{}: {problem}", place.join(", ")) }
+    }
+}
+
+impl std::error::Error for FileError {}
+
+/// The sentences. Texts taken from files are quoted here, never before.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum Problem {
+    // Files
+    #[error("this is a directory; name a file in it")]
+    Directory,
+    #[error("there is no such file; check the path")]
+    NotFound,
+    #[error("permission is denied; change the permissions, or name another file")]
+    NotPermitted,
+    #[error("{action} failed: {}; try again, or name another file", one_line(.reason))]
+    Io { action: &'static str, reason: String },
+    #[error("the directory {} does not exist; create it, or name another file", quote(.directory))]
+    NoDirectory { directory: String },
+    #[error("this is not text in UTF-8; export it as {wanted} in UTF-8")]
+    NotText { wanted: &'static str },
+    #[error("the file is empty; export it again")]
+    Empty,
+
+    // The header of a log
+    #[error("there are only comments; a header line with the names of the columns and rows of numbers are needed")]
+    NoHeader,
+    #[error("there is no row below the header; export the log with its rows")]
+    NoRows,
+    #[error("{} are numbers where the header should be; put a line with the names of the columns above them", quote(.text))]
+    NumbersForHeader { text: String },
+    #[error("{} {} and does not look like a header; delete this line{}", quote(.text), cells_of_title(*.cells), also_lacking(.lacking))]
+    Title { text: String, cells: usize, lacking: Vec<&'static str> },
+    #[error("{} is only one column; separate the names, and the values, by comma, semicolon or tab", quote(.text))]
+    OneColumn { text: String },
+    #[error("{}", missing_columns(.missing, .present, .proposals))]
+    Missing { missing: Vec<&'static str>, present: Vec<String>, proposals: Vec<(&'static str, String)> },
+    #[error("the header names this column {count} times; rename or remove all but one")]
+    Duplicate { count: usize },
+    #[error("the columns {} could each be {channel}; choose one with --map {channel}=COLUMN", columns(.headers))]
+    Ambiguous { channel: &'static str, headers: Vec<String> },
+    #[error("this column would be both {first} and {second}; say which columns they are, with --map {first}=COLUMN,{second}=COLUMN")]
+    Shared { first: &'static str, second: &'static str },
+    #[error("--map {channel}={header}: the file has no column '{header}', it has {}{}", columns(.present), did_you_mean(.nearest.as_deref()))]
+    MappedHeader { channel: &'static str, header: String, present: Vec<String>, nearest: Option<String> },
+    #[error("{} in the header is no unit of {channel} known here; say the unit with --unit {channel}={}", quote(.text), choice(.units))]
+    HeaderUnit { channel: &'static str, text: String, units: Vec<&'static str> },
+    #[error("{unit} is mechanical, and only the pole pairs make it electrical; add --pole-pairs N, or --unit {channel}={electrical} if it is electrical already")]
+    PolePairs { channel: &'static str, unit: &'static str, electrical: &'static str },
+
+    // The rows of a log
+    #[error("{} looks like a row of units; delete this line", quote(.text))]
+    UnitsRow { text: String },
+    #[error("the row has {found} cells where the header has {expected}; {}", row_remedy(*.multiline))]
+    RowLength { found: usize, expected: usize, multiline: bool },
+    #[error("the cell is empty; write a number or remove the row")]
+    EmptyCell,
+    #[error("{} is not a number; correct it or remove the row", quote(.text))]
+    NotANumber { text: String },
+    #[error("{} is not a number; write time as a number, in s", quote(.text))]
+    ClockTime { text: String },
+    #[error("{} does not have the decimal mark of line {other}; use one mark throughout, and no thousands separators", quote(.text))]
+    DecimalMarks { text: String, other: u64 },
+    #[error("{0}")]
+    Log(fluxfit::error::Error),
+
+    // Arguments
+    #[error("{} is not understood; write {form}, as in {example}", quote(.text))]
+    Form { text: String, form: &'static str, example: &'static str },
+    #[error("{} is no column of a log; the columns are {}{}", quote(.name), list(.known), did_you_mean(*.nearest))]
+    Channel { name: String, known: Vec<&'static str>, nearest: Option<&'static str> },
+    #[error("{} is no unit of {channel}; it can be {}", quote(.unit), choice(.allowed))]
+    Unit { channel: &'static str, unit: String, allowed: Vec<&'static str> },
+    #[error("{channel} is given twice; give it once")]
+    Twice { channel: &'static str },
+    #[error("0 pole pairs are no motor; give --pole-pairs 1 or more")]
+    ZeroPolePairs,
+    #[error("{} is no parameter; the parameters are {}{}", quote(.name), list(.known), did_you_mean(*.nearest))]
+    Parameter { name: String, known: Vec<&'static str>, nearest: Option<&'static str> },
+    #[error("{} is not {noun}; write a number, in {si} or with its unit, as in {example}", quote(.text))]
+    Quantity { text: String, noun: &'static str, si: &'static str, example: &'static str },
+    #[error("{} is out of range; it must be {range}", quote(.text))]
+    Range { text: String, range: &'static str },
+    #[error("{} has a unit on one number only; write it on both", quote(.text))]
+    OneSidedUnit { text: String },
+    #[error("{} does not run upward; write the lower end first", quote(.text))]
+    Interval { text: String },
+
+    // Motor and truth files
+    #[error("this is not {format}: {}; correct it", one_line(.message))]
+    Syntax { format: &'static str, message: String },
+    #[error("this key is not known; {} can be {}{}", quote(.table), list(.known), did_you_mean(*.nearest))]
+    Key { table: &'static str, known: Vec<&'static str>, nearest: Option<&'static str> },
+    #[error("this key stands outside of a table; put it below a line [{table}]")]
+    OutsideTable { table: &'static str },
+    #[error("this is not {wanted}; correct it")]
+    Value { wanted: &'static str },
+    #[error("{} missing; write {}", quote(.key), one_line(.remedy))]
+    MissingKey { key: String, remedy: &'static str },
+    #[error("the schema is {} where \"{wanted}\" is needed; give a truth file", quote(.found))]
+    Schema { found: String, wanted: &'static str },
+}
+
+fn cells_of_title(cells: usize) -> String {
+    if cells == 1 { "is only one cell".to_owned() } else { format!("has only {cells} cells") }
+}
+
+fn also_lacking(lacking: &[&str]) -> String {
+    if lacking.is_empty() { String::new() } else { format!("; the next one names nothing like {}, which are needed too", list(lacking)) }
+}
+
+fn row_remedy(multiline: bool) -> &'static str {
+    if multiline { "a quotation mark in this line opens a cell that runs over several lines: close it" } else { "complete the row or remove it" }
+}
+
+/// The proposals come as an argument that can be pasted.
+fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> String {
+    let plural = missing.len() > 1;
+    let (columns_are, they_are) = if plural { ("columns", "are") } else { ("column", "is") };
+    let mut sentence = format!("the {columns_are} {} {they_are} missing; the file has {}", list(missing), columns(present));
+    if proposals.is_empty() {
+        sentence += if plural { "; say which they are" } else { "; say which it is" };
+        sentence += ", as in --map omega_e=motor_speed";
+        return sentence;
+    }
+    let pairs: Vec<String> = proposals.iter().map(|(channel, header)| format!("{channel}={header}")).collect();
+    let argument = pairs.join(",");
+    let plain = argument.chars().all(|c| c.is_alphanumeric() || "_=,.-@".contains(c));
+    sentence += "; if these are they, add --map ";
+    sentence += &if plain { argument } else { format!("\"{argument}\"") };
+    let rest: Vec<&str> = missing.iter().filter(|channel| proposals.iter().all(|(proposed, _)| proposed != *channel)).copied().collect();
+    if !rest.is_empty() {
+        sentence += &format!("; nothing resembles {}, and {} needed", list(&rest), if rest.len() > 1 { "they are" } else { "it is" });
+    }
+    sentence
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_comes_first_and_only_where_there_is_one() {
+        let problem = || FileError::from(Problem::NotANumber { text: "abc".into() });
+        assert_eq!(problem().to_string(), "\"abc\" is not a number; correct it or remove the row");
+        let placed = problem().in_file("drive.csv").at_line(17).in_column("uq");
+        assert_eq!(placed.to_string(), "drive.csv, line 17, column 'uq': \"abc\" is not a number; correct it or remove the row");
+        assert_eq!((placed.file(), placed.line(), placed.column()), (Some("drive.csv"), Some(17), Some("uq")));
+    }
+
+    #[test]
+    fn the_innermost_place_stays() {
+        let error = FileError::from(Problem::EmptyCell).at_line(3).at_line(1).in_file("a").in_file("b");
+        assert_eq!(error.to_string(), "a, line 3: the cell is empty; write a number or remove the row");
+    }
+}

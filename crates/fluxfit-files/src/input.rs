@@ -1,0 +1,95 @@
+//! Bytes and text of a file, or of standard input, which is written `-`.
+
+use crate::error::{FileError, Problem};
+use std::{
+    fs,
+    io::{self, Read},
+    path::Path,
+};
+
+/// What a path means standard input or output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// The file's name in a message.
+pub(crate) fn name(path: &Path) -> String {
+    if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// The whole file.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    let bytes = if is_standard(path) {
+        let mut bytes = Vec::new();
+        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        fs::read(path)
+    };
+    bytes.map_err(|error| FileError::from(io_problem("reading", &error)).in_file(&name(path)))
+}
+
+/// The whole text, without a byte order mark. `wanted` names the format that the remedy asks for.
+pub(crate) fn text<'a>(bytes: &'a [u8], wanted: &'static str) -> Result<&'a str, FileError> {
+    let refuse = |at: usize| FileError::from(Problem::NotText { wanted }).at_line(line_at(bytes, at));
+    let text = str::from_utf8(bytes).map_err(|error| refuse(error.valid_up_to()))?;
+    if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
+        return Err(refuse(at));
+    }
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.trim().is_empty() { Err(Problem::Empty.into()) } else { Ok(text) }
+}
+
+/// The line, from 1, of the byte at `offset`. Lines end with `\n`, `\r\n` or `\r`.
+pub(crate) fn line_at(bytes: &[u8], offset: usize) -> u64 {
+    let offset = offset.min(bytes.len());
+    let ends = (0..offset).filter(|&at| match bytes[at] {
+        b'\n' => true,
+        b'\r' => bytes.get(at + 1) != Some(&b'\n'),
+        _ => false,
+    });
+    1 + ends.count() as u64
+}
+
+pub(crate) fn io_problem(action: &'static str, error: &io::Error) -> Problem {
+    match error.kind() {
+        io::ErrorKind::NotFound => Problem::NotFound,
+        io::ErrorKind::PermissionDenied => Problem::NotPermitted,
+        io::ErrorKind::IsADirectory => Problem::Directory,
+        _ => Problem::Io { action, reason: error.to_string() },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_counted_as_an_editor_does() {
+        let bytes = b"a\nb\r\nc\rd\n\ne";
+        let lines: Vec<u64> = b"abcde".iter().map(|c| line_at(bytes, bytes.iter().position(|b| b == c).unwrap())).collect();
+        assert_eq!(lines, [1, 2, 3, 4, 6]);
+        assert_eq!(line_at(bytes, 999), 6);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_told_apart() {
+        let refusal = |path: &str| read(Path::new(path)).unwrap_err().to_string();
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().to_str().unwrap();
+        assert_eq!(refusal(path), format!("{path}: this is a directory; name a file in it"));
+        assert_eq!(refusal(&format!("{path}/x.csv")), format!("{path}/x.csv: there is no such file; check the path"));
+        let problem = |kind: io::ErrorKind| io_problem("reading", &kind.into()).to_string();
+        assert_eq!(problem(io::ErrorKind::PermissionDenied), "permission is denied; change the permissions, or name another file");
+        assert_eq!(problem(io::ErrorKind::TimedOut), "reading failed: timed out; try again, or name another file");
+    }
+
+    #[test]
+    fn only_text_passes() {
+        assert_eq!(text("\u{feff}a".as_bytes(), "CSV"), Ok("a"));
+        assert_eq!(text(b" \n", "CSV").unwrap_err().to_string(), "the file is empty; export it again");
+        let refusal = "line 2: this is not text in UTF-8; export it as CSV in UTF-8";
+        for bytes in [b"a\n\xe9\n".as_slice(), b"a\n\0"] {
+            assert_eq!(text(bytes, "CSV").unwrap_err().to_string(), refusal);
+        }
+    }
+}

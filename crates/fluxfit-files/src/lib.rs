@@ -1,0 +1,48 @@
+//! What comes from files and arguments, and how an answer gets into one.
+//!
+//! The promise: whatever is read is either understood, in SI units, or refused in one sentence on one line that names the file, the line and the column where there is one,
+//! and the remedy. What had to be inferred on the way is said in notes. No input makes a function of this crate panic.
+//!
+//! ```
+//! use fluxfit_files::{LogOptions, parse_log, parse_map};
+//!
+//! let csv = b"t_ms;u_d;uq;id;iq;speed_rpm\n0;1,5;20;0;3;500\n1;1,5;20;0;3;500\n";
+//! let options = LogOptions { map: vec![parse_map("ud=u_d")?, parse_map("omega=speed_rpm")?], pole_pairs: Some(4), ..LogOptions::default() };
+//! let read = parse_log("drive.csv", csv, &options)?;
+//! assert_eq!(read.log.columns().t, [0.0, 0.001]);
+//! assert_eq!(read.notes[1], "omega_e: column 'speed_rpm' read as mechanical r/min with 4 pole pairs");
+//! # Ok::<(), fluxfit_files::FileError>(())
+//! ```
+//!
+//! | file | concept |
+//! |---|---|
+//! | [`csv`] | a log from a table of text, whatever its dialect |
+//! | [`unit`] | units of a log's columns: given, or named by the header |
+//! | [`quantity`] | numbers with units, as people write them |
+//! | [`argument`] | `key=value` arguments |
+//! | [`motor_file`] | `MOTOR.toml` |
+//! | [`truth`] | the true parameters of a simulated log |
+//! | [`output`] | writing whole files only |
+//! | [`error`] | the sentence |
+//! | `channel`, `input`, `wording` | what a log's columns are called; bytes and text; lists and quotations |
+
+pub mod argument;
+mod channel;
+pub mod csv;
+pub mod error;
+mod input;
+pub mod motor_file;
+pub mod output;
+pub mod quantity;
+pub mod truth;
+pub mod unit;
+mod wording;
+
+pub use argument::{parse_bounds, parse_fix, parse_map, parse_prior, parse_unit, parse_window};
+pub use csv::{LogOptions, ReadLog, parse_log, read_log};
+pub use error::FileError;
+pub use motor_file::{MotorFile, Rating, read_motor};
+pub use output::write_atomically;
+pub use quantity::{Dimension, parse_quantity};
+pub use truth::{Truth, read_truth};
+pub use unit::Unit;

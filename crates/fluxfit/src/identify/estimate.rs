@@ -1,0 +1,176 @@
+//! The estimate: weighted least squares on the operating points' equations, in the directions that are excited.
+//!
+//! ```text
+//! minimize  sum over points  r' W r,   r = b - A x,   W = (noise covariance of r + voltage accuracy²)^-1
+//! ```
+//!
+//! The noise of currents and speed counts in `W` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated. Parameters that are fixed move to the right-hand side; a prior is one more equation.
+
+use super::{Known, Settings, excitation::Excitation};
+use crate::{
+    least_squares::Equation,
+    motor::{Motor, PARAMETERS},
+    objective::voltage_error::VoltageError,
+    steady::OperatingPoint,
+};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector4};
+
+/// Rounds of weighting. Weights move the answer by a fraction of its uncertainty, so the second round already changes nothing visible.
+const ROUNDS: usize = 4;
+
+/// Voltages are never trusted beyond this fraction, so that noise-free windows have finite weights.
+const LEAST_ACCURACY: f64 = 1e-9;
+
+/// The solution of the operating points' equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// The motor found. Of directions that are not excited it has nothing.
+    pub motor: Motor,
+    /// The weighted equations as a sum of squares of all four parameters, for a search.
+    pub objective: VoltageError,
+    /// Per point, what an error of its two voltages (V) does to the parameters (SI).
+    pub gains: Vec<[[f64; 2]; PARAMETERS]>,
+    /// Per point, the residuals of its two equations, V.
+    pub residuals: Vec<[f64; 2]>,
+    /// Per point, the standard uncertainty of its voltages, V.
+    pub accuracy: Vec<f64>,
+    /// Per prior, what its standard error does to the parameters (SI).
+    pub prior_gains: Vec<[f64; PARAMETERS]>,
+    /// Weighted sum of squares at the motor, priors included.
+    pub chi_squared: f64,
+    /// Equations and priors, less the directions found.
+    pub degrees_of_freedom: usize,
+    /// The same with operating points that repeat each other counted once.
+    pub redundancy: usize,
+}
+
+impl Estimate {
+    /// Solves the points.
+    pub fn solve(points: &[OperatingPoint], excitation: &Excitation, settings: &Settings) -> Self {
+        Self::solve_with(points, excitation, settings, settings.voltage_accuracy)
+    }
+
+    /// Solves the points with voltages trusted to another fraction than the settings'.
+    pub(super) fn solve_with(points: &[OperatingPoint], excitation: &Excitation, settings: &Settings, voltage_accuracy: f64) -> Self {
+        let accuracy: Vec<f64> = points.iter().map(|point| voltage_accuracy.max(LEAST_ACCURACY) * point.voltage().magnitude()).collect();
+        let mut motor = Motor::from(settings.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
+        let mut system = System::of(points, &motor, &accuracy, settings);
+        let mut solved = system.solve(excitation, settings);
+        for _ in 1..ROUNDS {
+            motor = solved.0;
+            system = System::of(points, &motor, &accuracy, settings);
+            solved = system.solve(excitation, settings);
+        }
+        let (motor, gain) = solved;
+        let x = motor.to_array();
+        let of_points = gain.chunks_exact(2).zip(&system.whiteners);
+        let gains = of_points.map(|(gain, whitener)| {
+            std::array::from_fn(|p| [0, 1].map(|axis| gain[0][p] * whitener[(0, axis)] + gain[1][p] * whitener[(1, axis)]))
+        });
+        let prior_gains = gain[2 * points.len()..].to_vec();
+        Self {
+            motor,
+            gains: gains.collect(),
+            residuals: points.iter().map(|point| point.equations().map(|equation| equation.residual(&x))).collect(),
+            accuracy,
+            chi_squared: system.equations.iter().map(|equation| equation.residual(&x).powi(2)).sum(),
+            degrees_of_freedom: (2 * points.len() + prior_gains.len()).saturating_sub(excitation.excited().count()),
+            redundancy: (2 * distinct(points) + prior_gains.len()).saturating_sub(excitation.excited().count()),
+            prior_gains,
+            objective: VoltageError::of_equations(system.equations),
+        }
+    }
+
+    /// How far a motor's cost lies above the lowest that there is.
+    pub fn cost_above_optimum(&self, motor: &Motor) -> f64 {
+        self.objective.cost_above_optimum(motor)
+    }
+}
+
+/// Whitened equations: two per point, then one per prior. Their values' errors have unit variance.
+struct System {
+    equations: Vec<Equation>,
+    whiteners: Vec<Matrix2<f64>>,
+}
+
+impl System {
+    fn of(points: &[OperatingPoint], motor: &Motor, accuracy: &[f64], settings: &Settings) -> Self {
+        let mut equations = Vec::new();
+        let mut whiteners = Vec::new();
+        for (point, accuracy) in points.iter().zip(accuracy) {
+            let noise = Matrix2::from(point.residual_covariance(motor)) + Matrix2::identity() * accuracy.powi(2);
+            // Positive definite by its floor; if rounding says otherwise, the diagonal alone will do.
+            let lower = noise.cholesky().map_or_else(|| Matrix2::from_diagonal(&noise.diagonal().map(f64::sqrt)), |factor| factor.l());
+            let whitener = lower.try_inverse().unwrap_or_else(Matrix2::zeros);
+            let [d, q] = point.equations().map(|equation| move_fixed(equation, settings));
+            for row in 0..2 {
+                let (a, b) = (whitener[(row, 0)], whitener[(row, 1)]);
+                let (d, q) = (d.weighted(a), q.weighted(b));
+                equations.push(Equation {
+                    coefficients: std::array::from_fn(|p| d.coefficients[p] + q.coefficients[p]),
+                    value: d.value + q.value,
+                });
+            }
+            whiteners.push(whitener);
+        }
+        for (p, known) in settings.known.iter().enumerate() {
+            if let Known::Prior { value, standard_error } = known {
+                let coefficients = std::array::from_fn(|q| f64::from(u8::from(p == q)));
+                equations.push(Equation { coefficients, value: *value }.weighted(1.0 / standard_error));
+            }
+        }
+        Self { equations, whiteners }
+    }
+
+    /// The motor, and what a unit error of each whitened value does to it.
+    fn solve(&self, excitation: &Excitation, settings: &Settings) -> (Motor, Vec<[f64; PARAMETERS]>) {
+        let scale = Vector4::from(excitation.scale);
+        let excited: Vec<Vector4<f64>> =
+            excitation.excited().map(|direction| Vector4::from(direction.components).component_mul(&scale)).collect();
+        let mut x = Vector4::from(settings.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
+        let mut gain = vec![[0.0; PARAMETERS]; self.equations.len()];
+        if !excited.is_empty() {
+            let basis = DMatrix::from_fn(PARAMETERS, excited.len(), |p, direction| excited[direction][p]);
+            let coefficients = DMatrix::from_fn(self.equations.len(), PARAMETERS, |row, p| self.equations[row].coefficients[p]);
+            let values = DVector::from_iterator(self.equations.len(), self.equations.iter().map(|equation| equation.value));
+            // The columns are excited, so the pseudo-inverse needs no cut-off of its own.
+            if let Ok(inverse) = (coefficients * &basis).pseudo_inverse(0.0) {
+                let product = basis * inverse;
+                x += Vector4::from_iterator((&product * values).iter().copied());
+                gain = product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect();
+            }
+        }
+        (Motor::from(<[f64; PARAMETERS]>::from(x)), gain)
+    }
+}
+
+/// An equation with the fixed parameters on its right-hand side.
+fn move_fixed(mut equation: Equation, settings: &Settings) -> Equation {
+    for (p, known) in settings.known.iter().enumerate() {
+        if let Known::Fixed(value) = known {
+            equation.value -= equation.coefficients[p] * value;
+            equation.coefficients[p] = 0.0;
+        }
+    }
+    equation
+}
+
+/// Operating points closer than this, as a fraction of the largest current and speed, are one: a repetition proves repeatability, not the model.
+const DISTINCT: f64 = 0.02;
+
+/// How many operating points differ from each other.
+fn distinct(points: &[OperatingPoint]) -> usize {
+    let current = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
+    let speed = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    let same = |one: &OperatingPoint, other: &OperatingPoint| {
+        let (i, j) = (one.current(), other.current());
+        (i.d - j.d).hypot(i.q - j.q) <= DISTINCT * current && (one.omega_e() - other.omega_e()).abs() <= DISTINCT * speed
+    };
+    let mut kept: Vec<&OperatingPoint> = Vec::new();
+    for point in points {
+        if !kept.iter().any(|other| same(point, other)) {
+            kept.push(point);
+        }
+    }
+    kept.len()
+}

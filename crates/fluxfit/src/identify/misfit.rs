@@ -1,0 +1,52 @@
+//! Misfit: operating points that contradict each other, and an estimate that admits it.
+//!
+//! Where the residuals are larger than noise and accuracy allow, one motor with constant parameters is not true: it saturates, heats up, or these are not the voltages that acted. Then the voltages are trusted
+//! only as far as the points agree: to the fraction at which chi squared equals its degrees of freedom, so that no point dominates for being quiet, and the interval covers the single points, not their mean.
+//! R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. Natl. Bur. Stand. 87 (1982) 377, doi:10.6028/jres.087.022.
+
+use super::{Settings, estimate::Estimate, excitation::Excitation};
+use crate::steady::OperatingPoint;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+/// Probability at which contradiction between points counts as proven.
+const SIGNIFICANCE: f64 = 1e-3;
+
+/// Bisections of the logarithm of the fraction: 60 halve any range to rounding.
+const BISECTIONS: usize = 60;
+
+/// Contradiction between the points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    /// Root of chi squared per degree of freedom under the noise and the accuracy stated.
+    pub ratio: f64,
+    /// The fraction of the voltage to which the points agree.
+    pub voltage_accuracy: f64,
+}
+
+/// Looks for contradiction; if there is any, solves the points again at the accuracy to which they agree.
+pub fn admit(points: &[OperatingPoint], excitation: &Excitation, estimate: Estimate, settings: &Settings) -> (Estimate, Option<Misfit>) {
+    let Some(ratio) = significant_ratio(points, &estimate) else { return (estimate, None) };
+    let solve = |fraction: f64| Estimate::solve_with(points, excitation, settings, fraction);
+    // At an accuracy of the whole voltage nothing contradicts anything.
+    let (mut low, mut high) = (settings.voltage_accuracy.max(f64::EPSILON), 1.0_f64);
+    for _ in 0..BISECTIONS {
+        let middle = (low * high).sqrt();
+        let tried = solve(middle);
+        if tried.chi_squared > tried.degrees_of_freedom as f64 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    (solve(high), Some(Misfit { ratio, voltage_accuracy: high }))
+}
+
+/// Root of chi squared per degree of freedom, if an F test finds it too large.
+fn significant_ratio(points: &[OperatingPoint], estimate: &Estimate) -> Option<f64> {
+    let degrees = Some(estimate.degrees_of_freedom).filter(|degrees| *degrees > 0)? as f64;
+    let ratio = estimate.chi_squared / degrees;
+    // The covariances behind chi squared are estimates themselves; their average degrees of freedom stand for all of them.
+    let behind = points.iter().map(|point| point.degrees_of_freedom as f64).sum::<f64>() / points.len() as f64;
+    let limit = FisherSnedecor::new(degrees, behind).ok()?.inverse_cdf(1.0 - SIGNIFICANCE);
+    (ratio > limit).then(|| ratio.sqrt())
+}

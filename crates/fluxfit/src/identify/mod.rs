@@ -1,0 +1,256 @@
+//! Identification: from a log to four parameters, each with an interval and a verdict.
+//!
+//! [`identify`] is the main path. Its model is the steady one: equation (2) on the means of steady windows, for which weighted least squares is exact; the swarm's answer is reported beside it.
+
+pub mod estimate;
+pub mod excitation;
+pub mod misfit;
+pub mod search_box;
+pub mod uncertainty;
+pub mod verdict;
+
+use crate::{
+    error::Error,
+    frames::Dq,
+    log::Log,
+    motor::{Motor, PARAMETERS, Parameter},
+    optimizer::{self, Method, Optimizer, Report, bounds::Bounds},
+    steady::{
+        Belief, OperatingPoint,
+        held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, VoltageTiming},
+        windows,
+    },
+};
+use estimate::Estimate;
+use excitation::Excitation;
+use misfit::Misfit;
+use std::ops::Range;
+use uncertainty::Uncertainty;
+use verdict::{Judgement, Warning};
+
+/// What the voltages are trusted to, as a fraction of their vector, unless told otherwise: no drive's are known better.
+pub const VOLTAGE_ACCURACY: f64 = 1e-4;
+
+/// What is asked of an identification.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Windows in time, s; none: they are found.
+    pub windows: Vec<(f64, f64)>,
+    /// What the voltage columns mean; none: centred, where the sampling is fast enough for it to matter, with the doubt in the systematic uncertainty.
+    pub voltage_timing: Option<VoltageTiming>,
+    /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
+    pub voltage_accuracy: f64,
+    /// What is known of the motor beforehand.
+    pub known: [Known; PARAMETERS],
+    /// The swarm that searches beside least squares, if any.
+    pub method: Option<Method>,
+    /// Its settings.
+    pub search: optimizer::Settings,
+    /// Its box; none: from the log.
+    pub bounds: Option<Bounds>,
+}
+
+/// What is known of one parameter before the log is read.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Known {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// Its value, taken as exact.
+    Fixed(f64),
+    /// A value with a standard error.
+    Prior {
+        /// Value, SI.
+        value: f64,
+        /// Standard error, SI.
+        standard_error: f64,
+    },
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            windows: Vec::new(),
+            voltage_timing: None,
+            voltage_accuracy: VOLTAGE_ACCURACY,
+            known: [Known::Nothing; PARAMETERS],
+            method: Some(Method::Tgfpa(optimizer::tgfpa::Tgfpa::default())),
+            search: optimizer::Settings::default(),
+            bounds: None,
+        }
+    }
+}
+
+/// The answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identification {
+    /// The parameters, in the order of [`Parameter::ALL`].
+    pub parameters: [Judgement; PARAMETERS],
+    /// The windows that carried them.
+    pub operating_points: Vec<OperatingPoint>,
+    /// Least squares, solved exactly.
+    pub estimate: Estimate,
+    /// What the log excites.
+    pub excitation: Excitation,
+    /// Correlation of the parameters' errors.
+    pub correlation: [[f64; PARAMETERS]; PARAMETERS],
+    /// Contradiction between the operating points, if proven.
+    pub misfit: Option<Misfit>,
+    /// The swarm's own answer.
+    pub search: Option<Search>,
+    /// What the reader should know.
+    pub warnings: Vec<Warning>,
+}
+
+/// What the swarm found, unpolished.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// Its motor.
+    pub motor: Motor,
+    /// How far its cost lies above the exact minimum.
+    pub cost_above_optimum: f64,
+    /// Where it searched.
+    pub bounds: Bounds,
+    /// Its course.
+    pub report: Report,
+}
+
+impl Identification {
+    /// One parameter's judgement.
+    pub fn parameter(&self, parameter: Parameter) -> &Judgement {
+        &self.parameters[parameter as usize]
+    }
+
+    /// Whether everything asked for was identified.
+    pub fn is_complete(&self) -> bool {
+        self.parameters.iter().all(|judgement| judgement.verdict == verdict::Verdict::Identified)
+    }
+}
+
+/// Identifies a motor from a log.
+///
+/// # Errors
+/// If a setting is out of range, or no steady operating point is found. A log that cannot carry some parameter is no error: the verdicts say so.
+pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error> {
+    check(settings)?;
+    let windows = steady_windows(log, settings)?;
+    let (points, timing_doubt) = measure(log, &windows, settings);
+    let excitation = Excitation::of(&points, &settings.known);
+    let estimate = Estimate::solve(&points, &excitation, settings);
+    let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, settings);
+    let search = search(&points, &estimate, settings)?;
+    let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
+    let parameters = verdict::judge(&points, &excitation, &estimate, &uncertainty, settings);
+    let warnings = verdict::warn(log, &points, &estimate, misfit.as_ref(), &parameters, search.as_ref(), settings);
+    Ok(Identification {
+        parameters,
+        operating_points: points,
+        estimate,
+        excitation,
+        correlation: uncertainty.correlation,
+        misfit,
+        search,
+        warnings,
+    })
+}
+
+fn check(settings: &Settings) -> Result<(), Error> {
+    let accuracy = settings.voltage_accuracy;
+    if !(0.0..1.0).contains(&accuracy) {
+        return Err(Error::Setting { setting: "the voltage accuracy", value: accuracy, range: "a fraction from 0 up to 1" });
+    }
+    for known in settings.known {
+        let (value, standard_error) = match known {
+            Known::Nothing => continue,
+            Known::Fixed(value) => (value, 1.0),
+            Known::Prior { value, standard_error } => (value, standard_error),
+        };
+        if !value.is_finite() {
+            return Err(Error::Setting { setting: "a known parameter", value, range: "a finite number" });
+        }
+        if !(standard_error > 0.0 && standard_error.is_finite()) {
+            return Err(Error::Setting {
+                setting: "the standard error of a known parameter",
+                value: standard_error,
+                range: "a positive number",
+            });
+        }
+    }
+    if settings.known.iter().all(|known| matches!(known, Known::Fixed(_))) { Err(Error::NothingToIdentify) } else { Ok(()) }
+}
+
+/// The windows named, or those found.
+fn steady_windows(log: &Log, settings: &Settings) -> Result<Vec<Range<usize>>, Error> {
+    if settings.windows.is_empty() {
+        return windows::find(log);
+    }
+    let mut named = Vec::new();
+    for times in &settings.windows {
+        named.extend(windows::between(log, *times)?);
+    }
+    Ok(named)
+}
+
+/// Measures the windows twice: the first time to know the motor roughly, the second time with the corrections and the covariance that need it.
+/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
+fn measure(log: &Log, windows: &[Range<usize>], settings: &Settings) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
+    let rough: Vec<_> = windows.iter().map(|rows| OperatingPoint::measure(log, rows.clone(), None)).collect();
+    let excitation = Excitation::of(&rough, &settings.known);
+    let motor = Estimate::solve(&rough, &excitation, settings).motor;
+    let inductance = inductance(&motor, &excitation);
+    let with = |timing: VoltageTiming| -> Vec<_> {
+        let held = |point: &OperatingPoint| held_vector(log, point, timing, inductance);
+        rough
+            .iter()
+            .map(|point| OperatingPoint::measure(log, point.rows.clone(), Some(&Belief { motor, held_vector: held(point) })))
+            .collect()
+    };
+    let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &settings.known), settings).motor;
+    let points = with(settings.voltage_timing.unwrap_or(VoltageTiming::Centered));
+    let doubt = match settings.voltage_timing {
+        Some(_) => [0.0; PARAMETERS],
+        None => {
+            let (one, other) = (solve(&points).to_array(), solve(&with(VoltageTiming::Compensated)).to_array());
+            std::array::from_fn(|p| (one[p] - other[p]).abs())
+        }
+    };
+    (points, doubt)
+}
+
+/// The inductances for the current's ripple: a rough estimate will do, but not one of noise. What the log does not excite is taken from the other axis.
+fn inductance(motor: &Motor, excitation: &Excitation) -> Dq {
+    let known =
+        |parameter| Some(motor.get(parameter)).filter(|value| *value > 0.0 && excitation.unexcited_reach[parameter as usize] < *value);
+    let (ld, lq) = (known(Parameter::Ld), known(Parameter::Lq));
+    Dq { d: ld.or(lq).unwrap_or(f64::INFINITY), q: lq.or(ld).unwrap_or(f64::INFINITY) }
+}
+
+/// The correction that fits a window: none where the log's sampling cannot be the inverter's.
+fn held_vector(log: &Log, point: &OperatingPoint, timing: VoltageTiming, inductance: Dq) -> HeldVector {
+    let period = log.segments().iter().find(|segment| segment.rows.contains(&point.rows.start)).map(|segment| segment.sample_period);
+    match period {
+        Some(sample_period) if (point.omega_e() * sample_period).abs() <= MAX_ANGLE_PER_SAMPLE => {
+            HeldVector { timing, sample_period, inductance }
+        }
+        _ => HeldVector::NONE,
+    }
+}
+
+/// Lets the swarm minimize the same weighted equations that least squares solved.
+fn search(points: &[OperatingPoint], estimate: &Estimate, settings: &Settings) -> Result<Option<Search>, Error> {
+    let Some(method) = settings.method else { return Ok(None) };
+    let bounds = match &settings.bounds {
+        Some(bounds) => bounds.clone(),
+        None => search_box::from_points(points)?,
+    };
+    let objective = &estimate.objective;
+    let report = Optimizer::start(method, settings.search, bounds.clone(), objective)?.run(objective);
+    let mut found = estimate.motor.to_array();
+    for (p, known) in settings.known.iter().enumerate() {
+        if !matches!(known, Known::Fixed(_)) {
+            found[p] = report.best[p];
+        }
+    }
+    let motor = Motor::from(found);
+    Ok(Some(Search { cost_above_optimum: estimate.cost_above_optimum(&motor), motor, bounds, report }))
+}

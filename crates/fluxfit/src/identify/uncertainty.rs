@@ -1,0 +1,150 @@
+//! How far to trust the estimate: a standard error in two parts, and the interval they make.
+//!
+//! *Statistical* (GUM type A): the noise of each window's means, carried through the estimate's gains; its degrees of freedom by Welch and Satterthwaite. *Systematic* (type B): what longer logs would not cure;
+//! these parts are added in quadrature:
+//!
+//! - the voltages' accuracy, independent between windows and axes;
+//! - priors;
+//! - the timing of the voltage columns, where nobody stated it;
+//! - directions that the log does not excite, a uniform distribution over their reach;
+//! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval covers single points instead of their mean.
+//!
+//! JCGM 100:2008 (GUM), sections 4 and 5 and G.4.
+
+use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit};
+use crate::{motor::PARAMETERS, steady::OperatingPoint};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Probability that the interval holds.
+const CONFIDENCE: f64 = 0.95;
+
+/// As many degrees of freedom as no end of them: Student's t is the normal distribution to 1e-6.
+const NORMAL: f64 = 1e6;
+
+/// Systematic parts of a standard error, SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Systematic {
+    /// Of the voltages' accuracy.
+    pub accuracy: f64,
+    /// Of the priors.
+    pub prior: f64,
+    /// Of the voltage columns' timing.
+    pub timing: f64,
+    /// Of directions that are not excited.
+    pub excitation: f64,
+    /// Of contradiction between the points, where there is any; then in the accuracy's place.
+    pub misfit: f64,
+}
+
+impl Systematic {
+    /// All parts in quadrature.
+    pub fn total(&self) -> f64 {
+        [self.accuracy, self.prior, self.timing, self.excitation, self.misfit].iter().map(|part| part.powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+/// The uncertainty of one parameter, SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ParameterUncertainty {
+    /// Standard error from noise.
+    pub statistical: f64,
+    /// Standard error from everything else.
+    pub systematic: Systematic,
+    /// Degrees of freedom of both together.
+    pub degrees_of_freedom: f64,
+    /// Half the width of the 95 % interval.
+    pub half_width: f64,
+}
+
+impl ParameterUncertainty {
+    /// Both parts in quadrature.
+    pub fn standard_error(&self) -> f64 {
+        self.statistical.hypot(self.systematic.total())
+    }
+}
+
+/// The uncertainty of an estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uncertainty {
+    /// Of each parameter.
+    pub parameters: [ParameterUncertainty; PARAMETERS],
+    /// Correlation of the parameters' statistical and accuracy parts; zero where there is no variance.
+    pub correlation: [[f64; PARAMETERS]; PARAMETERS],
+}
+
+impl Uncertainty {
+    /// Of an estimate, given how far the timing of the voltage columns moves it, and whether its points contradict each other.
+    pub fn of(
+        points: &[OperatingPoint],
+        excitation: &Excitation,
+        estimate: &Estimate,
+        misfit: Option<&Misfit>,
+        timing_doubt: &[f64; PARAMETERS],
+    ) -> Self {
+        let mut parameters = [ParameterUncertainty::default(); PARAMETERS];
+        for (p, parameter) in parameters.iter_mut().enumerate() {
+            *parameter = of_parameter(p, points, estimate, misfit.is_some());
+            parameter.systematic.timing = timing_doubt[p];
+            // A uniform distribution's standard deviation.
+            parameter.systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
+            // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own square is 0/0 where there is no noise.
+            let degrees = parameter.degrees_of_freedom * (parameter.standard_error() / parameter.statistical).powi(4);
+            parameter.degrees_of_freedom = if degrees.is_nan() { NORMAL } else { degrees.clamp(1.0, NORMAL) };
+            parameter.half_width = quantile(parameter.degrees_of_freedom) * parameter.standard_error();
+        }
+        Self { parameters, correlation: correlation(points, estimate) }
+    }
+}
+
+/// The parts that come through the gains; the degrees of freedom are still those of the statistical part alone.
+fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit: bool) -> ParameterUncertainty {
+    let (mut variance, mut variance_of_variance, mut accuracy) = (0.0, 0.0, 0.0);
+    for (w, point) in points.iter().enumerate() {
+        let gain = estimate.gains[w][p];
+        let noise = point.residual_covariance(&estimate.motor);
+        let part: f64 = (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| gain[a] * noise[a][b] * gain[b]).sum();
+        variance += part;
+        variance_of_variance += part * part / point.degrees_of_freedom as f64;
+        accuracy += (gain[0] * gain[0] + gain[1] * gain[1]) * estimate.accuracy[w].powi(2);
+    }
+    ParameterUncertainty {
+        statistical: variance.max(0.0).sqrt(),
+        systematic: Systematic {
+            accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
+            prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
+            misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
+            ..Systematic::default()
+        },
+        degrees_of_freedom: variance * variance / variance_of_variance,
+        half_width: 0.0,
+    }
+}
+
+/// Two-sided quantile of Student's t.
+fn quantile(degrees_of_freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees_of_freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
+}
+
+fn correlation(points: &[OperatingPoint], estimate: &Estimate) -> [[f64; PARAMETERS]; PARAMETERS] {
+    let mut covariance = [[0.0; PARAMETERS]; PARAMETERS];
+    for (w, point) in points.iter().enumerate() {
+        let gain = &estimate.gains[w];
+        let mut noise = point.residual_covariance(&estimate.motor);
+        noise[0][0] += estimate.accuracy[w].powi(2);
+        noise[1][1] += estimate.accuracy[w].powi(2);
+        for (p, row) in covariance.iter_mut().enumerate() {
+            for (q, entry) in row.iter_mut().enumerate() {
+                *entry += (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| gain[p][a] * noise[a][b] * gain[q][b]).sum::<f64>();
+            }
+        }
+    }
+    for gain in &estimate.prior_gains {
+        for (p, row) in covariance.iter_mut().enumerate() {
+            row.iter_mut().zip(gain).for_each(|(entry, other)| *entry += gain[p] * other);
+        }
+    }
+    let deviation: [f64; PARAMETERS] = std::array::from_fn(|p| covariance[p][p].sqrt());
+    std::array::from_fn(|p| {
+        std::array::from_fn(|q| if deviation[p] * deviation[q] > 0.0 { covariance[p][q] / (deviation[p] * deviation[q]) } else { 0.0 })
+    })
+}

@@ -1,0 +1,5 @@
+//! What is minimized: the error between the real motor and the adjustable one.
+//!
+//! A fitness is one file here and implements [`Objective`](crate::optimizer::Objective).
+
+pub mod voltage_error;

@@ -1,0 +1,152 @@
+//! Operating points: stretches of a log in which the drive stands still in the dq frame, as means with a covariance that knows autocorrelation.
+//!
+//! Over a window of `n` rows equation (1) holds for the means, exactly, because it is linear in these seven channels and the currents' drift:
+//!
+//! ```text
+//! mean(u_d) = R_s mean(i_d) + L_d drift_d - L_q mean(omega_e i_q)
+//! mean(u_q) = R_s mean(i_q) + L_q drift_q + L_d mean(omega_e i_d) + psi_f mean(omega_e)
+//! ```
+//!
+//! Means, not samples: a drive's voltage answers the noise of its own current measurement, and sample by sample that biases R_s by several percent; the mean of a window does not care.
+
+pub mod autocorrelation;
+pub mod held_vector;
+pub mod windows;
+
+use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor};
+use autocorrelation::{CosineTransform, MIN_COSINES, cosines_for};
+use held_vector::HeldVector;
+use std::ops::Range;
+
+/// Channels whose means enter the steady equations: u_d, u_q, i_d, i_q, omega_e i_d, omega_e i_q, omega_e.
+pub const CHANNELS: usize = 7;
+
+/// The drift of the currents is read between the means of this many rows at either end of a window: few enough to sit at the ends, enough to calm noise.
+const DRIFT_ROWS: usize = 8;
+
+/// One steady window, measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OperatingPoint {
+    /// Its rows in the log.
+    pub rows: Range<usize>,
+    /// Time of its first and last row, s.
+    pub time: (f64, f64),
+    /// Means of the [`CHANNELS`], SI units, after the held-vector correction.
+    pub means: [f64; CHANNELS],
+    /// Slope of the currents, A/s.
+    pub drift: Dq,
+    /// Covariance of the means.
+    pub covariance: [[f64; CHANNELS]; CHANNELS],
+    /// Degrees of freedom of that covariance.
+    pub degrees_of_freedom: usize,
+}
+
+/// What is already believed of the motor while its windows are measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Belief {
+    /// A first estimate of the motor: tells the noise from the signal.
+    pub motor: Motor,
+    /// What the logged voltage means within its period.
+    pub held_vector: HeldVector,
+}
+
+impl OperatingPoint {
+    /// Measures a window. Without a belief nothing is corrected and the covariance is a coarse one.
+    pub fn measure(log: &Log, rows: Range<usize>, belief: Option<&Belief>) -> Self {
+        let columns = log.columns();
+        let n = rows.len();
+        let row = |k: usize| {
+            let (u, i) = (Dq { d: columns.ud[k], q: columns.uq[k] }, Dq { d: columns.id[k], q: columns.iq[k] });
+            let omega_e = columns.omega_e[k];
+            let (u, i) = match belief {
+                Some(belief) => belief.held_vector.correct(u, i, omega_e),
+                None => (u, i),
+            };
+            [u.d, u.q, i.d, i.q, omega_e * i.d, omega_e * i.q, omega_e]
+        };
+        let mut means = [0.0; CHANNELS];
+        for k in rows.clone() {
+            for (mean, value) in means.iter_mut().zip(row(k)) {
+                *mean += value / n as f64;
+            }
+        }
+        let cosines = match belief {
+            None => MIN_COSINES,
+            Some(belief) => {
+                let weights = residual_weights(&belief.motor);
+                let residuals = weights.map(|weights| rows.clone().map(|k| dot(&weights, &row(k))).collect::<Vec<_>>());
+                residuals.iter().map(|residual| cosines_for(residual)).min().unwrap_or(MIN_COSINES)
+            }
+        };
+        let mut transform = CosineTransform::<CHANNELS>::new(n, cosines);
+        for k in rows.clone() {
+            let mut deviation = row(k);
+            deviation.iter_mut().zip(&means).for_each(|(value, mean)| *value -= mean);
+            transform.push(&deviation);
+        }
+        let time = (columns.t[rows.start], columns.t[rows.end - 1]);
+        let drift = Dq { d: drift(&columns.id[rows.clone()], time), q: drift(&columns.iq[rows.clone()], time) };
+        Self { rows, time, means, drift, covariance: transform.covariance_of_mean(), degrees_of_freedom: cosines }
+    }
+
+    /// Mean voltage, V.
+    pub fn voltage(&self) -> Dq {
+        Dq { d: self.means[0], q: self.means[1] }
+    }
+
+    /// Mean current, A.
+    pub fn current(&self) -> Dq {
+        Dq { d: self.means[2], q: self.means[3] }
+    }
+
+    /// Mean speed, electrical rad/s.
+    pub fn omega_e(&self) -> f64 {
+        self.means[6]
+    }
+
+    /// The two equations of the means: `[d, q]`, V.
+    pub fn equations(&self) -> [Equation; 2] {
+        let [ud, uq, id, iq, omega_id, omega_iq, omega_e] = self.means;
+        [
+            Equation { coefficients: [id, self.drift.d, -omega_iq, 0.0], value: ud },
+            Equation { coefficients: [iq, omega_id, self.drift.q, omega_e], value: uq },
+        ]
+    }
+
+    /// Covariance, V², of the two equations' residuals for a motor: the noise of voltages, currents and speed together.
+    pub fn residual_covariance(&self, motor: &Motor) -> [[f64; 2]; 2] {
+        let weights = residual_weights(motor);
+        weights.map(|one| weights.map(|other| self.covariance_between(&one, &other)))
+    }
+
+    /// Variance of each equation's `coefficients . direction` that the noise of currents and speed makes: `[d, q]`.
+    pub fn coefficient_variance(&self, direction: &[f64; 4]) -> [f64; 2] {
+        let [rs, ld, lq, psi_f] = *direction;
+        let weights = [[0.0, 0.0, rs, 0.0, 0.0, -lq, 0.0], [0.0, 0.0, 0.0, rs, ld, 0.0, psi_f]];
+        weights.map(|weights| self.covariance_between(&weights, &weights))
+    }
+
+    fn covariance_between(&self, one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
+        one.iter().zip(&self.covariance).map(|(weight, row)| weight * dot(row, other)).sum()
+    }
+}
+
+/// The residuals of equations (2), d and q, as weights of the channels.
+fn residual_weights(motor: &Motor) -> [[f64; CHANNELS]; 2] {
+    let Motor { rs, ld, lq, psi_f } = *motor;
+    [[1.0, 0.0, -rs, 0.0, 0.0, lq, 0.0], [0.0, 1.0, 0.0, -rs, -ld, 0.0, -psi_f]]
+}
+
+fn dot(one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a * b).sum()
+}
+
+/// Slope of a current over its window, A/s.
+fn drift(current: &[f64], (start, end): (f64, f64)) -> f64 {
+    let n = current.len();
+    let rows = DRIFT_ROWS.min(n / 4).max(1);
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / rows as f64;
+    // The two means lie n - rows of n - 1 steps apart.
+    let span = (end - start) * (n - rows) as f64 / (n - 1).max(1) as f64;
+    (mean(&current[n - rows..]) - mean(&current[..rows])) / span
+}

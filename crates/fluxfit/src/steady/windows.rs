@@ -1,0 +1,182 @@
+//! Where the drive stands still: finding steady windows, or taking those that were named.
+//!
+//! A segment is cut into short blocks. A block is steady when its two halves agree, in both currents and in speed; steady neighbours that agree with the mean of the window so far
+//! join it. Agreement is a small fraction of the log's largest current and speed, or what the noise of the means allows. Blocks without current are left out:
+//! while a drive coasts, its voltage columns are not voltages that act.
+
+use crate::{error::Error, log::Log};
+use std::ops::Range;
+
+/// Fewest rows of a window: a few autocorrelation times, and rows enough for a covariance.
+pub const MIN_ROWS: usize = 30;
+
+/// Rows per block: a five-hundredth of the log within these limits. Short against a steady stretch, long against the noise.
+const BLOCK_ROWS: (usize, usize) = (10, 500);
+
+/// A window has at least this many blocks: one could be chance.
+const MIN_BLOCKS: usize = 3;
+
+/// A window is at least this fraction of the longest: what is shorter is a pause between transients rather than a point at which the drive was held.
+const MIN_SHARE: f64 = 0.1;
+
+/// Means agree within this fraction of the log's largest value. The equations of the means hold while currents drift; what this keeps out are transients that sampling and filters distort.
+const TOLERANCE: f64 = 0.01;
+
+/// The currents at a window's ends agree with its middle half within this fraction, or they are cut off: a tenth of the above.
+const END_TOLERANCE: f64 = 0.001;
+
+/// The currents of a window's halves agree within this fraction: half of what its blocks may differ.
+const HALVES_TOLERANCE: f64 = 0.005;
+
+/// Means agree within this many standard deviations of their difference.
+const NOISE_FACTOR: f64 = 4.0;
+
+/// Currents below this fraction of the log's largest carry no information, and may belong to a drive that is not switching.
+const MIN_CURRENT: f64 = 0.01;
+
+/// Longest window for the study of the paper's fitness: its sample count.
+pub const PAPER_ROWS: usize = 4000;
+
+/// Finds the steady windows of a log, in order.
+///
+/// # Errors
+/// If there is none.
+pub fn find(log: &Log) -> Result<Vec<Range<usize>>, Error> {
+    let block_rows = (log.rows() / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
+    let scale = Scale::of(log);
+    let mut windows = Vec::new();
+    for segment in log.segments() {
+        let mut open: Option<Window> = None;
+        for start in (segment.rows.start..segment.rows.end).step_by(block_rows) {
+            let block = Some(start..start + block_rows)
+                .filter(|rows| rows.end <= segment.rows.end)
+                .and_then(|rows| Block::steady(log, rows, &scale));
+            match (&mut open, block) {
+                (Some(window), Some(block)) if window.agrees(&block, &scale) => window.join(block),
+                (_, block) => windows.extend(std::mem::replace(&mut open, block.map(Window::start)).and_then(|window| window.rows(&scale))),
+            }
+        }
+        windows.extend(open.and_then(|window| window.rows(&scale)));
+    }
+    let least = MIN_ROWS.max(MIN_BLOCKS * block_rows);
+    let longest = windows.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
+    windows.retain(|rows| rows.len() >= least && rows.len() as f64 >= MIN_SHARE * longest as f64);
+    if windows.is_empty() { Err(Error::NoOperatingPoint { least }) } else { Ok(windows) }
+}
+
+/// The rows of each segment between two times, s, both included.
+///
+/// # Errors
+/// If no segment has enough rows between them.
+pub fn between(log: &Log, (from, to): (f64, f64)) -> Result<Vec<Range<usize>>, Error> {
+    let t = &log.columns().t;
+    let within = log.segments().iter().map(|segment| {
+        let times = &t[segment.rows.clone()];
+        segment.rows.start + times.partition_point(|t| *t < from)..segment.rows.start + times.partition_point(|t| *t <= to)
+    });
+    let (windows, short): (Vec<_>, Vec<_>) = within.partition(|rows| rows.len() >= MIN_ROWS);
+    if windows.is_empty() {
+        let rows = short.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
+        let (start, end) = t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(*t), high.max(*t)));
+        return Err(Error::Window { from, to, rows, least: MIN_ROWS, start, end });
+    }
+    Ok(windows)
+}
+
+/// The last [`PAPER_ROWS`] rows of each window: the paper's sample count, farthest from the transient before.
+pub fn at_most_paper_rows(windows: &[Range<usize>]) -> Vec<Range<usize>> {
+    windows.iter().map(|rows| rows.end.saturating_sub(PAPER_ROWS).max(rows.start)..rows.end).collect()
+}
+
+/// Rows of a log whose current is too small to tell anything: a standing or coasting drive.
+pub fn rows_without_current(log: &Log) -> usize {
+    let least = MIN_CURRENT * log.peak_current();
+    let columns = log.columns();
+    columns.id.iter().zip(&columns.iq).filter(|(id, iq)| id.hypot(**iq) < least).count()
+}
+
+/// The log's largest current (A) and speed (rad/s): i_d, i_q, omega_e.
+struct Scale([f64; 3]);
+
+impl Scale {
+    fn of(log: &Log) -> Self {
+        let speed = log.columns().omega_e.iter().fold(0.0_f64, |most, omega| most.max(omega.abs()));
+        Self([log.peak_current(), log.peak_current(), speed])
+    }
+
+    /// Whether two triples of means agree, given the variance of their differences. Speed may always move by [`TOLERANCE`]: its slope is not in the equations.
+    fn agree(&self, current_tolerance: f64, one: &[f64; 3], other: &[f64; 3], variance: &[f64; 3]) -> bool {
+        let tolerances = [current_tolerance, current_tolerance, TOLERANCE];
+        (0..3).all(|c| (one[c] - other[c]).abs() <= tolerances[c] * self.0[c] + NOISE_FACTOR * variance[c].sqrt())
+    }
+}
+
+struct Block {
+    rows: Range<usize>,
+    /// Means of i_d, i_q, omega_e.
+    means: [f64; 3],
+    /// Variances of those means, if their noise is white.
+    variances: [f64; 3],
+}
+
+impl Block {
+    fn of(log: &Log, rows: Range<usize>) -> Self {
+        let columns = log.columns();
+        let n = rows.len() as f64;
+        let channels = [&columns.id, &columns.iq, &columns.omega_e].map(|column| &column[rows.clone()]);
+        let means = channels.map(|values| values.iter().sum::<f64>() / n);
+        // From differences of neighbours: a slope in the block does not count as noise.
+        let variances =
+            channels.map(|values| values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() / (2.0 * (n - 1.0)) / n);
+        Self { rows, means, variances }
+    }
+
+    /// The block, if it is steady and carries current.
+    fn steady(log: &Log, rows: Range<usize>, scale: &Scale) -> Option<Self> {
+        let block = Self::of(log, rows);
+        let middle = block.rows.start.midpoint(block.rows.end);
+        let (first, second) = (Self::of(log, block.rows.start..middle), Self::of(log, middle..block.rows.end));
+        let variance: [f64; 3] = std::array::from_fn(|c| first.variances[c] + second.variances[c]);
+        let carries_current = block.means[0].hypot(block.means[1]) >= MIN_CURRENT * scale.0[0];
+        (carries_current && scale.agree(TOLERANCE, &first.means, &second.means, &variance)).then_some(block)
+    }
+}
+
+/// Blocks in a row that agree.
+struct Window {
+    blocks: Vec<Block>,
+    means: [f64; 3],
+}
+
+impl Window {
+    fn start(block: Block) -> Self {
+        Self { means: block.means, blocks: vec![block] }
+    }
+
+    fn agrees(&self, block: &Block, scale: &Scale) -> bool {
+        // The window's own mean is at least as quiet as the block's.
+        scale.agree(TOLERANCE, &self.means, &block.means, &block.variances.map(|variance| 2.0 * variance))
+    }
+
+    fn join(&mut self, block: Block) {
+        let share = 1.0 / (self.blocks.len() + 1) as f64;
+        self.means = std::array::from_fn(|c| self.means[c] + share * (block.means[c] - self.means[c]));
+        self.blocks.push(block);
+    }
+
+    /// The rows, without the tails of the transients at the ends; none if the window drifts as a whole.
+    fn rows(&self, scale: &Scale) -> Option<Range<usize>> {
+        let n = self.blocks.len();
+        let middle = mean_of(&self.blocks[n / 4..n - n / 4]);
+        let settled = |block: &Block| scale.agree(END_TOLERANCE, &middle, &block.means, &block.variances);
+        let first = self.blocks.iter().position(settled)?;
+        let last = self.blocks.iter().rposition(settled)?;
+        let (early, late) = self.blocks[first..=last].split_at((last + 1 - first) / 2);
+        let steady = !early.is_empty() && scale.agree(HALVES_TOLERANCE, &mean_of(early), &mean_of(late), &[0.0; 3]);
+        steady.then_some(self.blocks[first].rows.start..self.blocks[last].rows.end)
+    }
+}
+
+fn mean_of(blocks: &[Block]) -> [f64; 3] {
+    std::array::from_fn(|c| blocks.iter().map(|block| block.means[c]).sum::<f64>() / blocks.len() as f64)
+}
