@@ -83,7 +83,10 @@ mod tests {
     fn an_unknown_name_is_answered_with_the_nearest() {
         assert_eq!(Channel::from_name("omega"), Ok(Channel::OmegaE));
         let refusal = |name| Channel::from_name(name).unwrap_err().to_string();
-        assert_eq!(refusal("speed"), "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e; did you mean omega_e?");
+        assert_eq!(
+            refusal("speed"),
+            "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e; did you mean omega_e?"
+        );
         assert_eq!(refusal("time"), "\"time\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e; did you mean t?");
         assert_eq!(refusal("flux_density"), "\"flux_density\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e");
     }

@@ -38,7 +38,7 @@ impl FileError {
 
     /// The column's name in the file's header, or the key of a motor or truth file.
     pub fn column(&self) -> Option<&str> {
-        self.0.field.as_ref().map(|Field::Column(name) | Field::Key(name)| name.as_str())
+        self.0.field.as_ref().map(|(Field::Column(name) | Field::Key(name))| name.as_str())
     }
 
     pub(crate) fn in_file(mut self, name: &str) -> Self {
@@ -72,7 +72,7 @@ impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Located { file, line, field, problem } = &*self.0;
         let place: Vec<String> = [
-            file.as_ref().map(|file| one_line(file)),
+            file.clone(),
             line.map(|line| format!("line {line}")),
             field.as_ref().map(|field| match field {
                 Field::Column(header) => format!("column '{}'", shorten(header)),
@@ -82,7 +82,9 @@ impl fmt::Display for FileError {
         .into_iter()
         .flatten()
         .collect();
-        if place.is_empty() { write!(f, "{problem}") } else { write!(f, "{}: {problem}", place.join(", ")) }
+        let sentence = if place.is_empty() { problem.to_string() } else { format!("{}: {problem}", place.join(", ")) };
+        // Names come from files and may hold anything.
+        f.write_str(&one_line(&sentence))
     }
 }
 
@@ -98,7 +100,7 @@ pub(crate) enum Problem {
     NotFound,
     #[error("permission is denied; change the permissions, or name another file")]
     NotPermitted,
-    #[error("{action} failed: {}; try again, or name another file", one_line(.reason))]
+    #[error("{action} failed: {reason}; try again, or name another file")]
     Io { action: &'static str, reason: String },
     #[error("the directory {} does not exist; create it, or name another file", quote(.directory))]
     NoDirectory { directory: String },
@@ -114,8 +116,8 @@ pub(crate) enum Problem {
     NoRows,
     #[error("{} are numbers where the header should be; put a line with the names of the columns above them", quote(.text))]
     NumbersForHeader { text: String },
-    #[error("{} {} and does not look like a header; delete this line{}", quote(.text), cells_of_title(*.cells), also_lacking(.lacking))]
-    Title { text: String, cells: usize, lacking: Vec<&'static str> },
+    #[error("{} has only {} and does not look like a header; delete this line{}", quote(.text), cells(*.count), also_lacking(.lacking))]
+    Title { text: String, count: usize, lacking: Vec<&'static str> },
     #[error("{} is only one column; separate the names, and the values, by comma, semicolon or tab", quote(.text))]
     OneColumn { text: String },
     #[error("{}", missing_columns(.missing, .present, .proposals))]
@@ -130,13 +132,15 @@ pub(crate) enum Problem {
     MappedHeader { channel: &'static str, header: String, present: Vec<String>, nearest: Option<String> },
     #[error("{} in the header is no unit of {channel} known here; say the unit with --unit {channel}={}", quote(.text), choice(.units))]
     HeaderUnit { channel: &'static str, text: String, units: Vec<&'static str> },
-    #[error("{unit} is mechanical, and only the pole pairs make it electrical; add --pole-pairs N, or --unit {channel}={electrical} if it is electrical already")]
+    #[error(
+        "the speed is in {unit}, and only the pole pairs make it electrical; add --pole-pairs N, or --unit {channel}={electrical} if it is electrical already"
+    )]
     PolePairs { channel: &'static str, unit: &'static str, electrical: &'static str },
 
     // The rows of a log
     #[error("{} looks like a row of units; delete this line", quote(.text))]
     UnitsRow { text: String },
-    #[error("the row has {found} cells where the header has {expected}; {}", row_remedy(*.multiline))]
+    #[error("the row has {} where the header has {expected}; {}", cells(*.found), row_remedy(*.found > *.expected, *.multiline))]
     RowLength { found: usize, expected: usize, multiline: bool },
     #[error("the cell is empty; write a number or remove the row")]
     EmptyCell,
@@ -172,52 +176,51 @@ pub(crate) enum Problem {
     Interval { text: String },
 
     // Motor and truth files
-    #[error("this is not {format}: {}; correct it", one_line(.message))]
+    #[error("this is not {format}: {message}; correct it")]
     Syntax { format: &'static str, message: String },
-    #[error("this key is not known; {} can be {}{}", quote(.table), list(.known), did_you_mean(*.nearest))]
+    #[error("this key is not known; {table} can hold {}{}", list(.known), did_you_mean(*.nearest))]
     Key { table: &'static str, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("this key stands outside of a table; put it below a line [{table}]")]
     OutsideTable { table: &'static str },
     #[error("this is not {wanted}; correct it")]
     Value { wanted: &'static str },
-    #[error("{} missing; write {}", quote(.key), one_line(.remedy))]
-    MissingKey { key: String, remedy: &'static str },
-    #[error("the schema is {} where \"{wanted}\" is needed; give a truth file", quote(.found))]
+    #[error("the key {key} is missing; write {remedy}")]
+    MissingKey { key: &'static str, remedy: &'static str },
+    #[error("the schema is {} where {wanted} is needed; give a truth file", shorten(.found))]
     Schema { found: String, wanted: &'static str },
 }
 
-fn cells_of_title(cells: usize) -> String {
-    if cells == 1 { "is only one cell".to_owned() } else { format!("has only {cells} cells") }
+fn cells(count: usize) -> String {
+    if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") }
 }
 
 fn also_lacking(lacking: &[&str]) -> String {
     if lacking.is_empty() { String::new() } else { format!("; the next one names nothing like {}, which are needed too", list(lacking)) }
 }
 
-fn row_remedy(multiline: bool) -> &'static str {
-    if multiline { "a quotation mark in this line opens a cell that runs over several lines: close it" } else { "complete the row or remove it" }
+fn row_remedy(too_many: bool, multiline: bool) -> &'static str {
+    match (multiline, too_many) {
+        (true, _) => "a quotation mark in this line opens a cell that runs over several lines: close it",
+        (false, true) => "remove the cells that are too many, or the row",
+        (false, false) => "complete the row or remove it",
+    }
 }
 
 /// The proposals come as an argument that can be pasted.
 fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> String {
-    let plural = missing.len() > 1;
-    let (columns_are, they_are) = if plural { ("columns", "are") } else { ("column", "is") };
-    let mut sentence = format!("the {columns_are} {} {they_are} missing; the file has {}", list(missing), columns(present));
-    if proposals.is_empty() {
-        sentence += if plural { "; say which they are" } else { "; say which it is" };
-        sentence += ", as in --map omega_e=motor_speed";
-        return sentence;
+    let (noun, are, them, names) =
+        if missing.len() == 1 { ("column", "is", "it", "another name") } else { ("columns", "are", "them", "other names") };
+    let what = format!("the {noun} {} {are} missing; the file has {}", list(missing), columns(present));
+    if let ([], Some(example)) = (proposals, missing.first()) {
+        return format!("{what}; if it has {them} under {names}, add --map {example}=COLUMN; else log {them} too");
     }
     let pairs: Vec<String> = proposals.iter().map(|(channel, header)| format!("{channel}={header}")).collect();
     let argument = pairs.join(",");
     let plain = argument.chars().all(|c| c.is_alphanumeric() || "_=,.-@".contains(c));
-    sentence += "; if these are they, add --map ";
-    sentence += &if plain { argument } else { format!("\"{argument}\"") };
+    let quotes = if plain { "" } else { "\"" };
     let rest: Vec<&str> = missing.iter().filter(|channel| proposals.iter().all(|(proposed, _)| proposed != *channel)).copied().collect();
-    if !rest.is_empty() {
-        sentence += &format!("; nothing resembles {}, and {} needed", list(&rest), if rest.len() > 1 { "they are" } else { "it is" });
-    }
-    sentence
+    let lacking = if rest.is_empty() { String::new() } else { format!("; nothing resembles {}, needed too", list(&rest)) };
+    format!("{what}; if it has {them} under {names}, add --map {quotes}{argument}{quotes}{lacking}")
 }
 
 #[cfg(test)]

@@ -32,8 +32,8 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
 pub(crate) fn text<'a>(bytes: &'a [u8], wanted: &'static str) -> Result<&'a str, FileError> {
     let refuse = |at: usize| FileError::from(Problem::NotText { wanted }).at_line(line_at(bytes, at));
     let text = str::from_utf8(bytes).map_err(|error| refuse(error.valid_up_to()))?;
-    if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
-        return Err(refuse(at));
+    if bytes.contains(&0) {
+        return Err(refuse(bytes.iter().position(|byte| *byte == 0).unwrap_or(0)));
     }
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.trim().is_empty() { Err(Problem::Empty.into()) } else { Ok(text) }
@@ -77,6 +77,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().to_str().unwrap();
         assert_eq!(refusal(path), format!("{path}: this is a directory; name a file in it"));
+        assert_eq!(name(Path::new("-")), "standard input");
         assert_eq!(refusal(&format!("{path}/x.csv")), format!("{path}/x.csv: there is no such file; check the path"));
         let problem = |kind: io::ErrorKind| io_problem("reading", &kind.into()).to_string();
         assert_eq!(problem(io::ErrorKind::PermissionDenied), "permission is denied; change the permissions, or name another file");

@@ -26,6 +26,7 @@
 //! | [`error`] | the sentence |
 //! | `channel`, `input`, `wording` | what a log's columns are called; bytes and text; lists and quotations |
 
+pub mod answer;
 pub mod argument;
 mod channel;
 pub mod csv;

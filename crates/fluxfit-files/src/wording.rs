@@ -1,4 +1,4 @@
-//! Quotations and lists inside a sentence. Whatever a file holds, it stays on one line and short.
+//! Quotations and lists inside a sentence. Whatever a file holds, it stays short and on one line.
 
 /// Longest quotation, in characters.
 const QUOTATION: usize = 40;
@@ -61,8 +61,10 @@ pub(crate) fn columns(names: &[String]) -> String {
 
 /// The candidate most like `wanted`, if any is.
 pub(crate) fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let wanted = wanted.to_lowercase();
-    let scored = candidates.into_iter().map(|candidate| (strsim::normalized_damerau_levenshtein(&wanted, &candidate.to_lowercase()), candidate));
+    // Nobody mistypes a name longer than a quotation.
+    let start = |name: &str| name.chars().take(QUOTATION).collect::<String>().to_lowercase();
+    let wanted = start(wanted);
+    let scored = candidates.into_iter().map(|candidate| (strsim::normalized_damerau_levenshtein(&wanted, &start(candidate)), candidate));
     scored.filter(|(score, _)| *score >= SIMILAR).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
 }
 

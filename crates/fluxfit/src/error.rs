@@ -113,7 +113,9 @@ pub enum Error {
         upper: usize,
     },
     /// A bound that is no interval.
-    #[error("the search box of dimension {dimension} runs from {lower} to {upper}; both must be finite numbers, the lower below the upper")]
+    #[error(
+        "the search box of dimension {dimension} runs from {lower} to {upper}; both must be finite numbers up to 1e150, the lower below the upper"
+    )]
     Bounds {
         /// Dimension, from 0.
         dimension: usize,

@@ -76,7 +76,12 @@ impl Case {
             }),
             "fpa" => Method::Fpa(pollination()),
             "lpso" => Method::Lpso(Lpso { flight: flight(), inertia_start: number("inertia_start"), inertia_end: number("inertia_end") }),
-            "apso" => Method::Apso(Apso { flight: flight(), inertia_min: number("inertia_min"), inertia_max: number("inertia_max") }),
+            "apso" => Method::Apso(Apso {
+                flight: flight(),
+                inertia_min: number("inertia_min"),
+                inertia_max: number("inertia_max"),
+                ..Apso::default()
+            }),
             other => panic!("no method {other}"),
         }
     }

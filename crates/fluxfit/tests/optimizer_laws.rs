@@ -169,7 +169,7 @@ proptest! {
     }
 
     #[test]
-    fn positions_stay_in_the_box_and_the_best_never_gets_worse(search in searches(-200.0..200.0)) {
+    fn positions_stay_in_the_box_and_the_best_never_gets_worse(search in searches(-140.0..140.0)) {
         let (objective, bounds, size) = (search.objective(), search.bounds(), search.settings.population);
         let started = search.start();
         prop_assume!(started.is_some());
@@ -415,7 +415,7 @@ fn a_box_without_intervals_is_an_error() {
         (0.0, f64::INFINITY),
         (2.0, 1.0),
         (1.0, 1.0),
-        // Finite bounds, but a width that is not.
+        // Finite bounds, but steps that would not be.
         (-f64::MAX, f64::MAX),
     ];
     for (lower, upper) in wrong {

@@ -1,10 +1,12 @@
 //! The estimate: weighted least squares on the operating points' equations, in the directions that are excited.
 //!
 //! ```text
-//! minimize  sum over points  r' W r,   r = b - A x,   W = (noise covariance of r + voltage accuracy²)^-1
+//! minimize  sum over points  r' W r,   r = b - A x,   W = (N / n + voltage accuracy²)^-1
 //! ```
 //!
-//! The noise of currents and speed counts in `W` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated. Parameters that are fixed move to the right-hand side; a prior is one more equation.
+//! `N` holds the long-run noise variances of `r`, pooled over the points, and `n` a point's rows. A point's own covariance has few degrees of freedom: weighting by it would chase its luck and make the answer
+//! look better than it is. The uncertainty is computed from the points' own covariances all the same, so it holds where the noise differs between them.
+//! The noise of currents and speed counts in `N` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated. Parameters that are fixed move to the right-hand side; a prior is one more equation.
 
 use super::{Known, Settings, excitation::Excitation};
 use crate::{
@@ -13,7 +15,7 @@ use crate::{
     objective::voltage_error::VoltageError,
     steady::OperatingPoint,
 };
-use nalgebra::{DMatrix, DVector, Matrix2, Vector4};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
 
 /// Rounds of weighting. Weights move the answer by a fraction of its uncertainty, so the second round already changes nothing visible.
 const ROUNDS: usize = 4;
@@ -36,7 +38,7 @@ pub struct Estimate {
     pub accuracy: Vec<f64>,
     /// Per prior, what its standard error does to the parameters (SI).
     pub prior_gains: Vec<[f64; PARAMETERS]>,
-    /// Weighted sum of squares at the motor, priors included.
+    /// Sum of squares at the motor in units of the points' own covariances and accuracies, priors included.
     pub chi_squared: f64,
     /// Equations and priors, less the directions found.
     pub degrees_of_freedom: usize,
@@ -67,13 +69,14 @@ impl Estimate {
         let gains = of_points.map(|(gain, whitener)| {
             std::array::from_fn(|p| [0, 1].map(|axis| gain[0][p] * whitener[(0, axis)] + gain[1][p] * whitener[(1, axis)]))
         });
+        let chi_squared = chi_squared(points, &motor, &accuracy, settings);
         let prior_gains = gain[2 * points.len()..].to_vec();
         Self {
             motor,
             gains: gains.collect(),
             residuals: points.iter().map(|point| point.equations().map(|equation| equation.residual(&x))).collect(),
             accuracy,
-            chi_squared: system.equations.iter().map(|equation| equation.residual(&x).powi(2)).sum(),
+            chi_squared,
             degrees_of_freedom: (2 * points.len() + prior_gains.len()).saturating_sub(excitation.excited().count()),
             redundancy: (2 * distinct(points) + prior_gains.len()).saturating_sub(excitation.excited().count()),
             prior_gains,
@@ -97,11 +100,9 @@ impl System {
     fn of(points: &[OperatingPoint], motor: &Motor, accuracy: &[f64], settings: &Settings) -> Self {
         let mut equations = Vec::new();
         let mut whiteners = Vec::new();
+        let pooled = pooled_noise(points, motor);
         for (point, accuracy) in points.iter().zip(accuracy) {
-            let noise = Matrix2::from(point.residual_covariance(motor)) + Matrix2::identity() * accuracy.powi(2);
-            // Positive definite by its floor; if rounding says otherwise, the diagonal alone will do.
-            let lower = noise.cholesky().map_or_else(|| Matrix2::from_diagonal(&noise.diagonal().map(f64::sqrt)), |factor| factor.l());
-            let whitener = lower.try_inverse().unwrap_or_else(Matrix2::zeros);
+            let whitener = whitener(pooled / point.rows.len() as f64, *accuracy);
             let [d, q] = point.equations().map(|equation| move_fixed(equation, settings));
             for row in 0..2 {
                 let (a, b) = (whitener[(row, 0)], whitener[(row, 1)]);
@@ -113,12 +114,7 @@ impl System {
             }
             whiteners.push(whitener);
         }
-        for (p, known) in settings.known.iter().enumerate() {
-            if let Known::Prior { value, standard_error } = known {
-                let coefficients = std::array::from_fn(|q| f64::from(u8::from(p == q)));
-                equations.push(Equation { coefficients, value: *value }.weighted(1.0 / standard_error));
-            }
-        }
+        equations.extend(priors(settings));
         Self { equations, whiteners }
     }
 
@@ -142,6 +138,42 @@ impl System {
         }
         (Motor::from(<[f64; PARAMETERS]>::from(x)), gain)
     }
+}
+
+/// Long-run variances of the two residuals' noise, V² times rows, as a diagonal matrix: the points' own, weighted by what is behind them. The covariance between the axes is left out: estimated, it costs more than it brings.
+fn pooled_noise(points: &[OperatingPoint], motor: &Motor) -> Matrix2<f64> {
+    let total: usize = points.iter().map(|point| point.degrees_of_freedom).sum();
+    let share = |point: &OperatingPoint| (point.rows.len() * point.degrees_of_freedom) as f64 / total as f64;
+    let pooled: Matrix2<f64> = points.iter().map(|point| Matrix2::from(point.residual_covariance(motor)) * share(point)).sum();
+    Matrix2::from_diagonal(&pooled.diagonal())
+}
+
+/// What turns two residuals with this noise and accuracy into independent ones of unit variance.
+fn whitener(noise: Matrix2<f64>, accuracy: f64) -> Matrix2<f64> {
+    let covariance = noise + Matrix2::identity() * accuracy.powi(2);
+    // Positive definite by the accuracy; if rounding says otherwise, the diagonal alone will do.
+    let lower = covariance.cholesky().map_or_else(|| Matrix2::from_diagonal(&covariance.diagonal().map(f64::sqrt)), |factor| factor.l());
+    lower.try_inverse().unwrap_or_else(Matrix2::zeros)
+}
+
+/// One whitened equation per prior.
+fn priors(settings: &Settings) -> impl Iterator<Item = Equation> + '_ {
+    settings.known.iter().enumerate().filter_map(|(p, known)| match known {
+        Known::Prior { value, standard_error } => {
+            let coefficients = std::array::from_fn(|q| f64::from(u8::from(p == q)));
+            Some(Equation { coefficients, value: *value }.weighted(1.0 / standard_error))
+        }
+        Known::Nothing | Known::Fixed(_) => None,
+    })
+}
+
+fn chi_squared(points: &[OperatingPoint], motor: &Motor, accuracy: &[f64], settings: &Settings) -> f64 {
+    let x = motor.to_array();
+    let of_points = points.iter().zip(accuracy).map(|(point, accuracy)| {
+        let residual = Vector2::from(point.equations().map(|equation| equation.residual(&x)));
+        (whitener(point.residual_covariance(motor).into(), *accuracy) * residual).norm_squared()
+    });
+    of_points.sum::<f64>() + priors(settings).map(|equation| equation.residual(&x).powi(2)).sum::<f64>()
 }
 
 /// An equation with the fixed parameters on its right-hand side.

@@ -19,6 +19,9 @@ const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
 /// Currents and speed are known no better than this fraction of their largest value, however quiet they are.
 const COEFFICIENT_ACCURACY: f64 = 1e-4;
 
+/// A parameter is open if this part of its axis, or more, lies in unexcited directions. Noise mixes directions by far less.
+const OPEN_PART: f64 = 0.1;
+
 /// What the operating points excite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excitation {
@@ -79,14 +82,16 @@ impl Excitation {
         self.directions.iter().filter(|direction| direction.excited)
     }
 
-    /// How much of a parameter lies in the directions that are not excited: 0 none, 1 all of it.
-    pub fn unexcited_part(&self, parameter: Parameter) -> f64 {
-        self.directions
+    /// Whether a parameter is one of those that the log leaves open: a good part of it lies in directions that are not excited.
+    pub fn is_open(&self, parameter: Parameter) -> bool {
+        let part = self
+            .directions
             .iter()
             .filter(|direction| !direction.excited)
             .map(|direction| direction.components[parameter as usize].powi(2))
             .sum::<f64>()
-            .sqrt()
+            .sqrt();
+        part > OPEN_PART
     }
 }
 

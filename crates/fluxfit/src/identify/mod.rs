@@ -24,7 +24,6 @@ use crate::{
 use estimate::Estimate;
 use excitation::Excitation;
 use misfit::Misfit;
-use std::ops::Range;
 use uncertainty::Uncertainty;
 use verdict::{Judgement, Warning};
 
@@ -133,8 +132,8 @@ impl Identification {
 /// If a setting is out of range, or no steady operating point is found. A log that cannot carry some parameter is no error: the verdicts say so.
 pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error> {
     check(settings)?;
-    let windows = steady_windows(log, settings)?;
-    let (points, timing_doubt) = measure(log, &windows, settings);
+    let rough = operating_points(log, settings)?;
+    let (points, timing_doubt) = measure(log, &rough, settings);
     let excitation = Excitation::of(&points, &settings.known);
     let estimate = Estimate::solve(&points, &excitation, settings);
     let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, settings);
@@ -179,24 +178,26 @@ fn check(settings: &Settings) -> Result<(), Error> {
     if settings.known.iter().all(|known| matches!(known, Known::Fixed(_))) { Err(Error::NothingToIdentify) } else { Ok(()) }
 }
 
-/// The windows named, or those found.
-fn steady_windows(log: &Log, settings: &Settings) -> Result<Vec<Range<usize>>, Error> {
-    if settings.windows.is_empty() {
-        return windows::find(log);
-    }
-    let mut named = Vec::new();
+/// The operating points in the windows named, or in those found, as the log has them: before any correction, and with a coarse covariance.
+///
+/// # Errors
+/// If there is none.
+pub fn operating_points(log: &Log, settings: &Settings) -> Result<Vec<OperatingPoint>, Error> {
+    let mut windows = Vec::new();
     for times in &settings.windows {
-        named.extend(windows::between(log, *times)?);
+        windows.extend(windows::between(log, *times)?);
     }
-    Ok(named)
+    if windows.is_empty() {
+        windows = windows::find(log)?;
+    }
+    Ok(windows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect())
 }
 
-/// Measures the windows twice: the first time to know the motor roughly, the second time with the corrections and the covariance that need it.
+/// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
 /// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
-fn measure(log: &Log, windows: &[Range<usize>], settings: &Settings) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
-    let rough: Vec<_> = windows.iter().map(|rows| OperatingPoint::measure(log, rows.clone(), None)).collect();
-    let excitation = Excitation::of(&rough, &settings.known);
-    let motor = Estimate::solve(&rough, &excitation, settings).motor;
+fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
+    let excitation = Excitation::of(rough, &settings.known);
+    let motor = Estimate::solve(rough, &excitation, settings).motor;
     let inductance = inductance(&motor, &excitation);
     let with = |timing: VoltageTiming| -> Vec<_> {
         let held = |point: &OperatingPoint| held_vector(log, point, timing, inductance);

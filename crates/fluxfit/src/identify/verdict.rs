@@ -111,8 +111,8 @@ pub fn judge(
     })
 }
 
-/// A parameter with at least this part in the unexcited directions is one of those that the log leaves open.
-const OPEN_PART: f64 = 0.1;
+/// A direction is a parameter's own axis if its component is at least this.
+const OWN_AXIS: f64 = 0.9;
 
 /// Why a parameter is not identified, and the remedy.
 fn explain(
@@ -123,7 +123,7 @@ fn explain(
     uncertainty: &ParameterUncertainty,
 ) -> (String, String) {
     let symbol = parameter.symbol();
-    if excitation.unexcited_part(parameter) > OPEN_PART {
+    if excitation.is_open(parameter) {
         return explain_unexcited(parameter, points, excitation);
     }
     let systematic = uncertainty.systematic;
@@ -165,15 +165,13 @@ fn explain(
 
 /// Which of the three ways of not being excited it is.
 fn explain_unexcited(parameter: Parameter, points: &[OperatingPoint], excitation: &Excitation) -> (String, String) {
-    let open: Vec<Parameter> = Parameter::ALL.into_iter().filter(|other| excitation.unexcited_part(*other) > OPEN_PART).collect();
+    let open: Vec<Parameter> = Parameter::ALL.into_iter().filter(|other| excitation.is_open(*other)).collect();
     let id_most = points.iter().map(|point| point.current().d.abs()).fold(0.0, f64::max);
     let current = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
     let step = format!("add a stretch at the same speed with i_d near {} A", one_digit(-0.2 * current));
     // L_d alone, its unit vector not excited: nothing but noise multiplies it.
-    let ld_absent = excitation
-        .directions
-        .iter()
-        .any(|direction| !direction.excited && direction.components[Parameter::Ld as usize].abs() > 1.0 - OPEN_PART);
+    let ld_absent =
+        excitation.directions.iter().any(|direction| !direction.excited && direction.components[Parameter::Ld as usize].abs() > OWN_AXIS);
     match parameter {
         Parameter::Ld if ld_absent => (
             format!("i_d stays at zero (at most {id_most:.2} A, no more than its noise and accuracy), so L_d is absent from the equations"),

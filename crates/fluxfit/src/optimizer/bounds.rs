@@ -4,6 +4,9 @@ use super::draws::Draws;
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
 
+/// Largest magnitude of a bound: steps and their squares stay finite.
+const MAX_BOUND: f64 = 1e150;
+
 /// A box of finite, non-empty intervals, one per dimension.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
@@ -13,14 +16,13 @@ pub struct Bounds {
 
 impl Bounds {
     /// # Errors
-    /// If there is no dimension, the lengths differ, a bound is not finite or a lower one is not below its upper one.
+    /// If there is no dimension, the lengths differ, a bound is not finite (or beyond 1e150) or a lower one is not below its upper one.
     pub fn new(lower: Vec<f64>, upper: Vec<f64>) -> Result<Self, Error> {
         if lower.is_empty() || lower.len() != upper.len() {
             return Err(Error::BoundsShape { lower: lower.len(), upper: upper.len() });
         }
         for (dimension, (&lower, &upper)) in lower.iter().zip(&upper).enumerate() {
-            // The width must be finite too: it scales every step.
-            if !(lower < upper && (upper - lower).is_finite()) {
+            if !(lower < upper && lower.abs() <= MAX_BOUND && upper.abs() <= MAX_BOUND) {
                 return Err(Error::Bounds { dimension, lower, upper });
             }
         }

@@ -45,11 +45,16 @@ impl Particles {
         Self { velocities, own_best: swarm.positions().to_vec(), own_best_costs: swarm.costs().to_vec() }
     }
 
-    /// One trial per particle, with the inertia weight for its cost. Draws per component: `rand` of c1, `rand` of c2.
+    /// Costs of the particles' own best places.
+    pub(super) fn own_best_costs(&self) -> &[f64] {
+        &self.own_best_costs
+    }
+
+    /// One trial per particle `i`, with inertia weight `inertia(i)`. Draws per component: `rand` of c1, `rand` of c2.
     pub(super) fn propose(
         &mut self,
         flight: &Flight,
-        inertia: impl Fn(f64) -> f64,
+        inertia: impl Fn(usize) -> f64,
         swarm: &mut Population,
         bounds: &Bounds,
         draws: &mut Draws,
@@ -57,7 +62,7 @@ impl Particles {
         let d = bounds.dimension();
         let (velocities, own_best) = (&mut self.velocities, &self.own_best);
         swarm.propose_each(bounds, |i, swarm, trial| {
-            let w = inertia(swarm.costs()[i]);
+            let w = inertia(i);
             let row = i * d..(i + 1) * d;
             let parts = velocities[row.clone()].iter_mut().zip(&own_best[row]).zip(swarm.best()).zip(bounds.iter());
             for (x, (((v, own), best), (lower, upper))) in trial.iter_mut().zip(parts) {

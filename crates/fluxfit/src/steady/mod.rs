@@ -35,6 +35,8 @@ pub struct OperatingPoint {
     pub means: [f64; CHANNELS],
     /// Slope of the currents, A/s.
     pub drift: Dq,
+    /// Variance of those slopes, (A/s)².
+    pub drift_variance: Dq,
     /// Covariance of the means.
     pub covariance: [[f64; CHANNELS]; CHANNELS],
     /// Degrees of freedom of that covariance.
@@ -85,8 +87,16 @@ impl OperatingPoint {
             transform.push(&deviation);
         }
         let time = (columns.t[rows.start], columns.t[rows.end - 1]);
-        let drift = Dq { d: drift(&columns.id[rows.clone()], time), q: drift(&columns.iq[rows.clone()], time) };
-        Self { rows, time, means, drift, covariance: transform.covariance_of_mean(), degrees_of_freedom: cosines }
+        let [(drift_d, variance_d), (drift_q, variance_q)] = [&columns.id, &columns.iq].map(|current| drift(&current[rows.clone()], time));
+        Self {
+            rows,
+            time,
+            means,
+            drift: Dq { d: drift_d, q: drift_q },
+            drift_variance: Dq { d: variance_d, q: variance_q },
+            covariance: transform.covariance_of_mean(),
+            degrees_of_freedom: cosines,
+        }
     }
 
     /// Mean voltage, V.
@@ -116,14 +126,18 @@ impl OperatingPoint {
     /// Covariance, V², of the two equations' residuals for a motor: the noise of voltages, currents and speed together.
     pub fn residual_covariance(&self, motor: &Motor) -> [[f64; 2]; 2] {
         let weights = residual_weights(motor);
-        weights.map(|one| weights.map(|other| self.covariance_between(&one, &other)))
+        let mut covariance = weights.map(|one| weights.map(|other| self.covariance_between(&one, &other)));
+        covariance[0][0] += motor.ld.powi(2) * self.drift_variance.d;
+        covariance[1][1] += motor.lq.powi(2) * self.drift_variance.q;
+        covariance
     }
 
     /// Variance of each equation's `coefficients . direction` that the noise of currents and speed makes: `[d, q]`.
     pub fn coefficient_variance(&self, direction: &[f64; 4]) -> [f64; 2] {
         let [rs, ld, lq, psi_f] = *direction;
         let weights = [[0.0, 0.0, rs, 0.0, 0.0, -lq, 0.0], [0.0, 0.0, 0.0, rs, ld, 0.0, psi_f]];
-        weights.map(|weights| self.covariance_between(&weights, &weights))
+        let [d, q] = weights.map(|weights| self.covariance_between(&weights, &weights));
+        [d + ld.powi(2) * self.drift_variance.d, q + lq.powi(2) * self.drift_variance.q]
     }
 
     fn covariance_between(&self, one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
@@ -141,12 +155,14 @@ fn dot(one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-/// Slope of a current over its window, A/s.
-fn drift(current: &[f64], (start, end): (f64, f64)) -> f64 {
+/// Slope of a current over its window, A/s, and the variance that white noise gives it.
+fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let n = current.len();
     let rows = DRIFT_ROWS.min(n / 4).max(1);
     let mean = |part: &[f64]| part.iter().sum::<f64>() / rows as f64;
     // The two means lie n - rows of n - 1 steps apart.
     let span = (end - start) * (n - rows) as f64 / (n - 1).max(1) as f64;
-    (mean(&current[n - rows..]) - mean(&current[..rows])) / span
+    // Noise from neighbours: the slope itself does not count.
+    let noise = current.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() / (2.0 * (n - 1).max(1) as f64);
+    ((mean(&current[n - rows..]) - mean(&current[..rows])) / span, 2.0 * noise / rows as f64 / span.powi(2))
 }

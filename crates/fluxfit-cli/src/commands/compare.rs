@@ -1,0 +1,77 @@
+//! `fluxfit compare`: many runs of many methods on fitness (11), as the paper compares them.
+
+use super::{Status, input};
+use crate::{arguments::Compare, error::CommandError, terminal};
+use fluxfit::{
+    identify::{Known, Settings, excitation::Excitation, operating_points},
+    motor::{PARAMETERS, Parameter},
+    objective::voltage_error::VoltageError,
+    optimizer::{self, CloseTo},
+    steady::windows::at_most_paper_rows,
+    study::{MethodStudy, run_method},
+};
+use fluxfit_files::{answer, read_truth};
+use std::time::Instant;
+
+/// Runs the verb.
+pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
+    let input = input::read(&arguments.log)?;
+    let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
+    let settings = Settings { windows: arguments.log.window.clone(), ..Settings::default() };
+    let points = operating_points(&input.log, &settings).map_err(|error| CommandError::Log { log: input.name.clone(), error })?;
+    let bounds = input::search_box(&arguments.log, &input.motor, &points)?;
+    let windows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
+    let objective = VoltageError::of_samples(&input.log, &windows, arguments.id_zero);
+    let settings = search_settings(arguments, &objective)?;
+
+    let methods = study(arguments, settings, &bounds, &objective)?;
+    let rows: Vec<usize> = windows.iter().map(ExactSizeIterator::len).collect();
+    let facts = answer::StudyFacts { settings: &settings, runs: arguments.runs, bounds: &bounds, objective: &objective, rows: &rows, truth: truth.as_ref() };
+    if arguments.log.json {
+        terminal::print(&answer::to_text(&answer::study(&facts, &methods)))?;
+    } else {
+        terminal::study::show(&input.name, &facts, &methods)?;
+    }
+        let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
+    let open: Vec<&str> = Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).map(Parameter::symbol).collect();
+    if open.is_empty() {
+        return Ok(Status::Complete);
+    }
+    terminal::note(&format!("this log does not excite {}: what the methods say of it is chance; see fluxfit identify", open.join(", ")));
+    Ok(Status::Incomplete)
+}
+
+/// Every method in turn, with the seconds of wall time that one of its runs took.
+fn study(
+    arguments: &Compare,
+    settings: optimizer::Settings,
+    bounds: &optimizer::bounds::Bounds,
+    objective: &VoltageError,
+) -> Result<Vec<(MethodStudy, f64)>, CommandError> {
+    let progress = terminal::progress(arguments.runs * arguments.methods.len(), "runs", arguments.log.json);
+    let mut methods = Vec::new();
+    for method in &arguments.methods {
+        let start = Instant::now();
+        let study = run_method(*method, arguments.runs, settings, bounds, objective, || progress.inc(1))?;
+        methods.push((study, start.elapsed().as_secs_f64() / arguments.runs as f64));
+    }
+    progress.finish_and_clear();
+    Ok(methods)
+}
+
+fn search_settings(arguments: &Compare, objective: &VoltageError) -> Result<optimizer::Settings, CommandError> {
+    for (option, value) in [("--tolerance", arguments.tolerance), ("--target-cost", arguments.target_cost)] {
+        if value.is_some_and(|value| !(value >= 0.0 && value.is_finite())) {
+            return Err(CommandError::Usage(format!("{option} must be a finite number, zero or more")));
+        }
+    }
+    Ok(optimizer::Settings {
+        population: arguments.population,
+        iterations: arguments.iterations,
+        seed: arguments.log.seed,
+        run: 0,
+        close_to_optimum: arguments.tolerance.map(|tolerance| CloseTo { optimum: objective.least_squares().cost, tolerance }),
+        target_cost: arguments.target_cost,
+    })
+}
+

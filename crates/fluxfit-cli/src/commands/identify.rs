@@ -1,0 +1,71 @@
+//! `fluxfit identify`: arguments to settings, the library's answer to the terminal or to JSON.
+
+use super::{Status, input};
+use crate::{
+    arguments::{Identify, SearchMethod, Timing, by_parameter},
+    error::CommandError,
+    terminal,
+};
+use fluxfit::{
+    identify::{Known, Settings, identify},
+    motor::PARAMETERS,
+    optimizer::{self, Method, tgfpa::Tgfpa},
+    steady::held_vector::VoltageTiming,
+};
+use fluxfit_files::answer;
+
+/// Runs the verb.
+pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
+    let input = input::read(&arguments.log)?;
+    let mut settings = settings(arguments)?;
+    let points = fluxfit::identify::operating_points(&input.log, &settings).map_err(|error| CommandError::Log { log: input.name.clone(), error })?;
+    settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &points)?);
+    let found = identify(&input.log, &settings).map_err(|error| CommandError::Log { log: input.name.clone(), error })?;
+    let method = settings.method.map_or("least-squares", |method| method.key());
+    if arguments.log.json {
+        terminal::print(&answer::to_text(&answer::identification(&input.log, &found, method)))?;
+    } else {
+        terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
+    }
+    Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
+}
+
+fn settings(arguments: &Identify) -> Result<Settings, CommandError> {
+    Ok(Settings {
+        windows: arguments.log.window.clone(),
+        voltage_timing: match arguments.voltage_timing {
+            Timing::Auto => None,
+            Timing::Centered => Some(VoltageTiming::Centered),
+            // Steady voltages do not know their delay.
+            Timing::Zero | Timing::One | Timing::Two => Some(VoltageTiming::Compensated),
+        },
+        voltage_accuracy: arguments.voltage_accuracy,
+        known: known(arguments)?,
+        method: match arguments.method {
+            SearchMethod::Auto => Some(Method::Tgfpa(Tgfpa::default())),
+            SearchMethod::LeastSquares => None,
+            SearchMethod::Swarm(method) => Some(method),
+        },
+        search: optimizer::Settings { seed: arguments.log.seed, ..optimizer::Settings::default() },
+        bounds: None,
+    })
+}
+
+fn known(arguments: &Identify) -> Result<[Known; PARAMETERS], CommandError> {
+    let fixed = by_parameter(&arguments.fix, "--fix")?;
+    let given: Vec<_> = arguments.prior.iter().map(|(parameter, value, standard_error)| (*parameter, (*value, *standard_error))).collect();
+    let priors = by_parameter(&given, "--prior")?;
+    let mut known = [Known::Nothing; PARAMETERS];
+    for (p, known) in known.iter_mut().enumerate() {
+        *known = match (fixed[p], priors[p]) {
+            (None, None) => Known::Nothing,
+            (Some(value), None) => Known::Fixed(value),
+            (None, Some((value, standard_error))) => Known::Prior { value, standard_error },
+            (Some(_), Some(_)) => {
+                let key = fluxfit::motor::Parameter::ALL[p].key();
+                return Err(CommandError::Usage(format!("{key} is given with --fix and with --prior; give one of them")));
+            }
+        };
+    }
+    Ok(known)
+}

@@ -1,0 +1,61 @@
+//! What both verbs read: the logs as one, the motor file, the search box.
+
+use crate::{
+    arguments::{LogArguments, by_parameter},
+    error::CommandError,
+    terminal,
+};
+use fluxfit::{
+    identify::search_box,
+    log::Log,
+    motor::Parameter,
+    optimizer::bounds::Bounds,
+    steady::OperatingPoint,
+};
+use fluxfit_files::{LogOptions, MotorFile, read_log, read_motor};
+use std::path::Path;
+
+/// The logs, joined, and the motor file.
+pub(crate) struct Input {
+    pub(crate) log: Log,
+    pub(crate) motor: MotorFile,
+    /// Names of the logs, for headings.
+    pub(crate) name: String,
+}
+
+/// Reads everything that the arguments name; what was inferred is said on standard error.
+pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
+    if arguments.logs.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
+        return Err(CommandError::Usage("standard input can be read only once; give - once".to_owned()));
+    }
+    let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
+    let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
+    let options = LogOptions { map: arguments.map.clone(), units: arguments.unit.clone(), pole_pairs };
+    let mut logs = Vec::new();
+    for path in &arguments.logs {
+        let read = read_log(path, &options)?;
+        if !arguments.json {
+            read.notes.iter().for_each(|note| terminal::note(&format!("{}: {note}", name(path))));
+        }
+        logs.push(read.log);
+    }
+    let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
+    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", ") })
+}
+
+/// The search box: what `--bounds` names, the rest from the rating where there is one, else from the operating points.
+pub(crate) fn search_box(arguments: &LogArguments, motor: &MotorFile, points: &[OperatingPoint]) -> Result<Bounds, CommandError> {
+    let given: Vec<(Parameter, (f64, f64))> = arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
+    let given = by_parameter(&given, "--bounds")?;
+    let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
+    let rest = match (motor.rating.voltage, motor.rating.current, motor.rating.speed, pole_pairs) {
+        (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) => search_box::from_rating(voltage, current, speed * f64::from(pole_pairs))?,
+        _ => search_box::from_points(points)?,
+    };
+    let (lower, upper) = given.into_iter().zip(rest.iter()).map(|(given, rest)| given.unwrap_or(rest)).unzip();
+    Ok(Bounds::new(lower, upper)?)
+}
+
+fn name(path: &Path) -> String {
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+}

@@ -1,0 +1,26 @@
+//! What can stop a command: one sentence each, from whoever found it.
+
+/// Why a command stopped.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CommandError {
+    /// A file or an argument.
+    #[error(transparent)]
+    File(#[from] fluxfit_files::FileError),
+    /// A setting, or a log that holds nothing to work on.
+    #[error(transparent)]
+    Library(#[from] fluxfit::error::Error),
+    /// The same of one log among several.
+    #[error("{log}: {error}")]
+    Log {
+        /// Its name.
+        log: String,
+        /// What is wrong with it.
+        error: fluxfit::error::Error,
+    },
+    /// Arguments that do not go together.
+    #[error("{0}")]
+    Usage(String),
+    /// The answer could not be written.
+    #[error("the answer could not be written: {0}")]
+    Output(#[from] std::io::Error),
+}

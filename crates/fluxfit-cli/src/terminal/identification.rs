@@ -1,0 +1,134 @@
+//! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and what the swarm made of it.
+
+use super::{
+    BAD, DIM, GOOD, HEADING, WARNING,
+    number::{Scale, significant, small},
+    table,
+};
+use fluxfit::{
+    identify::{
+        Identification,
+        verdict::{Judgement, Verdict},
+    },
+    log::Log,
+    motor::Parameter,
+    optimizer::Method,
+};
+
+/// Shows an identification; warnings go to standard error.
+pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option<&Method>) -> std::io::Result<()> {
+    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n", read(log, found));
+    text += &parameters(found);
+    text += &explanations(found);
+    text += &format!("\n{DIM}Operating points (means){DIM:#}\n{}", operating_points(found));
+    if let Some(method) = method {
+        text += &format!("\n{}\n", search(found, method));
+    }
+    super::print(&text)?;
+    found.warnings.iter().for_each(|warning| super::warn(warning.code, &warning.message));
+    Ok(())
+}
+
+/// What was read, in one line.
+fn read(log: &Log, found: &Identification) -> String {
+    let periods: Vec<f64> = log.segments().iter().map(|segment| segment.sample_period).collect();
+    let period = periods.first().copied().unwrap_or(f64::NAN);
+    let rate = if periods.iter().any(|other| (other / period - 1.0).abs() > 0.01) { "mixed rates".to_owned() } else { frequency(1.0 / period) };
+    format!(
+        "{} rows at {rate}, {} s in {}; {} with {} rows used",
+        log.rows(),
+        significant(log.duration(), 3),
+        count(log.segments().len(), "segment"),
+        count(found.operating_points.len(), "operating point"),
+        found.operating_points.iter().map(|point| point.rows.len()).sum::<usize>(),
+    )
+}
+
+fn frequency(hertz: f64) -> String {
+    if hertz >= 1000.0 { format!("{} kHz", significant(hertz / 1000.0, 3)) } else { format!("{} Hz", significant(hertz, 3)) }
+}
+
+fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+fn parameters(found: &Identification) -> String {
+    let rows = found.parameters.iter().map(|judgement| {
+        let (parameter, word) = (judgement.parameter, verdict(judgement.verdict));
+        let symbol = parameter.symbol().to_owned();
+        let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) else {
+            return vec![symbol, "-".to_owned(), String::new(), String::new(), String::new(), word];
+        };
+        let (scale, error) = (Scale::for_value(parameter, value), judgement.uncertainty.standard_error());
+        vec![
+            symbol,
+            scale.format(value, error),
+            scale.unit(parameter.unit()),
+            format!("±{} %", significant(100.0 * judgement.uncertainty.half_width / value.abs(), 2)),
+            format!("{} .. {}", scale.format(low, error), scale.format(high, error)),
+            word,
+        ]
+    });
+    let plain = table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows);
+    // Colour after layout: escape codes have no width.
+    plain.replace(verdict(Verdict::NotIdentifiable).as_str(), &format!("{BAD}not identifiable{BAD:#}")).replace(" weak", &format!(" {WARNING}weak{WARNING:#}")).replace(
+        " identified",
+        &format!(" {GOOD}identified{GOOD:#}"),
+    )
+}
+
+fn verdict(verdict: Verdict) -> String {
+    verdict.key().replace('-', " ")
+}
+
+/// Reasons and remedies; parameters that share both share the lines.
+fn explanations(found: &Identification) -> String {
+    let mut shared: Vec<(Vec<&str>, &Judgement)> = Vec::new();
+    for judgement in found.parameters.iter().filter(|judgement| judgement.reason.is_some()) {
+        match shared.iter_mut().find(|(_, other)| other.reason == judgement.reason && other.remedy == judgement.remedy) {
+            Some((symbols, _)) => symbols.push(judgement.parameter.symbol()),
+            None => shared.push((vec![judgement.parameter.symbol()], judgement)),
+        }
+    }
+    let mut text = String::new();
+    for (symbols, judgement) in shared {
+        text += &format!("\n{HEADING}{}{HEADING:#}: {}.\n", symbols.join(", "), judgement.reason.as_deref().unwrap_or_default());
+        if let Some(remedy) = &judgement.remedy {
+            text += &format!("  To do: {remedy}.\n");
+        }
+    }
+    text
+}
+
+fn operating_points(found: &Identification) -> String {
+    let rows = found.operating_points.iter().zip(&found.estimate.residuals).map(|(point, residual)| {
+        let (u, i) = (point.voltage(), point.current());
+        let mut row = vec![format!("{} .. {}", significant(point.time.0, 4), significant(point.time.1, 4)), point.rows.len().to_string()];
+        row.extend([i.d, i.q, point.omega_e(), u.d, u.q].map(|value| format!("{value:.3}")));
+        row.extend(residual.map(|volts| format!("{:.1}", 1e3 * volts)));
+        row
+    });
+    table(&["t s", "rows", "i_d A", "i_q A", "omega_e rad/s", "u_d V", "u_q V", "residual d mV", "q mV"], 0, rows)
+}
+
+/// What the swarm alone reached.
+fn search(found: &Identification, method: &Method) -> String {
+    let Some(search) = &found.search else { return String::new() };
+    let known = |parameter: &Parameter| found.parameter(*parameter).value().is_some();
+    let values: Vec<String> = Parameter::ALL
+        .into_iter()
+        .filter(known)
+        .map(|parameter| {
+            let value = search.motor.get(parameter);
+            let scale = Scale::for_value(parameter, value);
+            format!("{} {} {}", parameter.symbol(), scale.format(value, value.abs() * 1e-4), scale.unit(parameter.unit()))
+        })
+        .collect();
+    format!(
+        "{HEADING}{}{HEADING:#} alone reached {} in {} evaluations: {} above the exact least-squares minimum, which is the answer above.",
+        method.label(),
+        values.join(", "),
+        search.report.evaluations,
+        small(search.cost_above_optimum)
+    )
+}

@@ -1,0 +1,82 @@
+//! Numbers as engineers read them: with the prefix that fits, and no more digits than are known.
+
+use fluxfit::motor::Parameter;
+
+/// Prefixes by power of ten.
+const PREFIXES: [(i32, &str); 5] = [(3, "k"), (0, ""), (-3, "m"), (-6, "u"), (-9, "n")];
+
+/// A unit with its prefix.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scale {
+    factor: f64,
+    prefix: &'static str,
+}
+
+impl Scale {
+    /// The prefix under which `value` has one to three digits before the point. Resistances and fluxes stay unprefixed down to a tenth, as data sheets print them.
+    pub(crate) fn for_value(parameter: Parameter, value: f64) -> Self {
+        let smallest = match parameter {
+            Parameter::Rs | Parameter::PsiF => 0.1,
+            Parameter::Ld | Parameter::Lq => 1.0,
+        };
+        let fits = |power: i32| value.abs() >= 10.0_f64.powi(power) * if power == 0 { smallest } else { 1.0 };
+        let (power, prefix) = PREFIXES.into_iter().find(|(power, _)| fits(*power)).unwrap_or((0, ""));
+        Self { factor: 10.0_f64.powi(power), prefix }
+    }
+
+    /// The prefixed unit.
+    pub(crate) fn unit(&self, unit: &str) -> String {
+        format!("{}{unit}", self.prefix)
+    }
+
+    /// A value, to two significant digits of its standard error; with four digits of its own where that is zero.
+    pub(crate) fn format(&self, value: f64, standard_error: f64) -> String {
+        let known = if standard_error > 0.0 { standard_error / self.factor } else { value.abs() / self.factor * 1e-3 };
+        // Two digits of the error; no more than twelve, whatever the error is.
+        let decimals = if known > 0.0 { (1 - known.log10().floor() as i32).clamp(0, 12) } else { 0 };
+        format!("{:.*}", decimals as usize, value / self.factor)
+    }
+}
+
+/// A small positive number, as 1.2e-8; plain where that is shorter to read.
+pub(crate) fn small(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        v if (1e-2..1e4).contains(&v.abs()) => significant(v, 3),
+        v => format!("{v:.1e}"),
+    }
+}
+
+/// A number with `digits` significant digits, without an exponent.
+pub(crate) fn significant(value: f64, digits: i32) -> String {
+    let decimals = if value == 0.0 { 0 } else { (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12) };
+    format!("{value:.*}", decimals as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_get_their_prefix_and_their_digits() {
+        let show = |parameter: Parameter, value: f64, error: f64| {
+            let scale = Scale::for_value(parameter, value);
+            format!("{} {}", scale.format(value, error), scale.unit(parameter.unit()))
+        };
+        assert_eq!(show(Parameter::Rs, 0.96097, 0.0031), "0.9610 ohm");
+        assert_eq!(show(Parameter::Rs, 0.01823, 0.0011), "18.2 mohm");
+        assert_eq!(show(Parameter::Ld, 5.2458e-3, 1.8e-5), "5.246 mH");
+        assert_eq!(show(Parameter::Lq, 2.41e-4, 1.1e-6), "241.0 uH");
+        assert_eq!(show(Parameter::PsiF, 0.18262, 0.00017), "0.18262 Wb");
+        assert_eq!(show(Parameter::PsiF, 0.00344, 0.0), "3.440 mWb");
+        assert_eq!(show(Parameter::Rs, 0.0, 0.0), "0 ohm");
+    }
+
+    #[test]
+    fn small_numbers() {
+        assert_eq!(small(1.234e-8), "1.2e-8");
+        assert_eq!(small(0.5), "0.500");
+        assert_eq!(small(1817.63), "1818");
+        assert_eq!(small(0.0), "0");
+    }
+}

@@ -1,0 +1,90 @@
+//! A study: the paper's Table 2, the ranking by `F - F_LS`, and its Fig. 4 in characters.
+
+use super::{
+    DIM, HEADING,
+    number::{Scale, significant, small},
+    plot, table,
+};
+use fluxfit::{
+    motor::{Motor, Parameter},
+    study::MethodStudy,
+};
+use fluxfit_files::answer::StudyFacts;
+
+/// Shows a study.
+pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {
+    let rows: Vec<String> = facts.rows.iter().map(ToString::to_string).collect();
+    let mut text = format!(
+        "{HEADING}{name}{HEADING:#}\nfitness (11) on {} rows; {} runs of each method, population {}, {} iterations, seed {}\nsearch box {}\n",
+        rows.join(" + "),
+        facts.runs,
+        facts.settings.population,
+        facts.settings.iterations,
+        facts.settings.seed,
+        search_box(facts),
+    );
+    text += &format!("\n{HEADING}Mean of the runs' estimates{HEADING:#} (Table 2 of the paper)\n{}", table_2(facts, methods));
+    text += &format!("\n{HEADING}Cost above the exact minimum{HEADING:#}, F - F_LS, median over the runs; F_LS = {}\n{}", small(facts.objective.least_squares().cost), ranking(methods));
+    text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_LS (Fig. 4 of the paper)\n{}", plot::convergence(methods));
+    text += &format!("\n{DIM}Fitness (11) is linear least squares: its minimum is exact and costs microseconds. The swarms approach the same answer.{DIM:#}\n");
+    super::print(&text)
+}
+
+fn search_box(facts: &StudyFacts) -> String {
+    let intervals = Parameter::ALL.into_iter().zip(facts.bounds.iter()).map(|(parameter, (lower, upper))| {
+        let scale = Scale::for_value(parameter, upper);
+        let short = |value: f64| significant_or_zero(value, &scale);
+        format!("{} {}..{} {}", parameter.symbol(), short(lower), short(upper), scale.unit(parameter.unit()))
+    });
+    intervals.collect::<Vec<_>>().join(", ")
+}
+
+fn significant_or_zero(value: f64, scale: &Scale) -> String {
+    if value == 0.0 { "0".to_owned() } else { scale.format(value, value.abs() * 0.05) }
+}
+
+/// Rows as the paper has them: a parameter's estimates, then their errors where the truth is known.
+fn table_2(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> String {
+    let exact = facts.objective.least_squares().motor;
+    let mut rows = Vec::new();
+    for parameter in Parameter::ALL {
+        let scale = Scale::for_value(parameter, facts.truth.unwrap_or(&exact).get(parameter));
+        let estimate = |motor: &Motor| {
+            let value = motor.get(parameter);
+            scale.format(value, value.abs() * 2e-5)
+        };
+        let mut row = vec![format!("{} {}", parameter.symbol(), scale.unit(parameter.unit()))];
+        row.extend(methods.iter().map(|(study, _)| estimate(&study.mean())));
+        row.push(estimate(&exact));
+        rows.push(row);
+        if let Some(truth) = facts.truth {
+            let mut row = vec!["error %".to_owned()];
+            row.extend(methods.iter().map(|(study, _)| significant(study.mean_error_percent(truth)[parameter as usize], 3)));
+            row.push(significant(100.0 * (exact.get(parameter) / truth.get(parameter) - 1.0).abs(), 3));
+            rows.push(row);
+        }
+    }
+    let labels = methods.iter().map(|(study, _)| study.method.label());
+    let heading: Vec<&str> = [""].into_iter().chain(labels).chain(["least squares"]).collect();
+    table(&heading, 1, rows)
+}
+
+/// Iterations at which the ranking is shown: a sixth, a third, two thirds and all of them; 50, 100, 200 and 300 of the paper's.
+const MILESTONES: [(usize, usize); 4] = [(1, 6), (1, 3), (2, 3), (1, 1)];
+
+fn ranking(methods: &[(MethodStudy, f64)]) -> String {
+    let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len()).max().unwrap_or(1) - 1;
+    let milestones = MILESTONES.map(|(numerator, denominator)| last * numerator / denominator);
+    let rows = methods.iter().map(|(study, seconds)| {
+        let at = |iteration: &usize| study.convergence.quartiles.get(*iteration).or(study.convergence.quartiles.last()).map_or(0.0, |quartiles| quartiles[1]);
+        let mut row = vec![study.method.label().to_owned()];
+        row.extend(milestones.iter().map(|iteration| small(at(iteration))));
+        row.extend([small(study.worst()), study.evaluations_per_run.to_string(), significant(1e3 * seconds, 2)]);
+        row
+    });
+    let titles = milestones.map(|iteration| format!("iteration {iteration}"));
+    let mut heading = vec![""];
+    heading.extend(titles.iter().map(String::as_str));
+    heading.extend(["worst run", "evaluations", "ms/run"]);
+    table(&heading, 1, rows)
+}

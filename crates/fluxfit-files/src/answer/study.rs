@@ -1,0 +1,69 @@
+//! The document of `compare`: schema `fluxfit.study/1`.
+
+use super::{by_parameter, motor_with_cost};
+use fluxfit::{
+    motor::Motor,
+    objective::voltage_error::VoltageError,
+    optimizer::{Settings, bounds::Bounds},
+    study::{Convergence, MethodStudy},
+};
+use serde_json::{Value, json};
+
+/// What the methods have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct StudyFacts<'a> {
+    /// Settings of every run.
+    pub settings: &'a Settings,
+    /// Runs of each method.
+    pub runs: usize,
+    /// Where they searched.
+    pub bounds: &'a Bounds,
+    /// What they minimized.
+    pub objective: &'a VoltageError,
+    /// Rows that the fitness sums over, per window.
+    pub rows: &'a [usize],
+    /// The true motor, if known.
+    pub truth: Option<&'a Motor>,
+}
+
+/// The document of a study; each method with the seconds that one of its runs took.
+pub fn study(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Value {
+    let solution = facts.objective.least_squares();
+    json!({
+        "schema": "fluxfit.study/1",
+        "seed": facts.settings.seed,
+        "runs": facts.runs,
+        "population": facts.settings.population,
+        "iterations": facts.settings.iterations,
+        "truth": facts.truth.map(|truth| by_parameter(truth.to_array())),
+        "least_squares": motor_with_cost(&solution.motor, solution.cost),
+        "rank": solution.rank,
+        "rows": facts.rows,
+        "search_box": by_parameter::<Value>(
+            facts.bounds.iter().map(|(lower, upper)| json!([lower, upper])).collect::<Vec<_>>().try_into().unwrap_or_default(),
+        ),
+        "methods": methods.iter().map(|(study, seconds)| method(study, *seconds, facts.truth)).collect::<Vec<_>>(),
+    })
+}
+
+fn method(study: &MethodStudy, seconds_per_run: f64, truth: Option<&Motor>) -> Value {
+    json!({
+        "method": study.method.key(),
+        "evaluations_per_run": study.evaluations_per_run,
+        "seconds_per_run": seconds_per_run,
+        "mean": by_parameter(study.mean().to_array()),
+        "mean_error_percent": truth.map(|truth| by_parameter(study.mean_error_percent(truth))),
+        "cost_above_optimum": { "median": study.median(), "worst": study.worst() },
+        "convergence": convergence(&study.convergence),
+    })
+}
+
+fn convergence(course: &Convergence) -> Value {
+    let quartile = |which: usize| course.quartiles.iter().map(|quartiles| quartiles[which]).collect::<Vec<_>>();
+    let parameter = |p: usize| course.parameters_median.iter().map(|median| median[p]).collect::<Vec<_>>();
+    json!({
+        "iteration": (0..course.quartiles.len()).collect::<Vec<_>>(),
+        "cost_above_optimum": { "median": quartile(1), "lower_quartile": quartile(0), "upper_quartile": quartile(2) },
+        "parameters_median": by_parameter([0, 1, 2, 3].map(parameter)),
+    })
+}

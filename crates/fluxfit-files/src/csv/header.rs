@@ -1,0 +1,165 @@
+//! Where the header is, and what separates its names.
+
+use super::{resemblance, rows};
+use crate::error::{FileError, Problem};
+
+/// The names of a table's columns, and where its rows begin.
+pub(super) struct Header {
+    /// Without spaces and quotes, and without the empty names of trailing separators.
+    pub(super) names: Vec<String>,
+    /// Line, from 1.
+    pub(super) line: u64,
+    pub(super) separator: u8,
+    /// Offset of the first byte below.
+    pub(super) body: usize,
+}
+
+/// Finds the header: the first line that is neither blank nor a comment.
+pub(super) fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
+    let mut comment = None;
+    let mut told_separator = None;
+    let mut lines = lines(text);
+    let (start, first) = loop {
+        let (start, line) = lines.next().ok_or(Problem::NoHeader)?;
+        let trimmed = line.trim();
+        if trimmed.starts_with(['#', '%']) {
+            comment = Some((start, trimmed));
+        } else if let Some(separator) = told_by_spreadsheet(line) {
+            told_separator = Some(separator);
+        } else if !trimmed.trim_matches([',', ';', ' ', '\t']).is_empty() {
+            break (start, line);
+        }
+    };
+    let separator = told_separator.unwrap_or_else(|| sniff(first));
+    let header = at(text, start, separator);
+    if header.names.len() > 1 && header.names.iter().all(|name| is_number(name, separator)) {
+        return from_comment(text, comment, start, &header, notes);
+    }
+    refuse_title(text, first, &header)?;
+    Ok(header)
+}
+
+fn at(text: &str, start: usize, separator: u8) -> Header {
+    let (names, length) = rows::first_record(&text[start..], separator);
+    Header { names, line: rows::line_of(text, start), separator, body: start + length }
+}
+
+/// Some tools write the header as the last comment above the rows.
+fn from_comment(
+    text: &str,
+    comment: Option<(usize, &str)>,
+    body: usize,
+    first: &Header,
+    notes: &mut Vec<String>,
+) -> Result<Header, FileError> {
+    if let Some((start, comment)) = comment {
+        let bare = comment.trim_start_matches(['#', '%']);
+        let separator = sniff(bare);
+        let (names, _) = rows::first_record(bare, separator);
+        if names.len() == first.names.len() && names.iter().all(|name| !is_number(name, separator)) {
+            let line = rows::line_of(text, start);
+            notes.push(format!("the names of the columns were taken from the comment in line {line}"));
+            return Ok(Header { names, line, separator: first.separator, body });
+        }
+    }
+    let problem = Problem::NumbersForHeader { text: first.names.join(", ") };
+    Err(FileError::from(problem).at_line(first.line))
+}
+
+/// A title or a timestamp above the header: one cell, or one that begins with a digit, above a line of more cells. Says as well what the line below lacks, lest deleting the title is
+/// a waste of time.
+fn refuse_title(text: &str, first: &str, header: &Header) -> Result<(), FileError> {
+    let cells = header.names.len();
+    let dated = header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()));
+    if cells > 1 && !dated {
+        return Ok(());
+    }
+    let below = lines(&text[header.body..]).find(|(_, line)| !line.trim().is_empty());
+    let below = below.map(|(_, line)| rows::first_record(line, sniff(line)).0).unwrap_or_default();
+    let problem = if below.len() > cells {
+        let lacking = if below.iter().any(|name| is_number(name, b',')) { Vec::new() } else { resemblance::lacking(&below) };
+        Problem::Title { text: first.trim().to_owned(), count: cells, lacking }
+    } else if cells > 1 {
+        return Ok(());
+    } else {
+        Problem::OneColumn { text: first.trim().to_owned() }
+    };
+    Err(FileError::from(problem).at_line(header.line))
+}
+
+/// `sep=;`, which spreadsheets write and obey.
+fn told_by_spreadsheet(line: &str) -> Option<u8> {
+    let line = line.trim_end_matches(['\r', '\n']);
+    let mark = line.get(..4)?.eq_ignore_ascii_case("sep=").then(|| &line[4..])?;
+    match mark {
+        "," | ";" | "\t" => mark.bytes().next(),
+        _ => None,
+    }
+}
+
+/// The most frequent separator outside of quotes. On a tie the semicolon, which nobody writes for decoration, then the comma: tabs may be alignment.
+fn sniff(line: &str) -> u8 {
+    let count = |separator: u8| {
+        let mut quoted = false;
+        let outside = |byte: &u8| {
+            quoted ^= *byte == b'"';
+            !quoted && *byte == separator
+        };
+        line.as_bytes().iter().copied().filter(outside).count()
+    };
+    // The last of equal maxima wins.
+    [b'\t', b',', b';'].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
+}
+
+pub(super) fn is_number(cell: &str, separator: u8) -> bool {
+    rows::number(cell.as_bytes(), separator, &mut String::new()).is_some()
+}
+
+/// Lines with their offsets; they end with `\n`, `\r\n` or `\r`.
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut offset = 0;
+    std::iter::from_fn(move || {
+        let rest = text.get(offset..).filter(|rest| !rest.is_empty())?;
+        let length = rest.find(['\n', '\r']).map_or(rest.len(), |at| if rest[at..].starts_with("\r\n") { at + 2 } else { at + 1 });
+        let line = (offset, &rest[..length]);
+        offset += length;
+        Some(line)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(text: &str) -> (Vec<String>, u64, u8, &str) {
+        let header = find(text, &mut Vec::new()).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        (header.names, header.line, header.separator, text[header.body..].trim_start())
+    }
+
+    #[test]
+    fn the_header_is_found_below_what_tools_put_above() {
+        let names = || vec!["a b".to_owned(), "c".to_owned()];
+        assert_eq!(found("a b,c\n1,2"), (names(), 1, b',', "1,2"));
+        assert_eq!(found("# x\r\n\r\n% y\r\n \"a b\" ; c;;\r\n1;2"), (names(), 4, b';', "1;2"));
+        assert_eq!(found("sep=\t\na b\tc\n"), (names(), 2, b'\t', ""));
+        assert_eq!(found(";;\na b,\tc\n"), (names(), 2, b',', ""));
+        assert_eq!(found("\"a b\",\"c\"\r1,2"), (names(), 1, b',', "1,2"));
+    }
+
+    #[test]
+    fn names_in_a_comment_count_when_there_are_as_many_as_numbers() {
+        let mut notes = Vec::new();
+        let header = find("# made by hand\n# a,b,c\n1;2,5;3\n", &mut notes).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((header.names, header.separator, header.body), (vec!["a".into(), "b".into(), "c".into()], b';', 23));
+        assert_eq!(notes, ["the names of the columns were taken from the comment in line 2"]);
+        assert!(find("# a,b\n1,2,3\n", &mut notes).is_err());
+    }
+
+    #[test]
+    fn separators_inside_of_quotes_do_not_count() {
+        assert_eq!(sniff("\"a,b,c\";d"), b';');
+        assert_eq!(sniff("a,\tb,\tc"), b',');
+        assert_eq!(sniff("a, x;b"), b';');
+        assert_eq!(sniff("a"), b';');
+    }
+}
