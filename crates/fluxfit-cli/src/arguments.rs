@@ -13,7 +13,8 @@ pub(crate) struct Command {
     pub(crate) verb: Verb,
 }
 
-const EXIT_STATUS: &str = "Exit status: 0 everything asked for was identified; 1 the log cannot carry some parameter; 2 misuse or unreadable input.";
+const EXIT_STATUS: &str =
+    "Exit status: 0 everything asked for was identified; 1 the log cannot carry some parameter; 2 misuse or unreadable input.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
@@ -158,7 +159,9 @@ fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
     match text {
         "auto" => Ok(SearchMethod::Auto),
         "least-squares" => Ok(SearchMethod::LeastSquares),
-        _ => parse_method(text).map(SearchMethod::Swarm).map_err(|_| format!("no method '{text}'; there are auto, least-squares, {METHODS}")),
+        _ => {
+            parse_method(text).map(SearchMethod::Swarm).map_err(|_| format!("no method '{text}'; there are auto, least-squares, {METHODS}"))
+        }
     }
 }
 
@@ -186,4 +189,3 @@ pub(crate) fn by_parameter<T: Copy>(given: &[(Parameter, T)], option: &str) -> R
     }
     Ok(values)
 }
-

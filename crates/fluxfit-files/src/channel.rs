@@ -3,6 +3,7 @@
 use crate::{
     error::{FileError, Problem},
     quantity::Dimension,
+    unit::Unit,
     wording::nearest,
 };
 
@@ -36,14 +37,19 @@ impl Channel {
         }
     }
 
-    pub(crate) fn dimension(self) -> Dimension {
+    /// Its SI unit.
+    pub(crate) fn unit(self) -> Unit {
         match self {
-            Self::T => Dimension::Time,
-            Self::Ud | Self::Uq => Dimension::Voltage,
-            Self::Id | Self::Iq => Dimension::Current,
-            Self::OmegaE => Dimension::Speed,
-            Self::ThetaE => Dimension::Angle,
+            Self::T => Unit::Second,
+            Self::Ud | Self::Uq => Unit::Volt,
+            Self::Id | Self::Iq => Unit::Ampere,
+            Self::OmegaE => Unit::RadianPerSecond,
+            Self::ThetaE => Unit::Radian,
         }
+    }
+
+    pub(crate) fn dimension(self) -> Dimension {
+        self.unit().dimension()
     }
 
     /// What drives and their tools call it, in lower case without punctuation: only to propose a column, never to take one.

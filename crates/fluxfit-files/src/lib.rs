@@ -17,7 +17,7 @@
 //! | file | concept |
 //! |---|---|
 //! | [`csv`] | a log from a table of text, whatever its dialect |
-//! | [`unit`] | units of a log's columns: given, or named by the header |
+//! | [`mod@unit`] | units of a log's columns: given, or named by the header |
 //! | [`quantity`] | numbers with units, as people write them |
 //! | [`argument`] | `key=value` arguments |
 //! | [`motor_file`] | `MOTOR.toml` |

@@ -126,11 +126,6 @@ impl Unit {
         self.facts().0.ends_with("-mech")
     }
 
-    /// The SI unit of a column, electrical where that matters; resistances and the like are no columns and have none.
-    pub fn si(dimension: Dimension) -> Option<Self> {
-        Self::of(dimension).next()
-    }
-
     /// Units of `dimension`, SI first.
     pub fn of(dimension: Dimension) -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(move |unit| unit.dimension() == dimension)
@@ -285,7 +280,6 @@ mod tests {
         }
         assert_eq!(Unit::from_name("ERPM", Dimension::Speed), Some(Unit::RpmElectrical));
         assert_eq!(Unit::from_name("rpm", Dimension::Speed), None);
-        assert_eq!(Unit::si(Dimension::Speed), Some(Unit::RadianPerSecond));
-        assert_eq!(Unit::si(Dimension::Inductance), None);
+        assert_eq!(Unit::of(Dimension::Inductance).count(), 0);
     }
 }

@@ -26,13 +26,20 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
 
     let methods = study(arguments, settings, &bounds, &objective)?;
     let rows: Vec<usize> = windows.iter().map(ExactSizeIterator::len).collect();
-    let facts = answer::StudyFacts { settings: &settings, runs: arguments.runs, bounds: &bounds, objective: &objective, rows: &rows, truth: truth.as_ref() };
+    let facts = answer::StudyFacts {
+        settings: &settings,
+        runs: arguments.runs,
+        bounds: &bounds,
+        objective: &objective,
+        rows: &rows,
+        truth: truth.as_ref(),
+    };
     if arguments.log.json {
         terminal::print(&answer::to_text(&answer::study(&facts, &methods)))?;
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
     }
-        let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
+    let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
     let open: Vec<&str> = Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).map(Parameter::symbol).collect();
     if open.is_empty() {
         return Ok(Status::Complete);
@@ -74,4 +81,3 @@ fn search_settings(arguments: &Compare, objective: &VoltageError) -> Result<opti
         target_cost: arguments.target_cost,
     })
 }
-

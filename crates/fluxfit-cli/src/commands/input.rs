@@ -5,13 +5,7 @@ use crate::{
     error::CommandError,
     terminal,
 };
-use fluxfit::{
-    identify::search_box,
-    log::Log,
-    motor::Parameter,
-    optimizer::bounds::Bounds,
-    steady::OperatingPoint,
-};
+use fluxfit::{identify::search_box, log::Log, motor::Parameter, optimizer::bounds::Bounds, steady::OperatingPoint};
 use fluxfit_files::{LogOptions, MotorFile, read_log, read_motor};
 use std::path::Path;
 
@@ -45,11 +39,14 @@ pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
 
 /// The search box: what `--bounds` names, the rest from the rating where there is one, else from the operating points.
 pub(crate) fn search_box(arguments: &LogArguments, motor: &MotorFile, points: &[OperatingPoint]) -> Result<Bounds, CommandError> {
-    let given: Vec<(Parameter, (f64, f64))> = arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
+    let given: Vec<(Parameter, (f64, f64))> =
+        arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
     let given = by_parameter(&given, "--bounds")?;
     let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
     let rest = match (motor.rating.voltage, motor.rating.current, motor.rating.speed, pole_pairs) {
-        (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) => search_box::from_rating(voltage, current, speed * f64::from(pole_pairs))?,
+        (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) => {
+            search_box::from_rating(voltage, current, speed * f64::from(pole_pairs))?
+        }
         _ => search_box::from_points(points)?,
     };
     let (lower, upper) = given.into_iter().zip(rest.iter()).map(|(given, rest)| given.unwrap_or(rest)).unzip();

@@ -33,7 +33,8 @@ pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option
 fn read(log: &Log, found: &Identification) -> String {
     let periods: Vec<f64> = log.segments().iter().map(|segment| segment.sample_period).collect();
     let period = periods.first().copied().unwrap_or(f64::NAN);
-    let rate = if periods.iter().any(|other| (other / period - 1.0).abs() > 0.01) { "mixed rates".to_owned() } else { frequency(1.0 / period) };
+    let rate =
+        if periods.iter().any(|other| (other / period - 1.0).abs() > 0.01) { "mixed rates".to_owned() } else { frequency(1.0 / period) };
     format!(
         "{} rows at {rate}, {} s in {}; {} with {} rows used",
         log.rows(),
@@ -71,10 +72,10 @@ fn parameters(found: &Identification) -> String {
     });
     let plain = table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows);
     // Colour after layout: escape codes have no width.
-    plain.replace(verdict(Verdict::NotIdentifiable).as_str(), &format!("{BAD}not identifiable{BAD:#}")).replace(" weak", &format!(" {WARNING}weak{WARNING:#}")).replace(
-        " identified",
-        &format!(" {GOOD}identified{GOOD:#}"),
-    )
+    plain
+        .replace(verdict(Verdict::NotIdentifiable).as_str(), &format!("{BAD}not identifiable{BAD:#}"))
+        .replace(" weak", &format!(" {WARNING}weak{WARNING:#}"))
+        .replace(" identified", &format!(" {GOOD}identified{GOOD:#}"))
 }
 
 fn verdict(verdict: Verdict) -> String {
@@ -105,10 +106,16 @@ fn operating_points(found: &Identification) -> String {
         let (u, i) = (point.voltage(), point.current());
         let mut row = vec![format!("{} .. {}", significant(point.time.0, 4), significant(point.time.1, 4)), point.rows.len().to_string()];
         row.extend([i.d, i.q, point.omega_e(), u.d, u.q].map(|value| format!("{value:.3}")));
-        row.extend(residual.map(|volts| format!("{:.1}", 1e3 * volts)));
+        row.extend(residual.map(millivolts));
         row
     });
     table(&["t s", "rows", "i_d A", "i_q A", "omega_e rad/s", "u_d V", "u_q V", "residual d mV", "q mV"], 0, rows)
+}
+
+/// Without the sign of a zero.
+fn millivolts(volts: f64) -> String {
+    let text = format!("{:.1}", 1e3 * volts);
+    if text == "-0.0" { "0.0".to_owned() } else { text }
 }
 
 /// What the swarm alone reached.

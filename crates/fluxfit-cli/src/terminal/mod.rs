@@ -58,7 +58,7 @@ pub(crate) fn progress(length: usize, what: &str, quiet: bool) -> ProgressBar {
 fn table(heading: &[&str], left: usize, rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
-    table.set_header(heading.iter().map(|title| Cell::new(title)));
+    table.set_header(heading.iter().map(Cell::new));
     rows.into_iter().for_each(|row| {
         table.add_row(row);
     });

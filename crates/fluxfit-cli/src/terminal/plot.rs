@@ -44,7 +44,13 @@ pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
 
 /// Iteration and the logarithm of the median cost.
 fn curve(study: &MethodStudy) -> Vec<(f64, f64)> {
-    study.convergence.quartiles.iter().enumerate().map(|(iteration, [_, median, _])| (iteration as f64, median.max(FLOOR).log10())).collect()
+    study
+        .convergence
+        .quartiles
+        .iter()
+        .enumerate()
+        .map(|(iteration, [_, median, _])| (iteration as f64, median.max(FLOOR).log10()))
+        .collect()
 }
 
 /// The buffer's cells, with their colours.

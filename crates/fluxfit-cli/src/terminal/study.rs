@@ -24,9 +24,15 @@ pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)
         search_box(facts),
     );
     text += &format!("\n{HEADING}Mean of the runs' estimates{HEADING:#} (Table 2 of the paper)\n{}", table_2(facts, methods));
-    text += &format!("\n{HEADING}Cost above the exact minimum{HEADING:#}, F - F_LS, median over the runs; F_LS = {}\n{}", small(facts.objective.least_squares().cost), ranking(methods));
+    text += &format!(
+        "\n{HEADING}Cost above the exact minimum{HEADING:#}, F - F_LS, median over the runs; F_LS = {}\n{}",
+        small(facts.objective.least_squares().cost),
+        ranking(methods)
+    );
     text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_LS (Fig. 4 of the paper)\n{}", plot::convergence(methods));
-    text += &format!("\n{DIM}Fitness (11) is linear least squares: its minimum is exact and costs microseconds. The swarms approach the same answer.{DIM:#}\n");
+    text += &format!(
+        "\n{DIM}Fitness (11) is linear least squares: its minimum is exact and costs microseconds. The swarms approach the same answer.{DIM:#}\n"
+    );
     super::print(&text)
 }
 
@@ -76,7 +82,9 @@ fn ranking(methods: &[(MethodStudy, f64)]) -> String {
     let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len()).max().unwrap_or(1) - 1;
     let milestones = MILESTONES.map(|(numerator, denominator)| last * numerator / denominator);
     let rows = methods.iter().map(|(study, seconds)| {
-        let at = |iteration: &usize| study.convergence.quartiles.get(*iteration).or(study.convergence.quartiles.last()).map_or(0.0, |quartiles| quartiles[1]);
+        let at = |iteration: &usize| {
+            study.convergence.quartiles.get(*iteration).or(study.convergence.quartiles.last()).map_or(0.0, |quartiles| quartiles[1])
+        };
         let mut row = vec![study.method.label().to_owned()];
         row.extend(milestones.iter().map(|iteration| small(at(iteration))));
         row.extend([small(study.worst()), study.evaluations_per_run.to_string(), significant(1e3 * seconds, 2)]);

@@ -129,8 +129,7 @@ fn only<const N: usize>(channel: Channel, names: &[String], tiers: [Vec<usize>; 
 
 /// The unit that was told; else the one the header names; else SI.
 fn unit(channel: Channel, name: &str, told: &Told, unsaid: &mut Vec<String>, notes: &mut Vec<String>) -> Result<Unit, FileError> {
-    let (dimension, canonical) = (channel.dimension(), channel.name());
-    let si = Unit::si(dimension).ok_or(Problem::Value { wanted: "a column" })?;
+    let (dimension, canonical, si) = (channel.dimension(), channel.name(), channel.unit());
     let (stem, named) = in_header(name, dimension);
     let is_canonical = name.eq_ignore_ascii_case(canonical);
     let unit = match (told.unit(channel), named) {

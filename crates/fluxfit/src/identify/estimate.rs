@@ -28,7 +28,7 @@ const LEAST_ACCURACY: f64 = 1e-9;
 pub struct Estimate {
     /// The motor found. Of directions that are not excited it has nothing.
     pub motor: Motor,
-    /// The weighted equations as a sum of squares of all four parameters, for a search.
+    /// The weighted equations as a sum of squares of all four parameters, for a search: flat along directions that are not excited.
     pub objective: VoltageError,
     /// Per point, what an error of its two voltages (V) does to the parameters (SI).
     pub gains: Vec<[[f64; 2]; PARAMETERS]>,
@@ -80,7 +80,7 @@ impl Estimate {
             degrees_of_freedom: (2 * points.len() + prior_gains.len()).saturating_sub(excitation.excited().count()),
             redundancy: (2 * distinct(points) + prior_gains.len()).saturating_sub(excitation.excited().count()),
             prior_gains,
-            objective: VoltageError::of_equations(system.equations),
+            objective: VoltageError::of_equations(system.equations.into_iter().map(|equation| excitation.excited_equation(equation))),
         }
     }
 

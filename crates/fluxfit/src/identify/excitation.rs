@@ -8,7 +8,8 @@
 
 use super::Known;
 use crate::{
-    motor::{PARAMETERS, Parameter},
+    least_squares::Equation,
+    motor::{Motor, PARAMETERS, Parameter},
     steady::OperatingPoint,
 };
 use nalgebra::{DMatrix, Matrix4, Vector4};
@@ -80,6 +81,29 @@ impl Excitation {
     /// The excited directions.
     pub fn excited(&self) -> impl Iterator<Item = &Direction> {
         self.directions.iter().filter(|direction| direction.excited)
+    }
+
+    /// An equation without its part along directions that are not excited.
+    pub fn excited_equation(&self, equation: Equation) -> Equation {
+        let scaled: [f64; PARAMETERS] = std::array::from_fn(|p| equation.coefficients[p] * self.scale[p]);
+        let excited = self.excited_part(scaled);
+        Equation { coefficients: std::array::from_fn(|p| excited[p] / self.scale[p]), ..equation }
+    }
+
+    /// A motor without its part along directions that are not excited. Fixed parameters have no part in any direction: they are zero.
+    pub fn excited_motor(&self, motor: &Motor) -> Motor {
+        let values = motor.to_array();
+        let excited = self.excited_part(std::array::from_fn(|p| values[p] / self.scale[p]));
+        Motor::from(std::array::from_fn(|p| excited[p] * self.scale[p]))
+    }
+
+    fn excited_part(&self, vector: [f64; PARAMETERS]) -> [f64; PARAMETERS] {
+        let mut part = [0.0; PARAMETERS];
+        for direction in self.excited() {
+            let along: f64 = direction.components.iter().zip(vector).map(|(component, value)| component * value).sum();
+            part.iter_mut().zip(direction.components).for_each(|(part, component)| *part += along * component);
+        }
+        part
     }
 
     /// Whether a parameter is one of those that the log leaves open: a good part of it lies in directions that are not excited.

@@ -137,7 +137,7 @@ pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error>
     let excitation = Excitation::of(&points, &settings.known);
     let estimate = Estimate::solve(&points, &excitation, settings);
     let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, settings);
-    let search = search(&points, &estimate, settings)?;
+    let search = search(&points, &excitation, &estimate, settings)?;
     let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
     let parameters = verdict::judge(&points, &excitation, &estimate, &uncertainty, settings);
     let warnings = verdict::warn(log, &points, &estimate, misfit.as_ref(), &parameters, search.as_ref(), settings);
@@ -238,7 +238,7 @@ fn held_vector(log: &Log, point: &OperatingPoint, timing: VoltageTiming, inducta
 }
 
 /// Lets the swarm minimize the same weighted equations that least squares solved.
-fn search(points: &[OperatingPoint], estimate: &Estimate, settings: &Settings) -> Result<Option<Search>, Error> {
+fn search(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate, settings: &Settings) -> Result<Option<Search>, Error> {
     let Some(method) = settings.method else { return Ok(None) };
     let bounds = match &settings.bounds {
         Some(bounds) => bounds.clone(),
@@ -246,10 +246,11 @@ fn search(points: &[OperatingPoint], estimate: &Estimate, settings: &Settings) -
     };
     let objective = &estimate.objective;
     let report = Optimizer::start(method, settings.search, bounds.clone(), objective)?.run(objective);
-    let mut found = estimate.motor.to_array();
+    // Where the cost is flat a swarm ends anywhere: only what the log excites is its answer.
+    let mut found = excitation.excited_motor(&Motor::from(std::array::from_fn(|p| report.best[p]))).to_array();
     for (p, known) in settings.known.iter().enumerate() {
-        if !matches!(known, Known::Fixed(_)) {
-            found[p] = report.best[p];
+        if let Known::Fixed(value) = known {
+            found[p] = *value;
         }
     }
     let motor = Motor::from(found);

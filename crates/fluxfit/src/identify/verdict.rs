@@ -174,12 +174,15 @@ fn explain_unexcited(parameter: Parameter, points: &[OperatingPoint], excitation
         excitation.directions.iter().any(|direction| !direction.excited && direction.components[Parameter::Ld as usize].abs() > OWN_AXIS);
     match parameter {
         Parameter::Ld if ld_absent => (
-            format!("i_d stays at zero (at most {id_most:.2} A, no more than its noise and accuracy), so L_d is absent from the equations"),
+            format!(
+                "i_d stays at zero (at most {} A, no more than its noise and accuracy), so L_d is absent from the equations",
+                one_digit(id_most)
+            ),
             step,
         ),
         Parameter::Rs | Parameter::PsiF if ld_absent => (
             "there is one speed and one load, where R_s i_q and omega_e psi_f act alike".to_owned(),
-            format!("{step}, or a second speed or load, or give --fix rs=..."),
+            format!("{step}, or a second speed or load, or give --fix rs=VALUE"),
         ),
         _ if open.contains(&Parameter::Ld) && open.contains(&Parameter::PsiF) && !open.contains(&Parameter::Rs) => (
             "i_d is the same at every operating point, where L_d i_d and psi_f act alike".to_owned(),
@@ -196,7 +199,7 @@ fn explain_unexcited(parameter: Parameter, points: &[OperatingPoint], excitation
 fn farther_apart(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Rs => {
-            "add operating points with more current at low speed, or a larger step of i_d, or give --prior rs=... from a multimeter"
+            "add operating points with more current at low speed, or a larger step of i_d, or give --prior rs=VALUE±1% from a multimeter"
         }
         Parameter::Ld => "make the step of i_d larger",
         Parameter::Lq => "add operating points with more i_q",
@@ -204,13 +207,11 @@ fn farther_apart(parameter: Parameter) -> &'static str {
     }
 }
 
-/// A number rounded to one significant digit.
-fn one_digit(x: f64) -> f64 {
-    if x == 0.0 || !x.is_finite() {
-        return 0.0;
-    }
-    let unit = 10.0_f64.powf(x.abs().log10().floor());
-    (x / unit).round() * unit
+/// A number with one significant digit, and no exponent.
+fn one_digit(x: f64) -> String {
+    let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    let unit = 10.0_f64.powi(exponent);
+    format!("{:.*}", exponent.saturating_neg().clamp(0, 12) as usize, (x / unit).round() * unit)
 }
 
 /// Share of rows without current that is worth a word.
