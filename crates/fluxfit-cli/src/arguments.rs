@@ -84,7 +84,7 @@ pub(crate) struct Identify {
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) log: LogArguments,
-    /// Methods: tgfpa, fpa, lpso, apso, apso-own-best
+    /// Methods: tgfpa, fpa, lpso, apso
     #[arg(long, value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
     pub(crate) methods: Vec<Method>,
     /// Model of the motor's voltage
@@ -165,7 +165,7 @@ fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
     }
 }
 
-const METHODS: &str = "tgfpa, fpa, lpso, apso, apso-own-best";
+const METHODS: &str = "tgfpa, fpa, lpso, apso";
 
 fn parse_method(text: &str) -> Result<Method, String> {
     Method::named(text).ok_or_else(|| format!("no method '{text}'; there are {METHODS}"))

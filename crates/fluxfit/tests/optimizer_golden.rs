@@ -76,12 +76,7 @@ impl Case {
             }),
             "fpa" => Method::Fpa(pollination()),
             "lpso" => Method::Lpso(Lpso { flight: flight(), inertia_start: number("inertia_start"), inertia_end: number("inertia_end") }),
-            "apso" => Method::Apso(Apso {
-                flight: flight(),
-                inertia_min: number("inertia_min"),
-                inertia_max: number("inertia_max"),
-                ..Apso::default()
-            }),
+            "apso" => Method::Apso(Apso { flight: flight(), inertia_min: number("inertia_min"), inertia_max: number("inertia_max") }),
             other => panic!("no method {other}"),
         }
     }

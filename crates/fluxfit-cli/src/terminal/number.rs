@@ -31,7 +31,7 @@ impl Scale {
 
     /// A value, to two significant digits of its standard error; with four digits of its own where that is zero.
     pub(crate) fn format(&self, value: f64, standard_error: f64) -> String {
-        let known = if standard_error > 0.0 { standard_error / self.factor } else { value.abs() / self.factor * 1e-3 };
+        let known = if standard_error > 0.0 { standard_error / self.factor } else { value.abs() / self.factor * 1e-2 };
         // Two digits of the error; no more than twelve, whatever the error is.
         let decimals = if known > 0.0 { (1 - known.log10().floor() as i32).clamp(0, 12) } else { 0 };
         format!("{:.*}", decimals as usize, value / self.factor)

@@ -7,7 +7,7 @@
 //! w_i = w_max                                                     otherwise
 //! ```
 //!
-//! `f_min` and `f_avg` are taken over the same costs as `f_i`, those that are finite; with all of them equal the weight is `w_min`. The name "APSO" covers several
+//! `f` are the costs of the places where the particles are, those that are finite; with all of them equal the weight is `w_min`. The name "APSO" covers several
 //! methods; this is the one usual beside LPSO in the literature of motor identification. The flight itself: [`Flight`].
 //!
 //! When to use it: the strongest of the paper's baselines on smooth, single-valleyed fitness functions.
@@ -24,27 +24,16 @@ pub struct Apso {
     pub inertia_min: f64,
     /// Inertia weight of those worse than the average. 0.9.
     pub inertia_max: f64,
-    /// Which cost of a particle its weight follows.
-    pub inertia_cost: InertiaCost,
-}
-
-/// A cost of a particle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum InertiaCost {
-    /// That of the place where it is: the usual one. Measured on fitness (11), it ends ten times lower than the other.
-    Current,
-    /// That of the best place where it was.
-    OwnBest,
 }
 
 impl Default for Apso {
     fn default() -> Self {
-        Self { flight: Flight::default(), inertia_min: 0.4, inertia_max: 0.9, inertia_cost: InertiaCost::Current }
+        Self { flight: Flight::default(), inertia_min: 0.4, inertia_max: 0.9 }
     }
 }
 
 impl Apso {
-    /// The inertia weight that follows from a particle's cost, among those of the swarm.
+    /// The inertia weight that follows from a particle's cost, given the current costs of the swarm.
     pub(super) fn inertia(&self, costs: &[f64]) -> impl Fn(f64) -> f64 + use<> {
         let finite = || costs.iter().copied().filter(|cost| *cost < WORST_COST);
         let lowest = finite().fold(f64::INFINITY, f64::min);

@@ -18,7 +18,7 @@ pub mod population;
 pub mod tgfpa;
 
 use crate::error::Error;
-use apso::{Apso, InertiaCost};
+use apso::Apso;
 use bounds::Bounds;
 use draws::Draws;
 use fpa::Fpa;
@@ -75,14 +75,12 @@ impl Method {
 
     /// The method of a [`key`](Self::key), with its default settings.
     pub fn named(key: &str) -> Option<Self> {
-        let own_best = Self::Apso(Apso { inertia_cost: InertiaCost::OwnBest, ..Apso::default() });
-        Self::all().into_iter().chain([own_best]).find(|method| method.key() == key)
+        Self::all().into_iter().find(|method| method.key() == key)
     }
 
     /// Name in files and on the command line.
     pub fn key(&self) -> &'static str {
         match self {
-            Self::Apso(Apso { inertia_cost: InertiaCost::OwnBest, .. }) => "apso-own-best",
             Self::Tgfpa(_) => "tgfpa",
             Self::Fpa(_) => "fpa",
             Self::Lpso(_) => "lpso",
@@ -93,7 +91,6 @@ impl Method {
     /// Name in prose.
     pub fn label(&self) -> &'static str {
         match self {
-            Self::Apso(Apso { inertia_cost: InertiaCost::OwnBest, .. }) => "APSO own best",
             Self::Tgfpa(_) => "tGFPA",
             Self::Fpa(_) => "FPA",
             Self::Lpso(_) => "LPSO",
@@ -303,10 +300,7 @@ impl Optimizer {
                 particles.propose(&lpso.flight, |_| inertia, population, bounds, draws);
             }
             (Method::Apso(apso), Some(particles)) => {
-                let costs = match apso.inertia_cost {
-                    InertiaCost::Current => population.costs().to_vec(),
-                    InertiaCost::OwnBest => particles.own_best_costs().to_vec(),
-                };
+                let costs = population.costs().to_vec();
                 let inertia = apso.inertia(&costs);
                 particles.propose(&apso.flight, |i| inertia(costs[i]), population, bounds, draws);
             }

@@ -45,11 +45,6 @@ impl Particles {
         Self { velocities, own_best: swarm.positions().to_vec(), own_best_costs: swarm.costs().to_vec() }
     }
 
-    /// Costs of the particles' own best places.
-    pub(super) fn own_best_costs(&self) -> &[f64] {
-        &self.own_best_costs
-    }
-
     /// One trial per particle `i`, with inertia weight `inertia(i)`. Draws per component: `rand` of c1, `rand` of c2.
     pub(super) fn propose(
         &mut self,

@@ -1,0 +1,167 @@
+"""fluxfit beside its peers: same log, same fitness, same population and iterations, one machine, one run. Prints Markdown.
+
+    peers.py [directory of fluxfit and fluxfit-benches]      default target/release
+
+Exit status 1 if a promise is not kept. mealpy is under the GPL: it is measured beside fluxfit and never linked with it.
+"""
+
+import os
+
+for library in ("OMP", "OPENBLAS", "MKL"):  # one thread for everybody
+    os.environ[f"{library}_NUM_THREADS"] = "1"
+
+import json
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import mealpy
+import numpy as np
+import scipy
+from mealpy import FPA, FloatVar
+from scipy.optimize import differential_evolution
+
+from problem import LOWER, UPPER, Problem, write_log
+
+POPULATION, ITERATIONS = 50, 300
+RUNS = 5  # of a peer's swarm, after one that is not counted
+SOLUTIONS = 201  # of an exact solver
+COMMANDS = 11  # of the whole command `fluxfit compare`
+
+RUN_LIMIT_MS = 2.0
+COMPARE_LIMIT_MS = 500.0
+SAMPLES_FACTOR = 500.0
+FACTOR_FACTOR = 300.0
+AGREEMENT = 1e-9  # relative, of both programs' F_LS: rounding over 16 000 squares is far below
+
+
+def mealpy_fpa(fitness, seed, **settings):
+    problem = {"obj_func": fitness, "bounds": FloatVar(lb=LOWER, ub=UPPER), "minmax": "min", "log_to": None}
+    return FPA.OriginalFPA(epoch=ITERATIONS, pop_size=POPULATION, **settings).solve(problem, seed=seed).solution
+
+
+def scipy_de(fitness, seed, **settings):
+    start = LOWER + (UPPER - LOWER) * np.random.default_rng(seed).random((POPULATION, 4))
+    box = list(zip(LOWER, UPPER))
+    return differential_evolution(fitness, box, init=start, maxiter=ITERATIONS, tol=0, polish=False, rng=seed, **settings).x
+
+
+def measure(who, problem, solve, runs):
+    """A row of the table: `solve(seed)` is one run."""
+    solve(0)
+    milliseconds, evaluations, above = [], [], []
+    for seed in range(1, runs + 1):
+        problem.evaluations = 0
+        start = time.perf_counter()
+        x = solve(seed)
+        milliseconds.append(1e3 * (time.perf_counter() - start))
+        evaluations.append(problem.evaluations)
+        above.append(problem.above_optimum(x))
+    return who, statistics.median(milliseconds), max(evaluations), statistics.median(above)
+
+
+def peers(problem):
+    samples, factor, many = problem.by_samples, problem.by_factor, problem.by_factor_of_many
+    vectorized = {"vectorized": True, "updating": "deferred"}
+    swarms = {
+        "mealpy OriginalFPA, fitness over the samples": lambda seed: mealpy_fpa(samples, seed),
+        "mealpy OriginalFPA, triangular factor": lambda seed: mealpy_fpa(factor, seed),
+        "mealpy OriginalFPA, p_s = 0.2, triangular factor": lambda seed: mealpy_fpa(factor, seed, p_s=0.2),
+        "scipy differential_evolution, fitness over the samples": lambda seed: scipy_de(samples, seed),
+        "scipy differential_evolution, triangular factor": lambda seed: scipy_de(factor, seed),
+        "scipy differential_evolution, triangular factor, vectorized": lambda seed: scipy_de(many, seed, **vectorized),
+    }
+    solvers = {
+        "numpy least squares from the rows": lambda _: np.linalg.lstsq(*problem.equations(), rcond=None)[0],
+        "numpy solution of the triangular factor": lambda _: problem.solve_factor(),
+    }
+    return [measure(*row, RUNS) for row in ((who, problem, solve) for who, solve in swarms.items())] + [
+        measure(who, problem, solve, SOLUTIONS) for who, solve in solvers.items()
+    ]
+
+
+def fluxfit(programs, log):
+    return json.loads(subprocess.run([programs / "fluxfit-benches", log], check=True, capture_output=True).stdout)
+
+
+def slower(one, other):
+    """Of two measurements of fluxfit the slower of each time, so that the peers lose nothing to what else the machine does."""
+    if isinstance(one, dict):
+        return {key: slower(one[key], other[key]) for key in one}
+    if isinstance(one, list):
+        return [slower(*pair) for pair in zip(one, other)]
+    return one if isinstance(one, str) else max(one, other)
+
+
+def compare_milliseconds(programs, log):
+    def once():
+        start = time.perf_counter()
+        subprocess.run([programs / "fluxfit", "compare", log, "--json"], check=True, stdout=subprocess.DEVNULL)
+        return 1e3 * (time.perf_counter() - start)
+
+    once()
+    return statistics.median(once() for _ in range(COMMANDS))
+
+
+def table(ours, theirs):
+    exact = ours["least_squares"]
+    rows = [
+        (f"**fluxfit {swarm['label']}**", swarm["milliseconds_per_run"], swarm["evaluations"], swarm["cost_above_optimum"])
+        for swarm in ours["swarms"]
+    ]
+    rows += theirs[:-2]
+    rows += [("**fluxfit exact least squares, from the rows**", exact["microseconds_from_rows"] / 1e3, 0, 0.0), theirs[-2]]
+    rows += [("**fluxfit exact least squares, factor at hand**", exact["microseconds_solve"] / 1e3, 0, 0.0), theirs[-1]]
+    reference = rows[0][1]
+    print("| who | ms per run | evaluations | median F - F_LS | times slower than fluxfit tGFPA |")
+    print("|---|--:|--:|--:|--:|")
+    for who, milliseconds, evaluations, above in rows:
+        # Below rounding an excess says nothing.
+        excess = "exact" if evaluations == 0 else f"{above:.1e}"
+        print(f"| {who} | {milliseconds:.3g} | {evaluations or ''} | {excess} | {milliseconds / reference:.3g} |")
+
+
+def verdicts(ours, theirs, compare):
+    run = next(swarm["milliseconds_per_run"] for swarm in ours["swarms"] if swarm["key"] == "tgfpa")
+    by_samples, by_factor = (row[1] for row in theirs[:2])
+    # What is promised, the limit, which side of it is good, what was measured.
+    promises = [
+        ("tGFPA run, ms", RUN_LIMIT_MS, "at most", run),
+        ("`fluxfit compare`, 4 x 50 runs, ms", COMPARE_LIMIT_MS, "at most", compare),
+        ("times faster than mealpy, fitness over the samples", SAMPLES_FACTOR, "at least", by_samples / run),
+        ("times faster than mealpy, triangular factor", FACTOR_FACTOR, "at least", by_factor / run),
+    ]
+    print("| promise | limit | measured | |\n|---|--:|--:|---|")
+    kept = True
+    for what, limit, side, measured in promises:
+        ok = measured <= limit if side == "at most" else measured >= limit
+        kept = kept and ok
+        print(f"| {what} | {side} {limit:g} | {measured:.3g} | {'ok' if ok else 'MISSED'} |")
+    return kept
+
+
+def main():
+    programs = Path(sys.argv[1] if len(sys.argv) > 1 else "target/release")
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "two_modes.csv"
+        write_log(log)
+        problem = Problem(log)
+        before = fluxfit(programs, log)
+        difference = abs(before["cost_least_squares"] / problem.least_cost - 1)
+        if difference > AGREEMENT:
+            sys.exit(f"F_LS of fluxfit and of numpy differ by {difference:.1e}: not the same fitness")
+        theirs = peers(problem)
+        compare = compare_milliseconds(programs, log)
+        ours = slower(before, fluxfit(programs, log))
+    table(ours, theirs)
+    print(f"\nmealpy {mealpy.__version__}, scipy {scipy.__version__}, numpy {np.__version__}, one thread each.")
+    print(f"One evaluation of fluxfit's fitness: {ours['nanoseconds_per_evaluation']:.2g} ns.")
+    print(f"F_LS = {problem.least_cost:.6g}, the same in both programs to {difference:.0e} relative.\n")
+    sys.exit(not verdicts(ours, theirs, compare))
+
+
+if __name__ == "__main__":
+    main()

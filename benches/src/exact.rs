@@ -1,0 +1,33 @@
+//! The exact minimum, for honesty: fitness (11) is linear least squares, and needs no swarm.
+
+use crate::timing::median_seconds;
+use fluxfit::{
+    least_squares::TriangularFactor,
+    log::Log,
+    objective::voltage_error::{IdZero, VoltageError, steady_equations},
+};
+use serde::Serialize;
+use std::{hint::black_box, ops::Range};
+
+const REPEATS: usize = 201;
+
+/// Exact least squares.
+#[derive(Serialize)]
+pub(crate) struct Figures {
+    /// All rows to the triangular factor, and its solution.
+    microseconds_from_rows: f64,
+    /// The solution of a factor at hand.
+    microseconds_solve: f64,
+}
+
+/// Times both.
+pub(crate) fn measure(log: &Log, modes: &[Range<usize>]) -> Figures {
+    let columns = log.columns();
+    let rows = modes.iter().cloned().flatten();
+    let equations = rows.flat_map(|k| steady_equations([columns.ud[k], columns.uq[k]], [columns.id[k], columns.iq[k]], columns.omega_e[k]));
+    let factor: TriangularFactor = equations.collect();
+    Figures {
+        microseconds_from_rows: 1e6 * median_seconds(REPEATS, |_| VoltageError::of_samples(black_box(log), modes, IdZero::Measured)),
+        microseconds_solve: 1e6 * median_seconds(REPEATS, |_| black_box(&factor).solve()),
+    }
+}

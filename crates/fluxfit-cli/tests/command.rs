@@ -1,0 +1,68 @@
+//! The real command, run as a user runs it.
+
+#[path = "command/bad_input.rs"]
+mod bad_input;
+#[path = "command/compare.rs"]
+mod compare;
+#[path = "command/identify.rs"]
+mod identify;
+
+use serde_json::Value;
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+/// What a run left behind.
+struct Run {
+    status: i32,
+    out: String,
+    err: String,
+}
+
+/// Runs `fluxfit` in the repository's root, with this on its standard input.
+fn fluxfit_with_input(arguments: &[&str], input: &[u8]) -> Run {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_fluxfit"))
+        .args(arguments)
+        .current_dir(root())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A command that refuses its arguments may be gone before it reads.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    let output = child.wait_with_output().unwrap();
+    Run {
+        status: output.status.code().expect("ended by a signal"),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+fn fluxfit(arguments: &[&str]) -> Run {
+    fluxfit_with_input(arguments, b"")
+}
+
+/// Runs `fluxfit ... --json` and reads its document.
+fn json(arguments: &[&str]) -> (i32, Value) {
+    let run = fluxfit(&[arguments, &["--json"]].concat());
+    assert_eq!(run.err, "", "--json says nothing on standard error");
+    let document = serde_json::from_str(&run.out).unwrap_or_else(|error| panic!("{error}: {} {}", run.out, run.err));
+    (run.status, document)
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A log of the shared data that may not be copied; tests that need one are skipped, with a word, where it is absent.
+fn shared(name: &str) -> Option<String> {
+    let path = root().join("../shared/data").join(name);
+    if !path.exists() {
+        println!("skipped: {name} is not here");
+        return None;
+    }
+    Some(path.display().to_string())
+}

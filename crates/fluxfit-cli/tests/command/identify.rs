@@ -1,0 +1,155 @@
+//! `fluxfit identify` on logs whose truth is known from an independent simulator, and on a real one.
+
+use super::{fluxfit, json, root, shared};
+use serde_json::Value;
+
+const TRUTH: [(&str, f64); 4] = [("rs", 0.958), ("ld", 5.25e-3), ("lq", 12e-3), ("psi_f", 0.1827)];
+const NOISY: &str = "examples/logs/paper_rig_pwm_noise.csv";
+
+/// Error of each parameter in percent, and in its own standard errors.
+fn errors(document: &Value) -> [(f64, f64); 4] {
+    TRUTH.map(|(key, truth)| {
+        let parameter = &document["parameters"][key];
+        let error = parameter["value"].as_f64().unwrap_or(f64::NAN) - truth;
+        (100.0 * error / truth, error / parameter["standard_error"].as_f64().unwrap_or(f64::NAN))
+    })
+}
+
+fn verdicts(document: &Value) -> [&str; 4] {
+    TRUTH.map(|(key, _)| document["parameters"][key]["verdict"].as_str().unwrap())
+}
+
+#[test]
+fn ideal_log_to_a_hundredth_of_a_percent() {
+    let (status, document) = json(&["identify", "examples/logs/paper_rig_ideal.csv"]);
+    assert_eq!(status, 0);
+    for ((percent, _), (key, _)) in errors(&document).into_iter().zip(TRUTH) {
+        assert!(percent.abs() < 0.01, "{key}: {percent} %");
+    }
+}
+
+#[test]
+fn noisy_log_within_its_noise_and_its_own_standard_errors() {
+    let (status, document) = json(&["identify", NOISY]);
+    assert_eq!(status, 0);
+    // The noise's standard deviation is 0.53, 0.3, 0.02 and 0.07 % in windows a third as long.
+    for (((percent, sigmas), (key, _)), limit) in errors(&document).into_iter().zip(TRUTH).zip([1.5, 1.0, 0.06, 0.2]) {
+        assert!(percent.abs() < limit, "{key}: {percent} %");
+        assert!(sigmas.abs() < 4.0, "{key}: {sigmas} standard errors");
+    }
+}
+
+#[test]
+fn without_d_current_ld_has_no_value_and_the_rest_is_good() {
+    let (status, document) = json(&["identify", "examples/logs/id_zero_two_loads.csv"]);
+    assert_eq!(status, 1);
+    assert_eq!(verdicts(&document), ["identified", "not-identifiable", "identified", "identified"]);
+    for (((percent, _), (key, _)), limit) in errors(&document).into_iter().zip(TRUTH).zip([1.0, f64::NAN, 0.1, 0.1]) {
+        assert!(key == "ld" || percent.abs() < limit, "{key}: {percent} %");
+    }
+    let ld = &document["parameters"]["ld"];
+    assert!(ld["value"].is_null() && ld["standard_error"].is_null() && ld["ci95"].is_null());
+    assert!(document["least_squares"]["ld"].is_null() && document["search"]["ld"].is_null());
+    assert!(ld["reason"].as_str().unwrap().starts_with("i_d stays at zero"), "{ld}");
+}
+
+/// One speed, one load: R_s and psi_f act alike, and only L_q shows.
+#[test]
+fn one_operating_point_tells_only_lq() {
+    let text = std::fs::read_to_string(root().join(NOISY)).unwrap();
+    let half: Vec<&str> = text.lines().take(1 + 5950).collect();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), half.join("\n")).unwrap();
+    let (status, document) = json(&["identify", file.path().to_str().unwrap()]);
+    assert_eq!(status, 1);
+    assert_eq!(verdicts(&document), ["not-identifiable", "not-identifiable", "identified", "not-identifiable"]);
+    assert!(errors(&document)[2].0.abs() < 0.1);
+}
+
+/// A real log of a saturating machine whose drive coasts for most of it. R 18 mohm, L_d 175 and L_q 180 uH by its nameplate; apparent L_q from 327 to 187 uH in the log.
+#[test]
+fn real_log_without_nonsense() {
+    let Some(log) = shared("emrax228hv_coastdown_dyno.csv") else { return };
+    let map = "t=time_s,ud=motor_vd_V,uq=motor_vq_V,id=motor_id_A,iq=motor_iq_A,omega_e=motor_velocity_rpm";
+    let (status, document) = json(&["identify", &log, "--map", map, "--pole-pairs", "10"]);
+    assert_eq!(status, 1);
+    assert_eq!(verdicts(&document), ["not-identifiable", "not-identifiable", "identified", "not-identifiable"]);
+    let lq = document["parameters"]["lq"]["value"].as_f64().unwrap();
+    assert!((187e-6..327e-6).contains(&lq), "{lq}");
+    for point in document["log"]["operating_points"].as_array().unwrap() {
+        assert!(point["iq"].as_f64().unwrap() < -10.0, "a coasting drive: {point}");
+    }
+    assert!(document["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "no-current"));
+}
+
+#[test]
+fn named_windows_several_logs_and_standard_input() {
+    let windows = ["--window", "0.48:0.595", "--window", "0.78:0.895"];
+    let (_, one) = json(&[&["identify", NOISY][..], &windows].concat());
+    assert_eq!(one["log"]["operating_points"][0]["rows"], 1151);
+    let (_, two) = json(&[&["identify", NOISY, NOISY][..], &windows].concat());
+    assert_eq!(two["log"]["segments"], 2);
+    assert_eq!(two["log"]["operating_points"].as_array().unwrap().len(), 4);
+    // The same data twice: the same answer, and no more redundancy than before.
+    let value = |document: &Value| document["parameters"]["rs"]["value"].as_f64().unwrap();
+    assert!((value(&two) / value(&one) - 1.0).abs() < 1e-9);
+    assert_eq!(two["fit"]["redundancy"], 0);
+
+    let text = std::fs::read(root().join(NOISY)).unwrap();
+    let piped = super::fluxfit_with_input(&["identify", "-", "--json"], &text);
+    let (_, from_file) = json(&["identify", NOISY]);
+    assert_eq!(serde_json::from_str::<Value>(&piped.out).unwrap(), from_file);
+}
+
+#[test]
+fn what_is_known_beforehand_counts() {
+    let half_width = |document: &Value, key: &str| {
+        let interval = &document["parameters"][key]["ci95"];
+        interval[1].as_f64().unwrap() - interval[0].as_f64().unwrap()
+    };
+    let (_, free) = json(&["identify", NOISY]);
+    let (_, prior) = json(&["identify", NOISY, "--prior", "rs=0.958±0.1%"]);
+    let (_, fixed) = json(&["identify", NOISY, "--fix", "rs=0.958"]);
+    assert_eq!(fixed["parameters"]["rs"]["value"], 0.958);
+    for key in ["ld", "psi_f"] {
+        assert!(half_width(&prior, key) < half_width(&free, key), "{key}");
+        assert!(half_width(&fixed, key) <= half_width(&prior, key), "{key}");
+    }
+    // A multimeter's R_s separates it from psi_f where one load does not.
+    let (status, cured) = json(&["identify", NOISY, "--window", "0.48:0.595", "--prior", "rs=0.958±1%"]);
+    assert_eq!(status, 1);
+    assert_eq!(verdicts(&cured), ["identified", "not-identifiable", "identified", "identified"]);
+}
+
+#[test]
+fn every_method_reaches_the_exact_answer_and_says_how_near() {
+    for method in ["tgfpa", "fpa", "lpso", "apso"] {
+        let (_, document) = json(&["identify", NOISY, "--method", method]);
+        assert_eq!(document["method"], method);
+        let search = &document["search"];
+        assert_eq!(search["evaluations"], 15_050);
+        assert!(search["cost_above_optimum"].as_f64().unwrap() < 1e-2, "{search}");
+    }
+    let (_, exact) = json(&["identify", NOISY, "--method", "least-squares"]);
+    assert!(exact["search"].is_null());
+}
+
+#[test]
+fn a_person_sees_values_verdicts_reasons_and_remedies() {
+    let run = fluxfit(&["identify", "examples/logs/id_zero_two_loads.csv"]);
+    assert_eq!(run.status, 1);
+    for expected in [
+        "R_s",
+        "0.957",
+        "±1.2 %",
+        "identified",
+        "not identifiable",
+        "L_d: i_d stays at zero",
+        "To do: add a stretch",
+        "tGFPA alone reached",
+    ] {
+        assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);
+    }
+    assert!(!run.out.contains('\u{1b}'), "no colour in a pipe");
+    assert!(fluxfit(&["identify", "examples/logs/paper_rig_ideal.csv"]).err.contains("warning [no-redundancy]"));
+}
