@@ -1,5 +1,8 @@
 //! The real command, run as a user runs it.
 
+// Helpers of tests fail as tests do.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
+
 #[path = "command/bad_input.rs"]
 mod bad_input;
 #[path = "command/compare.rs"]

@@ -17,7 +17,7 @@ use fluxfit::{
 
 /// Shows an identification; warnings go to standard error.
 pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option<&Method>) -> std::io::Result<()> {
-    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n", read(log, found));
+    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(log, found));
     text += &parameters(found);
     text += &explanations(found);
     text += &format!("\n{DIM}Operating points (means){DIM:#}\n{}", operating_points(found));
@@ -58,7 +58,7 @@ fn parameters(found: &Identification) -> String {
         let (parameter, word) = (judgement.parameter, verdict(judgement.verdict));
         let symbol = parameter.symbol().to_owned();
         let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) else {
-            return vec![symbol, "-".to_owned(), String::new(), String::new(), String::new(), word];
+            return vec![symbol, "-".to_owned(), String::new(), String::new(), String::new(), String::new(), word];
         };
         let (scale, error) = (Scale::for_value(parameter, value), judgement.uncertainty.standard_error());
         vec![
@@ -67,10 +67,11 @@ fn parameters(found: &Identification) -> String {
             scale.unit(parameter.unit()),
             format!("±{} %", significant(100.0 * judgement.uncertainty.half_width / value.abs(), 2)),
             format!("{} .. {}", scale.format(low, error), scale.format(high, error)),
+            judgement.uncertainty.largest_part().label().to_owned(),
             word,
         ]
     });
-    let plain = table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows);
+    let plain = table(&["", "value", "", "95 %", "interval", "mostly from", "verdict"], 1, rows);
     // Colour after layout: escape codes have no width.
     plain
         .replace(verdict(Verdict::NotIdentifiable).as_str(), &format!("{BAD}not identifiable{BAD:#}"))
@@ -132,10 +133,10 @@ fn search(found: &Identification, method: &Method) -> String {
         })
         .collect();
     format!(
-        "{HEADING}{}{HEADING:#} alone reached {} in {} evaluations: {} above the exact least-squares minimum, which is the answer above.",
+        "{HEADING}{}{HEADING:#} alone, after {} evaluations, is {} above the exact least-squares minimum (the answer above):\n  {}",
         method.label(),
-        values.join(", "),
         search.report.evaluations,
-        small(search.cost_above_optimum)
+        small(search.cost_above_optimum),
+        values.join(", "),
     )
 }

@@ -146,7 +146,7 @@ fn a_person_sees_values_verdicts_reasons_and_remedies() {
         "not identifiable",
         "L_d: i_d stays at zero",
         "To do: add a stretch",
-        "tGFPA alone reached",
+        "tGFPA alone, after 15050 evaluations",
     ] {
         assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);
     }

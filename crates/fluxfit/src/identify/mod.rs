@@ -4,10 +4,12 @@
 
 pub mod estimate;
 pub mod excitation;
+mod explain;
 pub mod misfit;
 pub mod search_box;
 pub mod uncertainty;
 pub mod verdict;
+pub mod warning;
 
 use crate::{
     error::Error,
@@ -25,7 +27,8 @@ use estimate::Estimate;
 use excitation::Excitation;
 use misfit::Misfit;
 use uncertainty::Uncertainty;
-use verdict::{Judgement, Warning};
+use verdict::Judgement;
+use warning::Warning;
 
 /// What the voltages are trusted to, as a fraction of their vector, unless told otherwise: no drive's are known better.
 pub const VOLTAGE_ACCURACY: f64 = 1e-4;
@@ -140,8 +143,7 @@ pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error>
     let search = search(&points, &excitation, &estimate, settings)?;
     let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
     let parameters = verdict::judge(&points, &excitation, &estimate, &uncertainty, settings);
-    let warnings = verdict::warn(log, &points, &estimate, misfit.as_ref(), &parameters, search.as_ref(), settings);
-    Ok(Identification {
+    let mut found = Identification {
         parameters,
         operating_points: points,
         estimate,
@@ -149,8 +151,10 @@ pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error>
         correlation: uncertainty.correlation,
         misfit,
         search,
-        warnings,
-    })
+        warnings: Vec::new(),
+    };
+    found.warnings = warning::warnings(log, &found, settings);
+    Ok(found)
 }
 
 fn check(settings: &Settings) -> Result<(), Error> {

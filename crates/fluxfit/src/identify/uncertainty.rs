@@ -61,6 +61,50 @@ impl ParameterUncertainty {
     pub fn standard_error(&self) -> f64 {
         self.statistical.hypot(self.systematic.total())
     }
+
+    /// The largest part.
+    pub fn largest_part(&self) -> Part {
+        let Systematic { accuracy, prior, timing, excitation, misfit } = self.systematic;
+        let rest = [
+            (prior, Part::Prior),
+            (timing, Part::Timing),
+            (excitation, Part::Excitation),
+            (misfit, Part::Misfit),
+            (accuracy, Part::Accuracy),
+        ];
+        rest.into_iter().fold((self.statistical, Part::Noise), |largest, part| if part.0 > largest.0 { part } else { largest }).1
+    }
+}
+
+/// What an uncertainty is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// Noise of the windows' means.
+    Noise,
+    /// Accuracy of the voltages.
+    Accuracy,
+    /// Priors.
+    Prior,
+    /// Timing of the voltage columns.
+    Timing,
+    /// Directions that are not excited.
+    Excitation,
+    /// Contradiction between the points.
+    Misfit,
+}
+
+impl Part {
+    /// Name in a table.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Noise => "noise",
+            Self::Accuracy => "voltage accuracy",
+            Self::Prior => "prior",
+            Self::Timing => "voltage timing",
+            Self::Excitation => "excitation",
+            Self::Misfit => "misfit",
+        }
+    }
 }
 
 /// The uncertainty of an estimate.

@@ -1,0 +1,138 @@
+//! Why a parameter is not identified, and what to do about it: in the words of the bench.
+//!
+//! A parameter that the log leaves open gets the reason why it is open; any other, the largest part of its interval.
+
+use super::{
+    excitation::Excitation,
+    uncertainty::{ParameterUncertainty, Part},
+    verdict::{IDENTIFIED, WEAK},
+};
+use crate::{motor::Parameter, steady::OperatingPoint};
+
+/// A reason and a remedy, for a parameter whose verdict is not `identified`; `raw` is the number that came out.
+pub(super) fn explain(
+    parameter: Parameter,
+    points: &[OperatingPoint],
+    excitation: &Excitation,
+    raw: f64,
+    uncertainty: &ParameterUncertainty,
+) -> (String, String) {
+    let width = if raw == 0.0 { f64::INFINITY } else { uncertainty.half_width / raw.abs() };
+    if excitation.is_open(parameter) {
+        open(parameter, points, excitation)
+    } else if raw <= 0.0 && width < WEAK {
+        (
+            format!("{} came out negative, which no motor has, and not by noise", parameter.symbol()),
+            "check signs and order of the columns: motor convention, q 90 degrees ahead of d, one sign of speed and of u_q".to_owned(),
+        )
+    } else {
+        wide(parameter, width, uncertainty.largest_part())
+    }
+}
+
+/// Beyond this, longer windows are no remedy.
+const MUCH_LONGER: f64 = 100.0;
+
+/// Why an interval is wide.
+fn wide(parameter: Parameter, width: f64, part: Part) -> (String, String) {
+    let symbol = parameter.symbol();
+    let leaves = if width < 10.0 { format!("leaves ±{:.2} %", 100.0 * width) } else { "leaves more than the value itself".to_owned() };
+    let apart = farther_apart(parameter).to_owned();
+    match part {
+        Part::Noise => {
+            // A standard error falls with the root of the time.
+            let longer = (width / IDENTIFIED).powi(2).ceil();
+            let remedy =
+                if longer < MUCH_LONGER { format!("hold each operating point about {longer:.0} times as long, or {apart}") } else { apart };
+            (format!("the noise of the window means {leaves}"), remedy)
+        }
+        Part::Accuracy => (format!("the voltages' accuracy {leaves}: the operating points are too much alike to tell {symbol}"), apart),
+        Part::Timing => (
+            format!("it is not known which instant the voltage columns belong to, which {leaves}"),
+            "state it with --voltage-timing".to_owned(),
+        ),
+        Part::Misfit => (
+            format!(
+                "the operating points contradict each other beyond their noise, which {leaves}: no motor with constant parameters explains them"
+            ),
+            "name windows at one load with --window, so that the motor saturates alike in them, and only where the drive switches"
+                .to_owned(),
+        ),
+        Part::Prior => (format!("the prior that was given {leaves}"), "give a sharper --prior, or log another operating point".to_owned()),
+        Part::Excitation => (format!("what the log does not excite could move it, which {leaves}"), apart),
+    }
+}
+
+/// How to make operating points tell a parameter.
+fn farther_apart(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::Rs => {
+            "add operating points with more current at low speed, or a larger step of i_d, or give --prior rs=VALUE±1% from a multimeter"
+        }
+        Parameter::Ld => "make the step of i_d larger",
+        Parameter::Lq => "add operating points with more i_q",
+        Parameter::PsiF => "add operating points at a higher speed, or at a second speed",
+    }
+}
+
+/// A direction is a parameter's own axis if its component is at least this.
+const OWN_AXIS: f64 = 0.9;
+
+/// Share of the current that a step of i_d should have: the paper's -2 A of 10 A.
+const STEP: f64 = 0.2;
+
+/// Which of the ways of not being excited it is.
+fn open(parameter: Parameter, points: &[OperatingPoint], excitation: &Excitation) -> (String, String) {
+    let open: Vec<Parameter> = Parameter::ALL.into_iter().filter(|other| excitation.is_open(*other)).collect();
+    let id_most = points.iter().map(|point| point.current().d.abs()).fold(0.0, f64::max);
+    let current = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
+    let step = format!("add a stretch at the same speed with i_d near {} A", one_digit(-STEP * current));
+    // Its own axis not excited: nothing but noise multiplies L_d.
+    let alone = |direction: &f64| direction.abs() > OWN_AXIS;
+    let ld_absent =
+        excitation.directions.iter().any(|direction| !direction.excited && alone(&direction.components[Parameter::Ld as usize]));
+    match parameter {
+        Parameter::Ld if ld_absent => {
+            let id_most = one_digit(id_most);
+            (
+                format!(
+                    "i_d stays at zero (at most {id_most} A, no more than its noise and accuracy), so L_d is absent from the equations"
+                ),
+                step,
+            )
+        }
+        Parameter::Rs | Parameter::PsiF if ld_absent => (
+            "there is one speed and one load, where R_s i_q and omega_e psi_f act alike".to_owned(),
+            format!("{step}, or a second speed or load, or give --fix rs=VALUE"),
+        ),
+        _ if open == [Parameter::Ld, Parameter::PsiF] => (
+            "i_d is the same at every operating point, where L_d i_d and psi_f act alike".to_owned(),
+            "add a stretch at the same speed with i_d = 0".to_owned(),
+        ),
+        _ => {
+            let names: Vec<&str> = open.iter().map(|other| other.symbol()).collect();
+            let reason = format!("the operating points are too much alike: only combinations of {} show in them", names.join(", "));
+            (reason, format!("{step}, and one with i_d = 0"))
+        }
+    }
+}
+
+/// A number with one significant digit, and no exponent.
+fn one_digit(x: f64) -> String {
+    let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    let unit = 10.0_f64.powi(exponent);
+    format!("{:.*}", exponent.saturating_neg().clamp(0, 12) as usize, (x / unit).round() * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_digit_is_enough_for_advice() {
+        assert_eq!(one_digit(-1.9774), "-2");
+        assert_eq!(one_digit(-29.9), "-30");
+        assert_eq!(one_digit(0.000_87), "0.0009");
+        assert_eq!(one_digit(0.0), "0");
+    }
+}

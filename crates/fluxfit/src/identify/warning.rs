@@ -1,0 +1,75 @@
+//! Warnings: what the reader should know of the whole, whatever the verdicts.
+
+use super::{Identification, Settings};
+use crate::{
+    log::Log,
+    steady::{held_vector::MAX_ANGLE_PER_SAMPLE, windows},
+};
+
+/// Something that the reader should know.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// Name in files.
+    pub code: &'static str,
+    /// One or two sentences.
+    pub message: String,
+}
+
+/// Everything there is to warn of.
+pub(super) fn warnings(log: &Log, found: &Identification, settings: &Settings) -> Vec<Warning> {
+    let all = [
+        ("no-redundancy", no_redundancy(found)),
+        ("misfit", misfit(found)),
+        ("no-current", no_current(log, settings)),
+        ("coarse-sampling", coarse_sampling(log, found)),
+        ("outside-box", outside_box(found)),
+    ];
+    all.into_iter().filter_map(|(code, message)| message.map(|message| Warning { code, message })).collect()
+}
+
+fn no_redundancy(found: &Identification) -> Option<String> {
+    let message = "there are exactly as many equations as unknowns, so a perfect fit proves nothing: saturation or a wrong unit would go \
+                   unseen; add a third operating point, or give a known value with --fix or --prior";
+    (found.estimate.redundancy == 0).then(|| message.to_owned())
+}
+
+fn misfit(found: &Identification) -> Option<String> {
+    let misfit = found.misfit?;
+    Some(format!(
+        "the operating points contradict each other {:.1} times beyond noise and accuracy, and agree only to {:.2} % of the voltage: \
+         inductances fall with current (saturation), flux and resistance change with temperature, or these are not the voltages at the \
+         terminals; the intervals are widened to hold for each point",
+        misfit.ratio,
+        100.0 * misfit.voltage_accuracy
+    ))
+}
+
+/// Share of rows without current that is worth a word.
+const MANY_ROWS: f64 = 0.01;
+
+fn no_current(log: &Log, settings: &Settings) -> Option<String> {
+    let (idle, rows) = (windows::rows_without_current(log), log.rows());
+    (settings.windows.is_empty() && idle as f64 > MANY_ROWS * rows as f64).then(|| {
+        format!(
+            "{idle} of {rows} rows carry no current and were not used: while a drive coasts, its voltage columns are not voltages that act"
+        )
+    })
+}
+
+fn coarse_sampling(log: &Log, found: &Identification) -> Option<String> {
+    let coarse = found.operating_points.iter().any(|point| {
+        let within = log.segments().iter().find(|segment| segment.rows.contains(&point.rows.start));
+        within.is_some_and(|segment| (point.omega_e() * segment.sample_period).abs() > MAX_ANGLE_PER_SAMPLE)
+    });
+    let message = "the rotor turns too far between rows for them to be the inverter's own periods: the log is taken as decimated, and the \
+                   held voltage vector is not corrected";
+    coarse.then(|| message.to_owned())
+}
+
+fn outside_box(found: &Identification) -> Option<String> {
+    let search = found.search.as_ref()?;
+    let judged = found.parameters.iter().zip(search.bounds.iter());
+    let outside = judged.filter(|(judgement, (lower, upper))| judgement.value().is_some_and(|value| value < *lower || value > *upper));
+    let symbols: Vec<&str> = outside.map(|(judgement, _)| judgement.parameter.symbol()).collect();
+    (!symbols.is_empty()).then(|| format!("least squares lies outside the search box in {}: the swarm cannot reach it", symbols.join(", ")))
+}
