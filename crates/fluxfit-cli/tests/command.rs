@@ -9,6 +9,8 @@ mod bad_input;
 mod compare;
 #[path = "command/identify.rs"]
 mod identify;
+#[path = "command/pages.rs"]
+mod pages;
 
 use serde_json::Value;
 use std::{

@@ -37,7 +37,8 @@ impl Apso {
     pub(super) fn inertia(&self, costs: &[f64]) -> impl Fn(f64) -> f64 + use<> {
         let finite = || costs.iter().copied().filter(|cost| *cost < WORST_COST);
         let lowest = finite().fold(f64::INFINITY, f64::min);
-        let average = finite().map(|cost| cost / finite().count() as f64).sum::<f64>();
+        let count = finite().count() as f64;
+        let average = finite().map(|cost| cost / count).sum::<f64>();
         let Self { inertia_min, inertia_max, .. } = *self;
         move |cost| {
             if average <= lowest {

@@ -76,12 +76,16 @@ impl Draws {
     fn draw(&mut self, from: impl FnOnce(&mut ChaCha8Rng) -> f64) -> f64 {
         match &mut self.0 {
             Source::Generator(generator) => from(generator),
-            Source::Recorded(numbers) => {
-                numbers.rotate_left(usize::from(!numbers.is_empty()));
-                numbers.back().copied().unwrap_or(0.0)
-            }
+            Source::Recorded(numbers) => next(numbers),
         }
     }
+}
+
+/// The next number of a record; cold, so that a draw from the generator stays small enough to be inlined.
+#[cold]
+fn next(numbers: &mut VecDeque<f64>) -> f64 {
+    numbers.rotate_left(usize::from(!numbers.is_empty()));
+    numbers.back().copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]
