@@ -1,6 +1,7 @@
 //! The command `fluxfit`: arguments become settings, a verb becomes a file under `commands`.
 //!
-//! Answers go to standard output, everything else to standard error. Exit status: 0 everything asked for was identified; 1 the log was read but cannot carry some parameter; 2 misuse or unreadable input.
+//! Answers go to standard output, everything else to standard error. Exit status: 0 everything asked for was identified; 1 the
+//! log was read but cannot carry some parameter; 2 misuse or unreadable input.
 
 mod arguments;
 mod commands;

@@ -44,7 +44,8 @@ pub fn parse_fix(text: &str) -> Result<(Parameter, f64), FileError> {
     if number < 0.0 { Err(out_of_range(value, "zero or more")) } else { Ok((parameter, number)) }
 }
 
-/// `rs=0.96±1%` or `rs=0.96±0.01`, with `±`, `+-` or `+/-`: a parameter, its value, and **one standard error** (k = 1: 68 % of a normal distribution), both in SI units.
+/// `rs=0.96±1%` or `rs=0.96±0.01`, with `±`, `+-` or `+/-`: a parameter, its value, and **one standard error** (k = 1: 68 % of a
+/// normal distribution), both in SI units.
 ///
 /// # Errors
 /// As [`parse_fix`], or if there is no `±`, the uncertainty is not above zero, or only one of the two numbers has a unit.
@@ -79,7 +80,8 @@ pub fn parse_prior(text: &str) -> Result<(Parameter, f64, f64), FileError> {
 /// `ld=0:50mH`: a parameter, and the lower and upper end of its search in SI units.
 ///
 /// # Errors
-/// If the key is no parameter, an end is no finite number of its dimension, only one end has a unit (a zero needs none), or the lower end is not below the upper.
+/// If the key is no parameter, an end is no finite number of its dimension, only one end has a unit (a zero needs none), or the
+/// lower end is not below the upper.
 pub fn parse_bounds(text: &str) -> Result<(Parameter, f64, f64), FileError> {
     const FORM: (&str, &str) = ("PARAMETER=LOWER:UPPER", "ld=0:50mH");
     let (parameter, value) = of_parameter(text, FORM.0, FORM.1)?;

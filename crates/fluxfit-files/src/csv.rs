@@ -4,8 +4,9 @@
 //! log = bytes -> text -> header -> columns -> rows -> SI units -> checked
 //! ```
 //!
-//! Read without being told: comma, semicolon or tab, also at the end of a line; quotes and spaces around names and values; a byte order mark; `#` and `%` comments above the
-//! header; blank lines; columns in any order, and others among them; a decimal comma, unless the comma separates. Of a log of millions of rows only the needed cells become numbers.
+//! Read without being told: comma, semicolon or tab, also at the end of a line; quotes and spaces around names and values; a byte
+//! order mark; `#` and `%` comments above the header; blank lines; columns in any order, and others among them; a decimal comma,
+//! unless the comma separates. Of a log of millions of rows only the needed cells become numbers.
 
 mod columns;
 mod header;
@@ -25,7 +26,8 @@ use std::path::Path;
 /// What the reader is told about a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LogOptions {
-    /// Canonical name (`omega` and `theta` too) and header of the columns that the file names otherwise, as from [`parse_map`](crate::parse_map).
+    /// Canonical name (`omega` and `theta` too) and header of the columns that the file names otherwise, as from
+    /// [`parse_map`](crate::parse_map).
     pub map: Vec<(String, String)>,
     /// Canonical name and unit of the columns whose header does not say it, as from [`parse_unit`](crate::parse_unit).
     pub units: Vec<(String, Unit)>,
@@ -60,7 +62,8 @@ pub fn read_log(path: &Path, options: &LogOptions) -> Result<ReadLog, FileError>
 /// Reads a log from memory; `name` is the file's name in messages.
 ///
 /// # Errors
-/// If an option names no column of a log or none of the file, if the bytes are no table of numbers below a header, or if the numbers are refused by [`Log::new`].
+/// If an option names no column of a log or none of the file, if the bytes are no table of numbers below a header, or if the
+/// numbers are refused by [`Log::new`].
 pub fn parse_log(name: &str, bytes: &[u8], options: &LogOptions) -> Result<ReadLog, FileError> {
     let told = Told::from(options)?;
     let parsed = input::text(bytes, "CSV text").and_then(|text| parse(text, &told));
@@ -103,8 +106,8 @@ const NORMALIZED: &str = "ud, uq, id, iq and omega_e all have a mean near 0 and 
 /// A mean of less than this many standard deviations is near zero,
 const NORMALIZED_MEAN: f64 = 0.2;
 
-/// and a standard deviation in this range near one. An excerpt of a normalized file is neither exactly; of a drive, no five channels are all like that: its speed alone would have to
-/// swing by about 1 rad/s around standstill.
+/// and a standard deviation in this range near one. An excerpt of a normalized file is neither exactly; of a drive, no five
+/// channels are all like that: its speed alone would have to swing by about 1 rad/s around standstill.
 const NORMALIZED_DEVIATION: std::ops::Range<f64> = 0.5..1.5;
 
 /// Fewest rows whose mean and deviation say anything.

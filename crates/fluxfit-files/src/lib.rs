@@ -1,7 +1,8 @@
 //! What comes from files and arguments, and how an answer gets into one.
 //!
-//! The promise: whatever is read is either understood, in SI units, or refused in one sentence on one line that names the file, the line and the column where there is one,
-//! and the remedy. What had to be inferred on the way is said in notes. No input makes a function of this crate panic.
+//! The promise: whatever is read is either understood, in SI units, or refused in one sentence on one line that names the file,
+//! the line and the column where there is one, and the remedy. What had to be inferred on the way is said in notes. No input
+//! makes a function of this crate panic.
 //!
 //! ```
 //! use fluxfit_files::{LogOptions, parse_log, parse_map};

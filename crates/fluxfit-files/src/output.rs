@@ -11,8 +11,9 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// Writes a file so that nobody ever sees half of it: into a new file beside it, which then takes its name. What was there keeps its permissions; a link keeps pointing to where it did.
-/// The path `-` is standard output; that and devices are written directly.
+/// Writes a file so that nobody ever sees half of it: into a new file beside it, which then takes its name. What was there keeps
+/// its permissions; a link keeps pointing to where it did. The path `-` is standard output; that and devices are written
+/// directly.
 ///
 /// # Errors
 /// If the directory does not exist or the file cannot be written there.

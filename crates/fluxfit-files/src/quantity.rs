@@ -118,8 +118,8 @@ pub fn parse_quantity(text: &str, dimension: Dimension) -> Result<f64, FileError
     in_si(value, unit, dimension).ok_or_else(|| dimension.refusal(text))
 }
 
-/// Two numbers of one dimension, the ends of an interval or a value and its uncertainty. Either both have a unit or none has, unless the first is zero: of `5:50mH` nobody knows
-/// what the 5 is.
+/// Two numbers of one dimension, the ends of an interval or a value and its uncertainty. Either both have a unit or none has,
+/// unless the first is zero: of `5:50mH` nobody knows what the 5 is.
 pub(crate) fn parse_pair(text: &str, first: &str, second: &str, dimension: Dimension) -> Result<(f64, f64), FileError> {
     let ends = [first, second].map(|end| split(end).ok_or_else(|| dimension.refusal(end)));
     let [(a, unit_a), (b, unit_b)] = match ends {

@@ -28,7 +28,8 @@ pub struct Truth {
 /// Reads a truth file; the path `-` is standard input.
 ///
 /// # Errors
-/// If the file cannot be read, is no JSON object, says another schema, or lacks a parameter; resistance and inductances must be above zero, the flux linkage zero or more.
+/// If the file cannot be read, is no JSON object, says another schema, or lacks a parameter; resistance and inductances must be
+/// above zero, the flux linkage zero or more.
 pub fn read_truth(path: &Path) -> Result<Truth, FileError> {
     Truth::parse(&input::name(path), &input::read(path)?)
 }

@@ -179,8 +179,9 @@ impl Unit {
     }
 }
 
-/// The name in a header without its unit, and what the header says about the unit. A unit stands in brackets or after `@` at the end, or after the last `_` or space; only in the
-/// first two places is it an error that it is not known: `uq_s` may well be the q voltage of the stator.
+/// The name in a header without its unit, and what the header says about the unit. A unit stands in brackets or after `@` at the
+/// end, or after the last `_` or space; only in the first two places is it an error that it is not known: `uq_s` may well be the
+/// q voltage of the stator.
 pub(crate) fn in_header(header: &str, dimension: Dimension) -> (&str, Named<'_>) {
     let header = header.trim();
     let side = side(header);

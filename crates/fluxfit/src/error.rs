@@ -1,7 +1,7 @@
 //! The only error of this library: misuse, or data that cannot be read as a log.
 //!
-//! Each variant carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them from a file knows their lines
-//! ([`Error::row`], [`Error::column`]).
+//! Each variant carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them
+//! from a file knows their lines ([`Error::row`], [`Error::column`]).
 
 /// What went wrong.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -9,8 +9,9 @@
 //! f(x) - f(x_ls) = |R_4 (x - x_ls)|²     without cancellation
 //! ```
 //!
-//! The Gram matrix `AᵀA` would do the same at half the digits. G. H. Golub and C. F. Van Loan, Matrix Computations, 4th ed., section 5.3; merging factors:
-//! J. Demmel et al., "Communication-optimal parallel and sequential QR and LU factorizations", doi:10.1137/080731992.
+//! The Gram matrix `AᵀA` would do the same at half the digits. G. H. Golub and C. F. Van Loan, Matrix Computations, 4th ed.,
+//! section 5.3; merging factors: J. Demmel et al., "Communication-optimal parallel and sequential QR and LU factorizations",
+//! doi:10.1137/080731992.
 
 use crate::motor::{Motor, PARAMETERS};
 use nalgebra::{DMatrix, SMatrix, SVector};
@@ -24,7 +25,8 @@ const ENTRIES: usize = COLUMNS * (COLUMNS + 1) / 2;
 /// Rows gathered before they are folded into the factor: long enough to spread the cost of a factorization, short enough for the cache.
 const BLOCK: usize = 128;
 
-/// Singular values below this fraction of the largest, columns scaled to equal length, count as zero. It bounds rounding, about 1e-16 times the number of rows' root; noise is judged elsewhere.
+/// Singular values below this fraction of the largest, columns scaled to equal length, count as zero. It bounds rounding, about
+/// 1e-16 times the number of rows' root; noise is judged elsewhere.
 const RANK_TOLERANCE: f64 = 1e-10;
 
 /// One equation of the parameters, weighted: `coefficients . x = value`.

@@ -1,7 +1,8 @@
 //! The log: what a drive recorded, in SI units, checked on the way in.
 //!
-//! Whoever holds a [`Log`] knows: equal columns, finite plausible numbers, increasing time, some current and voltage. Time may jump: a jump ends a [segment](Log::segments),
-//! and nothing is ever computed across one. Several logs of one motor [join](Log::join) into one.
+//! Whoever holds a [`Log`] knows: equal columns, finite plausible numbers, increasing time, some current and voltage. Time may
+//! jump: a jump ends a [segment](Log::segments), and nothing is ever computed across one. Several logs of one motor
+//! [join](Log::join) into one.
 
 use crate::error::Error;
 use std::ops::Range;
@@ -59,8 +60,8 @@ impl Log {
     /// Checks columns and splits them at gaps.
     ///
     /// # Errors
-    /// If a column is shorter than another, a value is not finite or implausibly large, time does not increase, there are less than two rows, or the currents, the voltages or
-    /// the speed are zero throughout.
+    /// If a column is shorter than another, a value is not finite or implausibly large, time does not increase, there are less
+    /// than two rows, or the currents, the voltages or the speed are zero throughout.
     pub fn new(columns: Columns) -> Result<Self, Error> {
         let rows = columns.t.len();
         for (column, values) in columns.named() {

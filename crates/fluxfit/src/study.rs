@@ -1,7 +1,8 @@
 //! The study: many independent runs of many methods on one fitness, as the paper compares them.
 //!
-//! Run `k` of every method takes stream `k` of the same seed. Runs are spread over all cores; each depends on its own stream alone and results are collected in order, so any number of threads gives the same bits. Swarms are compared by
-//! `F - F_LS`, how far they end above the exact minimum: on a noisy log their distance from the truth ranks the noise.
+//! Run `k` of every method takes stream `k` of the same seed. Runs are spread over all cores; each depends on its own stream
+//! alone and results are collected in order, so any number of threads gives the same bits. Swarms are compared by `F - F_LS`, how
+//! far they end above the exact minimum: on a noisy log their distance from the truth ranks the noise.
 
 use crate::{
     error::Error,

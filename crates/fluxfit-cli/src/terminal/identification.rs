@@ -1,4 +1,5 @@
-//! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and what the swarm made of it.
+//! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and
+//! what the swarm made of it.
 
 use super::{
     BAD, DIM, GOOD, HEADING, WARNING,

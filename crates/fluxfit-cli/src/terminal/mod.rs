@@ -1,4 +1,5 @@
-//! What a person sees. Answers on standard output, everything else on standard error; colour only where it is wanted (a terminal, and no `NO_COLOR`).
+//! What a person sees. Answers on standard output, everything else on standard error; colour only where it is wanted (a terminal,
+//! and no `NO_COLOR`).
 
 pub(crate) mod identification;
 mod number;

@@ -13,7 +13,8 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// The prefix under which `value` has one to three digits before the point. Resistances and fluxes stay unprefixed down to a tenth, as data sheets print them.
+    /// The prefix under which `value` has one to three digits before the point. Resistances and fluxes stay unprefixed down to a
+    /// tenth, as data sheets print them.
     pub(crate) fn for_value(parameter: Parameter, value: f64) -> Self {
         let smallest = match parameter {
             Parameter::Rs | Parameter::PsiF => 0.1,

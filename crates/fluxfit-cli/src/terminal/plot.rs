@@ -1,4 +1,5 @@
-//! Convergence curves in characters: logarithmic cost against iteration, one letter per method, so that they can be told apart without colour.
+//! Convergence curves in characters: logarithmic cost against iteration, one letter per method, so that they can be told apart
+//! without colour.
 
 use anstyle::{AnsiColor, Style};
 use fluxfit::study::MethodStudy;

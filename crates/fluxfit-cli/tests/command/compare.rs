@@ -9,7 +9,8 @@ const TRUTH: &str = "examples/logs/paper_rig_pwm_noise.truth.json";
 /// The box of the paper's rig.
 const BOX: [&str; 2] = ["--bounds", "rs=0:5,ld=0:50mH,lq=0:50mH,psi_f=0:1"];
 
-/// Medians of `F - F_LS` of an independent prototype (numpy) with the same settings on data of the same rig: after 50, 100, 200, 300 iterations.
+/// Medians of `F - F_LS` of an independent prototype (numpy) with the same settings on data of the same rig: after 50, 100, 200,
+/// 300 iterations.
 const PROTOTYPE: [(&str, [f64; 4]); 4] = [
     ("tgfpa", [1e3, 7.0, 3e-4, 1e-8]),
     ("fpa", [3e3, 5e1, 1e-1, 2e-4]),

@@ -66,7 +66,8 @@ fn one_operating_point_tells_only_lq() {
     assert!(errors(&document)[2].0.abs() < 0.1);
 }
 
-/// A real log of a saturating machine whose drive coasts for most of it. R 18 mohm, L_d 175 and L_q 180 uH by its nameplate; apparent L_q from 327 to 187 uH in the log.
+/// A real log of a saturating machine whose drive coasts for most of it. R 18 mohm, L_d 175 and L_q 180 uH by its nameplate;
+/// apparent L_q from 327 to 187 uH in the log.
 #[test]
 fn real_log_without_nonsense() {
     let Some(log) = shared("emrax228hv_coastdown_dyno.csv") else { return };

@@ -66,8 +66,8 @@ fn from_comment(
     Err(FileError::from(problem).at_line(first.line))
 }
 
-/// A title or a timestamp above the header: one cell, or one that begins with a digit, above a line of more cells. Says as well what the line below lacks, lest deleting the title is
-/// a waste of time.
+/// A title or a timestamp above the header: one cell, or one that begins with a digit, above a line of more cells. Says as well
+/// what the line below lacks, lest deleting the title is a waste of time.
 fn refuse_title(text: &str, first: &str, header: &Header) -> Result<(), FileError> {
     let cells = header.names.len();
     let dated = header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()));
@@ -97,7 +97,8 @@ fn told_by_spreadsheet(line: &str) -> Option<u8> {
     }
 }
 
-/// The most frequent separator outside of quotes. On a tie the semicolon, which nobody writes for decoration, then the comma: tabs may be alignment.
+/// The most frequent separator outside of quotes. On a tie the semicolon, which nobody writes for decoration, then the comma:
+/// tabs may be alignment.
 fn sniff(line: &str) -> u8 {
     let count = |separator: u8| {
         let mut quoted = false;

@@ -2,7 +2,8 @@
 
 use crate::{channel::Channel, quantity::Dimension};
 
-/// Least similarity, 0 to 1, of a misspelt time or speed: one wrong letter in four. Voltages and currents must be spelt right, for d and q differ by one letter.
+/// Least similarity, 0 to 1, of a misspelt time or speed: one wrong letter in four. Voltages and currents must be spelt right,
+/// for d and q differ by one letter.
 const SIMILAR: f64 = 0.75;
 
 /// Names shorter than this must be spelt right.

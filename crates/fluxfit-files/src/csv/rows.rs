@@ -117,7 +117,8 @@ fn refusal(cell: &[u8], channel: Channel) -> Problem {
 }
 
 impl Marks {
-    /// Takes note of the cell's decimal mark; the offset of a row with the other mark, if there is one. Without this, the 1,234 of a file with decimal points would be read as 1.234.
+    /// Takes note of the cell's decimal mark; the offset of a row with the other mark, if there is one. Without this, the 1,234
+    /// of a file with decimal points would be read as 1.234.
     fn disagree(&mut self, cell: &[u8], start: usize) -> Option<usize> {
         // Once points are the rule only a comma matters, and the other way around.
         if self.point.is_none() && cell.contains(&b'.') {
@@ -131,7 +132,8 @@ impl Marks {
     }
 }
 
-/// The number in a cell. `nan` and `inf` are numbers here: the log refuses them by row and column. A comma is a decimal one if it does not separate.
+/// The number in a cell. `nan` and `inf` are numbers here: the log refuses them by row and column. A comma is a decimal one if it
+/// does not separate.
 pub(super) fn number(cell: &[u8], separator: u8, scratch: &mut String) -> Option<f64> {
     let text = str::from_utf8(trimmed(cell)).ok()?;
     if let Ok(number) = text.parse() {

@@ -4,8 +4,9 @@
 //! f(x) = sum_k 1/4 [ (u_d0 - û_d0)² + (u_q0 - û_q0)² + (u_d - û_d)² + (u_q - û_q)² ],   x = (R_s, L_d, L_q, psi_f)
 //! ```
 //!
-//! over the samples of the two modes `i_d = 0` (index 0) and `i_d < 0`, with `û` from equation (2); for any number of operating points the same sum over all of them.
-//! It is linear in `x`: one valley, solved exactly by [`least_squares`](crate::least_squares), and evaluated through the same triangular factor in a few nanoseconds.
+//! over the samples of the two modes `i_d = 0` (index 0) and `i_d < 0`, with `û` from equation (2); for any number of operating
+//! points the same sum over all of them. It is linear in `x`: one valley, solved exactly by
+//! [`least_squares`](crate::least_squares), and evaluated through the same triangular factor in a few nanoseconds.
 //!
 //! Gao, Wang, Jiang and Hu, 2023, equations (2), (3) and (11).
 
@@ -32,7 +33,8 @@ pub enum IdZero {
     AsPaper,
 }
 
-/// A window whose mean `i_d` is below this fraction of its mean current is a mode `i_d = 0`: well above a sensor's offset, well below the paper's -2 A of 10 A.
+/// A window whose mean `i_d` is below this fraction of its mean current is a mode `i_d = 0`: well above a sensor's offset, well
+/// below the paper's -2 A of 10 A.
 pub const ID_ZERO_FRACTION: f64 = 0.02;
 
 /// The squared error of the steady voltage equations.

@@ -7,8 +7,9 @@
 //! w_i = w_max                                                     otherwise
 //! ```
 //!
-//! `f` are the costs of the places where the particles are, those that are finite; with all of them equal the weight is `w_min`. The name "APSO" covers several
-//! methods; this is the one usual beside LPSO in the literature of motor identification. The flight itself: [`Flight`].
+//! `f` are the costs of the places where the particles are, those that are finite; with all of them equal the weight is `w_min`.
+//! The name "APSO" covers several methods; this is the one usual beside LPSO in the literature of motor identification. The
+//! flight itself: [`Flight`].
 //!
 //! When to use it: the strongest of the paper's baselines on smooth, single-valleyed fitness functions.
 

@@ -1,7 +1,7 @@
 //! The chaotic start, equations (7) and (8): a population laid out by the logistic map.
 //!
-//! `b_{i+1} = mu b_i (1 - b_i)`, `x_i = L + b_i (U - L)`, one independent chain per dimension. `mu = 4` is the fully chaotic map; its density is
-//! the arcsine law, denser at the box's faces than in its middle.
+//! `b_{i+1} = mu b_i (1 - b_i)`, `x_i = L + b_i (U - L)`, one independent chain per dimension. `mu = 4` is the fully chaotic map;
+//! its density is the arcsine law, denser at the box's faces than in its middle.
 
 use super::{bounds::Bounds, draws::Draws};
 
@@ -11,7 +11,8 @@ pub const MU: f64 = 4.0;
 /// Starts that end in a fixed point of the map, and are avoided: 0 and 3/4 are fixed points, the others lead there.
 const TRAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// How far from a trap a start must be. Near 0 and 3/4 the map takes about `log2(1e-3 / distance)` steps to leave; 1e-3 keeps that small beside a population of 50.
+/// How far from a trap a start must be. Near 0 and 3/4 the map takes about `log2(1e-3 / distance)` steps to leave; 1e-3 keeps
+/// that small beside a population of 50.
 const CLEARANCE: f64 = 1e-3;
 
 /// Positions of `population` candidates, row after row. Draws one start per dimension.

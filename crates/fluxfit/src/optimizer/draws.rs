@@ -1,7 +1,8 @@
 //! Where every random number of an optimizer comes from.
 //!
-//! One named, portable generator (ChaCha with 8 rounds) with one stream per run: a run's numbers depend on its seed and its stream alone, never on which thread
-//! it ran or what ran before. A recorded list can take the generator's place, so that an independent program fed the same numbers can check a step.
+//! One named, portable generator (ChaCha with 8 rounds) with one stream per run: a run's numbers depend on its seed and its
+//! stream alone, never on which thread it ran or what ran before. A recorded list can take the generator's place, so that an
+//! independent program fed the same numbers can check a step.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -29,7 +30,8 @@ impl Draws {
         Self(Source::Generator(generator))
     }
 
-    /// Numbers written down beforehand, each returned as it stands whatever distribution is asked for (a partner as its index), from the front again after the last.
+    /// Numbers written down beforehand, each returned as it stands whatever distribution is asked for (a partner as its index),
+    /// from the front again after the last.
     pub fn replay(numbers: Vec<f64>) -> Self {
         Self(Source::Recorded(numbers.into()))
     }

@@ -1,7 +1,7 @@
 //! FPA: the flower pollination algorithm.
 //!
-//! Idea: each flower either flies on a Lévy step scaled by its distance to the best flower (global), or moves along the difference of two others
-//! (local); the better of the old and the new place is kept.
+//! Idea: each flower either flies on a Lévy step scaled by its distance to the best flower (global), or moves along the
+//! difference of two others (local); the better of the old and the new place is kept.
 //!
 //! ```text
 //! start     x_i uniform in the box

@@ -1,7 +1,7 @@
 //! Lévy steps, equation (5), drawn by Mantegna's method.
 //!
-//! `step = sigma_u u / |v|^(1/lambda)` with `u, v ~ N(0, 1)` has the density's tail, `s^-(1 + lambda)`, on both sides. The paper's (5) is that
-//! tail for `s > 0`; taken as the whole density it could only ever step away from the best flower.
+//! `step = sigma_u u / |v|^(1/lambda)` with `u, v ~ N(0, 1)` has the density's tail, `s^-(1 + lambda)`, on both sides. The
+//! paper's (5) is that tail for `s > 0`; taken as the whole density it could only ever step away from the best flower.
 //!
 //! R. N. Mantegna, "Fast, accurate algorithm for numerical simulation of Lévy stable stochastic processes", Physical Review E
 //! 49 (1994) 4677, doi:10.1103/PhysRevE.49.4677.

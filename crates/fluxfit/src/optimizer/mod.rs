@@ -1,8 +1,9 @@
 //! Who minimizes: four population methods behind one optimizer.
 //!
-//! An [`Optimizer`] is data and a [`step`](Optimizer::step): it proposes a trial per candidate, evaluates all of them as one batch, then accepts. From that one piece
-//! come running, stopping, saving (it implements serde's traits), resuming and history. A step depends on nothing but the state and the objective: running `N` times one
-//! iteration is running `N` iterations, and a restored optimizer goes on to the same bits.
+//! An [`Optimizer`] is data and a [`step`](Optimizer::step): it proposes a trial per candidate, evaluates all of them as one
+//! batch, then accepts. From that one piece come running, stopping, saving (it implements serde's traits), resuming and history.
+//! A step depends on nothing but the state and the objective: running `N` times one iteration is running `N` iterations, and a
+//! restored optimizer goes on to the same bits.
 //!
 //! This room knows nothing of motors. Anything that implements [`Objective`] can be minimized.
 
@@ -198,7 +199,8 @@ impl Optimizer {
     /// Lays out and evaluates the first population.
     ///
     /// # Errors
-    /// If the population is too small for the method, the box has another dimension than the objective, or no candidate of the start has a finite cost.
+    /// If the population is too small for the method, the box has another dimension than the objective, or no candidate of the
+    /// start has a finite cost.
     pub fn start(method: Method, settings: Settings, bounds: Bounds, objective: &impl Objective) -> Result<Self, Error> {
         let draws = Draws::seeded(settings.seed, settings.run);
         Self::start_from(method, settings, bounds, draws, objective)

@@ -1,7 +1,8 @@
 //! tGFPA: flower pollination with a t-distributed and a Gaussian perturbation, the paper's algorithm.
 //!
-//! Idea: FPA, started on a chaotic map, whose global moves are often stirred by a t-distributed multiple of a difference of two flowers (wide
-//! like Cauchy's at first, Gaussian later), and whose local moves are often replaced by two Gaussian multiples of differences.
+//! Idea: FPA, started on a chaotic map, whose global moves are often stirred by a t-distributed multiple of a difference of two
+//! flowers (wide like Cauchy's at first, Gaussian later), and whose local moves are often replaced by two Gaussian multiples of
+//! differences.
 //!
 //! ```text
 //! start     logistic map, mu = 4                                                             (7) (8)
@@ -14,12 +15,15 @@
 //! accept    x' when it is better than x_i
 //! ```
 //!
-//! `t` is the iteration, from 1; `T(t)` is Student's t with `t` degrees of freedom; `G, G' ~ N(0, 1)` are two draws (the paper prints one symbol twice); each is one number per flower.
-//! `g` and the partners `j, k, l`, distinct and not `i`, are those of the last iteration. Every `rand` is a fresh U(0, 1).
+//! `t` is the iteration, from 1; `T(t)` is Student's t with `t` degrees of freedom; `G, G' ~ N(0, 1)` are two draws (the paper
+//! prints one symbol twice); each is one number per flower. `g` and the partners `j, k, l`, distinct and not `i`, are those of
+//! the last iteration. Every `rand` is a fresh U(0, 1).
 //!
-//! Gao, Wang, Jiang and Hu, "Parameters Identification of PMSM Based on Improved Flower Pollination Algorithm", 2023, equations (4) to (10).
+//! Gao, Wang, Jiang and Hu, "Parameters Identification of PMSM Based on Improved Flower Pollination Algorithm", 2023, equations
+//! (4) to (10).
 //!
-//! When to use it: to search a bounded box of a few dimensions without derivatives. On the linear fitness (11) least squares is exact and this is not needed.
+//! When to use it: to search a bounded box of a few dimensions without derivatives. On the linear fitness (11) least squares is
+//! exact and this is not needed.
 
 use super::{bounds::Bounds, chaos::logistic_start, draws::Draws, fpa::Fpa, population::Population};
 use serde::{Deserialize, Serialize};
@@ -31,7 +35,8 @@ pub struct Tgfpa {
     pub pollination: Fpa,
     /// `m`: a global move stays without the t perturbation with this probability. 0.2.
     pub plain_global: f64,
-    /// `q`: a local move stays without the Gaussian perturbation with this probability. 0.2; measured, 0.5 ends four times worse on fitness (11), 1 ten thousand times.
+    /// `q`: a local move stays without the Gaussian perturbation with this probability. 0.2; measured, 0.5 ends four times worse
+    /// on fitness (11), 1 ten thousand times.
     pub plain_local: f64,
     /// Where the flowers start.
     pub start: Start,
@@ -64,7 +69,8 @@ impl Tgfpa {
         }
     }
 
-    /// One trial per flower. Draws per flower: `rand` (p), `rand` (m or q), then what the move needs, in the order of its equation, partners last.
+    /// One trial per flower. Draws per flower: `rand` (p), `rand` (m or q), then what the move needs, in the order of its
+    /// equation, partners last.
     pub(super) fn propose(&self, iteration: usize, flowers: &mut Population, bounds: &Bounds, draws: &mut Draws) {
         flowers.propose_each(bounds, |i, flowers, trial| {
             if draws.uniform() > self.pollination.switch_probability {
