@@ -20,8 +20,11 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
 /// Rounds of weighting. Weights move the answer by a fraction of its uncertainty, so the second round already changes nothing visible.
 const ROUNDS: usize = 4;
 
-/// Voltages are never trusted beyond this fraction, so that noise-free windows have finite weights.
+/// Voltages are never trusted beyond this fraction of the largest, so that noise-free windows have finite weights, those without voltage too.
 const LEAST_ACCURACY: f64 = 1e-9;
+
+/// A voltage, V, that no drive can tell from none.
+const NO_VOLTAGE: f64 = 1e-30;
 
 /// The solution of the operating points' equations.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +57,9 @@ impl Estimate {
 
     /// Solves the points with voltages trusted to another fraction than the settings'.
     pub(super) fn solve_with(points: &[OperatingPoint], excitation: &Excitation, settings: &Settings, voltage_accuracy: f64) -> Self {
-        let accuracy: Vec<f64> = points.iter().map(|point| voltage_accuracy.max(LEAST_ACCURACY) * point.voltage().magnitude()).collect();
+        let largest = points.iter().map(|point| point.voltage().magnitude()).fold(NO_VOLTAGE, f64::max);
+        let accuracy_of = |point: &OperatingPoint| (voltage_accuracy * point.voltage().magnitude()).max(LEAST_ACCURACY * largest);
+        let accuracy: Vec<f64> = points.iter().map(accuracy_of).collect();
         let mut motor = Motor::from(settings.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
         let mut system = System::of(points, &motor, &accuracy, settings);
         let mut solved = system.solve(excitation, settings);

@@ -20,6 +20,9 @@ const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
 /// Currents and speed are known no better than this fraction of their largest value, however quiet they are.
 const COEFFICIENT_ACCURACY: f64 = 1e-4;
 
+/// Voltages, currents and speeds below this, SI, are none: a window of a standing or idle drive must not make a scale overflow.
+const NOTHING: f64 = 1e-30;
+
 /// A parameter is open if this part of its axis, or more, lies in unexcited directions. Noise mixes directions by far less.
 const OPEN_PART: f64 = 0.1;
 
@@ -48,9 +51,11 @@ pub struct Direction {
 impl Excitation {
     /// Judges the operating points, with what is known beforehand.
     pub fn of(points: &[OperatingPoint], known: &[Known; PARAMETERS]) -> Self {
-        let most = |value: fn(&OperatingPoint) -> f64| points.iter().map(value).fold(f64::MIN_POSITIVE, f64::max);
+        let most = |value: fn(&OperatingPoint) -> f64| points.iter().map(value).fold(NOTHING, f64::max);
         let (u, i, omega) = (most(|p| p.voltage().magnitude()), most(|p| p.current().magnitude()), most(|p| p.omega_e().abs()));
-        let scale = [u / i, u / (omega * i), u / (omega * i), u / omega];
+        // A standing drive's inductances show in the drift of its currents alone.
+        let slope = (omega * i).max(most(|p| p.drift.magnitude()));
+        let scale = [u / i, u / slope, u / slope, u / omega];
         let free: Vec<usize> = (0..PARAMETERS).filter(|p| !matches!(known[*p], Known::Fixed(_))).collect();
 
         let mut rows: Vec<[f64; PARAMETERS]> =
@@ -142,4 +147,85 @@ fn reach(directions: &[Direction], scale: &[f64; PARAMETERS]) -> [f64; PARAMETER
         }
     };
     std::array::from_fn(|p| part[p] * scale[p])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        frames::Dq,
+        log::{Columns, Log},
+    };
+
+    const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
+
+    /// Noise-free points of 40 rows at (i_d, i_q, omega_e).
+    fn points(modes: &[(f64, f64, f64)]) -> Vec<OperatingPoint> {
+        let mut columns = Columns::default();
+        for (k, &(d, q, omega_e)) in modes.iter().flat_map(|mode| [mode; 40]).enumerate() {
+            let u = MOTOR.steady_voltage(Dq { d, q }, omega_e);
+            columns.t.push(k as f64);
+            let row = [(&mut columns.ud, u.d), (&mut columns.uq, u.q), (&mut columns.id, d), (&mut columns.iq, q)];
+            row.into_iter().for_each(|(column, value)| column.push(value));
+            columns.omega_e.push(omega_e);
+        }
+        let log = Log::new(columns).unwrap();
+        (0..modes.len()).map(|w| OperatingPoint::measure(&log, 40 * w..40 * (w + 1), None)).collect()
+    }
+
+    fn open(modes: &[(f64, f64, f64)], known: &[Known; PARAMETERS]) -> Vec<Parameter> {
+        let excitation = Excitation::of(&points(modes), known);
+        Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).collect()
+    }
+
+    const NOTHING_KNOWN: [Known; PARAMETERS] = [Known::Nothing; PARAMETERS];
+
+    /// By hand: which columns of the equations depend on each other.
+    #[test]
+    fn what_is_open_follows_from_the_equations() {
+        use Parameter::{Ld, PsiF, Rs};
+        // i_d = 0, two speeds: u_d gives L_q, u_q gives R_s and psi_f; L_d is absent.
+        assert_eq!(open(&[(0.0, 9.0, 400.0), (0.0, 9.0, 200.0)], &NOTHING_KNOWN), [Ld]);
+        // One point at i_d = 0: u_q = R_s i_q + omega psi_f is one equation for two.
+        assert_eq!(open(&[(0.0, 9.0, 400.0)], &NOTHING_KNOWN), [Rs, Ld, PsiF]);
+        // Constant i_d, two i_q: u_d gives R_s and L_q; of u_q only L_d i_d + psi_f is left.
+        assert_eq!(open(&[(-2.0, 9.0, 400.0), (-2.0, 3.0, 400.0)], &NOTHING_KNOWN), [Ld, PsiF]);
+        // The paper's two modes, four equations for four.
+        assert_eq!(open(&[(0.0, 9.0, 400.0), (-2.0, 8.5, 400.0)], &NOTHING_KNOWN), []);
+    }
+
+    #[test]
+    fn what_is_known_closes_what_it_hides() {
+        let rs = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
+        assert_eq!(open(&[(0.0, 9.0, 400.0)], &rs), [Parameter::Ld]);
+        let ld = [Known::Nothing, Known::Prior { value: 5e-3, standard_error: 1e-4 }, Known::Nothing, Known::Nothing];
+        assert_eq!(open(&[(-2.0, 9.0, 400.0), (-2.0, 3.0, 400.0)], &ld), []);
+    }
+
+    /// At i_d = 0 nothing but the voltage bounds L_d; at constant i_d every pair with the same L_d i_d + psi_f fits, and the reach covers the true one.
+    #[test]
+    fn the_reach_bounds_what_stays_open_and_nothing_else() {
+        let modes = [(0.0, 9.0, 400.0), (0.0, 9.0, 200.0)];
+        let (points_zero, excitation) = (points(&modes), Excitation::of(&points(&modes), &NOTHING_KNOWN));
+        let most = points_zero[0].voltage().magnitude() / (400.0 * 9.0);
+        let [rs, ld, lq, psi_f] = excitation.unexcited_reach;
+        assert!((ld / most - 1.0).abs() < 1e-9, "{ld} {most}");
+        assert!([rs / excitation.scale[0], lq / excitation.scale[2], psi_f / excitation.scale[3]].iter().all(|reach| reach.abs() < 1e-9));
+
+        let excitation = Excitation::of(&points(&[(-2.0, 9.0, 400.0), (-2.0, 3.0, 400.0)]), &NOTHING_KNOWN);
+        let found = excitation.excited_motor(&MOTOR).to_array();
+        for (p, reach) in excitation.unexcited_reach.into_iter().enumerate() {
+            assert!((found[p] - MOTOR.to_array()[p]).abs() <= reach + 1e-9 * found[p].abs(), "{p}: {found:?} {reach}");
+        }
+    }
+
+    #[test]
+    fn a_standing_drive_tells_its_resistance_alone() {
+        // Row two only makes the log one.
+        let standing = &points(&[(3.0, 4.0, 0.0), (0.0, 9.0, 400.0)])[..1];
+        let excitation = Excitation::of(standing, &NOTHING_KNOWN);
+        let open: Vec<_> = Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).collect();
+        assert_eq!(open, [Parameter::Ld, Parameter::Lq, Parameter::PsiF]);
+        assert!(excitation.unexcited_reach.iter().all(|reach| reach.is_finite()));
+    }
 }

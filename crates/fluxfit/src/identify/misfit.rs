@@ -50,3 +50,53 @@ fn significant_ratio(points: &[OperatingPoint], estimate: &Estimate) -> Option<f
     let limit = FisherSnedecor::new(degrees, behind).ok()?.inverse_cdf(1.0 - SIGNIFICANCE);
     (ratio > limit).then(|| ratio.sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        frames::Dq,
+        identify::{Identification, Settings, identify},
+        log::{Columns, Log},
+        motor::{Motor, Parameter},
+        optimizer::draws::Draws,
+        steady::held_vector::VoltageTiming,
+    };
+
+    const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
+    const ROWS: usize = 200;
+
+    /// Three loads, with the q inductance that the motor has at each, H; 0.2 % noise on the voltages.
+    fn found(lq: [f64; 3]) -> Identification {
+        let mut draws = Draws::seeded(4, 0);
+        let mut columns = Columns::default();
+        for (mode, (d, q)) in [(0.0, 9.0), (-2.0, 7.0), (-1.0, 5.0)].into_iter().enumerate() {
+            let u = Motor { lq: lq[mode], ..MOTOR }.steady_voltage(Dq { d, q }, 400.0);
+            for k in 0..ROWS {
+                columns.t.push((2 * mode * ROWS + k) as f64);
+                columns.ud.push(u.d + 0.2 * draws.normal());
+                columns.uq.push(u.q + 0.2 * draws.normal());
+                columns.id.push(d);
+                columns.iq.push(q);
+                columns.omega_e.push(400.0);
+            }
+        }
+        let settings = Settings { method: None, voltage_timing: Some(VoltageTiming::Compensated), ..Settings::default() };
+        identify(&Log::new(columns).unwrap(), &settings).unwrap()
+    }
+
+    #[test]
+    fn a_saturating_motor_is_found_out_and_its_interval_holds_every_points_inductance() {
+        let lq = [11e-3, 12e-3, 12.5e-3];
+        let found = found(lq);
+        let misfit = found.misfit.expect("saturation of 14 % is far beyond 0.2 % noise");
+        assert!(misfit.ratio > 3.0 && misfit.voltage_accuracy > 1e-3, "{misfit:?}");
+        let (raw, half) = (found.parameter(Parameter::Lq).raw, found.parameter(Parameter::Lq).uncertainty.half_width);
+        assert!(lq.iter().all(|lq| (lq - raw).abs() <= half), "{raw} ± {half}");
+        assert!(found.warnings.iter().any(|warning| warning.code == "misfit"));
+    }
+
+    #[test]
+    fn points_of_one_motor_do_not_contradict_each_other() {
+        assert_eq!(found([12e-3; 3]).misfit, None);
+    }
+}

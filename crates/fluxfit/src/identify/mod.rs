@@ -19,7 +19,7 @@ use crate::{
     optimizer::{self, Method, Optimizer, Report, bounds::Bounds},
     steady::{
         Belief, OperatingPoint,
-        held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, VoltageTiming},
+        held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming},
         windows,
     },
 };
@@ -203,8 +203,9 @@ fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<Ope
     let excitation = Excitation::of(rough, &settings.known);
     let motor = Estimate::solve(rough, &excitation, settings).motor;
     let inductance = inductance(&motor, &excitation);
+    let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let with = |timing: VoltageTiming| -> Vec<_> {
-        let held = |point: &OperatingPoint| held_vector(log, point, timing, inductance);
+        let held = |point: &OperatingPoint| held_vector(log, point, fastest, timing, motor.rs, inductance);
         rough
             .iter()
             .map(|point| OperatingPoint::measure(log, point.rows.clone(), Some(&Belief { motor, held_vector: held(point) })))
@@ -230,12 +231,14 @@ fn inductance(motor: &Motor, excitation: &Excitation) -> Dq {
     Dq { d: ld.or(lq).unwrap_or(f64::INFINITY), q: lq.or(ld).unwrap_or(f64::INFINITY) }
 }
 
-/// The correction that fits a window: none where the log's sampling cannot be the inverter's.
-fn held_vector(log: &Log, point: &OperatingPoint, timing: VoltageTiming, inductance: Dq) -> HeldVector {
+/// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all windows, so that either
+/// all of them are corrected or none; none of the current where so long a period does not shape it.
+fn held_vector(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> HeldVector {
     let period = log.segments().iter().find(|segment| segment.rows.contains(&point.rows.start)).map(|segment| segment.sample_period);
     match period {
-        Some(sample_period) if (point.omega_e() * sample_period).abs() <= MAX_ANGLE_PER_SAMPLE => {
-            HeldVector { timing, sample_period, inductance }
+        Some(sample_period) if fastest * sample_period <= MAX_ANGLE_PER_SAMPLE => {
+            let shapes = |l: f64| if rs > 0.0 && rs * sample_period <= MAX_DECAY_PER_SAMPLE * l { l } else { f64::INFINITY };
+            HeldVector { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }
         }
         _ => HeldVector::NONE,
     }

@@ -57,9 +57,10 @@ fn no_current(log: &Log, settings: &Settings) -> Option<String> {
 }
 
 fn coarse_sampling(log: &Log, found: &Identification) -> Option<String> {
+    let fastest = found.operating_points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let coarse = found.operating_points.iter().any(|point| {
         let within = log.segments().iter().find(|segment| segment.rows.contains(&point.rows.start));
-        within.is_some_and(|segment| (point.omega_e() * segment.sample_period).abs() > MAX_ANGLE_PER_SAMPLE)
+        within.is_some_and(|segment| fastest * segment.sample_period > MAX_ANGLE_PER_SAMPLE)
     });
     let message = "the rotor turns too far between rows for them to be the inverter's own periods: the log is taken as decimated, and the \
                    held voltage vector is not corrected";

@@ -6,8 +6,9 @@
 //! E. Lazarus, D. J. Lewis, J. H. Stock and M. W. Watson, "HAR inference: recommendations for practice", Journal of Business & Economic Statistics 36 (2018) 541,
 //! doi:10.1080/07350015.2018.1506926.
 //!
-//! `B` follows from the first-order autocorrelation `rho`. The spectrum of such a series falls with frequency; averaged over the first `B` cosines it is too small by
-//! `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this under [`BIAS`].
+//! `B` follows from the first-order autocorrelation `rho`. The spectrum of such a series falls with frequency; averaged over the first `B` cosines it
+//! is too small by `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this under [`BIAS`], but never less than [`MIN_COSINES`];
+//! what a window of few correlation times then loses is made good by the spectrum's own formula.
 
 /// Largest relative bias of the variance accepted from the spectrum's fall: 5 % of the variance are 2.5 % of the standard error.
 const BIAS: f64 = 0.05;
@@ -18,20 +19,19 @@ const MAX_COSINES: usize = 12;
 /// Fewest cosines: with three degrees of freedom an interval is half again as wide as with twelve, but it holds.
 pub const MIN_COSINES: usize = 3;
 
-/// How many cosines suit a series' autocorrelation.
-pub(super) fn cosines_for(series: &[f64]) -> usize {
-    let n = series.len() as f64;
-    let rho = first_autocorrelation(series);
+/// How many cosines suit a first-order autocorrelation.
+pub(super) fn cosines_for(rho: f64, rows: usize) -> usize {
     if rho <= 0.0 {
         return MAX_COSINES;
     }
-    let most = n * (1.0 - rho) / std::f64::consts::PI * (3.0 * BIAS / rho).sqrt();
+    let most = rows as f64 * (1.0 - rho) / std::f64::consts::PI * (3.0 * BIAS / rho).sqrt();
     // A float that is not below the limit saturates.
     (most as usize).clamp(MIN_COSINES, MAX_COSINES)
 }
 
-/// Lag-one autocorrelation, with the first-order correction of its bias, `(1 + 3 rho)/n`: M. G. Kendall, Biometrika 41 (1954) 403, doi:10.1093/biomet/41.3-4.403.
-fn first_autocorrelation(series: &[f64]) -> f64 {
+/// Lag-one autocorrelation, with the first-order correction of its bias, `(1 + 3 rho)/n`: M. G. Kendall, Biometrika 41 (1954) 403,
+/// doi:10.1093/biomet/41.3-4.403. At most `1 - 1/n`: the longest correlation time that a window can show is its own length.
+pub(super) fn first_autocorrelation(series: &[f64]) -> f64 {
     let n = series.len() as f64;
     let mean = series.iter().sum::<f64>() / n;
     let power: f64 = series.iter().map(|x| (x - mean).powi(2)).sum();
@@ -40,7 +40,30 @@ fn first_autocorrelation(series: &[f64]) -> f64 {
     }
     let lagged: f64 = series.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();
     let rho = lagged / power;
-    (rho + (1.0 + 3.0 * rho) / n).min(1.0)
+    (rho + (1.0 + 3.0 * rho) / n).min(1.0 - 1.0 / n)
+}
+
+/// Spectrum of a first-order series, averaged over the first cosines of a window, as a share of that at zero frequency.
+fn spectrum_share(rho: f64, rows: usize, cosines: usize) -> f64 {
+    if rho <= 0.0 {
+        return 1.0;
+    }
+    let at = |j: usize| {
+        let cos = (j as f64 * std::f64::consts::PI / rows as f64).cos();
+        (1.0 - rho).powi(2) / (1.0 - 2.0 * rho * cos + rho * rho)
+    };
+    (1..=cosines).map(at).sum::<f64>() / cosines as f64
+}
+
+/// Variance of the mean of a few neighbours in a series, far fewer than the series has: `sigma²/m (1 + 2 sum over k of (1 - k/m) rho^k)`.
+pub(super) fn variance_of_short_mean(series: &[f64], rows: usize) -> f64 {
+    let n = series.len() as f64;
+    let mean = series.iter().sum::<f64>() / n;
+    let variance = series.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    let rho = first_autocorrelation(series).max(0.0);
+    let m = rows as f64;
+    let neighbours: f64 = (1..rows).map(|k| (1.0 - k as f64 / m) * rho.powi(k as i32)).sum();
+    variance / m * (1.0 + 2.0 * neighbours)
 }
 
 /// Projections of `C` series, fed row by row, on the first cosines of their length.
@@ -71,11 +94,11 @@ impl<const C: usize> CosineTransform<C> {
         }
     }
 
-    /// Covariance of the `C` means.
-    pub(super) fn covariance_of_mean(&self) -> [[f64; C]; C] {
+    /// Covariance of the `C` means, if the noise has this first-order autocorrelation.
+    pub(super) fn covariance_of_mean(&self, rho: f64) -> [[f64; C]; C] {
         let n = self.rows as f64;
         // sqrt(2/n) normalizes each cosine; a second 1/n turns the long-run variance into that of the mean.
-        let scale = 2.0 / n / n / self.sums.len() as f64;
+        let scale = 2.0 / n / n / self.sums.len() as f64 / spectrum_share(rho, self.rows, self.sums.len());
         let mut covariance = [[0.0; C]; C];
         for sums in &self.sums {
             for (row, one) in covariance.iter_mut().zip(sums) {
@@ -102,11 +125,13 @@ mod tests {
         (0..n).map(|_| next()).collect()
     }
 
-    fn variance_of_mean(series: &[f64], cosines: usize) -> f64 {
+    fn variance_of_mean(series: &[f64]) -> f64 {
+        let rho = first_autocorrelation(series);
+        let cosines = cosines_for(rho, series.len());
         let mean = series.iter().sum::<f64>() / series.len() as f64;
         let mut transform = CosineTransform::<1>::new(series.len(), cosines);
         series.iter().for_each(|x| transform.push(&[x - mean]));
-        transform.covariance_of_mean()[0][0]
+        transform.covariance_of_mean(rho)[0][0]
     }
 
     #[test]
@@ -119,7 +144,7 @@ mod tests {
             let mut total = 0.0;
             for _ in 0..runs {
                 let series = ar1(rho, n, &mut draws);
-                total += variance_of_mean(&series, cosines_for(&series)) * n as f64 / f64::from(runs);
+                total += variance_of_mean(&series) * n as f64 / f64::from(runs);
             }
             let expected = 1.0 / (1.0 - rho).powi(2);
             // Bias of up to 5 % by design, and for 0.95 a second one of the same size from the window's ends; the mean over 2000 runs is sharp to 1 %.
@@ -141,7 +166,7 @@ mod tests {
 
     #[test]
     fn constants_have_no_variance() {
-        assert_eq!(cosines_for(&[3.0; 50]), MAX_COSINES);
-        assert_eq!(variance_of_mean(&[3.0; 50], 12), 0.0);
+        assert_eq!(cosines_for(first_autocorrelation(&[3.0; 50]), 50), MAX_COSINES);
+        assert_eq!(variance_of_mean(&[3.0; 50]), 0.0);
     }
 }

@@ -1,14 +1,23 @@
 //! The inverter's held vector.
 //!
-//! Over a sample period the voltage stands still in the stator while the rotor turns by `omega_e T_s`; and a current sampled at a period's end is not the period's mean. With
-//! `x = omega_e T_s / 2` the steady equations hold, exact to `x²`, for
+//! Over a sample period the voltage stands still in the stator while the rotor turns by `omega_e T_s`; and a current sampled at a period's end is
+//! not the period's mean. With `x = omega_e T_s / 2`, `sinc x = sin(x)/x` and `u` the vector in the frame at the middle of its period, the flux at the
+//! period's end is known exactly while resistance is left out: in the stator it grows by `u T_s`, in the rotor it is the same after each period, so
 //!
 //! ```text
-//! u sinc(x),     i_d - omega_e u_q T_s² / (12 L_d),     i_q + omega_e u_d T_s² / (12 L_q)
+//! u_d / sinc(x) = R_s ī_d - omega_e L_q i_q
+//! u_q / sinc(x) = R_s ī_q + omega_e (L_d i_d + psi_f)
 //! ```
 //!
-//! where `u` is the vector in the frame at the middle of its period. A *centred* column, the mean of the two periods around the row seen from the frame at the row, is that
-//! vector times `cos x`.
+//! with the sampled currents in the fluxes. The resistance sees the period's mean, exact to `x²` and to the first order of `R_s T_s / L`
+//!
+//! ```text
+//! ī_d = i_d - omega_e u_q T_s² / (12 L_d),     ī_q = i_q + omega_e u_d T_s² / (12 L_q)
+//! ```
+//!
+//! So the inductances matter only in a small part of the resistive drop: a rough estimate of them does not reach the flux.
+//!
+//! A *centred* column, the mean of the two periods around the row seen from the frame at the row, is that vector times `cos x`.
 
 use crate::frames::Dq;
 
@@ -23,6 +32,10 @@ pub enum VoltageTiming {
 
 /// Beyond this angle per sample, rad, a log's period is no inverter's: such logs are decimated or filtered, and the inverter's own period is unknown.
 pub const MAX_ANGLE_PER_SAMPLE: f64 = 0.25;
+
+/// Beyond this `R_s T_s / L` the mean current is left as it is: no inverter controls a current with periods that long against the winding's time
+/// constant, and the expansion ends.
+pub const MAX_DECAY_PER_SAMPLE: f64 = 0.25;
 
 /// The correction for one log.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,16 +53,109 @@ impl HeldVector {
     pub const NONE: Self =
         Self { timing: VoltageTiming::Compensated, sample_period: 0.0, inductance: Dq { d: f64::INFINITY, q: f64::INFINITY } };
 
-    /// Voltage and current as the steady equations want them. V, A, electrical rad/s.
+    /// Voltage as the steady equations want it, and the current's mean over a period: what the resistance sees. V, A, electrical rad/s.
     pub fn correct(&self, u: Dq, i: Dq, omega_e: f64) -> (Dq, Dq) {
         let x = 0.5 * omega_e * self.sample_period;
         let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
         let factor = match self.timing {
-            VoltageTiming::Centered => sinc / x.cos(),
-            VoltageTiming::Compensated => sinc,
+            VoltageTiming::Centered => 1.0 / (sinc * x.cos()),
+            VoltageTiming::Compensated => 1.0 / sinc,
         };
         let ripple = omega_e * self.sample_period * self.sample_period / 12.0;
-        let corrected = Dq { d: i.d - u.q * ripple / self.inductance.d, q: i.q + u.d * ripple / self.inductance.q };
-        (Dq { d: factor * u.d, q: factor * u.q }, corrected)
+        let mean = Dq { d: i.d - u.q * ripple / self.inductance.d, q: i.q + u.d * ripple / self.inductance.q };
+        (Dq { d: factor * u.d, q: factor * u.q }, mean)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motor::Motor;
+
+    const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
+
+    /// Equation (1) in the dq frame over one period, by Runge and Kutta: the stator voltage stands still, `u` in the frame at the middle.
+    fn after_one_period(start: Dq, u: Dq, psi_f: f64, omega_e: f64, period: f64) -> Dq {
+        const STEPS: usize = 200;
+        let slope = |i: Dq, t: f64| {
+            let (sin, cos) = (omega_e * t).sin_cos();
+            let (ud, uq) = (cos * u.d + sin * u.q, cos * u.q - sin * u.d);
+            Dq {
+                d: (ud - MOTOR.rs * i.d + omega_e * MOTOR.lq * i.q) / MOTOR.ld,
+                q: (uq - MOTOR.rs * i.q - omega_e * (MOTOR.ld * i.d + psi_f)) / MOTOR.lq,
+            }
+        };
+        let h = period / STEPS as f64;
+        let (mut i, mut t) = (start, -0.5 * period);
+        for _ in 0..STEPS {
+            let moved = |k: Dq, by: f64| Dq { d: i.d + by * k.d, q: i.q + by * k.q };
+            let k1 = slope(i, t);
+            let k2 = slope(moved(k1, 0.5 * h), t + 0.5 * h);
+            let k3 = slope(moved(k2, 0.5 * h), t + 0.5 * h);
+            let k4 = slope(moved(k3, h), t + h);
+            i = Dq { d: i.d + h / 6.0 * (k1.d + 2.0 * (k2.d + k3.d) + k4.d), q: i.q + h / 6.0 * (k1.q + 2.0 * (k2.q + k3.q) + k4.q) };
+            t += h;
+        }
+        i
+    }
+
+    /// The held voltage after which the current is where it was: the end is linear in current, voltage and magnet.
+    fn periodic_voltage(i: Dq, omega_e: f64, period: f64) -> Dq {
+        let end = |i: Dq, u: Dq, psi_f: f64| after_one_period(i, u, psi_f, omega_e, period);
+        let none = Dq { d: 0.0, q: 0.0 };
+        let free = end(i, none, MOTOR.psi_f);
+        let (by_d, by_q) = (end(none, Dq { d: 1.0, q: 0.0 }, 0.0), end(none, Dq { d: 0.0, q: 1.0 }, 0.0));
+        let (d, q) = (i.d - free.d, i.q - free.q);
+        let determinant = by_d.d * by_q.q - by_q.d * by_d.q;
+        Dq { d: (d * by_q.q - q * by_q.d) / determinant, q: (by_d.d * q - by_d.q * d) / determinant }
+    }
+
+    /// How far equation (2) is from true, as a fraction of the voltage: `mean` at the resistance, `sampled` in the fluxes.
+    fn error(u: Dq, mean: Dq, sampled: Dq, omega_e: f64) -> f64 {
+        let flux = Motor { rs: 0.0, ..MOTOR }.steady_voltage(sampled, omega_e);
+        (u.d - MOTOR.rs * mean.d - flux.d).hypot(u.q - MOTOR.rs * mean.q - flux.q) / u.magnitude()
+    }
+
+    #[test]
+    fn corrected_rows_satisfy_the_steady_equations_where_logged_ones_do_not() {
+        let period = 1e-4;
+        for (angle, i) in
+            [(0.04, Dq { d: -2.0, q: 8.5 }), (0.1, Dq { d: -2.0, q: 8.5 }), (0.1, Dq { d: 3.0, q: -9.0 }), (-0.1, Dq { d: -6.0, q: 4.0 })]
+        {
+            let omega_e: f64 = angle / period;
+            let u = periodic_voltage(i, omega_e, period);
+            let cos = (0.5 * angle).cos();
+            let logged = [(VoltageTiming::Compensated, u), (VoltageTiming::Centered, Dq { d: cos * u.d, q: cos * u.q })];
+            for (timing, logged) in logged {
+                let held = HeldVector { timing, sample_period: period, inductance: Dq { d: MOTOR.ld, q: MOTOR.lq } };
+                let (corrected, mean) = held.correct(logged, i, omega_e);
+                let (before, after) = (error(logged, i, i, omega_e), error(corrected, mean, i, omega_e));
+                // Uncorrected: x²/6, or x²/3 when centred. Corrected: x² times R_s T_s / L, a few percent, squared, and x to the fourth.
+                let x2 = (0.5 * angle).powi(2);
+                assert!(before > 0.1 * x2, "{timing:?} {angle}: {before:e}");
+                assert!(after < 2e-3 * x2, "{timing:?} {angle}: {after:e} of {x2:e}");
+            }
+        }
+    }
+
+    /// The flux does not ask for the inductances: with a quite wrong one, only the small part of the resistive drop is wrong.
+    #[test]
+    fn a_rough_inductance_hardly_matters() {
+        let (period, omega_e, i) = (1e-4, 1000.0, Dq { d: -2.0, q: 8.5 });
+        let u = periodic_voltage(i, omega_e, period);
+        for factor in [0.5, 2.0, f64::INFINITY] {
+            let inductance = Dq { d: factor * MOTOR.ld, q: factor * MOTOR.lq };
+            let held = HeldVector { timing: VoltageTiming::Compensated, sample_period: period, inductance };
+            let (corrected, mean) = held.correct(u, i, omega_e);
+            // At most R_s T_s / L times omega T_s / 12, the whole term.
+            let term = MOTOR.rs * period / MOTOR.ld * omega_e * period / 12.0;
+            assert!(error(corrected, mean, i, omega_e) < term, "{factor}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_corrected_where_nothing_is_known() {
+        let (u, i) = (Dq { d: -20.0, q: 70.0 }, Dq { d: -2.0, q: 8.5 });
+        assert_eq!(HeldVector::NONE.correct(u, i, 400.0), (u, i));
     }
 }

@@ -14,7 +14,7 @@ pub mod held_vector;
 pub mod windows;
 
 use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor};
-use autocorrelation::{CosineTransform, MIN_COSINES, cosines_for};
+use autocorrelation::{CosineTransform, MIN_COSINES, cosines_for, first_autocorrelation, variance_of_short_mean};
 use held_vector::HeldVector;
 use std::ops::Range;
 
@@ -60,11 +60,12 @@ impl OperatingPoint {
         let row = |k: usize| {
             let (u, i) = (Dq { d: columns.ud[k], q: columns.uq[k] }, Dq { d: columns.id[k], q: columns.iq[k] });
             let omega_e = columns.omega_e[k];
-            let (u, i) = match belief {
+            // The resistance sees the mean over a period, the fluxes are those of the sampled currents.
+            let (u, mean) = match belief {
                 Some(belief) => belief.held_vector.correct(u, i, omega_e),
                 None => (u, i),
             };
-            [u.d, u.q, i.d, i.q, omega_e * i.d, omega_e * i.q, omega_e]
+            [u.d, u.q, mean.d, mean.q, omega_e * i.d, omega_e * i.q, omega_e]
         };
         let mut means = [0.0; CHANNELS];
         for k in rows.clone() {
@@ -72,14 +73,12 @@ impl OperatingPoint {
                 *mean += value / n as f64;
             }
         }
-        let cosines = match belief {
-            None => MIN_COSINES,
-            Some(belief) => {
-                let weights = residual_weights(&belief.motor);
-                let residuals = weights.map(|weights| rows.clone().map(|k| dot(&weights, &row(k))).collect::<Vec<_>>());
-                residuals.iter().map(|residual| cosines_for(residual)).min().unwrap_or(MIN_COSINES)
-            }
-        };
+        // Of the two residuals' correlations the longer counts for both.
+        let rho = belief.map(|belief| {
+            let residuals = residual_weights(&belief.motor).map(|weights| rows.clone().map(|k| dot(&weights, &row(k))).collect::<Vec<_>>());
+            residuals.iter().map(|residual| first_autocorrelation(residual)).fold(0.0, f64::max)
+        });
+        let cosines = rho.map_or(MIN_COSINES, |rho| cosines_for(rho, n));
         let mut transform = CosineTransform::<CHANNELS>::new(n, cosines);
         for k in rows.clone() {
             let mut deviation = row(k);
@@ -94,7 +93,7 @@ impl OperatingPoint {
             means,
             drift: Dq { d: drift_d, q: drift_q },
             drift_variance: Dq { d: variance_d, q: variance_q },
-            covariance: transform.covariance_of_mean(),
+            covariance: transform.covariance_of_mean(rho.unwrap_or(0.0)),
             degrees_of_freedom: cosines,
         }
     }
@@ -155,14 +154,15 @@ fn dot(one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-/// Slope of a current over its window, A/s, and the variance that white noise gives it.
+/// Slope of a current over its window, A/s, and the variance that noise gives it: what the straight line leaves, with its correlation from row to row.
 fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let n = current.len();
     let rows = DRIFT_ROWS.min(n / 4).max(1);
-    let mean = |part: &[f64]| part.iter().sum::<f64>() / rows as f64;
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
     // The two means lie n - rows of n - 1 steps apart.
-    let span = (end - start) * (n - rows) as f64 / (n - 1).max(1) as f64;
-    // Noise from neighbours: the slope itself does not count.
-    let noise = current.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() / (2.0 * (n - 1).max(1) as f64);
-    ((mean(&current[n - rows..]) - mean(&current[..rows])) / span, 2.0 * noise / rows as f64 / span.powi(2))
+    let steps = (n - rows) as f64;
+    let span = (end - start) * steps / (n - 1).max(1) as f64;
+    let change = mean(&current[n - rows..]) - mean(&current[..rows]);
+    let rest: Vec<f64> = current.iter().enumerate().map(|(k, i)| i - change * k as f64 / steps).collect();
+    (change / span, 2.0 * variance_of_short_mean(&rest, rows) / span.powi(2))
 }

@@ -180,3 +180,94 @@ impl Window {
 fn mean_of(blocks: &[Block]) -> [f64; 3] {
     std::array::from_fn(|c| blocks.iter().map(|block| block.means[c]).sum::<f64>() / blocks.len() as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Columns;
+
+    const PERIOD: f64 = 1e-3;
+
+    /// A log of (i_d, i_q, omega_e) per row, one millisecond apart; voltages that nobody reads here.
+    fn log(rows: impl IntoIterator<Item = (f64, f64, f64)>) -> Log {
+        log_at(rows, |k| k as f64 * PERIOD)
+    }
+
+    fn log_at(rows: impl IntoIterator<Item = (f64, f64, f64)>, time: impl Fn(usize) -> f64) -> Log {
+        let mut columns = Columns::default();
+        for (k, (id, iq, omega_e)) in rows.into_iter().enumerate() {
+            columns.t.push(time(k));
+            columns.id.push(id);
+            columns.iq.push(iq);
+            columns.omega_e.push(omega_e);
+            columns.ud.push(1.0);
+            columns.uq.push(1.0);
+        }
+        Log::new(columns).unwrap()
+    }
+
+    /// A straight line from one value to another in so many rows.
+    fn ramp(from: f64, to: f64, rows: usize) -> impl Iterator<Item = f64> {
+        (0..rows).map(move |k| from + (to - from) * k as f64 / rows as f64)
+    }
+
+    #[test]
+    fn two_plateaus_between_ramps_are_found_whole() {
+        // Rows 0..300 rise, 300..800 hold, 800..1000 rise, 1000..1600 hold, 1600..1900 fall. Blocks have 10 rows.
+        let iq =
+            ramp(0.0, 5.0, 300).chain(ramp(5.0, 5.0, 500)).chain(ramp(5.0, 9.0, 200)).chain(ramp(9.0, 9.0, 600)).chain(ramp(9.0, 0.0, 300));
+        assert_eq!(find(&log(iq.map(|iq| (-1.0, iq, 400.0)))).unwrap(), [300..800, 1000..1600]);
+    }
+
+    #[test]
+    fn the_tail_of_a_transient_is_cut_off() {
+        // i_q settles to 8 A from 2 A with a time constant of 50 rows: within 0.1 % of 8.06 A (the peak) after 50 ln(6/0.008) = 331 rows.
+        let rows = (0..2000).map(|k| (-1.0, 8.0 - 6.0 * (-f64::from(k) / 50.0).exp(), 400.0));
+        let windows = find(&log(rows)).unwrap();
+        assert_eq!(windows.len(), 1);
+        // A block counts by its mean, and noise is read from neighbours, so a block or two either way.
+        assert!((290..=350).contains(&windows[0].start) && windows[0].end == 2000, "{windows:?}");
+    }
+
+    #[test]
+    fn a_coasting_drive_is_left_out_and_counted() {
+        // 0.5 % of the current while the speed holds.
+        let rows = (0..1200).map(|k| if k < 600 { (0.0, 8.0, 400.0) } else { (0.0, 0.04, 400.0) });
+        let log = log(rows);
+        assert_eq!(find(&log).unwrap(), vec![0..600; 1]);
+        assert_eq!(rows_without_current(&log), 600);
+    }
+
+    #[test]
+    fn where_nothing_stands_still_there_is_no_operating_point() {
+        let rows = ramp(1.0, 9.0, 1000).map(|iq| (0.0, iq, 400.0));
+        assert_eq!(find(&log(rows)), Err(Error::NoOperatingPoint { least: 30 }));
+        // A slow swing of 10 %: steady from block to block, never over a window.
+        let rows = (0..4000).map(|k| (0.0, 8.0 + 0.8 * (f64::from(k) / 100.0).sin(), 400.0));
+        assert!(find(&log(rows)).map_or_else(|_| true, |windows| windows.iter().all(|rows| rows.len() < 100)));
+    }
+
+    #[test]
+    fn no_window_crosses_a_gap_in_time() {
+        let log = log_at((0..1000).map(|_| (-1.0, 8.0, 400.0)), |k| k as f64 * PERIOD + if k < 437 { 0.0 } else { 0.1 });
+        let windows = find(&log).unwrap();
+        assert!(windows.iter().all(|rows| rows.end <= 437 || rows.start >= 437), "{windows:?}");
+        assert_eq!(windows.len(), 2);
+        assert_eq!(between(&log, (0.0, 2.0)).unwrap(), [0..437, 437..1000]);
+    }
+
+    #[test]
+    fn named_windows_hold_their_ends_and_a_short_one_says_what_it_has() {
+        let log = log((0..1000).map(|_| (-1.0, 8.0, 400.0)));
+        assert_eq!(between(&log, (0.1, 0.2)).unwrap(), vec![100..201; 1]);
+        let short = between(&log, (0.0995, 0.1285));
+        assert_eq!(short, Err(Error::Window { from: 0.0995, to: 0.1285, rows: 29, least: 30, start: 0.0, end: 0.999 }));
+        let outside = between(&log, (5.0, 6.0));
+        assert_eq!(outside, Err(Error::Window { from: 5.0, to: 6.0, rows: 0, least: 30, start: 0.0, end: 0.999 }));
+    }
+
+    #[test]
+    fn the_papers_rows_are_the_last_ones() {
+        assert_eq!(at_most_paper_rows(&[100..5000, 6000..6100, 0..4000, 0..4001]), [1000..5000, 6000..6100, 0..4000, 1..4001]);
+    }
+}
