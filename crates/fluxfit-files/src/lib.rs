@@ -8,7 +8,8 @@
 //! use fluxfit_files::{LogOptions, parse_log, parse_map};
 //!
 //! let csv = b"t_ms;u_d;uq;id;iq;speed_rpm\n0;1,5;20;0;3;500\n1;1,5;20;0;3;500\n";
-//! let options = LogOptions { map: vec![parse_map("ud=u_d")?, parse_map("omega=speed_rpm")?], pole_pairs: Some(4), ..LogOptions::default() };
+//! let map = vec![parse_map("ud=u_d")?, parse_map("omega=speed_rpm")?];
+//! let options = LogOptions { map, pole_pairs: Some(4), ..LogOptions::default() };
 //! let read = parse_log("drive.csv", csv, &options)?;
 //! assert_eq!(read.log.columns().t, [0.0, 0.001]);
 //! assert_eq!(read.notes[1], "omega_e: column 'speed_rpm' read as mechanical r/min with 4 pole pairs");

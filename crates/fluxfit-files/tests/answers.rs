@@ -1,4 +1,5 @@
-//! The document of an identification keeps its promises: numbers where numbers are promised, nulls where nothing is known, and text that reads back.
+//! The document of an identification keeps its promises: numbers where numbers are promised, nulls where nothing is known, and
+//! text that reads back.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

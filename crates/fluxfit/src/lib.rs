@@ -43,6 +43,7 @@ pub mod log;
 pub mod motor;
 pub mod objective;
 pub mod optimizer;
+mod resolution;
 pub mod steady;
 pub mod study;
 

@@ -4,7 +4,7 @@
 //! jump: a jump ends a [segment](Log::segments), and nothing is ever computed across one. Several logs of one motor
 //! [join](Log::join) into one.
 
-use crate::error::Error;
+use crate::{error::Error, resolution};
 use std::ops::Range;
 
 /// The columns of a log, row by row in SI units; canonical names. Voltages and currents in the dq frame of [`frames`](crate::frames).
@@ -54,6 +54,8 @@ pub struct Segment {
     pub rows: Range<usize>,
     /// Median time step of the log it came from, s.
     pub sample_period: f64,
+    /// Steps on which the channels of that log lie, in its units: `ud, uq, id, iq, omega_e`; zero for those that are not quantized.
+    pub steps: [f64; 5],
 }
 
 impl Log {
@@ -84,7 +86,8 @@ impl Log {
         if silent([&columns.omega_e; 2]) {
             return Err(Error::AllZero { what: "the speed omega_e is" });
         }
-        let segments = split(&columns.t);
+        let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| resolution::step(column));
+        let segments = split(&columns.t, steps);
         Ok(Self { columns, segments })
     }
 
@@ -126,6 +129,11 @@ impl Log {
         &self.segments
     }
 
+    /// The segment of a row.
+    pub fn segment_of(&self, row: usize) -> Option<&Segment> {
+        self.segments.iter().find(|segment| segment.rows.contains(&row))
+    }
+
     /// Time covered by the segments, s: gaps do not count, each segment's last row counts one sample period.
     pub fn duration(&self) -> f64 {
         let t = &self.columns.t;
@@ -161,7 +169,7 @@ fn check_time(t: &[f64]) -> Result<(), Error> {
     }
 }
 
-fn split(t: &[f64]) -> Vec<Segment> {
+fn split(t: &[f64], steps_of_channels: [f64; 5]) -> Vec<Segment> {
     let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     let sample_period = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
@@ -169,7 +177,7 @@ fn split(t: &[f64]) -> Vec<Segment> {
     let mut start = 0;
     for end in 1..=t.len() {
         if end == t.len() || t[end] - t[end - 1] > GAP_FACTOR * sample_period {
-            segments.push(Segment { rows: start..end, sample_period });
+            segments.push(Segment { rows: start..end, sample_period, steps: steps_of_channels });
             start = end;
         }
     }

@@ -141,8 +141,8 @@ fn a_person_sees_values_verdicts_reasons_and_remedies() {
     assert_eq!(run.status, 1);
     for expected in [
         "R_s",
-        "0.957",
-        "±1.2 %",
+        "0.9598",
+        "±1.1 %",
         "identified",
         "not identifiable",
         "L_d: i_d stays at zero",

@@ -4,11 +4,16 @@
 //! minimize  sum over points  r' W r,   r = b - A x,   W = (N / n + voltage accuracy²)^-1
 //! ```
 //!
-//! `N` holds the long-run noise variances of `r`, pooled over the points, and `n` a point's rows. A point's own covariance has few degrees of freedom: weighting by it would chase its luck and make the answer
-//! look better than it is. The uncertainty is computed from the points' own covariances all the same, so it holds where the noise differs between them.
-//! The noise of currents and speed counts in `N` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated. Parameters that are fixed move to the right-hand side; a prior is one more equation.
+//! `N` holds the long-run noise variances of `r`, pooled over the points, and `n` a point's rows. A point's own covariance has
+//! few degrees of freedom: weighting by it would chase its luck and make the answer look better than it is. The uncertainty is
+//! computed from the points' own covariances all the same, so it holds where the noise differs between them. The noise of
+//! currents and speed counts in `N` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated.
+//! Parameters that are fixed move to the right-hand side; a prior is one more equation.
 
-use super::{Known, Settings, excitation::Excitation};
+use super::{
+    Known, Settings,
+    excitation::{Excitation, MAX_SVD_STEPS},
+};
 use crate::{
     least_squares::Equation,
     motor::{Motor, PARAMETERS},
@@ -20,7 +25,8 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
 /// Rounds of weighting. Weights move the answer by a fraction of its uncertainty, so the second round already changes nothing visible.
 const ROUNDS: usize = 4;
 
-/// Voltages are never trusted beyond this fraction of the largest, so that noise-free windows have finite weights, those without voltage too.
+/// Voltages are never trusted beyond this fraction of the largest, so that noise-free windows have finite weights, those without
+/// voltage too.
 const LEAST_ACCURACY: f64 = 1e-9;
 
 /// A voltage, V, that no drive can tell from none.
@@ -74,7 +80,7 @@ impl Estimate {
         let gains = of_points.map(|(gain, whitener)| {
             std::array::from_fn(|p| [0, 1].map(|axis| gain[0][p] * whitener[(0, axis)] + gain[1][p] * whitener[(1, axis)]))
         });
-        let chi_squared = chi_squared(points, &motor, &accuracy, settings);
+        let chi_squared = chi_squared(points, excitation, &motor, &accuracy, settings);
         let prior_gains = gain[2 * points.len()..].to_vec();
         Self {
             motor,
@@ -135,7 +141,8 @@ impl System {
             let coefficients = DMatrix::from_fn(self.equations.len(), PARAMETERS, |row, p| self.equations[row].coefficients[p]);
             let values = DVector::from_iterator(self.equations.len(), self.equations.iter().map(|equation| equation.value));
             // The columns are excited, so the pseudo-inverse needs no cut-off of its own.
-            if let Ok(inverse) = (coefficients * &basis).pseudo_inverse(0.0) {
+            let svd = (coefficients * &basis).try_svd(true, true, f64::EPSILON, MAX_SVD_STEPS);
+            if let Some(Ok(inverse)) = svd.map(|svd| svd.pseudo_inverse(0.0)) {
                 let product = basis * inverse;
                 x += Vector4::from_iterator((&product * values).iter().copied());
                 gain = product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect();
@@ -145,7 +152,8 @@ impl System {
     }
 }
 
-/// Long-run variances of the two residuals' noise, V² times rows, as a diagonal matrix: the points' own, weighted by what is behind them. The covariance between the axes is left out: estimated, it costs more than it brings.
+/// Long-run variances of the two residuals' noise, V² times rows, as a diagonal matrix: the points' own, weighted by what is
+/// behind them. The covariance between the axes is left out: estimated, it costs more than it brings.
 fn pooled_noise(points: &[OperatingPoint], motor: &Motor) -> Matrix2<f64> {
     let total: usize = points.iter().map(|point| point.degrees_of_freedom).sum();
     let share = |point: &OperatingPoint| (point.rows.len() * point.degrees_of_freedom) as f64 / total as f64;
@@ -172,11 +180,13 @@ fn priors(settings: &Settings) -> impl Iterator<Item = Equation> + '_ {
     })
 }
 
-fn chi_squared(points: &[OperatingPoint], motor: &Motor, accuracy: &[f64], settings: &Settings) -> f64 {
+/// What directions that are not excited could do to the residuals is no contradiction: it counts as noise here.
+fn chi_squared(points: &[OperatingPoint], excitation: &Excitation, motor: &Motor, accuracy: &[f64], settings: &Settings) -> f64 {
     let x = motor.to_array();
     let of_points = points.iter().zip(accuracy).map(|(point, accuracy)| {
         let residual = Vector2::from(point.equations().map(|equation| equation.residual(&x)));
-        (whitener(point.residual_covariance(motor).into(), *accuracy) * residual).norm_squared()
+        let noise = Matrix2::from(point.residual_covariance(motor)) + Matrix2::from(excitation.unexcited_covariance(&point.equations()));
+        (whitener(noise, *accuracy) * residual).norm_squared()
     });
     of_points.sum::<f64>() + priors(settings).map(|equation| equation.residual(&x).powi(2)).sum::<f64>()
 }
@@ -192,7 +202,8 @@ fn move_fixed(mut equation: Equation, settings: &Settings) -> Equation {
     equation
 }
 
-/// Operating points closer than this, as a fraction of the largest current and speed, are one: a repetition proves repeatability, not the model.
+/// Operating points closer than this, as a fraction of the largest current and speed, are one: a repetition proves repeatability,
+/// not the model.
 const DISTINCT: f64 = 0.02;
 
 /// How many operating points differ from each other.

@@ -1,10 +1,13 @@
 //! Excitation: which combinations of the parameters a log can tell, noise considered, and how far the others could reach.
 //!
-//! The parameters are measured in fractions of what the voltage allows (`R_s` in `U/I`, `L` in `U/(omega I)`, `psi_f` in `U/omega`), so that each lies between 0 and 1 and the equations'
-//! coefficients, in fractions of `U`, compare. The right singular vectors of these coefficients are directions in parameter space, each with the voltage that it moves. A direction counts as excited only
-//! if that voltage stands well above what the *noise of currents and speed* makes of the coefficients: at `i_d = 0` the column of `L_d` is nothing but noise, whatever its condition number says.
+//! The parameters are measured in fractions of what the voltage allows (`R_s` in `U/I`, `L` in `U/(omega I)`, `psi_f` in
+//! `U/omega`), so that each lies between 0 and 1 and the equations' coefficients, in fractions of `U`, compare. The right
+//! singular vectors of these coefficients are directions in parameter space, each with the voltage that it moves. A direction
+//! counts as excited only if that voltage stands well above what the *noise of currents and speed* makes of the coefficients: at
+//! `i_d = 0` the column of `L_d` is nothing but noise, whatever its condition number says.
 //!
-//! A direction that is not excited is left at zero, and the physical range 0 to 1 of every parameter bounds what this can do to each of them.
+//! A direction that is not excited is left at zero, and the physical range 0 to 1 of every parameter bounds what this can do to
+//! each of them.
 
 use super::Known;
 use crate::{
@@ -12,10 +15,13 @@ use crate::{
     motor::{Motor, PARAMETERS, Parameter},
     steady::OperatingPoint,
 };
-use nalgebra::{DMatrix, Matrix4, Vector4};
+use nalgebra::{DMatrix, Matrix4, SVD, Vector4};
 
 /// An excited direction's voltage is at least this many standard deviations of its noise.
 const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
+
+/// Steps after which a singular value decomposition is given up: a few per singular value are usual.
+pub(super) const MAX_SVD_STEPS: usize = 1000;
 
 /// Currents and speed are known no better than this fraction of their largest value, however quiet they are.
 const COEFFICIENT_ACCURACY: f64 = 1e-4;
@@ -70,15 +76,14 @@ impl Excitation {
         // At least as many rows as columns, so that directions without any voltage appear as well.
         rows.resize(rows.len().max(PARAMETERS), [0.0; PARAMETERS]);
 
-        let svd = DMatrix::from_fn(rows.len(), free.len(), |row, column| rows[row][free[column]]).svd(false, true);
-        let mut directions = Vec::new();
-        for (singular, v) in svd.singular_values.iter().zip(svd.v_t.iter().flat_map(|v_t| v_t.row_iter())) {
+        let matrix = DMatrix::from_fn(rows.len(), free.len(), |row, column| rows[row][free[column]]);
+        let directions = singular_directions(matrix).into_iter().map(|(singular, v)| {
             let mut components = [0.0; PARAMETERS];
-            free.iter().zip(v.iter()).for_each(|(p, component)| components[*p] = *component);
-            let noise = coefficient_noise(points, &components, &scale, u);
-            let signal_to_noise = singular / noise;
-            directions.push(Direction { components, signal_to_noise, excited: signal_to_noise >= MIN_SIGNAL_TO_NOISE });
-        }
+            free.iter().zip(v).for_each(|(p, component)| components[*p] = component);
+            let signal_to_noise = singular / coefficient_noise(points, &components, &scale, u);
+            Direction { components, signal_to_noise, excited: signal_to_noise >= MIN_SIGNAL_TO_NOISE }
+        });
+        let directions: Vec<Direction> = directions.collect();
         let unexcited_reach = reach(&directions, &scale);
         Self { scale, directions, unexcited_reach }
     }
@@ -102,6 +107,22 @@ impl Excitation {
         Motor::from(std::array::from_fn(|p| excited[p] * self.scale[p]))
     }
 
+    /// Covariance, V², of two equations' residuals that the unexcited directions could make: each uniform over a parameter's
+    /// whole range to either side.
+    pub fn unexcited_covariance(&self, equations: &[Equation; 2]) -> [[f64; 2]; 2] {
+        let mut covariance = [[0.0; 2]; 2];
+        for direction in self.directions.iter().filter(|direction| !direction.excited) {
+            let largest = direction.components.iter().fold(0.0_f64, |most, component| most.max(component.abs()));
+            let moved = equations.map(|equation| {
+                (0..PARAMETERS).map(|p| equation.coefficients[p] * self.scale[p] * direction.components[p]).sum::<f64>() / largest
+            });
+            for (row, one) in covariance.iter_mut().zip(moved) {
+                row.iter_mut().zip(moved).for_each(|(entry, other)| *entry += one * other / 3.0);
+            }
+        }
+        covariance
+    }
+
     fn excited_part(&self, vector: [f64; PARAMETERS]) -> [f64; PARAMETERS] {
         let mut part = [0.0; PARAMETERS];
         for direction in self.excited() {
@@ -121,6 +142,18 @@ impl Excitation {
             .sum::<f64>()
             .sqrt();
         part > OPEN_PART
+    }
+}
+
+/// Singular values and right singular vectors, largest first. Should the decomposition not end, the axes, moving nothing: no
+/// answer rather than a wrong one.
+fn singular_directions(matrix: DMatrix<f64>) -> Vec<(f64, Vec<f64>)> {
+    let columns = matrix.ncols();
+    match matrix.try_svd(false, true, f64::EPSILON, MAX_SVD_STEPS) {
+        Some(SVD { singular_values, v_t: Some(v_t), .. }) => {
+            singular_values.iter().copied().zip(v_t.row_iter().map(|row| row.iter().copied().collect())).collect()
+        }
+        _ => (0..columns).map(|axis| (0.0, (0..columns).map(|column| f64::from(u8::from(column == axis))).collect())).collect(),
     }
 }
 
@@ -202,7 +235,8 @@ mod tests {
         assert_eq!(open(&[(-2.0, 9.0, 400.0), (-2.0, 3.0, 400.0)], &ld), []);
     }
 
-    /// At i_d = 0 nothing but the voltage bounds L_d; at constant i_d every pair with the same L_d i_d + psi_f fits, and the reach covers the true one.
+    /// At i_d = 0 nothing but the voltage bounds L_d; at constant i_d every pair with the same L_d i_d + psi_f fits, and the
+    /// reach covers the true one.
     #[test]
     fn the_reach_bounds_what_stays_open_and_nothing_else() {
         let modes = [(0.0, 9.0, 400.0), (0.0, 9.0, 200.0)];

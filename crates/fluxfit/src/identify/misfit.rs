@@ -1,8 +1,10 @@
 //! Misfit: operating points that contradict each other, and an estimate that admits it.
 //!
-//! Where the residuals are larger than noise and accuracy allow, one motor with constant parameters is not true: it saturates, heats up, or these are not the voltages that acted. Then the voltages are trusted
-//! only as far as the points agree: to the fraction at which chi squared equals its degrees of freedom, so that no point dominates for being quiet, and the interval covers the single points, not their mean.
-//! R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. Natl. Bur. Stand. 87 (1982) 377, doi:10.6028/jres.087.022.
+//! Where the residuals are larger than noise and accuracy allow, one motor with constant parameters is not true: it saturates,
+//! heats up, or these are not the voltages that acted. Then the voltages are trusted only as far as the points agree: to the
+//! fraction at which chi squared equals its degrees of freedom, so that no point dominates for being quiet, and the interval is
+//! widened to the scatter of the points instead of the error of their mean. A point may still lie outside it. R. C. Paule and J.
+//! Mandel, "Consensus values and weighting factors", J. Res. Natl. Bur. Stand. 87 (1982) 377, doi:10.6028/jres.087.022.
 
 use super::{Settings, estimate::Estimate, excitation::Excitation};
 use crate::steady::OperatingPoint;

@@ -1,6 +1,7 @@
 //! Identification: from a log to four parameters, each with an interval and a verdict.
 //!
-//! [`identify`] is the main path. Its model is the steady one: equation (2) on the means of steady windows, for which weighted least squares is exact; the swarm's answer is reported beside it.
+//! [`identify`] is the main path. Its model is the steady one: equation (2) on the means of steady windows, for which weighted
+//! least squares is exact; the swarm's answer is reported beside it.
 
 pub mod estimate;
 pub mod excitation;
@@ -38,7 +39,8 @@ pub const VOLTAGE_ACCURACY: f64 = 1e-4;
 pub struct Settings {
     /// Windows in time, s; none: they are found.
     pub windows: Vec<(f64, f64)>,
-    /// What the voltage columns mean; none: centred, where the sampling is fast enough for it to matter, with the doubt in the systematic uncertainty.
+    /// What the voltage columns mean; none: centred, where the sampling is fast enough for it to matter, with the doubt in the
+    /// systematic uncertainty.
     pub voltage_timing: Option<VoltageTiming>,
     /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
     pub voltage_accuracy: f64,
@@ -132,7 +134,8 @@ impl Identification {
 /// Identifies a motor from a log.
 ///
 /// # Errors
-/// If a setting is out of range, or no steady operating point is found. A log that cannot carry some parameter is no error: the verdicts say so.
+/// If a setting is out of range, or no steady operating point is found. A log that cannot carry some parameter is no error: the
+/// verdicts say so.
 pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error> {
     check(settings)?;
     let rough = operating_points(log, settings)?;
@@ -223,7 +226,8 @@ fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<Ope
     (points, doubt)
 }
 
-/// The inductances for the current's ripple: a rough estimate will do, but not one of noise. What the log does not excite is taken from the other axis.
+/// The inductances for the current's ripple: a rough estimate will do, but not one of noise. What the log does not excite is
+/// taken from the other axis.
 fn inductance(motor: &Motor, excitation: &Excitation) -> Dq {
     let known =
         |parameter| Some(motor.get(parameter)).filter(|value| *value > 0.0 && excitation.unexcited_reach[parameter as usize] < *value);
@@ -231,11 +235,10 @@ fn inductance(motor: &Motor, excitation: &Excitation) -> Dq {
     Dq { d: ld.or(lq).unwrap_or(f64::INFINITY), q: lq.or(ld).unwrap_or(f64::INFINITY) }
 }
 
-/// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all windows, so that either
-/// all of them are corrected or none; none of the current where so long a period does not shape it.
+/// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all
+/// windows, so that either all of them are corrected or none; none of the current where so long a period does not shape it.
 fn held_vector(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> HeldVector {
-    let period = log.segments().iter().find(|segment| segment.rows.contains(&point.rows.start)).map(|segment| segment.sample_period);
-    match period {
+    match log.segment_of(point.rows.start).map(|segment| segment.sample_period) {
         Some(sample_period) if fastest * sample_period <= MAX_ANGLE_PER_SAMPLE => {
             let shapes = |l: f64| if rs > 0.0 && rs * sample_period <= MAX_DECAY_PER_SAMPLE * l { l } else { f64::INFINITY };
             HeldVector { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }

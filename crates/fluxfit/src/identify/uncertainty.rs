@@ -1,13 +1,14 @@
 //! How far to trust the estimate: a standard error in two parts, and the interval they make.
 //!
-//! *Statistical* (GUM type A): the noise of each window's means, carried through the estimate's gains; its degrees of freedom by Welch and Satterthwaite. *Systematic* (type B): what longer logs would not cure;
-//! these parts are added in quadrature:
+//! *Statistical* (GUM type A): the noise of each window's means, carried through the estimate's gains; its degrees of freedom by
+//! Welch and Satterthwaite. *Systematic* (type B): what longer logs would not cure; these parts are added in quadrature:
 //!
 //! - the voltages' accuracy, independent between windows and axes;
 //! - priors;
 //! - the timing of the voltage columns, where nobody stated it;
 //! - directions that the log does not excite, a uniform distribution over their reach;
-//! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval covers single points instead of their mean.
+//! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is
+//!   widened to their scatter.
 //!
 //! JCGM 100:2008 (GUM), sections 4 and 5 and G.4.
 
@@ -131,7 +132,8 @@ impl Uncertainty {
             parameter.systematic.timing = timing_doubt[p];
             // A uniform distribution's standard deviation.
             parameter.systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
-            // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own square is 0/0 where there is no noise.
+            // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own
+            // square is 0/0 where there is no noise.
             let degrees = parameter.degrees_of_freedom * (parameter.standard_error() / parameter.statistical).powi(4);
             parameter.degrees_of_freedom = if degrees.is_nan() { NORMAL } else { degrees.clamp(1.0, NORMAL) };
             parameter.half_width = quantile(parameter.degrees_of_freedom) * parameter.standard_error();

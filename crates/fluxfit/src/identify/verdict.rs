@@ -1,6 +1,7 @@
 //! Verdicts: for each parameter a plain word.
 //!
-//! A verdict follows from the interval alone, and from what no motor has: a resistance, inductance or flux that is not positive is never an answer.
+//! A verdict follows from the interval alone, and from what no motor has: a resistance, inductance or flux that is not positive
+//! is never an answer.
 
 use super::{
     Known, Settings, estimate::Estimate, excitation::Excitation, explain::explain, uncertainty::ParameterUncertainty,

@@ -38,7 +38,7 @@ fn misfit(found: &Identification) -> Option<String> {
     Some(format!(
         "the operating points contradict each other {:.1} times beyond noise and accuracy, and agree only to {:.2} % of the voltage: \
          inductances fall with current (saturation), flux and resistance change with temperature, or these are not the voltages at the \
-         terminals; the intervals are widened to hold for each point",
+         terminals; the intervals are widened to the scatter of the points",
         misfit.ratio,
         100.0 * misfit.voltage_accuracy
     ))
@@ -59,7 +59,7 @@ fn no_current(log: &Log, settings: &Settings) -> Option<String> {
 fn coarse_sampling(log: &Log, found: &Identification) -> Option<String> {
     let fastest = found.operating_points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let coarse = found.operating_points.iter().any(|point| {
-        let within = log.segments().iter().find(|segment| segment.rows.contains(&point.rows.start));
+        let within = log.segment_of(point.rows.start);
         within.is_some_and(|segment| fastest * segment.sample_period > MAX_ANGLE_PER_SAMPLE)
     });
     let message = "the rotor turns too far between rows for them to be the inverter's own periods: the log is taken as decimated, and the \

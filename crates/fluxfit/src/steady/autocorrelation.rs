@@ -1,14 +1,16 @@
 //! The variance of a mean whose samples are correlated.
 //!
-//! `var(mean) = S(0) / n` with `S(0)` the series' spectral density at zero frequency, which the plain variance misses by a factor of hundreds on a real log.
-//! Here `S(0)` is the average of the squared projections on the first `B` cosines that fit the window (equal-weighted cosine transform). It is positive semidefinite for
-//! any number of series at once, linear in them, and its distribution is known: `mean / sqrt(S/n)` is Student's t with `B` degrees of freedom.
-//! E. Lazarus, D. J. Lewis, J. H. Stock and M. W. Watson, "HAR inference: recommendations for practice", Journal of Business & Economic Statistics 36 (2018) 541,
+//! `var(mean) = S(0) / n` with `S(0)` the series' spectral density at zero frequency, which the plain variance misses by a factor
+//! of hundreds on a real log. Here `S(0)` is the average of the squared projections on the first `B` cosines that fit the window
+//! (equal-weighted cosine transform). It is positive semidefinite for any number of series at once, linear in them, and its
+//! distribution is known: `mean / sqrt(S/n)` is Student's t with `B` degrees of freedom. E. Lazarus, D. J. Lewis, J. H. Stock and
+//! M. W. Watson, "HAR inference: recommendations for practice", Journal of Business & Economic Statistics 36 (2018) 541,
 //! doi:10.1080/07350015.2018.1506926.
 //!
-//! `B` follows from the first-order autocorrelation `rho`. The spectrum of such a series falls with frequency; averaged over the first `B` cosines it
-//! is too small by `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this under [`BIAS`], but never less than [`MIN_COSINES`];
-//! what a window of few correlation times then loses is made good by the spectrum's own formula.
+//! `B` follows from the first-order autocorrelation `rho`. The spectrum of such a series falls with frequency; averaged over the
+//! first `B` cosines it is too small by `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this under
+//! [`BIAS`], but never less than [`MIN_COSINES`]; what a window of few correlation times then loses is made good by the
+//! spectrum's own formula.
 
 /// Largest relative bias of the variance accepted from the spectrum's fall: 5 % of the variance are 2.5 % of the standard error.
 const BIAS: f64 = 0.05;
@@ -147,7 +149,8 @@ mod tests {
                 total += variance_of_mean(&series) * n as f64 / f64::from(runs);
             }
             let expected = 1.0 / (1.0 - rho).powi(2);
-            // Bias of up to 5 % by design, and for 0.95 a second one of the same size from the window's ends; the mean over 2000 runs is sharp to 1 %.
+            // Bias of up to 5 % by design, and for 0.95 a second one of the same size from the window's ends; the mean over 2000
+            // runs is sharp to 1 %.
             assert!((total / expected - 1.0).abs() < tolerance, "rho {rho}: {total} against {expected}");
         }
     }

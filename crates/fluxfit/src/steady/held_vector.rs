@@ -1,8 +1,9 @@
 //! The inverter's held vector.
 //!
-//! Over a sample period the voltage stands still in the stator while the rotor turns by `omega_e T_s`; and a current sampled at a period's end is
-//! not the period's mean. With `x = omega_e T_s / 2`, `sinc x = sin(x)/x` and `u` the vector in the frame at the middle of its period, the flux at the
-//! period's end is known exactly while resistance is left out: in the stator it grows by `u T_s`, in the rotor it is the same after each period, so
+//! Over a sample period the voltage stands still in the stator while the rotor turns by `omega_e T_s`; and a current sampled at a
+//! period's end is not the period's mean. With `x = omega_e T_s / 2`, `sinc x = sin(x)/x` and `u` the vector in the frame at the
+//! middle of its period, the flux at the period's end is known exactly while resistance is left out: in the stator it grows by `u
+//! T_s`, in the rotor it is the same after each period, so
 //!
 //! ```text
 //! u_d / sinc(x) = R_s ī_d - omega_e L_q i_q
@@ -30,11 +31,12 @@ pub enum VoltageTiming {
     Compensated,
 }
 
-/// Beyond this angle per sample, rad, a log's period is no inverter's: such logs are decimated or filtered, and the inverter's own period is unknown.
+/// Beyond this angle per sample, rad, a log's period is no inverter's: such logs are decimated or filtered, and the inverter's
+/// own period is unknown.
 pub const MAX_ANGLE_PER_SAMPLE: f64 = 0.25;
 
-/// Beyond this `R_s T_s / L` the mean current is left as it is: no inverter controls a current with periods that long against the winding's time
-/// constant, and the expansion ends.
+/// Beyond this `R_s T_s / L` the mean current is left as it is: no inverter controls a current with periods that long against the
+/// winding's time constant, and the expansion ends.
 pub const MAX_DECAY_PER_SAMPLE: f64 = 0.25;
 
 /// The correction for one log.
@@ -44,7 +46,8 @@ pub struct HeldVector {
     pub timing: VoltageTiming,
     /// Sample period, s; zero corrects nothing.
     pub sample_period: f64,
-    /// Inductances that shape the current within a period, H, d and q; infinite where they are not known, which leaves the current as it is.
+    /// Inductances that shape the current within a period, H, d and q; infinite where they are not known, which leaves the
+    /// current as it is.
     pub inductance: Dq,
 }
 

@@ -1,19 +1,22 @@
-//! Operating points: stretches of a log in which the drive stands still in the dq frame, as means with a covariance that knows autocorrelation.
+//! Operating points: stretches of a log in which the drive stands still in the dq frame, as means with a covariance that knows
+//! autocorrelation.
 //!
-//! Over a window of `n` rows equation (1) holds for the means, exactly, because it is linear in these seven channels and the currents' drift:
+//! Over a window of `n` rows equation (1) holds for the means, exactly, because it is linear in these seven channels and the
+//! currents' drift:
 //!
 //! ```text
 //! mean(u_d) = R_s mean(i_d) + L_d drift_d - L_q mean(omega_e i_q)
 //! mean(u_q) = R_s mean(i_q) + L_q drift_q + L_d mean(omega_e i_d) + psi_f mean(omega_e)
 //! ```
 //!
-//! Means, not samples: a drive's voltage answers the noise of its own current measurement, and sample by sample that biases R_s by several percent; the mean of a window does not care.
+//! Means, not samples: a drive's voltage answers the noise of its own current measurement, and sample by sample that biases R_s
+//! by several percent; the mean of a window does not care.
 
 pub mod autocorrelation;
 pub mod held_vector;
 pub mod windows;
 
-use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor};
+use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor, resolution};
 use autocorrelation::{CosineTransform, MIN_COSINES, cosines_for, first_autocorrelation, variance_of_short_mean};
 use held_vector::HeldVector;
 use std::ops::Range;
@@ -21,7 +24,8 @@ use std::ops::Range;
 /// Channels whose means enter the steady equations: u_d, u_q, i_d, i_q, omega_e i_d, omega_e i_q, omega_e.
 pub const CHANNELS: usize = 7;
 
-/// The drift of the currents is read between the means of this many rows at either end of a window: few enough to sit at the ends, enough to calm noise.
+/// The drift of the currents is read between the means of this many rows at either end of a window: few enough to sit at the
+/// ends, enough to calm noise.
 const DRIFT_ROWS: usize = 8;
 
 /// One steady window, measured.
@@ -85,6 +89,8 @@ impl OperatingPoint {
             deviation.iter_mut().zip(&means).for_each(|(value, mean)| *value -= mean);
             transform.push(&deviation);
         }
+        let mut covariance = transform.covariance_of_mean(rho.unwrap_or(0.0));
+        add_resolution(&mut covariance, log, &rows, means[6]);
         let time = (columns.t[rows.start], columns.t[rows.end - 1]);
         let [(drift_d, variance_d), (drift_q, variance_q)] = [&columns.id, &columns.iq].map(|current| drift(&current[rows.clone()], time));
         Self {
@@ -93,7 +99,7 @@ impl OperatingPoint {
             means,
             drift: Dq { d: drift_d, q: drift_q },
             drift_variance: Dq { d: variance_d, q: variance_q },
-            covariance: transform.covariance_of_mean(rho.unwrap_or(0.0)),
+            covariance,
             degrees_of_freedom: cosines,
         }
     }
@@ -154,7 +160,33 @@ fn dot(one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-/// Slope of a current over its window, A/s, and the variance that noise gives it: what the straight line leaves, with its correlation from row to row.
+/// Adds what the digits of the log leave open: an error of a channel is the same in every product that the channel enters.
+fn add_resolution(covariance: &mut [[f64; CHANNELS]; CHANNELS], log: &Log, rows: &Range<usize>, omega_e: f64) {
+    let Some(segment) = log.segment_of(rows.start) else { return };
+    let columns = log.columns();
+    let channels = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e];
+    let errors: [f64; 5] = std::array::from_fn(|c| {
+        let values = &channels[c][rows.clone()];
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
+        resolution::uncertainty(segment.steps[c], variance.sqrt())
+    });
+    let [ud, uq, id, iq, omega] = errors;
+    for error in [
+        [ud, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, uq, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, id, 0.0, omega_e * id, 0.0, 0.0],
+        [0.0, 0.0, 0.0, iq, 0.0, omega_e * iq, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, omega],
+    ] {
+        for (row, one) in covariance.iter_mut().zip(error) {
+            row.iter_mut().zip(error).for_each(|(entry, other)| *entry += one * other);
+        }
+    }
+}
+
+/// Slope of a current over its window, A/s, and the variance that noise gives it: what the straight line leaves, with its
+/// correlation from row to row.
 fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let n = current.len();
     let rows = DRIFT_ROWS.min(n / 4).max(1);

@@ -1,8 +1,9 @@
 //! Where the drive stands still: finding steady windows, or taking those that were named.
 //!
-//! A segment is cut into short blocks. A block is steady when its two halves agree, in both currents and in speed; steady neighbours that agree with the mean of the window so far
-//! join it. Agreement is a small fraction of the log's largest current and speed, or what the noise of the means allows. Blocks without current are left out:
-//! while a drive coasts, its voltage columns are not voltages that act.
+//! A segment is cut into short blocks. A block is steady when its two halves agree, in both currents and in speed; steady
+//! neighbours that agree with the mean of the window so far join it. Agreement is a small fraction of the log's largest current
+//! and speed, or what the noise of the means allows. Blocks without current are left out: while a drive coasts, its voltage
+//! columns are not voltages that act.
 
 use crate::{error::Error, log::Log};
 use std::ops::Range;
@@ -16,10 +17,12 @@ const BLOCK_ROWS: (usize, usize) = (10, 500);
 /// A window has at least this many blocks: one could be chance.
 const MIN_BLOCKS: usize = 3;
 
-/// A window is at least this fraction of the longest: what is shorter is a pause between transients rather than a point at which the drive was held.
+/// A window is at least this fraction of the longest: what is shorter is a pause between transients rather than a point at which
+/// the drive was held.
 const MIN_SHARE: f64 = 0.1;
 
-/// Means agree within this fraction of the log's largest value. The equations of the means hold while currents drift; what this keeps out are transients that sampling and filters distort.
+/// Means agree within this fraction of the log's largest value. The equations of the means hold while currents drift; what this
+/// keeps out are transients that sampling and filters distort.
 const TOLERANCE: f64 = 0.01;
 
 /// The currents at a window's ends agree with its middle half within this fraction, or they are cut off: a tenth of the above.
@@ -104,7 +107,8 @@ impl Scale {
         Self([log.peak_current(), log.peak_current(), speed])
     }
 
-    /// Whether two triples of means agree, given the variance of their differences. Speed may always move by [`TOLERANCE`]: its slope is not in the equations.
+    /// Whether two triples of means agree, given the variance of their differences. Speed may always move by [`TOLERANCE`]: its
+    /// slope is not in the equations.
     fn agree(&self, current_tolerance: f64, one: &[f64; 3], other: &[f64; 3], variance: &[f64; 3]) -> bool {
         let tolerances = [current_tolerance, current_tolerance, TOLERANCE];
         (0..3).all(|c| (one[c] - other[c]).abs() <= tolerances[c] * self.0[c] + NOISE_FACTOR * variance[c].sqrt())
