@@ -142,7 +142,7 @@ fn a_person_sees_values_verdicts_reasons_and_remedies() {
     for expected in [
         "R_s",
         "0.9598",
-        "±1.1 %",
+        "±1.3 %",
         "identified",
         "not identifiable",
         "L_d: i_d stays at zero",
