@@ -70,7 +70,7 @@ pub(crate) struct Identify {
     #[arg(long, value_enum, default_value_t = Timing::Auto)]
     pub(crate) voltage_timing: Timing,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, value_name = "FRACTION", default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
+    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
     /// A parameter that is known exactly, e.g. rs=0.96
     #[arg(long, value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_files::parse_fix, allow_hyphen_values = true)]

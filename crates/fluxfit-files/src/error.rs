@@ -138,7 +138,7 @@ pub(crate) enum Problem {
     PolePairs { channel: &'static str, unit: &'static str, electrical: &'static str },
 
     // The rows of a log
-    #[error("{} looks like a row of units; delete this line", quote(.text))]
+    #[error("{} looks like a row of units; delete this line and say with --unit which columns are not in SI units", quote(.text))]
     UnitsRow { text: String },
     #[error("the row has {} where the header has {expected}; {}", cells(*.found), row_remedy(*.found > *.expected, *.multiline))]
     RowLength { found: usize, expected: usize, multiline: bool },

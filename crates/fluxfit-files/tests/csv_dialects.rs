@@ -194,7 +194,7 @@ fn rows_are_refused_in_one_sentence() {
     let cases = [
         (
             below("s,V,V,A,A,rad/s\n0,1,2,3,4,5\n"),
-            "drive.csv, line 2: \"s, V, V, A, A, rad/s\" looks like a row of units; delete this line",
+            "drive.csv, line 2: \"s, V, V, A, A, rad/s\" looks like a row of units; delete this line and say with --unit which columns are not in SI units",
         ),
         (
             below("0,1,2,3,4,5\n\n1,1,2,3,4\n"),

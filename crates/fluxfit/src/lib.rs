@@ -1,5 +1,5 @@
 //! Finds the electrical parameters of a permanent magnet synchronous motor from a log of its drive: stator resistance, two
-//! inductances, magnet flux; each with an interval that holds, and a plain word when the log cannot tell.
+//! inductances, magnet flux; each with an interval, and a plain word when the log cannot tell.
 //!
 //! ```
 //! use fluxfit::{identify::{self, identify}, log::{Columns, Log}, motor::Parameter};

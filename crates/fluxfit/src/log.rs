@@ -52,7 +52,9 @@ pub struct Log {
 pub struct Segment {
     /// Its rows.
     pub rows: Range<usize>,
-    /// Median time step of the log it came from, s.
+    /// Number of the log it came from, among those joined.
+    pub log: usize,
+    /// Median time step of that log, s.
     pub sample_period: f64,
     /// Steps on which the channels of that log lie, in its units: `ud, uq, id, iq, omega_e`; zero for those that are not quantized.
     pub steps: [f64; 5],
@@ -98,11 +100,13 @@ impl Log {
     pub fn join(logs: impl IntoIterator<Item = Self>) -> Result<Self, Error> {
         let mut logs = logs.into_iter();
         let mut joined = logs.next().ok_or(Error::TooShort { rows: 0, least: MIN_ROWS })?;
-        for log in logs {
+        for (number, log) in (1..).zip(logs) {
             let offset = joined.rows();
-            joined.segments.extend(
-                log.segments.into_iter().map(|segment| Segment { rows: segment.rows.start + offset..segment.rows.end + offset, ..segment }),
-            );
+            joined.segments.extend(log.segments.into_iter().map(|segment| Segment {
+                rows: segment.rows.start + offset..segment.rows.end + offset,
+                log: number,
+                ..segment
+            }));
             let (to, from) = (&mut joined.columns, log.columns);
             to.t.extend(from.t);
             to.ud.extend(from.ud);
@@ -177,7 +181,7 @@ fn split(t: &[f64], steps_of_channels: [f64; 5]) -> Vec<Segment> {
     let mut start = 0;
     for end in 1..=t.len() {
         if end == t.len() || t[end] - t[end - 1] > GAP_FACTOR * sample_period {
-            segments.push(Segment { rows: start..end, sample_period, steps: steps_of_channels });
+            segments.push(Segment { rows: start..end, log: 0, sample_period, steps: steps_of_channels });
             start = end;
         }
     }

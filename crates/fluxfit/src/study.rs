@@ -6,7 +6,7 @@
 
 use crate::{
     error::Error,
-    motor::{Motor, PARAMETERS},
+    motor::{Motor, PARAMETERS, Parameter},
     objective::voltage_error::VoltageError,
     optimizer::{Method, Optimizer, Report, Settings, bounds::Bounds},
 };
@@ -76,10 +76,11 @@ impl MethodStudy {
     }
 
     /// Mean over the runs of each parameter's distance from the truth, in percent: the paper's error, as its table can best be read.
-    pub fn mean_error_percent(&self, truth: &Motor) -> [f64; PARAMETERS] {
-        let truth = truth.to_array();
-        let runs = self.motors.len() as f64;
-        std::array::from_fn(|p| 100.0 * self.motors.iter().map(|motor| (motor.to_array()[p] / truth[p] - 1.0).abs()).sum::<f64>() / runs)
+    pub fn mean_error_percent(&self, truth: &Motor) -> [Option<f64>; PARAMETERS] {
+        Parameter::ALL.map(|parameter| {
+            let errors = self.motors.iter().map(|motor| error_percent(motor, truth, parameter));
+            errors.sum::<Option<f64>>().map(|sum| sum / self.motors.len() as f64)
+        })
     }
 
     /// Median over the runs of `F - F_LS`.
@@ -91,6 +92,12 @@ impl MethodStudy {
     pub fn worst(&self) -> f64 {
         self.cost_above_optimum.iter().copied().fold(0.0, f64::max)
     }
+}
+
+/// Distance of one parameter from the truth, in percent; none where the truth is zero, as the flux of a motor without magnets.
+pub fn error_percent(motor: &Motor, truth: &Motor, parameter: Parameter) -> Option<f64> {
+    let truth = truth.get(parameter);
+    (truth != 0.0).then(|| 100.0 * (motor.get(parameter) / truth - 1.0).abs())
 }
 
 /// One run, iteration by iteration: the best motor and its cost above the optimum.

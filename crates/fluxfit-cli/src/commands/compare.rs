@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let input = input::read(&arguments.log)?;
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
     let settings = Settings { windows: arguments.log.window.clone(), ..Settings::default() };
-    let points = operating_points(&input.log, &settings).map_err(|error| CommandError::Log { log: input.name.clone(), error })?;
+    let points = operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
     let bounds = input::search_box(&arguments.log, &input.motor, &points)?;
     let windows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
     let objective = VoltageError::of_samples(&input.log, &windows, arguments.id_zero);

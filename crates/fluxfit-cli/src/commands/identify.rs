@@ -18,10 +18,9 @@ use fluxfit_files::answer;
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let input = input::read(&arguments.log)?;
     let mut settings = settings(arguments)?;
-    let points =
-        fluxfit::identify::operating_points(&input.log, &settings).map_err(|error| CommandError::Log { log: input.name.clone(), error })?;
+    let points = fluxfit::identify::operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
     settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &points)?);
-    let found = identify(&input.log, &settings).map_err(|error| CommandError::Log { log: input.name.clone(), error })?;
+    let found = identify(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
         terminal::print(&answer::to_text(&answer::identification(&input.log, &found, method)))?;

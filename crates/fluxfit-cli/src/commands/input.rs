@@ -5,7 +5,7 @@ use crate::{
     error::CommandError,
     terminal,
 };
-use fluxfit::{identify::search_box, log::Log, motor::Parameter, optimizer::bounds::Bounds, steady::OperatingPoint};
+use fluxfit::{error::Error, identify::search_box, log::Log, motor::Parameter, optimizer::bounds::Bounds, steady::OperatingPoint};
 use fluxfit_files::{LogOptions, MotorFile, read_log, read_motor};
 use std::path::Path;
 
@@ -28,29 +28,36 @@ pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
     let mut logs = Vec::new();
     for path in &arguments.logs {
         let read = read_log(path, &options)?;
-        if !arguments.json {
-            read.notes.iter().for_each(|note| terminal::note(&format!("{}: {note}", name(path))));
-        }
+        read.notes.iter().for_each(|note| terminal::note(&format!("{}: {note}", name(path))));
         logs.push(read.log);
     }
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
     Ok(Input { log: Log::join(logs)?, motor, name: names.join(", ") })
 }
 
-/// The search box: what `--bounds` names, the rest from the rating where there is one, else from the operating points.
+/// The search box: what `--bounds` names; the rest from the operating points, or from the rating where that is larger.
 pub(crate) fn search_box(arguments: &LogArguments, motor: &MotorFile, points: &[OperatingPoint]) -> Result<Bounds, CommandError> {
     let given: Vec<(Parameter, (f64, f64))> =
         arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
     let given = by_parameter(&given, "--bounds")?;
+    let mut rest: Vec<(f64, f64)> = search_box::from_points(points)?.iter().collect();
     let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
-    let rest = match (motor.rating.voltage, motor.rating.current, motor.rating.speed, pole_pairs) {
-        (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) => {
-            search_box::from_rating(voltage, current, speed * f64::from(pole_pairs))?
-        }
-        _ => search_box::from_points(points)?,
-    };
-    let (lower, upper) = given.into_iter().zip(rest.iter()).map(|(given, rest)| given.unwrap_or(rest)).unzip();
+    if let (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) =
+        (motor.rating.voltage, motor.rating.current, motor.rating.speed, pole_pairs)
+    {
+        let rated = search_box::from_rating(voltage, current, speed * f64::from(pole_pairs))?;
+        rest.iter_mut().zip(rated.iter()).for_each(|(side, rated)| side.1 = side.1.max(rated.1));
+    }
+    let (lower, upper) = given.into_iter().zip(rest).map(|(given, rest)| given.unwrap_or(rest)).unzip();
     Ok(Bounds::new(lower, upper)?)
+}
+
+/// An error of the library: of the log, if it is about the log.
+pub(crate) fn of_log(name: &str, error: Error) -> CommandError {
+    match error {
+        Error::NoOperatingPoint { .. } | Error::Window { .. } => CommandError::Log { log: name.to_owned(), error },
+        other => CommandError::Library(other),
+    }
 }
 
 fn name(path: &Path) -> String {

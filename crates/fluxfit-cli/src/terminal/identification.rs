@@ -22,7 +22,8 @@ pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option
     text += &parameters(found);
     text += &explanations(found);
     text += &format!("\n{DIM}Operating points (means){DIM:#}\n{}", operating_points(found));
-    if let Some(method) = method {
+    let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
+    if let Some(method) = method.filter(|_| answered) {
         text += &format!("\n{}\n", search(found, method));
     }
     super::print(&text)?;
@@ -68,7 +69,7 @@ fn parameters(found: &Identification) -> String {
             scale.unit(parameter.unit()),
             format!("±{} %", significant(100.0 * judgement.uncertainty.half_width / value.abs(), 2)),
             format!("{} .. {}", scale.format(low, error), scale.format(high, error)),
-            judgement.uncertainty.largest_part().label().to_owned(),
+            if judgement.uncertainty.standard_error() > 0.0 { judgement.uncertainty.largest_part().label() } else { "given" }.to_owned(),
             word,
         ]
     });
@@ -106,12 +107,18 @@ fn explanations(found: &Identification) -> String {
 fn operating_points(found: &Identification) -> String {
     let rows = found.operating_points.iter().zip(&found.estimate.residuals).map(|(point, residual)| {
         let (u, i) = (point.voltage(), point.current());
-        let mut row = vec![format!("{} .. {}", significant(point.time.0, 4), significant(point.time.1, 4)), point.rows.len().to_string()];
+        let mut row = vec![times(point.time), point.rows.len().to_string()];
         row.extend([i.d, i.q, point.omega_e(), u.d, u.q].map(|value| format!("{value:.3}")));
         row.extend(residual.map(millivolts));
         row
     });
     table(&["t s", "rows", "i_d A", "i_q A", "omega_e rad/s", "u_d V", "u_q V", "residual d mV", "q mV"], 0, rows)
+}
+
+/// Start and end, with digits that tell the window's length to a hundredth of it.
+fn times((start, end): (f64, f64)) -> String {
+    let decimals = (2 - (end - start).log10().floor() as i32).clamp(0, 9) as usize;
+    format!("{start:.decimals$} .. {end:.decimals$}")
 }
 
 /// Without the sign of a zero.

@@ -2,7 +2,7 @@
 //! without colour.
 
 use anstyle::{AnsiColor, Style};
-use fluxfit::study::MethodStudy;
+use fluxfit::{optimizer::Method, study::MethodStudy};
 use ratatui_core::{buffer::Buffer, layout::Rect, style::Color, symbols::Marker, widgets::Widget};
 use ratatui_widgets::chart::{Axis, Chart, Dataset, GraphType};
 
@@ -12,15 +12,15 @@ const SIZE: (u16, u16) = (96, 20);
 /// Costs below this are drawn at it: rounding, where a logarithm means nothing.
 const FLOOR: f64 = 1e-12;
 
-/// Letters and colours in the order of the methods.
-const CURVES: [(char, Color, AnsiColor); 6] = [
-    ('t', Color::Green, AnsiColor::Green),
-    ('F', Color::Yellow, AnsiColor::Yellow),
-    ('L', Color::Blue, AnsiColor::Blue),
-    ('A', Color::Magenta, AnsiColor::Magenta),
-    ('o', Color::Cyan, AnsiColor::Cyan),
-    ('x', Color::Red, AnsiColor::Red),
-];
+/// A method's letter and colour, in the chart's terms and in the terminal's.
+fn pen(study: &MethodStudy) -> (char, Color, AnsiColor) {
+    match study.method {
+        Method::Tgfpa(_) => ('t', Color::Green, AnsiColor::Green),
+        Method::Fpa(_) => ('F', Color::Yellow, AnsiColor::Yellow),
+        Method::Lpso(_) => ('L', Color::Blue, AnsiColor::Blue),
+        Method::Apso(_) => ('A', Color::Magenta, AnsiColor::Magenta),
+    }
+}
 
 /// The medians of `F - F_LS`, drawn.
 pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
@@ -30,7 +30,8 @@ pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
     let low = all().map(|(_, y)| *y).fold(f64::INFINITY, f64::min).floor();
     let high = all().map(|(_, y)| *y).fold(f64::NEG_INFINITY, f64::max).ceil().max(low + 1.0);
 
-    let datasets = curves.iter().zip(CURVES).map(|(points, (letter, color, _))| {
+    let datasets = curves.iter().zip(methods).map(|(points, (study, _))| {
+        let (letter, color, _) = pen(study);
         Dataset::default().marker(Marker::Custom(letter)).graph_type(GraphType::Line).style(color).data(points)
     });
     let labels = |from: f64, to: f64, steps: usize| (0..=steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
@@ -40,7 +41,7 @@ pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
     let area = Rect::new(0, 0, SIZE.0, SIZE.1);
     let mut buffer = Buffer::empty(area);
     chart.render(area, &mut buffer);
-    format!("{}{}\n", text(&buffer), legend(methods))
+    format!("{}{}\n", text(&buffer, methods), legend(methods))
 }
 
 /// Iteration and the logarithm of the median cost.
@@ -55,13 +56,14 @@ fn curve(study: &MethodStudy) -> Vec<(f64, f64)> {
 }
 
 /// The buffer's cells, with their colours.
-fn text(buffer: &Buffer) -> String {
+fn text(buffer: &Buffer, methods: &[(MethodStudy, f64)]) -> String {
+    let pens: Vec<_> = methods.iter().map(|(study, _)| pen(study)).collect();
     let mut text = String::new();
     for y in 0..buffer.area.height {
         let mut line = String::new();
         for x in 0..buffer.area.width {
             let Some(cell) = buffer.cell((x, y)) else { continue };
-            match CURVES.iter().find(|(_, color, _)| *color == cell.fg) {
+            match pens.iter().find(|(_, color, _)| *color == cell.fg) {
                 Some((_, _, color)) => {
                     let style = color.on_default();
                     line += &format!("{style}{}{style:#}", cell.symbol());
@@ -76,7 +78,8 @@ fn text(buffer: &Buffer) -> String {
 }
 
 fn legend(methods: &[(MethodStudy, f64)]) -> String {
-    let entries = methods.iter().zip(CURVES).map(|((study, _), (letter, _, color))| {
+    let entries = methods.iter().map(|(study, _)| {
+        let (letter, _, color) = pen(study);
         let style: Style = color.on_default();
         format!("{style}{letter}{style:#} {}", study.method.label())
     });

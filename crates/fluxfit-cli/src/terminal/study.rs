@@ -7,7 +7,7 @@ use super::{
 };
 use fluxfit::{
     motor::{Motor, Parameter},
-    study::MethodStudy,
+    study::{MethodStudy, error_percent},
 };
 use fluxfit_files::answer::StudyFacts;
 
@@ -65,14 +65,19 @@ fn table_2(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> String {
         rows.push(row);
         if let Some(truth) = facts.truth {
             let mut row = vec!["error %".to_owned()];
-            row.extend(methods.iter().map(|(study, _)| significant(study.mean_error_percent(truth)[parameter as usize], 3)));
-            row.push(significant(100.0 * (exact.get(parameter) / truth.get(parameter) - 1.0).abs(), 3));
+            row.extend(methods.iter().map(|(study, _)| percent(study.mean_error_percent(truth)[parameter as usize])));
+            row.push(percent(error_percent(&exact, truth, parameter)));
             rows.push(row);
         }
     }
     let labels = methods.iter().map(|(study, _)| study.method.label());
     let heading: Vec<&str> = [""].into_iter().chain(labels).chain(["least squares"]).collect();
     table(&heading, 1, rows)
+}
+
+/// An error, where there is one.
+fn percent(error: Option<f64>) -> String {
+    error.map_or_else(|| "-".to_owned(), |error| significant(error, 3))
 }
 
 /// Iterations at which the ranking is shown: a sixth, a third, two thirds and all of them; 50, 100, 200 and 300 of the paper's.

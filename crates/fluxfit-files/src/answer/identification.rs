@@ -2,10 +2,10 @@
 
 use super::by_parameter;
 use fluxfit::{
-    identify::{Identification, verdict::Judgement},
+    identify::{Identification, Provenance, verdict::Judgement},
     log::Log,
     motor::{Motor, PARAMETERS},
-    steady::OperatingPoint,
+    steady::{OperatingPoint, held_vector::VoltageTiming},
 };
 use serde_json::{Value, json};
 
@@ -24,7 +24,7 @@ pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value
         "model": "steady",
         "method": method,
         "parameters": by_parameter(answer.parameters.each_ref().map(parameter)),
-        "nuisance": {},
+        "nuisance": { "voltage_timing": voltage_timing(answer) },
         "least_squares": with(found(&answer.estimate.motor), json!({ "cost": answer.estimate.objective.cost(&answer.estimate.motor) })),
         "search": answer.search.as_ref().map(|search| with(found(&search.motor), json!({
             "cost": search.report.cost,
@@ -39,6 +39,16 @@ pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value
         "warnings": answer.warnings.iter().map(|warning| json!({ "code": warning.code, "message": warning.message })).collect::<Vec<_>>(),
         "diagnostics": diagnostics(answer),
     })
+}
+
+/// How the voltage columns were read.
+fn voltage_timing(answer: &Identification) -> Value {
+    let (timing, provenance) = answer.voltage_timing;
+    let timing = match timing {
+        VoltageTiming::Centered => "centered",
+        VoltageTiming::Compensated => "compensated",
+    };
+    json!({ "value": timing, "stated": provenance == Provenance::Stated })
 }
 
 fn operating_point(point: &OperatingPoint) -> Value {

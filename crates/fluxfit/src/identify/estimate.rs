@@ -63,9 +63,7 @@ impl Estimate {
 
     /// Solves the points with voltages trusted to another fraction than the settings'.
     pub(super) fn solve_with(points: &[OperatingPoint], excitation: &Excitation, settings: &Settings, voltage_accuracy: f64) -> Self {
-        let largest = points.iter().map(|point| point.voltage().magnitude()).fold(NO_VOLTAGE, f64::max);
-        let accuracy_of = |point: &OperatingPoint| (voltage_accuracy * point.voltage().magnitude()).max(LEAST_ACCURACY * largest);
-        let accuracy: Vec<f64> = points.iter().map(accuracy_of).collect();
+        let accuracy = voltage_uncertainty(points, voltage_accuracy);
         let mut motor = Motor::from(settings.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
         let mut system = System::of(points, &motor, &accuracy, settings);
         let mut solved = system.solve(excitation, settings);
@@ -81,6 +79,7 @@ impl Estimate {
             std::array::from_fn(|p| [0, 1].map(|axis| gain[0][p] * whitener[(0, axis)] + gain[1][p] * whitener[(1, axis)]))
         });
         let chi_squared = chi_squared(points, excitation, &motor, &accuracy, settings);
+        let kinds_count = kinds(points).into_iter().enumerate().filter(|(w, kind)| w == kind).count();
         let prior_gains = gain[2 * points.len()..].to_vec();
         Self {
             motor,
@@ -89,7 +88,7 @@ impl Estimate {
             accuracy,
             chi_squared,
             degrees_of_freedom: (2 * points.len() + prior_gains.len()).saturating_sub(excitation.excited().count()),
-            redundancy: (2 * distinct(points) + prior_gains.len()).saturating_sub(excitation.excited().count()),
+            redundancy: (2 * kinds_count + prior_gains.len()).saturating_sub(excitation.excited().count()),
             prior_gains,
             objective: VoltageError::of_equations(system.equations.into_iter().map(|equation| excitation.excited_equation(equation))),
         }
@@ -206,19 +205,27 @@ fn move_fixed(mut equation: Equation, settings: &Settings) -> Equation {
 /// not the model.
 const DISTINCT: f64 = 0.02;
 
-/// How many operating points differ from each other.
-fn distinct(points: &[OperatingPoint]) -> usize {
+/// For each point the number of the first point that it repeats: its own, if it is the first of its kind.
+fn kinds(points: &[OperatingPoint]) -> Vec<usize> {
     let current = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
     let speed = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let same = |one: &OperatingPoint, other: &OperatingPoint| {
         let (i, j) = (one.current(), other.current());
         (i.d - j.d).hypot(i.q - j.q) <= DISTINCT * current && (one.omega_e() - other.omega_e()).abs() <= DISTINCT * speed
     };
-    let mut kept: Vec<&OperatingPoint> = Vec::new();
-    for point in points {
-        if !kept.iter().any(|other| same(point, other)) {
-            kept.push(point);
-        }
+    let mut kinds: Vec<usize> = Vec::new();
+    for (w, point) in points.iter().enumerate() {
+        let first = (0..w).find(|first| kinds[*first] == *first && same(point, &points[*first]));
+        kinds.push(first.unwrap_or(w));
     }
-    kept.len()
+    kinds
+}
+
+/// Uncertainty of each point's voltages, V. It is the same error in every repetition of a point, so that no repetition may shrink it.
+fn voltage_uncertainty(points: &[OperatingPoint], fraction: f64) -> Vec<f64> {
+    // At least a fraction of the largest voltage: a window without any has no exact one either.
+    let least = LEAST_ACCURACY * points.iter().map(|point| point.voltage().magnitude()).fold(NO_VOLTAGE, f64::max);
+    let kinds = kinds(points);
+    let repetitions = |kind: usize| kinds.iter().filter(|other| **other == kind).count() as f64;
+    points.iter().zip(&kinds).map(|(point, kind)| (fraction * point.voltage().magnitude()).max(least) * repetitions(*kind).sqrt()).collect()
 }

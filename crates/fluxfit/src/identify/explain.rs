@@ -23,7 +23,7 @@ pub(super) fn explain(
     } else if raw <= 0.0 && width < WEAK {
         (
             format!("{} came out negative, which no motor has, and not by noise", parameter.symbol()),
-            "check signs and order of the columns: motor convention, q 90 degrees ahead of d, one sign of speed and of u_q".to_owned(),
+            "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of speed and of u_q".to_owned(),
         )
     } else {
         wide(parameter, width, uncertainty.largest_part())
@@ -75,24 +75,31 @@ fn farther_apart(parameter: Parameter) -> &'static str {
     }
 }
 
-/// A direction is a parameter's own axis if its component is at least this.
-const OWN_AXIS: f64 = 0.9;
-
 /// Share of the current that a step of i_d should have: the paper's -2 A of 10 A.
 const STEP: f64 = 0.2;
 
-/// Which of the ways of not being excited it is.
+/// Means closer than this, as a fraction of the largest current or speed, are the same for advice.
+const SAME: f64 = 0.05;
+
+/// Why the log leaves a parameter open: what its operating points have in common.
 fn open(parameter: Parameter, points: &[OperatingPoint], excitation: &Excitation) -> (String, String) {
-    let open: Vec<Parameter> = Parameter::ALL.into_iter().filter(|other| excitation.is_open(*other)).collect();
-    let id_most = points.iter().map(|point| point.current().d.abs()).fold(0.0, f64::max);
     let current = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
-    let step = format!("add a stretch at the same speed with i_d near {} A", one_digit(-STEP * current));
-    // Its own axis not excited: nothing but noise multiplies L_d.
-    let alone = |direction: &f64| direction.abs() > OWN_AXIS;
-    let ld_absent =
-        excitation.directions.iter().any(|direction| !direction.excited && alone(&direction.components[Parameter::Ld as usize]));
+    let speed = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    let id_most = points.iter().map(|point| point.current().d.abs()).fold(0.0, f64::max);
+    let spread = |value: fn(&OperatingPoint) -> f64| {
+        let values = || points.iter().map(value);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    let id_zero = id_most <= SAME * current;
+    let id_constant = spread(|point| point.current().d) <= SAME * current;
+    let one_point = id_constant && spread(|point| point.current().q) <= SAME * current && spread(OperatingPoint::omega_e) <= SAME * speed;
+    let step = if id_zero {
+        format!("add a stretch at the same speed with i_d near {} A", one_digit(-STEP * current))
+    } else {
+        "add a stretch at the same speed with i_d = 0".to_owned()
+    };
     match parameter {
-        Parameter::Ld if ld_absent => {
+        Parameter::Ld if id_zero => {
             let id_most = one_digit(id_most);
             (
                 format!(
@@ -101,18 +108,18 @@ fn open(parameter: Parameter, points: &[OperatingPoint], excitation: &Excitation
                 step,
             )
         }
-        Parameter::Rs | Parameter::PsiF if ld_absent => (
+        Parameter::Rs | Parameter::PsiF if id_zero && one_point => (
             "there is one speed and one load, where R_s i_q and omega_e psi_f act alike".to_owned(),
             format!("{step}, or a second speed or load, or give --fix rs=VALUE"),
         ),
-        _ if open == [Parameter::Ld, Parameter::PsiF] => (
-            "i_d is the same at every operating point, where L_d i_d and psi_f act alike".to_owned(),
-            "add a stretch at the same speed with i_d = 0".to_owned(),
-        ),
+        Parameter::Ld | Parameter::PsiF if id_constant && !excitation.is_open(Parameter::Rs) => {
+            ("i_d is the same at every operating point, where L_d i_d and psi_f act alike".to_owned(), step)
+        }
         _ => {
-            let names: Vec<&str> = open.iter().map(|other| other.symbol()).collect();
-            let reason = format!("the operating points are too much alike: only combinations of {} show in them", names.join(", "));
-            (reason, format!("{step}, and one with i_d = 0"))
+            let open: Vec<&str> = Parameter::ALL.into_iter().filter(|other| excitation.is_open(*other)).map(Parameter::symbol).collect();
+            let reason =
+                format!("the operating points are too much alike for their noise: only combinations of {} show in them", open.join(", "));
+            (reason, format!("{step}, and one at a clearly different speed and load"))
         }
     }
 }

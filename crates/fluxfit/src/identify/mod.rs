@@ -96,6 +96,8 @@ pub struct Identification {
     pub estimate: Estimate,
     /// What the log excites.
     pub excitation: Excitation,
+    /// How the voltage columns were read, and whether that was stated or assumed.
+    pub voltage_timing: (VoltageTiming, Provenance),
     /// Correlation of the parameters' errors.
     pub correlation: [[f64; PARAMETERS]; PARAMETERS],
     /// Contradiction between the operating points, if proven.
@@ -104,6 +106,15 @@ pub struct Identification {
     pub search: Option<Search>,
     /// What the reader should know.
     pub warnings: Vec<Warning>,
+}
+
+/// Where a choice comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Provenance {
+    /// The settings state it.
+    Stated,
+    /// It is assumed, and the doubt counted as uncertainty.
+    Assumed,
 }
 
 /// What the swarm found, unpolished.
@@ -151,6 +162,7 @@ pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error>
         operating_points: points,
         estimate,
         excitation,
+        voltage_timing: voltage_timing(settings),
         correlation: uncertainty.correlation,
         misfit,
         search,
@@ -185,6 +197,11 @@ fn check(settings: &Settings) -> Result<(), Error> {
     if settings.known.iter().all(|known| matches!(known, Known::Fixed(_))) { Err(Error::NothingToIdentify) } else { Ok(()) }
 }
 
+/// Centred, unless stated otherwise: what drives that log their realized voltage mostly mean.
+fn voltage_timing(settings: &Settings) -> (VoltageTiming, Provenance) {
+    settings.voltage_timing.map_or((VoltageTiming::Centered, Provenance::Assumed), |stated| (stated, Provenance::Stated))
+}
+
 /// The operating points in the windows named, or in those found, as the log has them: before any correction, and with a coarse covariance.
 ///
 /// # Errors
@@ -215,7 +232,7 @@ fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<Ope
             .collect()
     };
     let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &settings.known), settings).motor;
-    let points = with(settings.voltage_timing.unwrap_or(VoltageTiming::Centered));
+    let points = with(voltage_timing(settings).0);
     let doubt = match settings.voltage_timing {
         Some(_) => [0.0; PARAMETERS],
         None => {

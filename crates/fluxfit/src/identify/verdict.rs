@@ -82,6 +82,7 @@ pub fn judge(
         let uncertainty = uncertainty.parameters[parameter as usize];
         let width = uncertainty.half_width / raw.abs();
         let verdict = match width {
+            _ if matches!(settings.known[parameter as usize], Known::Fixed(_)) => Verdict::Identified,
             _ if raw <= 0.0 => Verdict::NotIdentifiable,
             w if w <= IDENTIFIED => Verdict::Identified,
             w if w <= WEAK => Verdict::Weak,

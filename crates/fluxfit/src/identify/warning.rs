@@ -20,7 +20,7 @@ pub(super) fn warnings(log: &Log, found: &Identification, settings: &Settings) -
     let all = [
         ("no-redundancy", no_redundancy(found)),
         ("misfit", misfit(found)),
-        ("no-current", no_current(log, settings)),
+        ("no-current", no_current(log, found, settings)),
         ("coarse-sampling", coarse_sampling(log, found)),
         ("outside-box", outside_box(found)),
     ];
@@ -28,8 +28,8 @@ pub(super) fn warnings(log: &Log, found: &Identification, settings: &Settings) -
 }
 
 fn no_redundancy(found: &Identification) -> Option<String> {
-    let message = "there are exactly as many equations as unknowns, so a perfect fit proves nothing: saturation or a wrong unit would go \
-                   unseen; add a third operating point, or give a known value with --fix or --prior";
+    let message = "there are exactly as many equations as unknowns, so a perfect fit proves nothing: saturation, dead time or a wrong \
+                   unit would go unseen; add a third operating point, or give a known value with --fix or --prior";
     (found.estimate.redundancy == 0).then(|| message.to_owned())
 }
 
@@ -47,13 +47,14 @@ fn misfit(found: &Identification) -> Option<String> {
 /// Share of rows without current that is worth a word.
 const MANY_ROWS: f64 = 0.01;
 
-fn no_current(log: &Log, settings: &Settings) -> Option<String> {
-    let (idle, rows) = (windows::rows_without_current(log), log.rows());
-    (settings.windows.is_empty() && idle as f64 > MANY_ROWS * rows as f64).then(|| {
-        format!(
-            "{idle} of {rows} rows carry no current and were not used: while a drive coasts, its voltage columns are not voltages that act"
-        )
-    })
+fn no_current(log: &Log, found: &Identification, settings: &Settings) -> Option<String> {
+    const WHY: &str = "while a drive coasts, its voltage columns are not voltages that act";
+    if settings.windows.is_empty() {
+        let (idle, rows) = (windows::rows_without_current(log), log.rows());
+        return (idle as f64 > MANY_ROWS * rows as f64).then(|| format!("{idle} of {rows} rows carry no current and were not used: {WHY}"));
+    }
+    let idle = found.operating_points.iter().filter(|point| point.current().magnitude() < windows::least_current(log)).count();
+    (idle > 0).then(|| format!("{idle} of the windows named carry no current and were used all the same: {WHY}"))
 }
 
 fn coarse_sampling(log: &Log, found: &Identification) -> Option<String> {
@@ -70,7 +71,8 @@ fn coarse_sampling(log: &Log, found: &Identification) -> Option<String> {
 fn outside_box(found: &Identification) -> Option<String> {
     let search = found.search.as_ref()?;
     let judged = found.parameters.iter().zip(search.bounds.iter());
-    let outside = judged.filter(|(judgement, (lower, upper))| judgement.value().is_some_and(|value| value < *lower || value > *upper));
+    let outside = judged
+        .filter(|(judgement, (lower, upper))| !found.excitation.is_open(judgement.parameter) && !(lower..=upper).contains(&&judgement.raw));
     let symbols: Vec<&str> = outside.map(|(judgement, _)| judgement.parameter.symbol()).collect();
     (!symbols.is_empty()).then(|| format!("least squares lies outside the search box in {}: the swarm cannot reach it", symbols.join(", ")))
 }

@@ -16,6 +16,7 @@ use crate::{
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
 };
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -45,25 +46,20 @@ pub struct VoltageError {
 }
 
 impl VoltageError {
-    /// Fitness (11) over every row of the windows.
+    /// Fitness (11) over every row of the windows: a triangular factor per window, on all cores, merged in order.
     pub fn of_samples(log: &Log, windows: &[Range<usize>], id_zero: IdZero) -> Self {
-        let columns = log.columns();
-        let equations = windows.iter().flat_map(|window| {
-            let zeroed = id_zero == IdZero::AsPaper && is_id_zero(&columns.id[window.clone()], &columns.iq[window.clone()]);
-            window.clone().flat_map(move |k| {
-                let id = if zeroed { 0.0 } else { columns.id[k] };
-                let [d, q] = steady_equations([columns.ud[k], columns.uq[k]], [id, columns.iq[k]], columns.omega_e[k]);
-                [d.weighted(WEIGHT.sqrt()), q.weighted(WEIGHT.sqrt())]
-            })
-        });
-        Self::of_equations(equations)
+        let factors: Vec<TriangularFactor> = windows.par_iter().map(|window| factor_of(log, window, id_zero)).collect();
+        let empty = TriangularFactor::from_iter([]);
+        Self::of_factor(factors.iter().fold(empty, TriangularFactor::merge))
     }
 
     /// The sum of squares of any equations of the four parameters.
     pub fn of_equations(equations: impl IntoIterator<Item = Equation>) -> Self {
-        let factor: TriangularFactor = equations.into_iter().collect();
-        let solution = factor.solve();
-        Self { factor, solution }
+        Self::of_factor(equations.into_iter().collect())
+    }
+
+    fn of_factor(factor: TriangularFactor) -> Self {
+        Self { solution: factor.solve(), factor }
     }
 
     /// The exact minimum.
@@ -101,6 +97,17 @@ pub fn steady_equations([ud, uq]: [f64; 2], [id, iq]: [f64; 2], omega_e: f64) ->
         Equation { coefficients: [id, 0.0, -omega_e * iq, 0.0], value: ud },
         Equation { coefficients: [iq, omega_e * id, 0.0, omega_e], value: uq },
     ]
+}
+
+/// The factor of one window's samples.
+fn factor_of(log: &Log, window: &Range<usize>, id_zero: IdZero) -> TriangularFactor {
+    let columns = log.columns();
+    let zeroed = id_zero == IdZero::AsPaper && is_id_zero(&columns.id[window.clone()], &columns.iq[window.clone()]);
+    let equations = window.clone().flat_map(|k| {
+        let id = if zeroed { 0.0 } else { columns.id[k] };
+        steady_equations([columns.ud[k], columns.uq[k]], [id, columns.iq[k]], columns.omega_e[k])
+    });
+    equations.map(|equation| equation.weighted(WEIGHT.sqrt())).collect()
 }
 
 fn is_id_zero(id: &[f64], iq: &[f64]) -> bool {

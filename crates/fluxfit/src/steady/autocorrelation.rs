@@ -9,7 +9,7 @@
 //!
 //! `B` follows from the first-order autocorrelation `rho`. The spectrum of such a series falls with frequency; averaged over the
 //! first `B` cosines it is too small by `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this under
-//! [`BIAS`], but never less than 3; what a window of few correlation times then loses is made good by the
+//! 5 %, but never less than 3; what a window of few correlation times then loses is made good by the
 //! spectrum's own formula.
 
 /// Largest relative bias of the variance accepted from the spectrum's fall: 5 % of the variance are 2.5 % of the standard error.

@@ -5,7 +5,10 @@
 //! and speed, or what the noise of the means allows. Blocks without current are left out: while a drive coasts, its voltage
 //! columns are not voltages that act.
 
-use crate::{error::Error, log::Log};
+use crate::{
+    error::Error,
+    log::{Log, Segment},
+};
 use std::ops::Range;
 
 /// Fewest rows of a window: a few autocorrelation times, and rows enough for a covariance.
@@ -40,31 +43,39 @@ const MIN_CURRENT: f64 = 0.01;
 /// Longest window for the study of the paper's fitness: its sample count.
 pub const PAPER_ROWS: usize = 4000;
 
-/// Finds the steady windows of a log, in order.
+/// Finds the steady windows of a log, in order; of several logs joined, those of each by itself.
 ///
 /// # Errors
 /// If there is none.
 pub fn find(log: &Log) -> Result<Vec<Range<usize>>, Error> {
-    let block_rows = (log.rows() / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
     let scale = Scale::of(log);
+    let windows: Vec<_> =
+        log.segments().chunk_by(|one, other| one.log == other.log).flat_map(|of_one_log| find_in(log, of_one_log, &scale)).collect();
+    if windows.is_empty() { Err(Error::NoOperatingPoint { least: MIN_ROWS }) } else { Ok(windows) }
+}
+
+/// The steady windows of the segments of one log.
+fn find_in(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> {
+    let rows: usize = segments.iter().map(|segment| segment.rows.len()).sum();
+    let block_rows = (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
     let mut windows = Vec::new();
-    for segment in log.segments() {
+    for segment in segments {
         let mut open: Option<Window> = None;
         for start in (segment.rows.start..segment.rows.end).step_by(block_rows) {
             let block = Some(start..start + block_rows)
                 .filter(|rows| rows.end <= segment.rows.end)
-                .and_then(|rows| Block::steady(log, rows, &scale));
+                .and_then(|rows| Block::steady(log, rows, scale));
             match (&mut open, block) {
-                (Some(window), Some(block)) if window.agrees(&block, &scale) => window.join(block),
-                (_, block) => windows.extend(std::mem::replace(&mut open, block.map(Window::start)).and_then(|window| window.rows(&scale))),
+                (Some(window), Some(block)) if window.agrees(&block, scale) => window.join(block),
+                (_, block) => windows.extend(std::mem::replace(&mut open, block.map(Window::start)).and_then(|window| window.rows(scale))),
             }
         }
-        windows.extend(open.and_then(|window| window.rows(&scale)));
+        windows.extend(open.and_then(|window| window.rows(scale)));
     }
     let least = MIN_ROWS.max(MIN_BLOCKS * block_rows);
     let longest = windows.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
     windows.retain(|rows| rows.len() >= least && rows.len() as f64 >= MIN_SHARE * longest as f64);
-    if windows.is_empty() { Err(Error::NoOperatingPoint { least }) } else { Ok(windows) }
+    windows
 }
 
 /// The rows of each segment between two times, s, both included.
@@ -91,9 +102,14 @@ pub fn at_most_paper_rows(windows: &[Range<usize>]) -> Vec<Range<usize>> {
     windows.iter().map(|rows| rows.end.saturating_sub(PAPER_ROWS).max(rows.start)..rows.end).collect()
 }
 
+/// Currents below this, A, are too small to tell anything.
+pub fn least_current(log: &Log) -> f64 {
+    MIN_CURRENT * log.peak_current()
+}
+
 /// Rows of a log whose current is too small to tell anything: a standing or coasting drive.
 pub fn rows_without_current(log: &Log) -> usize {
-    let least = MIN_CURRENT * log.peak_current();
+    let least = least_current(log);
     let columns = log.columns();
     columns.id.iter().zip(&columns.iq).filter(|(id, iq)| id.hypot(**iq) < least).count()
 }
