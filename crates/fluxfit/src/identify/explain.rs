@@ -134,6 +134,37 @@ fn one_digit(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        frames::Dq,
+        identify::{Settings, identify},
+        log::{Columns, Log},
+        motor::Motor,
+    };
+
+    /// The reason given for a parameter on a noise-free log of these operating points: i_d, i_q (A), omega_e (rad/s).
+    fn reason(parameter: Parameter, points: &[(f64, f64, f64)]) -> String {
+        let motor = Motor { rs: 0.035, ld: 175e-6, lq: 300e-6, psi_f: 0.05 };
+        let mut columns = Columns::default();
+        for (k, &(d, q, omega_e)) in points.iter().flat_map(|point| [point; 100]).enumerate() {
+            let u = motor.steady_voltage(Dq { d, q }, omega_e);
+            columns.t.push(k as f64 * 0.01);
+            let row = [(&mut columns.ud, u.d), (&mut columns.uq, u.q), (&mut columns.id, d), (&mut columns.iq, q)];
+            row.into_iter().for_each(|(column, value)| column.push(value));
+            columns.omega_e.push(omega_e);
+        }
+        let found = identify(&Log::new(columns).unwrap(), &Settings::default()).unwrap();
+        found.parameter(parameter).reason.clone().unwrap_or_default()
+    }
+
+    #[test]
+    fn the_reason_is_what_the_points_have_in_common() {
+        let zero = reason(Parameter::Ld, &[(0.0, 90.0, 1400.0), (0.0, 150.0, 1800.0)]);
+        assert!(zero.starts_with("i_d stays at zero"), "{zero}");
+        let one = reason(Parameter::Rs, &[(0.0, 90.0, 1400.0)]);
+        assert!(one.starts_with("there is one speed and one load"), "{one}");
+        let constant = reason(Parameter::PsiF, &[(-20.0, 90.0, 1400.0), (-20.0, 40.0, 700.0)]);
+        assert!(constant.starts_with("i_d is the same"), "{constant}");
+    }
 
     #[test]
     fn one_digit_is_enough_for_advice() {
