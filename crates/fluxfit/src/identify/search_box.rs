@@ -1,6 +1,7 @@
 //! The box in which a swarm searches.
 //!
-//! From the log: motoring outside deep field weakening, no parameter asks for more than the whole voltage, `R_s <= |u|/|i|`, `L <= |u|/(omega |i|)`, `psi_f <=
+//! From the log: motoring outside deep field weakening, no parameter asks for more than the whole voltage, `R_s <= |u|/|i|`, `L
+//! <= |u|/(omega |i|)`, `psi_f <=
 //! |u|/omega`, each at the operating point where that is largest. A motor's rating gives the same bounds from its nameplate.
 //!
 //! Where the points have no current, voltage or speed at all, a parameter is in no equation, and the swarm may look for it anywhere.
