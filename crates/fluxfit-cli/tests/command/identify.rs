@@ -57,13 +57,22 @@ fn without_d_current_ld_has_no_value_and_the_rest_is_good() {
 #[test]
 fn one_operating_point_tells_only_lq() {
     let text = std::fs::read_to_string(root().join(NOISY)).unwrap();
-    let half: Vec<&str> = text.lines().take(1 + 5950).collect();
-    let file = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(file.path(), half.join("\n")).unwrap();
-    let (status, document) = json(&["identify", file.path().to_str().unwrap()]);
-    assert_eq!(status, 1);
-    assert_eq!(verdicts(&document), ["not-identifiable", "not-identifiable", "identified", "not-identifiable"]);
-    assert!(errors(&document)[2].0.abs() < 0.1);
+    // Half of the rows, and all of the time before i_d moves.
+    for rows in [4500, 5950] {
+        let half: Vec<&str> = text.lines().take(1 + rows).collect();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), half.join("\n")).unwrap();
+        let path = file.path().to_str().unwrap();
+        let (status, document) = json(&["identify", path]);
+        assert_eq!(status, 1);
+        assert_eq!(verdicts(&document), ["not-identifiable", "not-identifiable", "identified", "not-identifiable"]);
+        assert!(errors(&document)[2].0.abs() < 0.1);
+        // Before the load came there was a short pause without it: named, it is a second load, and tells R_s and psi_f.
+        assert!(document["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "short-stretches"));
+        let (_, named) = json(&["identify", path, "--window", "0.173:0.1999", "--window", "0.26:0.4499"]);
+        assert_eq!(verdicts(&named), ["identified", "not-identifiable", "identified", "identified"]);
+        assert!(errors(&named)[0].1.abs() < 4.0 && errors(&named)[3].1.abs() < 4.0);
+    }
 }
 
 /// A real log of a saturating machine whose drive coasts for most of it. R 18 mohm, L_d 175 and L_q 180 uH by its nameplate;

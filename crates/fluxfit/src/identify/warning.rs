@@ -21,6 +21,7 @@ pub(super) fn warnings(log: &Log, found: &Identification, settings: &Settings) -
         ("no-redundancy", no_redundancy(found)),
         ("misfit", misfit(found)),
         ("no-current", no_current(log, found, settings)),
+        ("short-stretches", short_stretches(log, settings)),
         ("coarse-sampling", coarse_sampling(log, found)),
         ("outside-box", outside_box(found)),
     ];
@@ -55,6 +56,24 @@ fn no_current(log: &Log, found: &Identification, settings: &Settings) -> Option<
     }
     let idle = found.operating_points.iter().filter(|point| point.current().magnitude() < windows::least_current(log)).count();
     (idle > 0).then(|| format!("{idle} of the windows named carry no current and were used all the same: {WHY}"))
+}
+
+/// Stretches that are named in a warning; more would drown it.
+const NAMED: usize = 3;
+
+fn short_stretches(log: &Log, settings: &Settings) -> Option<String> {
+    let (_, mut short) = windows::find_all(log);
+    short.sort_by_key(|rows| std::cmp::Reverse(rows.len()));
+    if short.is_empty() || !settings.windows.is_empty() {
+        return None;
+    }
+    let t = &log.columns().t;
+    let named: Vec<String> = short.iter().take(NAMED).map(|rows| format!("{:.4}:{:.4}", t[rows.start], t[rows.end - 1])).collect();
+    let more = if short.len() > NAMED { " and more" } else { "" };
+    Some(format!(
+        "steady stretches much shorter than the others were left out, at {} s{more}: if the drive was held there, name all windows with --window",
+        named.join(", ")
+    ))
 }
 
 fn coarse_sampling(log: &Log, found: &Identification) -> Option<String> {

@@ -22,7 +22,7 @@ const MIN_BLOCKS: usize = 3;
 
 /// A window is at least this fraction of the longest: what is shorter is a pause between transients rather than a point at which
 /// the drive was held.
-const MIN_SHARE: f64 = 0.1;
+const MIN_SHARE: f64 = 0.2;
 
 /// Means agree within this fraction of the log's largest value. The equations of the means hold while currents drift; what this
 /// keeps out are transients that sampling and filters distort.
@@ -48,14 +48,26 @@ pub const PAPER_ROWS: usize = 4000;
 /// # Errors
 /// If there is none.
 pub fn find(log: &Log) -> Result<Vec<Range<usize>>, Error> {
-    let scale = Scale::of(log);
-    let windows: Vec<_> =
-        log.segments().chunk_by(|one, other| one.log == other.log).flat_map(|of_one_log| find_in(log, of_one_log, &scale)).collect();
+    let (windows, _) = find_all(log);
     if windows.is_empty() { Err(Error::NoOperatingPoint { least: MIN_ROWS }) } else { Ok(windows) }
 }
 
-/// The steady windows of the segments of one log.
-fn find_in(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> {
+/// The steady windows, and the stretches that are steady but too short beside them.
+pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
+    let scale = Scale::of(log);
+    let (mut windows, mut short) = (Vec::new(), Vec::new());
+    for of_one_log in log.segments().chunk_by(|one, other| one.log == other.log) {
+        let stretches = stretches(log, of_one_log, &scale);
+        let longest = stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
+        let (long, rest): (Vec<_>, Vec<_>) = stretches.into_iter().partition(|rows| rows.len() as f64 >= MIN_SHARE * longest as f64);
+        windows.extend(long);
+        short.extend(rest);
+    }
+    (windows, short)
+}
+
+/// The steady stretches of the segments of one log.
+fn stretches(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> {
     let rows: usize = segments.iter().map(|segment| segment.rows.len()).sum();
     let block_rows = (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
     let mut windows = Vec::new();
@@ -73,8 +85,7 @@ fn find_in(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> 
         windows.extend(open.and_then(|window| window.rows(scale)));
     }
     let least = MIN_ROWS.max(MIN_BLOCKS * block_rows);
-    let longest = windows.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
-    windows.retain(|rows| rows.len() >= least && rows.len() as f64 >= MIN_SHARE * longest as f64);
+    windows.retain(|rows| rows.len() >= least);
     windows
 }
 
