@@ -21,6 +21,7 @@
 //! | [`csv`] | a log from a table of text, whatever its dialect |
 //! | [`mod@unit`] | units of a log's columns: given, or named by the header |
 //! | [`quantity`] | numbers with units, as people write them |
+//! | [`number`] | numbers with units, as people read them |
 //! | [`argument`] | `key=value` arguments |
 //! | [`motor_file`] | `MOTOR.toml` |
 //! | [`truth`] | the true parameters of a simulated log |
@@ -35,6 +36,7 @@ pub mod csv;
 pub mod error;
 mod input;
 pub mod motor_file;
+pub mod number;
 pub mod output;
 pub mod quantity;
 pub mod truth;

@@ -31,6 +31,7 @@
 //! | [`optimizer`] | who minimizes: tGFPA, FPA, LPSO, APSO; knows nothing of motors |
 //! | [`identify`](mod@identify) | the main path: from a log to values, intervals, verdicts |
 //! | [`study`] | many runs of many methods, as the paper compares them |
+//! | [`paper`] | what the paper states: its motor, its rig, its results |
 //! | [`error`] | the only error |
 //!
 //! Results depend on the log, the settings and the seed: not on files, clocks or the number of threads.
@@ -43,6 +44,7 @@ pub mod log;
 pub mod motor;
 pub mod objective;
 pub mod optimizer;
+pub mod paper;
 mod resolution;
 pub mod steady;
 pub mod study;

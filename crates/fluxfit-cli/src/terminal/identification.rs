@@ -1,11 +1,7 @@
 //! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and
 //! what the swarm made of it.
 
-use super::{
-    BAD, DIM, GOOD, HEADING, WARNING,
-    number::{Scale, significant, small},
-    table,
-};
+use super::{BAD, DIM, GOOD, HEADING, WARNING, table};
 use fluxfit::{
     identify::{
         Identification,
@@ -15,6 +11,7 @@ use fluxfit::{
     motor::Parameter,
     optimizer::Method,
 };
+use fluxfit_files::number::{Scale, significant, small};
 
 /// Shows an identification; warnings go to standard error.
 pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option<&Method>) -> std::io::Result<()> {

@@ -2,7 +2,6 @@
 //! and no `NO_COLOR`).
 
 pub(crate) mod identification;
-mod number;
 mod plot;
 pub(crate) mod study;
 

@@ -1,15 +1,14 @@
 //! A study: the paper's Table 2, the ranking by `F - F_LS`, and its Fig. 4 in characters.
 
-use super::{
-    DIM, HEADING,
-    number::{Scale, significant, small},
-    plot, table,
-};
+use super::{DIM, HEADING, plot, table};
 use fluxfit::{
     motor::{Motor, Parameter},
     study::{MethodStudy, error_percent},
 };
-use fluxfit_files::answer::StudyFacts;
+use fluxfit_files::{
+    answer::StudyFacts,
+    number::{Scale, significant, small},
+};
 
 /// Shows a study.
 pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {

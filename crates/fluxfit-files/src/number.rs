@@ -1,4 +1,5 @@
-//! Numbers as engineers read them: with the prefix that fits, and no more digits than are known.
+//! Numbers as engineers read them, on a terminal or a page: with the prefix that fits, and no more digits than are known.
+//! [`quantity`](crate::quantity) reads what people write; this writes what they read.
 
 use fluxfit::motor::Parameter;
 
@@ -7,7 +8,7 @@ const PREFIXES: [(i32, &str); 5] = [(3, "k"), (0, ""), (-3, "m"), (-6, "u"), (-9
 
 /// A unit with its prefix.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Scale {
+pub struct Scale {
     factor: f64,
     prefix: &'static str,
 }
@@ -15,7 +16,7 @@ pub(crate) struct Scale {
 impl Scale {
     /// The prefix under which `value` has one to three digits before the point. Resistances and fluxes stay unprefixed down to a
     /// tenth, as data sheets print them.
-    pub(crate) fn for_value(parameter: Parameter, value: f64) -> Self {
+    pub fn for_value(parameter: Parameter, value: f64) -> Self {
         let smallest = match parameter {
             Parameter::Rs | Parameter::PsiF => 0.1,
             Parameter::Ld | Parameter::Lq => 1.0,
@@ -26,12 +27,12 @@ impl Scale {
     }
 
     /// The prefixed unit.
-    pub(crate) fn unit(&self, unit: &str) -> String {
+    pub fn unit(&self, unit: &str) -> String {
         format!("{}{unit}", self.prefix)
     }
 
     /// A value, to two significant digits of its standard error; with four digits of its own where that is zero.
-    pub(crate) fn format(&self, value: f64, standard_error: f64) -> String {
+    pub fn format(&self, value: f64, standard_error: f64) -> String {
         let known = if standard_error > 0.0 { standard_error / self.factor } else { value.abs() / self.factor * 1e-2 };
         // Two digits of the error; no more than twelve, whatever the error is.
         let decimals = if known > 0.0 { (1 - known.log10().floor() as i32).clamp(0, 12) } else { 0 };
@@ -40,7 +41,7 @@ impl Scale {
 }
 
 /// A small positive number, as 1.2e-8; plain where that is shorter to read.
-pub(crate) fn small(value: f64) -> String {
+pub fn small(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
         v if (1e-2..1e4).contains(&v.abs()) => significant(v, 3),
@@ -49,7 +50,7 @@ pub(crate) fn small(value: f64) -> String {
 }
 
 /// A number with `digits` significant digits, without an exponent.
-pub(crate) fn significant(value: f64, digits: i32) -> String {
+pub fn significant(value: f64, digits: i32) -> String {
     let decimals = if value == 0.0 { 0 } else { (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12) };
     format!("{value:.*}", decimals as usize)
 }
