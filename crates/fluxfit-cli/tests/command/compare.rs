@@ -30,8 +30,8 @@ fn the_prototypes_medians_within_a_factor_of_five() {
             let median = &study["convergence"]["cost_above_optimum"]["median"];
             for (iteration, expected) in [50, 100, 200, 300].into_iter().zip(expected) {
                 let ratio = median[iteration].as_f64().unwrap() / expected;
-                // Of APSO only that it is no worse: ours ends five to eight times lower. The prototype's medians are those of an inertia by each
-                // particle's own best cost; that of the current cost, as both write, settles sooner.
+                // Of APSO only that it is no worse: ours ends five to eight times lower. The prototype's medians are those of an
+                // inertia by each particle's own best cost; that of the current cost, as both write, settles sooner.
                 let least = if method == "apso" { 0.0 } else { 0.2 };
                 assert!((least..5.0).contains(&ratio), "{log} {method} at {iteration}: {ratio} times the prototype's");
             }
