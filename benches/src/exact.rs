@@ -2,9 +2,11 @@
 
 use crate::timing::median_seconds;
 use fluxfit::{
+    frames::Dq,
     least_squares::TriangularFactor,
     log::Log,
     objective::voltage_error::{IdZero, VoltageError, steady_equations},
+    steady::held_vector::HeldVector,
 };
 use serde::Serialize;
 use std::{hint::black_box, ops::Range};
@@ -21,10 +23,12 @@ pub(crate) struct Figures {
 }
 
 /// Times both.
-pub(crate) fn measure(log: &Log, modes: &[Range<usize>]) -> Figures {
+pub(crate) fn measure(log: &Log, modes: &[(Range<usize>, HeldVector)]) -> Figures {
     let columns = log.columns();
-    let rows = modes.iter().cloned().flatten();
-    let equations = rows.flat_map(|k| steady_equations([columns.ud[k], columns.uq[k]], [columns.id[k], columns.iq[k]], columns.omega_e[k]));
+    let equations = modes.iter().flat_map(|(rows, _)| rows.clone()).flat_map(|k| {
+        let (u, i) = (Dq { d: columns.ud[k], q: columns.uq[k] }, Dq { d: columns.id[k], q: columns.iq[k] });
+        steady_equations(u, i, i, columns.omega_e[k])
+    });
     let factor: TriangularFactor = equations.collect();
     Figures {
         microseconds_from_rows: 1e6 * median_seconds(REPEATS, |_| VoltageError::of_samples(black_box(log), modes, IdZero::Measured)),

@@ -14,6 +14,7 @@ use fluxfit::{
     motor::{Motor, PARAMETERS},
     objective::voltage_error::{IdZero, VoltageError},
     optimizer::{Method, bounds::Bounds},
+    steady::held_vector::HeldVector,
 };
 use fluxfit_files::{LogOptions, read_log};
 use serde::Serialize;
@@ -36,7 +37,8 @@ struct Figures {
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).ok_or("usage: fluxfit-benches LOG.csv")?;
     let log = read_log(Path::new(&path), &LogOptions::default())?.log;
-    let modes = modes(&log)?;
+    // As the peers have them: without a correction.
+    let modes = modes(&log)?.map(|rows| (rows, HeldVector::NONE));
     let bounds = Bounds::new(vec![0.0; PARAMETERS], UPPER.to_vec())?;
     let objective = VoltageError::of_samples(&log, &modes, IdZero::Measured);
     let figures = Figures {

@@ -1,7 +1,7 @@
 //! The command line, as clap reads it. Texts of values are turned into values by `fluxfit-files`; nothing is decided here.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use fluxfit::{motor::Parameter, objective::voltage_error::IdZero, optimizer::Method};
+use fluxfit::{motor::Parameter, objective::voltage_error::IdZero, optimizer::Method, steady::held_vector::VoltageTiming};
 use fluxfit_files::Unit;
 use std::path::PathBuf;
 
@@ -42,6 +42,9 @@ pub(crate) struct LogArguments {
     /// A steady window in seconds of the log's own time, e.g. 0.48:0.595; may be repeated; without, windows are found
     #[arg(long, value_name = "T0:T1", value_parser = fluxfit_files::parse_window, allow_hyphen_values = true)]
     pub(crate) window: Vec<(f64, f64)>,
+    /// What ud, uq of a row mean: the mean of the two periods around it (centered), or the vector of one period, so many periods later
+    #[arg(long, value_enum, default_value_t = Timing::Auto)]
+    pub(crate) voltage_timing: Timing,
     /// Motor file: pole pairs, and a rating for the search box
     #[arg(long, value_name = "MOTOR.toml")]
     pub(crate) motor: Option<PathBuf>,
@@ -66,9 +69,6 @@ pub(crate) struct Identify {
     /// Who searches beside the exact answer; auto is tgfpa
     #[arg(long, default_value = "auto", value_parser = parse_search_method)]
     pub(crate) method: SearchMethod,
-    /// What ud, uq of a row mean: the mean of the two periods around it (centered), or the vector of one period, so many periods later
-    #[arg(long, value_enum, default_value_t = Timing::Auto)]
-    pub(crate) voltage_timing: Timing,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
     #[arg(long, value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
@@ -145,6 +145,18 @@ pub(crate) enum Timing {
     /// Two periods later
     #[value(name = "2")]
     Two,
+}
+
+impl Timing {
+    /// What is stated; nothing, if it is for the library to choose.
+    pub(crate) fn stated(self) -> Option<VoltageTiming> {
+        match self {
+            Self::Auto => None,
+            Self::Centered => Some(VoltageTiming::Centered),
+            // Steady voltages do not know their delay.
+            Self::Zero | Self::One | Self::Two => Some(VoltageTiming::Compensated),
+        }
+    }
 }
 
 /// Who searches in `identify`.

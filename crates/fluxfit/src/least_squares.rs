@@ -218,6 +218,9 @@ mod tests {
         fn nothing_lies_below_the_solution_and_the_excess_is_exact(equations in equations(), x in prop::array::uniform4(-5.0..5.0f64)) {
             let factor: TriangularFactor = equations.into_iter().collect();
             let solution = factor.solve();
+            // Nearly singular equations have solutions so far away that rounding along the way there is larger than the bound below:
+            // 1e-16 of 10 times 1e3, times the residual of some 1e3, is 1e-9.
+            prop_assume!(solution.motor.to_array().iter().all(|value| value.abs() < 1e3));
             let at_x = factor.cost(&x);
             prop_assert!(solution.cost <= at_x * (1.0 + 1e-12));
             let excess = factor.excess(&x, &solution.motor.to_array());

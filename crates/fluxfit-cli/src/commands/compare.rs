@@ -3,7 +3,7 @@
 use super::{Status, input};
 use crate::{arguments::Compare, error::CommandError, terminal};
 use fluxfit::{
-    identify::{Known, Settings, excitation::Excitation, operating_points},
+    identify::{Known, Settings, beliefs, excitation::Excitation, operating_points, voltage_timing},
     motor::{PARAMETERS, Parameter},
     objective::voltage_error::VoltageError,
     optimizer::{self, CloseTo},
@@ -17,15 +17,18 @@ use std::time::Instant;
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let input = input::read(&arguments.log)?;
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
-    let settings = Settings { windows: arguments.log.window.clone(), ..Settings::default() };
+    let settings =
+        Settings { windows: arguments.log.window.clone(), voltage_timing: arguments.log.voltage_timing.stated(), ..Settings::default() };
     let points = operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
     let bounds = input::search_box(&arguments.log, &input.motor, &points)?;
-    let windows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
+    let rows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
+    let beliefs = beliefs(&input.log, &points, voltage_timing(&settings).0, &settings);
+    let windows: Vec<_> = rows.into_iter().zip(beliefs).map(|(rows, belief)| (rows, belief.held_vector)).collect();
     let objective = VoltageError::of_samples(&input.log, &windows, arguments.id_zero);
     let settings = search_settings(arguments, &objective)?;
 
     let methods = study(arguments, settings, &bounds, &objective)?;
-    let rows: Vec<usize> = windows.iter().map(ExactSizeIterator::len).collect();
+    let rows: Vec<usize> = windows.iter().map(|(rows, _)| rows.len()).collect();
     let facts = answer::StudyFacts {
         settings: &settings,
         runs: arguments.runs,

@@ -2,7 +2,7 @@
 
 use super::{Status, input};
 use crate::{
-    arguments::{Identify, SearchMethod, Timing, by_parameter},
+    arguments::{Identify, SearchMethod, by_parameter},
     error::CommandError,
     terminal,
 };
@@ -10,7 +10,6 @@ use fluxfit::{
     identify::{Known, Settings, identify},
     motor::PARAMETERS,
     optimizer::{self, Method, tgfpa::Tgfpa},
-    steady::held_vector::VoltageTiming,
 };
 use fluxfit_files::answer;
 
@@ -33,12 +32,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
 fn settings(arguments: &Identify) -> Result<Settings, CommandError> {
     Ok(Settings {
         windows: arguments.log.window.clone(),
-        voltage_timing: match arguments.voltage_timing {
-            Timing::Auto => None,
-            Timing::Centered => Some(VoltageTiming::Centered),
-            // Steady voltages do not know their delay.
-            Timing::Zero | Timing::One | Timing::Two => Some(VoltageTiming::Compensated),
-        },
+        voltage_timing: arguments.log.voltage_timing.stated(),
         voltage_accuracy: arguments.voltage_accuracy,
         known: known(arguments)?,
         method: match arguments.method {

@@ -198,7 +198,7 @@ fn check(settings: &Settings) -> Result<(), Error> {
 }
 
 /// Centred, unless stated otherwise: what drives that log their realized voltage mostly mean.
-fn voltage_timing(settings: &Settings) -> (VoltageTiming, Provenance) {
+pub fn voltage_timing(settings: &Settings) -> (VoltageTiming, Provenance) {
     settings.voltage_timing.map_or((VoltageTiming::Centered, Provenance::Assumed), |stated| (stated, Provenance::Stated))
 }
 
@@ -220,16 +220,9 @@ pub fn operating_points(log: &Log, settings: &Settings) -> Result<Vec<OperatingP
 /// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
 /// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
 fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
-    let excitation = Excitation::of(rough, &settings.known);
-    let motor = Estimate::solve(rough, &excitation, settings).motor;
-    let inductance = inductance(&motor, &excitation);
-    let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
-    let with = |timing: VoltageTiming| -> Vec<_> {
-        let held = |point: &OperatingPoint| held_vector(log, point, fastest, timing, motor.rs, inductance);
-        rough
-            .iter()
-            .map(|point| OperatingPoint::measure(log, point.rows.clone(), Some(&Belief { motor, held_vector: held(point) })))
-            .collect()
+    let with = |timing: VoltageTiming| -> Vec<OperatingPoint> {
+        let beliefs = beliefs(log, rough, timing, settings);
+        rough.iter().zip(&beliefs).map(|(point, belief)| OperatingPoint::measure(log, point.rows.clone(), Some(belief))).collect()
     };
     let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &settings.known), settings).motor;
     let points = with(voltage_timing(settings).0);
@@ -241,6 +234,15 @@ fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<Ope
         }
     };
     (points, doubt)
+}
+
+/// What a first look at the operating points tells of each: the motor, and the held-vector correction of its window.
+pub fn beliefs(log: &Log, rough: &[OperatingPoint], timing: VoltageTiming, settings: &Settings) -> Vec<Belief> {
+    let excitation = Excitation::of(rough, &settings.known);
+    let motor = Estimate::solve(rough, &excitation, settings).motor;
+    let inductance = inductance(&motor, &excitation);
+    let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    rough.iter().map(|point| Belief { motor, held_vector: held_vector(log, point, fastest, timing, motor.rs, inductance) }).collect()
 }
 
 /// The inductances for the current's ripple: a rough estimate will do, but not one of noise. What the log does not excite is

@@ -8,13 +8,18 @@
 //! points the same sum over all of them. It is linear in `x`: one valley, solved exactly by
 //! [`least_squares`](crate::least_squares), and evaluated through the same triangular factor in a few nanoseconds.
 //!
+//! The paper's samples are taken as the voltages that acted. A log's are not quite: each window comes with the
+//! [held-vector](crate::steady::held_vector) correction of its log, without which L_q is 0.02 % off on an exact log.
+//!
 //! Gao, Wang, Jiang and Hu, 2023, equations (2), (3) and (11).
 
 use crate::{
+    frames::Dq,
     least_squares::{Equation, Solution, TriangularFactor},
     log::Log,
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
+    steady::held_vector::HeldVector,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -46,9 +51,10 @@ pub struct VoltageError {
 }
 
 impl VoltageError {
-    /// Fitness (11) over every row of the windows: a triangular factor per window, on all cores, merged in order.
-    pub fn of_samples(log: &Log, windows: &[Range<usize>], id_zero: IdZero) -> Self {
-        let factors: Vec<TriangularFactor> = windows.par_iter().map(|window| factor_of(log, window, id_zero)).collect();
+    /// Fitness (11) over every row of the windows, each with its held-vector correction: a triangular factor per window, on all
+    /// cores, merged in order.
+    pub fn of_samples(log: &Log, windows: &[(Range<usize>, HeldVector)], id_zero: IdZero) -> Self {
+        let factors: Vec<TriangularFactor> = windows.par_iter().map(|(rows, held)| factor_of(log, rows, held, id_zero)).collect();
         let empty = TriangularFactor::from_iter([]);
         Self::of_factor(factors.iter().fold(empty, TriangularFactor::merge))
     }
@@ -91,21 +97,24 @@ impl Objective for VoltageError {
     }
 }
 
-/// Equation (2) of one sample as two equations of the parameters. V, A, electrical rad/s; `[d, q]`.
-pub fn steady_equations([ud, uq]: [f64; 2], [id, iq]: [f64; 2], omega_e: f64) -> [Equation; 2] {
+/// Equation (2) of one sample as two equations of the parameters. V, A, electrical rad/s; `[d, q]`. The resistance sees `mean`, the
+/// current's mean over the sample's period; the fluxes are those of the sampled current `i`.
+pub fn steady_equations(u: Dq, mean: Dq, i: Dq, omega_e: f64) -> [Equation; 2] {
     [
-        Equation { coefficients: [id, 0.0, -omega_e * iq, 0.0], value: ud },
-        Equation { coefficients: [iq, omega_e * id, 0.0, omega_e], value: uq },
+        Equation { coefficients: [mean.d, 0.0, -omega_e * i.q, 0.0], value: u.d },
+        Equation { coefficients: [mean.q, omega_e * i.d, 0.0, omega_e], value: u.q },
     ]
 }
 
 /// The factor of one window's samples.
-fn factor_of(log: &Log, window: &Range<usize>, id_zero: IdZero) -> TriangularFactor {
+fn factor_of(log: &Log, window: &Range<usize>, held: &HeldVector, id_zero: IdZero) -> TriangularFactor {
     let columns = log.columns();
     let zeroed = id_zero == IdZero::AsPaper && is_id_zero(&columns.id[window.clone()], &columns.iq[window.clone()]);
     let equations = window.clone().flat_map(|k| {
-        let id = if zeroed { 0.0 } else { columns.id[k] };
-        steady_equations([columns.ud[k], columns.uq[k]], [id, columns.iq[k]], columns.omega_e[k])
+        let (u, i, omega_e) = (Dq { d: columns.ud[k], q: columns.uq[k] }, Dq { d: columns.id[k], q: columns.iq[k] }, columns.omega_e[k]);
+        let (u, mean) = held.correct(u, i, omega_e);
+        let zero_d = |i: Dq| if zeroed { Dq { d: 0.0, ..i } } else { i };
+        steady_equations(u, zero_d(mean), zero_d(i), omega_e)
     });
     equations.map(|equation| equation.weighted(WEIGHT.sqrt())).collect()
 }
