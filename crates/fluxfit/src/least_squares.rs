@@ -13,7 +13,10 @@
 //! section 5.3; merging factors: J. Demmel et al., "Communication-optimal parallel and sequential QR and LU factorizations",
 //! doi:10.1137/080731992.
 
-use crate::motor::{Motor, PARAMETERS};
+use crate::{
+    motor::{Motor, PARAMETERS},
+    singular_values::Decomposition,
+};
 use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// Columns of a row: the coefficients and the negative right-hand side.
@@ -126,14 +129,14 @@ impl TriangularFactor {
         // Columns of equal length: resistances and inductances differ by orders of magnitude.
         let lengths =
             SVector::<f64, PARAMETERS>::from_fn(|j, _| Some(matrix.column(j).norm()).filter(|length| *length > 0.0).unwrap_or(1.0));
-        let scaled = SMatrix::<f64, PARAMETERS, PARAMETERS>::from_fn(|i, j| matrix[(i, j)] / lengths[j]);
-        let svd = scaled.svd(true, true);
-        let tolerance = RANK_TOLERANCE * svd.singular_values.max();
-        let x = svd.solve(&-z, tolerance).map_or_else(|_| SVector::zeros(), |y| y.component_div(&lengths));
+        let decomposition = Decomposition::of(DMatrix::from_fn(PARAMETERS, PARAMETERS, |i, j| matrix[(i, j)] / lengths[j]));
+        let tolerance = RANK_TOLERANCE * decomposition.values[0];
+        let y = decomposition.pseudo_inverse(tolerance) * -z;
+        let x = SVector::<f64, PARAMETERS>::from_fn(|p, _| y[p] / lengths[p]);
         Solution {
             motor: Motor::from(<[f64; PARAMETERS]>::from(x)),
             cost: (matrix * x + z).norm_squared() + rho * rho,
-            rank: svd.rank(tolerance),
+            rank: decomposition.values.iter().filter(|value| **value > tolerance).count(),
         }
     }
 

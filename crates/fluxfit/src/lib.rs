@@ -46,6 +46,7 @@ pub mod objective;
 pub mod optimizer;
 pub mod paper;
 mod resolution;
+mod singular_values;
 pub mod steady;
 pub mod study;
 

@@ -10,14 +10,12 @@
 //! currents and speed counts in `N` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated.
 //! Parameters that are fixed move to the right-hand side; a prior is one more equation.
 
-use super::{
-    Known, Settings,
-    excitation::{Excitation, MAX_SVD_STEPS},
-};
+use super::{Known, Settings, excitation::Excitation};
 use crate::{
     least_squares::Equation,
     motor::{Motor, PARAMETERS},
     objective::voltage_error::VoltageError,
+    singular_values::Decomposition,
     steady::OperatingPoint,
 };
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
@@ -140,12 +138,10 @@ impl System {
             let coefficients = DMatrix::from_fn(self.equations.len(), PARAMETERS, |row, p| self.equations[row].coefficients[p]);
             let values = DVector::from_iterator(self.equations.len(), self.equations.iter().map(|equation| equation.value));
             // The columns are excited, so the pseudo-inverse needs no cut-off of its own.
-            let svd = (coefficients * &basis).try_svd(true, true, f64::EPSILON, MAX_SVD_STEPS);
-            if let Some(Ok(inverse)) = svd.map(|svd| svd.pseudo_inverse(0.0)) {
-                let product = basis * inverse;
-                x += Vector4::from_iterator((&product * values).iter().copied());
-                gain = product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect();
-            }
+            let inverse = Decomposition::of(coefficients * &basis).pseudo_inverse(0.0);
+            let product = basis * inverse;
+            x += Vector4::from_iterator((&product * values).iter().copied());
+            gain = product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect();
         }
         (Motor::from(<[f64; PARAMETERS]>::from(x)), gain)
     }

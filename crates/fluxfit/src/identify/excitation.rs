@@ -13,15 +13,13 @@ use super::Known;
 use crate::{
     least_squares::Equation,
     motor::{Motor, PARAMETERS, Parameter},
+    singular_values::Decomposition,
     steady::OperatingPoint,
 };
-use nalgebra::{DMatrix, Matrix4, SVD, Vector4};
+use nalgebra::{DMatrix, Matrix4, Vector4};
 
 /// An excited direction's voltage is at least this many standard deviations of its noise.
 const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
-
-/// Steps after which a singular value decomposition is given up: a few per singular value are usual.
-pub(super) const MAX_SVD_STEPS: usize = 1000;
 
 /// Currents and speed are known no better than this fraction of their largest value, however quiet they are.
 const COEFFICIENT_ACCURACY: f64 = 1e-4;
@@ -73,13 +71,12 @@ impl Excitation {
                 .filter(|p| matches!(known[*p], Known::Prior { .. }))
                 .map(|p| std::array::from_fn(|q| f64::from(u8::from(p == q)))),
         );
-        // At least as many rows as columns, so that directions without any voltage appear as well.
-        rows.resize(rows.len().max(PARAMETERS), [0.0; PARAMETERS]);
 
         let matrix = DMatrix::from_fn(rows.len(), free.len(), |row, column| rows[row][free[column]]);
-        let directions = singular_directions(matrix).into_iter().map(|(singular, v)| {
+        let Decomposition { values, right, .. } = Decomposition::of(matrix);
+        let directions = values.into_iter().zip(right.column_iter()).map(|(singular, v)| {
             let mut components = [0.0; PARAMETERS];
-            free.iter().zip(v).for_each(|(p, component)| components[*p] = component);
+            free.iter().zip(&v).for_each(|(p, component)| components[*p] = *component);
             let signal_to_noise = singular / coefficient_noise(points, &components, &scale, u);
             Direction { components, signal_to_noise, excited: signal_to_noise >= MIN_SIGNAL_TO_NOISE }
         });
@@ -142,18 +139,6 @@ impl Excitation {
             .sum::<f64>()
             .sqrt();
         part > OPEN_PART
-    }
-}
-
-/// Singular values and right singular vectors, largest first. Should the decomposition not end, the axes, moving nothing: no
-/// answer rather than a wrong one.
-fn singular_directions(matrix: DMatrix<f64>) -> Vec<(f64, Vec<f64>)> {
-    let columns = matrix.ncols();
-    match matrix.try_svd(false, true, f64::EPSILON, MAX_SVD_STEPS) {
-        Some(SVD { singular_values, v_t: Some(v_t), .. }) => {
-            singular_values.iter().copied().zip(v_t.row_iter().map(|row| row.iter().copied().collect())).collect()
-        }
-        _ => (0..columns).map(|axis| (0.0, (0..columns).map(|column| f64::from(u8::from(column == axis))).collect())).collect(),
     }
 }
 
