@@ -37,7 +37,7 @@ OBJECTIVE = {
     "centre": [0.19, 0.105, 0.24, 0.1827],
 }
 
-FPA = {"switch_probability": 0.8, "gamma": 0.1}
+FPA = {"switch_probability": 0.8, "gamma": 0.1, "local_base": "accepted"}
 TGFPA = FPA | {"plain_global": 0.2, "plain_local": 0.2, "start": "logistic"}
 FLIGHT = {"cognitive": 2.0, "social": 2.0, "velocity_limit": 0.1}
 LPSO = FLIGHT | {"inertia_start": 0.9, "inertia_end": 0.4}
@@ -49,12 +49,13 @@ CASES = [
     (
         "tgfpa altered",
         "tgfpa",
-        {"switch_probability": 0.4, "gamma": 0.5, "plain_global": 0.5, "plain_local": 0.5, "start": "uniform"},
+        {"switch_probability": 0.4, "gamma": 0.5, "local_base": "accepted", "plain_global": 0.5, "plain_local": 0.5, "start": "uniform"},
         SHIFTED_BOX,
         5,
     ),
     ("fpa defaults", "fpa", FPA, MOTOR_BOX, 2),
-    ("fpa altered", "fpa", {"switch_probability": 0.3, "gamma": 0.5}, SHIFTED_BOX, 10),
+    ("fpa altered", "fpa", {"switch_probability": 0.3, "gamma": 0.5, "local_base": "accepted"}, SHIFTED_BOX, 10),
+    ("tgfpa from the last trial", "tgfpa", TGFPA | {"local_base": "last-trial"}, MOTOR_BOX, 13),
     ("lpso defaults", "lpso", LPSO, MOTOR_BOX, 18),
     (
         "lpso altered",
@@ -150,6 +151,10 @@ class Search:
 class Flowers(Search):
     """FPA, and tGFPA where the settings hold `plain_global` (m) and `plain_local` (q)."""
 
+    def __init__(self, settings, box, seed):
+        super().__init__(settings, box, seed)
+        self.trials = self.x
+
     def start(self):
         if self.settings.get("start") != "logistic":
             return super().start()
@@ -186,14 +191,19 @@ class Flowers(Search):
             self.seen["plain local"] += 1
             epsilon = draws.uniform()
             j, k = draws.partners(i, 2)
-            return x[i] + epsilon * (x[j] - x[k])
+            return self.base(i) + epsilon * (x[j] - x[k])
         self.seen["gaussian local"] += 1
         first, second = draws.normal(2)
         j, k, l = draws.partners(i, 3)
-        return x[i] + first * (x[j] - x[i]) + second * (x[l] - x[k])
+        return self.base(i) + first * (x[j] - x[i]) + second * (x[l] - x[k])
+
+    def base(self, i):
+        """Where a local move starts: Yang's program keeps trials that were rejected."""
+        return (self.x if self.settings["local_base"] == "accepted" else self.trials)[i]
 
     def step(self, t):
         trials = self.clamp(np.array([self.move(i, t) for i in range(POPULATION)]))
+        self.trials = trials
         costs = self.cost(trials)
         better = self.less(trials, costs, self.x, self.f)
         self.seen["accepted"] += int(better.sum())

@@ -66,7 +66,11 @@ impl Case {
     fn method(&self) -> Method {
         let number = |name: &str| self.settings[name].as_f64().unwrap();
         let flight = || Flight { cognitive: number("cognitive"), social: number("social"), velocity_limit: number("velocity_limit") };
-        let pollination = || Fpa { switch_probability: number("switch_probability"), gamma: number("gamma") };
+        let pollination = || Fpa {
+            switch_probability: number("switch_probability"),
+            gamma: number("gamma"),
+            local_base: serde_json::from_value(self.settings["local_base"].clone()).unwrap(),
+        };
         match self.method.as_str() {
             "tgfpa" => Method::Tgfpa(Tgfpa {
                 pollination: pollination(),
@@ -120,7 +124,7 @@ fn oracle() -> Oracle {
 #[test]
 fn every_step_is_the_oracles() {
     let oracle = oracle();
-    assert_eq!(oracle.cases.len(), 8);
+    assert_eq!(oracle.cases.len(), 9);
     for case in &oracle.cases {
         let objective = objective_from(case.dimension, |x| oracle.objective.cost(case, x));
         let mut optimizer = case.start(&objective);

@@ -286,7 +286,7 @@ fn the_t_perturbation_follows_the_iteration() {
     let evaluations = AtomicU64::new(0);
     let objective = objective_from(2, |_| -(evaluations.fetch_add(1, Ordering::Relaxed) as f64));
     // Only global moves, none of them along the Lévy step, all of them perturbed.
-    let pollination = Fpa { switch_probability: 0.0, gamma: 0.0 };
+    let pollination = Fpa { switch_probability: 0.0, gamma: 0.0, ..Fpa::default() };
     let method = Method::Tgfpa(Tgfpa { pollination, plain_global: 0.0, plain_local: 0.0, start: Start::Uniform });
     let bounds = Bounds::new(vec![-1.0, 3.0], vec![1.0, 7.0]).unwrap();
     let settings = Settings { population: 5, ..Settings::default() };

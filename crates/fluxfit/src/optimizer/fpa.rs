@@ -25,11 +25,23 @@ pub struct Fpa {
     pub switch_probability: f64,
     /// `gamma`: scale of the Lévy steps. 0.1; Yang's program has 0.01, which ends twenty times worse.
     pub gamma: f64,
+    /// Where local moves start.
+    pub local_base: LocalBase,
+}
+
+/// Where a local move starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LocalBase {
+    /// At the flower, as equation (6) has it.
+    Accepted,
+    /// At the flower's last trial, accepted or not, as in Yang's program: ends ten thousand times worse on fitness (11).
+    LastTrial,
 }
 
 impl Default for Fpa {
     fn default() -> Self {
-        Self { switch_probability: 0.8, gamma: 0.1 }
+        Self { switch_probability: 0.8, gamma: 0.1, local_base: LocalBase::Accepted }
     }
 }
 
@@ -41,24 +53,34 @@ impl Fpa {
     pub(super) fn propose(&self, flowers: &mut Population, bounds: &Bounds, draws: &mut Draws) {
         flowers.propose_each(bounds, |i, flowers, trial| {
             if draws.uniform() > self.switch_probability {
-                self.global(flowers, trial, draws);
+                self.global(i, flowers, trial, draws);
             } else {
-                Self::local(i, flowers, trial, draws);
+                self.local(i, flowers, trial, draws);
             }
         });
     }
 
-    /// Equation (4), on a trial that stands at its flower.
-    pub(super) fn global(&self, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
+    /// Equation (4).
+    pub(super) fn global(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
+        flowers.stand_at(i, trial);
         for (x, best) in trial.iter_mut().zip(flowers.best()) {
             *x += self.gamma * levy(draws) * (*x - best);
         }
     }
 
-    /// Equation (6), on a trial that stands at its flower.
-    pub(super) fn local(i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
+    /// Equation (6).
+    pub(super) fn local(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
+        self.stand_at_base(i, flowers, trial);
         let epsilon = draws.uniform();
         let [j, k] = draws.partners(i, flowers.len());
         flowers.add_difference(trial, epsilon, j, k);
+    }
+
+    /// Puts a trial to where its local move starts.
+    pub(super) fn stand_at_base(&self, i: usize, flowers: &Population, trial: &mut [f64]) {
+        match self.local_base {
+            LocalBase::Accepted => flowers.stand_at(i, trial),
+            LocalBase::LastTrial => {}
+        }
     }
 }

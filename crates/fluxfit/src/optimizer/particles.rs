@@ -58,6 +58,7 @@ impl Particles {
         let (velocities, own_best) = (&mut self.velocities, &self.own_best);
         swarm.propose_each(bounds, |i, swarm, trial| {
             let w = inertia(i);
+            swarm.stand_at(i, trial);
             let row = i * d..(i + 1) * d;
             let parts = velocities[row.clone()].iter_mut().zip(&own_best[row]).zip(swarm.best()).zip(bounds.iter());
             for (x, (((v, own), best), (lower, upper))) in trial.iter_mut().zip(parts) {

@@ -86,10 +86,14 @@ impl Population {
         }
     }
 
-    /// Lets `propose` move a trial that starts at each candidate in turn, then keeps it in the box.
+    /// Puts a trial to its candidate's place.
+    pub(super) fn stand_at(&self, i: usize, trial: &mut [f64]) {
+        trial.copy_from_slice(self.position(i));
+    }
+
+    /// Lets `propose` move each candidate's trial, which stands where its last one was, then keeps it in the box.
     pub(super) fn propose_each(&mut self, bounds: &Bounds, mut propose: impl FnMut(usize, &Self, &mut [f64])) {
         let mut trials = std::mem::take(&mut self.trials);
-        trials.copy_from_slice(&self.positions);
         for (i, trial) in trials.chunks_exact_mut(self.dimension).enumerate() {
             propose(i, self, trial);
             bounds.clamp(trial);

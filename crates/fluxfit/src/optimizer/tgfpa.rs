@@ -84,7 +84,7 @@ impl Tgfpa {
     /// Equation (9).
     fn global(&self, i: usize, iteration: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
         let plain = draws.uniform() < self.plain_global;
-        self.pollination.global(flowers, trial, draws);
+        self.pollination.global(i, flowers, trial, draws);
         if !plain {
             let t = draws.student_t(iteration);
             let [j, k] = draws.partners(i, flowers.len());
@@ -95,8 +95,9 @@ impl Tgfpa {
     /// Equation (10).
     fn local(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
         if draws.uniform() < self.plain_local {
-            Fpa::local(i, flowers, trial, draws);
+            self.pollination.local(i, flowers, trial, draws);
         } else {
+            self.pollination.stand_at_base(i, flowers, trial);
             let (towards, across) = (draws.normal(), draws.normal());
             let [j, k, l] = draws.partners(i, flowers.len());
             flowers.add_difference(trial, towards, j, i);
