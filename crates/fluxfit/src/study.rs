@@ -6,9 +6,12 @@
 
 use crate::{
     error::Error,
+    identify,
+    log::Log,
     motor::{Motor, PARAMETERS, Parameter},
-    objective::voltage_error::VoltageError,
+    objective::voltage_error::{IdZero, VoltageError},
     optimizer::{Method, Optimizer, Report, Settings, bounds::Bounds},
+    steady::{OperatingPoint, windows::at_most_paper_rows},
 };
 use rayon::prelude::*;
 use statrs::statistics::{Data, OrderStatistics};
@@ -35,6 +38,34 @@ pub struct Convergence {
     pub quartiles: Vec<[f64; 3]>,
     /// Median of each parameter over the runs.
     pub parameters_median: Vec<[f64; PARAMETERS]>,
+}
+
+/// The paper's fitness on a log, and what it was made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitness {
+    /// The steady windows, before any correction.
+    pub operating_points: Vec<OperatingPoint>,
+    /// Rows that the fitness sums over, per window.
+    pub rows: Vec<usize>,
+    /// Fitness (11) itself.
+    pub objective: VoltageError,
+}
+
+/// Fitness (11) on the steady windows of a log: on at most the paper's 4000 samples of each, with the held-vector correction that
+/// an identification makes.
+///
+/// # Errors
+/// If there is no steady window.
+pub fn fitness(log: &Log, settings: &identify::Settings, id_zero: IdZero) -> Result<Fitness, Error> {
+    let points = identify::operating_points(log, settings)?;
+    let rows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
+    let beliefs = identify::beliefs(log, &points, identify::voltage_timing(settings).0, settings);
+    let windows: Vec<_> = rows.into_iter().zip(beliefs).map(|(rows, belief)| (rows, belief.held_vector)).collect();
+    Ok(Fitness {
+        operating_points: points,
+        rows: windows.iter().map(|(rows, _)| rows.len()).collect(),
+        objective: VoltageError::of_samples(log, &windows, id_zero),
+    })
 }
 
 /// Runs one method `runs` times; `done` is called after each run, from any thread.

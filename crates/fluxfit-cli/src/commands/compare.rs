@@ -3,12 +3,11 @@
 use super::{Status, input};
 use crate::{arguments::Compare, error::CommandError, terminal};
 use fluxfit::{
-    identify::{Known, Settings, beliefs, excitation::Excitation, operating_points, voltage_timing},
+    identify::{Known, Settings, excitation::Excitation},
     motor::{PARAMETERS, Parameter},
     objective::voltage_error::VoltageError,
     optimizer::{self, CloseTo},
-    steady::windows::at_most_paper_rows,
-    study::{MethodStudy, run_method},
+    study::{MethodStudy, fitness, run_method},
 };
 use fluxfit_files::{answer, read_truth};
 use std::time::Instant;
@@ -19,22 +18,17 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
     let settings =
         Settings { windows: arguments.log.window.clone(), voltage_timing: arguments.log.voltage_timing.stated(), ..Settings::default() };
-    let points = operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
-    let bounds = input::search_box(&arguments.log, &input.motor, &points)?;
-    let rows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
-    let beliefs = beliefs(&input.log, &points, voltage_timing(&settings).0, &settings);
-    let windows: Vec<_> = rows.into_iter().zip(beliefs).map(|(rows, belief)| (rows, belief.held_vector)).collect();
-    let objective = VoltageError::of_samples(&input.log, &windows, arguments.id_zero);
-    let settings = search_settings(arguments, &objective)?;
+    let fitness = fitness(&input.log, &settings, arguments.id_zero).map_err(|error| input::of_log(&input.name, error))?;
+    let bounds = input::search_box(&arguments.log, &input.motor, &fitness.operating_points)?;
+    let settings = search_settings(arguments, &fitness.objective)?;
 
-    let methods = study(arguments, settings, &bounds, &objective)?;
-    let rows: Vec<usize> = windows.iter().map(|(rows, _)| rows.len()).collect();
+    let methods = study(arguments, settings, &bounds, &fitness.objective)?;
     let facts = answer::StudyFacts {
         settings: &settings,
         runs: arguments.runs,
         bounds: &bounds,
-        objective: &objective,
-        rows: &rows,
+        objective: &fitness.objective,
+        rows: &fitness.rows,
         truth: truth.as_ref(),
     };
     if arguments.log.json {
@@ -42,7 +36,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
     }
-    let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
+    let excitation = Excitation::of(&fitness.operating_points, &[Known::Nothing; PARAMETERS]);
     let open: Vec<&str> = Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).map(Parameter::symbol).collect();
     if open.is_empty() {
         return Ok(Status::Complete);
