@@ -1,20 +1,22 @@
 //! `fluxfit compare`: many runs of many methods on fitness (11), as the paper compares them.
 
-use super::{Status, input};
+use super::{Status, input, report};
 use crate::{arguments::Compare, error::CommandError, terminal};
 use fluxfit::{
     identify::{Known, Settings, excitation::Excitation, operating_points},
     motor::{PARAMETERS, Parameter},
     objective::voltage_error::VoltageError,
     optimizer::{self, CloseTo},
-    steady::windows::at_most_paper_rows,
+    steady::{OperatingPoint, windows::at_most_paper_rows},
     study::{MethodStudy, run_method},
 };
 use fluxfit_files::{answer, read_truth};
+use fluxfit_report::{Report, html};
 use std::time::Instant;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
+    report::check(&arguments.log, arguments.truth.as_deref())?;
     let input = input::read(&arguments.log)?;
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
     let settings = Settings { windows: arguments.log.window.clone(), ..Settings::default() };
@@ -39,6 +41,18 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
     }
+    report::write(&arguments.log, |origin| {
+        let fitted: Vec<_> = windows.iter().map(|rows| OperatingPoint::measure(&input.log, rows.clone(), None)).collect();
+        html(&Report {
+            title: &input.name,
+            log: &input.log,
+            notes: &input.notes,
+            operating_points: &fitted,
+            identification: None,
+            study: Some((&facts, &methods)),
+            origin,
+        })
+    })?;
     let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
     let open: Vec<&str> = Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).map(Parameter::symbol).collect();
     if open.is_empty() {

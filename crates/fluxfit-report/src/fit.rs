@@ -1,0 +1,79 @@
+//! Measured against fitted: what each operating point was, and what the motor found makes of it.
+
+use crate::{
+    figure::{self, residuals},
+    typography::{decimals, number, prose},
+};
+use fluxfit::{identify::Identification, steady::OperatingPoint};
+use maud::{Markup, html};
+
+/// Digits of a voltage without uncertainty.
+const DECIMALS: usize = 3;
+
+/// The section.
+pub(crate) fn section(found: &Identification) -> Markup {
+    let redundancy = found.estimate.redundancy;
+    html! {
+        p {
+            "At each operating point the steady voltage equations hold for the means of a window. "
+            "Fitted is what they give for the motor found; the residual is measured less fitted."
+            @if redundancy == 0 {
+                " " strong { "The equations are as many as the unknowns" }
+                ", so the fit must be perfect here, and proves nothing."
+            } @else {
+                " There " (if redundancy == 1 { "is one equation" } else { "are several equations" })
+                " more than the unknowns need (redundancy " (redundancy) "), so residuals within their bars speak for the model."
+            }
+        }
+        (points(found))
+        (figure::framed(|size| residuals::draw(found, size), &html! {
+            "Residuals of both voltage equations with bars of two standard uncertainties, from the noise of the means and the accuracy of the voltages. "
+            @if redundancy == 0 { "Without redundancy they are zero by construction." }
+            @else { "Bars that miss zero mean that this point contradicts the others." }
+        }))
+        (figure::framed(|size| figure::plane(&found.operating_points, size), &prose(
+            "The operating points by their currents, numbered as in the table. The farther apart they lie, the better the parameters can be told apart: \
+             L_d needs points that differ in i_d."
+        )))
+    }
+}
+
+fn points(found: &Identification) -> Markup {
+    let rows = found.operating_points.iter().zip(&found.estimate.residuals).zip(residuals::uncertainties(found));
+    html! {
+        div.scroll role="region" aria-label="Operating points, measured and fitted" tabindex="0" {
+            table {
+                thead {
+                    tr {
+                        th scope="col" rowspan="2" { "Point" }
+                        th scope="col" rowspan="2" { (prose("i_d")) ", A" } th scope="col" rowspan="2" { (prose("i_q")) ", A" }
+                        th scope="col" rowspan="2" { (prose("omega_e")) ", rad/s" }
+                        @for axis in ["u_d", "u_q"] { th scope="colgroup" colspan="3" { (prose(axis)) } }
+                    }
+                    tr { @for _ in 0..2 {
+                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual, mV" }
+                    } }
+                }
+                tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, residual, uncertainty)) } }
+            }
+        }
+    }
+}
+
+fn row(k: usize, point: &OperatingPoint, residual: &[f64; 2], uncertainty: [f64; 2]) -> Markup {
+    let (u, i) = (point.voltage(), point.current());
+    let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
+    html! {
+        tr {
+            th scope="row" { (k) }
+            @for value in [i.d, i.q, point.omega_e()] { td { (fixed(value, DECIMALS)) } }
+            @for (axis, measured) in [u.d, u.q].into_iter().enumerate() {
+                @let digits = decimals(uncertainty[axis], DECIMALS).max(DECIMALS);
+                @let tenths = decimals(1e3 * uncertainty[axis], 1);
+                td { (fixed(measured, digits)) }
+                td { (fixed(measured - residual[axis], digits)) }
+                td { (fixed(1e3 * residual[axis], tenths)) " ± " (fixed(1e3 * uncertainty[axis], tenths)) }
+            }
+        }
+    }
+}
