@@ -2,7 +2,7 @@
 
 use crate::{
     figure::{self, intervals},
-    typography::{DASH, list, minus, number, prose, symbol, unit},
+    typography::{DASH, capitalized, list, minus, number, prose, symbol, unit},
 };
 use fluxfit::identify::{
     Identification,
@@ -29,6 +29,11 @@ pub(crate) fn section(found: &Identification) -> Markup {
 /// A verdict as a word on its colour.
 fn badge(verdict: Verdict) -> Markup {
     html! { span class={ "badge " (verdict.key()) } { (verdict.key().replace('-', " ")) } }
+}
+
+/// Whether a parameter was given instead of identified: then there is no doubt of it, and no verdict either.
+pub(crate) fn is_given(judgement: &Judgement) -> bool {
+    judgement.value().is_some() && judgement.uncertainty.standard_error() == 0.0
 }
 
 fn thresholds() -> Markup {
@@ -61,7 +66,7 @@ fn parameter(judgement: &Judgement) -> Markup {
     let heading = html! { th scope="row" { (symbol(judgement.parameter)) } };
     let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) else {
         return html! {
-            tr { (heading) td { (DASH) } td { (DASH) } td { (DASH) } td { (DASH) } td { (badge(judgement.verdict)) } }
+            tr { (heading) td.value { (DASH) } @for _ in 0..3 { td.none { (DASH) } } td { (badge(judgement.verdict)) } }
         };
     };
     let (scale, error) = (Scale::for_value(judgement.parameter, value), judgement.uncertainty.standard_error());
@@ -72,10 +77,15 @@ fn parameter(judgement: &Judgement) -> Markup {
         tr {
             (heading)
             td.value { strong { (show(value)) } " " (unit) }
-            td { @if let Some(width) = width { "±" (significant(100.0 * width, 2)) " %" } @else { (DASH) } }
-            td { @if width.is_some() { (show(low)) " … " (show(high)) " " (unit) } @else { (DASH) } }
-            td.words { (if width.is_some() { judgement.uncertainty.largest_part().label() } else { "given" }) }
-            td { (badge(judgement.verdict)) }
+            @if let Some(width) = width {
+                td { "±" (significant(100.0 * width, 2)) " %" }
+                td { (show(low)) " … " (show(high)) " " (unit) }
+                td.words { (judgement.uncertainty.largest_part().label()) }
+            } @else {
+                // Given, not identified: the reason says so.
+                @for _ in 0..3 { td.none { (DASH) } }
+            }
+            td { @if is_given(judgement) { span.badge { "given" } } @else { (badge(judgement.verdict)) } }
         }
     }
 }
@@ -107,9 +117,8 @@ fn explanations(found: &Identification) -> Markup {
 
 /// With a capital, unless it begins with a symbol, and a full stop.
 fn sentence(text: &str) -> String {
-    let (first, rest) = text.split_at(text.chars().next().map_or(0, char::len_utf8));
     let symbol = text.split(' ').next().is_some_and(|word| word.contains('_'));
-    format!("{}{rest}.", if symbol { first.to_owned() } else { first.to_uppercase() })
+    format!("{}.", if symbol { text.to_owned() } else { capitalized(text) })
 }
 
 fn warnings(found: &Identification) -> Markup {

@@ -2,7 +2,7 @@
 
 use crate::{
     Origin, Report,
-    typography::{minus, number, prose, symbol, unit},
+    typography::{grouped, minus, number, prose, symbol, unit},
 };
 use fluxfit::{motor::Parameter, steady::OperatingPoint};
 use fluxfit_files::number::{Scale, significant};
@@ -14,7 +14,7 @@ pub(crate) fn read(report: &Report) -> Markup {
     let used: usize = report.operating_points.iter().map(|point| point.rows.len()).sum();
     html! {
         dl.facts {
-            dt { "Rows" } dd { (log.rows()) ", of which " (used) " in the windows below" }
+            dt { "Rows" } dd { (grouped(log.rows() as u64)) ", of which " (grouped(used as u64)) " in the windows below" }
             dt { "Rate" } dd { (rate(report)) }
             dt { "Duration" } dd { (number(log.duration(), |seconds| significant(seconds, 3))) " s" }
             dt { "Segments between gaps" } dd { (log.segments().len()) }
@@ -60,7 +60,7 @@ fn windows(points: &[OperatingPoint]) -> Markup {
                         th scope="row" { (k + 1) }
                         td { (number(start, |t| format!("{t:.decimals$}"))) }
                         td { (number(end, |t| format!("{t:.decimals$}"))) }
-                        td { (point.rows.len()) }
+                        td { (grouped(point.rows.len() as u64)) }
                     }
                 } }
             }
@@ -71,7 +71,8 @@ fn windows(points: &[OperatingPoint]) -> Markup {
 /// The command and what else decides the result.
 pub(crate) fn reproduce(origin: &Origin) -> Markup {
     html! {
-        pre.scroll tabindex="0" { code { (origin.command) } }
+        // Lines break between words, not behind the hyphens of an option.
+        pre { code { @for (k, word) in origin.command.split(' ').enumerate() { @if k > 0 { " " } span { (word) } } } }
         p { "With fluxfit " (origin.version) " and seed " (origin.seed) ", the same log gives the same numbers to the bit, on any number of cores." }
     }
 }

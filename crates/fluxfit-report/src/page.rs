@@ -4,10 +4,14 @@ use crate::{
     Report, answer,
     figure::palette,
     fit, origin, search, study,
-    typography::{count, list, symbol},
+    typography::{capitalized, count, in_words, list, symbol},
 };
 use fluxfit::{
-    identify::{Identification, Known, excitation::Excitation, verdict::Verdict},
+    identify::{
+        Identification, Known,
+        excitation::Excitation,
+        verdict::{Judgement, Verdict},
+    },
     motor::{PARAMETERS, Parameter},
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -94,21 +98,17 @@ fn found(report: &Report) -> Markup {
 }
 
 fn identified(found: &Identification) -> Markup {
-    let of = |verdict: Verdict| -> Vec<Markup> {
-        found.parameters.iter().filter(|judgement| judgement.verdict == verdict).map(|judgement| symbol(judgement.parameter)).collect()
+    let with = |is: &dyn Fn(&Judgement) -> bool| -> Vec<Markup> {
+        found.parameters.iter().filter(|judgement| is(judgement)).map(|judgement| symbol(judgement.parameter)).collect()
     };
+    let of = |verdict: Verdict| with(&|judgement| judgement.verdict == verdict && !answer::is_given(judgement));
+    let given = with(&answer::is_given);
     let (good, weak, none) = (of(Verdict::Identified), of(Verdict::Weak), of(Verdict::NotIdentifiable));
     html! {
-        (capitalized(&count(good.len(), ""))) " of " (count(found.parameters.len(), "parameter")) " identified"
+        (capitalized(&in_words(good.len()))) " of " (count(found.parameters.len(), "parameter")) " identified"
+        @if !given.is_empty() { "; given: " (list(&given)) }
         @if !weak.is_empty() { "; weak: " (list(&weak)) }
         @if !none.is_empty() { "; not identifiable from this log: " (list(&none)) }
         "."
     }
-}
-
-/// A number in words at the start of a sentence, without the noun that it lacks.
-fn capitalized(text: &str) -> String {
-    let text = text.trim_end_matches([' ', 's']);
-    let mut letters = text.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }

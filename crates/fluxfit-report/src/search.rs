@@ -1,12 +1,12 @@
 //! The swarm's answer beside the exact one.
 
-use crate::typography::{number, power, symbol, unit};
+use crate::typography::{grouped, number, power, symbol, unit};
 use fluxfit::{
     identify::{Identification, Search},
     optimizer::{Method, StopReason},
     study::error_percent,
 };
-use fluxfit_files::number::{Scale, significant};
+use fluxfit_files::number::Scale;
 use maud::{Markup, html};
 
 /// Digits of a value beyond those of its standard error: the swarm is compared with the exact answer, not with the truth.
@@ -21,7 +21,7 @@ pub(crate) fn section(found: &Identification, method: Option<&Method>) -> Option
     Some(html! {
         p {
             "The equations are linear in the parameters, so least squares solves them exactly; that is the answer above. "
-            (method.label()) " searched for the same minimum and, after " (search.report.evaluations) " evaluations, ended "
+            (method.label()) " searched for the same minimum and, after " (grouped(search.report.evaluations)) " evaluations, ended "
             (power(search.cost_above_optimum)) " above it (" (stop_reason(search.report.stop_reason)) "). "
             "The unit of that cost is one squared standard uncertainty: below 1 the difference does not matter."
         }
@@ -55,7 +55,7 @@ fn values(exact: &Identification, search: &Search, method: &Method) -> Markup {
                                 th scope="row" { (symbol(judgement.parameter)) ", " (unit(judgement.parameter, &scale)) }
                                 td { (show(value)) }
                                 td { (show(found)) }
-                                td { @if let Some(percent) = difference { (number(percent, |percent| significant(percent, 2))) " %" } }
+                                td { @if let Some(percent) = difference { (power(percent)) " %" } }
                             }
                         }
                     }

@@ -3,7 +3,7 @@
 use crate::{
     figure::{self, convergence, courses},
     table_2,
-    typography::{DASH, count, list, minus, number, power, prose, symbol, unit},
+    typography::{DASH, capitalized, count, grouped, list, minus, number, power, prose, symbol, unit},
 };
 use fluxfit::{motor::Parameter, optimizer::Method, study::MethodStudy};
 use fluxfit_files::{
@@ -18,7 +18,7 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexci
     html! {
         p {
             "Every method minimizes the same sum of squares, fitness (11) of the paper, over " (rows(facts)) " rows: "
-            (facts.runs) " runs each, population " (facts.settings.population) ", " (facts.settings.iterations) " iterations. "
+            (count(facts.runs, "run")) " each, population " (facts.settings.population) ", " (facts.settings.iterations) " iterations. "
             "This fitness is linear least squares: it has one minimum, F" sub { "LS" } " = " (power(solution.cost))
             " V², which a factorization finds exactly in microseconds. So the methods are judged by how far above it they end."
         }
@@ -34,7 +34,7 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexci
         (ranking(methods))
         @if methods.iter().any(|(study, _)| !study.convergence.quartiles.is_empty()) {
             (figure::framed(|size| convergence::draw(methods, size), &html! {
-                "Fig. 4 of the paper on a logarithmic scale: F − F" sub { "LS" } " against iteration; lines are medians over the runs, bands reach from the lower to the upper quartile."
+                "Fig. 4 of the paper on a logarithmic scale: F\u{a0}−\u{a0}F" sub { "LS" } " against iteration; lines are medians over the runs, bands reach from the lower to the upper quartile."
                 @if convergence::has_values_below_floor(methods) {
                     " Values below 10" sup { "\u{2212}12" } " V², zero included, are rounding and drawn at that floor."
                 }
@@ -51,18 +51,18 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexci
 /// What came out, for the heading.
 pub(crate) fn in_a_line(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Markup {
     html! {
-        @if let [(only, _)] = methods { (only.method.label()) " ran " } @else { (count(methods.len(), "method")) " ran " }
-        (count(facts.runs, "time")) @if methods.len() != 1 { " each" } "; median cost above the exact minimum: "
+        @if let [(only, _)] = methods { (only.method.label()) " ran " } @else { (capitalized(&count(methods.len(), "method"))) " ran " }
+        @if facts.runs == 1 { "once" } @else { (facts.runs) " times" } @if methods.len() != 1 { " each" } "; median cost above the exact minimum: "
         @for (k, (study, _)) in methods.iter().enumerate() {
             @if k > 0 { ", " }
-            (study.method.label()) " " (power(study.median()))
+            (study.method.label()) "\u{a0}" (power(study.median()))
         }
         "."
     }
 }
 
 fn rows(facts: &StudyFacts) -> String {
-    facts.rows.iter().map(ToString::to_string).collect::<Vec<_>>().join(" + ")
+    facts.rows.iter().map(|rows| grouped(*rows as u64)).collect::<Vec<_>>().join(" + ")
 }
 
 /// Iterations at which the ranking is shown: a sixth, a third, two thirds and all of them; 50, 100, 200 and 300 of the paper's.
@@ -78,7 +78,7 @@ fn ranking(methods: &[(MethodStudy, f64)]) -> Markup {
                 thead {
                     tr {
                         th scope="col" rowspan="2" { "Method" }
-                        th scope="colgroup" colspan=(milestones.len()) { "Median F − F" sub { "LS" } ", V², at iteration" }
+                        th scope="colgroup" colspan=(milestones.len()) { "Median F\u{a0}−\u{a0}F" sub { "LS" } ", V², at iteration" }
                         th scope="col" rowspan="2" { "Worst run" } th scope="col" rowspan="2" { "Evaluations" }
                         th scope="col" rowspan="2" { "ms per run" }
                     }
@@ -89,7 +89,7 @@ fn ranking(methods: &[(MethodStudy, f64)]) -> Markup {
                         th scope="row" { (study.method.label()) }
                         @for iteration in &milestones { td { (median_at(study, *iteration)) } }
                         td { (power(study.worst())) }
-                        td { (study.evaluations_per_run) }
+                        td { (grouped(study.evaluations_per_run)) }
                         td { (number(1e3 * seconds, |ms| significant(ms, 2))) }
                     }
                 } }

@@ -17,7 +17,7 @@ use maud::{Markup, html};
 const CONVERGED: f64 = 0.03;
 
 /// Digits of an estimate: two of this part of it.
-const PRECISION: f64 = 2e-5;
+const PRECISION: f64 = 2e-4;
 
 /// The table, and what may be concluded from it.
 pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
@@ -98,6 +98,12 @@ fn papers_digit(parameter: Parameter) -> f64 {
     }
 }
 
+/// An error with the decimals that the paper prints.
+fn papers_error(column: &Column, parameter: Parameter) -> String {
+    let decimals = if parameter == Parameter::Lq { 5 } else { 3 };
+    format!("{:.decimals$}", column.error_percent[parameter as usize])
+}
+
 /// A row of errors, %.
 fn errors(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Parameter, truth: &Motor, known: bool, papers: &Papers) -> Markup {
     let exact = facts.objective.least_squares().motor;
@@ -111,7 +117,7 @@ fn errors(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Paramet
             td {}
             @for (study, _) in methods {
                 td { (show(study.mean_error_percent(truth)[parameter as usize])) }
-                @if let Some(column) = papers(study) { td.paper { (significant(column.error_percent[parameter as usize], 3)) } }
+                @if let Some(column) = papers(study) { td.paper { (papers_error(column, parameter)) } }
             }
             td { (show(error_percent(&exact, truth, parameter))) }
         }

@@ -93,11 +93,35 @@ pub(crate) fn decimals(uncertainty: f64, least: usize) -> usize {
     if uncertainty > 0.0 && uncertainty.is_finite() { (1.0 - uncertainty.log10().floor()).clamp(0.0, 9.0) as usize } else { least }
 }
 
-/// A count, in words as far as people read them so, with its noun.
+/// A count, in words as far as people read them so.
+pub(crate) fn in_words(n: usize) -> String {
+    const WORDS: [&str; 10] = ["none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
+    WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
+}
+
+/// The same with its noun.
 pub(crate) fn count(n: usize, noun: &str) -> String {
-    const WORDS: [&str; 10] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
-    let number = WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned());
-    format!("{number} {noun}{}", if n == 1 { "" } else { "s" })
+    format!("{} {noun}{}", if n == 0 { "no".to_owned() } else { in_words(n) }, if n == 1 { "" } else { "s" })
+}
+
+/// With a capital.
+pub(crate) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// A large count, its thousands apart.
+pub(crate) fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        // Five digits and more are hard to read in one piece.
+        if k > 0 && digits.len() > 4 && (digits.len() - k).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 /// Things in a row: `a, b and c`.
@@ -126,6 +150,7 @@ mod tests {
 
     #[test]
     fn numbers() {
+        assert_eq!((grouped(1234), grouped(1_234_567)), ("1234".to_owned(), "1\u{202f}234\u{202f}567".to_owned()));
         assert_eq!(minus("-0.00".to_owned()), "0.00");
         assert_eq!(number(f64::NAN, |v| v.to_string()), DASH);
         assert_eq!(power(1.2e-8).into_string(), "1.2·10<sup>\u{2212}8</sup>");

@@ -23,6 +23,8 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let points = operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
     let bounds = input::search_box(&arguments.log, &input.motor, &points)?;
     let windows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
+    // What the methods see; the box is that of whole windows.
+    let points: Vec<_> = windows.iter().map(|rows| OperatingPoint::measure(&input.log, rows.clone(), None)).collect();
     let objective = VoltageError::of_samples(&input.log, &windows, arguments.id_zero);
     let settings = search_settings(arguments, &objective)?;
 
@@ -42,12 +44,11 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
         terminal::study::show(&input.name, &facts, &methods)?;
     }
     report::write(&arguments.log, |origin| {
-        let fitted: Vec<_> = windows.iter().map(|rows| OperatingPoint::measure(&input.log, rows.clone(), None)).collect();
         html(&Report {
             title: &input.name,
             log: &input.log,
             notes: &input.notes,
-            operating_points: &fitted,
+            operating_points: &points,
             identification: None,
             study: Some((&facts, &methods)),
             origin,

@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        let axis = Axis::around([0.0, 300.0], 6);
+        let axis = Axis::between(0.0, 300.0, 6);
         assert_eq!(axis.ticks, [0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0]);
         assert_eq!(axis.label(50.0), "50");
         let axis = Axis::around([-0.13, 0.07], 5);

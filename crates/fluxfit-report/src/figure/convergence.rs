@@ -62,7 +62,7 @@ fn paint(area: &Area, methods: &[(MethodStudy, f64)], size: Size) -> Drawn {
     }
     let ends = methods.iter().filter_map(|(study, _)| {
         let end = height(study.convergence.quartiles.last()?[1]);
-        Some((study, chart.backend_coord(&(last, end))))
+        Some((study, chart.place(last, end)))
     });
     names(area, ends.collect())
 }
@@ -72,7 +72,7 @@ fn band(chart: &mut Chart, study: &MethodStudy) -> Drawn {
     let course =
         |which: usize| study.convergence.quartiles.iter().enumerate().map(move |(k, quartiles)| (k as f64, height(quartiles[which])));
     let outline: Vec<(f64, f64)> = course(0).chain(course(2).collect::<Vec<_>>().into_iter().rev()).collect();
-    chart.draw_series([Polygon::new(outline, shade(Ink::of_method(&study.method), 0.16))])?;
+    chart.series.draw_series([Polygon::new(outline, shade(Ink::of_method(&study.method), 0.16))])?;
     Ok(())
 }
 
@@ -82,8 +82,8 @@ fn median(chart: &mut Chart, study: &MethodStudy) -> Drawn {
         study.convergence.quartiles.iter().enumerate().map(|(k, [_, median, _])| (k as f64, height(*median))).collect();
     match points.as_slice() {
         [] => {}
-        [start] => drop(chart.draw_series([Circle::new(*start, 3 * UNITS, shade(ink, 1.0))])?),
-        _ => drop(chart.draw_series([PathElement::new(points, line(ink, 2.0))])?),
+        [start] => drop(chart.series.draw_series([Circle::new(*start, 3 * UNITS, shade(ink, 1.0))])?),
+        _ => drop(chart.series.draw_series([PathElement::new(points, line(ink, 2.0))])?),
     }
     Ok(())
 }

@@ -62,18 +62,18 @@ fn paint(area: &Area, study: &MethodStudy, truth: Option<&Motor>, parameter: Par
     };
     let mut chart = plot.on(area)?;
     if let Some(truth) = truth {
-        chart.draw_series([PathElement::new(vec![(0.0, truth), (last, truth)], line(Ink::Truth, 1.5))])?;
+        chart.series.draw_series([PathElement::new(vec![(0.0, truth), (last, truth)], line(Ink::Truth, 1.5))])?;
     }
     let ink = Ink::Tgfpa;
     let points: Vec<(f64, f64)> = course.iter().enumerate().map(|(k, value)| (k as f64, *value)).collect();
     match points.as_slice() {
         [] => {}
-        [start] => drop(chart.draw_series([Circle::new(*start, 3 * UNITS, line(ink, 2.0).filled())])?),
-        _ => drop(chart.draw_series([PathElement::new(points, line(ink, 2.0))])?),
+        [start] => drop(chart.series.draw_series([Circle::new(*start, 3 * UNITS, line(ink, 2.0).filled())])?),
+        _ => drop(chart.series.draw_series([PathElement::new(points, line(ink, 2.0))])?),
     }
     if let Some(truth) = truth {
         // At the right end of the line, on the side that the curve leaves free: it came from elsewhere.
-        let (x, y) = chart.backend_coord(&(last, truth));
+        let (x, y) = chart.place(last, truth);
         let from_above = course.iter().sum::<f64>() >= truth * course.len() as f64;
         let (vertical, y) = if from_above { (VPos::Bottom, y - 4 * UNITS) } else { (VPos::Top, y + 4 * UNITS) };
         let text = format!("true {}", scale.format(truth, truth.abs() * 1e-3));

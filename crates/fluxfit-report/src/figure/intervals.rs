@@ -4,9 +4,9 @@
 use super::{
     Size,
     axis::Axis,
-    canvas::{Area, Drawing, Drawn, UNITS, anchored, letters, line, shade, solid},
+    canvas::{Area, Drawing, Drawn, UNITS, anchored, line, shade, solid},
     palette::Ink,
-    plot::Plot,
+    plot::{Chart, Plot},
 };
 use fluxfit::identify::{
     Identification,
@@ -21,8 +21,11 @@ use plotters::{
 /// Left end of the scale, a power of ten of percent: no drive's voltages allow less.
 const NARROWEST: f64 = -3.0;
 
-/// Right end.
-const WIDEST: f64 = 2.0;
+/// Right end: room for those without a value.
+const WIDEST: f64 = 2.7;
+
+/// Room that a number needs, pixels.
+const NUMBER: i32 = 90;
 
 /// Half of the interval as a fraction of the value, where there is a value and a width.
 pub(crate) fn relative_half_width(judgement: &Judgement) -> Option<f64> {
@@ -56,39 +59,42 @@ fn paint(area: &Area, found: &Identification, size: Size) -> Drawn {
     let mut chart = plot.on(area)?;
     let limits = [NARROWEST, (100.0 * IDENTIFIED).log10(), (100.0 * WEAK).log10(), WIDEST];
     for (verdict, ends) in [Verdict::Identified, Verdict::Weak, Verdict::NotIdentifiable].into_iter().zip(limits.windows(2)) {
-        chart.draw_series([Rectangle::new([(ends[0], 0.0), (ends[1], rows)], shade(Ink::of_verdict(verdict), 0.12))])?;
+        chart.series.draw_series([Rectangle::new([(ends[0], 0.0), (ends[1], rows)], shade(Ink::of_verdict(verdict), 0.12))])?;
     }
-    for (name, ends, place) in [("identified", [limits[0], limits[1]], 0.5), ("weak", [limits[1], limits[2]], 0.5)] {
-        let (x, y) = chart.backend_coord(&(ends[0] + place * (ends[1] - ends[0]), rows));
+    for (name, ends) in ["identified", "weak", size.pick("no value", "none")].into_iter().zip(limits.windows(2)) {
+        let (x, y) = chart.place(0.5 * (ends[0] + ends[1]), rows);
         area.draw_text(name, &anchored(Ink::Axis, HPos::Center, VPos::Bottom), (x, y - 4 * UNITS))?;
     }
     for (k, judgement) in found.parameters.iter().enumerate() {
-        let y = rows - k as f64 - 0.5;
-        let (x0, middle) = chart.backend_coord(&(NARROWEST, y));
-        area.draw_text(judgement.parameter.symbol(), &letters(Ink::Text).pos(right_center()), (x0 - 8 * UNITS, middle))?;
-        let Some(width) = relative_half_width(judgement) else {
-            let why = if judgement.value().is_some() { "given" } else { "not identifiable: no value" };
-            area.draw_text(why, &anchored(Ink::Axis, HPos::Left, VPos::Center), (x0 + 8 * UNITS, middle))?;
-            continue;
-        };
-        let ink = Ink::of_verdict(judgement.verdict);
-        let x = (100.0 * width).log10().clamp(NARROWEST, WIDEST);
-        chart.draw_series([PathElement::new(vec![(NARROWEST, y), (x, y)], line(ink, 2.0))])?;
-        let (x, y) = chart.backend_coord(&(x, y));
-        area.draw(&Circle::new((x, y), 5 * UNITS, solid(ink)))?;
-        let text = format!("±{} %", significant(100.0 * width, 2));
-        // Beside the marker, where the sheet has room.
-        let room = (size.width() as i32 * UNITS) - x > 110 * UNITS;
-        let (side, x) = if room { (HPos::Left, x + 9 * UNITS) } else { (HPos::Right, x - 9 * UNITS) };
-        area.draw_text(
-            &text,
-            &anchored(Ink::Text, side, if room { VPos::Center } else { VPos::Bottom }),
-            (x, if room { y } else { y - 4 * UNITS }),
-        )?;
+        row(area, &mut chart, judgement, rows - k as f64 - 0.5, size)?;
     }
     Ok(())
 }
 
-fn right_center() -> plotters::style::text_anchor::Pos {
-    plotters::style::text_anchor::Pos::new(HPos::Right, VPos::Center)
+/// One parameter at height `y`: a line as long as its interval is wide, and the number; or why there is none.
+fn row(area: &Area, chart: &mut Chart, judgement: &Judgement, y: f64, size: Size) -> Drawn {
+    let ink = Ink::of_verdict(judgement.verdict);
+    let (start, middle) = chart.place(NARROWEST, y);
+    area.draw_text(judgement.parameter.symbol(), &anchored(Ink::Text, HPos::Right, VPos::Center), (start - 8 * UNITS, middle))?;
+    let Some(width) = relative_half_width(judgement) else {
+        if judgement.value().is_some() {
+            return area.draw_text("given", &anchored(Ink::Axis, HPos::Left, VPos::Center), (start + 8 * UNITS, middle));
+        }
+        let (x, y) = chart.place(0.5 * ((100.0 * WEAK).log10() + WIDEST), y);
+        let (r, stroke) = (4 * UNITS, line(ink, 2.0));
+        area.draw(&PathElement::new(vec![(x - r, y - r), (x + r, y + r)], stroke))?;
+        area.draw(&PathElement::new(vec![(x - r, y + r), (x + r, y - r)], stroke))?;
+        return area.draw_text("not identifiable", &anchored(Ink::Text, HPos::Right, VPos::Center), (x - 10 * UNITS, y));
+    };
+    let x = (100.0 * width).log10().clamp(NARROWEST, WIDEST);
+    chart.series.draw_series([PathElement::new(vec![(NARROWEST, y), (x, y)], line(ink, 2.0))])?;
+    let (x, y) = chart.place(x, y);
+    area.draw(&Circle::new((x, y), 5 * UNITS, solid(ink)))?;
+    let text = format!("±{} %", significant(100.0 * width, 2));
+    // Behind the marker; above its line where the sheet ends.
+    if size.width() as i32 * UNITS - x > NUMBER * UNITS {
+        area.draw_text(&text, &anchored(Ink::Text, HPos::Left, VPos::Center), (x + 9 * UNITS, y))
+    } else {
+        area.draw_text(&text, &anchored(Ink::Text, HPos::Right, VPos::Bottom), (x - 9 * UNITS, y - 3 * UNITS))
+    }
 }

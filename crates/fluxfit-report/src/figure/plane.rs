@@ -19,6 +19,9 @@ const NEAR: i32 = 14;
 /// Numbers in one label; more are cut short.
 const NUMBERS: usize = 3;
 
+/// Least length of an axis as a fraction of the other's: noise of one current must not look like a spread.
+const LEAST_LENGTH: f64 = 0.25;
+
 /// Draws the points with their numbers.
 pub(super) fn draw(points: &[OperatingPoint], size: Size) -> Drawing {
     let label = format!("{} operating points in the plane of i_d and i_q, in ampere", points.len());
@@ -28,8 +31,9 @@ pub(super) fn draw(points: &[OperatingPoint], size: Size) -> Drawing {
 fn paint(area: &Area, points: &[OperatingPoint], size: Size) -> Drawn {
     let currents = || points.iter().map(OperatingPoint::current).filter(|i| i.d.is_finite() && i.q.is_finite());
     // No current belongs to the picture: how far i_d is from zero is what tells L_d.
-    let x = Axis::around(currents().map(|i| i.d).chain([0.0]), size.pick(6, 4));
-    let y = Axis::around(currents().map(|i| i.q).chain([0.0]), 5);
+    let (d, q) = (extent(currents().map(|i| i.d)), extent(currents().map(|i| i.q)));
+    let x = Axis::around(widened(d, q), size.pick(6, 4));
+    let y = Axis::around(widened(q, d), 5);
     let (x_label, y_label) = (x.clone(), y.clone());
     let plot = Plot {
         x,
@@ -45,7 +49,7 @@ fn paint(area: &Area, points: &[OperatingPoint], size: Size) -> Drawn {
     // Each label: where it stands and whom it names.
     let mut labels: Vec<((i32, i32), Vec<usize>)> = Vec::new();
     for (number, i) in (1..).zip(currents()) {
-        let at = chart.backend_coord(&(i.d, i.q));
+        let at = chart.place(i.d, i.q);
         area.draw(&Circle::new(at, 4 * UNITS, solid(Ink::D)))?;
         let near = |(x, y): (i32, i32)| (x - at.0).abs().max((y - at.1).abs()) < NEAR * UNITS;
         match labels.iter_mut().find(|(place, _)| near(*place)) {
@@ -53,13 +57,21 @@ fn paint(area: &Area, points: &[OperatingPoint], size: Size) -> Drawn {
             None => labels.push((at, vec![number])),
         }
     }
-    let middle = size.width() as i32 * UNITS / 2;
     for ((x, y), numbers) in labels {
         let named: Vec<String> = numbers.iter().take(NUMBERS).map(ToString::to_string).collect();
         let text = format!("{}{}", named.join(", "), if numbers.len() > NUMBERS { " …" } else { "" });
-        // Towards the middle, where there is room.
-        let (side, x) = if x < middle { (HPos::Left, x + 8 * UNITS) } else { (HPos::Right, x - 8 * UNITS) };
-        area.draw_text(&text, &anchored(Ink::Text, side, VPos::Center), (x, y))?;
+        area.draw_text(&text, &anchored(Ink::Text, HPos::Center, VPos::Bottom), (x, y - 6 * UNITS))?;
     }
     Ok(())
+}
+
+/// Least and largest value; zero is always between.
+fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([0.0, 0.0], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// A range, on both sides as much longer as it needs to stand beside the other one.
+fn widened([low, high]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    let missing = (LEAST_LENGTH * (other[1] - other[0]) - (high - low)).max(0.0);
+    [low - 0.5 * missing, high + 0.5 * missing]
 }

@@ -13,8 +13,24 @@ use plotters::{
     style::text_anchor::{HPos, VPos},
 };
 
+/// What plotters draws series into.
+type Series<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
 /// A chart to draw series into.
-pub(super) type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub(super) struct Chart<'a> {
+    /// Takes elements at values of the axes.
+    pub(super) series: Series<'a>,
+    /// Where the area of the chart lies on the sheet, units.
+    origin: (i32, i32),
+}
+
+impl Chart<'_> {
+    /// Where in the area a pair of values lies, units.
+    pub(super) fn place(&self, x: f64, y: f64) -> (i32, i32) {
+        let (on_sheet, origin) = (self.series.backend_coord(&(x, y)), self.origin);
+        (on_sheet.0 - origin.0, on_sheet.1 - origin.1)
+    }
+}
 
 /// Axes and the words at them.
 pub(super) struct Plot<'a> {
@@ -48,22 +64,23 @@ const GAP: i32 = 5;
 impl Plot<'_> {
     /// Draws axes, grid and words.
     pub(super) fn on<'a>(&self, area: &Area<'a>) -> Result<Chart<'a>, DrawingAreaErrorKind<std::io::Error>> {
-        let chart = ChartBuilder::on(area)
+        let series = ChartBuilder::on(area)
             .margin_top(TOP * UNITS)
             .margin_right(self.right * UNITS)
             .margin_left(self.left * UNITS)
             .margin_bottom(BOTTOM * UNITS)
             .build_cartesian_2d(self.x.low..self.x.high, self.y.low..self.y.high)?;
-        let (x0, y0) = chart.backend_coord(&(self.x.low, self.y.low));
-        let (x1, y1) = chart.backend_coord(&(self.x.high, self.y.high));
+        let chart = Chart { series, origin: area.get_base_pixel() };
+        let (x0, y0) = chart.place(self.x.low, self.y.low);
+        let (x1, y1) = chart.place(self.x.high, self.y.high);
         let grid = |from, to| area.draw(&PathElement::new(vec![from, to], line(Ink::Grid, 1.0)));
         for tick in &self.x.ticks {
-            let (x, _) = chart.backend_coord(&(*tick, self.y.low));
+            let (x, _) = chart.place(*tick, self.y.low);
             grid((x, y0), (x, y1))?;
             area.draw_text(&(self.x_label)(*tick), &anchored(Ink::Axis, HPos::Center, VPos::Top), (x, y0 + GAP * UNITS))?;
         }
         for tick in &self.y.ticks {
-            let (_, y) = chart.backend_coord(&(self.x.low, *tick));
+            let (_, y) = chart.place(self.x.low, *tick);
             grid((x0, y), (x1, y))?;
             area.draw_text(&(self.y_label)(*tick), &anchored(Ink::Axis, HPos::Right, VPos::Center), (x0 - GAP * UNITS, y))?;
         }

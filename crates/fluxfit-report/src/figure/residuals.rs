@@ -65,11 +65,11 @@ fn paint(area: &Area, found: &Identification, size: Size) -> Drawn {
         y_label: &|value| y_label.label(value),
     };
     let mut chart = plot.on(area)?;
-    chart.draw_series([PathElement::new(vec![(0.5, 0.0), (points.max(1) as f64 + 0.5, 0.0)], line(Ink::Axis, 1.0))])?;
+    chart.series.draw_series([PathElement::new(vec![(0.5, 0.0), (points.max(1) as f64 + 0.5, 0.0)], line(Ink::Axis, 1.0))])?;
     for (axis, ink) in [(0, Ink::D), (1, Ink::Q)] {
         for (x, residual, bar) in marks(axis) {
-            chart.draw_series([PathElement::new(vec![(x, residual - bar), (x, residual + bar)], line(ink, 1.5))])?;
-            let at = chart.backend_coord(&(x, residual));
+            chart.series.draw_series([PathElement::new(vec![(x, residual - bar), (x, residual + bar)], line(ink, 1.5))])?;
+            let at = chart.place(x, residual);
             marker(area, axis, at, ink)?;
         }
     }
