@@ -1,7 +1,8 @@
 //! The answer: the parameters, how far to trust them, why a verdict is not better and what to do.
 
 use crate::{
-    figure::{self, intervals},
+    figure::intervals,
+    frame,
     typography::{DASH, capitalized, list, minus, number, prose, symbol, unit},
 };
 use fluxfit::identify::{
@@ -18,7 +19,7 @@ pub(crate) fn section(found: &Identification) -> Markup {
         (parameters(found))
         (explanations(found))
         (warnings(found))
-        (figure::framed(|size| intervals::draw(found, size), &html! {
+        (frame::figure(|size| intervals::draw(found, size), &html! {
             "Half of the 95 % interval as a share of the value, on a logarithmic scale: farther left is better. "
             (thresholds())
         }))
@@ -50,7 +51,7 @@ fn percent(fraction: f64) -> String {
 
 fn parameters(found: &Identification) -> Markup {
     html! {
-        div.scroll role="region" aria-label="Parameters" tabindex="0" {
+        (frame::scrolling("Parameters", &html! {
             table.parameters {
                 thead { tr {
                     th scope="col" { "Parameter" } th scope="col" { "Value" } th scope="col" { "± 95 %" }
@@ -58,7 +59,7 @@ fn parameters(found: &Identification) -> Markup {
                 } }
                 tbody { @for judgement in &found.parameters { (parameter(judgement)) } }
             }
-        }
+        }))
     }
 }
 
@@ -156,7 +157,7 @@ fn parts(found: &Identification) -> Markup {
     html! {
         @if !shown.is_empty() {
             h3 { "Where the uncertainty comes from" }
-            div.scroll role="region" aria-label="Parts of the uncertainty" tabindex="0" {
+            (frame::scrolling("Parts of the uncertainty", &html! {
                 table {
                     thead { tr {
                         th scope="col" { "Standard error, %" }
@@ -173,7 +174,7 @@ fn parts(found: &Identification) -> Markup {
                         }
                     }
                 }
-            }
+            }))
             p.small {
                 "The parts are added in quadrature. “Noise” falls with longer windows; the others do not. "
                 "The 95 % interval is Student’s t times the whole."

@@ -2,6 +2,7 @@
 
 use crate::{
     figure::{self, residuals},
+    frame,
     typography::{decimals, number, prose},
 };
 use fluxfit::{identify::Identification, steady::OperatingPoint};
@@ -29,7 +30,7 @@ pub(crate) fn section(found: &Identification) -> Markup {
             }
         }
         (points(found))
-        (figure::framed(|size| residuals::draw(found, size), &html! {
+        (frame::figure(|size| residuals::draw(found, size), &html! {
             "Residuals of both voltage equations with bars of two standard uncertainties, from the noise of the means and "
             @if let Some(misfit) = found.misfit {
                 "the accuracy to which the points agree, " (percent(misfit.voltage_accuracy)) " % of the voltage. A pattern over the points, "
@@ -39,7 +40,7 @@ pub(crate) fn section(found: &Identification) -> Markup {
             @else if redundancy == 0 { "Without redundancy they are zero by construction." }
             @else { "Bars that miss zero mean that this point contradicts the others." }
         }))
-        (figure::framed(|size| figure::plane(&found.operating_points, size), &prose(
+        (frame::figure(|size| figure::plane(&found.operating_points, size), &prose(
             "The operating points by their currents, numbered as in the table. The farther apart they lie, the better the parameters can be told apart: \
              L_d needs points that differ in i_d."
         )))
@@ -56,7 +57,7 @@ fn points(found: &Identification) -> Markup {
     let least: [f64; 2] = [0, 1].map(|axis| uncertainties.iter().map(|both| both[axis]).fold(f64::INFINITY, f64::min));
     let rows = found.operating_points.iter().zip(&found.estimate.residuals).zip(uncertainties);
     html! {
-        div.scroll role="region" aria-label="Operating points, measured and fitted" tabindex="0" {
+        (frame::scrolling("Operating points, measured and fitted", &html! {
             table {
                 thead {
                     tr {
@@ -71,7 +72,7 @@ fn points(found: &Identification) -> Markup {
                 }
                 tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, residual, uncertainty, least)) } }
             }
-        }
+        }))
     }
 }
 

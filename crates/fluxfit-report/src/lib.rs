@@ -40,12 +40,14 @@
 //! | `search` | the swarm's answer beside the exact one |
 //! | `study`, `table_2` | the methods compared; estimates beside the paper's |
 //! | `origin` | what was read, and how to make the page again |
+//! | `frame` | what stands around figures and tables |
 //! | `typography` | symbols, units and numbers as a page sets them |
 //! | [`figure`] | every figure, as SVG |
 
 mod answer;
 pub mod figure;
 mod fit;
+mod frame;
 mod origin;
 mod page;
 mod search;

@@ -1,7 +1,7 @@
 //! Where the page comes from: what was read, and the command that makes it again.
 
 use crate::{
-    Origin, Report,
+    Origin, Report, frame,
     typography::{grouped, minus, number, prose, symbol, unit},
 };
 use fluxfit::{motor::Parameter, steady::OperatingPoint};
@@ -12,15 +12,17 @@ use maud::{Markup, html};
 pub(crate) fn read(report: &Report) -> Markup {
     let log = report.log;
     let used: usize = report.operating_points.iter().map(|point| point.rows.len()).sum();
+    let of_search = report.identification.and_then(|(found, _)| found.search.as_ref()).map(|search| &search.bounds);
+    let bounds = of_search.or(report.study.map(|(facts, _)| facts.bounds));
     html! {
         dl.facts {
             dt { "Rows" } dd { (grouped(log.rows() as u64)) ", of which " (grouped(used as u64)) " in the windows below" }
             dt { "Rate" } dd { (rate(report)) }
             dt { "Duration" } dd { (number(log.duration(), |seconds| significant(seconds, 3))) " s" }
             dt { "Segments between gaps" } dd { (log.segments().len()) }
-            @if let Some(search) = report.identification.and_then(|(found, _)| found.search.as_ref()) {
+            @if let Some(bounds) = bounds {
                 dt { "Search box" }
-                dd { @for (k, (parameter, ends)) in Parameter::ALL.into_iter().zip(search.bounds.iter()).enumerate() {
+                dd { @for (k, (parameter, ends)) in Parameter::ALL.into_iter().zip(bounds.iter()).enumerate() {
                     @if k > 0 { "; " } (side(parameter, ends))
                 } }
             }
@@ -49,7 +51,7 @@ fn rate(report: &Report) -> String {
 
 fn windows(points: &[OperatingPoint]) -> Markup {
     html! {
-        div.scroll role="region" aria-label="Windows used" tabindex="0" {
+        (frame::scrolling("Windows used", &html! {
             table {
                 thead { tr { th scope="col" { "Point" } th scope="col" { "From, s" } th scope="col" { "To, s" } th scope="col" { "Rows" } } }
                 tbody { @for (k, point) in points.iter().enumerate() {
@@ -64,7 +66,7 @@ fn windows(points: &[OperatingPoint]) -> Markup {
                     }
                 } }
             }
-        }
+        }))
     }
 }
 

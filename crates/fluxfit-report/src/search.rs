@@ -1,6 +1,9 @@
 //! The swarm's answer beside the exact one.
 
-use crate::typography::{grouped, number, power, symbol, unit};
+use crate::{
+    frame,
+    typography::{grouped, number, power, symbol, unit},
+};
 use fluxfit::{
     identify::{Identification, Search},
     optimizer::{Method, StopReason},
@@ -39,7 +42,7 @@ fn stop_reason(reason: StopReason) -> &'static str {
 
 fn values(exact: &Identification, search: &Search, method: &Method) -> Markup {
     html! {
-        div.scroll role="region" aria-label="The swarm’s answer" tabindex="0" {
+        (frame::scrolling("The swarm’s answer", &html! {
             table {
                 thead { tr {
                     th scope="col" { "Parameter" } th scope="col" { "Exact" } th scope="col" { (method.label()) } th scope="col" { "Difference" }
@@ -61,6 +64,6 @@ fn values(exact: &Identification, search: &Search, method: &Method) -> Markup {
                     }
                 }
             }
-        }
+        }))
     }
 }

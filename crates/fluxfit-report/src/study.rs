@@ -1,15 +1,12 @@
 //! Methods compared: how far the swarms end above the exact minimum, and how they get there.
 
 use crate::{
-    figure::{self, convergence, courses},
-    table_2,
-    typography::{DASH, capitalized, count, grouped, list, minus, number, power, prose, symbol, unit},
+    figure::{convergence, courses},
+    frame, table_2,
+    typography::{DASH, capitalized, count, grouped, list, number, power, symbol},
 };
 use fluxfit::{motor::Parameter, optimizer::Method, study::MethodStudy};
-use fluxfit_files::{
-    answer::StudyFacts,
-    number::{Scale, significant},
-};
+use fluxfit_files::{answer::StudyFacts, number::significant};
 use maud::{Markup, html};
 
 /// The section; `unexcited` parameters are chance, and left out.
@@ -33,7 +30,7 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexci
         h3 { "Cost above the exact minimum" }
         (ranking(methods))
         @if methods.iter().any(|(study, _)| !study.convergence.quartiles.is_empty()) {
-            (figure::framed(|size| convergence::draw(methods, size), &html! {
+            (frame::figure(|size| convergence::draw(methods, size), &html! {
                 "Fig. 4 of the paper on a logarithmic scale: F\u{a0}−\u{a0}F" sub { "LS" } " against iteration; lines are medians over the runs, bands reach from the lower to the upper quartile."
                 @if convergence::has_values_below_floor(methods) {
                     " Values below 10" sup { "\u{2212}12" } " V², zero included, are rounding and drawn at that floor."
@@ -43,8 +40,6 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexci
         h3 { "Mean of the runs’ estimates" }
         (table_2::section(facts, methods, unexcited))
         (courses(facts, methods, unexcited))
-        h3 { "Where they searched" }
-        (search_box(facts))
     }
 }
 
@@ -73,7 +68,7 @@ fn ranking(methods: &[(MethodStudy, f64)]) -> Markup {
     let mut milestones: Vec<usize> = MILESTONES.iter().map(|(numerator, denominator)| last * numerator / denominator).collect();
     milestones.dedup();
     html! {
-        div.scroll role="region" aria-label="Cost above the exact minimum" tabindex="0" {
+        (frame::scrolling("Cost above the exact minimum", &html! {
             table {
                 thead {
                     tr {
@@ -94,7 +89,7 @@ fn ranking(methods: &[(MethodStudy, f64)]) -> Markup {
                     }
                 } }
             }
-        }
+        }))
         p.small { "Time is that of all runs divided by their number, on all cores; it alone is not the same the next time." }
     }
 }
@@ -118,18 +113,9 @@ fn courses(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Para
         return html! {};
     }
     html! {
-        (figure::framed(|size| courses::draw(study, facts.truth, unexcited, size), &html! {
+        (frame::figure(|size| courses::draw(study, facts.truth, unexcited, size), &html! {
             "Fig. 5 of the paper: the parameters under " (study.method.label()) " against iteration, medians over the runs."
             @if facts.truth.is_some() { " Dashed: the true value." }
         }))
     }
-}
-
-fn search_box(facts: &StudyFacts) -> Markup {
-    let intervals = Parameter::ALL.into_iter().zip(facts.bounds.iter()).map(|(parameter, (lower, upper))| {
-        let scale = Scale::for_value(parameter, lower.abs().max(upper.abs()));
-        let short = |value: f64| if value == 0.0 { "0".to_owned() } else { minus(scale.format(value, value.abs() * 0.05)) };
-        html! { (prose(parameter.symbol())) " " (short(lower)) " … " (short(upper)) " " (unit(parameter, &scale)) }
-    });
-    html! { p { (list(&intervals.collect::<Vec<_>>())) "." } }
 }

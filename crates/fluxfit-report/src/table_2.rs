@@ -1,6 +1,9 @@
 //! Table 2 of the paper: the mean of the runs' estimates and their error, beside the paper's own where its motor is the truth.
 
-use crate::typography::{DASH, minus, number, symbol, unit};
+use crate::{
+    frame,
+    typography::{DASH, minus, number, symbol, unit},
+};
 use fluxfit::{
     motor::{Motor, Parameter},
     optimizer::Method,
@@ -41,7 +44,7 @@ fn papers_column(method: &Method) -> Option<&'static Column> {
 fn table(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter], beside_paper: bool) -> Markup {
     let papers = |study: &MethodStudy| papers_column(&study.method).filter(|_| beside_paper);
     html! {
-        div.scroll role="region" aria-label="Mean of the estimates" tabindex="0" {
+        (frame::scrolling("Mean of the estimates", &html! {
             table.estimates {
                 thead {
                     tr {
@@ -63,7 +66,7 @@ fn table(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
                     @if let Some(truth) = facts.truth { (errors(facts, methods, parameter, truth, known, &papers)) }
                 } }
             }
-        }
+        }))
     }
 }
 

@@ -65,7 +65,7 @@ impl Drawing {
     }
 
     /// As a part of the page, whose style knows the dark ground.
-    pub(super) fn inline(&self, class: &str) -> Markup {
+    pub(crate) fn inline(&self, class: &str) -> Markup {
         PreEscaped(format!("{}\n{}</svg>", self.opening(&format!(" class=\"{class}\"")), self.body))
     }
 

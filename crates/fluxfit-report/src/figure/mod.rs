@@ -26,7 +26,6 @@ use fluxfit::{
     steady::OperatingPoint,
     study::MethodStudy,
 };
-use maud::{Markup, html};
 
 /// For which width a figure is drawn. Letters have the same size in both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,15 +83,4 @@ pub fn parameter_courses(study: &MethodStudy, truth: Option<&Motor>, unexcited: 
 /// [`operating_points`] for the page.
 pub(crate) fn plane(points: &[OperatingPoint], size: Size) -> Drawing {
     plane::draw(points, size)
-}
-
-/// A figure of the page: both sizes, of which the style shows one, and the caption.
-pub(crate) fn framed(draw: impl Fn(Size) -> Drawing, caption: &Markup) -> Markup {
-    html! {
-        figure {
-            (draw(Size::Wide).inline("wide"))
-            (draw(Size::Narrow).inline("narrow"))
-            figcaption { (caption) }
-        }
-    }
 }
