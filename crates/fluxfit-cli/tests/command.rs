@@ -11,6 +11,8 @@ mod compare;
 mod identify;
 #[path = "command/pages.rs"]
 mod pages;
+#[path = "command/report.rs"]
+mod report;
 
 use serde_json::Value;
 use std::{

@@ -43,7 +43,7 @@ pub struct Convergence {
 /// The paper's fitness on a log, and what it was made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitness {
-    /// The steady windows, before any correction.
+    /// What it sums over, before any correction.
     pub operating_points: Vec<OperatingPoint>,
     /// Rows that the fitness sums over, per window.
     pub rows: Vec<usize>,
@@ -57,10 +57,11 @@ pub struct Fitness {
 /// # Errors
 /// If there is no steady window.
 pub fn fitness(log: &Log, settings: &identify::Settings, id_zero: IdZero) -> Result<Fitness, Error> {
-    let points = identify::operating_points(log, settings)?;
-    let rows = at_most_paper_rows(&points.iter().map(|point| point.rows.clone()).collect::<Vec<_>>());
+    let whole = identify::operating_points(log, settings)?;
+    let rows = at_most_paper_rows(&whole.into_iter().map(|point| point.rows).collect::<Vec<_>>());
+    let points: Vec<_> = rows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect();
     let beliefs = identify::beliefs(log, &points, identify::voltage_timing(settings).0, settings);
-    let windows: Vec<_> = rows.into_iter().zip(beliefs).map(|(rows, belief)| (rows, belief.held_vector)).collect();
+    let windows: Vec<_> = points.iter().zip(beliefs).map(|(point, belief)| (point.rows.clone(), belief.held_vector)).collect();
     Ok(Fitness {
         operating_points: points,
         rows: windows.iter().map(|(rows, _)| rows.len()).collect(),

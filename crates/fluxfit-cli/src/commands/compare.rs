@@ -1,6 +1,6 @@
 //! `fluxfit compare`: many runs of many methods on fitness (11), as the paper compares them.
 
-use super::{Status, input};
+use super::{Status, input, report};
 use crate::{arguments::Compare, error::CommandError, terminal};
 use fluxfit::{
     identify::{Known, Settings, excitation::Excitation},
@@ -10,10 +10,12 @@ use fluxfit::{
     study::{MethodStudy, fitness, run_method},
 };
 use fluxfit_files::{answer, read_truth};
+use fluxfit_report::{Report, html};
 use std::time::Instant;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
+    report::check(&arguments.log, arguments.truth.as_deref())?;
     let input = input::read(&arguments.log)?;
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
     let settings =
@@ -36,6 +38,17 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
     }
+    report::write(&arguments.log, |origin| {
+        html(&Report {
+            title: &input.name,
+            log: &input.log,
+            notes: &input.notes,
+            operating_points: &fitness.operating_points,
+            identification: None,
+            study: Some((&facts, &methods)),
+            origin,
+        })
+    })?;
     let excitation = Excitation::of(&fitness.operating_points, &[Known::Nothing; PARAMETERS]);
     let open: Vec<&str> = Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).map(Parameter::symbol).collect();
     if open.is_empty() {

@@ -1,6 +1,6 @@
 //! `fluxfit identify`: arguments to settings, the library's answer to the terminal or to JSON.
 
-use super::{Status, input};
+use super::{Status, input, report};
 use crate::{
     arguments::{Identify, SearchMethod, by_parameter},
     error::CommandError,
@@ -12,9 +12,11 @@ use fluxfit::{
     optimizer::{self, Method, tgfpa::Tgfpa},
 };
 use fluxfit_files::answer;
+use fluxfit_report::{Report, html};
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
+    report::check(&arguments.log, [])?;
     let input = input::read(&arguments.log)?;
     let mut settings = settings(arguments)?;
     let points = fluxfit::identify::operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
@@ -26,6 +28,17 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     } else {
         terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
     }
+    report::write(&arguments.log, |origin| {
+        html(&Report {
+            title: &input.name,
+            log: &input.log,
+            notes: &input.notes,
+            operating_points: &found.operating_points,
+            identification: Some((&found, settings.method)),
+            study: None,
+            origin,
+        })
+    })?;
     Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
 }
 

@@ -15,6 +15,8 @@ pub(crate) struct Input {
     pub(crate) motor: MotorFile,
     /// Names of the logs, for headings.
     pub(crate) name: String,
+    /// What reading them had to infer.
+    pub(crate) notes: Vec<String>,
 }
 
 /// Reads everything that the arguments name; what was inferred is said on standard error.
@@ -25,14 +27,15 @@ pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
     let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
     let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
     let options = LogOptions { map: arguments.map.clone(), units: arguments.unit.clone(), pole_pairs };
-    let mut logs = Vec::new();
+    let (mut logs, mut notes) = (Vec::new(), Vec::new());
     for path in &arguments.logs {
         let read = read_log(path, &options)?;
-        read.notes.iter().for_each(|note| terminal::note(&format!("{}: {note}", name(path))));
+        notes.extend(read.notes.iter().map(|note| format!("{}: {note}", name(path))));
         logs.push(read.log);
     }
+    notes.iter().for_each(|note| terminal::note(note));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
-    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", ") })
+    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", "), notes })
 }
 
 /// The search box: what `--bounds` names; the rest from the operating points, or from the rating where that is larger.

@@ -3,6 +3,7 @@
 pub(crate) mod compare;
 pub(crate) mod identify;
 mod input;
+mod report;
 
 use std::process::ExitCode;
 

@@ -8,7 +8,7 @@ pub(crate) mod study;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::Write;
+use std::{io::Write, path::Path};
 
 const ERROR: Style = AnsiColor::Red.on_default().bold();
 const WARNING: Style = AnsiColor::Yellow.on_default().bold();
@@ -40,6 +40,11 @@ pub(crate) fn warn(code: &str, message: &str) {
 /// Says what was inferred.
 pub(crate) fn note(message: &str) {
     say(&format!("{DIM}note:{DIM:#} {message}"));
+}
+
+/// Says that a report was written.
+pub(crate) fn wrote(report: &Path) {
+    say(&format!("{DIM}report:{DIM:#} {}", report.display()));
 }
 
 fn say(line: &str) {

@@ -1,0 +1,61 @@
+//! `--report FILE.html`: what both verbs do about it. The file is refused before anything is computed, and written after the
+//! answer is printed.
+
+use crate::{arguments::LogArguments, error::CommandError, terminal};
+use fluxfit_files::write_atomically;
+use fluxfit_report::Origin;
+use std::{ffi::OsStr, fs, path::Path};
+
+/// Refuses a report where it would mix with the answer or destroy what is read.
+pub(crate) fn check<'a>(arguments: &'a LogArguments, others_read: impl IntoIterator<Item = &'a Path>) -> Result<(), CommandError> {
+    let Some(path) = arguments.report.as_deref() else { return Ok(()) };
+    if path.as_os_str() == "-" {
+        return Err(CommandError::Usage("--report needs the name of a file: standard output is for the answer".to_owned()));
+    }
+    let read = arguments.logs.iter().map(AsRef::as_ref).chain(arguments.motor.as_deref()).chain(others_read);
+    // A report that does not exist yet is none of them.
+    let Ok(report) = fs::canonicalize(path) else { return Ok(()) };
+    if read.into_iter().any(|read| fs::canonicalize(read).is_ok_and(|read| read == report && report.is_file())) {
+        return Err(CommandError::Usage(format!("--report {}: this file is read; name another one", path.display())));
+    }
+    Ok(())
+}
+
+/// Writes the report, if one is wanted, and says so.
+pub(crate) fn write(arguments: &LogArguments, report: impl FnOnce(&Origin) -> String) -> Result<(), CommandError> {
+    let Some(path) = arguments.report.as_deref() else { return Ok(()) };
+    let origin = Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed: arguments.seed };
+    write_atomically(path, report(&origin).as_bytes())?;
+    terminal::wrote(path);
+    Ok(())
+}
+
+/// The command line, as a shell takes it.
+fn command() -> String {
+    let arguments = std::env::args_os().skip(1).map(|argument| quoted(&argument));
+    ["fluxfit".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// An argument as a shell takes it: in single quotes where it has to be.
+fn quoted(argument: &OsStr) -> String {
+    const PLAIN: &str = "-_./,:=+@%±";
+    let text = argument.to_string_lossy();
+    if !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || PLAIN.contains(c)) {
+        return text.into_owned();
+    }
+    format!("'{}'", text.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn arguments_are_quoted_where_a_shell_would_break_them() {
+        for (argument, expected) in
+            [("rs=0.96±1%", "rs=0.96±1%"), ("my log.csv", "'my log.csv'"), ("it's", r"'it'\''s'"), ("$(rm -rf)", "'$(rm -rf)'"), ("", "''")]
+        {
+            assert_eq!(quoted(argument.as_ref()), expected);
+        }
+    }
+}

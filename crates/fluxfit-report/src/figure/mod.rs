@@ -1,0 +1,86 @@
+//! Figures as SVG. Each function returns a file of its own, which shows on white and on dark grounds; the report embeds the same
+//! drawings.
+//!
+//! | figure | what it shows |
+//! |---|---|
+//! | [`intervals`] | how wide each parameter's interval is, against the limits of the verdicts |
+//! | [`residuals`] | what the fitted motor leaves of the measured voltages |
+//! | [`operating_points`] | where in the i_d–i_q plane the log held still |
+//! | [`convergence`] | Fig. 4 of the paper: cost above the exact minimum against iteration |
+//! | [`parameter_courses`] | Fig. 5 of the paper: the parameters against iteration |
+
+mod axis;
+pub(crate) mod canvas;
+pub(crate) mod convergence;
+pub(crate) mod courses;
+pub(crate) mod intervals;
+pub(crate) mod palette;
+mod plane;
+mod plot;
+pub(crate) mod residuals;
+
+use canvas::Drawing;
+use fluxfit::{
+    identify::Identification,
+    motor::{Motor, Parameter},
+    steady::OperatingPoint,
+    study::MethodStudy,
+};
+
+/// For which width a figure is drawn. Letters have the same size in both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Size {
+    /// A page or a screen: 720 pixels.
+    Wide,
+    /// A telephone: 320 pixels.
+    Narrow,
+}
+
+impl Size {
+    /// Its width, pixels.
+    fn width(self) -> u32 {
+        match self {
+            Self::Wide => 720,
+            Self::Narrow => 320,
+        }
+    }
+
+    /// One of two: for the wide drawing, for the narrow one.
+    fn pick<T>(self, wide: T, narrow: T) -> T {
+        match self {
+            Self::Wide => wide,
+            Self::Narrow => narrow,
+        }
+    }
+}
+
+/// Half-width of each parameter's 95 % interval as a fraction of its value.
+pub fn intervals(found: &Identification, size: Size) -> String {
+    intervals::draw(found, size).standalone()
+}
+
+/// Residuals of the two voltage equations at each operating point, with two standard uncertainties.
+pub fn residuals(found: &Identification, size: Size) -> String {
+    residuals::draw(found, size).standalone()
+}
+
+/// The operating points in the plane of i_d and i_q, A.
+pub fn operating_points(points: &[OperatingPoint], size: Size) -> String {
+    plane::draw(points, size).standalone()
+}
+
+/// `F - F_LS` against iteration: the median of each method's runs, and the band from quartile to quartile.
+pub fn convergence(methods: &[(MethodStudy, f64)], size: Size) -> String {
+    convergence::draw(methods, size).standalone()
+}
+
+/// The median of each parameter over one method's runs against iteration, without those in `unexcited`; the truth, if known,
+/// beside it.
+pub fn parameter_courses(study: &MethodStudy, truth: Option<&Motor>, unexcited: &[Parameter], size: Size) -> String {
+    courses::draw(study, truth, unexcited, size).standalone()
+}
+
+/// [`operating_points`] for the page.
+pub(crate) fn plane(points: &[OperatingPoint], size: Size) -> Drawing {
+    plane::draw(points, size)
+}

@@ -1,0 +1,94 @@
+//! What fluxfit found, for people: one HTML file that opens offline, and its figures as SVG.
+//!
+//! The promise: nothing is loaded from anywhere and nothing runs; the page reads on a telephone, on a wide screen, in the dark and
+//! on paper; a number without a meaning is not on it. The same input makes the same bytes, times of runs apart.
+//!
+//! ```
+//! use fluxfit::{Columns, Log, identify::{self, identify}};
+//! use fluxfit_report::{Origin, Report, html};
+//!
+//! # let (n, omega) = (200, 400.0);
+//! # let motor = fluxfit::paper::MOTOR;
+//! # let mut columns = Columns::default();
+//! # for (k, (d, q)) in (0..n).map(|k| (k, if k < n / 2 { (0.0, 9.0) } else { (-2.0, 8.5) })) {
+//! #     let u = motor.steady_voltage(fluxfit::frames::Dq { d, q }, omega);
+//! #     for (column, value) in [&mut columns.t, &mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq, &mut columns.omega_e]
+//! #         .into_iter().zip([k as f64 * 1e-3, u.d, u.q, d, q, omega]) { column.push(value); }
+//! # }
+//! let log = Log::new(columns)?;
+//! let settings = identify::Settings::default();
+//! let found = identify(&log, &settings)?;
+//! let origin = Origin { command: "fluxfit identify drive.csv".to_owned(), version: "0.1.0".to_owned(), seed: 1 };
+//! let page = html(&Report {
+//!     title: "drive.csv",
+//!     log: &log,
+//!     notes: &[],
+//!     operating_points: &found.operating_points,
+//!     identification: Some((&found, settings.method)),
+//!     study: None,
+//!     origin: &origin,
+//! });
+//! assert!(page.starts_with("<!DOCTYPE html>"));
+//! # Ok::<(), fluxfit::Error>(())
+//! ```
+//!
+//! | file | concept |
+//! |---|---|
+//! | `page` | the document: head, heading, sections in order |
+//! | `answer` | the parameters, their intervals, verdicts, reasons and warnings |
+//! | `fit` | measured against fitted |
+//! | `search` | the swarm's answer beside the exact one |
+//! | `study`, `table_2` | the methods compared; estimates beside the paper's |
+//! | `origin` | what was read, and how to make the page again |
+//! | `frame` | what stands around figures and tables |
+//! | `typography` | symbols, units and numbers as a page sets them |
+//! | [`figure`] | every figure, as SVG |
+
+mod answer;
+pub mod figure;
+mod fit;
+mod frame;
+mod origin;
+mod page;
+mod search;
+mod study;
+mod table_2;
+mod typography;
+
+use fluxfit::{identify::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy};
+use fluxfit_files::answer::StudyFacts;
+
+/// What is shown; what is `None` is left out.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// Heading of the page, such as the log's name.
+    pub title: &'a str,
+    /// The log.
+    pub log: &'a Log,
+    /// What reading had to infer, or how the log was simulated: a sentence each.
+    pub notes: &'a [String],
+    /// The windows used: those of the identification, or those that the study's fitness sums over.
+    pub operating_points: &'a [OperatingPoint],
+    /// The answer, and the method of the swarm beside it.
+    pub identification: Option<(&'a Identification, Option<Method>)>,
+    /// What the methods have in common, and each method with the seconds that one of its runs took.
+    pub study: Option<(&'a StudyFacts<'a>, &'a [(MethodStudy, f64)])>,
+    /// Where the page comes from.
+    pub origin: &'a Origin,
+}
+
+/// How to make the page again.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    /// The command, as a shell takes it.
+    pub command: String,
+    /// Version of the program.
+    pub version: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+/// The report as one HTML document.
+pub fn html(report: &Report) -> String {
+    page::document(report).into_string()
+}

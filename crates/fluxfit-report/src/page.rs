@@ -1,0 +1,114 @@
+//! The document: its head, its heading, its sections in order.
+
+use crate::{
+    Report, answer,
+    figure::palette,
+    fit, origin, search, study,
+    typography::{capitalized, count, in_words, list, symbol},
+};
+use fluxfit::{
+    identify::{
+        Identification, Known,
+        excitation::Excitation,
+        verdict::{Judgement, Verdict},
+    },
+    motor::{PARAMETERS, Parameter},
+};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// How everything looks; nothing else is loaded.
+const STYLE: &str = include_str!("style.css");
+
+/// A section: its anchor, its heading, what it holds.
+struct Section {
+    anchor: &'static str,
+    heading: &'static str,
+    content: Markup,
+}
+
+/// The whole page.
+pub(crate) fn document(report: &Report) -> Markup {
+    let sections = sections(report);
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta name="generator" content={ "fluxfit " (report.origin.version) };
+                title { (report.title) " – fluxfit" }
+                style { (PreEscaped(STYLE)) "@media screen and (prefers-color-scheme:dark){" (PreEscaped(palette::dark_rules())) "}" }
+            }
+            body {
+                header {
+                    p.program { "fluxfit " (report.origin.version) " · motor parameters from a drive log" }
+                    h1 { (report.title) }
+                    p.found { (found(report)) }
+                    nav aria-label="Sections" {
+                        ul { @for section in &sections { li { a href={ "#" (section.anchor) } { (section.heading) } } } }
+                    }
+                }
+                main {
+                    @for section in &sections {
+                        section id=(section.anchor) aria-labelledby={ (section.anchor) "-heading" } {
+                            h2 id={ (section.anchor) "-heading" } { (section.heading) }
+                            (section.content)
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn sections(report: &Report) -> Vec<Section> {
+    let mut sections = Vec::new();
+    if let Some((found, method)) = report.identification {
+        sections.push(Section { anchor: "answer", heading: "The answer", content: answer::section(found) });
+        sections.push(Section { anchor: "fit", heading: "Measured against fitted", content: fit::section(found) });
+        if let Some(content) = search::section(found, method.as_ref()) {
+            sections.push(Section { anchor: "search", heading: "The swarm’s answer", content });
+        }
+    }
+    if let Some((facts, methods)) = report.study {
+        let content = study::section(facts, methods, &unexcited(report));
+        sections.push(Section { anchor: "study", heading: "Methods compared", content });
+    }
+    sections.push(Section { anchor: "read", heading: "What was read", content: origin::read(report) });
+    sections.push(Section { anchor: "reproduce", heading: "How to reproduce", content: origin::reproduce(report.origin) });
+    sections
+}
+
+/// Parameters of which the log tells nothing: what a swarm says of them is chance.
+fn unexcited(report: &Report) -> Vec<Parameter> {
+    let excitation = Excitation::of(report.operating_points, &[Known::Nothing; PARAMETERS]);
+    Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).collect()
+}
+
+/// What was found, in a line.
+fn found(report: &Report) -> Markup {
+    html! {
+        @if let Some((found, _)) = report.identification { (identified(found)) }
+        @if let Some((facts, methods)) = report.study {
+            @if report.identification.is_some() { " " }
+            (study::in_a_line(facts, methods))
+        }
+    }
+}
+
+fn identified(found: &Identification) -> Markup {
+    let with = |is: &dyn Fn(&Judgement) -> bool| -> Vec<Markup> {
+        found.parameters.iter().filter(|judgement| is(judgement)).map(|judgement| symbol(judgement.parameter)).collect()
+    };
+    let of = |verdict: Verdict| with(&|judgement| judgement.verdict == verdict && !answer::is_given(judgement));
+    let given = with(&answer::is_given);
+    let (good, weak, none) = (of(Verdict::Identified), of(Verdict::Weak), of(Verdict::NotIdentifiable));
+    html! {
+        (capitalized(&in_words(good.len()))) " of " (count(found.parameters.len(), "parameter")) " identified"
+        @if !given.is_empty() { "; given: " (list(&given)) }
+        @if !weak.is_empty() { "; weak: " (list(&weak)) }
+        @if !none.is_empty() { "; not identifiable from this log: " (list(&none)) }
+        "."
+    }
+}

@@ -1,0 +1,161 @@
+//! Symbols, units and numbers as a page sets them: subscripts, Greek letters, a real minus.
+
+use fluxfit::motor::Parameter;
+use fluxfit_files::number::{Scale, small};
+use maud::{Markup, PreEscaped, html};
+
+/// Symbols as the texts of the program write them: the word, its letter, its subscript.
+const SYMBOLS: [(&str, &str, &str); 10] = [
+    ("omega_e", "ω", "e"),
+    ("psi_f", "ψ", "f"),
+    ("R_s", "R", "s"),
+    ("L_d", "L", "d"),
+    ("L_q", "L", "q"),
+    ("i_d", "i", "d"),
+    ("i_q", "i", "q"),
+    ("u_d", "u", "d"),
+    ("u_q", "u", "q"),
+    ("F_LS", "F", "LS"),
+];
+
+/// A parameter's symbol.
+pub(crate) fn symbol(parameter: Parameter) -> Markup {
+    prose(parameter.symbol())
+}
+
+/// A sentence of the program with its symbols set, options of the command line as code, and a real minus. Anything else is
+/// escaped.
+pub(crate) fn prose(text: &str) -> Markup {
+    html! {
+        @for (k, word) in text.split(' ').enumerate() {
+            @if k > 0 { " " }
+            (set_word(word))
+        }
+    }
+}
+
+fn set_word(word: &str) -> Markup {
+    const PUNCTUATION: [char; 7] = ['.', ',', ';', ':', ')', '(', '\''];
+    let core = word.trim_matches(PUNCTUATION);
+    let (before, after) = word.split_once(core).unwrap_or((word, ""));
+    let known = SYMBOLS.iter().find(|(name, ..)| *name == core && !core.is_empty());
+    let negative = core.strip_prefix('-').filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    html! {
+        @if let Some((_, letter, index)) = known { (before) i { (letter) } sub { (index) } (after) }
+        @else if core.starts_with("--") { (before) code { (core) } (after) }
+        @else if let Some(number) = negative { (before) "\u{2212}" (number) (after) }
+        @else { (word) }
+    }
+}
+
+/// The same for text inside SVG, where there are only shifted spans: a zero-width space takes the line back up.
+pub(crate) fn svg_subscripts(svg: &str) -> String {
+    SYMBOLS.iter().fold(svg.to_owned(), |svg, (name, letter, index)| {
+        let set = format!("{letter}<tspan dy=\"0.28em\" font-size=\"75%\">{index}</tspan><tspan dy=\"-0.21em\">\u{200b}</tspan>");
+        svg.replace(name, &set)
+    })
+}
+
+/// A parameter's unit under a scale, with its Greek letters.
+pub(crate) fn unit(parameter: Parameter, scale: &Scale) -> String {
+    let unit = scale.unit(parameter.unit()).replace("ohm", "Ω");
+    unit.strip_prefix('u').map(|rest| format!("µ{rest}")).unwrap_or(unit)
+}
+
+/// A number's text with a real minus, and none before a zero.
+pub(crate) fn minus(text: String) -> String {
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
+        Some(rest) => format!("\u{2212}{rest}"),
+        None => text,
+    }
+}
+
+/// A number if it is one; a dash otherwise.
+pub(crate) fn number(value: f64, show: impl FnOnce(f64) -> String) -> String {
+    if value.is_finite() { minus(show(value)) } else { DASH.to_owned() }
+}
+
+/// Stands where there is no number.
+pub(crate) const DASH: &str = "\u{2013}";
+
+/// A small positive number, as 1.2 · 10⁻⁸; plain where that is shorter to read.
+pub(crate) fn power(value: f64) -> Markup {
+    let text = number(value, small);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => html! { (mantissa) "·10" sup { (minus(exponent.to_owned())) } },
+        None => PreEscaped(text),
+    }
+}
+
+/// Decimals that show two significant digits of an uncertainty; `least` where there is none.
+pub(crate) fn decimals(uncertainty: f64, least: usize) -> usize {
+    if uncertainty > 0.0 && uncertainty.is_finite() { (1.0 - uncertainty.log10().floor()).clamp(0.0, 9.0) as usize } else { least }
+}
+
+/// A count, in words as far as people read them so.
+pub(crate) fn in_words(n: usize) -> String {
+    const WORDS: [&str; 10] = ["none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
+    WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
+}
+
+/// The same with its noun.
+pub(crate) fn count(n: usize, noun: &str) -> String {
+    format!("{} {noun}{}", if n == 0 { "no".to_owned() } else { in_words(n) }, if n == 1 { "" } else { "s" })
+}
+
+/// With a capital.
+pub(crate) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// A large count, its thousands apart.
+pub(crate) fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        // Five digits and more are hard to read in one piece.
+        if k > 0 && digits.len() > 4 && (digits.len() - k).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Things in a row: `a, b and c`.
+pub(crate) fn list(items: &[Markup]) -> Markup {
+    html! {
+        @for (k, item) in items.iter().enumerate() {
+            @if k > 0 { @if k + 1 == items.len() { " and " } @else { ", " } }
+            (item)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_get_their_symbols_and_keep_everything_else() {
+        assert_eq!(
+            prose("R_s, near -2 A (see --fix <b>)").into_string(),
+            "<i>R</i><sub>s</sub>, near \u{2212}2 A (see <code>--fix</code> &lt;b&gt;)"
+        );
+        assert_eq!(prose("").into_string(), "");
+        assert_eq!(prose("...").into_string(), "...");
+    }
+
+    #[test]
+    fn numbers() {
+        assert_eq!((grouped(1234), grouped(1_234_567)), ("1234".to_owned(), "1\u{202f}234\u{202f}567".to_owned()));
+        assert_eq!(minus("-0.00".to_owned()), "0.00");
+        assert_eq!(number(f64::NAN, |v| v.to_string()), DASH);
+        assert_eq!(power(1.2e-8).into_string(), "1.2·10<sup>\u{2212}8</sup>");
+        assert_eq!((decimals(0.0041, 3), decimals(0.0, 3), decimals(f64::INFINITY, 3)), (4, 3, 3));
+        assert_eq!(unit(Parameter::Ld, &Scale::for_value(Parameter::Ld, 2e-4)), "µH");
+        assert_eq!(unit(Parameter::Rs, &Scale::for_value(Parameter::Rs, 0.01)), "mΩ");
+    }
+}
