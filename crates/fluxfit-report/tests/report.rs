@@ -11,7 +11,7 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{Method, bounds::Bounds, draws::Draws},
     paper,
-    study::{Convergence, MethodStudy, run_method},
+    study::{Convergence, Fitness, MethodStudy, fitness, run_method},
 };
 use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{
