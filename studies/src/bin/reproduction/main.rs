@@ -1,0 +1,44 @@
+//! The paper reproduced: every number and figure of `docs/reproduction.md`, made again.
+//!
+//! `reproduction` simulates the rig, runs the studies and writes the tables into the page, between their marks, and the figures beside it.
+//! `reproduction --check` writes nothing and fails where the page says something else.
+// What it wrote stands on standard output.
+#![allow(clippy::print_stdout)]
+
+mod experiments;
+mod page;
+mod tables;
+
+use experiments::{Data, Rig, ablation, paper_methods};
+use fluxfit::{optimizer::Method, paper};
+use fluxfit_report::figure::{Size, convergence, parameter_courses};
+use page::Page;
+use std::{error::Error, path::Path};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let check = std::env::args().any(|argument| argument == "--check");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+
+    let data = Rig::ALL.map(Data::simulate).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let studies = data.iter().map(|data| data.study(&paper_methods())).collect::<Result<Vec<_>, _>>()?;
+    // The paper's rig as the paper has it: switched, without noise.
+    let (rig, study) = (&data[Rig::Switched as usize], &studies[Rig::Switched as usize]);
+
+    let mut page = Page::read(&docs.join("reproduction.md"), check)?;
+    page.put("table 2", &tables::table_2(study, rig))?;
+    page.put("errors", &tables::errors(&data, &studies))?;
+    page.put("ranking", &tables::ranking(study.iter().map(|study| (study.method.label().to_owned(), study))))?;
+    page.put("unconverged", &tables::unconverged(rig)?)?;
+    let ablated = ablation().into_iter().map(|(name, method)| Ok((name, rig.study(&[method])?.remove(0))));
+    let ablated = ablated.collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+    page.put("ablation", &tables::ranking(ablated.iter().map(|(name, study)| (name.clone(), study))))?;
+    page.finish()?;
+
+    let timed: Vec<_> = study.iter().map(|study| (study.clone(), 0.0)).collect();
+    page::figure(&docs.join("reproduction/convergence.svg"), &convergence(&timed, Size::Wide), check)?;
+    let tgfpa = study.iter().find(|study| matches!(study.method, Method::Tgfpa(_))).ok_or("no study of tGFPA")?;
+    let courses = parameter_courses(tgfpa, Some(&paper::MOTOR), &[], Size::Wide);
+    page::figure(&docs.join("reproduction/parameters.svg"), &courses, check)?;
+    println!("docs/reproduction.md and its figures {}", if check { "are true" } else { "are written" });
+    Ok(())
+}
