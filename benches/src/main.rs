@@ -14,14 +14,12 @@ use fluxfit::{
     motor::{Motor, PARAMETERS},
     objective::voltage_error::{IdZero, VoltageError},
     optimizer::{Method, bounds::Bounds},
+    paper,
     steady::held_vector::HeldVector,
 };
 use fluxfit_files::{LogOptions, read_log};
 use serde::Serialize;
 use std::{error::Error, ops::Range, path::Path};
-
-/// The search box: R_s 0 .. 5 ohm, L_d and L_q 0 .. 50 mH, psi_f 0 .. 1 Wb.
-const UPPER: [f64; PARAMETERS] = [5.0, 0.05, 0.05, 1.0];
 
 /// What is measured. Times in the unit that the name says.
 #[derive(Serialize)]
@@ -39,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let log = read_log(Path::new(&path), &LogOptions::default())?.log;
     // As the peers have them: without a correction.
     let modes = modes(&log)?.map(|rows| (rows, HeldVector::NONE));
-    let bounds = Bounds::new(vec![0.0; PARAMETERS], UPPER.to_vec())?;
+    let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
     let objective = VoltageError::of_samples(&log, &modes, IdZero::Measured);
     let figures = Figures {
         cost_least_squares: objective.least_squares().cost,

@@ -18,6 +18,8 @@ const EXIT_STATUS: &str =
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// See all of it on the paper's rig: simulate, identify, compare four methods, write a report
+    Demo(Demo),
     /// Identify a motor: four parameters, each with an interval and a verdict
     Identify(Identify),
     /// Compare swarm optimizers on the paper's fitness: many runs of each, beside the exact answer
@@ -60,6 +62,16 @@ pub(crate) struct LogArguments {
     /// Write the results as a page for a browser, beside the answer
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Demo {
+    /// Where the report goes
+    #[arg(long, value_name = "FILE.html", default_value = "fluxfit-demo.html")]
+    pub(crate) report: PathBuf,
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
 }
 
 #[derive(Debug, Args)]

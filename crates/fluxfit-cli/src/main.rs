@@ -15,6 +15,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let command = arguments::Command::parse();
     let outcome = match &command.verb {
+        arguments::Verb::Demo(arguments) => commands::demo::run(arguments),
         arguments::Verb::Identify(arguments) => commands::identify::run(arguments),
         arguments::Verb::Compare(arguments) => commands::compare::run(arguments),
     };

@@ -1,8 +1,8 @@
 //! What the paper states: its motor, its rig, its results.
 //!
 //! Gao, Wang, Jiang and Hu, "Parameters Identification of PMSM Based on Improved Flower Pollination Algorithm", 2023. The paper
-//! prints the units of L_d and psi_f swapped in its Table 2; here they are right. It states no bounds, sample rate, DC voltage or
-//! controller; those are ours, named where they are used.
+//! prints the units of L_d and psi_f swapped in its Table 2; here they are right. It states no search box, sample rate, DC voltage or
+//! controller: the box below is ours, the rest stands with the simulated rig.
 
 use crate::motor::{Motor, PARAMETERS};
 
@@ -29,6 +29,10 @@ pub const ID: f64 = -2.0;
 
 /// Section 4.1: runs of each method.
 pub const RUNS: usize = 50;
+
+/// Upper corner of the box in which the paper's motor is searched for; the lower one is zero. Ours: four to ten times
+/// the truth.
+pub const SEARCH_BOX: [f64; PARAMETERS] = [5.0, 0.05, 0.05, 1.0];
 
 /// One column of Table 2.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@ use fluxfit::{
     identify::{Known, Settings, excitation::Excitation},
     motor::{PARAMETERS, Parameter},
     objective::voltage_error::VoltageError,
-    optimizer::{self, CloseTo},
+    optimizer::{self, CloseTo, Method, bounds::Bounds},
     study::{MethodStudy, fitness, run_method},
 };
 use fluxfit_files::{answer, read_truth};
@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let bounds = input::search_box(&arguments.log, &input.motor, &fitness.operating_points)?;
     let settings = search_settings(arguments, &fitness.objective)?;
 
-    let methods = study(arguments, settings, &bounds, &fitness.objective)?;
+    let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &fitness.objective, arguments.log.json)?;
     let facts = answer::StudyFacts {
         settings: &settings,
         runs: arguments.runs,
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
     }
-    report::write(&arguments.log, |origin| {
+    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
         html(&Report {
             title: &input.name,
             log: &input.log,
@@ -59,21 +59,23 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
 }
 
 /// Every method in turn, with the seconds of wall time that one of its runs took.
-fn study(
-    arguments: &Compare,
+pub(super) fn study(
+    methods: &[Method],
+    runs: usize,
     settings: optimizer::Settings,
-    bounds: &optimizer::bounds::Bounds,
+    bounds: &Bounds,
     objective: &VoltageError,
+    quiet: bool,
 ) -> Result<Vec<(MethodStudy, f64)>, CommandError> {
-    let progress = terminal::progress(arguments.runs * arguments.methods.len(), "runs", arguments.log.json);
-    let mut methods = Vec::new();
-    for method in &arguments.methods {
+    let progress = terminal::progress(runs * methods.len(), "runs", quiet);
+    let mut studies = Vec::new();
+    for method in methods {
         let start = Instant::now();
-        let study = run_method(*method, arguments.runs, settings, bounds, objective, || progress.inc(1))?;
-        methods.push((study, start.elapsed().as_secs_f64() / arguments.runs as f64));
+        let study = run_method(*method, runs, settings, bounds, objective, || progress.inc(1))?;
+        studies.push((study, start.elapsed().as_secs_f64() / runs as f64));
     }
     progress.finish_and_clear();
-    Ok(methods)
+    Ok(studies)
 }
 
 fn search_settings(arguments: &Compare, objective: &VoltageError) -> Result<optimizer::Settings, CommandError> {

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     } else {
         terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
     }
-    report::write(&arguments.log, |origin| {
+    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
         html(&Report {
             title: &input.name,
             log: &input.log,

@@ -1,6 +1,7 @@
 //! One file per verb. Each takes its arguments and returns the exit status.
 
 pub(crate) mod compare;
+pub(crate) mod demo;
 pub(crate) mod identify;
 mod input;
 mod report;

@@ -1,4 +1,4 @@
-//! `--report FILE.html`: what both verbs do about it. The file is refused before anything is computed, and written after the
+//! `--report FILE.html`: what the verbs do about it. The file is refused before anything is computed, and written after the
 //! answer is printed.
 
 use crate::{arguments::LogArguments, error::CommandError, terminal};
@@ -9,9 +9,7 @@ use std::{ffi::OsStr, fs, path::Path};
 /// Refuses a report where it would mix with the answer or destroy what is read.
 pub(crate) fn check<'a>(arguments: &'a LogArguments, others_read: impl IntoIterator<Item = &'a Path>) -> Result<(), CommandError> {
     let Some(path) = arguments.report.as_deref() else { return Ok(()) };
-    if path.as_os_str() == "-" {
-        return Err(CommandError::Usage("--report needs the name of a file: standard output is for the answer".to_owned()));
-    }
+    check_name(path)?;
     let read = arguments.logs.iter().map(AsRef::as_ref).chain(arguments.motor.as_deref()).chain(others_read);
     // A report that does not exist yet is none of them.
     let Ok(report) = fs::canonicalize(path) else { return Ok(()) };
@@ -21,10 +19,18 @@ pub(crate) fn check<'a>(arguments: &'a LogArguments, others_read: impl IntoItera
     Ok(())
 }
 
+/// Refuses standard output.
+pub(crate) fn check_name(path: &Path) -> Result<(), CommandError> {
+    if path.as_os_str() == "-" {
+        return Err(CommandError::Usage("--report needs the name of a file: standard output is for the answer".to_owned()));
+    }
+    Ok(())
+}
+
 /// Writes the report, if one is wanted, and says so.
-pub(crate) fn write(arguments: &LogArguments, report: impl FnOnce(&Origin) -> String) -> Result<(), CommandError> {
-    let Some(path) = arguments.report.as_deref() else { return Ok(()) };
-    let origin = Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed: arguments.seed };
+pub(crate) fn write(path: Option<&Path>, seed: u64, report: impl FnOnce(&Origin) -> String) -> Result<(), CommandError> {
+    let Some(path) = path else { return Ok(()) };
+    let origin = Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed };
     write_atomically(path, report(&origin).as_bytes())?;
     terminal::wrote(path);
     Ok(())

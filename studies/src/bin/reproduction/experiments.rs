@@ -2,6 +2,7 @@
 
 use fluxfit::{
     identify,
+    motor::PARAMETERS,
     objective::voltage_error::IdZero,
     optimizer::{
         Method, Settings,
@@ -19,8 +20,6 @@ use fluxfit_drive::{
 };
 use std::error::Error;
 
-/// Upper corner of the search box; the lower one is zero. The paper states none.
-const UPPER: [f64; 4] = [5.0, 0.05, 0.05, 1.0];
 /// Current noise and converter of the noisy rig: 0.5 % of 10 A, 12 bits over 20 A.
 const NOISE: f64 = 0.05;
 const ADC: Adc = Adc { bits: 12, range: 20.0 };
@@ -73,7 +72,7 @@ impl Data {
     }
 
     pub(crate) fn study_with(&self, methods: &[Method], settings: Settings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
-        let bounds = Bounds::new(vec![0.0; UPPER.len()], UPPER.to_vec())?;
+        let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
         let run = |method: &Method| run_method(*method, paper::RUNS, settings, &bounds, &self.fitness.objective, || ());
         Ok(methods.iter().map(run).collect::<Result<_, _>>()?)
     }

@@ -1,0 +1,73 @@
+//! `fluxfit demo`: the paper's rig, end to end: simulate, identify, compare four methods, write a report.
+
+use super::{Status, compare, report};
+use crate::{arguments::Demo, error::CommandError, terminal};
+use fluxfit::{
+    identify::{self, identify},
+    log::Log,
+    motor::PARAMETERS,
+    objective::voltage_error::IdZero,
+    optimizer::{self, Method, bounds::Bounds},
+    paper,
+    study::fitness,
+};
+use fluxfit_drive::{Scenario, simulate};
+use fluxfit_files::answer::StudyFacts;
+use fluxfit_report::{Report, html};
+
+/// What stands where a log's name would.
+const NAME: &str = "the paper's rig, simulated";
+
+/// Runs the verb.
+pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
+    report::check_name(&arguments.report)?;
+    let scenario = Scenario::paper();
+    let log = simulate(&scenario, 0, || ())?.log()?;
+    let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
+
+    let search = optimizer::Settings { seed: arguments.seed, ..optimizer::Settings::default() };
+    let settings = identify::Settings { search, bounds: Some(bounds.clone()), ..identify::Settings::default() };
+    let found = identify(&log, &settings)?;
+    terminal::identification::show(NAME, &log, &found, settings.method.as_ref())?;
+
+    let fitness = fitness(&log, &settings, IdZero::Measured)?;
+    let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &fitness.objective, false)?;
+    let facts = StudyFacts {
+        settings: &search,
+        runs: paper::RUNS,
+        bounds: &bounds,
+        objective: &fitness.objective,
+        rows: &fitness.rows,
+        truth: Some(&paper::MOTOR),
+    };
+    terminal::print("\n")?;
+    terminal::study::show(NAME, &facts, &methods)?;
+
+    report::write(Some(&arguments.report), arguments.seed, |origin| {
+        html(&Report {
+            title: NAME,
+            log: &log,
+            notes: &notes(&scenario, &log),
+            operating_points: &found.operating_points,
+            identification: Some((&found, settings.method)),
+            study: Some((&facts, &methods)),
+            origin,
+        })
+    })?;
+    Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
+}
+
+/// How the log came about.
+fn notes(scenario: &Scenario, log: &Log) -> Vec<String> {
+    vec![
+        format!(
+            "Simulated: field-oriented control of the paper's motor, {:.0} r/min against {} N m, i_d = 0 and then {} A; inverter switched at {} kHz, {} rows.",
+            paper::SPEED_RPM,
+            paper::LOAD,
+            paper::ID,
+            scenario.inverter.carrier / 1e3,
+            log.rows(),
+        ),
+        "To have the log as a file: fluxfit simulate -o rig.csv".to_owned(),
+    ]
+}
