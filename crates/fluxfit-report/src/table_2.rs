@@ -140,7 +140,7 @@ fn words(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
             }
             @if facts.truth.is_some() {
                 "The error is the mean over the runs of the distance from the truth. The last column is the error of the exact minimum itself, which is "
-                "that of the log: its noise and how its voltages were sampled. A method that lies nearer to the truth than that column has been lucky, "
+                "that of the log and its noise. A method that lies nearer to the truth than that column has been lucky, "
                 "so ranking methods by this error ranks luck."
             }
         }
