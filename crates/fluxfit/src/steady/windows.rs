@@ -52,7 +52,8 @@ pub fn find(log: &Log) -> Result<Vec<Range<usize>>, Error> {
     if windows.is_empty() { Err(Error::NoOperatingPoint { least: MIN_ROWS }) } else { Ok(windows) }
 }
 
-/// The steady windows, and the stretches that are steady but too short beside them.
+/// The steady windows, and the stretches that are steady but too short beside them; without those that are too short beside these,
+/// in which nobody can have meant to hold the drive.
 pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     let scale = Scale::of(log);
     let (mut windows, mut short) = (Vec::new(), Vec::new());
@@ -61,7 +62,7 @@ pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
         let longest = stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
         let (long, rest): (Vec<_>, Vec<_>) = stretches.into_iter().partition(|rows| rows.len() as f64 >= MIN_SHARE * longest as f64);
         windows.extend(long);
-        short.extend(rest);
+        short.extend(rest.into_iter().filter(|rows| rows.len() as f64 >= MIN_SHARE * MIN_SHARE * longest as f64));
     }
     (windows, short)
 }
