@@ -175,17 +175,23 @@ pub(crate) enum Problem {
     #[error("{} does not run upward; write the lower end first", quote(.text))]
     Interval { text: String },
 
-    // Motor and truth files
+    // Motor files, scenarios and truths
     #[error("this is not {format}: {message}; correct it")]
     Syntax { format: &'static str, message: String },
     #[error("this key is not known; {table} can hold {}{}", list(.known), did_you_mean(*.nearest))]
-    Key { table: &'static str, known: Vec<&'static str>, nearest: Option<&'static str> },
+    Key { table: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("this key stands outside of a table; put it below a line [{table}]")]
     OutsideTable { table: &'static str },
+    #[error("this key belongs to [{table}]; move it there")]
+    OtherTable { table: &'static str },
+    #[error("this key stands above all tables; move it to the top of the file")]
+    InsideTable,
     #[error("this is not {wanted}; correct it")]
-    Value { wanted: &'static str },
+    Value { wanted: String },
+    #[error("{} is not known here; it can be {}{}", quote(.text), choice(.known), did_you_mean(*.nearest))]
+    Word { text: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("the key {key} is missing; write {remedy}")]
-    MissingKey { key: &'static str, remedy: &'static str },
+    MissingKey { key: String, remedy: String },
     #[error("the schema is {} where {wanted} is needed; give a truth file", shorten(.found))]
     Schema { found: String, wanted: &'static str },
 }

@@ -27,7 +27,7 @@
 //! | [`truth`] | the true parameters of a simulated log |
 //! | [`output`] | writing whole files only |
 //! | [`error`] | the sentence |
-//! | `channel`, `input`, `wording` | what a log's columns are called; bytes and text; lists and quotations |
+//! | `channel`, `input`, `toml_table`, `wording` | what a log's columns are called; bytes and text; tables that people write; lists and quotations |
 
 pub mod answer;
 pub mod argument;
@@ -39,6 +39,7 @@ pub mod motor_file;
 pub mod number;
 pub mod output;
 pub mod quantity;
+mod toml_table;
 pub mod truth;
 pub mod unit;
 mod wording;

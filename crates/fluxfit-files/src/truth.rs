@@ -51,8 +51,7 @@ fn parse(text: &str) -> Result<Truth, FileError> {
     }
     let holder = document.get("truth").unwrap_or(&document);
     if !holder.is_object() {
-        let wanted = "an object with the keys rs, ld, lq and psi_f";
-        return Err(Problem::Value { wanted }.into());
+        return Err(Problem::Value { wanted: "an object with the keys rs, ld, lq and psi_f".to_owned() }.into());
     }
     let mut values = [0.0; PARAMETERS];
     for (value, parameter) in values.iter_mut().zip(Parameter::ALL) {
@@ -73,10 +72,10 @@ fn number(holder: &Value, parameter: Parameter) -> Result<f64, FileError> {
             Parameter::Ld | Parameter::Lq => "it in H",
             Parameter::PsiF => "it in Wb",
         };
-        return Err(Problem::MissingKey { key, remedy }.into());
+        return Err(Problem::MissingKey { key: key.to_owned(), remedy: remedy.to_owned() }.into());
     };
     let refuse = |problem: Problem| FileError::from(problem).in_key(key);
-    let number = value.as_f64().ok_or_else(|| refuse(Problem::Value { wanted: "a number" }))?;
+    let number = value.as_f64().ok_or_else(|| refuse(Problem::Value { wanted: "a number".to_owned() }))?;
     // A reluctance motor has no magnet.
     let (allowed, range) = if parameter == Parameter::PsiF { (number >= 0.0, "zero or more") } else { (number > 0.0, "above zero") };
     if allowed && number.is_finite() { Ok(number) } else { Err(refuse(Problem::Range { text: value.to_string(), range })) }
