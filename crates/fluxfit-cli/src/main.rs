@@ -17,6 +17,7 @@ fn main() -> ExitCode {
     let outcome = match &command.verb {
         arguments::Verb::Identify(arguments) => commands::identify::run(arguments),
         arguments::Verb::Compare(arguments) => commands::compare::run(arguments),
+        arguments::Verb::Simulate(arguments) => commands::simulate::run(arguments),
     };
     match outcome {
         Ok(status) => status.into(),

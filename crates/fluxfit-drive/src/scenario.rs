@@ -120,7 +120,7 @@ pub enum Update {
 pub struct Control {
     /// Bandwidth of the closed current loop, Hz.
     pub current_bandwidth: f64,
-    /// Bandwidth of the closed speed loop, Hz.
+    /// Bandwidth of the closed speed loop, Hz; a dynamometer has none.
     pub speed_bandwidth: f64,
     /// Largest current vector that it asks for, A.
     pub max_current: f64,
@@ -330,7 +330,7 @@ impl Scenario {
             control: Control::new(200.0, 20.0, 20.0),
             schedule: Schedule {
                 id: Course::new(vec![Move { at: 0.6, to: paper::ID, over: 0.0 }]),
-                speed: Course::new(vec![Move { at: 0.0, to: paper::SPEED_RPM * TAU / 60.0, over: 0.15 }]),
+                speed: Course::new(vec![Move { at: 0.0, to: paper::SPEED_RPM * (TAU / 60.0), over: 0.15 }]),
                 load: Course::new(vec![Move { at: 0.2, to: paper::LOAD, over: 0.0 }]),
                 ..Schedule::default()
             },

@@ -168,6 +168,8 @@ pub(crate) enum Problem {
     Parameter { name: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("{} is not {noun}; write a number, in {si} or with its unit, as in {example}", quote(.text))]
     Quantity { text: String, noun: &'static str, si: &'static str, example: &'static str },
+    #[error("{} is not a ratio; write a number without a unit, as in {example}", quote(.text))]
+    Ratio { text: String, example: &'static str },
     #[error("{} is out of range; it must be {range}", quote(.text))]
     Range { text: String, range: &'static str },
     #[error("{} has a unit on one number only; write it on both", quote(.text))]
@@ -192,8 +194,22 @@ pub(crate) enum Problem {
     Word { text: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("the key {key} is missing; write {remedy}")]
     MissingKey { key: String, remedy: String },
+    #[error("this key excludes {by}; remove one of them")]
+    Excluded { by: &'static str },
+    #[error("{0}")]
+    Drive(fluxfit_drive::Error),
+    #[error("{}", missing_map_columns(.missing, .present))]
+    MapColumns { missing: Vec<&'static str>, present: Vec<String> },
+    #[error("this truth has no constant parameters, because the simulated motor was a flux map; compare without a truth")]
+    NoConstants,
     #[error("the schema is {} where {wanted} is needed; give a truth file", shorten(.found))]
     Schema { found: String, wanted: &'static str },
+}
+
+fn missing_map_columns(missing: &[&str], present: &[String]) -> String {
+    let (noun, are) = if missing.len() == 1 { ("column", "is") } else { ("columns", "are") };
+    let what = format!("the {noun} {} {are} missing; the file has {}", list(missing), columns(present));
+    format!("{what}, and a flux map needs id, iq in A, psi_d, psi_q in Wb")
 }
 
 fn cells(count: usize) -> String {

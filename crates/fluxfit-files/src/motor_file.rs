@@ -14,7 +14,7 @@
 //! ```
 
 use crate::{
-    error::{FileError, Problem},
+    error::FileError,
     input,
     quantity::Dimension,
     toml_table::{Document, Shape, Table},

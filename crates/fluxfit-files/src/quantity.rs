@@ -34,6 +34,8 @@ pub enum Dimension {
     Inertia,
     /// N m s.
     Friction,
+    /// Without a unit.
+    Ratio,
 }
 
 /// A unit as it is written, and how many SI units it is; a prefix only where `prefixed`.
@@ -86,6 +88,7 @@ impl Dimension {
             Self::Torque => ("a torque", "N m", "\"10 N m\""),
             Self::Inertia => ("an inertia", "kg m2", "\"0.003 kg m2\""),
             Self::Friction => ("a friction", "N m s", "\"0.008 N m s\""),
+            Self::Ratio => ("a ratio", "1", "1.02"),
         }
     }
 
@@ -118,6 +121,7 @@ impl Dimension {
                 }
             }
             Self::Friction => const { &[si("N m s"), si("Nm s"), si("Nms")] },
+            Self::Ratio => &[],
         }
     }
 
@@ -143,6 +147,9 @@ impl Dimension {
 
     pub(crate) fn refusal(self, text: &str) -> FileError {
         let (noun, si, example) = self.words();
+        if self == Self::Ratio {
+            return Problem::Ratio { text: text.trim().to_owned(), example }.into();
+        }
         Problem::Quantity { text: text.trim().to_owned(), noun, si, example }.into()
     }
 }

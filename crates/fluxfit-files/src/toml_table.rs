@@ -100,7 +100,7 @@ impl Shape {
             let DeValue::Table(keys) = entry.value else {
                 return Err(entry.refuse(Problem::Value { wanted: format!("a table, as in [{name}]") }));
             };
-            for entry in in_order(document.text, keys).into_iter().filter(|entry| !known.contains(&entry.key)) {
+            if let Some(entry) = in_order(document.text, keys).into_iter().find(|entry| !known.contains(&entry.key)) {
                 return Err(entry.refuse(match self.home(entry.key) {
                     Some(table) => Problem::OtherTable { table },
                     None if self.keys.contains(&entry.key) => Problem::InsideTable,
@@ -128,6 +128,11 @@ impl<'d> Table<'d> {
         entry(self.text, self.keys?, key)
     }
 
+    /// Whether the file has the table.
+    pub(crate) fn is_there(&self) -> bool {
+        self.keys.is_some()
+    }
+
     /// A quantity, in SI, if the file has it.
     pub(crate) fn quantity(&self, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
         self.get(key).map(|entry| entry.quantity(dimension)).transpose()
@@ -150,9 +155,14 @@ impl<'d> Table<'d> {
 }
 
 impl<'d> Entry<'d> {
+    /// Its line, from 1.
+    pub(crate) fn line(&self) -> u64 {
+        input::line_at(self.text.as_bytes(), self.start)
+    }
+
     /// The refusal of this entry.
     pub(crate) fn refuse(&self, problem: impl Into<FileError>) -> FileError {
-        problem.into().at_line(input::line_at(self.text.as_bytes(), self.start)).in_key(self.key)
+        problem.into().at_line(self.line()).in_key(self.key)
     }
 
     /// A number or a text as it is written; none of anything else.
@@ -208,11 +218,12 @@ impl<'d> Entry<'d> {
         Some(items.iter().map(|item| Entry { start: item.span().start, value: item.get_ref(), ..*self }).collect())
     }
 
-    /// A table within a line, which can hold these keys.
-    pub(crate) fn table(&self, known: &[&'static str], example: &str) -> Result<Table<'d>, FileError> {
-        let DeValue::Table(keys) = self.value else { return Err(self.refuse(Problem::Value { wanted: example.to_owned() })) };
+    /// A table within a line, called `noun`, which can hold these keys.
+    pub(crate) fn table(&self, known: &[&'static str], noun: &str, example: &str) -> Result<Table<'d>, FileError> {
+        let wanted = || self.refuse(Problem::Value { wanted: format!("{noun}, as in {example}") });
+        let DeValue::Table(keys) = self.value else { return Err(wanted()) };
         if let Some(entry) = in_order(self.text, keys).into_iter().find(|entry| !known.contains(&entry.key)) {
-            return Err(entry.refuse(unknown(example, entry.key, known)));
+            return Err(entry.refuse(unknown(noun, entry.key, known)));
         }
         Ok(Table { text: self.text, name: "", start: Some(self.start), keys: Some(keys) })
     }

@@ -3,6 +3,7 @@
 pub(crate) mod compare;
 pub(crate) mod identify;
 mod input;
+pub(crate) mod simulate;
 
 use std::process::ExitCode;
 

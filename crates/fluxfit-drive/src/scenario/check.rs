@@ -68,7 +68,9 @@ impl Scenario {
             return Err(setting("inverter.ripple", inverter.ripple, "less than inverter.u_dc"));
         }
         positive("control.current_bandwidth", self.control.current_bandwidth)?;
-        positive("control.speed_bandwidth", self.control.speed_bandwidth)?;
+        if matches!(self.mechanics, Mechanics::Free { .. }) {
+            positive("control.speed_bandwidth", self.control.speed_bandwidth)?;
+        }
         positive("control.max_current", self.control.max_current)?;
         if self.control.trip_current.is_nan() || self.control.trip_current <= self.control.max_current {
             return Err(setting("control.trip_current", self.control.trip_current, "above control.max_current"));
