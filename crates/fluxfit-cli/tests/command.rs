@@ -5,12 +5,16 @@
 
 #[path = "command/bad_input.rs"]
 mod bad_input;
+#[path = "command/bad_scenario.rs"]
+mod bad_scenario;
 #[path = "command/compare.rs"]
 mod compare;
 #[path = "command/identify.rs"]
 mod identify;
 #[path = "command/pages.rs"]
 mod pages;
+#[path = "command/simulate.rs"]
+mod simulate;
 
 use serde_json::Value;
 use std::{

@@ -2,6 +2,7 @@
 
 use super::HEADING;
 use fluxfit_drive::{Recording, Scenario};
+use fluxfit_files::number::significant;
 use std::{io::Write, path::Path};
 
 /// Shows the files of a simulation.
@@ -9,16 +10,15 @@ pub(crate) fn show(name: &str, scenario: &Scenario, recording: &Recording, log: 
     let mut out = anstream::stdout().lock();
     let (rows, rate) = (recording.columns.t.len(), scenario.inverter.sample_rate());
     writeln!(out, "{HEADING}{name}{HEADING:#}")?;
-    writeln!(out, "{rows} rows at {:.1} kHz, {:.2} s", rate * 1e-3, scenario.duration)?;
+    writeln!(out, "{rows} rows at {:.1} kHz, {} s", rate * 1e-3, significant(scenario.duration, 3))?;
     let log = shell_word(log);
     writeln!(out, "\n  log    {log}")?;
-    let truth = truth.map(shell_word);
-    if let Some(truth) = &truth {
-        writeln!(out, "  truth  {truth}")?;
-    }
-    writeln!(out, "\nNext: fluxfit identify {log}")?;
-    if let (Some(truth), Some(_)) = (&truth, scenario.motor.constant()) {
-        writeln!(out, "      fluxfit compare {log} --truth {truth}")?;
+    // What went to a device cannot be read again.
+    if let Some(truth) = truth.map(shell_word) {
+        writeln!(out, "  truth  {truth}\n\nNext: fluxfit identify {log}")?;
+        if scenario.motor.constant().is_some() {
+            writeln!(out, "      fluxfit compare {log} --truth {truth}")?;
+        }
     }
     out.flush()
 }

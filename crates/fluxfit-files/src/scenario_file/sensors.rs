@@ -17,7 +17,7 @@ pub(super) fn sensors(table: &Table<'_>) -> Result<Sensors, FileError> {
         current_gain: of_phases(table, "current_gain", Dimension::Ratio, "[1, 1, 1.02]", ideal.current_gain)?,
         adc: adc(table)?,
         angle_offset: table.quantity("angle_offset", Dimension::Angle)?.unwrap_or(ideal.angle_offset),
-        encoder_steps: table.get("encoder_steps").map(|entry| entry.whole(0, "a whole number")).transpose()?,
+        encoder_steps: table.get("encoder_steps").map(|entry| entry.whole(0, "a whole number, at least 16")).transpose()?,
     })
 }
 
@@ -37,7 +37,7 @@ fn of_phases(table: &Table<'_>, key: &str, dimension: Dimension, example: &str, 
 fn adc(table: &Table<'_>) -> Result<Option<Adc>, FileError> {
     match (table.get("adc_bits"), table.quantity("adc_range", Dimension::Current)?) {
         (None, None) => Ok(None),
-        (Some(bits), Some(range)) => Ok(Some(Adc { bits: bits.whole(0, "a whole number")?, range })),
+        (Some(bits), Some(range)) => Ok(Some(Adc { bits: bits.whole(0, "a whole number, from 2 to 32")?, range })),
         (Some(_), None) => Err(table.missing("adc_range", Dimension::Current.example())),
         (None, Some(_)) => Err(table.missing("adc_bits", "12")),
     }

@@ -6,16 +6,16 @@ use fluxfit_drive::scenario::{Control, Inverter, Mechanics, Modulation, Update};
 pub(super) fn inverter(table: &Table<'_>) -> Result<Inverter, FileError> {
     let ideal = Inverter::ideal(table.needed("u_dc", Dimension::Voltage)?, table.needed("carrier", Dimension::Frequency)?);
     let ripple = table.quantity("ripple", Dimension::Voltage)?;
-    let ripple_frequency = match ripple {
-        Some(_) => table.needed("ripple_frequency", Dimension::Frequency)?,
-        None => table.quantity("ripple_frequency", Dimension::Frequency)?.unwrap_or(0.0),
-    };
+    let ripple_frequency = table.quantity("ripple_frequency", Dimension::Frequency)?;
+    if ripple.is_some() && ripple_frequency.is_none() {
+        return Err(table.missing("ripple_frequency", "\"300 Hz\""));
+    }
     let modulations = [("switched", Modulation::Switched), ("averaged", Modulation::Averaged)];
     let updates = [("double", Update::Double), ("single", Update::Single)];
     Ok(Inverter {
         modulation: table.get("modulation").map_or(Ok(ideal.modulation), |entry| entry.word(&modulations))?,
         ripple: ripple.unwrap_or(0.0),
-        ripple_frequency,
+        ripple_frequency: ripple_frequency.unwrap_or(0.0),
         update: table.get("update").map_or(Ok(ideal.update), |entry| entry.word(&updates))?,
         dead_time: table.quantity("dead_time", Dimension::Time)?.unwrap_or(0.0),
         switch_drop: table.quantity("switch_drop", Dimension::Voltage)?.unwrap_or(0.0),
