@@ -191,7 +191,7 @@ pub struct Sensors {
     pub adc: Option<Adc>,
     /// What the encoder reads too much, electrical rad.
     pub angle_offset: f64,
-    /// Steps of the encoder per mechanical turn; none: angle and speed are known exactly.
+    /// Steps of the encoder per mechanical turn, each read as its middle; none: angle and speed are known exactly.
     pub encoder_steps: Option<u32>,
 }
 

@@ -33,7 +33,7 @@ fn impossible_rigs() {
     let rig = example("paper_rig.toml");
     let table: &[(&str, &str, &str, &[&str])] = &[
         ("unknown key", "u_dc = \"310 V\"", "udc = \"310 V\"", &["line 22, key 'udc'", "did you mean u_dc?"]),
-        ("unknown table", "[inverter]", "[inverters]", &["line 21, key 'inverters'", "did you mean inverter?"]),
+        ("unknown table", "[inverter]", "[inverters]", &["line 20, key 'inverters'", "did you mean inverter?"]),
         ("voltage", "\"1000 rpm\"", "\"5000 rpm\"", &["t = 0.15 s", "5000 r/min", "398.1 V", "179 V", "or allow control.field_weakening"]),
         (
             "voltage in spite of a weaker field",
