@@ -10,7 +10,7 @@ use fluxfit_files::{
 use std::{fs, path::Path};
 
 /// Rows beyond which a progress bar is shown: fewer are simulated within a second.
-const MANY_ROWS: usize = 1_000_000;
+const MANY_ROWS: usize = 400_000;
 
 /// Rows between two movements of the progress bar.
 const STRIDE: usize = 1024;
