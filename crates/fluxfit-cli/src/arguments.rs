@@ -24,6 +24,8 @@ pub(crate) enum Verb {
     Identify(Identify),
     /// Compare swarm optimizers on the paper's fitness: many runs of each, beside the exact answer
     Compare(Compare),
+    /// Simulate a motor in a drive: a log, and its truth beside it
+    Simulate(Simulate),
 }
 
 /// Which log, and how to read it.
@@ -126,6 +128,25 @@ pub(crate) struct Compare {
     /// True parameters (LOG.truth.json), for the errors of Table 2
     #[arg(long, value_name = "FILE")]
     pub(crate) truth: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Simulate {
+    /// What is simulated (docs/drive.md); without, the paper's rig; - is standard input
+    #[arg(value_name = "SCENARIO.toml")]
+    pub(crate) scenario: Option<PathBuf>,
+    /// The log, as CSV; its truth is written beside it, rig.truth.json for rig.csv; - is standard output, without a truth
+    #[arg(short, long, value_name = "LOG", required_unless_present = "template")]
+    pub(crate) output: Option<PathBuf>,
+    /// Seed of all noise, instead of the scenario's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Number of the noise's draw: each is independent of the others
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub(crate) draw: u64,
+    /// Print the paper's rig as a scenario to start from, and simulate nothing
+    #[arg(long, exclusive = true)]
+    pub(crate) template: bool,
 }
 
 /// Models that `identify` knows.

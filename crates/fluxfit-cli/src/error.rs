@@ -20,6 +20,14 @@ pub(crate) enum CommandError {
         /// What is wrong with it.
         error: fluxfit::error::Error,
     },
+    /// A drive that trips, or leaves its flux map.
+    #[error("{scenario}: {error}")]
+    Simulation {
+        /// The scenario's name.
+        scenario: String,
+        /// What happened.
+        error: fluxfit_drive::Error,
+    },
     /// Arguments that do not go together.
     #[error("{0}")]
     Usage(String),

@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         arguments::Verb::Demo(arguments) => commands::demo::run(arguments),
         arguments::Verb::Identify(arguments) => commands::identify::run(arguments),
         arguments::Verb::Compare(arguments) => commands::compare::run(arguments),
+        arguments::Verb::Simulate(arguments) => commands::simulate::run(arguments),
     };
     match outcome {
         Ok(status) => status.into(),

@@ -5,6 +5,8 @@
 
 #[path = "command/bad_input.rs"]
 mod bad_input;
+#[path = "command/bad_scenario.rs"]
+mod bad_scenario;
 #[path = "command/compare.rs"]
 mod compare;
 #[path = "command/identify.rs"]
@@ -13,6 +15,8 @@ mod identify;
 mod pages;
 #[path = "command/report.rs"]
 mod report;
+#[path = "command/simulate.rs"]
+mod simulate;
 
 use serde_json::Value;
 use std::{

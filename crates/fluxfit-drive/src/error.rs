@@ -7,7 +7,7 @@
 #[non_exhaustive]
 pub enum Error {
     /// A number out of its range.
-    #[error("{key} is {value}; it must be {range}")]
+    #[error("{key} is {}; it must be {range}", digits(*.value))]
     Setting {
         /// As a scenario file names it.
         key: &'static str,
@@ -15,6 +15,14 @@ pub enum Error {
         value: f64,
         /// What it must be.
         range: &'static str,
+    },
+    /// A move at no time.
+    #[error("a move of {key} has the time {} s; times must be finite, and zero or more", digits(*.time))]
+    MoveTime {
+        /// As a scenario file names it.
+        key: &'static str,
+        /// When it begins, or how long it takes, s.
+        time: f64,
     },
     /// Settings that exclude each other.
     #[error("{key} goes with {with} only; {remedy}")]
@@ -27,7 +35,7 @@ pub enum Error {
         remedy: &'static str,
     },
     /// More rows than a log can hold.
-    #[error("{duration} s at {rate} samples a second make {rows} rows, more than {most}; shorten duration")]
+    #[error("{} s at {} samples a second make {rows:.1e} rows, more than {most:.0e}; shorten duration", digits(*.duration), digits(*.rate))]
     TooLong {
         /// Simulated time, s.
         duration: f64,
@@ -40,7 +48,8 @@ pub enum Error {
     },
     /// A sample period that no current controller survives.
     #[error(
-        "a sample every {sample_period} s is slower than the winding's L/R of {time_constant:.3e} s, and no current controller is stable there; raise inverter.carrier to at least {carrier:.0} Hz"
+        "a sample every {} ms is slower than the winding's L/R of {} ms, and no current controller is stable there; raise inverter.carrier to at least {} Hz",
+        digits(1e3 * .sample_period), rounded(1e3 * .time_constant), digits(*.carrier)
     )]
     SlowSampling {
         /// s.
@@ -51,7 +60,7 @@ pub enum Error {
         carrier: f64,
     },
     /// A loop that is too fast for its samples, or for the loop inside.
-    #[error("{key} is {value:.4} Hz; with {because} it must be at most {most:.4} Hz")]
+    #[error("{key} is {} Hz; with {because} it must be at most {} Hz", digits(*.value), rounded_down(*.most))]
     Bandwidth {
         /// As a scenario file names it.
         key: &'static str,
@@ -64,7 +73,8 @@ pub enum Error {
     },
     /// A point of the schedule that the inverter's voltage does not reach.
     #[error(
-        "at t = {t} s the schedule asks for {rpm:.0} r/min with i_d = {id:.3} A and i_q = {iq:.3} A, which takes {needed:.1} V of phase voltage; u_dc = {u_dc} V makes {available:.1} V: raise inverter.u_dc, lower the speed, or allow control.field_weakening"
+        "at t = {} s the schedule asks for {} r/min with i_d = {} A and i_q = {} A, which takes {} V of phase voltage; u_dc = {} V makes {} V: raise inverter.u_dc, lower the speed, or {remedy}",
+        digits(*.t), digits(*.rpm), rounded(*.id), rounded(*.iq), rounded(*.needed), digits(*.u_dc), rounded(*.available)
     )]
     Voltage {
         /// s.
@@ -81,10 +91,13 @@ pub enum Error {
         u_dc: f64,
         /// V.
         available: f64,
+        /// What else would help.
+        remedy: &'static str,
     },
     /// A point of the schedule that the largest current does not reach.
     #[error(
-        "at t = {t} s the schedule asks for {torque:.4} N m with i_d = {id:.3} A, which takes {needed:.4} A; control.max_current is {available} A: raise it, or lower the load"
+        "at t = {} s load and friction ask for {} N m with i_d = {} A, which takes {} A; control.max_current is {} A: raise it, or lower the load",
+        digits(*.t), rounded(*.torque), digits(*.id), rounded(*.needed), digits(*.available)
     )]
     Current {
         /// s.
@@ -100,7 +113,8 @@ pub enum Error {
     },
     /// A point of the schedule at which the motor has no torque.
     #[error(
-        "at t = {t} s and i_d = {id:.3} A this motor makes no torque in the direction of i_q; choose another i_d, or mechanics.kind = \"dyno\""
+        "at t = {} s and i_d = {} A this motor makes no torque in the direction of i_q; choose another i_d, or mechanics.kind = \"dyno\"",
+        digits(*.t), digits(*.id)
     )]
     NoTorque {
         /// s.
@@ -138,7 +152,8 @@ pub enum Error {
     },
     /// A current beyond the map.
     #[error(
-        "at t = {t:.4} s the current i_d = {id:.3} A, i_q = {iq:.3} A leaves the flux map, which covers i_d {} .. {} A and i_q {} .. {} A; give a wider map, or ask for less", id_range[0], id_range[1], iq_range[0], iq_range[1]
+        "at t = {} s the current i_d = {} A, i_q = {} A leaves the flux map, which covers i_d {} .. {} A and i_q {} .. {} A; give a wider map, or ask for less",
+        digits(*.t), rounded(*.id), rounded(*.iq), digits(id_range[0]), digits(id_range[1]), digits(iq_range[0]), digits(iq_range[1])
     )]
     OutsideMap {
         /// s.
@@ -154,7 +169,8 @@ pub enum Error {
     },
     /// The drive switched itself off.
     #[error(
-        "the drive trips at t = {t:.5} s: the current vector reaches {current:.4} A, beyond control.trip_current = {limit} A ({circumstances}); ask for less, lower the bandwidths, or raise the limit"
+        "the drive trips at t = {} s: the current vector reaches {} A, beyond control.trip_current = {} A ({circumstances}); ask for less, lower the bandwidths, or raise the limit",
+        digits(*.t), rounded(*.current), digits(*.limit)
     )]
     Trip {
         /// s.
@@ -168,14 +184,53 @@ pub enum Error {
     },
 }
 
+/// A number as somebody wrote it: without the last digits, which are rounding's.
+fn digits(value: f64) -> String {
+    significant(value, 9)
+}
+
+/// A number that was computed: nobody needs more than four digits of it.
+fn rounded(value: f64) -> String {
+    significant(value, 4)
+}
+
+/// A limit that can be copied and is kept.
+fn rounded_down(value: f64) -> String {
+    let step = 10.0_f64.powf(value.abs().log10().floor() - 2.0);
+    digits((value / step).floor() * step)
+}
+
+fn significant(value: f64, digits: usize) -> String {
+    let value: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
+    if value == 0.0 || (1e-4..1e12).contains(&value.abs()) { format!("{}", value + 0.0) } else { format!("{value:e}") }
+}
+
 impl Error {
     /// The key of a scenario file that the error is about, if it is one.
     pub fn key(&self) -> Option<&'static str> {
         match self {
-            Self::Setting { key, .. } | Self::Together { key, .. } | Self::Bandwidth { key, .. } => Some(key),
+            Self::Setting { key, .. } | Self::MoveTime { key, .. } | Self::Together { key, .. } | Self::Bandwidth { key, .. } => Some(key),
             Self::SlowSampling { .. } => Some("inverter.carrier"),
             Self::TooLong { .. } => Some("duration"),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_end_where_rounding_begins() {
+        assert_eq!(digits(0.1 + 0.2), "0.3");
+        assert_eq!(digits(-1e-7), "-1e-7");
+        assert_eq!(digits(1e9), "1000000000");
+        assert_eq!(rounded(91.98851), "91.99");
+        assert_eq!(rounded_down(397.887), "397");
+        assert_eq!(rounded_down(66.6666), "66.6");
+        assert_eq!(rounded(-0.0), "0");
+        assert_eq!(rounded(f64::INFINITY), "inf");
+        assert_eq!(digits(f64::NAN), "NaN");
     }
 }

@@ -120,7 +120,7 @@ pub enum Update {
 pub struct Control {
     /// Bandwidth of the closed current loop, Hz.
     pub current_bandwidth: f64,
-    /// Bandwidth of the closed speed loop, Hz.
+    /// Bandwidth of the closed speed loop, Hz; a dynamometer has none.
     pub speed_bandwidth: f64,
     /// Largest current vector that it asks for, A.
     pub max_current: f64,
@@ -191,7 +191,7 @@ pub struct Sensors {
     pub adc: Option<Adc>,
     /// What the encoder reads too much, electrical rad.
     pub angle_offset: f64,
-    /// Steps of the encoder per mechanical turn; none: angle and speed are known exactly.
+    /// Steps of the encoder per mechanical turn, each read as its middle; none: angle and speed are known exactly.
     pub encoder_steps: Option<u32>,
 }
 
@@ -330,7 +330,7 @@ impl Scenario {
             control: Control::new(200.0, 20.0, 20.0),
             schedule: Schedule {
                 id: Course::new(vec![Move { at: 0.6, to: paper::ID, over: 0.0 }]),
-                speed: Course::new(vec![Move { at: 0.0, to: paper::SPEED_RPM * TAU / 60.0, over: 0.15 }]),
+                speed: Course::new(vec![Move { at: 0.0, to: paper::SPEED_RPM * (TAU / 60.0), over: 0.15 }]),
                 load: Course::new(vec![Move { at: 0.2, to: paper::LOAD, over: 0.0 }]),
                 ..Schedule::default()
             },

@@ -81,7 +81,8 @@ impl Instruments {
         let theta_m = plant.theta_e() / self.pole_pairs;
         let Some(steps) = self.settings.encoder_steps else { return (theta_m, plant.omega_m()) };
         let step = TAU / f64::from(steps);
-        let read = (theta_m / step).floor() * step;
+        // The middle of the step: what is constant in the error belongs to the offset, which a drive's alignment finds.
+        let read = ((theta_m / step).floor() + 0.5) * step;
         // A drive knows the speed at which it is switched on.
         let (angle, speed) = self.observed.unwrap_or((read, plant.omega_m()));
         let error = read - angle;

@@ -9,6 +9,7 @@
 //! unless the comma separates. Of a log of millions of rows only the needed cells become numbers.
 
 mod columns;
+pub(crate) mod flux_map;
 mod header;
 mod resemblance;
 mod rows;

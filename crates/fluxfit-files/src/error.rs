@@ -168,6 +168,8 @@ pub(crate) enum Problem {
     Parameter { name: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("{} is not {noun}; write a number, in {si} or with its unit, as in {example}", quote(.text))]
     Quantity { text: String, noun: &'static str, si: &'static str, example: &'static str },
+    #[error("{} is not a ratio; write a number without a unit, as in {example}", quote(.text))]
+    Ratio { text: String, example: &'static str },
     #[error("{} is out of range; it must be {range}", quote(.text))]
     Range { text: String, range: &'static str },
     #[error("{} has a unit on one number only; write it on both", quote(.text))]
@@ -175,19 +177,39 @@ pub(crate) enum Problem {
     #[error("{} does not run upward; write the lower end first", quote(.text))]
     Interval { text: String },
 
-    // Motor and truth files
+    // Motor files, scenarios and truths
     #[error("this is not {format}: {message}; correct it")]
     Syntax { format: &'static str, message: String },
     #[error("this key is not known; {table} can hold {}{}", list(.known), did_you_mean(*.nearest))]
-    Key { table: &'static str, known: Vec<&'static str>, nearest: Option<&'static str> },
+    Key { table: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("this key stands outside of a table; put it below a line [{table}]")]
     OutsideTable { table: &'static str },
+    #[error("this key belongs to [{table}]; move it there")]
+    OtherTable { table: &'static str },
+    #[error("this key stands above all tables; move it to the top of the file")]
+    InsideTable,
     #[error("this is not {wanted}; correct it")]
-    Value { wanted: &'static str },
+    Value { wanted: String },
+    #[error("{} is not known here; it can be {}{}", quote(.text), choice(.known), did_you_mean(*.nearest))]
+    Word { text: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("the key {key} is missing; write {remedy}")]
-    MissingKey { key: &'static str, remedy: &'static str },
+    MissingKey { key: String, remedy: String },
+    #[error("this key excludes {by}; remove one of them")]
+    Excluded { by: &'static str },
+    #[error("{0}")]
+    Drive(fluxfit_drive::Error),
+    #[error("{}", missing_map_columns(.missing, .present))]
+    MapColumns { missing: Vec<&'static str>, present: Vec<String> },
+    #[error("this truth has no constant parameters, because the simulated motor was a flux map; compare without a truth")]
+    NoConstants,
     #[error("the schema is {} where {wanted} is needed; give a truth file", shorten(.found))]
     Schema { found: String, wanted: &'static str },
+}
+
+fn missing_map_columns(missing: &[&str], present: &[String]) -> String {
+    let (noun, are) = if missing.len() == 1 { ("column", "is") } else { ("columns", "are") };
+    let what = format!("the {noun} {} {are} missing; the file has {}", list(missing), columns(present));
+    format!("{what}, and a flux map needs id, iq in A, psi_d, psi_q in Wb")
 }
 
 fn cells(count: usize) -> String {

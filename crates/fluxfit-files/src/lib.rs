@@ -24,10 +24,12 @@
 //! | [`number`] | numbers with units, as people read them |
 //! | [`argument`] | `key=value` arguments |
 //! | [`motor_file`] | `MOTOR.toml` |
+//! | [`scenario_file`] | `SCENARIO.toml` |
+//! | [`recording`] | a simulated log as CSV |
 //! | [`truth`] | the true parameters of a simulated log |
 //! | [`output`] | writing whole files only |
 //! | [`error`] | the sentence |
-//! | `channel`, `input`, `wording` | what a log's columns are called; bytes and text; lists and quotations |
+//! | `channel`, `input`, `toml_table`, `wording` | what a log's columns are called; bytes and text; tables that people write; lists and quotations |
 
 pub mod answer;
 pub mod argument;
@@ -39,6 +41,9 @@ pub mod motor_file;
 pub mod number;
 pub mod output;
 pub mod quantity;
+pub mod recording;
+pub mod scenario_file;
+mod toml_table;
 pub mod truth;
 pub mod unit;
 mod wording;
@@ -47,7 +52,9 @@ pub use argument::{parse_bounds, parse_fix, parse_map, parse_prior, parse_unit, 
 pub use csv::{LogOptions, ReadLog, parse_log, read_log};
 pub use error::FileError;
 pub use motor_file::{MotorFile, Rating, read_motor};
-pub use output::write_atomically;
+pub use output::{Output, check_writable, is_replaceable, write_atomically};
 pub use quantity::{Dimension, parse_quantity};
-pub use truth::{Truth, read_truth};
+pub use recording::write_recording;
+pub use scenario_file::{ReadScenario, paper_scenario, read_scenario};
+pub use truth::{Truth, read_truth, truth_of, truth_path};
 pub use unit::Unit;

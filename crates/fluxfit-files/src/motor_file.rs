@@ -14,16 +14,12 @@
 //! ```
 
 use crate::{
-    error::{FileError, Problem},
+    error::FileError,
     input,
-    quantity::{Dimension, parse_quantity},
-    wording::nearest,
+    quantity::Dimension,
+    toml_table::{Document, Shape, Table},
 };
 use std::path::Path;
-use toml::{
-    Spanned,
-    de::{DeInteger, DeTable, DeValue},
-};
 
 /// What is known of a motor; every number above zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -53,10 +49,11 @@ pub struct Rating {
     pub speed: Option<f64>,
 }
 
-const MOTOR: &str = "motor";
-const RATING: &str = "rating";
-const MOTOR_KEYS: [&str; 5] = ["rs", "ld", "lq", "psi_f", "pole_pairs"];
-const RATING_KEYS: [&str; 3] = ["current", "voltage", "speed"];
+const SHAPE: Shape = Shape {
+    noun: "a motor file",
+    keys: &[],
+    tables: &[("motor", &["rs", "ld", "lq", "psi_f", "pole_pairs"]), ("rating", &["current", "voltage", "speed"])],
+};
 
 const ABOVE_ZERO: &str = "a finite number above zero";
 
@@ -84,93 +81,26 @@ impl MotorFile {
 }
 
 fn parse(text: &str) -> Result<MotorFile, FileError> {
-    let line = |at: usize| input::line_at(text.as_bytes(), at);
-    let document = DeTable::parse(text).map_err(|error| {
-        let syntax = FileError::from(Problem::Syntax { format: "TOML", message: flat(error.message()) });
-        syntax.at_line(line(error.span().map_or(text.len(), |span| span.start)))
-    })?;
-    let mut motor = MotorFile::default();
-    for (start, table, value) in in_order(document.get_ref()) {
-        let outside = |error: FileError| error.at_line(line(start)).in_key(table);
-        let keys = match (table, value) {
-            (MOTOR | RATING, DeValue::Table(keys)) => keys,
-            (MOTOR, _) => return Err(outside(Problem::Value { wanted: "a table, as in [motor]" }.into())),
-            (RATING, _) => return Err(outside(Problem::Value { wanted: "a table, as in [rating]" }.into())),
-            _ => return Err(outside(misplaced(table))),
-        };
-        for (start, key, value) in in_order(keys) {
-            motor.take(table, key, value).map_err(|error| error.at_line(line(start)).in_key(key))?;
-        }
-    }
-    Ok(motor)
+    let document = Document::parse(text, &SHAPE)?;
+    let (motor, rating) = (document.table("motor"), document.table("rating"));
+    Ok(MotorFile {
+        rs: above_zero(&motor, "rs", Dimension::Resistance)?,
+        ld: above_zero(&motor, "ld", Dimension::Inductance)?,
+        lq: above_zero(&motor, "lq", Dimension::Inductance)?,
+        psi_f: above_zero(&motor, "psi_f", Dimension::FluxLinkage)?,
+        pole_pairs: motor.get("pole_pairs").map(|entry| entry.whole(1, "a whole number above zero")).transpose()?,
+        rating: Rating {
+            current: above_zero(&rating, "current", Dimension::Current)?,
+            voltage: above_zero(&rating, "voltage", Dimension::Voltage)?,
+            speed: above_zero(&rating, "speed", Dimension::Speed)?,
+        },
+    })
 }
 
-/// Entries by their place in the file, so that the first fault is the one told.
-fn in_order<'a>(table: &'a DeTable<'_>) -> Vec<(usize, &'a str, &'a DeValue<'a>)> {
-    let entry =
-        |(key, value): (&'a Spanned<_>, &'a Spanned<DeValue<'a>>)| (key.span().start, AsRef::<str>::as_ref(key.get_ref()), value.get_ref());
-    let mut entries: Vec<_> = table.iter().map(entry).collect();
-    entries.sort_by_key(|(start, _, _)| *start);
-    entries
-}
-
-fn misplaced(key: &str) -> FileError {
-    let table = if MOTOR_KEYS.contains(&key) { Some(MOTOR) } else { RATING_KEYS.contains(&key).then_some(RATING) };
-    match table {
-        Some(table) => Problem::OutsideTable { table }.into(),
-        None => unknown("a motor file", key, &[MOTOR, RATING]),
-    }
-}
-
-fn unknown(table: &'static str, key: &str, known: &[&'static str]) -> FileError {
-    Problem::Key { table, known: known.to_vec(), nearest: nearest(key, known.iter().copied()) }.into()
-}
-
-impl MotorFile {
-    fn take(&mut self, table: &str, key: &str, value: &DeValue<'_>) -> Result<(), FileError> {
-        let (slot, dimension) = match (table, key) {
-            (MOTOR, "rs") => (&mut self.rs, Dimension::Resistance),
-            (MOTOR, "ld") => (&mut self.ld, Dimension::Inductance),
-            (MOTOR, "lq") => (&mut self.lq, Dimension::Inductance),
-            (MOTOR, "psi_f") => (&mut self.psi_f, Dimension::FluxLinkage),
-            (MOTOR, "pole_pairs") => {
-                self.pole_pairs = Some(pole_pairs(value)?);
-                return Ok(());
-            }
-            (RATING, "current") => (&mut self.rating.current, Dimension::Current),
-            (RATING, "voltage") => (&mut self.rating.voltage, Dimension::Voltage),
-            (RATING, "speed") => (&mut self.rating.speed, Dimension::Speed),
-            (MOTOR, _) => return Err(unknown("[motor]", key, &MOTOR_KEYS)),
-            _ => return Err(unknown("[rating]", key, &RATING_KEYS)),
-        };
-        let text = match value {
-            DeValue::String(text) => text.as_ref(),
-            DeValue::Float(number) => number.as_str(),
-            DeValue::Integer(number) => &whole(number).map(|number| number.to_string()).unwrap_or_default(),
-            _ => return Err(Problem::Value { wanted: "a number, or one with its unit in quotes" }.into()),
-        };
-        let number = parse_quantity(text, dimension)?;
-        if number <= 0.0 {
-            return Err(Problem::Range { text: text.to_owned(), range: ABOVE_ZERO }.into());
-        }
-        *slot = Some(number);
-        Ok(())
-    }
-}
-
-fn pole_pairs(value: &DeValue<'_>) -> Result<u32, FileError> {
-    let DeValue::Integer(number) = value else { return Err(Problem::Value { wanted: "a whole number, as in pole_pairs = 4" }.into()) };
-    let found = whole(number).and_then(|number| u32::try_from(number).ok()).filter(|pole_pairs| *pole_pairs > 0);
-    found.ok_or_else(|| Problem::Range { text: number.to_string(), range: "a whole number above zero" }.into())
-}
-
-fn whole(number: &DeInteger<'_>) -> Option<i64> {
-    i64::from_str_radix(number.as_str(), number.radix()).ok()
-}
-
-/// A message of several lines as one.
-fn flat(message: &str) -> String {
-    message.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(", ")
+fn above_zero(table: &Table<'_>, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
+    let Some(entry) = table.get(key) else { return Ok(None) };
+    let number = entry.quantity(dimension)?;
+    if number > 0.0 { Ok(Some(number)) } else { Err(entry.out_of_range(ABOVE_ZERO)) }
 }
 
 #[cfg(test)]

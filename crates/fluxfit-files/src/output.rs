@@ -6,10 +6,13 @@ use crate::{
 };
 use std::{
     fs,
-    io::{self, Write},
-    path::Path,
+    io::{self, BufWriter, Stdout, Write},
+    path::{Path, PathBuf},
 };
 use tempfile::NamedTempFile;
+
+/// Bytes that are written at once.
+const BUFFER: usize = 1 << 16;
 
 /// Writes a file so that nobody ever sees half of it: into a new file beside it, which then takes its name. What was there keeps
 /// its permissions; a link keeps pointing to where it did. The path `-` is standard output; that and devices are written
@@ -18,45 +21,105 @@ use tempfile::NamedTempFile;
 /// # Errors
 /// If the directory does not exist or the file cannot be written there.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let written = if is_standard(path) {
-        let mut output = io::stdout().lock();
-        output.write_all(bytes).and_then(|()| output.flush()).map_err(|error| problem(&error).into())
-    } else {
-        write(path, bytes)
-    };
-    let name = if is_standard(path) { "standard output".to_owned() } else { name(path) };
-    written.map_err(|error: FileError| error.in_file(&name))
+    let mut output = Output::open(path)?;
+    output.fill(|writer| writer.write_all(bytes))?;
+    output.commit()
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+/// A file that is being written and has not taken its name yet: several can be filled before the first one does. Dropped, it was
+/// never there.
+#[derive(Debug)]
+pub struct Output {
+    name: String,
+    sink: Sink,
+}
+
+#[derive(Debug)]
+enum Sink {
+    Standard(Stdout),
+    /// A device or a pipe: renaming over it would replace it.
+    Device(fs::File),
+    File {
+        file: NamedTempFile,
+        target: PathBuf,
+        permissions: Option<fs::Permissions>,
+    },
+}
+
+impl Output {
+    /// Opens a file for [`write_atomically`] by parts.
+    ///
+    /// # Errors
+    /// If the directory does not exist or no file can be made there.
+    pub fn open(path: &Path) -> Result<Self, FileError> {
+        let name = if is_standard(path) { "standard output".to_owned() } else { name(path) };
+        let sink = if is_standard(path) { Ok(Sink::Standard(io::stdout())) } else { open(path) };
+        sink.map_err(|error| error.in_file(&name)).map(|sink| Self { name, sink })
+    }
+
+    /// Writes into it, through a buffer.
+    ///
+    /// # Errors
+    /// Those of writing.
+    pub fn fill(&mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        let sink: &mut dyn Write = match &mut self.sink {
+            Sink::Standard(output) => output,
+            Sink::Device(file) => file,
+            Sink::File { file, .. } => file,
+        };
+        let mut buffer = BufWriter::with_capacity(BUFFER, sink);
+        write(&mut buffer).and_then(|()| buffer.flush()).map_err(|error| FileError::from(problem(&error)).in_file(&self.name))
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// Those of writing to the disk and of renaming.
+    pub fn commit(self) -> Result<(), FileError> {
+        let Sink::File { file, target, permissions } = self.sink else { return Ok(()) };
+        let replace = || {
+            if let Some(permissions) = permissions {
+                file.as_file().set_permissions(permissions)?;
+            }
+            // Else a crash may keep the name and lose the bytes.
+            file.as_file().sync_all()?;
+            file.persist(&target).map(|_| ()).map_err(|error| error.error)
+        };
+        replace().map_err(|error: io::Error| FileError::from(problem(&error)).in_file(&self.name))
+    }
+}
+
+/// Whether something can be put in place of this path: it is neither standard output nor a device or a pipe.
+pub fn is_replaceable(path: &Path) -> bool {
+    !is_standard(path) && fs::metadata(path).map_or(true, |metadata| metadata.is_file() || metadata.is_dir())
+}
+
+/// Tells beforehand what [`Output::open`] would, and leaves everything as it is.
+///
+/// # Errors
+/// As [`Output::open`].
+pub fn check_writable(path: &Path) -> Result<(), FileError> {
+    // Whoever reads a pipe takes its closing for the end.
+    if is_replaceable(path) { Output::open(path).map(drop) } else { Ok(()) }
+}
+
+fn open(path: &Path) -> Result<Sink, FileError> {
     let existing = fs::metadata(path).ok();
     if existing.as_ref().is_some_and(fs::Metadata::is_dir) || path.file_name().is_none() {
         return Err(Problem::Directory.into());
     }
-    if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
-        // Renaming over a device or a pipe would replace it.
-        return fs::OpenOptions::new()
-            .write(true)
-            .open(path)
-            .and_then(|mut file| file.write_all(bytes))
-            .map_err(|error| problem(&error).into());
+    if existing.is_some() && !is_replaceable(path) {
+        let device = fs::OpenOptions::new().write(true).open(path);
+        return device.map(Sink::Device).map_err(|error| problem(&error).into());
     }
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let directory = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !directory.is_dir() {
         return Err(Problem::NoDirectory { directory: directory.display().to_string() }.into());
     }
-    let replace = || {
-        let mut file = beside(directory)?;
-        file.write_all(bytes)?;
-        if let Some(metadata) = existing {
-            file.as_file().set_permissions(metadata.permissions())?;
-        }
-        // Else a crash may keep the name and lose the bytes.
-        file.as_file().sync_all()?;
-        file.persist(&target).map(|_| ()).map_err(|error| error.error)
-    };
-    replace().map_err(|error: io::Error| problem(&error).into())
+    let file = beside(directory).map_err(|error| problem(&error))?;
+    let permissions = existing.map(|metadata| metadata.permissions());
+    Ok(Sink::File { file, target, permissions })
 }
 
 /// A new file, readable by whom the user's mask allows rather than by the user alone.
@@ -106,6 +169,18 @@ mod tests {
         let null = Path::new("/dev/null");
         write_atomically(null, b"gone").unwrap();
         assert!(fs::metadata(null).unwrap().file_type().is_char_device());
+    }
+
+    #[test]
+    fn what_is_not_committed_was_never_there() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("log.csv");
+        check_writable(&path).unwrap();
+        let mut output = Output::open(&path).unwrap();
+        output.fill(|writer| writer.write_all(b"half")).unwrap();
+        assert!(is_replaceable(&path) && !path.exists());
+        drop(output);
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Numbers with units, as people write them: `5.25 mH`, `0.958 ohm`, `3000 rpm`, `12e-3`.
 //!
-//! A bare number is SI. The prefixes are u (µ), m and k; upper and lower case matter in a prefix (M would be mega) and nowhere else.
+//! A bare number is SI. The prefixes are u (µ), m and k, for frequencies M as well; upper and lower case matter in a prefix and
+//! nowhere else.
 
 use crate::error::{FileError, Problem};
 use fluxfit::motor::Parameter;
@@ -25,6 +26,16 @@ pub enum Dimension {
     Inductance,
     /// Wb.
     FluxLinkage,
+    /// Hz.
+    Frequency,
+    /// N m.
+    Torque,
+    /// kg m².
+    Inertia,
+    /// N m s.
+    Friction,
+    /// Without a unit.
+    Ratio,
 }
 
 /// A unit as it is written, and how many SI units it is; a prefix only where `prefixed`.
@@ -57,6 +68,11 @@ impl Dimension {
         self.words().1
     }
 
+    /// A quantity as people write it, in quotes.
+    pub(crate) fn example(self) -> &'static str {
+        self.words().2
+    }
+
     /// What a text should have been, its SI unit, and an example.
     fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
@@ -68,6 +84,11 @@ impl Dimension {
             Self::Resistance => ("a resistance", "ohm", "\"0.958 ohm\""),
             Self::Inductance => ("an inductance", "H", "\"5.25 mH\""),
             Self::FluxLinkage => ("a flux linkage", "Wb", "\"0.1827 Wb\""),
+            Self::Frequency => ("a frequency", "Hz", "\"5 kHz\""),
+            Self::Torque => ("a torque", "N m", "\"10 N m\""),
+            Self::Inertia => ("an inertia", "kg m2", "\"0.003 kg m2\""),
+            Self::Friction => ("a friction", "N m s", "\"0.008 N m s\""),
+            Self::Ratio => ("a ratio", "1", "1.02"),
         }
     }
 
@@ -82,6 +103,25 @@ impl Dimension {
             Self::Resistance => const { &[si("ohm"), si("Ω"), si("\u{2126}")] },
             Self::Inductance => const { &[si("H")] },
             Self::FluxLinkage => const { &[si("Wb"), si("Vs"), si("V s")] },
+            Self::Frequency => const { &[si("Hz")] },
+            Self::Torque => const { &[si("N m"), si("Nm")] },
+            Self::Inertia => {
+                const {
+                    &[
+                        scaled("kg m2", 1.0),
+                        scaled("kg m^2", 1.0),
+                        scaled("kg m²", 1.0),
+                        scaled("kg cm2", 1e-4),
+                        scaled("kg cm^2", 1e-4),
+                        scaled("kg cm²", 1e-4),
+                        scaled("g cm2", 1e-7),
+                        scaled("g cm^2", 1e-7),
+                        scaled("g cm²", 1e-7),
+                    ]
+                }
+            }
+            Self::Friction => const { &[si("N m s"), si("Nm s"), si("Nms")] },
+            Self::Ratio => &[],
         }
     }
 
@@ -97,6 +137,8 @@ impl Dimension {
                 'u' | 'µ' | 'μ' => 1e-6,
                 'm' => 1e-3,
                 'k' => 1e3,
+                // Nowhere else in a drive, where M is a slip for m.
+                'M' if self == Self::Frequency => 1e6,
                 _ => return None,
             };
             spelled(&unit[prefix.len_utf8()..], true).map(|_| factor)
@@ -105,6 +147,9 @@ impl Dimension {
 
     pub(crate) fn refusal(self, text: &str) -> FileError {
         let (noun, si, example) = self.words();
+        if self == Self::Ratio {
+            return Problem::Ratio { text: text.trim().to_owned(), example }.into();
+        }
         Problem::Quantity { text: text.trim().to_owned(), noun, si, example }.into()
     }
 }
@@ -157,7 +202,8 @@ pub(crate) fn split(text: &str) -> Option<(f64, &str)> {
 fn in_si(value: f64, unit: &str, dimension: Dimension) -> Option<f64> {
     let factor = if unit.is_empty() { 1.0 } else { dimension.factor(unit)? };
     // Dividing by a thousand is exact where multiplying by 0.001 is not: 12 mH is 0.012.
-    let value = if factor == 1e-3 || factor == 1e-6 { value / factor.recip().round() } else { value * factor };
+    let decimal = [1e-3, 1e-4, 1e-6, 1e-7].contains(&factor);
+    let value = if decimal { value / factor.recip().round() } else { value * factor };
     value.is_finite().then_some(value)
 }
 
@@ -190,6 +236,15 @@ mod tests {
             ("314 rad/s", Speed, 314.0),
             ("100 us", Time, 1e-4),
             ("180 deg", Angle, PI),
+            ("5 kHz", Frequency, 5e3),
+            ("1.5 MHz", Frequency, 1.5e6),
+            ("20 mHz", Frequency, 0.02),
+            ("10 Nm", Torque, 10.0),
+            ("83 mN m", Torque, 0.083),
+            ("0.003 kg m2", Inertia, 0.003),
+            ("30 kg cm^2", Inertia, 0.003),
+            ("213 g cm²", Inertia, 213e-7),
+            ("8 mN m s", Friction, 0.008),
         ];
         for (text, dimension, value) in cases {
             assert_eq!(parse_quantity(text, dimension), Ok(value), "{text}");

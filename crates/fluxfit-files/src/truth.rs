@@ -8,10 +8,11 @@
 use crate::{
     error::{FileError, Problem},
     input,
+    scenario_file::ReadScenario,
 };
 use fluxfit::motor::{Motor, PARAMETERS, Parameter};
-use serde_json::Value;
-use std::path::Path;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 /// The schema of a truth file.
 pub const SCHEMA: &str = "fluxfit.truth/1";
@@ -44,6 +45,28 @@ impl Truth {
     }
 }
 
+/// Where the truth of a log is: beside it, `rig.truth.json` of `rig.csv`.
+pub fn truth_path(log: &Path) -> PathBuf {
+    log.with_extension("truth.json")
+}
+
+/// The truth file of a simulated log: parameters, and the scenario with which the log can be made again. The inductances and the
+/// flux of a motor that is a flux map are null.
+pub fn truth_of(read: &ReadScenario, draw: u64) -> Value {
+    let motor = &read.scenario.motor;
+    let constant = motor.constant();
+    json!({
+        "schema": SCHEMA,
+        "rs": motor.rs,
+        "ld": constant.map(|motor| motor.ld),
+        "lq": constant.map(|motor| motor.lq),
+        "psi_f": constant.map(|motor| motor.psi_f),
+        "pole_pairs": motor.pole_pairs,
+        "draw": draw,
+        "scenario": read.document,
+    })
+}
+
 fn parse(text: &str) -> Result<Truth, FileError> {
     let document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
     if let Some(found) = document.get("schema").filter(|schema| schema.as_str() != Some(SCHEMA)) {
@@ -51,8 +74,10 @@ fn parse(text: &str) -> Result<Truth, FileError> {
     }
     let holder = document.get("truth").unwrap_or(&document);
     if !holder.is_object() {
-        let wanted = "an object with the keys rs, ld, lq and psi_f";
-        return Err(Problem::Value { wanted }.into());
+        return Err(Problem::Value { wanted: "an object with the keys rs, ld, lq and psi_f".to_owned() }.into());
+    }
+    if ["ld", "lq", "psi_f"].iter().all(|key| holder.get(key).is_some_and(Value::is_null)) {
+        return Err(Problem::NoConstants.into());
     }
     let mut values = [0.0; PARAMETERS];
     for (value, parameter) in values.iter_mut().zip(Parameter::ALL) {
@@ -73,10 +98,10 @@ fn number(holder: &Value, parameter: Parameter) -> Result<f64, FileError> {
             Parameter::Ld | Parameter::Lq => "it in H",
             Parameter::PsiF => "it in Wb",
         };
-        return Err(Problem::MissingKey { key, remedy }.into());
+        return Err(Problem::MissingKey { key: key.to_owned(), remedy: remedy.to_owned() }.into());
     };
     let refuse = |problem: Problem| FileError::from(problem).in_key(key);
-    let number = value.as_f64().ok_or_else(|| refuse(Problem::Value { wanted: "a number" }))?;
+    let number = value.as_f64().ok_or_else(|| refuse(Problem::Value { wanted: "a number".to_owned() }))?;
     // A reluctance motor has no magnet.
     let (allowed, range) = if parameter == Parameter::PsiF { (number >= 0.0, "zero or more") } else { (number > 0.0, "above zero") };
     if allowed && number.is_finite() { Ok(number) } else { Err(refuse(Problem::Range { text: value.to_string(), range })) }
@@ -132,6 +157,10 @@ mod tests {
             (
                 r#"{"rs": 1, "ld": 1, "lq": 1, "psi_f": 0, "pole_pairs": 0}"#,
                 "a.json, key 'pole_pairs': \"0\" is out of range; it must be a whole number above zero",
+            ),
+            (
+                r#"{"rs": 0.63, "ld": null, "lq": null, "psi_f": null}"#,
+                "a.json: this truth has no constant parameters, because the simulated motor was a flux map; compare without a truth",
             ),
             ("", "a.json: the file is empty; export it again"),
         ];

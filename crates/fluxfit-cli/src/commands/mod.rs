@@ -5,6 +5,7 @@ pub(crate) mod demo;
 pub(crate) mod identify;
 mod input;
 mod report;
+pub(crate) mod simulate;
 
 use std::process::ExitCode;
 

@@ -3,6 +3,7 @@
 
 pub(crate) mod identification;
 mod plot;
+pub(crate) mod simulation;
 pub(crate) mod study;
 
 use anstyle::{AnsiColor, Style};

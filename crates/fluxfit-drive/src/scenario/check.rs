@@ -68,7 +68,9 @@ impl Scenario {
             return Err(setting("inverter.ripple", inverter.ripple, "less than inverter.u_dc"));
         }
         positive("control.current_bandwidth", self.control.current_bandwidth)?;
-        positive("control.speed_bandwidth", self.control.speed_bandwidth)?;
+        if matches!(self.mechanics, Mechanics::Free { .. }) {
+            positive("control.speed_bandwidth", self.control.speed_bandwidth)?;
+        }
         positive("control.max_current", self.control.max_current)?;
         if self.control.trip_current.is_nan() || self.control.trip_current <= self.control.max_current {
             return Err(setting("control.trip_current", self.control.trip_current, "above control.max_current"));
@@ -128,6 +130,9 @@ impl Scenario {
         if rows > MAX_ROWS {
             return Err(Error::TooLong { duration: self.duration, rate: self.inverter.sample_rate(), rows, most: MAX_ROWS });
         }
+        if rows < 1.0 {
+            return Err(setting("duration", self.duration, "at least the time from one sample to the next"));
+        }
         let motor = self.motor.unsaturated();
         let time_constant = motor.ld.min(motor.lq) / motor.rs;
         if sample_period > time_constant {
@@ -137,7 +142,7 @@ impl Scenario {
         let most = MAX_BANDWIDTH_ANGLE / (TAU * sample_period);
         let value = self.control.current_bandwidth;
         if value > most {
-            let because = format!("a sample every {sample_period} s");
+            let because = format!("{} samples a second", self.inverter.sample_rate());
             return Err(Error::Bandwidth { key: "control.current_bandwidth", value, because, most });
         }
         let most = value / CASCADE;
@@ -203,7 +208,12 @@ impl Scenario {
             return Ok(());
         }
         let (rpm, u_dc) = (speed * 60.0 / TAU, self.inverter.u_dc);
-        Err(Error::Voltage { t, rpm, id: i.d, iq: i.q, needed: u.magnitude(), u_dc, available })
+        let remedy = if self.control.field_weakening {
+            "allow more current for the field weakening, with control.max_current"
+        } else {
+            "allow control.field_weakening"
+        };
+        Err(Error::Voltage { t, rpm, id: i.d, iq: i.q, needed: u.magnitude(), u_dc, available, remedy })
     }
 
     /// The error of a current beyond the map.
@@ -237,7 +247,7 @@ fn check_moves(key: &'static str, course: &crate::schedule::Course) -> Result<()
         finite(key, course.to)?;
         for time in [course.at, course.over] {
             if !(time >= 0.0 && time.is_finite()) {
-                return Err(setting(key, time, "scheduled at finite times of zero or more"));
+                return Err(Error::MoveTime { key, time });
             }
         }
     }

@@ -169,15 +169,15 @@ pub(super) fn line_of(text: &str, start: usize) -> u64 {
     line_at(text.as_bytes(), start + ends.count())
 }
 
-fn reader(text: &str, separator: u8) -> Reader<&[u8]> {
+pub(super) fn reader(text: &str, separator: u8) -> Reader<&[u8]> {
     ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(text.as_bytes())
 }
 
-fn next(reader: &mut Reader<&[u8]>, record: &mut ByteRecord) -> Result<bool, FileError> {
+pub(super) fn next(reader: &mut Reader<&[u8]>, record: &mut ByteRecord) -> Result<bool, FileError> {
     reader.read_byte_record(record).map_err(|error| Problem::Io { action: "reading", reason: error.to_string() }.into())
 }
 
-fn offset(record: &ByteRecord) -> usize {
+pub(super) fn offset(record: &ByteRecord) -> usize {
     record.position().map_or(0, |position| bytes(position.byte()))
 }
 

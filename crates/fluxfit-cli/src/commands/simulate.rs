@@ -1,0 +1,93 @@
+//! `fluxfit simulate`: a scenario to a log, and its truth beside it.
+
+use super::Status;
+use crate::{arguments::Simulate, error::CommandError, terminal};
+use fluxfit_drive::{Recording, simulate};
+use fluxfit_files::{
+    Output, ReadScenario, answer, check_writable, is_replaceable, paper_scenario, read_scenario, scenario_file::PAPER_RIG, truth_of,
+    truth_path, write_recording,
+};
+use std::{fs, path::Path};
+
+/// Rows beyond which a progress bar is shown: fewer are simulated within a second.
+const MANY_ROWS: usize = 400_000;
+
+/// Rows between two movements of the progress bar.
+const STRIDE: usize = 1024;
+
+/// Runs the verb.
+pub(crate) fn run(arguments: &Simulate) -> Result<Status, CommandError> {
+    let Some(log) = arguments.output.as_deref() else {
+        terminal::print(PAPER_RIG)?;
+        return Ok(Status::Complete);
+    };
+    let read = read(arguments)?;
+    refuse_to_overwrite(arguments.scenario.as_deref(), log)?;
+    let truth = is_replaceable(log).then(|| truth_path(log));
+    // Before the work, not after.
+    [Some(log), truth.as_deref()].into_iter().flatten().try_for_each(check_writable)?;
+    let recording = record(arguments, &read)?;
+    write(log, truth.as_deref(), &recording, &answer::to_text(&truth_of(&read, arguments.draw)))?;
+    if log.as_os_str() != "-" {
+        terminal::simulation::show(&name(arguments), &read.scenario, &recording, log, truth.as_deref())?;
+    }
+    Ok(Status::Complete)
+}
+
+fn read(arguments: &Simulate) -> Result<ReadScenario, CommandError> {
+    let mut read = arguments.scenario.as_deref().map_or_else(paper_scenario, read_scenario)?;
+    if let Some(seed) = arguments.seed {
+        read.scenario.seed = seed;
+        // The truth must lead to the same log again.
+        read.document["seed"] = seed.into();
+    }
+    Ok(read)
+}
+
+/// A slip of the hand must not cost the scenario.
+fn refuse_to_overwrite(scenario: Option<&Path>, log: &Path) -> Result<(), CommandError> {
+    let place = |path: &Path| fs::canonicalize(path).ok().filter(|path| path.is_file());
+    match (scenario.and_then(place), place(log)) {
+        (Some(scenario), Some(log)) if scenario == log => {
+            Err(CommandError::Usage(format!("{} is the scenario itself; name another file with -o", log.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn record(arguments: &Simulate, read: &ReadScenario) -> Result<Recording, CommandError> {
+    let rows = read.scenario.rows();
+    let progress = terminal::progress(rows, "rows", rows < MANY_ROWS);
+    let mut done = 0;
+    let recording = simulate(&read.scenario, arguments.draw, || {
+        done += 1;
+        if done % STRIDE == 0 {
+            progress.inc(STRIDE as u64);
+        }
+    });
+    progress.finish_and_clear();
+    recording.map_err(|error| CommandError::Simulation { scenario: name(arguments), error })
+}
+
+/// Both files or none: neither gets its name before both are on the disk.
+fn write(log: &Path, truth: Option<&Path>, recording: &Recording, text: &str) -> Result<(), CommandError> {
+    let mut outputs = Vec::new();
+    if let Some(path) = truth {
+        let mut output = Output::open(path)?;
+        output.fill(|writer| writer.write_all(text.as_bytes()))?;
+        outputs.push(output);
+    }
+    let mut output = Output::open(log)?;
+    output.fill(|writer| write_recording(writer, recording))?;
+    outputs.push(output);
+    Ok(outputs.into_iter().try_for_each(Output::commit)?)
+}
+
+/// What the scenario is called.
+fn name(arguments: &Simulate) -> String {
+    match arguments.scenario.as_deref() {
+        None => "the paper's rig".to_owned(),
+        Some(path) if path.as_os_str() == "-" => "standard input".to_owned(),
+        Some(path) => path.display().to_string(),
+    }
+}
