@@ -6,6 +6,7 @@
 mod arguments;
 mod commands;
 mod error;
+mod shell;
 mod terminal;
 
 use clap::Parser;

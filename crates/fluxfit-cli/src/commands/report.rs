@@ -1,10 +1,10 @@
 //! `--report FILE.html`: what the verbs do about it. The file is refused before anything is computed, and written after the
 //! answer is printed.
 
-use crate::{arguments::LogArguments, error::CommandError, terminal};
+use crate::{arguments::LogArguments, error::CommandError, shell, terminal};
 use fluxfit_files::write_atomically;
 use fluxfit_report::Origin;
-use std::{ffi::OsStr, fs, path::Path};
+use std::{fs, path::Path};
 
 /// Refuses a report where it would mix with the answer or destroy what is read.
 pub(crate) fn check<'a>(arguments: &'a LogArguments, others_read: impl IntoIterator<Item = &'a Path>) -> Result<(), CommandError> {
@@ -38,30 +38,6 @@ pub(crate) fn write(path: Option<&Path>, seed: u64, report: impl FnOnce(&Origin)
 
 /// The command line, as a shell takes it.
 fn command() -> String {
-    let arguments = std::env::args_os().skip(1).map(|argument| quoted(&argument));
+    let arguments = std::env::args_os().skip(1).map(|argument| shell::word(&argument));
     ["fluxfit".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
-}
-
-/// An argument as a shell takes it: in single quotes where it has to be.
-fn quoted(argument: &OsStr) -> String {
-    const PLAIN: &str = "-_./,:=+@%±";
-    let text = argument.to_string_lossy();
-    if !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || PLAIN.contains(c)) {
-        return text.into_owned();
-    }
-    format!("'{}'", text.replace('\'', r"'\''"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn arguments_are_quoted_where_a_shell_would_break_them() {
-        for (argument, expected) in
-            [("rs=0.96±1%", "rs=0.96±1%"), ("my log.csv", "'my log.csv'"), ("it's", r"'it'\''s'"), ("$(rm -rf)", "'$(rm -rf)'"), ("", "''")]
-        {
-            assert_eq!(quoted(argument.as_ref()), expected);
-        }
-    }
 }

@@ -1,6 +1,7 @@
 //! What was simulated, where it is, and what to do with it.
 
 use super::HEADING;
+use crate::shell;
 use fluxfit_drive::{Recording, Scenario};
 use fluxfit_files::number::significant;
 use std::{io::Write, path::Path};
@@ -11,21 +12,14 @@ pub(crate) fn show(name: &str, scenario: &Scenario, recording: &Recording, log: 
     let (rows, rate) = (recording.columns.t.len(), scenario.inverter.sample_rate());
     writeln!(out, "{HEADING}{name}{HEADING:#}")?;
     writeln!(out, "{rows} rows at {:.1} kHz, {} s", rate * 1e-3, significant(scenario.duration, 3))?;
-    let log = shell_word(log);
+    let log = shell::word(log.as_os_str());
     writeln!(out, "\n  log    {log}")?;
     // What went to a device cannot be read again.
-    if let Some(truth) = truth.map(shell_word) {
+    if let Some(truth) = truth.map(|truth| shell::word(truth.as_os_str())) {
         writeln!(out, "  truth  {truth}\n\nNext: fluxfit identify {log}")?;
         if scenario.motor.constant().is_some() {
             writeln!(out, "      fluxfit compare {log} --truth {truth}")?;
         }
     }
     out.flush()
-}
-
-/// A path as a shell takes it.
-fn shell_word(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = text.chars().all(|c| c.is_alphanumeric() || "/\\._-:+".contains(c));
-    if plain { text } else { format!("\"{text}\"") }
 }
