@@ -139,7 +139,8 @@ pub(crate) struct Simulate {
     #[arg(short, long, value_name = "LOG", required_unless_present = "template")]
     pub(crate) output: Option<PathBuf>,
     /// Seed of all noise, instead of the scenario's
-    #[arg(long, value_name = "N")]
+    // No larger than TOML can hold: with the truth's scenario the log can be made again.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub(crate) seed: Option<u64>,
     /// Number of the noise's draw: each is independent of the others
     #[arg(long, value_name = "K", default_value_t = 0)]

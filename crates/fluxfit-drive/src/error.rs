@@ -111,6 +111,23 @@ pub enum Error {
         /// A.
         available: f64,
     },
+    /// A scheduled current above the largest one.
+    #[error(
+        "at t = {} s the schedule asks for a current of {} A (i_d = {} A, i_q = {} A); control.max_current is {} A: raise it, or ask for less",
+        digits(*.t), rounded(*.needed), digits(*.id), digits(*.iq), digits(*.available)
+    )]
+    Reference {
+        /// s.
+        t: f64,
+        /// A.
+        id: f64,
+        /// A.
+        iq: f64,
+        /// A.
+        needed: f64,
+        /// A.
+        available: f64,
+    },
     /// A point of the schedule at which the motor has no torque.
     #[error(
         "at t = {} s and i_d = {} A this motor makes no torque in the direction of i_q; choose another i_d, or mechanics.kind = \"dyno\"",
@@ -150,9 +167,9 @@ pub enum Error {
         /// A.
         iq: f64,
     },
-    /// A current beyond the map.
+    /// A current beyond the map: that which is asked for, or the last one that was still inside.
     #[error(
-        "at t = {} s the current i_d = {} A, i_q = {} A leaves the flux map, which covers i_d {} .. {} A and i_q {} .. {} A; give a wider map, or ask for less",
+        "at t = {} s the current leaves the flux map near i_d = {} A, i_q = {} A; the map covers i_d {} .. {} A and i_q {} .. {} A: give a wider map, or ask for less",
         digits(*.t), rounded(*.id), rounded(*.iq), digits(id_range[0]), digits(id_range[1]), digits(iq_range[0]), digits(iq_range[1])
     )]
     OutsideMap {

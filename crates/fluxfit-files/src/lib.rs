@@ -29,7 +29,7 @@
 //! | [`truth`] | the true parameters of a simulated log |
 //! | [`output`] | writing whole files only |
 //! | [`error`] | the sentence |
-//! | `channel`, `input`, `toml_table`, `wording` | what a log's columns are called; bytes and text; tables that people write; lists and quotations |
+//! | `channel`, `input`, `toml_table`, `wording` | what a log's columns are called; bytes and text; TOML; lists and quotations |
 
 pub mod answer;
 pub mod argument;

@@ -32,7 +32,7 @@ pub struct ReadScenario {
 pub const PAPER_RIG: &str = include_str!("scenario_file/paper_rig.toml");
 
 /// Seed of a scenario that names none.
-const SEED: u32 = 1;
+const SEED: u64 = 1;
 
 const SHAPE: Shape = Shape {
     noun: "a scenario",
@@ -97,7 +97,7 @@ fn parse(text: &str, folder: &Path) -> Result<ReadScenario, FileError> {
     let mechanics = machine::mechanics(&document.table("mechanics"))?;
     let scenario = Scenario {
         duration,
-        seed: seed.into(),
+        seed,
         motor,
         mechanics,
         inverter: supply::inverter(&document.table("inverter"))?,

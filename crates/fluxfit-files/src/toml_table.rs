@@ -187,10 +187,10 @@ impl<'d> Entry<'d> {
     }
 
     /// A whole number from `least` on.
-    pub(crate) fn whole(&self, least: u32, range: &'static str) -> Result<u32, FileError> {
+    pub(crate) fn whole<T: TryFrom<i64> + PartialOrd>(&self, least: T, range: &'static str) -> Result<T, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: format!("a whole number, as in {} = 4", self.key) });
         let DeValue::Integer(number) = self.value else { return Err(wanted()) };
-        let found = decimal(number).and_then(|number| u32::try_from(number).ok()).filter(|number| *number >= least);
+        let found = decimal(number).and_then(|number| T::try_from(number).ok()).filter(|number| *number >= least);
         found.ok_or_else(|| self.refuse(Problem::Range { text: number.to_string(), range }))
     }
 

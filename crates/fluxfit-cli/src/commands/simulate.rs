@@ -27,8 +27,10 @@ pub(crate) fn run(arguments: &Simulate) -> Result<Status, CommandError> {
     // Before the work, not after.
     [Some(log), truth.as_deref()].into_iter().flatten().try_for_each(check_writable)?;
     let recording = record(arguments, &read)?;
-    write(log, truth.as_deref(), &recording, &answer::to_text(&truth_of(&read, arguments.draw)))?;
-    if log.as_os_str() != "-" {
+    if log.as_os_str() == "-" {
+        terminal::stream(|out| write_recording(out, &recording))?;
+    } else {
+        write(log, truth.as_deref(), &recording, &answer::to_text(&truth_of(&read, arguments.draw)))?;
         terminal::simulation::show(&name(arguments), &read.scenario, &recording, log, truth.as_deref())?;
     }
     Ok(Status::Complete)

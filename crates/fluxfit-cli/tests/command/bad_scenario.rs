@@ -42,6 +42,7 @@ fn impossible_rigs() {
             &["9000 r/min", "with control.max_current"],
         ),
         ("current", "\"10 N m\"", "\"100 N m\"", &["t = 0.2 s", "100.8 N m", "91.99 A", "control.max_current is 20 A"]),
+        ("reference", "\"-2 A\"", "\"-22 A\"", &["t = 0.6 s", "a current of 22 A", "control.max_current is 20 A"]),
         ("too few samples", "\"5 kHz\"", "\"50 Hz\"", &["line 25", "every 10 ms", "L/R of 5.48 ms", "inverter.carrier", "92 Hz"]),
         ("current loop", "\"200 Hz\"", "\"1 kHz\"", &["line 32", "control.current_bandwidth is 1000 Hz", "at most 397 Hz"]),
         ("speed loop", "\"20 Hz\"", "\"100 Hz\"", &["line 33", "control.speed_bandwidth is 100 Hz", "at most 66.6 Hz"]),
@@ -80,8 +81,8 @@ fn impossible_rigs() {
 
 #[test]
 fn a_map_that_does_not_cover_the_current() {
-    let text = example("pm_syrm.toml").replace("\"-12 A\"", "\"-22 A\"");
-    let expected = ["s.toml", "at t = 1.2 s", "i_d = -22 A, i_q = 16 A", "covers i_d -20 .. 20 A and i_q -26 .. 26 A", "wider map"];
+    let text = example("pm_syrm.toml").replace("\"-12 A\"", "\"-22 A\"").replace("\"25 A\"", "\"30 A\"");
+    let expected = ["s.toml", "at t = 1.2 s", "near i_d = -22 A, i_q = 16 A", "covers i_d -20 .. 20 A and i_q -26 .. 26 A", "wider map"];
     refused("map", &simulated("map", &text), &expected);
 }
 

@@ -156,7 +156,11 @@ impl Scenario {
     /// Whether the drive can stay at what the schedule asks for at time `t`.
     fn check_reach(&self, t: f64) -> Result<(), Error> {
         let speed = self.schedule.speed.at(t);
-        let asked = self.schedule.id.at(t);
+        let (asked, iq) = (self.schedule.id.at(t), self.schedule.iq.at(t));
+        let (needed, available) = (asked.hypot(iq), self.control.max_current);
+        if needed > available {
+            return Err(Error::Reference { t, id: asked, iq, needed, available });
+        }
         let first = self.steady_current(t, asked)?;
         let Err(error) = self.check_voltage(t, first, speed) else { return Ok(()) };
         let lowest = -self.control.max_current;

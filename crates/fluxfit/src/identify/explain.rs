@@ -55,7 +55,7 @@ fn wide(parameter: Parameter, width: f64, part: Part) -> (String, String) {
             format!(
                 "the operating points contradict each other beyond their noise, which {leaves}: no motor with constant parameters explains them"
             ),
-            "name windows at one load with --window, so that the motor saturates alike in them, and only where the drive switches"
+            "name three or more windows at nearly the same currents with --window, so that the motor saturates alike in them and a contradiction would still show, and only where the drive switches"
                 .to_owned(),
         ),
         Part::Prior => (format!("the prior that was given {leaves}"), "give a sharper --prior, or log another operating point".to_owned()),
