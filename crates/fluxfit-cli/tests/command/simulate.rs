@@ -92,8 +92,8 @@ fn the_summary_says_what_is_where() {
     fs::write(&log, "old").unwrap();
     let run = fluxfit(&["simulate", "-o", log.to_str().unwrap()]);
     let expected = format!(
-        "the paper's rig\n9001 rows at 10.0 kHz, 0.900 s\n\n  log    \"{0}.csv\"\n  truth  \"{0}.truth.json\"\n\n\
-         Next: fluxfit identify \"{0}.csv\"\n      fluxfit compare \"{0}.csv\" --truth \"{0}.truth.json\"\n",
+        "the paper's rig\n9001 rows at 10.0 kHz, 0.900 s\n\n  log    '{0}.csv'\n  truth  '{0}.truth.json'\n\n\
+         Next: fluxfit identify '{0}.csv'\n      fluxfit compare '{0}.csv' --truth '{0}.truth.json'\n",
         folder.path().join("a log").display()
     );
     assert_eq!((run.status, run.out), (0, expected));

@@ -5,8 +5,8 @@ use crate::error::Error;
 use fluxfit::frames::Dq;
 use std::f64::consts::TAU;
 
-/// Most rows of a log: at 100 kHz a quarter of an hour, 8 GB in memory.
-const MAX_ROWS: f64 = 1e8;
+/// Most rows of a log, which is held in memory: 2.4 GB, 50 minutes at 10 kHz.
+const MAX_ROWS: f64 = 3e7;
 
 /// Largest bandwidth of the current loop, as an angle per sample, rad. With gains of twice the bandwidth and one and a half periods
 /// of delay the loop's phase margin falls from 76 degrees to zero at 0.43.
