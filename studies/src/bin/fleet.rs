@@ -1,9 +1,9 @@
 //! Many motors, each in a rig scaled to its rating: simulated, identified, counted.
 //!
-//! `fleet MOTORS.csv` reads one motor a row (`Ld_H, Lq_H, Rs_ohm, pole_pairs, psi_pm_Wb, Udc_V, I_nom_A, omega_e_nom_rad_s`). Each turns at half
-//! its nominal speed against half its rated torque, first with i_d = 0 and then with -0.2 of its rated current, under a switched inverter and
-//! with 0.5 % of the rated current as noise on each current sensor. One table: how many parameters were identified, and how many of
-//! those lie within four of their own standard errors of the truth; then the rest, with reasons.
+//! `fleet MOTORS.csv` reads one motor a row (`Ld_H, Lq_H, Rs_ohm, pole_pairs, psi_pm_Wb, Udc_V, I_nom_A, omega_e_nom_rad_s`). Each
+//! turns at half its nominal speed against half its rated torque, first with i_d = 0 and then with -0.2 of its rated current, under
+//! a switched inverter and with 0.5 % of the rated current as noise on each current sensor. One table: how many parameters were
+//! identified, and how many of those lie within four of their own standard errors of the truth; then the rest, with reasons.
 // The table on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
