@@ -2,4 +2,7 @@
 //!
 //! A fitness is one file here and implements [`Objective`](crate::optimizer::Objective).
 
+pub mod acting_voltage;
+pub mod output_error;
+pub mod transition;
 pub mod voltage_error;
