@@ -121,15 +121,26 @@ impl FluxMap {
         }
     }
 
+    /// At the nodes and between them: a cubic through a sharp knee may fall although its nodes rise.
     fn check_inductances(&self) -> Result<(), Error> {
-        for (at, node) in self.nodes.iter().enumerate() {
-            let [[dd, qd], [dq, qq]] = [node.along_d, node.along_q];
+        let (ids, iqs) = (refined(&self.id), refined(&self.iq));
+        for (d, q) in ids.iter().flat_map(|d| iqs.iter().map(move |q| (*d, *q))) {
+            let Some(Flux { inductance: [[dd, dq], [qd, qq]], .. }) = self.at(Dq { d, q }) else { continue };
             if !(dd > 0.0 && qq > 0.0 && dd * qq > dq * qd) {
-                return Err(Error::MapInductance { id: self.id[at / self.iq.len()], iq: self.iq[at % self.iq.len()] });
+                return Err(Error::MapInductance { id: d, iq: q });
             }
         }
         Ok(())
     }
+}
+
+/// Points per cell and axis at which inductances are checked.
+const CHECKS: usize = 4;
+
+/// A grid with points between its own.
+fn refined(grid: &[f64]) -> Vec<f64> {
+    let within = |pair: &[f64]| -> [f64; CHECKS] { std::array::from_fn(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / CHECKS as f64) };
+    grid.windows(2).flat_map(within).chain(grid.last().copied()).collect()
 }
 
 /// The distinct currents along one axis, rising.
