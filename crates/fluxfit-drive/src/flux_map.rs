@@ -121,12 +121,18 @@ impl FluxMap {
         }
     }
 
-    /// At the nodes and between them: a cubic through a sharp knee may fall although its nodes rise.
+    /// At the nodes, then between them: a cubic through a sharp knee may fall although its nodes rise. The refusal names a node.
     fn check_inductances(&self) -> Result<(), Error> {
-        let (ids, iqs) = (refined(&self.id), refined(&self.iq));
-        for (d, q) in ids.iter().flat_map(|d| iqs.iter().map(move |q| (*d, *q))) {
-            let Some(Flux { inductance: [[dd, dq], [qd, qq]], .. }) = self.at(Dq { d, q }) else { continue };
-            if !(dd > 0.0 && qq > 0.0 && dd * qq > dq * qd) {
+        let nodes = |part: usize| self.id.iter().flat_map(move |d| self.iq.iter().map(move |q| (*d, *q, part)));
+        for (d, q, part) in nodes(1).chain(nodes(CHECKS)) {
+            let within = |grid: &[f64], x: f64| -> Vec<f64> {
+                let width = grid.iter().find(|node| **node > x).map_or(0.0, |next| next - x);
+                (0..part).map(|k| x + width * k as f64 / part as f64).collect()
+            };
+            let (ids, iqs) = (within(&self.id, d), within(&self.iq, q));
+            let mut points = ids.iter().flat_map(|d| iqs.iter().map(move |q| Dq { d: *d, q: *q }));
+            let rises = |Flux { inductance: [[dd, dq], [qd, qq]], .. }: Flux| dd > 0.0 && qq > 0.0 && dd * qq > dq * qd;
+            if !points.all(|i| self.at(i).is_some_and(rises)) {
                 return Err(Error::MapInductance { id: d, iq: q });
             }
         }
@@ -134,14 +140,8 @@ impl FluxMap {
     }
 }
 
-/// Points per cell and axis at which inductances are checked.
+/// Points along each axis of a cell at which inductances are checked.
 const CHECKS: usize = 4;
-
-/// A grid with points between its own.
-fn refined(grid: &[f64]) -> Vec<f64> {
-    let within = |pair: &[f64]| -> [f64; CHECKS] { std::array::from_fn(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / CHECKS as f64) };
-    grid.windows(2).flat_map(within).chain(grid.last().copied()).collect()
-}
 
 /// The distinct currents along one axis, rising.
 fn axis(points: &[(Dq, Dq)], of: fn(&Dq) -> f64) -> Vec<f64> {
