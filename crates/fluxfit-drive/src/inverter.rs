@@ -69,6 +69,7 @@ impl Bridge {
     /// Feeds the plant over one sample period that starts at `start`, s. False where its current leaves the flux map.
     #[must_use]
     pub fn run(&mut self, plant: &mut Plant, duties: [f64; 3], start: f64) -> bool {
+        plant.begin_period();
         match self.settings.modulation {
             Modulation::Averaged => self.run_averaged(plant, duties, start),
             Modulation::Switched => self.run_switched(plant, duties, start),
