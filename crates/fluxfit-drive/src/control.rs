@@ -1,10 +1,10 @@
 //! Field-oriented control: a current loop, a speed loop around it, and where the voltage runs out, a weaker field.
 //!
-//! Current loop: a complex-vector PI controller with two degrees of freedom on the flux error. With `psi = L i` along each axis,
-//! `alpha` its bandwidth in rad/s, and complex numbers for dq vectors
+//! Current loop: a complex-vector PI controller with two degrees of freedom on the flux error. With `psi(i)` the flux that current
+//! makes, saturation included, `alpha` its bandwidth in rad/s, and complex numbers for dq vectors
 //!
 //! ```text
-//! v = w - alpha psi,     u = alpha (psi* - psi) + v,     w ← w + T_s (alpha + j omega_e)(u_limited - v)
+//! v = w - alpha psi,     u = alpha (psi* - psi) + v,     dw/dt = (alpha + j omega_e)(u_limited - v)
 //! ```
 //!
 //! `j omega_e` in the integrator cancels the rotation's coupling of the axes: the decoupling. Integrating what was possible
@@ -16,14 +16,14 @@
 
 use crate::{
     inverter::duties,
-    scenario::{Axis, Control, Injection, Mechanics, Scenario, Waveform},
+    scenario::{Axis, Control, Injection, Mechanics, Scenario, SimulatedMotor, Waveform},
     sensors::Measured,
 };
 use fluxfit::{
     frames::{Abc, AlphaBeta, Dq},
     motor::Motor,
 };
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Periods from the sample to the middle of the period in which its command acts.
 const DELAY: f64 = 1.5;
@@ -63,7 +63,9 @@ pub struct Asked {
 #[derive(Debug, Clone)]
 pub struct Controller<'a> {
     settings: Control,
-    /// The motor it believes in.
+    /// The motor it believes in: the true one.
+    believed: &'a SimulatedMotor,
+    /// The same without saturation.
     motor: Motor,
     pole_pairs: f64,
     inertia: Option<f64>,
@@ -82,6 +84,7 @@ impl<'a> Controller<'a> {
     pub fn new(scenario: &'a Scenario) -> Self {
         Self {
             settings: scenario.control,
+            believed: &scenario.motor,
             motor: scenario.motor.unsaturated(),
             pole_pairs: f64::from(scenario.motor.pole_pairs),
             inertia: match scenario.mechanics {
@@ -99,20 +102,17 @@ impl<'a> Controller<'a> {
     /// The command that follows from a sample at time `t`, s.
     pub fn command(&mut self, measured: &Measured, asked: &Asked, t: f64) -> Command {
         let i = measured.i.to_dq(measured.theta_e);
-        let reference = self.current_reference(measured, asked);
-        let (alpha, Motor { ld, lq, .. }) = (TAU * self.settings.current_bandwidth, self.motor);
-        let psi = Dq { d: ld * i.d, q: lq * i.q };
+        let reference = self.current_reference(measured, asked, i);
+        let alpha = TAU * self.settings.current_bandwidth;
+        let (psi, wanted_psi) = (self.flux(i), self.flux(reference));
         let v = Dq { d: self.integral.d - alpha * psi.d, q: self.integral.q - alpha * psi.q };
         let test = self.injection.map_or(Dq::default(), |injection| injection.at(t));
-        let wanted = Dq { d: alpha * (ld * reference.d - psi.d) + v.d + test.d, q: alpha * (lq * reference.q - psi.q) + v.q + test.q };
+        let wanted = Dq { d: alpha * (wanted_psi.d - psi.d) + v.d + test.d, q: alpha * (wanted_psi.q - psi.q) + v.q + test.q };
         let limit = measured.u_dc / 3.0_f64.sqrt();
         let shortened = (limit / wanted.magnitude()).min(1.0);
         let u = Dq { d: shortened * wanted.d, q: shortened * wanted.q };
         self.weaken(wanted.magnitude(), limit, measured.omega_e);
-
-        let (d, q) = (u.d - test.d - v.d, u.q - test.q - v.q);
-        self.integral.d += self.sample_period * (alpha * d - measured.omega_e * q);
-        self.integral.q += self.sample_period * (alpha * q + measured.omega_e * d);
+        self.integrate(Dq { d: u.d - test.d - v.d, q: u.q - test.q - v.q }, alpha, measured.omega_e);
 
         let u_stator = u.to_alpha_beta(measured.theta_e + DELAY * self.sample_period * measured.omega_e);
         let duties = duties(u_stator, measured.u_dc);
@@ -120,11 +120,32 @@ impl<'a> Controller<'a> {
         Command { u, u_stator: Abc { a, b, c }.to_alpha_beta(), duties }
     }
 
-    /// Currents within the limit; `i_d` first.
-    fn current_reference(&mut self, measured: &Measured, asked: &Asked) -> Dq {
+    /// What current makes of flux, as the controller believes, beyond the magnet's.
+    fn flux(&self, i: Dq) -> Dq {
+        // A measured current may lie beyond the map's edge by its noise.
+        let psi = self.believed.flux(self.believed.within_map(i)).map_or(Dq::default(), |flux| flux.psi);
+        Dq { d: psi.d - self.motor.psi_f, q: psi.q }
+    }
+
+    /// `w ← w + (1 - e^(-(alpha + j omega_e) T_s)) (u - v)`: the integral over a period, exact, so that it settles however fast the
+    /// rotor turns.
+    fn integrate(&mut self, missed: Dq, alpha: f64, omega_e: f64) {
+        let decay = (-alpha * self.sample_period).exp();
+        let (sin, cos) = (omega_e * self.sample_period).sin_cos();
+        self.integral.d += (1.0 - decay * cos) * missed.d - decay * sin * missed.q;
+        self.integral.q += (1.0 - decay * cos) * missed.q + decay * sin * missed.d;
+    }
+
+    /// Currents within the limit; `i_d` first. Where the field is weakened, i_q within what the voltage leaves, `i` being the current now.
+    fn current_reference(&mut self, measured: &Measured, asked: &Asked, i: Dq) -> Dq {
         let most = self.settings.max_current;
         let d = (asked.id + self.weakening).clamp(-most, most);
-        let most_q = (most * most - d * d).sqrt();
+        let mut most_q = (most * most - d * d).sqrt();
+        if self.settings.field_weakening && measured.omega_e != 0.0 {
+            let psi = WEAKENING_FROM * measured.u_dc / 3.0_f64.sqrt() / measured.omega_e.abs();
+            let along = self.motor.psi_f + self.motor.ld * i.d;
+            most_q = most_q.min((psi * psi - along * along).max(0.0).sqrt() / self.motor.lq);
+        }
         let q = match self.inertia {
             None => asked.iq,
             Some(inertia) => {
@@ -153,23 +174,22 @@ impl<'a> Controller<'a> {
         // Volts per ampere of i_d. At low speed no voltage runs out.
         let slope = self.motor.ld * omega_e.abs().max(WEAKENING);
         let change = self.sample_period * WEAKENING * (WEAKENING_FROM * limit - wanted) / slope;
-        self.weakening = (self.weakening + change).clamp(-self.settings.max_current, 0.0);
+        // Beyond the current that cancels the magnet, more of it costs voltage.
+        let most = self.settings.max_current.min(self.motor.psi_f / self.motor.ld);
+        self.weakening = (self.weakening + change).clamp(-most, 0.0);
     }
 }
 
 impl Injection {
     /// The test voltage at time `t`, s.
     fn at(&self, t: f64) -> Dq {
-        let phase = TAU * self.frequency * t;
+        // A sample at a wave's edge belongs to the half that begins there.
+        const ROUNDING: f64 = 1e-9;
+        let cycle = (self.frequency * t + ROUNDING).rem_euclid(1.0);
         let shape = match self.waveform {
-            Waveform::Sine => phase.sin(),
-            Waveform::Square => {
-                if phase.rem_euclid(TAU) < PI {
-                    1.0
-                } else {
-                    -1.0
-                }
-            }
+            Waveform::Sine => (TAU * cycle).sin(),
+            Waveform::Square if cycle < 0.5 => 1.0,
+            Waveform::Square => -1.0,
         };
         let u = shape * self.voltage.at(t);
         match self.axis {

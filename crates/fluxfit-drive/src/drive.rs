@@ -73,6 +73,9 @@ impl<'a> Drive<'a> {
         self.trip(t)?;
         let measured = self.instruments.measure(&self.plant, &self.bridge, t);
         let command = self.controller.command(&measured, &self.asked(t), t);
+        if !command.u.magnitude().is_finite() {
+            return Err(Error::Diverged { t });
+        }
         let row = self.row(t, &measured, &command);
 
         self.set_load(t);
@@ -99,13 +102,14 @@ impl<'a> Drive<'a> {
         Asked { id: schedule.id.at(t), iq: schedule.iq.at(t), speed: schedule.speed.at(t) }
     }
 
-    /// Load and imposed speed over the period that begins at `t`: the load is held, the speed moves evenly.
+    /// Load and imposed speed over the period that begins at `t`: the load is held, the speed moves evenly; a
+    /// step of it comes with its sample.
     fn set_load(&mut self, t: f64) {
         let schedule = &self.scenario.schedule;
         match self.scenario.mechanics {
             Mechanics::Free { .. } => self.plant.load = schedule.load.at(t),
             Mechanics::Dyno => {
-                let (now, next) = (schedule.speed.at(t), schedule.speed.at(self.time(self.sample + 1)));
+                let (now, next) = (schedule.speed.at(t), schedule.speed.before(self.time(self.sample + 1)));
                 self.plant.set_omega_m(now);
                 self.plant.acceleration = (next - now) / self.scenario.inverter.sample_period();
             }

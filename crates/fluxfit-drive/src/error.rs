@@ -128,6 +128,46 @@ pub enum Error {
         /// A.
         available: f64,
     },
+    /// A speed at which the rotor turns too far from sample to sample.
+    #[error(
+        "at t = {} s and {} r/min the rotor turns by {} rad from one sample to the next, too far for a controller of sampled currents; raise inverter.carrier to at least {} Hz, or lower the speed",
+        digits(*.t), digits(*.rpm), digits(*.turn), digits(*.carrier)
+    )]
+    FastRotation {
+        /// s.
+        t: f64,
+        /// Mechanical speed.
+        rpm: f64,
+        /// Electrical rad.
+        turn: f64,
+        /// Carrier frequency that is fast enough, Hz.
+        carrier: f64,
+    },
+    /// A converter that cannot read the current that is needed.
+    #[error(
+        "at t = {} s the schedule takes {} A, beyond the converter's sensors.adc_range = {} A; give it a wider range, or ask for less",
+        digits(*.t), digits(*.needed), digits(*.range)
+    )]
+    ConverterRange {
+        /// s.
+        t: f64,
+        /// A.
+        needed: f64,
+        /// A.
+        range: f64,
+    },
+    /// Samples that are too slow for the encoder's observer.
+    #[error("the observer that makes a speed of encoder steps needs more samples; raise inverter.carrier to at least {} Hz", digits(*.carrier))]
+    SlowForEncoder {
+        /// Carrier frequency that is fast enough, Hz.
+        carrier: f64,
+    },
+    /// A command that is no number any more.
+    #[error("the drive's control diverges at t = {} s; lower the bandwidths, raise inverter.carrier, or give a larger inertia", digits(*.t))]
+    Diverged {
+        /// s.
+        t: f64,
+    },
     /// A point of the schedule at which the motor has no torque.
     #[error(
         "at t = {} s and i_d = {} A this motor makes no torque in the direction of i_q; choose another i_d, or mechanics.kind = \"dyno\"",
@@ -227,7 +267,7 @@ impl Error {
     pub fn key(&self) -> Option<&'static str> {
         match self {
             Self::Setting { key, .. } | Self::MoveTime { key, .. } | Self::Together { key, .. } | Self::Bandwidth { key, .. } => Some(key),
-            Self::SlowSampling { .. } => Some("inverter.carrier"),
+            Self::SlowSampling { .. } | Self::SlowForEncoder { .. } => Some("inverter.carrier"),
             Self::TooLong { .. } => Some("duration"),
             _ => None,
         }

@@ -121,16 +121,27 @@ impl FluxMap {
         }
     }
 
+    /// At the nodes, then between them: a cubic through a sharp knee may fall although its nodes rise. The refusal names a node.
     fn check_inductances(&self) -> Result<(), Error> {
-        for (at, node) in self.nodes.iter().enumerate() {
-            let [[dd, qd], [dq, qq]] = [node.along_d, node.along_q];
-            if !(dd > 0.0 && qq > 0.0 && dd * qq > dq * qd) {
-                return Err(Error::MapInductance { id: self.id[at / self.iq.len()], iq: self.iq[at % self.iq.len()] });
+        let nodes = |part: usize| self.id.iter().flat_map(move |d| self.iq.iter().map(move |q| (*d, *q, part)));
+        for (d, q, part) in nodes(1).chain(nodes(CHECKS)) {
+            let within = |grid: &[f64], x: f64| -> Vec<f64> {
+                let width = grid.iter().find(|node| **node > x).map_or(0.0, |next| next - x);
+                (0..part).map(|k| x + width * k as f64 / part as f64).collect()
+            };
+            let (ids, iqs) = (within(&self.id, d), within(&self.iq, q));
+            let mut points = ids.iter().flat_map(|d| iqs.iter().map(move |q| Dq { d: *d, q: *q }));
+            let rises = |Flux { inductance: [[dd, dq], [qd, qq]], .. }: Flux| dd > 0.0 && qq > 0.0 && dd * qq > dq * qd;
+            if !points.all(|i| self.at(i).is_some_and(rises)) {
+                return Err(Error::MapInductance { id: d, iq: q });
             }
         }
         Ok(())
     }
 }
+
+/// Points along each axis of a cell at which inductances are checked.
+const CHECKS: usize = 4;
 
 /// The distinct currents along one axis, rising.
 fn axis(points: &[(Dq, Dq)], of: fn(&Dq) -> f64) -> Vec<f64> {

@@ -69,6 +69,7 @@ impl Bridge {
     /// Feeds the plant over one sample period that starts at `start`, s. False where its current leaves the flux map.
     #[must_use]
     pub fn run(&mut self, plant: &mut Plant, duties: [f64; 3], start: f64) -> bool {
+        plant.begin_period();
         match self.settings.modulation {
             Modulation::Averaged => self.run_averaged(plant, duties, start),
             Modulation::Switched => self.run_switched(plant, duties, start),
@@ -83,10 +84,10 @@ impl Bridge {
     /// Mean over a period of a leg's output, V, while `i` flows out of it.
     fn mean_voltage(&self, duty: f64, i: f64, u_dc: f64) -> f64 {
         let Inverter { carrier, dead_time, switch_drop, diode_drop, .. } = self.settings;
-        // Legs that do not switch lose nothing to dead time.
-        let late = if duty > 0.0 && duty < 1.0 { dead_time * carrier * u_dc } else { 0.0 };
+        // A leg that hardly switches loses no more than it has: the rails are the limit.
+        let duty = if duty > 0.0 && duty < 1.0 { (duty - sign(i) * dead_time * carrier).clamp(0.0, 1.0) } else { duty };
         let (high, low) = if i > 0.0 { (switch_drop, diode_drop) } else { (diode_drop, switch_drop) };
-        duty * u_dc - sign(i) * (late + duty * high + (1.0 - duty) * low)
+        duty * u_dc - sign(i) * (duty * high + (1.0 - duty) * low)
     }
 
     fn run_switched(&mut self, plant: &mut Plant, duties: [f64; 3], start: f64) -> bool {

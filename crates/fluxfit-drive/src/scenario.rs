@@ -4,6 +4,7 @@
 //! scenario file gives it.
 
 mod check;
+mod reach;
 
 use crate::{
     flux_map::{Flux, FluxMap},
@@ -118,13 +119,13 @@ pub enum Update {
 /// The field-oriented control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
-    /// Bandwidth of the closed current loop, Hz.
+    /// Bandwidth of the closed current loop, Hz, where it is well above the winding's own `R/(2 pi L)`.
     pub current_bandwidth: f64,
     /// Bandwidth of the closed speed loop, Hz; a dynamometer has none.
     pub speed_bandwidth: f64,
     /// Largest current vector that it asks for, A.
     pub max_current: f64,
-    /// Current vector at which the drive trips, A.
+    /// Current vector, the true one at a sample, at which the drive trips, A.
     pub trip_current: f64,
     /// Whether `i_d` is lowered where the voltage runs out.
     pub field_weakening: bool,
@@ -139,7 +140,7 @@ pub struct Schedule {
     pub iq: Course,
     /// Speed, mechanical rad/s.
     pub speed: Course,
-    /// Load torque, N m.
+    /// Load torque, N m: against positive turning, whichever way the rotor turns.
     pub load: Course,
     /// A test voltage added to the command.
     pub injection: Option<Injection>,
@@ -280,19 +281,27 @@ impl SimulatedMotor {
         }
     }
 
-    /// The motor with constant parameters that it is at zero current, and that its controller believes in. Of a map that does not
-    /// hold zero current: at the current of the map that is nearest.
+    /// The motor with constant parameters that it is at zero current, which a map must hold.
     pub fn unsaturated(&self) -> Motor {
         match &self.magnetics {
             Magnetics::Constant { ld, lq, psi_f } => Motor { rs: self.rs, ld: *ld, lq: *lq, psi_f: *psi_f },
-            Magnetics::Map(map) => {
-                let within = |[low, high]: [f64; 2]| 0.0_f64.clamp(low, high);
-                let at = Dq { d: within(map.id_range()), q: within(map.iq_range()) };
-                let (ld, lq, psi_f) = map.at(at).map_or((f64::NAN, f64::NAN, f64::NAN), |flux| {
+            Magnetics::Map(_) => {
+                let (ld, lq, psi_f) = self.flux(Dq::default()).map_or((f64::NAN, f64::NAN, f64::NAN), |flux| {
                     let [[ld, _], [_, lq]] = flux.inductance;
-                    (ld, lq, flux.psi.d - ld * at.d)
+                    (ld, lq, flux.psi.d)
                 });
                 Motor { rs: self.rs, ld, lq, psi_f }
+            }
+        }
+    }
+
+    /// A current, or the nearest one along each axis that a map holds.
+    pub(crate) fn within_map(&self, i: Dq) -> Dq {
+        match &self.magnetics {
+            Magnetics::Constant { .. } => i,
+            Magnetics::Map(map) => {
+                let within = |[low, high]: [f64; 2], current: f64| current.clamp(low, high);
+                Dq { d: within(map.id_range(), i.d), q: within(map.iq_range(), i.q) }
             }
         }
     }

@@ -11,8 +11,9 @@ use fluxfit::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Bandwidth of the observer that makes a speed of encoder steps, rad/s: five times the usual 20 Hz of a speed loop.
-const SPEED_OBSERVER: f64 = TAU * 100.0;
+/// Bandwidth of the observer that makes a speed of encoder steps, rad/s: five times the usual 20 Hz of a speed loop. On a ramp its
+/// speed lags by twice the acceleration over it.
+pub(crate) const SPEED_OBSERVER: f64 = TAU * 100.0;
 
 /// One sample of everything.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -55,7 +55,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let found: Vec<(&Rated, Result<Identification, String>)> = motors.par_iter().map(|rated| (rated, find(rated))).collect();
     let answered: Vec<(&Rated, &Identification)> = found.iter().filter_map(|(rated, found)| Some((*rated, found.as_ref().ok()?))).collect();
     println!("{} motors, {} simulated and identified\n", motors.len(), answered.len());
-    println!("           identified   weak   not   within {STANDARD_ERRORS} standard errors   median error %   median standard error %");
+    println!(
+        "           identified   weak   not   within {STANDARD_ERRORS} standard errors   median error %   median standard error %   rms of error / statistical part"
+    );
     for parameter in Parameter::ALL {
         println!("{}", line(parameter, &answered));
     }
@@ -128,8 +130,13 @@ fn line(parameter: Parameter, answered: &[(&Rated, &Identification)]) -> String 
         values.sort_by(f64::total_cmp);
         100.0 * values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
     };
+    let ratios = answered.iter().map(|(rated, found)| {
+        let (error, _) = error(rated, found, parameter);
+        (error * rated.motor.get(parameter) / found.parameter(parameter).uncertainty.statistical).powi(2)
+    });
+    let ratio = (ratios.sum::<f64>() / answered.len() as f64).sqrt();
     format!(
-        "  {:5}    {:10} {:6} {:5}   {within:4} of {:4} = {:5.1} %         {:14.3} {:25.3}",
+        "  {:5}    {:10} {:6} {:5}   {within:4} of {:4} = {:5.1} %         {:14.3} {:25.3} {ratio:33.2}",
         parameter.symbol(),
         identified.len(),
         count(Verdict::Weak),

@@ -1,7 +1,7 @@
 //! What no drive has, and what no drive can do: refused before anything is simulated.
 
 use super::{Injection, Magnetics, Mechanics, Scenario};
-use crate::error::Error;
+use crate::{error::Error, sensors::SPEED_OBSERVER};
 use fluxfit::frames::Dq;
 use std::f64::consts::TAU;
 
@@ -15,8 +15,12 @@ const MAX_BANDWIDTH_ANGLE: f64 = 0.25;
 /// The speed loop must be this many times slower than the current loop inside it.
 const CASCADE: f64 = 3.0;
 
-/// Steps in which weakening currents are tried.
-const WEAKENING_STEPS: usize = 200;
+/// The speed loop must be this many times slower than the observer that makes a speed of encoder steps: at 30 Hz the paper's rig is
+/// calm, at 35 Hz it oscillates.
+const OBSERVER_CASCADE: f64 = 4.0;
+
+/// Largest bandwidth of that observer as an angle per sample, rad: its double pole, 1 less this, then settles without swinging.
+const MAX_OBSERVER_ANGLE: f64 = 0.5;
 
 impl Scenario {
     /// Refuses what cannot be simulated, in one sentence that names the key of a scenario file.
@@ -29,15 +33,7 @@ impl Scenario {
         self.check_sensors()?;
         self.check_together()?;
         self.check_sampling()?;
-        let mut times: Vec<f64> = self.courses().iter().flat_map(|course| course.moves()).flat_map(|m| [m.at, m.at + m.over]).collect();
-        times.push(0.0);
-        times.retain(|t| (0.0..=self.duration).contains(t));
-        times.sort_by(f64::total_cmp);
-        times.into_iter().try_for_each(|t| self.check_reach(t))
-    }
-
-    fn courses(&self) -> [&crate::schedule::Course; 4] {
-        [&self.schedule.id, &self.schedule.iq, &self.schedule.speed, &self.schedule.load]
+        self.check_reach()
     }
 
     fn check_numbers(&self) -> Result<(), Error> {
@@ -64,6 +60,9 @@ impl Scenario {
         if inverter.dead_time >= 0.25 / inverter.carrier {
             return Err(setting("inverter.dead_time", inverter.dead_time, "less than a quarter of the carrier's period"));
         }
+        if inverter.ripple_frequency > inverter.sample_rate() {
+            return Err(setting("inverter.ripple_frequency", inverter.ripple_frequency, "at most the sample rate"));
+        }
         if inverter.ripple >= inverter.u_dc {
             return Err(setting("inverter.ripple", inverter.ripple, "less than inverter.u_dc"));
         }
@@ -85,7 +84,13 @@ impl Scenario {
         }
         if let Some(Injection { frequency, voltage, .. }) = &self.schedule.injection {
             positive("injection.frequency", *frequency)?;
+            if *frequency > 0.5 * inverter.sample_rate() {
+                return Err(setting("injection.frequency", *frequency, "at most half the sample rate"));
+            }
             check_moves("injection.voltage", voltage)?;
+            if let Some(most) = voltage.moves().iter().find(|amplitude| amplitude.to.abs() > inverter.voltage_limit()) {
+                return Err(setting("injection.voltage", most.to, "at most u_dc / sqrt(3)"));
+            }
         }
         Ok(())
     }
@@ -145,79 +150,27 @@ impl Scenario {
             let because = format!("{} samples a second", self.inverter.sample_rate());
             return Err(Error::Bandwidth { key: "control.current_bandwidth", value, because, most });
         }
-        let most = value / CASCADE;
-        if matches!(self.mechanics, Mechanics::Free { .. }) && self.control.speed_bandwidth > most {
-            let because = format!("a current loop of {value} Hz inside");
-            return Err(Error::Bandwidth { key: "control.speed_bandwidth", value: self.control.speed_bandwidth, because, most });
+        if self.sensors.encoder_steps.is_some() && SPEED_OBSERVER * sample_period > MAX_OBSERVER_ANGLE {
+            let least = SPEED_OBSERVER / MAX_OBSERVER_ANGLE * self.inverter.carrier * sample_period;
+            return Err(Error::SlowForEncoder { carrier: least.ceil() });
         }
-        Ok(())
+        self.check_speed_loop()
     }
 
-    /// Whether the drive can stay at what the schedule asks for at time `t`.
-    fn check_reach(&self, t: f64) -> Result<(), Error> {
-        let speed = self.schedule.speed.at(t);
-        let (asked, iq) = (self.schedule.id.at(t), self.schedule.iq.at(t));
-        let (needed, available) = (asked.hypot(iq), self.control.max_current);
-        if needed > available {
-            return Err(Error::Reference { t, id: asked, iq, needed, available });
+    fn check_speed_loop(&self) -> Result<(), Error> {
+        let value = self.control.speed_bandwidth;
+        let refused = |because: String, most: f64| Err(Error::Bandwidth { key: "control.speed_bandwidth", value, because, most });
+        let most = self.control.current_bandwidth / CASCADE;
+        match (self.mechanics, self.sensors.encoder_steps) {
+            (Mechanics::Dyno, _) => Ok(()),
+            (Mechanics::Free { .. }, _) if value > most => {
+                refused(format!("a current loop of {} Hz inside", self.control.current_bandwidth), most)
+            }
+            (Mechanics::Free { .. }, Some(_)) if value > SPEED_OBSERVER / (TAU * OBSERVER_CASCADE) => {
+                refused("an encoder, whose speed comes from an observer of 100 Hz,".to_owned(), SPEED_OBSERVER / (TAU * OBSERVER_CASCADE))
+            }
+            _ => Ok(()),
         }
-        let first = self.steady_current(t, asked)?;
-        let Err(error) = self.check_voltage(t, first, speed) else { return Ok(()) };
-        let lowest = -self.control.max_current;
-        let weakened = |step: usize| asked + (lowest - asked) * step as f64 / WEAKENING_STEPS as f64;
-        let reachable = |id: f64| {
-            let found = self.steady_current(t, id);
-            found.is_ok_and(|i| self.check_voltage(t, i, speed).is_ok())
-        };
-        if self.control.field_weakening && (1..=WEAKENING_STEPS).any(|step| reachable(weakened(step))) { Ok(()) } else { Err(error) }
-    }
-
-    /// The current at which the schedule's torque is reached with this `i_d`; on a dynamometer the scheduled one.
-    fn steady_current(&self, t: f64, id: f64) -> Result<Dq, Error> {
-        let Mechanics::Free { friction, .. } = self.mechanics else { return Ok(Dq { d: id, q: self.schedule.iq.at(t) }) };
-        let torque = self.schedule.load.at(t) + friction * self.schedule.speed.at(t);
-        let available = self.control.max_current;
-        let most = (available * available - id * id).max(0.0).sqrt().copysign(torque);
-        let torque_at = |iq: f64| -> Result<f64, Error> {
-            let i = Dq { d: id, q: iq };
-            self.motor.flux(i).map(|flux| self.motor.torque(flux.psi, i)).ok_or_else(|| self.outside_map(t, i))
-        };
-        if torque == 0.0 {
-            return torque_at(0.0).map(|_| Dq { d: id, q: 0.0 });
-        }
-        let reached = torque_at(most)?;
-        // A current a thousandth of the largest one already shows whether the torque points the right way.
-        if torque_at(1e-3 * available.copysign(torque))? * torque <= 0.0 {
-            return Err(Error::NoTorque { t, id });
-        }
-        if reached.abs() < torque.abs() {
-            let needed = id.hypot(if reached == 0.0 { f64::INFINITY } else { most * torque / reached });
-            return Err(Error::Current { t, torque, id, needed, available });
-        }
-        // Torque rises with i_q: halve until rounding ends it.
-        let (mut low, mut high) = (0.0, most);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if torque_at(middle)?.abs() < torque.abs() { low = middle } else { high = middle }
-        }
-        Ok(Dq { d: id, q: high })
-    }
-
-    fn check_voltage(&self, t: f64, i: Dq, speed: f64) -> Result<(), Error> {
-        let omega_e = speed * f64::from(self.motor.pole_pairs);
-        let Some(flux) = self.motor.flux(i) else { return Err(self.outside_map(t, i)) };
-        let u = Dq { d: self.motor.rs * i.d - omega_e * flux.psi.q, q: self.motor.rs * i.q + omega_e * flux.psi.d };
-        let available = self.inverter.voltage_limit();
-        if u.magnitude() <= available {
-            return Ok(());
-        }
-        let (rpm, u_dc) = (speed * 60.0 / TAU, self.inverter.u_dc);
-        let remedy = if self.control.field_weakening {
-            "allow more current for the field weakening, with control.max_current"
-        } else {
-            "allow control.field_weakening"
-        };
-        Err(Error::Voltage { t, rpm, id: i.d, iq: i.q, needed: u.magnitude(), u_dc, available, remedy })
     }
 
     /// The error of a current beyond the map.

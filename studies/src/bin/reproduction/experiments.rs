@@ -68,12 +68,12 @@ impl Data {
 
     /// The paper's number of runs of each method.
     pub(crate) fn study(&self, methods: &[Method]) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
-        self.study_with(methods, Settings::default())
+        self.study_with(methods, paper::RUNS, Settings::default())
     }
 
-    pub(crate) fn study_with(&self, methods: &[Method], settings: Settings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
+    pub(crate) fn study_with(&self, methods: &[Method], runs: usize, settings: Settings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
         let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
-        let run = |method: &Method| run_method(*method, paper::RUNS, settings, &bounds, &self.fitness.objective, || ());
+        let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.fitness.objective, || ());
         Ok(methods.iter().map(run).collect::<Result<_, _>>()?)
     }
 }

@@ -10,10 +10,16 @@ mod page;
 mod tables;
 
 use experiments::{Data, Rig, ablation, paper_methods};
-use fluxfit::{optimizer::Method, paper};
+use fluxfit::{
+    optimizer::{Method, Settings},
+    paper,
+};
 use fluxfit_report::figure::{Size, convergence, parameter_courses};
 use page::Page;
 use std::{error::Error, path::Path};
+
+/// Runs of each method where fifty are too few.
+const MANY_RUNS: usize = 2000;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let check = std::env::args().any(|argument| argument == "--check");
@@ -28,6 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     page.put("table 2", &tables::table_2(study, rig))?;
     page.put("errors", &tables::errors(&data, &studies))?;
     page.put("ranking", &tables::ranking(study.iter().map(|study| (study.method.label().to_owned(), study))))?;
+    page.put("many runs", &tables::many_runs(&rig.study_with(&paper_methods(), MANY_RUNS, Settings::default())?))?;
     page.put("unconverged", &tables::unconverged(rig)?)?;
     let ablated = ablation().into_iter().map(|(name, method)| Ok((name, rig.study(&[method])?.remove(0))));
     let ablated = ablated.collect::<Result<Vec<_>, Box<dyn Error>>>()?;

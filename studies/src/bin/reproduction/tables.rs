@@ -100,12 +100,29 @@ pub(crate) fn ranking<'a>(studies: impl IntoIterator<Item = (String, &'a MethodS
     table(&heading, rows)
 }
 
+/// Ends of many runs.
+pub(crate) fn many_runs(studies: &[MethodStudy]) -> String {
+    let heading = ["F - F_LS at the end", "median", "worst run", "runs above 1", "of"].map(str::to_owned);
+    let rows = studies.iter().map(|study| {
+        let astray = study.cost_above_optimum.iter().filter(|cost| **cost > 1.0).count();
+        vec![
+            study.method.label().to_owned(),
+            small(study.median()),
+            small(study.worst()),
+            astray.to_string(),
+            study.cost_above_optimum.len().to_string(),
+        ]
+    });
+    table(&heading, rows)
+}
+
 /// Mean errors of searches that are cut short, percent; beside the paper's.
 pub(crate) fn unconverged(data: &Data) -> Result<String, Box<dyn Error>> {
     let mut heading = vec!["mean error, %".to_owned(), String::new()];
     heading.extend(CUT_SHORT.map(|iterations| format!("{iterations} iterations")));
     heading.push("in the paper".to_owned());
-    let studies = CUT_SHORT.map(|iterations| data.study_with(&paper_methods(), Settings { iterations, ..Settings::default() }));
+    let studies =
+        CUT_SHORT.map(|iterations| data.study_with(&paper_methods(), paper::RUNS, Settings { iterations, ..Settings::default() }));
     let studies = studies.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut rows = Vec::new();
     for (index, method) in paper_methods().iter().enumerate() {
