@@ -27,7 +27,8 @@
 //! | [`log`](mod@log) | what a drive recorded, checked on the way in |
 //! | [`steady`] | operating points: windows, means, their covariance, the inverter's held vector |
 //! | [`least_squares`] | the exact answer to linear fitness functions, merged block by block |
-//! | [`objective`] | what is minimized: the paper's fitness (11) |
+//! | [`objective`] | what is minimized: the paper's fitness (11); the output error of its Fig. 1 |
+//! | [`levenberg_marquardt`] | the polish: from near a minimum of the output error into it |
 //! | [`optimizer`] | who minimizes: tGFPA, FPA, LPSO, APSO; knows nothing of motors |
 //! | [`identify`](mod@identify) | the main path: from a log to values, intervals, verdicts |
 //! | [`study`] | many runs of many methods, as the paper compares them |
@@ -40,6 +41,7 @@ pub mod error;
 pub mod frames;
 pub mod identify;
 pub mod least_squares;
+pub mod levenberg_marquardt;
 pub mod log;
 pub mod motor;
 pub mod objective;

@@ -1,0 +1,176 @@
+//! Output error on logs whose truth is known: those of an independent simulator, and our own drive's by the dozen.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use fluxfit::{
+    Columns, Log,
+    levenberg_marquardt::{Polished, jacobian, polish},
+    motor::{Motor, PARAMETERS},
+    objective::{
+        acting_voltage::{VoltageFrame, VoltageReading},
+        output_error::OutputError,
+    },
+    optimizer::{Method, Optimizer, Settings, bounds::Bounds},
+    paper,
+};
+use fluxfit_drive::{
+    Scenario,
+    scenario::{Adc, Mechanics, Modulation},
+    schedule::{Course, Move},
+    simulate,
+};
+use std::{f64::consts::TAU, path::Path};
+
+const NEXT_PERIOD: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
+
+/// A log of `examples/logs`, with these columns as voltages.
+fn example(name: &str, voltages: [&str; 2]) -> Log {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/logs").join(name);
+    let text = std::fs::read_to_string(path).unwrap();
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| -> Vec<f64> {
+        let at = header.iter().position(|other| *other == name).unwrap();
+        text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+    };
+    let [ud, uq] = voltages.map(column);
+    Log::new(Columns { t: column("t"), ud, uq, id: column("id"), iq: column("iq"), omega_e: column("omega_e") }).unwrap()
+}
+
+/// A first guess that is off by 10 to 20 %.
+const START: Motor = Motor { rs: 1.1, ld: 6e-3, lq: 11e-3, psi_f: 0.16 };
+
+/// Errors in percent.
+fn errors(motor: &Motor) -> [f64; PARAMETERS] {
+    std::array::from_fn(|p| 100.0 * (motor.to_array()[p] / paper::MOTOR.to_array()[p] - 1.0))
+}
+
+/// The reading that fits best, and the motor found under it.
+fn best(log: &Log) -> (VoltageReading, Polished) {
+    let found = VoltageReading::ALL.map(|reading| (reading, polish(&OutputError::of(log, reading).unwrap(), &START)));
+    found.into_iter().min_by(|a, b| a.1.cost.total_cmp(&b.1.cost)).unwrap()
+}
+
+#[test]
+fn independent_logs_give_their_motor_and_their_timing() {
+    let (ideal, noisy) = ("paper_rig_ideal.csv", "paper_rig_pwm_noise.csv");
+    // Limits in percent: R_s, L_d, L_q, psi_f. With noise some three standard errors.
+    let exact = [0.05, 0.02, 0.02, 0.02];
+    let noise = [0.2, 0.1, 0.03, 0.03];
+    let (logged, commands) = (["ud", "uq"], ["ud_ref", "uq_ref"]);
+    for (name, voltages, expected, limits) in [
+        (ideal, logged, VoltageReading::Centered, exact),
+        (ideal, commands, NEXT_PERIOD, exact),
+        (noisy, logged, VoltageReading::Centered, noise),
+        (noisy, commands, NEXT_PERIOD, noise),
+    ] {
+        let (reading, found) = best(&example(name, voltages));
+        println!("{name}, {voltages:?}: {reading:?}, {:.4?} %", errors(&found.motor));
+        assert_eq!(reading, expected, "{name}");
+        assert!(found.converged && errors(&found.motor).iter().zip(limits).all(|(error, limit)| error.abs() < limit), "{name}");
+    }
+}
+
+/// The rig from 200 to 1500 r/min while i_d toggles; in the dark about the inverter, which is averaged and whose voltages are known.
+fn acceleration() -> Scenario {
+    let rpm = TAU / 60.0;
+    let mut scenario = Scenario::paper();
+    scenario.duration = 0.25;
+    scenario.inverter.modulation = Modulation::Averaged;
+    scenario.mechanics = Mechanics::Free { inertia: 0.01, friction: paper::FRICTION };
+    scenario.schedule.speed =
+        Course::new(vec![Move { at: 0.0, to: 200.0 * rpm, over: 0.0 }, Move { at: 0.03, to: 1500.0 * rpm, over: 0.2 }]);
+    scenario.schedule.load = Course::constant(1.0);
+    scenario.schedule.id =
+        Course::new((0..10).map(|k| Move { at: 0.025 * f64::from(k), to: if k % 2 == 0 { 0.0 } else { -2.0 }, over: 0.0 }).collect());
+    scenario.sensors.current_noise = 0.05;
+    scenario
+}
+
+/// Maximum likelihood reaches the Cramér–Rao bound: root-mean-square errors over the bound lie near 1. Of 100 draws the ratio's
+/// standard error is 1/sqrt(200) = 0.07; four of them.
+#[test]
+fn errors_are_those_of_the_bound() {
+    let scenario = acceleration();
+    let log = |draw| simulate(&scenario, draw, || ()).unwrap().log().unwrap();
+    let objective = OutputError::of(&log(0), VoltageReading::Centered).unwrap();
+    // Three sensors: sqrt(2/3) of a sensor's noise on each axis.
+    let variance = 0.05_f64.powi(2) * 2.0 / 3.0;
+    let slopes = jacobian(&objective, &paper::MOTOR);
+    let information = nalgebra::Matrix4::from_fn(|p, q| slopes[p].iter().zip(&slopes[q]).map(|(a, b)| a * b).sum::<f64>() / variance);
+    let bound = information.try_inverse().unwrap().diagonal().map(f64::sqrt);
+    let mut squares = [0.0; PARAMETERS];
+    const DRAWS: u64 = 100;
+    for draw in 0..DRAWS {
+        let found = polish(&OutputError::of(&log(draw), VoltageReading::Centered).unwrap(), &paper::MOTOR);
+        for (p, square) in squares.iter_mut().enumerate() {
+            *square += (found.motor.to_array()[p] - paper::MOTOR.to_array()[p]).powi(2) / DRAWS as f64;
+        }
+    }
+    let ratios: [f64; PARAMETERS] = std::array::from_fn(|p| squares[p].sqrt() / bound[p]);
+    println!("root-mean-square error over the bound: {ratios:.3?}");
+    assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.28), "{ratios:?}");
+}
+
+/// The smallest motors of the field: 20 uH, samples at 20 kHz, 0.1 rad of turn between them, R_s T_s / L of 0.13.
+#[test]
+fn a_stiff_motor_at_speed_is_integrated_exactly() {
+    let motor = Motor { rs: 0.05, ld: 19e-6, lq: 23e-6, psi_f: 2e-3 };
+    let mut scenario = Scenario::paper();
+    scenario.motor.rs = motor.rs;
+    scenario.motor.magnetics = motor.into();
+    scenario.mechanics = Mechanics::Dyno;
+    scenario.duration = 0.1;
+    scenario.inverter.u_dc = 24.0;
+    scenario.inverter.carrier = 10e3;
+    scenario.inverter.modulation = Modulation::Averaged;
+    scenario.control.current_bandwidth = 500.0;
+    scenario.control.max_current = 30.0;
+    scenario.control.trip_current = 60.0;
+    scenario.schedule.load = Course::default();
+    scenario.schedule.speed = Course::constant(500.0);
+    scenario.schedule.iq =
+        Course::new((0..8).map(|k| Move { at: 0.012 * f64::from(k), to: [5.0, -5.0][k as usize % 2], over: 0.0 }).collect());
+    scenario.schedule.id =
+        Course::new((0..8).map(|k| Move { at: 0.006 + 0.012 * f64::from(k), to: [-8.0, 0.0][k as usize % 2], over: 0.0 }).collect());
+    let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
+    let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
+    let rms = (objective.cost(&motor) / (2 * objective.rows()) as f64).sqrt();
+    assert!(rms < 1e-6, "the true motor misses the log by {rms:e} A");
+    let start = Motor { rs: 0.06, ld: 15e-6, lq: 30e-6, psi_f: 2.2e-3 };
+    let found = polish(&objective, &start);
+    for (found, truth) in found.motor.to_array().iter().zip(motor.to_array()) {
+        assert!((found / truth - 1.0).abs() < 1e-5, "{found:?}");
+    }
+}
+
+/// Periods of one length share tabulated transitions; where one of them differs, each is exponentiated by itself. Both are the same.
+#[test]
+fn even_and_uneven_periods_agree() {
+    let columns = simulate(&acceleration(), 0, || ()).unwrap().columns;
+    let mut stretched = columns.clone();
+    if let Some(last) = stretched.t.last_mut() {
+        // Half a percent of the last period; its own row's part of the cost changes.
+        *last += 5e-7;
+    }
+    let cost = |columns| OutputError::of(&Log::new(columns).unwrap(), VoltageReading::Centered).unwrap().cost(&START);
+    let (even, uneven) = (cost(columns), cost(stretched));
+    assert!((even / uneven - 1.0).abs() < 1e-6 && even != uneven, "{even} {uneven}");
+}
+
+/// The swarm of the paper on the output error, no derivatives and a box: it ends where the polish does.
+#[test]
+fn the_papers_swarm_ends_where_the_polish_does() {
+    let mut scenario = acceleration();
+    scenario.duration = 0.12;
+    scenario.sensors.adc = Some(Adc { bits: 12, range: 20.0 });
+    let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
+    let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
+    let bounds = Bounds::new(vec![0.05, 5e-4, 5e-4, 0.01], paper::SEARCH_BOX.to_vec()).unwrap();
+    let settings = Settings { population: 40, iterations: 250, ..Settings::default() };
+    let report = Optimizer::start(Method::all()[0], settings, bounds, &objective).unwrap().run(&objective);
+    let found = polish(&objective, &START);
+    let swarm = Motor::from([report.best[0], report.best[1], report.best[2], report.best[3]]);
+    println!("swarm {:.4?} %, polish {:.4?} %, cost {:e} above", errors(&swarm), errors(&found.motor), report.cost - found.cost);
+    assert!(report.cost >= found.cost * (1.0 - 1e-12));
+    assert!(errors(&swarm).iter().zip(errors(&found.motor)).all(|(one, other)| (one - other).abs() < 1.0));
+}
