@@ -78,7 +78,9 @@ fn an_averaged_leg_at_the_rails_loses_no_more_than_it_has() {
     let inverter = Inverter { dead_time: 5e-6, switch_drop: 1.0, diode_drop: 2.5, ..inverter(Modulation::Averaged) };
     let motor = coil();
     let (mut plant, mut bridge) = (Plant::new(&motor, Mechanics::Dyno, 0.0), Bridge::new(inverter));
-    for (k, duties) in [[0.003, 0.5, 0.5], [0.5, 0.997, 0.997], [0.01, 0.99, 0.99], [0.5, 0.5, 0.5], [0.0, 1.0, 1.0]].into_iter().enumerate() {
+    for (k, duties) in
+        [[0.003, 0.5, 0.5], [0.5, 0.997, 0.997], [0.01, 0.99, 0.99], [0.5, 0.5, 0.5], [0.0, 1.0, 1.0]].into_iter().enumerate()
+    {
         // Enough for more than ten amperes, which no single period turns round.
         run(&mut bridge, &mut plant, [0.9, 0.2, 0.2], 100 * k..100 * k + 99);
         let before = plant.current().d;
