@@ -211,7 +211,7 @@ fn a_speed_reached_at_the_current_limit_is_not_overshot() {
 /// Five times the speed that the voltage allows unweakened: 120 V / sqrt(3) over 4 * 0.1827 Wb is 95 rad/s, 905 r/min.
 #[test]
 fn a_weaker_field_reaches_and_holds_a_high_speed_in_both_directions() {
-    for direction in [1.0, -1.0] {
+    let recordings = [1.0, -1.0].map(|direction| {
         let mut scenario = Scenario { duration: 2.0, ..Scenario::paper() };
         scenario.mechanics = Mechanics::Free { inertia: paper::INERTIA, friction: 1e-4 };
         scenario.inverter = Inverter { u_dc: 120.0, modulation: Modulation::Averaged, ..scenario.inverter };
@@ -228,6 +228,13 @@ fn a_weaker_field_reaches_and_holds_a_high_speed_in_both_directions() {
             let id = mean(&recording.columns.id[rows]);
             assert!(id < -25.0 && id > -36.0, "{direction}: {id}");
         }
+        recording
+    });
+    // Turning the other way is the mirror image: i_d alike, speed and i_q of the other sign.
+    let [forth, back] = recordings.map(|recording| recording.columns);
+    for k in 0..forth.t.len() {
+        let (d, q, speed) = (forth.id[k] - back.id[k], forth.iq[k] + back.iq[k], forth.omega_e[k] + back.omega_e[k]);
+        assert!(d.abs() < 1e-3 && q.abs() < 1e-3 && speed.abs() < 1e-3, "row {k}: {d} {q} {speed}");
     }
 }
 
