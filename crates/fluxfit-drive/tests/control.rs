@@ -99,8 +99,8 @@ fn a_step_along_one_axis_leaves_the_other_at_any_speed() {
     }
 }
 
-/// A small fast motor, whose flux is reversed by a test voltage of almost all that there is: the loop is at its limit for a tenth of a
-/// second, and back at its references after it.
+/// A small fast motor and a test voltage of almost all that there is: the loop is at or near its limit for a tenth of a second, and back
+/// at its references after it.
 #[test]
 fn a_loop_that_was_at_its_limit_recovers_at_any_speed() {
     for (turn, bandwidth) in [(0.2, 20.0), (0.2, 50.0), (0.3, 20.0), (0.4, 20.0), (0.4, 50.0), (-0.4, 50.0)] {
@@ -129,7 +129,7 @@ fn a_loop_that_was_at_its_limit_recovers_at_any_speed() {
     }
 }
 
-/// At 95 % of the voltage's speed a reference of i_q that the voltage does not reach, for a tenth of a second. An integral that went on
+/// Where the magnet alone takes 146 V of 167 V, a reference of i_q that the voltage does not reach, for a tenth of a second. An integral that went on
 /// would have to be unwound for as long; without, the current comes back like after any step.
 #[test]
 fn what_the_voltage_did_not_reach_is_not_integrated() {
@@ -208,7 +208,7 @@ fn a_speed_reached_at_the_current_limit_is_not_overshot() {
     }
 }
 
-/// Five times the speed that the voltage allows unweakened: 120 V / sqrt(3) over 4 * 0.1827 Wb is 95 rad/s, 905 r/min.
+/// More than five times the speed that the voltage allows unweakened: 120 V / sqrt(3) over 4 * 0.1827 Wb is 95 rad/s, 905 r/min.
 #[test]
 fn a_weaker_field_reaches_and_holds_a_high_speed_in_both_directions() {
     let recordings = [1.0, -1.0].map(|direction| {

@@ -215,7 +215,7 @@ fn a_square_wave_has_equal_halves_at_any_whole_number_of_samples() {
         let recording = injected(Waveform::Square, Axis::D, f64::from(frequency), 20.0, 0.5);
         for (k, u) in recording.ud_ref.iter().enumerate() {
             // Half-waves begun since the start, in whole numbers.
-            let positive = (2 * frequency as usize * k / 10_000) % 2 == 0;
+            let positive = (2 * frequency as usize * k / 10_000).is_multiple_of(2);
             // The loop answers with 2 alpha L times the current: 252/s times 20 V times 2 ms of a half-wave at most, 10 V.
             assert!((u * if positive { 1.0 } else { -1.0 } - 20.0).abs() < 11.0, "{frequency} Hz, row {k}: {u}");
         }

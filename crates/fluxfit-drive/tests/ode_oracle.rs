@@ -187,7 +187,7 @@ fn any_duties_with_any_dead_time_switch_as_gates_and_diodes_do() {
                 })
             });
             println!("{update:?}, {dead_time} s: current {:.1e}, speed {:.1e}, angle {:.1e} rad", found[0], found[1], found[2]);
-            // Currents swing by hundreds of amperes; a lost pulse of 0.3 us is 1e-2 A.
+            // A lost pulse of 0.3 us is 1e-2 A; an edge decided by the wrong sign of the current far more.
             assert!(found.iter().all(|distance| *distance < 1e-7), "{update:?}, {dead_time}: {found:?}");
         }
     }

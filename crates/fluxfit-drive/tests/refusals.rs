@@ -323,15 +323,13 @@ fn a_true_current_above_the_trip_level_stops_the_drive() {
     assert!(simulate(&passes, 0, || ()).is_ok());
 }
 
-/// A rotor a hundred-thousandth as heavy as the control can follow: whatever happens, no number is logged that is none.
+/// A rotor of a thirty-thousandth of the rig's inertia, far too light for its samples: whatever happens, no number is logged that is none.
 #[test]
 fn a_drive_gone_wild_ends_in_an_error_or_in_numbers() {
     let mut scenario = Scenario { duration: 0.3, ..Scenario::paper() };
     free(&mut scenario, 1e-7, 0.0);
     scenario.schedule.load = at(0.2, 2.0, 0.0);
-    let outcome = simulate(&scenario, 0, || ());
-    println!("{:?}", outcome.as_ref().map(|_| ()));
-    if let Ok(recording) = outcome {
+    if let Ok(recording) = simulate(&scenario, 0, || ()) {
         for (name, column) in recording.named() {
             assert!(column.iter().all(|value| value.is_finite()), "{name}");
         }
