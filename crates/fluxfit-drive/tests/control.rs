@@ -129,8 +129,8 @@ fn a_loop_that_was_at_its_limit_recovers_at_any_speed() {
     }
 }
 
-/// Where the magnet alone takes 146 V of 167 V, a reference of i_q that the voltage does not reach, for a tenth of a second. An integral that went on
-/// would have to be unwound for as long; without, the current comes back like after any step.
+/// Where the magnet alone takes 146 V of 167 V, a reference of i_q that the voltage does not reach, for a tenth of a second. An integral
+/// that went on would have to be unwound for as long; without, the current comes back like after any step.
 #[test]
 fn what_the_voltage_did_not_reach_is_not_integrated() {
     let mut scenario = on_a_dyno(0.4, 800.0);
