@@ -118,19 +118,15 @@ impl Bridge {
         true
     }
 
-    /// A leg gets an edge: it follows at once, or late.
+    /// A leg gets an edge: both its switches are off for the dead time, and a diode decides whether it follows at once, or late.
     fn tell(&mut self, edge: &Edge, plant: &Plant) {
         let dead_time = self.settings.dead_time;
         let out = if dead_time > 0.0 { phase_currents(plant)[edge.leg] } else { 0.0 };
         let leg = &mut self.legs[edge.leg];
         leg.told = edge.to;
-        // Rising needs the upper switch if the current flows out; falling needs the lower one if it flows in.
-        let waits = if edge.to { out > 0.0 } else { out < 0.0 };
-        if dead_time > 0.0 && waits && leg.high != edge.to {
-            leg.late = Some(edge.at + dead_time);
-        } else {
-            (leg.high, leg.late) = (edge.to, None);
-        }
+        // While both switches are off, current that flows out holds the output low, and current that flows in holds it high.
+        let held = if dead_time > 0.0 && out != 0.0 { out < 0.0 } else { edge.to };
+        (leg.high, leg.late) = (held, (held != edge.to).then_some(edge.at + dead_time));
     }
 
     /// The edges of a sample period, in order; and how many they are.

@@ -217,35 +217,3 @@ fn ripple_of_the_dc_voltage_is_logged_and_survived() {
     assert!((deviation(&recording.u_dc) / (10.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.01);
     assert!((mean(&recording.columns.iq[2200..]) - 9.886).abs() < 0.01);
 }
-
-#[test]
-fn what_no_drive_can_do_is_refused_with_its_key() {
-    let refused = |change: fn(&mut Scenario)| {
-        let mut scenario = Scenario::paper();
-        change(&mut scenario);
-        simulate(&scenario, 0, || ()).unwrap_err()
-    };
-    type Change = fn(&mut Scenario);
-    let keys: [(&str, Change); 8] = [
-        ("mechanics.inertia", |s| s.mechanics = Mechanics::Free { inertia: 0.0, friction: 0.0 }),
-        ("motor.ld", |s| s.motor.magnetics = Magnetics::Constant { ld: -1e-3, lq: 1e-2, psi_f: 0.1 }),
-        ("inverter.carrier", |s| s.inverter.carrier = 50.0),
-        ("control.current_bandwidth", |s| s.control.current_bandwidth = 2000.0),
-        ("control.speed_bandwidth", |s| s.control.speed_bandwidth = 150.0),
-        ("sensors.current_noise", |s| s.sensors.current_noise = f64::NAN),
-        ("schedule.iq", |s| s.schedule.iq = Course::constant(1.0)),
-        ("duration", |s| s.duration = 1e9),
-    ];
-    for (key, change) in keys {
-        assert_eq!(refused(change).key(), Some(key));
-    }
-    assert!(matches!(refused(|s| s.inverter.u_dc = 150.0), Error::Voltage { t: 0.6, .. } | Error::Voltage { t: 0.2, .. }));
-    assert!(matches!(refused(|s| s.schedule.load = Course::constant(30.0)), Error::Current { .. }));
-    let trip = refused(|s| s.sensors.current_gain = [0.2; 3]);
-    assert!(matches!(trip, Error::Trip { current, limit: 30.0, .. } if current > 30.0), "{trip}");
-    let map = refused(|s| {
-        let points = [-1.0, 0.0, 1.0].map(|d| [-1.0, 0.0, 1.0].map(|q| (Dq { d, q }, Dq { d: 0.005 * d + 0.18, q: 0.012 * q })));
-        s.motor.magnetics = Magnetics::Map(FluxMap::new(&points.concat()).unwrap());
-    });
-    assert!(matches!(map, Error::OutsideMap { id_range: [-1.0, 1.0], .. }), "{map}");
-}
