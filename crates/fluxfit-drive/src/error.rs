@@ -180,16 +180,32 @@ pub enum Error {
         id: f64,
     },
     /// A flux map that is no grid.
-    #[error("the flux map has {points} points on {id} values of i_d and {iq} of i_q; it must hold every pair of at least 3 of each, once")]
+    #[error("the flux map has {id} values of i_d and {iq} of i_q; it needs at least 3 of each, and every pair of them")]
     MapGrid {
-        /// Points given.
-        points: usize,
         /// Distinct `i_d`.
         id: usize,
         /// Distinct `i_q`.
         iq: usize,
     },
-    /// A flux map with a hole.
+    /// A flux map without one of its pairs.
+    #[error(
+        "the flux map has no point at i_d = {id} A, i_q = {iq} A, although it has others with either; add it, so that every pair is there"
+    )]
+    MapHole {
+        /// A.
+        id: f64,
+        /// A.
+        iq: f64,
+    },
+    /// A flux map with a pair twice.
+    #[error("the flux map has the point i_d = {id} A, i_q = {iq} A twice; remove one of them")]
+    MapRepeated {
+        /// A.
+        id: f64,
+        /// A.
+        iq: f64,
+    },
+    /// A flux map with a number that is none.
     #[error("the flux map is not finite at i_d = {id} A, i_q = {iq} A; complete it, or leave that current out")]
     MapNotFinite {
         /// A.

@@ -44,13 +44,18 @@ impl FluxMap {
             return Err(Error::MapNotFinite { id: i.d, iq: i.q });
         }
         let (id, iq) = (axis(points, |i| i.d), axis(points, |i| i.q));
-        if id.len() < 3 || iq.len() < 3 || points.len() != id.len() * iq.len() {
-            return Err(Error::MapGrid { points: points.len(), id: id.len(), iq: iq.len() });
+        if id.len() < 3 || iq.len() < 3 {
+            return Err(Error::MapGrid { id: id.len(), iq: iq.len() });
         }
         let mut sorted: Vec<&(Dq, Dq)> = points.iter().collect();
         sorted.sort_by(|(a, _), (b, _)| a.d.total_cmp(&b.d).then(a.q.total_cmp(&b.q)));
-        if sorted.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-            return Err(Error::MapGrid { points: points.len(), id: id.len(), iq: iq.len() });
+        if let Some(pair) = sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            return Err(Error::MapRepeated { id: pair[0].0.d, iq: pair[0].0.q });
+        }
+        let mut expected = id.iter().flat_map(|d| iq.iter().map(move |q| (*d, *q)));
+        let mut given = sorted.iter().map(|(i, _)| (i.d, i.q));
+        if let Some((d, q)) = expected.find(|pair| given.next() != Some(*pair)) {
+            return Err(Error::MapHole { id: d, iq: q });
         }
         let nodes = sorted.iter().map(|(_, psi)| Node { value: [psi.d, psi.q], ..Node::default() }).collect();
         let mut map = Self { id, iq, nodes };
@@ -228,11 +233,12 @@ mod tests {
     #[test]
     fn what_is_no_map_is_refused() {
         let points: Vec<_> = map_of(parabola).unwrap().points().collect();
-        assert!(matches!(FluxMap::new(&points[1..]), Err(Error::MapGrid { points: 15, .. })));
-        assert!(matches!(FluxMap::new(&[]), Err(Error::MapGrid { points: 0, .. })));
+        assert_eq!(FluxMap::new(&points[1..]), Err(Error::MapHole { id: -10.0, iq: -7.0 }));
+        assert_eq!(FluxMap::new(&points[..15]), Err(Error::MapHole { id: 5.0, iq: 9.0 }));
+        assert!(matches!(FluxMap::new(&[]), Err(Error::MapGrid { id: 0, iq: 0 })));
         let mut repeated = points.clone();
         repeated[1] = repeated[0];
-        assert!(matches!(FluxMap::new(&repeated), Err(Error::MapGrid { .. })));
+        assert!(matches!(FluxMap::new(&repeated), Err(Error::MapRepeated { .. })));
         let mut broken = points.clone();
         broken[3].1.q = f64::NAN;
         assert!(matches!(FluxMap::new(&broken), Err(Error::MapNotFinite { .. })));

@@ -17,7 +17,7 @@ use crate::{
 };
 use fluxfit_drive::{Error, Scenario};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A scenario as it is simulated and as it was written.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +26,8 @@ pub struct ReadScenario {
     pub scenario: Scenario,
     /// The TOML as it was written, as JSON.
     pub document: Value,
+    /// The flux map that was read.
+    pub flux_map: Option<PathBuf>,
 }
 
 /// The paper's rig, with a comment for every key: what to start from.
@@ -106,7 +108,8 @@ fn parse(text: &str, folder: &Path) -> Result<ReadScenario, FileError> {
         sensors: sensors::sensors(&document.table("sensors"))?,
     };
     scenario.check().map_err(|error| located(error, &document))?;
-    Ok(ReadScenario { scenario, document: document.to_json() })
+    let flux_map = document.table("motor").get("flux_map").and_then(|entry| entry.text().ok()).map(|name| folder.join(name));
+    Ok(ReadScenario { scenario, document: document.to_json(), flux_map })
 }
 
 /// The drive's refusal at its key, in the words of the file where it is about a number that stands there.

@@ -149,7 +149,7 @@ fn words(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
                 "The columns “paper” are from Table 2 of Gao, Wang, Jiang and Hu, 2023, whose log is not known. "
                 @if distance < CONVERGED {
                     "Searches that have converged cannot differ from each other by the 0.3 to 0.8 % that separate the paper’s methods in R" sub { "s" }
-                    " and L" sub { "d" } ". What did there cannot be known; an error that all four share suggests the data, "
+                    " and L" sub { "d" } ". What caused the paper's differences cannot be known; an error that all four share suggests the data, "
                     "a scatter between them searches that had not converged."
                 } @else {
                     "What made its methods differ cannot be known."

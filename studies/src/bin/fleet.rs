@@ -50,8 +50,8 @@ struct Rated {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args_os().nth(1).ok_or("usage: fleet MOTORS.csv")?;
-    let motors = read(Path::new(&path))?;
+    let Some(path) = std::env::args_os().nth(1) else { return Err("give a file of motors: fleet MOTORS.csv".into()) };
+    let motors = read(Path::new(&path)).map_err(|error| format!("{}: {error}", Path::new(&path).display()))?;
     let found: Vec<(&Rated, Result<Identification, String>)> = motors.par_iter().map(|rated| (rated, find(rated))).collect();
     let answered: Vec<(&Rated, &Identification)> = found.iter().filter_map(|(rated, found)| Some((*rated, found.as_ref().ok()?))).collect();
     println!("{} motors, {} simulated and identified\n", motors.len(), answered.len());

@@ -22,8 +22,10 @@ pub(crate) fn run(arguments: &Simulate) -> Result<Status, CommandError> {
         return Ok(Status::Complete);
     };
     let read = read(arguments)?;
-    refuse_to_overwrite(arguments.scenario.as_deref(), log)?;
     let truth = is_replaceable(log).then(|| truth_path(log));
+    for written in [Some(log), truth.as_deref()].into_iter().flatten() {
+        refuse_to_overwrite([arguments.scenario.as_deref(), read.flux_map.as_deref()], written)?;
+    }
     // Before the work, not after.
     [Some(log), truth.as_deref()].into_iter().flatten().try_for_each(check_writable)?;
     let recording = record(arguments, &read)?;
@@ -46,15 +48,14 @@ fn read(arguments: &Simulate) -> Result<ReadScenario, CommandError> {
     Ok(read)
 }
 
-/// A slip of the hand must not cost the scenario.
-fn refuse_to_overwrite(scenario: Option<&Path>, log: &Path) -> Result<(), CommandError> {
+/// A slip of the hand must not cost a scenario or a map.
+fn refuse_to_overwrite(read: [Option<&Path>; 2], written: &Path) -> Result<(), CommandError> {
     let place = |path: &Path| fs::canonicalize(path).ok().filter(|path| path.is_file());
-    match (scenario.and_then(place), place(log)) {
-        (Some(scenario), Some(log)) if scenario == log => {
-            Err(CommandError::Usage(format!("{} is the scenario itself; name another file with -o", log.display())))
-        }
-        _ => Ok(()),
+    let Some(place_written) = place(written) else { return Ok(()) };
+    if read.into_iter().flatten().filter_map(place).any(|read| read == place_written) {
+        return Err(CommandError::Usage(format!("{} is read, and would be overwritten; name another file with -o", written.display())));
     }
+    Ok(())
 }
 
 fn record(arguments: &Simulate, read: &ReadScenario) -> Result<Recording, CommandError> {

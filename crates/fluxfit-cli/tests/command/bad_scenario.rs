@@ -112,9 +112,25 @@ fn places_that_hold_no_scenario_or_take_no_log() {
     refused("nothing there", &fluxfit(&["simulate", "none.toml", "-o", &log]), &["none.toml: there is no such file"]);
     refused("no folder", &fluxfit(&["simulate", rig, "-o", &at("no/log.csv")]), &["log.csv", "does not exist; create it"]);
     refused("a folder", &fluxfit(&["simulate", rig, "-o", &at("")]), &["this is a directory"]);
-    refused("itself", &fluxfit(&["simulate", &at("s.toml"), "-o", &at("s.toml")]), &["is the scenario itself", "-o"]);
+    refused("itself", &fluxfit(&["simulate", &at("s.toml"), "-o", &at("s.toml")]), &["is read, and would be overwritten", "-o"]);
     assert_eq!(fluxfit(&["simulate", rig]).status, 2);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+/// Neither the log nor the truth may replace what was read: a scenario, a measured map.
+#[test]
+fn what_is_read_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    fs::copy(root().join("examples/scenarios/baldor_ecs101_flux_map.csv"), at("baldor_ecs101_flux_map.csv")).unwrap();
+    fs::write(at("s.truth.json"), example("pm_syrm.toml")).unwrap();
+    for output in ["baldor_ecs101_flux_map.csv", "s.csv", "s.truth.json"] {
+        let before = fs::read(at("s.truth.json")).unwrap();
+        let run = fluxfit(&["simulate", &at("s.truth.json"), "-o", &at(output)]);
+        refused(output, &run, &["is read, and would be overwritten"]);
+        assert_eq!(fs::read(at("s.truth.json")).unwrap(), before);
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
 /// Where the truth cannot be written, neither is the log.

@@ -114,7 +114,7 @@ mod tests {
             (at(3, "-1,0,0.1"), "line 5: the row has 3 cells where the header has 4; complete the row or remove it"),
             (
                 at(3, "-1.5,0,0.1,0"),
-                "the flux map has 9 points on 4 values of i_d and 3 of i_q; it must hold every pair of at least 3 of each, once",
+                "the flux map has no point at i_d = -1.5 A, i_q = 1 A, although it has others with either; add it, so that every pair is there",
             ),
             (
                 at(4, "-1,1,0.09,-0.02"),

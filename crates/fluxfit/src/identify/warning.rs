@@ -39,7 +39,7 @@ fn misfit(found: &Identification) -> Option<String> {
     Some(format!(
         "the operating points contradict each other {:.1} times beyond noise and accuracy, and agree only to {:.2} % of the voltage: \
          inductances fall with current (saturation), flux and resistance change with temperature, or these are not the voltages at the \
-         terminals; the intervals are widened to the scatter of the points",
+         terminals (dead time, device drops, delay); the intervals are widened to the scatter of the points",
         misfit.ratio,
         100.0 * misfit.voltage_accuracy
     ))
