@@ -34,6 +34,9 @@ const END_TOLERANCE: f64 = 0.001;
 /// The currents of a window's halves agree within this fraction: half of what its blocks may differ.
 const HALVES_TOLERANCE: f64 = 0.005;
 
+/// Currents that ripple around their mean by no more than this fraction of the log's largest belong to one hold.
+const RIPPLE: f64 = 0.05;
+
 /// Means agree within this many standard deviations of their difference.
 const NOISE_FACTOR: f64 = 4.0;
 
@@ -85,9 +88,42 @@ fn stretches(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>
         }
         windows.extend(open.and_then(|window| window.rows(scale)));
     }
+    let mut windows = mended(log, windows, scale);
     let least = MIN_ROWS.max(MIN_BLOCKS * block_rows);
     windows.retain(|rows| rows.len() >= least);
     windows
+}
+
+/// Windows that a ripple cut into pieces, whole again. Dead time and faulty sensors make currents ripple, periodically, around one operating
+/// point; the pieces would all lie at the same phase of the ripple, alike and all wrong, and pass for many points.
+fn mended(log: &Log, pieces: Vec<Range<usize>>, scale: &Scale) -> Vec<Range<usize>> {
+    let mut windows: Vec<Range<usize>> = Vec::new();
+    for piece in pieces {
+        match windows.last_mut() {
+            Some(window) if is_one_hold(log, window, &piece, scale) => window.end = piece.end,
+            _ => windows.push(piece),
+        }
+    }
+    windows
+}
+
+/// Whether two windows and what lies between them are one hold: their means agree, and nothing between leaves the ripple's reach.
+fn is_one_hold(log: &Log, one: &Range<usize>, other: &Range<usize>, scale: &Scale) -> bool {
+    if log.segment_of(one.start) != log.segment_of(other.start) {
+        return false;
+    }
+    let (before, after) = (Block::of(log, one.clone()), Block::of(log, other.clone()));
+    let near = |tolerance: f64, means: &[f64; 3]| (0..3).all(|c| (means[c] - before.means[c]).abs() <= tolerance * scale.0[c]);
+    let between = (one.end..other.start).step_by(BLOCK_ROWS.0).map(|start| start..(start + BLOCK_ROWS.0).min(other.start));
+    let mut between = between.filter(|rows| rows.len() >= 2).map(|rows| Block::of(log, rows));
+    if !near(2.0 * TOLERANCE, &after.means) || !between.all(|block| near(RIPPLE, &block.means)) {
+        return false;
+    }
+    // As long as it is now, the hold must not drift.
+    let middle = one.start.midpoint(other.end);
+    let (early, late) = (Block::of(log, one.start..middle), Block::of(log, middle..other.end));
+    let ripple = [0; 3].map(|_: i32| 0.0);
+    one.len() < MIN_BLOCKS * BLOCK_ROWS.0 * 4 || scale.agree(HALVES_TOLERANCE, &early.means, &late.means, &ripple)
 }
 
 /// The rows of each segment between two times, s, both included.
