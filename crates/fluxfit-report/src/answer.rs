@@ -135,15 +135,16 @@ fn warnings(found: &Identification) -> Markup {
 }
 
 /// Parts of an uncertainty, in the order in which they are shown.
-const PARTS: [Part; 6] = [Part::Noise, Part::Accuracy, Part::Timing, Part::Excitation, Part::Prior, Part::Misfit];
+const PARTS: [Part; 7] = [Part::Noise, Part::Accuracy, Part::Timing, Part::DeadTime, Part::Excitation, Part::Prior, Part::Misfit];
 
 fn part(judgement: &Judgement, part: Part) -> f64 {
-    let Systematic { accuracy, prior, timing, excitation, misfit } = judgement.uncertainty.systematic;
+    let Systematic { accuracy, prior, timing, dead_time, excitation, misfit } = judgement.uncertainty.systematic;
     match part {
         Part::Noise => judgement.uncertainty.statistical,
         Part::Accuracy => accuracy,
         Part::Prior => prior,
         Part::Timing => timing,
+        Part::DeadTime => dead_time,
         Part::Excitation => excitation,
         Part::Misfit => misfit,
     }

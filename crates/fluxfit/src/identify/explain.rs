@@ -51,6 +51,10 @@ fn wide(parameter: Parameter, width: f64, part: Part) -> (String, String) {
             format!("it is not known which instant the voltage columns belong to, which {leaves}"),
             "state it with --voltage-timing".to_owned(),
         ),
+        Part::DeadTime => (
+            format!("the currents ripple as dead time or device drops make them, and the voltage these take looks like resistance, which {leaves}"),
+            "log with the drive's dead-time compensation on, or give R_s as measured at the terminals with --fix".to_owned(),
+        ),
         Part::Misfit => (
             format!(
                 "the operating points contradict each other beyond their noise, which {leaves}: no motor with constant parameters explains them"

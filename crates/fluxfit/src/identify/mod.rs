@@ -3,6 +3,7 @@
 //! [`identify`] is the main path. Its model is the steady one: equation (2) on the means of steady windows, for which weighted
 //! least squares is exact; the swarm's answer is reported beside it.
 
+pub mod dead_time;
 pub mod estimate;
 pub mod excitation;
 mod explain;
@@ -27,7 +28,7 @@ use crate::{
 use estimate::Estimate;
 use excitation::Excitation;
 use misfit::Misfit;
-use uncertainty::Uncertainty;
+use uncertainty::{Doubt, Uncertainty};
 use verdict::Judgement;
 use warning::Warning;
 
@@ -102,6 +103,8 @@ pub struct Identification {
     pub correlation: [[f64; PARAMETERS]; PARAMETERS],
     /// Contradiction between the operating points, if proven.
     pub misfit: Option<Misfit>,
+    /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
+    pub voltage_losses: Vec<f64>,
     /// The swarm's own answer.
     pub search: Option<Search>,
     /// What the reader should know.
@@ -155,7 +158,9 @@ pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error>
     let estimate = Estimate::solve(&points, &excitation, settings);
     let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, settings);
     let search = search(&points, &excitation, &estimate, settings)?;
-    let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
+    let losses = dead_time::losses(log, &points, &excitation, &estimate);
+    let doubt = Doubt { timing: timing_doubt, dead_time: dead_time::doubt(log, &points, &estimate, &losses) };
+    let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &doubt);
     let parameters = verdict::judge(&points, &excitation, &estimate, &uncertainty, settings);
     let mut found = Identification {
         parameters,
@@ -165,6 +170,7 @@ pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error>
         voltage_timing: voltage_timing(settings),
         correlation: uncertainty.correlation,
         misfit,
+        voltage_losses: losses,
         search,
         warnings: Vec::new(),
     };

@@ -6,6 +6,7 @@
 //! - the voltages' accuracy, independent between windows and axes;
 //! - priors;
 //! - the timing of the voltage columns, where nobody stated it;
+//! - dead time or device drops, where their [ripple](super::dead_time) shows;
 //! - directions that the log does not excite, a uniform distribution over their reach;
 //! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is
 //!   widened to their scatter.
@@ -31,6 +32,8 @@ pub struct Systematic {
     pub prior: f64,
     /// Of the voltage columns' timing.
     pub timing: f64,
+    /// Of dead time or device drops.
+    pub dead_time: f64,
     /// Of directions that are not excited.
     pub excitation: f64,
     /// Of contradiction between the points, where there is any; then in the accuracy's place.
@@ -40,7 +43,11 @@ pub struct Systematic {
 impl Systematic {
     /// All parts in quadrature.
     pub fn total(&self) -> f64 {
-        [self.accuracy, self.prior, self.timing, self.excitation, self.misfit].iter().map(|part| part.powi(2)).sum::<f64>().sqrt()
+        [self.accuracy, self.prior, self.timing, self.dead_time, self.excitation, self.misfit]
+            .iter()
+            .map(|part| part.powi(2))
+            .sum::<f64>()
+            .sqrt()
     }
 }
 
@@ -65,10 +72,11 @@ impl ParameterUncertainty {
 
     /// The largest part.
     pub fn largest_part(&self) -> Part {
-        let Systematic { accuracy, prior, timing, excitation, misfit } = self.systematic;
+        let Systematic { accuracy, prior, timing, dead_time, excitation, misfit } = self.systematic;
         let rest = [
             (prior, Part::Prior),
             (timing, Part::Timing),
+            (dead_time, Part::DeadTime),
             (excitation, Part::Excitation),
             (misfit, Part::Misfit),
             (accuracy, Part::Accuracy),
@@ -88,6 +96,8 @@ pub enum Part {
     Prior,
     /// Timing of the voltage columns.
     Timing,
+    /// Dead time or device drops.
+    DeadTime,
     /// Directions that are not excited.
     Excitation,
     /// Contradiction between the points.
@@ -102,10 +112,20 @@ impl Part {
             Self::Accuracy => "voltage accuracy",
             Self::Prior => "prior",
             Self::Timing => "voltage timing",
+            Self::DeadTime => "dead time",
             Self::Excitation => "excitation",
             Self::Misfit => "misfit",
         }
     }
+}
+
+/// How far each parameter moves with what nobody stated, SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubt {
+    /// The timing of the voltage columns.
+    pub timing: [f64; PARAMETERS],
+    /// Dead time or device drops.
+    pub dead_time: [f64; PARAMETERS],
 }
 
 /// The uncertainty of an estimate.
@@ -118,18 +138,13 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Of an estimate, given how far the timing of the voltage columns moves it, and whether its points contradict each other.
-    pub fn of(
-        points: &[OperatingPoint],
-        excitation: &Excitation,
-        estimate: &Estimate,
-        misfit: Option<&Misfit>,
-        timing_doubt: &[f64; PARAMETERS],
-    ) -> Self {
+    /// Of an estimate, given what moves it besides noise, and whether its points contradict each other.
+    pub fn of(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate, misfit: Option<&Misfit>, doubt: &Doubt) -> Self {
         let mut parameters = [ParameterUncertainty::default(); PARAMETERS];
         for (p, parameter) in parameters.iter_mut().enumerate() {
             *parameter = of_parameter(p, points, estimate, misfit.is_some());
-            parameter.systematic.timing = timing_doubt[p];
+            parameter.systematic.timing = doubt.timing[p];
+            parameter.systematic.dead_time = doubt.dead_time[p];
             // A uniform distribution's standard deviation.
             parameter.systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
             // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own

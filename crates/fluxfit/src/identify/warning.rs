@@ -20,6 +20,7 @@ pub(super) fn warnings(log: &Log, found: &Identification, settings: &Settings) -
     let all = [
         ("no-redundancy", no_redundancy(found)),
         ("misfit", misfit(found)),
+        ("dead-time", dead_time(found)),
         ("no-current", no_current(log, found, settings)),
         ("short-stretches", short_stretches(log, settings)),
         ("coarse-sampling", coarse_sampling(log, found)),
@@ -43,6 +44,16 @@ fn misfit(found: &Identification) -> Option<String> {
         misfit.ratio,
         100.0 * misfit.voltage_accuracy
     ))
+}
+
+fn dead_time(found: &Identification) -> Option<String> {
+    let most = found.voltage_losses.iter().copied().fold(0.0, f64::max);
+    (most > 0.0).then(|| {
+        format!(
+            "voltages and currents ripple at six times the electrical frequency, as dead time or device drops make them that take about {most:.2} V \
+             along the current; the model cannot tell that from resistance, and counts it as uncertainty"
+        )
+    })
 }
 
 /// Share of rows without current that is worth a word.

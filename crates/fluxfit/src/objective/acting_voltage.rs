@@ -1,8 +1,8 @@
 //! Which voltage acted when: a log's voltage columns, turned into one vector per sample period.
 //!
 //! Columns are the commands of a drive, `delay` periods before they act, or *centred*: the mean of the two periods around the row,
-//! in the frame at the row. A centred column is undone in the stator's frame, `V_k = 2 U_k - V_(k-1)`; its first vector is not in the log, and
-//! an error of it alternates in sign from period to period.
+//! in the frame at the row. A centred column is undone in the stator's frame, `V_k = 2 U_k - V_(k-1)`; its first vector is not in
+//! the log, and an error of it alternates in sign from period to period.
 
 use crate::{
     frames::{AlphaBeta, Dq},

@@ -9,8 +9,8 @@
 //! adjustable one. With known voltages and white measurement noise on the currents it is maximum likelihood, in closed loop too,
 //! because a voltage depends on past samples only.
 //!
-//! What a segment does not tell, its first current and, of centred voltages, its first vector, enters `î` linearly and is solved for inside: the
-//! cost is the smallest over them.
+//! What a segment does not tell, its first current and, of centred voltages, its first vector, enters `î` linearly and is solved
+//! for inside: the cost is the smallest over them.
 
 use super::{
     acting_voltage::{Period, VoltageReading, periods},

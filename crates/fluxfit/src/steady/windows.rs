@@ -9,7 +9,7 @@ use crate::{
     error::Error,
     log::{Log, Segment},
 };
-use std::ops::Range;
+use std::{f64::consts::TAU, ops::Range};
 
 /// Fewest rows of a window: a few autocorrelation times, and rows enough for a covariance.
 pub const MIN_ROWS: usize = 30;
@@ -33,6 +33,12 @@ const END_TOLERANCE: f64 = 0.001;
 
 /// The currents of a window's halves agree within this fraction: half of what its blocks may differ.
 const HALVES_TOLERANCE: f64 = 0.005;
+
+/// Ripples of dead time and device drops per electrical turn.
+const RIPPLES_PER_TURN: f64 = 6.0;
+
+/// Blocks that average a ripple are taken where they see this many times the rows that short ones do.
+const MUCH_MORE: usize = 2;
 
 /// Currents that ripple around their mean by no more than this fraction of the log's largest belong to one hold.
 const RIPPLE: f64 = 0.05;
@@ -61,7 +67,7 @@ pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     let scale = Scale::of(log);
     let (mut windows, mut short) = (Vec::new(), Vec::new());
     for of_one_log in log.segments().chunk_by(|one, other| one.log == other.log) {
-        let stretches = stretches(log, of_one_log, &scale);
+        let stretches = stretches_of_one_log(log, of_one_log, &scale);
         let longest = stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
         let (long, rest): (Vec<_>, Vec<_>) = stretches.into_iter().partition(|rows| rows.len() as f64 >= MIN_SHARE * longest as f64);
         windows.extend(long);
@@ -70,14 +76,29 @@ pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     (windows, short)
 }
 
-/// The steady stretches of the segments of one log.
-fn stretches(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> {
+/// The steady stretches of the segments of one log: those of short blocks; or those of blocks that average a ripple, where these see much more.
+fn stretches_of_one_log(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> {
     let rows: usize = segments.iter().map(|segment| segment.rows.len()).sum();
-    let block_rows = (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
+    let short = (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
+    let found = stretches(log, segments, scale, |_, _| short);
+    let averaging = stretches(log, segments, scale, |segment, start| {
+        let turn = (log.columns().omega_e[start] * segment.sample_period).abs();
+        short.max((2.0 * TAU / (RIPPLES_PER_TURN * turn)).round().min(BLOCK_ROWS.1 as f64) as usize)
+    });
+    let rows_of = |windows: &[Range<usize>]| windows.iter().map(ExactSizeIterator::len).sum::<usize>();
+    if rows_of(&averaging) > MUCH_MORE * rows_of(&found) { averaging } else { found }
+}
+
+/// The steady stretches under blocks of so many rows, which may depend on where a block starts.
+fn stretches(log: &Log, segments: &[Segment], scale: &Scale, block_rows: impl Fn(&Segment, usize) -> usize) -> Vec<Range<usize>> {
     let mut windows = Vec::new();
+    let mut shortest = usize::MAX;
     for segment in segments {
         let mut open: Option<Window> = None;
-        for start in (segment.rows.start..segment.rows.end).step_by(block_rows) {
+        let mut start = segment.rows.start;
+        while start < segment.rows.end {
+            let block_rows = block_rows(segment, start);
+            shortest = shortest.min(block_rows);
             let block = Some(start..start + block_rows)
                 .filter(|rows| rows.end <= segment.rows.end)
                 .and_then(|rows| Block::steady(log, rows, scale));
@@ -85,17 +106,18 @@ fn stretches(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>
                 (Some(window), Some(block)) if window.agrees(&block, scale) => window.join(block),
                 (_, block) => windows.extend(std::mem::replace(&mut open, block.map(Window::start)).and_then(|window| window.rows(scale))),
             }
+            start += block_rows;
         }
         windows.extend(open.and_then(|window| window.rows(scale)));
     }
     let mut windows = mended(log, windows, scale);
-    let least = MIN_ROWS.max(MIN_BLOCKS * block_rows);
+    let least = MIN_ROWS.max(MIN_BLOCKS * shortest.min(BLOCK_ROWS.1));
     windows.retain(|rows| rows.len() >= least);
     windows
 }
 
-/// Windows that a ripple cut into pieces, whole again. Dead time and faulty sensors make currents ripple, periodically, around one operating
-/// point; the pieces would all lie at the same phase of the ripple, alike and all wrong, and pass for many points.
+/// Windows that a ripple cut into pieces, whole again. Dead time and faulty sensors make currents ripple, periodically, around one
+/// operating point; the pieces would all lie at the same phase of the ripple, alike and all wrong, and pass for many points.
 fn mended(log: &Log, pieces: Vec<Range<usize>>, scale: &Scale) -> Vec<Range<usize>> {
     let mut windows: Vec<Range<usize>> = Vec::new();
     for piece in pieces {
