@@ -24,7 +24,7 @@ pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value
         "model": "steady",
         "method": method,
         "parameters": by_parameter(answer.parameters.each_ref().map(parameter)),
-        "nuisance": { "voltage_timing": voltage_timing(answer), "dead_time_voltage": dead_time_voltage(answer) },
+        "nuisance": { "voltage_timing": voltage_timing(answer), "dead_time_voltage": { "along_current": answer.voltage_losses } },
         "least_squares": with(found(&answer.estimate.motor), json!({ "cost": answer.estimate.objective.cost(&answer.estimate.motor) })),
         "search": answer.search.as_ref().map(|search| with(found(&search.motor), json!({
             "cost": search.report.cost,
@@ -49,12 +49,6 @@ fn voltage_timing(answer: &Identification) -> Value {
         VoltageTiming::Compensated => "compensated",
     };
     json!({ "value": timing, "stated": provenance == Provenance::Stated })
-}
-
-/// What dead time or device drops seem to take along the current, V per operating point; null where nothing is seen.
-fn dead_time_voltage(answer: &Identification) -> Value {
-    let seen = answer.voltage_losses.iter().any(|loss| *loss > 0.0);
-    if seen { json!({ "along_current": answer.voltage_losses }) } else { Value::Null }
 }
 
 fn operating_point(point: &OperatingPoint) -> Value {
