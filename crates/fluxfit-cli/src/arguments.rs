@@ -131,6 +131,7 @@ pub(crate) struct Compare {
 }
 
 #[derive(Debug, Args)]
+#[command(override_usage = "fluxfit simulate [SCENARIO.toml] -o <LOG> [OPTIONS]\n       fluxfit simulate --template")]
 pub(crate) struct Simulate {
     /// What is simulated (docs/drive.md); without, the paper's rig; - is standard input
     #[arg(value_name = "SCENARIO.toml")]

@@ -76,7 +76,7 @@ impl Dimension {
     /// What a text should have been, its SI unit, and an example.
     fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
-            Self::Time => ("a time", "s", "\"100 us\""),
+            Self::Time => ("a time", "s", "\"0.5 s\""),
             Self::Voltage => ("a voltage", "V", "\"180 V\""),
             Self::Current => ("a current", "A", "\"20 A\""),
             Self::Speed => ("a speed", "rad/s", "\"3000 rpm\""),

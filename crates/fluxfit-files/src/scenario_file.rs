@@ -203,7 +203,7 @@ mod tests {
                 "[sensors]\nduration = 1",
                 "line 50, key 'duration': this key stands above all tables; move it to the top of the file",
             ),
-            ("at = \"0.2 s\", ", "", "line 40: the key at is missing; write at = \"100 us\""),
+            ("at = \"0.2 s\", ", "", "line 40: the key at is missing; write at = \"0.5 s\""),
             ("to = \"10 N m\"", "too = 10", "line 40, key 'too': this key is not known; a move can hold at, to and over; did you mean to?"),
             (
                 "to = \"10 N m\"",
@@ -224,7 +224,7 @@ mod tests {
               a, b and c, as in [1, 1, 1.02]; correct it",
             ),
             ("# adc_bits = 12", "adc_bits = 12", "line 49: the key adc_range is missing; write adc_range = \"20 A\" below [sensors]"),
-            ("duration = \"0.9 s\"", "", "the key duration is missing; write duration = \"100 us\""),
+            ("duration = \"0.9 s\"", "", "the key duration is missing; write duration = \"0.5 s\""),
         ];
         for (from, to, sentence) in cases {
             assert!(PAPER_RIG.contains(from), "{from}");

@@ -16,7 +16,7 @@ use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{Report, html};
 
 /// What stands where a log's name would.
-const NAME: &str = "the paper's rig, simulated";
+const NAME: &str = "The paper's rig, simulated";
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {

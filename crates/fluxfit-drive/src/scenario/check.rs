@@ -8,6 +8,9 @@ use std::f64::consts::TAU;
 /// Most rows of a log, which is held in memory: 2.4 GB, 50 minutes at 10 kHz.
 const MAX_ROWS: f64 = 3e7;
 
+/// No winding that an inverter feeds has more, H: a number above lacks its unit.
+const MAX_INDUCTANCE: f64 = 10.0;
+
 /// Largest bandwidth of the current loop, as an angle per sample, rad. With gains of twice the bandwidth and one and a half periods
 /// of delay the loop's phase margin falls from 76 degrees to zero at 0.43.
 const MAX_BANDWIDTH_ANGLE: f64 = 0.25;
@@ -42,6 +45,9 @@ impl Scenario {
         if let Magnetics::Constant { ld, lq, psi_f } = self.motor.magnetics {
             positive("motor.ld", ld)?;
             positive("motor.lq", lq)?;
+            if let Some((key, value)) = [("motor.ld", ld), ("motor.lq", lq)].into_iter().find(|(_, value)| *value > MAX_INDUCTANCE) {
+                return Err(setting(key, value, "in henries and below 10; write its unit, as in \"5.25 mH\""));
+            }
             not_negative("motor.psi_f", psi_f)?;
         }
         positive("motor.pole_pairs", f64::from(self.motor.pole_pairs))?;

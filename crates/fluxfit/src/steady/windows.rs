@@ -76,7 +76,8 @@ pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     (windows, short)
 }
 
-/// The steady stretches of the segments of one log: those of short blocks; or those of blocks that average a ripple, where these see much more.
+/// The steady stretches of the segments of one log: those of short blocks; or those of blocks that average a ripple, where these
+/// see much more.
 fn stretches_of_one_log(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> {
     let rows: usize = segments.iter().map(|segment| segment.rows.len()).sum();
     let short = (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
