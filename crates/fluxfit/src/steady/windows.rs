@@ -5,6 +5,7 @@
 //! and speed, or what the noise of the means allows. Blocks without current are left out: while a drive coasts, its voltage
 //! columns are not voltages that act.
 
+use super::hold::mended;
 use crate::{
     error::Error,
     log::{Log, Segment},
@@ -15,7 +16,7 @@ use std::{f64::consts::TAU, ops::Range};
 pub const MIN_ROWS: usize = 30;
 
 /// Rows per block: a five-hundredth of the log within these limits. Short against a steady stretch, long against the noise.
-const BLOCK_ROWS: (usize, usize) = (10, 500);
+pub(super) const BLOCK_ROWS: (usize, usize) = (10, 500);
 
 /// A window has at least this many blocks: one could be chance.
 const MIN_BLOCKS: usize = 3;
@@ -26,22 +27,19 @@ const MIN_SHARE: f64 = 0.2;
 
 /// Means agree within this fraction of the log's largest value. The equations of the means hold while currents drift; what this
 /// keeps out are transients that sampling and filters distort.
-const TOLERANCE: f64 = 0.01;
+pub(super) const TOLERANCE: f64 = 0.01;
 
 /// The currents at a window's ends agree with its middle half within this fraction, or they are cut off: a tenth of the above.
 const END_TOLERANCE: f64 = 0.001;
 
 /// The currents of a window's halves agree within this fraction: half of what its blocks may differ.
-const HALVES_TOLERANCE: f64 = 0.005;
+pub(super) const HALVES_TOLERANCE: f64 = 0.005;
 
 /// Ripples of dead time and device drops per electrical turn.
 const RIPPLES_PER_TURN: f64 = 6.0;
 
 /// Blocks that average a ripple are taken where they see this many times the rows that short ones do.
 const MUCH_MORE: usize = 2;
-
-/// Currents that ripple around their mean by no more than this fraction of the log's largest belong to one hold.
-const RIPPLE: f64 = 0.05;
 
 /// Means agree within this many standard deviations of their difference.
 const NOISE_FACTOR: f64 = 4.0;
@@ -117,38 +115,6 @@ fn stretches(log: &Log, segments: &[Segment], scale: &Scale, block_rows: impl Fn
     windows
 }
 
-/// Windows that a ripple cut into pieces, whole again. Dead time and faulty sensors make currents ripple, periodically, around one
-/// operating point; the pieces would all lie at the same phase of the ripple, alike and all wrong, and pass for many points.
-fn mended(log: &Log, pieces: Vec<Range<usize>>, scale: &Scale) -> Vec<Range<usize>> {
-    let mut windows: Vec<Range<usize>> = Vec::new();
-    for piece in pieces {
-        match windows.last_mut() {
-            Some(window) if is_one_hold(log, window, &piece, scale) => window.end = piece.end,
-            _ => windows.push(piece),
-        }
-    }
-    windows
-}
-
-/// Whether two windows and what lies between them are one hold: their means agree, and nothing between leaves the ripple's reach.
-fn is_one_hold(log: &Log, one: &Range<usize>, other: &Range<usize>, scale: &Scale) -> bool {
-    if log.segment_of(one.start) != log.segment_of(other.start) {
-        return false;
-    }
-    let (before, after) = (Block::of(log, one.clone()), Block::of(log, other.clone()));
-    let near = |tolerance: f64, means: &[f64; 3]| (0..3).all(|c| (means[c] - before.means[c]).abs() <= tolerance * scale.0[c]);
-    let between = (one.end..other.start).step_by(BLOCK_ROWS.0).map(|start| start..(start + BLOCK_ROWS.0).min(other.start));
-    let mut between = between.filter(|rows| rows.len() >= 2).map(|rows| Block::of(log, rows));
-    if !near(2.0 * TOLERANCE, &after.means) || !between.all(|block| near(RIPPLE, &block.means)) {
-        return false;
-    }
-    // As long as it is now, the hold must not drift.
-    let middle = one.start.midpoint(other.end);
-    let (early, late) = (Block::of(log, one.start..middle), Block::of(log, middle..other.end));
-    let ripple = [0; 3].map(|_: i32| 0.0);
-    one.len() < MIN_BLOCKS * BLOCK_ROWS.0 * 4 || scale.agree(HALVES_TOLERANCE, &early.means, &late.means, &ripple)
-}
-
 /// The rows of each segment between two times, s, both included.
 ///
 /// # Errors
@@ -186,7 +152,7 @@ pub fn rows_without_current(log: &Log) -> usize {
 }
 
 /// The log's largest current (A) and speed (rad/s): i_d, i_q, omega_e.
-struct Scale([f64; 3]);
+pub(super) struct Scale(pub(super) [f64; 3]);
 
 impl Scale {
     fn of(log: &Log) -> Self {
@@ -196,22 +162,22 @@ impl Scale {
 
     /// Whether two triples of means agree, given the variance of their differences. Speed may always move by [`TOLERANCE`]: its
     /// slope is not in the equations.
-    fn agree(&self, current_tolerance: f64, one: &[f64; 3], other: &[f64; 3], variance: &[f64; 3]) -> bool {
+    pub(super) fn agree(&self, current_tolerance: f64, one: &[f64; 3], other: &[f64; 3], variance: &[f64; 3]) -> bool {
         let tolerances = [current_tolerance, current_tolerance, TOLERANCE];
         (0..3).all(|c| (one[c] - other[c]).abs() <= tolerances[c] * self.0[c] + NOISE_FACTOR * variance[c].sqrt())
     }
 }
 
-struct Block {
+pub(super) struct Block {
     rows: Range<usize>,
     /// Means of i_d, i_q, omega_e.
-    means: [f64; 3],
+    pub(super) means: [f64; 3],
     /// Variances of those means, if their noise is white.
     variances: [f64; 3],
 }
 
 impl Block {
-    fn of(log: &Log, rows: Range<usize>) -> Self {
+    pub(super) fn of(log: &Log, rows: Range<usize>) -> Self {
         let columns = log.columns();
         let n = rows.len() as f64;
         let channels = [&columns.id, &columns.iq, &columns.omega_e].map(|column| &column[rows.clone()]);
