@@ -45,7 +45,7 @@ impl Recording {
     pub fn with_capacity(rows: usize) -> Self {
         let room = || Vec::with_capacity(rows);
         Self {
-            columns: Columns { t: room(), ud: room(), uq: room(), id: room(), iq: room(), omega_e: room() },
+            columns: Columns { t: room(), ud: room(), uq: room(), id: room(), iq: room(), omega_e: room(), ..Columns::default() },
             theta_e: room(),
             ud_ref: room(),
             uq_ref: room(),

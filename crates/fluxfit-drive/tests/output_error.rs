@@ -33,7 +33,8 @@ fn example(name: &str, voltages: [&str; 2]) -> Log {
         text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
     };
     let [ud, uq] = voltages.map(column);
-    Log::new(Columns { t: column("t"), ud, uq, id: column("id"), iq: column("iq"), omega_e: column("omega_e") }).unwrap()
+    Log::new(Columns { t: column("t"), ud, uq, id: column("id"), iq: column("iq"), omega_e: column("omega_e"), ..Columns::default() })
+        .unwrap()
 }
 
 /// A first guess that is off by 10 to 20 %.

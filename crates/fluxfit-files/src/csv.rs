@@ -83,7 +83,8 @@ fn parse(text: &str, told: &Told) -> Result<ReadLog, FileError> {
         column.unit.to_si(values, told.pole_pairs.unwrap_or(1));
     }
     let [t, ud, uq, id, iq, omega_e] = rows.values;
-    let log = Log::new(Columns { t, ud, uq, id, iq, omega_e }).map_err(|error| located(error, text, &chosen, &rows.starts))?;
+    let log = Log::new(Columns { t, ud, uq, id, iq, omega_e, ..Columns::default() })
+        .map_err(|error| located(error, text, &chosen, &rows.starts))?;
     Ok(ReadLog { log, notes })
 }
 

@@ -138,7 +138,7 @@ fn garbage() -> impl Strategy<Value = Columns> {
             (0..80).map(|k| (size * value(k)).clamp(-1e9, 1e9)).collect()
         });
         let t = (0..80).map(|k| 10.0_f64.powf(period) * (k + if k < 40 { 0 } else { 3 }) as f64).collect();
-        Columns { t, ud, uq, id, iq, omega_e }
+        Columns { t, ud, uq, id, iq, omega_e, ..Columns::default() }
     })
 }
 

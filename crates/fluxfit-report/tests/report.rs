@@ -32,7 +32,7 @@ fn log(currents: &[(f64, f64)], noise: f64) -> Log {
     for (k, &(d, q)) in currents.iter().flat_map(|current| [current; ROWS]).enumerate() {
         let u = paper::MOTOR.steady_voltage(Dq { d, q }, 400.0);
         let row = [k as f64 * 1e-3, u.d + noise * draws.normal(), u.q + noise * draws.normal(), d, q, 400.0];
-        let Columns { t, ud, uq, id, iq, omega_e } = &mut columns;
+        let Columns { t, ud, uq, id, iq, omega_e, .. } = &mut columns;
         [t, ud, uq, id, iq, omega_e].into_iter().zip(row).for_each(|(column, value)| column.push(value));
     }
     Log::new(columns).unwrap()

@@ -12,8 +12,8 @@
 //! #     for (column, value) in [&mut columns.t, &mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq, &mut columns.omega_e]
 //! #         .into_iter().zip([k as f64 * 1e-3, u.d, u.q, d, q, omega]) { column.push(value); }
 //! # }
-//! # let Columns { t, ud, uq, id, iq, omega_e } = columns;
-//! let log = Log::new(Columns { t, ud, uq, id, iq, omega_e })?;
+//! # let Columns { t, ud, uq, id, iq, omega_e, .. } = columns;
+//! let log = Log::new(Columns { t, ud, uq, id, iq, omega_e, ..Columns::default() })?;
 //! let found = identify(&log, &identify::Settings::default())?;
 //! let rs = found.parameter(Parameter::Rs);
 //! println!("{:?} ohm, 95 % within {:?}: {}", rs.value(), rs.interval(), rs.verdict.key());

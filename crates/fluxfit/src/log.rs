@@ -22,12 +22,41 @@ pub struct Columns {
     pub iq: Vec<f64>,
     /// Speed, electrical rad/s.
     pub omega_e: Vec<f64>,
+    /// Angle, electrical rad, in any turn; not every log has it.
+    pub theta_e: Option<Vec<f64>>,
+    /// DC voltage, V; not every log has it.
+    pub u_dc: Option<Vec<f64>>,
 }
 
 impl Columns {
-    /// Canonical names and columns, `t` first.
+    /// Canonical names and columns that every log has, `t` first.
     pub fn named(&self) -> [(&'static str, &Vec<f64>); 6] {
         [("t", &self.t), ("ud", &self.ud), ("uq", &self.uq), ("id", &self.id), ("iq", &self.iq), ("omega_e", &self.omega_e)]
+    }
+
+    /// Those that this log has besides.
+    pub fn optional(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
+        [("theta_e", &self.theta_e), ("u_dc", &self.u_dc)].into_iter().filter_map(|(name, column)| Some((name, column.as_ref()?)))
+    }
+
+    fn all(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
+        self.named().into_iter().chain(self.optional())
+    }
+
+    /// Appends the rows of another log. An optional column stays only if both have it.
+    fn append(&mut self, other: Self) {
+        self.t.extend(other.t);
+        self.ud.extend(other.ud);
+        self.uq.extend(other.uq);
+        self.id.extend(other.id);
+        self.iq.extend(other.iq);
+        self.omega_e.extend(other.omega_e);
+        for (to, from) in [(&mut self.theta_e, other.theta_e), (&mut self.u_dc, other.u_dc)] {
+            *to = to.take().zip(from).map(|(mut to, from)| {
+                to.extend(from);
+                to
+            });
+        }
     }
 }
 
@@ -68,7 +97,7 @@ impl Log {
     /// than two rows, or the currents, the voltages or the speed are zero throughout.
     pub fn new(columns: Columns) -> Result<Self, Error> {
         let rows = columns.t.len();
-        for (column, values) in columns.named() {
+        for (column, values) in columns.all() {
             if values.len() != rows {
                 return Err(Error::ColumnLength { column, rows: values.len(), expected: rows });
             }
@@ -107,13 +136,7 @@ impl Log {
                 log: number,
                 ..segment
             }));
-            let (to, from) = (&mut joined.columns, log.columns);
-            to.t.extend(from.t);
-            to.ud.extend(from.ud);
-            to.uq.extend(from.uq);
-            to.id.extend(from.id);
-            to.iq.extend(from.iq);
-            to.omega_e.extend(from.omega_e);
+            joined.columns.append(log.columns);
         }
         Ok(joined)
     }
@@ -152,7 +175,7 @@ impl Log {
 
 fn check_values(columns: &Columns) -> Result<(), Error> {
     for row in 0..columns.t.len() {
-        for (column, values) in columns.named() {
+        for (column, values) in columns.all() {
             let value = values[row];
             if !value.is_finite() {
                 return Err(Error::NotFinite { column, row, value });
@@ -194,7 +217,15 @@ mod tests {
 
     fn columns(t: &[f64]) -> Columns {
         let ones = vec![1.0; t.len()];
-        Columns { t: t.to_vec(), ud: ones.clone(), uq: ones.clone(), id: ones.clone(), iq: ones.clone(), omega_e: ones }
+        Columns {
+            t: t.to_vec(),
+            ud: ones.clone(),
+            uq: ones.clone(),
+            id: ones.clone(),
+            iq: ones.clone(),
+            omega_e: ones,
+            ..Columns::default()
+        }
     }
 
     #[test]
@@ -212,6 +243,18 @@ mod tests {
         assert_eq!(rows, [0..3, 3..5]);
         assert_eq!(log.rows(), 5);
         assert!(Log::join([]).is_err());
+    }
+
+    #[test]
+    fn an_optional_column_stays_if_every_log_has_it() {
+        let with = |theta_e| Log::new(Columns { theta_e, ..columns(&[0.0, 0.1]) }).unwrap();
+        let angle = Some(vec![1.0, 2.0]);
+        assert_eq!(Log::join([with(angle.clone()), with(angle.clone())]).unwrap().columns().theta_e, Some(vec![1.0, 2.0, 1.0, 2.0]));
+        assert_eq!(Log::join([with(angle), with(None)]).unwrap().columns().theta_e, None);
+        assert!(matches!(
+            Log::new(Columns { u_dc: Some(vec![1.0]), ..columns(&[0.0, 0.1]) }),
+            Err(Error::ColumnLength { column: "u_dc", .. })
+        ));
     }
 
     #[test]

@@ -124,7 +124,7 @@ proptest! {
         let other = Columns {
             // Time goes as one over the speed.
             t: scaled(&columns.t, 1.0 / kw), ud: scaled(&columns.ud, ku), uq: scaled(&columns.uq, ku),
-            id: scaled(&columns.id, ki), iq: scaled(&columns.iq, ki), omega_e: scaled(&columns.omega_e, kw),
+            id: scaled(&columns.id, ki), iq: scaled(&columns.iq, ki), omega_e: scaled(&columns.omega_e, kw), ..Columns::default()
         };
         same(&found(columns), &found(other), [ku / ki, ku / ki / kw, ku / ki / kw, ku / kw], ROUNDING)?;
     }
@@ -161,7 +161,7 @@ proptest! {
             let of = |column: &[f64]| column[rows.clone()].to_vec();
             Log::new(Columns {
                 t: of(&columns.t), ud: of(&columns.ud), uq: of(&columns.uq),
-                id: of(&columns.id), iq: of(&columns.iq), omega_e: of(&columns.omega_e),
+                id: of(&columns.id), iq: of(&columns.iq), omega_e: of(&columns.omega_e), ..Columns::default()
             }).unwrap()
         };
         for order in [[0, 1, 2], [2, 0, 1]] {
@@ -262,7 +262,7 @@ fn garbage() -> impl Strategy<Value = (Columns, bool)> {
                 // Three rows are lost between the parts: a gap.
                 t.extend((0..rows).map(|k| 10.0_f64.powf(period) * (k + t.len() + 3 * w) as f64).collect::<Vec<_>>());
             }
-            (Columns { t, ud, uq, id, iq, omega_e }, named)
+            (Columns { t, ud, uq, id, iq, omega_e, ..Columns::default() }, named)
         },
     )
 }
@@ -307,7 +307,7 @@ fn a_window_without_voltage_or_speed_is_no_trap() {
     let halves = |first: f64, second: f64| (0..80).map(|k| if k < 40 { first } else { second }).collect::<Vec<_>>();
     let t = (0..80).map(|k| 20.0 * f64::from(k)).collect();
     let (ud, uq, id, iq) = (halves(0.0, 0.0), halves(0.0, -4.2e-8), halves(2e-2, -1e-2), halves(-4.2e-6, 2.1e-6));
-    let log = Log::new(Columns { t, ud, uq, id, iq, omega_e: halves(0.0, -8.2e-5) }).unwrap();
+    let log = Log::new(Columns { t, ud, uq, id, iq, omega_e: halves(0.0, -8.2e-5), ..Columns::default() }).unwrap();
     let found = identify(&log, &Settings { method: None, ..Settings::default() }).unwrap();
     assert!(found.estimate.motor.to_array().iter().all(|value| value.is_finite()), "{:?}", found.estimate.motor);
 }

@@ -55,7 +55,8 @@ mod tests {
     fn points(rows: &[[f64; 5]]) -> Vec<OperatingPoint> {
         let each = |c: usize| rows.iter().flat_map(|row| [row[c]; 40]).collect::<Vec<_>>();
         let t = (0..40 * rows.len()).map(|k| k as f64).collect();
-        let log = Log::new(Columns { t, id: each(0), iq: each(1), omega_e: each(2), ud: each(3), uq: each(4) }).unwrap();
+        let log =
+            Log::new(Columns { t, id: each(0), iq: each(1), omega_e: each(2), ud: each(3), uq: each(4), ..Columns::default() }).unwrap();
         (0..rows.len()).map(|w| OperatingPoint::measure(&log, 40 * w..40 * (w + 1), None)).collect()
     }
 
