@@ -17,7 +17,7 @@ pub struct Abc {
 }
 
 /// A vector in the stator's frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AlphaBeta {
     /// Component along phase a.
     pub alpha: f64,

@@ -1,85 +1,151 @@
 //! The polish: from near a minimum of the output error into it.
 //!
 //! Levenberg's and Marquardt's method on the residuals, with derivatives by central differences; J. J. Moré, "The Levenberg-Marquardt
-//! algorithm: implementation and theory", 1978, doi:10.1007/BFb0067700, as the crate of that name has it. Parameters are counted in
-//! units of the start, so that ohms and henries weigh alike.
+//! algorithm: implementation and theory", 1978, doi:10.1007/BFb0067700, as the crate of that name has it. Unknowns are counted in
+//! units of their usual size, so that ohms and henries weigh alike; one that enters linearly is solved in one step.
 
 use crate::{
-    motor::{Motor, PARAMETERS},
-    objective::output_error::OutputError,
+    motor::{Motor, Parameter},
+    objective::{
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
 };
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{DVector, Dyn, OMatrix, Owned, U4, Vector4};
+use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use rayon::prelude::*;
 
-/// Step of the differences, relative: the cube root of rounding, at which the errors of a central difference are least.
+/// Step of the differences, in the unknowns' units: the cube root of rounding, at which the errors of a central difference are least.
 const STEP: f64 = 6e-6;
+
+/// What a motor that cannot be simulated misses the log by, A: more than any that can, and still a number when squared and summed.
+const HOPELESS: f64 = 1e100;
+
+/// A step that would lower the cost, or move the unknowns, by less than this fraction is none: far below any noise, and above what
+/// differences and rounding leave.
+const NO_STEP: f64 = 1e-12;
+
+/// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
+const PATIENCE: usize = 8;
+
+/// What is known of an unknown beside the log: one more residual, `(value - x) weight`, A.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Belief {
+    /// Of which.
+    pub unknown: Unknown,
+    /// SI.
+    pub value: f64,
+    /// A per SI unit: the noise of a current over the standard error of the value.
+    pub weight: f64,
+}
 
 /// Where a polish ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polished {
-    /// The motor.
-    pub motor: Motor,
-    /// Its cost, A².
+    /// The drive.
+    pub drive: Adjustable,
+    /// Its cost, A², beliefs not counted.
     pub cost: f64,
     /// Whether this is a minimum.
     pub converged: bool,
 }
 
-/// Polishes a motor. A start that has no finite cost is where it ends.
+/// All four parameters.
+pub const MOTOR: [Unknown; 4] = [
+    Unknown::Motor(Parameter::Rs),
+    Unknown::Motor(Parameter::Ld),
+    Unknown::Motor(Parameter::Lq),
+    Unknown::Motor(Parameter::PsiF),
+];
+
+/// Polishes a motor in a perfect drive. A start that has no finite cost is where it ends.
 pub fn polish(objective: &OutputError, start: &Motor) -> Polished {
-    let scale = Vector4::from(start.to_array().map(|value| if value == 0.0 { 1.0 } else { value.abs() }));
-    let units = Vector4::from(start.to_array()).component_div(&scale);
-    let (problem, report) = LevenbergMarquardt::new().minimize(Problem { objective, scale, units });
-    let motor = problem.motor();
-    Polished { motor, cost: objective.cost(&motor), converged: report.termination.was_successful() }
+    polish_unknowns(objective, &Adjustable::from(*start), &MOTOR, &[])
 }
 
-/// Derivatives of the residuals by each parameter, A per SI unit: columns in the order of the parameters.
-pub fn jacobian(objective: &OutputError, motor: &Motor) -> [Vec<f64>; PARAMETERS] {
-    std::array::from_fn(|p| {
-        let moved = |by: f64| {
-            let mut values = motor.to_array();
-            values[p] += by;
-            objective.residuals(&Motor::from(values))
-        };
-        let step = STEP * if motor.to_array()[p] == 0.0 { 1.0 } else { motor.to_array()[p].abs() };
+/// Polishes these unknowns of a drive and leaves the others where they are.
+pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> Polished {
+    let scale: Vec<f64> = unknowns.iter().map(|unknown| unit(*unknown, start, objective)).collect();
+    let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
+    let (problem, report) = LevenbergMarquardt::new().with_ftol(NO_STEP).with_xtol(NO_STEP).with_patience(PATIENCE).minimize(Problem { objective, start, unknowns, beliefs, scale, units });
+    let drive = problem.drive();
+    Polished { drive, cost: objective.cost_of(&drive), converged: report.termination.was_successful() }
+}
+
+/// Derivatives of the residuals by each unknown, A per SI unit: a column each.
+pub fn jacobian(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Vec<f64>> {
+    let column = |unknown: &Unknown| {
+        let step = STEP * unit(*unknown, drive, objective);
+        let moved = |by: f64| objective.residuals(&drive.with(*unknown, drive.get(*unknown) + by));
         moved(step).iter().zip(moved(-step)).map(|(above, below)| (above - below) / (2.0 * step)).collect()
-    })
+    };
+    unknowns.par_iter().map(column).collect()
+}
+
+/// The size of an unknown by which steps are counted, SI: its own, or what is usual for it.
+fn unit(unknown: Unknown, drive: &Adjustable, objective: &OutputError) -> f64 {
+    let peak = || objective.peak_current().max(f64::MIN_POSITIVE);
+    let usual = match unknown {
+        Unknown::Motor(parameter) => return Some(drive.motor.get(parameter).abs()).filter(|value| *value > 0.0).unwrap_or(1.0),
+        Unknown::DeadTime => drive.motor.rs.abs() * peak(),
+        Unknown::DeadTimeWidth | Unknown::OffsetAlpha | Unknown::OffsetBeta => peak(),
+        Unknown::SaturationD => drive.motor.ld.abs() / peak(),
+        Unknown::SaturationQ | Unknown::CrossSaturation => drive.motor.lq.abs() / peak(),
+        _ => 1.0,
+    };
+    if usual > 0.0 { usual } else { 1.0 }
 }
 
 struct Problem<'a> {
     objective: &'a OutputError,
-    scale: Vector4<f64>,
-    units: Vector4<f64>,
+    start: &'a Adjustable,
+    unknowns: &'a [Unknown],
+    beliefs: &'a [Belief],
+    scale: Vec<f64>,
+    units: DVector<f64>,
 }
 
 impl Problem<'_> {
-    fn motor(&self) -> Motor {
-        Motor::from(<[f64; PARAMETERS]>::from(self.units.component_mul(&self.scale)))
+    fn drive(&self) -> Adjustable {
+        let values = self.units.iter().zip(&self.scale).map(|(units, scale)| units * scale);
+        self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value))
     }
 }
 
-impl LeastSquaresProblem<f64, Dyn, U4> for Problem<'_> {
-    type ParameterStorage = Owned<f64, U4>;
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
+    type ParameterStorage = Owned<f64, Dyn>;
     type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, U4>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
 
-    fn set_params(&mut self, units: &Vector4<f64>) {
-        self.units = *units;
+    fn set_params(&mut self, units: &DVector<f64>) {
+        self.units = units.clone();
     }
 
-    fn params(&self) -> Vector4<f64> {
-        self.units
+    fn params(&self) -> DVector<f64> {
+        self.units.clone()
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        let residuals = self.objective.residuals(&self.motor());
-        residuals.iter().all(|residual| residual.is_finite()).then(|| DVector::from_vec(residuals))
+        let drive = self.drive();
+        let mut residuals = self.objective.residuals(&drive);
+        // Not a failure but a bad candidate: the next step is shorter.
+        residuals.iter_mut().filter(|residual| !(residual.abs() < HOPELESS)).for_each(|residual| *residual = HOPELESS);
+        residuals.extend(self.beliefs.iter().map(|belief| belief.weight * (belief.value - drive.get(belief.unknown))));
+        Some(DVector::from_vec(residuals))
     }
 
-    fn jacobian(&self) -> Option<OMatrix<f64, Dyn, U4>> {
-        let columns = jacobian(self.objective, &self.motor());
-        let matrix = OMatrix::<f64, Dyn, U4>::from_fn(columns[0].len(), |row, column| columns[column][row] * self.scale[column]);
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let columns = jacobian(self.objective, &self.drive(), self.unknowns);
+        let rows = columns.first().map_or(0, Vec::len);
+        let mut matrix = DMatrix::zeros(rows + self.beliefs.len(), self.unknowns.len());
+        for (k, column) in columns.iter().enumerate() {
+            for (row, slope) in column.iter().enumerate() {
+                matrix[(row, k)] = slope * self.scale[k];
+            }
+            for (row, belief) in self.beliefs.iter().enumerate().filter(|(_, belief)| belief.unknown == self.unknowns[k]) {
+                matrix[(rows + row, k)] = -belief.weight * self.scale[k];
+            }
+        }
         matrix.iter().all(|entry| entry.is_finite()).then_some(matrix)
     }
 }

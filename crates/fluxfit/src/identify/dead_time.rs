@@ -9,7 +9,7 @@
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, has the loss of the fundamental and the low harmonics.
 
-use super::inductance;
+use super::steady_fit::inductance;
 use crate::{
     frames::Dq,
     identify::{estimate::Estimate, excitation::Excitation},

@@ -21,13 +21,23 @@ pub(super) fn explain(
     if excitation.is_open(parameter) {
         open(parameter, points, excitation)
     } else if raw <= 0.0 && width < WEAK {
-        (
-            format!("{} came out negative, which no motor has, and not by noise", parameter.symbol()),
-            "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of speed and of u_q".to_owned(),
-        )
+        negative(parameter)
     } else {
         wide(parameter, width, uncertainty.largest_part())
     }
+}
+
+/// The same of the motor whose currents were simulated.
+pub(super) fn explain_currents(parameter: Parameter, raw: f64, uncertainty: &ParameterUncertainty) -> (String, String) {
+    let width = if raw == 0.0 { f64::INFINITY } else { uncertainty.half_width / raw.abs() };
+    if raw <= 0.0 && width < WEAK { negative(parameter) } else { wide(parameter, width, uncertainty.largest_part()) }
+}
+
+fn negative(parameter: Parameter) -> (String, String) {
+    (
+        format!("{} came out negative, which no motor has, and not by noise", parameter.symbol()),
+        "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of speed and of u_q".to_owned(),
+    )
 }
 
 /// Beyond this, longer windows are no remedy.
@@ -44,7 +54,7 @@ fn wide(parameter: Parameter, width: f64, part: Part) -> (String, String) {
             let longer = (width / IDENTIFIED).powi(2).ceil();
             let remedy =
                 if longer < MUCH_LONGER { format!("hold each operating point about {longer:.0} times as long, or {apart}") } else { apart };
-            (format!("the noise of the window means {leaves}"), remedy)
+            (format!("noise {leaves}"), remedy)
         }
         Part::Accuracy => (format!("the voltages' accuracy {leaves}: the operating points are too much alike to tell {symbol}"), apart),
         Part::Timing => (
@@ -54,6 +64,18 @@ fn wide(parameter: Parameter, width: f64, part: Part) -> (String, String) {
         Part::DeadTime => (
             format!("the currents ripple as dead time or device drops make them, and the voltage these take looks like resistance, which {leaves}"),
             "log with the drive's dead-time compensation on, or give R_s as measured at the terminals with --fix".to_owned(),
+        ),
+        Part::ProcessNoise => (
+            format!("unknown voltages disturb the motor, and the answer with and without a model of them differs, which {leaves}"),
+            "log with the test bench at rest (no torque ripple, no supply ripple), or add a stretch held still and name it with --window, --model steady".to_owned(),
+        ),
+        Part::Sensors => (
+            format!("the current sensors differ, and nobody knows which is right, which {leaves}"),
+            "calibrate the current sensors".to_owned(),
+        ),
+        Part::Saturation => (
+            format!("the inductances depend on the current, and one number for all of the log {leaves}"),
+            "identify from a part of the log at nearly the same currents, with --window".to_owned(),
         ),
         Part::Misfit => (
             format!(

@@ -1,34 +1,36 @@
 //! Identification: from a log to four parameters, each with an interval and a verdict.
 //!
-//! [`identify`] is the main path. Its model is the steady one: equation (2) on the means of steady windows, for which weighted
-//! least squares is exact; the swarm's answer is reported beside it.
+//! [`identify`] is the main path. It fits the [steady equations](steady_fit) to the log's operating points and, where the log is
+//! sampled fast enough, the [simulated currents](output_fit) to its rows; the [model] that suits the log answers. The swarm's own
+//! answer is reported beside it.
 
 pub mod dead_time;
 pub mod estimate;
 pub mod excitation;
 mod explain;
+mod long_run;
 pub mod misfit;
+pub mod model;
+pub mod output_fit;
 pub mod search_box;
+pub mod steady_fit;
+pub mod terms;
+pub mod timing;
 pub mod uncertainty;
 pub mod verdict;
 pub mod warning;
 
 use crate::{
     error::Error,
-    frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
-    optimizer::{self, Method, Optimizer, Report, bounds::Bounds},
-    steady::{
-        Belief, OperatingPoint,
-        held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming},
-        windows,
-    },
+    objective::acting_voltage::VoltageReading,
+    optimizer::{self, Method, Report, bounds::Bounds},
 };
-use estimate::Estimate;
-use excitation::Excitation;
-use misfit::Misfit;
-use uncertainty::{Doubt, Uncertainty};
+use model::Model;
+use output_fit::OutputFit;
+pub use steady_fit::{beliefs, operating_points, voltage_timing};
+use steady_fit::SteadyFit;
 use verdict::Judgement;
 use warning::Warning;
 
@@ -38,16 +40,18 @@ pub const VOLTAGE_ACCURACY: f64 = 1e-4;
 /// What is asked of an identification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
+    /// The model that answers; none: the one that suits the log.
+    pub model: Option<Model>,
     /// Windows in time, s; none: they are found.
     pub windows: Vec<(f64, f64)>,
-    /// What the voltage columns mean; none: centred, where the sampling is fast enough for it to matter, with the doubt in the
+    /// What the voltage columns mean; none: the output error finds it; operating points take it as centred, with the doubt in the
     /// systematic uncertainty.
-    pub voltage_timing: Option<VoltageTiming>,
+    pub voltage_timing: Option<VoltageReading>,
     /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
     pub voltage_accuracy: f64,
     /// What is known of the motor beforehand.
     pub known: [Known; PARAMETERS],
-    /// The swarm that searches beside least squares, if any.
+    /// The swarm that searches beside the exact answer, if any. On the output error it takes some seconds.
     pub method: Option<Method>,
     /// Its settings.
     pub search: optimizer::Settings,
@@ -75,11 +79,12 @@ pub enum Known {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            model: None,
             windows: Vec::new(),
             voltage_timing: None,
             voltage_accuracy: VOLTAGE_ACCURACY,
             known: [Known::Nothing; PARAMETERS],
-            method: Some(Method::Tgfpa(optimizer::tgfpa::Tgfpa::default())),
+            method: None,
             search: optimizer::Settings::default(),
             bounds: None,
         }
@@ -91,20 +96,14 @@ impl Default for Settings {
 pub struct Identification {
     /// The parameters, in the order of [`Parameter::ALL`].
     pub parameters: [Judgement; PARAMETERS],
-    /// The windows that carried them.
-    pub operating_points: Vec<OperatingPoint>,
-    /// Least squares, solved exactly.
-    pub estimate: Estimate,
-    /// What the log excites.
-    pub excitation: Excitation,
-    /// How the voltage columns were read, and whether that was stated or assumed.
-    pub voltage_timing: (VoltageTiming, Provenance),
+    /// The model that answered, and why it did.
+    pub model: (Model, String),
+    /// What the operating points say; none where there is none.
+    pub steady: Option<SteadyFit>,
+    /// What the simulated currents say; none where the steady model answered.
+    pub output: Option<OutputFit>,
     /// Correlation of the parameters' errors.
     pub correlation: [[f64; PARAMETERS]; PARAMETERS],
-    /// Contradiction between the operating points, if proven.
-    pub misfit: Option<Misfit>,
-    /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
-    pub voltage_losses: Vec<f64>,
     /// The swarm's own answer.
     pub search: Option<Search>,
     /// What the reader should know.
@@ -116,6 +115,8 @@ pub struct Identification {
 pub enum Provenance {
     /// The settings state it.
     Stated,
+    /// The log shows it.
+    Found,
     /// It is assumed, and the doubt counted as uncertainty.
     Assumed,
 }
@@ -152,30 +153,29 @@ impl Identification {
 /// verdicts say so.
 pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error> {
     check(settings)?;
-    let rough = operating_points(log, settings)?;
-    let (points, timing_doubt) = measure(log, &rough, settings);
-    let excitation = Excitation::of(&points, &settings.known);
-    let estimate = Estimate::solve(&points, &excitation, settings);
-    let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, settings);
-    let search = search(&points, &excitation, &estimate, settings)?;
-    let losses = dead_time::losses(log, &points, &excitation, &estimate);
-    let doubt = Doubt { timing: timing_doubt, dead_time: dead_time::doubt(log, &points, &estimate, &losses) };
-    let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &doubt);
-    let parameters = verdict::judge(&points, &excitation, &estimate, &uncertainty, settings);
-    let mut found = Identification {
-        parameters,
-        operating_points: points,
-        estimate,
-        excitation,
-        voltage_timing: voltage_timing(settings),
-        correlation: uncertainty.correlation,
-        misfit,
-        voltage_losses: losses,
-        search,
-        warnings: Vec::new(),
+    let steady = SteadyFit::of(log, settings);
+    let model = model::choose(log, settings);
+    let mut found = match model.0 {
+        Model::Steady => of_points(steady?, model, settings)?,
+        Model::OutputError => of_currents(log, steady.ok(), model, settings)?,
     };
     found.warnings = warning::warnings(log, &found, settings);
     Ok(found)
+}
+
+/// The answer of the operating points.
+fn of_points(fit: SteadyFit, model: (Model, String), settings: &Settings) -> Result<Identification, Error> {
+    let (parameters, correlation) = fit.judge(settings);
+    let search = fit.search(settings)?;
+    Ok(Identification { parameters, model, steady: Some(fit), output: None, correlation, search, warnings: Vec::new() })
+}
+
+/// The answer of the simulated currents.
+fn of_currents(log: &Log, steady: Option<SteadyFit>, model: (Model, String), settings: &Settings) -> Result<Identification, Error> {
+    let fit = OutputFit::of(log, steady.as_ref(), settings)?;
+    let (parameters, correlation) = fit.judge(settings);
+    let search = fit.search(log, steady.as_ref(), settings)?;
+    Ok(Identification { parameters, model, steady, output: Some(fit), correlation, search, warnings: Vec::new() })
 }
 
 fn check(settings: &Settings) -> Result<(), Error> {
@@ -201,93 +201,4 @@ fn check(settings: &Settings) -> Result<(), Error> {
         }
     }
     if settings.known.iter().all(|known| matches!(known, Known::Fixed(_))) { Err(Error::NothingToIdentify) } else { Ok(()) }
-}
-
-/// Centred, unless stated otherwise: what drives that log their realized voltage mostly mean.
-pub fn voltage_timing(settings: &Settings) -> (VoltageTiming, Provenance) {
-    settings.voltage_timing.map_or((VoltageTiming::Centered, Provenance::Assumed), |stated| (stated, Provenance::Stated))
-}
-
-/// The operating points in the windows named, or in those found, as the log has them: before any correction, and with a coarse covariance.
-///
-/// # Errors
-/// If there is none.
-pub fn operating_points(log: &Log, settings: &Settings) -> Result<Vec<OperatingPoint>, Error> {
-    let mut windows = Vec::new();
-    for times in &settings.windows {
-        windows.extend(windows::between(log, *times)?);
-    }
-    if windows.is_empty() {
-        windows = windows::find(log)?;
-    }
-    Ok(windows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect())
-}
-
-/// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
-/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
-fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
-    let with = |timing: VoltageTiming| -> Vec<OperatingPoint> {
-        let beliefs = beliefs(log, rough, timing, settings);
-        rough.iter().zip(&beliefs).map(|(point, belief)| OperatingPoint::measure(log, point.rows.clone(), Some(belief))).collect()
-    };
-    let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &settings.known), settings).motor;
-    let points = with(voltage_timing(settings).0);
-    let doubt = match settings.voltage_timing {
-        Some(_) => [0.0; PARAMETERS],
-        None => {
-            let (one, other) = (solve(&points).to_array(), solve(&with(VoltageTiming::Compensated)).to_array());
-            std::array::from_fn(|p| (one[p] - other[p]).abs())
-        }
-    };
-    (points, doubt)
-}
-
-/// What a first look at the operating points tells of each: the motor, and the held-vector correction of its window.
-pub fn beliefs(log: &Log, rough: &[OperatingPoint], timing: VoltageTiming, settings: &Settings) -> Vec<Belief> {
-    let excitation = Excitation::of(rough, &settings.known);
-    let motor = Estimate::solve(rough, &excitation, settings).motor;
-    let inductance = inductance(&motor, &excitation);
-    let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
-    rough.iter().map(|point| Belief { motor, held_vector: held_vector(log, point, fastest, timing, motor.rs, inductance) }).collect()
-}
-
-/// The inductances for the current's ripple: a rough estimate will do, but not one of noise. What the log does not excite is
-/// taken from the other axis.
-fn inductance(motor: &Motor, excitation: &Excitation) -> Dq {
-    let known =
-        |parameter| Some(motor.get(parameter)).filter(|value| *value > 0.0 && excitation.unexcited_reach[parameter as usize] < *value);
-    let (ld, lq) = (known(Parameter::Ld), known(Parameter::Lq));
-    Dq { d: ld.or(lq).unwrap_or(f64::INFINITY), q: lq.or(ld).unwrap_or(f64::INFINITY) }
-}
-
-/// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all
-/// windows, so that either all of them are corrected or none; none of the current where so long a period does not shape it.
-fn held_vector(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> HeldVector {
-    match log.segment_of(point.rows.start).map(|segment| segment.sample_period) {
-        Some(sample_period) if fastest * sample_period <= MAX_ANGLE_PER_SAMPLE => {
-            let shapes = |l: f64| if rs > 0.0 && rs * sample_period <= MAX_DECAY_PER_SAMPLE * l { l } else { f64::INFINITY };
-            HeldVector { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }
-        }
-        _ => HeldVector::NONE,
-    }
-}
-
-/// Lets the swarm minimize the same weighted equations that least squares solved.
-fn search(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate, settings: &Settings) -> Result<Option<Search>, Error> {
-    let Some(method) = settings.method else { return Ok(None) };
-    let bounds = match &settings.bounds {
-        Some(bounds) => bounds.clone(),
-        None => search_box::from_points(points)?,
-    };
-    let objective = &estimate.objective;
-    let report = Optimizer::start(method, settings.search, bounds.clone(), objective)?.run(objective);
-    // Where the cost is flat a swarm ends anywhere: only what the log excites is its answer.
-    let mut found = excitation.excited_motor(&Motor::from(std::array::from_fn(|p| report.best[p]))).to_array();
-    for (p, known) in settings.known.iter().enumerate() {
-        if let Known::Fixed(value) = known {
-            found[p] = *value;
-        }
-    }
-    let motor = Motor::from(found);
-    Ok(Some(Search { cost_above_optimum: estimate.cost_above_optimum(&motor), motor, bounds, report }))
 }

@@ -34,6 +34,12 @@ pub struct Systematic {
     pub timing: f64,
     /// Of dead time or device drops.
     pub dead_time: f64,
+    /// Of unknown voltages that disturb the motor.
+    pub process_noise: f64,
+    /// Of current sensors of which nobody knows which is right.
+    pub sensors: f64,
+    /// Of inductances that depend on the current.
+    pub saturation: f64,
     /// Of directions that are not excited.
     pub excitation: f64,
     /// Of contradiction between the points, where there is any; then in the accuracy's place.
@@ -43,11 +49,22 @@ pub struct Systematic {
 impl Systematic {
     /// All parts in quadrature.
     pub fn total(&self) -> f64 {
-        [self.accuracy, self.prior, self.timing, self.dead_time, self.excitation, self.misfit]
-            .iter()
-            .map(|part| part.powi(2))
-            .sum::<f64>()
-            .sqrt()
+        self.parts().iter().map(|(part, _)| part.powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Every part, with its name.
+    pub fn parts(&self) -> [(f64, Part); 9] {
+        [
+            (self.prior, Part::Prior),
+            (self.timing, Part::Timing),
+            (self.dead_time, Part::DeadTime),
+            (self.process_noise, Part::ProcessNoise),
+            (self.sensors, Part::Sensors),
+            (self.saturation, Part::Saturation),
+            (self.excitation, Part::Excitation),
+            (self.misfit, Part::Misfit),
+            (self.accuracy, Part::Accuracy),
+        ]
     }
 }
 
@@ -65,6 +82,16 @@ pub struct ParameterUncertainty {
 }
 
 impl ParameterUncertainty {
+    /// Both parts and their interval. Degrees of freedom are those of the statistical part.
+    pub(super) fn of(statistical: f64, degrees_of_freedom: f64, systematic: Systematic) -> Self {
+        let standard_error = statistical.hypot(systematic.total());
+        // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own
+        // square is 0/0 where there is no noise.
+        let degrees = degrees_of_freedom * (standard_error / statistical).powi(4);
+        let degrees_of_freedom = if degrees.is_nan() { NORMAL } else { degrees.clamp(1.0, NORMAL) };
+        Self { statistical, systematic, degrees_of_freedom, half_width: quantile(degrees_of_freedom) * standard_error }
+    }
+
     /// Both parts in quadrature.
     pub fn standard_error(&self) -> f64 {
         self.statistical.hypot(self.systematic.total())
@@ -72,15 +99,7 @@ impl ParameterUncertainty {
 
     /// The largest part.
     pub fn largest_part(&self) -> Part {
-        let Systematic { accuracy, prior, timing, dead_time, excitation, misfit } = self.systematic;
-        let rest = [
-            (prior, Part::Prior),
-            (timing, Part::Timing),
-            (dead_time, Part::DeadTime),
-            (excitation, Part::Excitation),
-            (misfit, Part::Misfit),
-            (accuracy, Part::Accuracy),
-        ];
+        let rest = self.systematic.parts();
         rest.into_iter().fold((self.statistical, Part::Noise), |largest, part| if part.0 > largest.0 { part } else { largest }).1
     }
 }
@@ -88,7 +107,7 @@ impl ParameterUncertainty {
 /// What an uncertainty is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Noise of the windows' means.
+    /// Noise.
     Noise,
     /// Accuracy of the voltages.
     Accuracy,
@@ -98,6 +117,12 @@ pub enum Part {
     Timing,
     /// Dead time or device drops.
     DeadTime,
+    /// Unknown voltages.
+    ProcessNoise,
+    /// Current sensors.
+    Sensors,
+    /// Inductances that depend on the current.
+    Saturation,
     /// Directions that are not excited.
     Excitation,
     /// Contradiction between the points.
@@ -113,6 +138,9 @@ impl Part {
             Self::Prior => "prior",
             Self::Timing => "voltage timing",
             Self::DeadTime => "dead time",
+            Self::ProcessNoise => "disturbances",
+            Self::Sensors => "current sensors",
+            Self::Saturation => "saturation",
             Self::Excitation => "excitation",
             Self::Misfit => "misfit",
         }
@@ -142,23 +170,19 @@ impl Uncertainty {
     pub fn of(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate, misfit: Option<&Misfit>, doubt: &Doubt) -> Self {
         let mut parameters = [ParameterUncertainty::default(); PARAMETERS];
         for (p, parameter) in parameters.iter_mut().enumerate() {
-            *parameter = of_parameter(p, points, estimate, misfit.is_some());
-            parameter.systematic.timing = doubt.timing[p];
-            parameter.systematic.dead_time = doubt.dead_time[p];
+            let (statistical, degrees_of_freedom, mut systematic) = of_parameter(p, points, estimate, misfit.is_some());
+            systematic.timing = doubt.timing[p];
+            systematic.dead_time = doubt.dead_time[p];
             // A uniform distribution's standard deviation.
-            parameter.systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
-            // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own
-            // square is 0/0 where there is no noise.
-            let degrees = parameter.degrees_of_freedom * (parameter.standard_error() / parameter.statistical).powi(4);
-            parameter.degrees_of_freedom = if degrees.is_nan() { NORMAL } else { degrees.clamp(1.0, NORMAL) };
-            parameter.half_width = quantile(parameter.degrees_of_freedom) * parameter.standard_error();
+            systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
+            *parameter = ParameterUncertainty::of(statistical, degrees_of_freedom, systematic);
         }
         Self { parameters, correlation: correlation(points, estimate) }
     }
 }
 
-/// The parts that come through the gains; the degrees of freedom are still those of the statistical part alone.
-fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit: bool) -> ParameterUncertainty {
+/// The parts that come through the gains: statistical, with its degrees of freedom, and systematic.
+fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit: bool) -> (f64, f64, Systematic) {
     let (mut variance, mut variance_of_variance, mut accuracy) = (0.0, 0.0, 0.0);
     for (w, point) in points.iter().enumerate() {
         let gain = estimate.gains[w][p];
@@ -168,17 +192,13 @@ fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit
         variance_of_variance += part * part / point.degrees_of_freedom as f64;
         accuracy += (gain[0] * gain[0] + gain[1] * gain[1]) * estimate.accuracy[w].powi(2);
     }
-    ParameterUncertainty {
-        statistical: variance.max(0.0).sqrt(),
-        systematic: Systematic {
-            accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
-            prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
-            misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
-            ..Systematic::default()
-        },
-        degrees_of_freedom: variance * variance / variance_of_variance,
-        half_width: 0.0,
-    }
+    let systematic = Systematic {
+        accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
+        prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
+        misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
+        ..Systematic::default()
+    };
+    (variance.max(0.0).sqrt(), variance * variance / variance_of_variance, systematic)
 }
 
 /// Two-sided quantile of Student's t.

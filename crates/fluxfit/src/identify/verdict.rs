@@ -4,11 +4,14 @@
 //! is never an answer.
 
 use super::{
-    Known, Settings, estimate::Estimate, excitation::Excitation, explain::explain, uncertainty::ParameterUncertainty,
-    uncertainty::Uncertainty,
+    Known, Settings,
+    estimate::Estimate,
+    excitation::Excitation,
+    explain::{explain, explain_currents},
+    uncertainty::{ParameterUncertainty, Uncertainty},
 };
 use crate::{
-    motor::{PARAMETERS, Parameter},
+    motor::{Motor, PARAMETERS, Parameter},
     steady::OperatingPoint,
 };
 
@@ -69,7 +72,7 @@ impl Judgement {
     }
 }
 
-/// Judges every parameter.
+/// Judges every parameter of the operating points' motor.
 pub fn judge(
     points: &[OperatingPoint],
     excitation: &Excitation,
@@ -77,8 +80,24 @@ pub fn judge(
     uncertainty: &Uncertainty,
     settings: &Settings,
 ) -> [Judgement; PARAMETERS] {
+    let explained =
+        |parameter: Parameter, raw: f64, uncertainty: &ParameterUncertainty| explain(parameter, points, excitation, raw, uncertainty);
+    judge_motor(&estimate.motor, uncertainty, settings, explained)
+}
+
+/// Judges every parameter of the simulated currents' motor.
+pub(super) fn judge_currents(motor: &Motor, uncertainty: &Uncertainty, settings: &Settings) -> [Judgement; PARAMETERS] {
+    judge_motor(motor, uncertainty, settings, |parameter, raw, uncertainty| explain_currents(parameter, raw, uncertainty))
+}
+
+fn judge_motor(
+    motor: &Motor,
+    uncertainty: &Uncertainty,
+    settings: &Settings,
+    explain: impl Fn(Parameter, f64, &ParameterUncertainty) -> (String, String),
+) -> [Judgement; PARAMETERS] {
     Parameter::ALL.map(|parameter| {
-        let raw = estimate.motor.get(parameter);
+        let raw = motor.get(parameter);
         let uncertainty = uncertainty.parameters[parameter as usize];
         let width = uncertainty.half_width / raw.abs();
         let verdict = match width {
@@ -92,7 +111,7 @@ pub fn judge(
             (Known::Fixed(_), _) => (Some("given, not identified".to_owned()), None),
             (_, Verdict::Identified) => (None, None),
             _ => {
-                let (reason, remedy) = explain(parameter, points, excitation, raw, &uncertainty);
+                let (reason, remedy) = explain(parameter, raw, &uncertainty);
                 (Some(reason), Some(remedy))
             }
         };

@@ -1,6 +1,6 @@
 //! Warnings: what the reader should know of the whole, whatever the verdicts.
 
-use super::{Identification, Settings};
+use super::{Identification, Settings, output_fit::OutputFit, steady_fit::SteadyFit, terms::Term};
 use crate::{
     log::Log,
     steady::{held_vector::MAX_ANGLE_PER_SAMPLE, windows},
@@ -17,25 +17,30 @@ pub struct Warning {
 
 /// Everything there is to warn of.
 pub(super) fn warnings(log: &Log, found: &Identification, settings: &Settings) -> Vec<Warning> {
-    let all = [
-        ("no-redundancy", no_redundancy(found)),
-        ("misfit", misfit(found)),
-        ("dead-time", dead_time(found)),
-        ("no-current", no_current(log, found, settings)),
-        ("short-stretches", short_stretches(log, settings)),
-        ("coarse-sampling", coarse_sampling(log, found)),
-        ("outside-box", outside_box(found)),
-    ];
-    all.into_iter().filter_map(|(code, message)| message.map(|message| Warning { code, message })).collect()
+    let of_points = found.steady.as_ref().map(|fit| {
+        // What only the steady model's own answer suffers from.
+        let answered = found.output.is_none();
+        [
+            ("no-redundancy", no_redundancy(fit).filter(|_| answered)),
+            ("misfit", misfit(fit)),
+            ("dead-time", dead_time(fit).filter(|_| answered)),
+            ("no-current", no_current(log, fit, settings).filter(|_| answered)),
+            ("short-stretches", short_stretches(log, settings).filter(|_| answered)),
+            ("coarse-sampling", coarse_sampling(log, fit)),
+        ]
+    });
+    let of_currents = found.output.as_ref().map(|fit| [("process-noise", process_noise(fit))]);
+    let all = of_points.into_iter().flatten().chain(of_currents.into_iter().flatten()).chain([("outside-box", outside_box(found))]);
+    all.filter_map(|(code, message)| message.map(|message| Warning { code, message })).collect()
 }
 
-fn no_redundancy(found: &Identification) -> Option<String> {
+fn no_redundancy(found: &SteadyFit) -> Option<String> {
     let message = "there are exactly as many equations as unknowns, so a perfect fit proves nothing: saturation, dead time or a wrong \
                    unit would go unseen; add a third operating point, or give a known value with --fix or --prior";
     (found.estimate.redundancy == 0).then(|| message.to_owned())
 }
 
-fn misfit(found: &Identification) -> Option<String> {
+fn misfit(found: &SteadyFit) -> Option<String> {
     let misfit = found.misfit?;
     Some(format!(
         "the operating points contradict each other {:.1} times beyond noise and accuracy, and agree only to {:.2} % of the voltage: \
@@ -46,7 +51,7 @@ fn misfit(found: &Identification) -> Option<String> {
     ))
 }
 
-fn dead_time(found: &Identification) -> Option<String> {
+fn dead_time(found: &SteadyFit) -> Option<String> {
     let most = found.voltage_losses.iter().copied().fold(0.0, f64::max);
     (most > 0.0).then(|| {
         format!(
@@ -56,10 +61,18 @@ fn dead_time(found: &Identification) -> Option<String> {
     })
 }
 
+fn process_noise(found: &OutputFit) -> Option<String> {
+    found.has(Term::ProcessNoise).then(|| {
+        "voltages that the log does not hold disturb the motor: what the simulated currents miss depends on what went before; each row is \
+         predicted from the row before instead, and the difference this makes is counted as uncertainty"
+            .to_owned()
+    })
+}
+
 /// Share of rows without current that is worth a word.
 const MANY_ROWS: f64 = 0.01;
 
-fn no_current(log: &Log, found: &Identification, settings: &Settings) -> Option<String> {
+fn no_current(log: &Log, found: &SteadyFit, settings: &Settings) -> Option<String> {
     const WHY: &str = "while a drive coasts, its voltage columns are not voltages that act";
     if settings.windows.is_empty() {
         let (idle, rows) = (windows::rows_without_current(log), log.rows());
@@ -87,7 +100,7 @@ fn short_stretches(log: &Log, settings: &Settings) -> Option<String> {
     ))
 }
 
-fn coarse_sampling(log: &Log, found: &Identification) -> Option<String> {
+fn coarse_sampling(log: &Log, found: &SteadyFit) -> Option<String> {
     let fastest = found.operating_points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let coarse = found.operating_points.iter().any(|point| {
         let within = log.segment_of(point.rows.start);
@@ -102,7 +115,7 @@ fn outside_box(found: &Identification) -> Option<String> {
     let search = found.search.as_ref()?;
     let judged = found.parameters.iter().zip(search.bounds.iter());
     let outside = judged
-        .filter(|(judgement, (lower, upper))| !found.excitation.is_open(judgement.parameter) && !(lower..=upper).contains(&&judgement.raw));
+        .filter(|(judgement, (lower, upper))| judgement.value().is_some() && !(lower..=upper).contains(&&judgement.raw));
     let symbols: Vec<&str> = outside.map(|(judgement, _)| judgement.parameter.symbol()).collect();
     (!symbols.is_empty()).then(|| format!("least squares lies outside the search box in {}: the swarm cannot reach it", symbols.join(", ")))
 }

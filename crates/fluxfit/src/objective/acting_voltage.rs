@@ -6,8 +6,9 @@
 
 use crate::{
     frames::{AlphaBeta, Dq},
-    log::{Log, Segment},
+    log::Log,
 };
+use std::{f64::consts::TAU, ops::Range};
 
 /// What `ud, uq` of row `k` mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,6 +45,32 @@ impl VoltageReading {
         Self::Delayed { delay: 2, frame: VoltageFrame::Row },
     ];
 
+    /// Name in files and on the command line.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Centered => "centered",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Middle } => "0",
+            Self::Delayed { delay: 1, frame: VoltageFrame::Middle } => "1",
+            Self::Delayed { frame: VoltageFrame::Middle, .. } => "2",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Row } => "0, in the frame at the row",
+            Self::Delayed { delay: 1, frame: VoltageFrame::Row } => "1, in the frame at the row",
+            Self::Delayed { frame: VoltageFrame::Row, .. } => "2, in the frame at the row",
+        }
+    }
+
+    /// In prose.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Centered => "the mean of the two periods around the row",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Middle } => "what acts over the period that begins at the row",
+            Self::Delayed { delay: 1, frame: VoltageFrame::Middle } => "what acts one period later",
+            Self::Delayed { frame: VoltageFrame::Middle, .. } => "what acts two periods later",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Row } => "what acts over the period that begins at the row, in the frame at the row",
+            Self::Delayed { delay: 1, frame: VoltageFrame::Row } => "what acts one period later, in the frame at the row",
+            Self::Delayed { frame: VoltageFrame::Row, .. } => "what acts two periods later, in the frame at the row",
+        }
+    }
+
     /// Rows at a segment's start whose acting voltage is not in the log.
     pub(super) fn lost_rows(self) -> usize {
         match self {
@@ -62,25 +89,20 @@ pub(super) struct Period {
     pub(super) omega_e: f64,
     /// The voltage that acts, V, in the frame at its middle.
     pub(super) u: Dq,
-    /// The stator seen from the rotor at its middle: the electrical angle from the segment's first row, rad.
+    /// The stator seen from the rotor at its middle: the electrical angle, rad.
     pub(super) theta_e: f64,
 }
 
-/// The periods of a segment, from row [`lost_rows`](VoltageReading::lost_rows) on: one less than it has rows left.
-pub(super) fn periods(log: &Log, segment: &Segment, reading: VoltageReading) -> Vec<Period> {
+/// The periods between these rows of one segment, from row [`lost_rows`](VoltageReading::lost_rows) on: one less than there are
+/// rows left. `theta_e` has an angle per row, as [`angles`] gives them.
+pub(super) fn periods(log: &Log, rows: &Range<usize>, theta_e: &[f64], reading: VoltageReading) -> Vec<Period> {
     let columns = log.columns();
-    let first = segment.rows.start + reading.lost_rows();
-    let mut theta_at_row = vec![0.0; segment.rows.len()];
-    for k in 1..segment.rows.len() {
-        let row = segment.rows.start + k;
-        let turn = 0.5 * (columns.omega_e[row - 1] + columns.omega_e[row]) * (columns.t[row] - columns.t[row - 1]);
-        theta_at_row[k] = theta_at_row[k - 1] + turn;
-    }
-    let theta = |row: usize| theta_at_row[row - segment.rows.start];
+    let first = rows.start + reading.lost_rows();
+    let theta = |row: usize| theta_e[row - rows.start];
     let logged = |row: usize| Dq { d: columns.ud[row], q: columns.uq[row] };
     // Of a centred column: what acted over the period before, in the stator. At the start nothing better is known than the row itself.
-    let mut before = logged(segment.rows.start).to_alpha_beta(0.0);
-    (first..segment.rows.end.saturating_sub(1))
+    let mut before = logged(rows.start).to_alpha_beta(theta(rows.start));
+    (first..rows.end.saturating_sub(1))
         .map(|row| {
             let middle = 0.5 * (theta(row) + theta(row + 1));
             let u = match reading {
@@ -98,4 +120,38 @@ pub(super) fn periods(log: &Log, segment: &Segment, reading: VoltageReading) -> 
             Period { length: columns.t[row + 1] - columns.t[row], omega_e, u, theta_e: middle }
         })
         .collect()
+}
+
+/// The logged angle may differ by this much per row, rad, from what the logged speed makes of it: an encoder's steps and a filtered
+/// speed do; an angle of the shaft instead of the field, or of the other sense, differs by more over a turn.
+const ANGLE_MISFIT: f64 = 0.1;
+
+/// Share of the rows that may miss it, as where an index pulse sets the angle right.
+const MISFITS: f64 = 0.01;
+
+/// The electrical angle at these rows of one segment, rad, without jumps; and whether it is the logged one. Without one, or where it
+/// does not turn with the speed, the speed is summed up from the first row on: a frame that stands still in the stator all the same,
+/// but nobody knows where.
+pub(super) fn angles(log: &Log, rows: &Range<usize>) -> (Vec<f64>, bool) {
+    let columns = log.columns();
+    let turn = |row: usize| 0.5 * (columns.omega_e[row - 1] + columns.omega_e[row]) * (columns.t[row] - columns.t[row - 1]);
+    let later = rows.start + 1..rows.end;
+    if let Some(logged) = &columns.theta_e {
+        let mut angles = vec![logged[rows.start]];
+        let mut misfits = 0;
+        for row in later.clone() {
+            let expected = angles[angles.len() - 1] + turn(row);
+            let angle = logged[row] + TAU * ((expected - logged[row]) / TAU).round();
+            misfits += usize::from((angle - expected).abs() > ANGLE_MISFIT);
+            angles.push(angle);
+        }
+        if misfits as f64 <= MISFITS * rows.len() as f64 {
+            return (angles, true);
+        }
+    }
+    let sum = later.scan(0.0, |theta, row| {
+        *theta += turn(row);
+        Some(*theta)
+    });
+    (std::iter::once(0.0).chain(sum).collect(), false)
 }

@@ -3,6 +3,8 @@
 //! A fitness is one file here and implements [`Objective`](crate::optimizer::Objective).
 
 pub mod acting_voltage;
+pub mod adjustable;
 pub mod output_error;
+mod phase_loss;
 pub mod transition;
 pub mod voltage_error;

@@ -9,11 +9,17 @@
 //! adjustable one. With known voltages and white measurement noise on the currents it is maximum likelihood, in closed loop too,
 //! because a voltage depends on past samples only.
 //!
+//! The [adjustable drive](super::adjustable) may have faults: what they do to voltages and measured currents is undone before the
+//! comparison. With an observer's gain the simulated current follows the measured one from row to row, and what is compared is the
+//! prediction of one row from the row before: the maximum likelihood where unknown voltages disturb the motor.
+//!
 //! What a segment does not tell, its first current and, of centred voltages, its first vector, enters `î` linearly and is solved
 //! for inside: the cost is the smallest over them.
 
 use super::{
-    acting_voltage::{Period, VoltageReading, periods},
+    acting_voltage::{Period, VoltageReading, angles, periods},
+    adjustable::{Adjustable, Nuisance},
+    phase_loss::mean_loss,
     transition::Transition,
 };
 use crate::{
@@ -24,6 +30,8 @@ use crate::{
     optimizer::Objective,
 };
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Periods whose lengths agree within this fraction are of one length: what the digits of a time column leave.
 const EVEN: f64 = 1e-3;
@@ -39,14 +47,22 @@ const MIN_ROWS: usize = 10;
 pub struct OutputError {
     courses: Vec<Course>,
     rows: usize,
+    /// What a search over motors takes for granted.
+    held: Nuisance,
 }
 
 /// A segment, ready to be simulated.
 #[derive(Debug, Clone, PartialEq)]
 struct Course {
+    /// Its rows in the log.
+    rows: Range<usize>,
     periods: Vec<Period>,
     /// One more than periods.
     measured: Vec<Dq>,
+    /// The electrical angle at each of them, rad.
+    theta_e: Vec<f64>,
+    /// Whether that angle is the logged one.
+    angle_known: bool,
     /// The unknown first vector of centred voltages counts.
     centered: bool,
     /// The length of its periods, s, if they are even.
@@ -66,23 +82,25 @@ impl OutputError {
     /// # Errors
     /// If none is.
     pub fn of(log: &Log, reading: VoltageReading) -> Result<Self, Error> {
-        let long_enough = log.segments().iter().filter(|segment| segment.rows.len() >= MIN_ROWS + reading.lost_rows());
-        let courses: Vec<Course> = long_enough
-            .map(|segment| {
-                let periods = periods(log, segment, reading);
-                let (first, columns) = (segment.rows.start + reading.lost_rows(), log.columns());
-                let measured = (first..segment.rows.end).map(|row| Dq { d: columns.id[row], q: columns.iq[row] }).collect();
-                let length = segment.sample_period;
-                let even = periods.iter().all(|period| (period.length / length - 1.0).abs() < EVEN).then_some(length);
-                Course { periods, measured, centered: reading == VoltageReading::Centered, even }
-            })
-            .collect();
+        let segments: Vec<_> = log.segments().iter().map(|segment| segment.rows.clone()).collect();
+        Self::of_rows(log, &segments, reading)
+    }
+
+    /// Stretches of a log, none of them across a gap; those that are long enough.
+    ///
+    /// # Errors
+    /// If none is.
+    pub fn of_rows(log: &Log, stretches: &[Range<usize>], reading: VoltageReading) -> Result<Self, Error> {
+        let least = MIN_ROWS + reading.lost_rows();
+        let long_enough = stretches.iter().filter(|rows| rows.len() >= least);
+        let courses: Vec<Course> = long_enough.map(|rows| Course::of(log, rows, reading)).collect();
         let rows = courses.iter().map(|course| course.measured.len()).sum();
-        if rows == 0 {
-            Err(Error::TooShort { rows: log.rows(), least: MIN_ROWS + reading.lost_rows() })
-        } else {
-            Ok(Self { courses, rows })
-        }
+        if rows == 0 { Err(Error::TooShort { rows: log.rows(), least }) } else { Ok(Self { courses, rows, held: Nuisance::default() }) }
+    }
+
+    /// The same fitness of motors in a drive with these faults.
+    pub fn holding(self, held: Nuisance) -> Self {
+        Self { held, ..self }
     }
 
     /// Rows whose currents are compared.
@@ -90,14 +108,70 @@ impl OutputError {
         self.rows
     }
 
+    /// Rows of the log whose currents are compared, stretch by stretch.
+    pub fn stretches(&self) -> impl Iterator<Item = Range<usize>> {
+        self.courses.iter().map(|course| course.rows.clone())
+    }
+
+    /// Whether every stretch has its angle from the log: what happens in the stator can only then be told from what does in the rotor.
+    pub fn angle_known(&self) -> bool {
+        self.courses.iter().all(|course| course.angle_known)
+    }
+
+    /// Largest measured current vector, A.
+    pub fn peak_current(&self) -> f64 {
+        self.courses.iter().flat_map(|course| &course.measured).map(|i| i.magnitude()).fold(0.0, f64::max)
+    }
+
     /// Cost of one motor, A².
     pub fn cost(&self, motor: &Motor) -> f64 {
-        self.courses.iter().map(|course| course.cost(motor)).sum()
+        self.cost_of(&Adjustable { motor: *motor, nuisance: self.held })
+    }
+
+    /// Cost of one motor in an imperfect drive, A².
+    pub fn cost_of(&self, drive: &Adjustable) -> f64 {
+        self.courses.iter().map(|course| course.cost(drive)).sum()
     }
 
     /// Measured less simulated current, A: `d, q` of each row in turn.
-    pub fn residuals(&self, motor: &Motor) -> Vec<f64> {
-        self.courses.iter().flat_map(|course| course.residuals(motor)).collect()
+    pub fn residuals(&self, drive: &Adjustable) -> Vec<f64> {
+        self.courses.iter().flat_map(|course| course.residuals(drive)).collect()
+    }
+
+    /// Simulated currents, A, row by row: what the residuals lack to the measured ones, faults undone.
+    pub fn simulated(&self, drive: &Adjustable) -> Vec<Dq> {
+        let of_course = |course: &Course| {
+            let residuals = course.residuals(drive);
+            let (residuals, _) = residuals.as_chunks::<2>();
+            let rows = residuals.iter().enumerate();
+            let simulated = rows.map(|(row, [d, q])| {
+                let measured = course.seen(row, drive);
+                Dq { d: measured.d - d, q: measured.q - q }
+            });
+            simulated.collect::<Vec<_>>()
+        };
+        self.courses.iter().flat_map(of_course).collect()
+    }
+
+    /// What a volt on each axis over each period does to a linear function of the simulated currents, which `weights` gives: `d, q` per
+    /// row. The course is run backward, by the adjoint equations. One entry per period, stretch after stretch.
+    pub fn by_voltage(&self, drive: &Adjustable, weights: &[f64]) -> Vec<Dq> {
+        let mut rest = weights;
+        let mut effects = Vec::with_capacity(self.rows);
+        for course in &self.courses {
+            let (own, others) = rest.split_at(2 * course.measured.len());
+            effects.extend(course.by_voltage(drive, own));
+            rest = others;
+        }
+        effects
+    }
+
+    /// Voltage (V), current at its start (A), speed (electrical rad/s) of each period, stretch after stretch.
+    pub fn periods(&self) -> impl Iterator<Item = (Dq, Dq, f64)> {
+        let of_course = |course: &Course| -> Vec<_> {
+            course.periods.iter().zip(&course.measured).map(|(period, i)| (period.u, *i, period.omega_e)).collect()
+        };
+        self.courses.iter().flat_map(of_course)
     }
 }
 
@@ -108,53 +182,124 @@ impl Objective for OutputError {
 
     fn evaluate(&self, candidates: &[f64], costs: &mut [f64]) {
         let (candidates, _) = candidates.as_chunks::<PARAMETERS>();
-        for (candidate, cost) in candidates.iter().zip(costs) {
-            *cost = self.cost(&Motor::from(*candidate));
-        }
+        // Each cost depends on its own candidate alone: any number of threads gives the same bits.
+        costs.par_iter_mut().zip(candidates).for_each(|(cost, candidate)| *cost = self.cost(&Motor::from(*candidate)));
     }
 }
+
+/// Rounds in which the flux beyond `L i` is found at a period's end: each is a fifth or less of the one before, of a change that is small.
+const SATURATION_ROUNDS: usize = 3;
 
 /// Most linear unknowns of a segment: the first current, the first vector.
 const UNKNOWNS: usize = 4;
 
 impl Course {
+    fn of(log: &Log, rows: &Range<usize>, reading: VoltageReading) -> Self {
+        let (theta_e, angle_known) = angles(log, rows);
+        let periods = periods(log, rows, &theta_e, reading);
+        let (lost, columns) = (reading.lost_rows(), log.columns());
+        let rows = rows.start + lost..rows.end;
+        let measured = rows.clone().map(|row| Dq { d: columns.id[row], q: columns.iq[row] }).collect();
+        let length = (columns.t[rows.end - 1] - columns.t[rows.start]) / periods.len() as f64;
+        let even = periods.iter().all(|period| (period.length / length - 1.0).abs() < EVEN).then_some(length);
+        let theta_e = theta_e[lost..].to_vec();
+        Self { rows, periods, measured, theta_e, angle_known, centered: reading == VoltageReading::Centered, even }
+    }
+
     fn unknowns(&self) -> usize {
         if self.centered { UNKNOWNS } else { UNKNOWNS / 2 }
     }
 
-    /// Simulates, and shows for each row the difference of measured and simulated current, and what each unknown does to the simulated one.
-    fn walk(&self, motor: &Motor, mut see: impl FnMut(Dq, &[Dq])) {
+    /// The current of a row as the adjustable drive says that it was, in the frame of the magnet.
+    fn seen(&self, row: usize, drive: &Adjustable) -> Dq {
+        let (i, faults) = (self.measured[row], &drive.nuisance);
+        if *faults == Nuisance::default() {
+            return i;
+        }
+        let theta = self.theta_e[row];
+        let offset = faults.current_offset.to_dq(theta);
+        let i = Dq { d: i.d - offset.d, q: i.q - offset.q };
+        // In the rotor's frame the imbalance turns backward twice as fast. (i + s conj i) is undone exactly.
+        let s = faults.imbalance.to_dq(2.0 * theta);
+        let shrunk = 1.0 / (1.0 - s.d * s.d - s.q * s.q);
+        let i = Dq { d: shrunk * (i.d - s.d * i.d - s.q * i.q), q: shrunk * (i.q - s.q * i.d + s.d * i.q) };
+        turned(i, faults.angle_offset - faults.current_turn)
+    }
+
+    /// One period of the adjustable drive, from the current `i` at its start: what is lost and what saturates follows the simulated
+    /// current. The measured one would let its noise into the prediction.
+    fn period(&self, k: usize, transition: &Transition, i: Dq, drive: &Adjustable) -> Dq {
+        let (Period { omega_e, mut u, theta_e, .. }, faults) = (self.periods[k], &drive.nuisance);
+        if faults.dead_time != 0.0 {
+            // As the sensors' frame has it; over a period the current hardly moves against the rotor.
+            let seen = turned(i, -faults.angle_offset);
+            let loss = mean_loss(seen.to_alpha_beta(self.theta_e[k]), seen.to_alpha_beta(self.theta_e[k + 1]), faults.dead_time_width);
+            let loss = loss.to_dq(theta_e);
+            u = Dq { d: u.d - faults.dead_time * loss.d, q: u.q - faults.dead_time * loss.q };
+        }
+        u = turned(u, faults.angle_offset);
+        if faults.saturation == Dq::default() && faults.cross_saturation == 0.0 {
+            return transition.after(i, u);
+        }
+        // Flux beyond L i + psi_f takes a voltage as any flux does: by its turning, and by its growth.
+        let flux = extra_flux(i, faults);
+        let linear = transition.after(i, Dq { d: u.d + omega_e * flux.q, q: u.q - omega_e * flux.d });
+        (0..SATURATION_ROUNDS).fold(linear, |end, _| {
+            let grown = extra_flux(end, faults);
+            Dq { d: linear.d - (grown.d - flux.d) / drive.motor.ld, q: linear.q - (grown.q - flux.q) / drive.motor.lq }
+        })
+    }
+
+    fn transitions<'a>(&'a self, motor: &'a Motor) -> impl Fn(&Period) -> Transition + 'a {
         let table = self.even.map(|length| Table::new(motor, &self.periods, length));
+        move |period| match &table {
+            Some(table) => table.at(period.omega_e),
+            None => Transition::of(motor, period.omega_e, period.length),
+        }
+    }
+
+    /// Simulates, and shows for each row the difference of measured and simulated current, and what each unknown does to the simulated one.
+    fn walk(&self, drive: &Adjustable, mut see: impl FnMut(Dq, &[Dq])) {
+        let transition = self.transitions(&drive.motor);
+        let perfect = drive.nuisance == Nuisance::default();
+        let gain = drive.nuisance.observer_gain;
         let unknowns = self.unknowns();
-        let mut i = self.measured[0];
+        let mut i = self.seen(0, drive);
         let unit = |k: usize| Dq { d: f64::from(u8::from(k == 0)), q: f64::from(u8::from(k == 1)) };
         let mut response: [Dq; UNKNOWNS] = std::array::from_fn(unit);
         see(Dq::default(), &response[..unknowns]);
         let mut sign = 1.0;
-        for (period, measured) in self.periods.iter().zip(&self.measured[1..]) {
-            let transition = match &table {
-                Some(table) => table.at(period.omega_e),
-                None => Transition::of(motor, period.omega_e, period.length),
+        let mut error = Dq::default();
+        for (k, period) in self.periods.iter().enumerate() {
+            let transition = transition(period);
+            let followed = Dq { d: i.d + gain.d * error.d, q: i.q + gain.q * error.q };
+            let measured;
+            (i, measured) = if perfect {
+                (transition.after(followed, period.u), self.measured[k + 1])
+            } else {
+                (self.period(k, &transition, followed, drive), self.seen(k + 1, drive))
             };
-            i = transition.after(i, period.u);
             for (k, response) in response[..unknowns].iter_mut().enumerate() {
                 let alternating = match k {
                     2 => AlphaBeta { alpha: sign, beta: 0.0 }.to_dq(period.theta_e),
                     3 => AlphaBeta { alpha: 0.0, beta: sign }.to_dq(period.theta_e),
                     _ => Dq::default(),
                 };
-                *response = transition.difference_after(*response, alternating);
+                let followed = Dq { d: (1.0 - gain.d) * response.d, q: (1.0 - gain.q) * response.q };
+                *response = transition.difference_after(followed, alternating);
             }
             sign = -sign;
-            see(Dq { d: measured.d - i.d, q: measured.q - i.q }, &response[..unknowns]);
+            error = Dq { d: measured.d - i.d, q: measured.q - i.q };
+            see(error, &response[..unknowns]);
         }
     }
 
     /// The unknowns that fit best, and the cost that is left.
-    fn fit(&self, motor: &Motor) -> (DVector<f64>, f64) {
+    fn fit(&self, drive: &Adjustable, mut keep: impl FnMut(Dq, &[Dq])) -> (DVector<f64>, f64) {
         let n = self.unknowns();
         let (mut normal, mut right, mut total) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS], 0.0);
-        self.walk(motor, |error, response| {
+        self.walk(drive, |error, response| {
+            keep(error, response);
             total += error.d * error.d + error.q * error.q;
             for (k, one) in response.iter().enumerate() {
                 right[k] += one.d * error.d + one.q * error.q;
@@ -175,21 +320,60 @@ impl Course {
         }
     }
 
-    fn cost(&self, motor: &Motor) -> f64 {
-        self.fit(motor).1
+    fn cost(&self, drive: &Adjustable) -> f64 {
+        self.fit(drive, |_, _| ()).1
     }
 
-    fn residuals(&self, motor: &Motor) -> Vec<f64> {
-        let (best, _) = self.fit(motor);
+    fn residuals(&self, drive: &Adjustable) -> Vec<f64> {
+        let n = self.unknowns();
         let mut residuals = Vec::with_capacity(2 * self.measured.len());
-        self.walk(motor, |mut error, response| {
-            for (value, response) in best.iter().zip(response) {
-                error.d -= value * response.d;
-                error.q -= value * response.q;
-            }
+        let mut responses = Vec::with_capacity(n * self.measured.len());
+        let (best, _) = self.fit(drive, |error, response| {
             residuals.extend([error.d, error.q]);
+            responses.extend_from_slice(response);
         });
+        let (rows, _) = residuals.as_chunks_mut::<2>();
+        for (error, responses) in rows.iter_mut().zip(responses.chunks_exact(n)) {
+            for (value, response) in best.iter().zip(responses) {
+                error[0] -= value * response.d;
+                error[1] -= value * response.q;
+            }
+        }
         residuals
+    }
+
+    fn by_voltage(&self, drive: &Adjustable, weights: &[f64]) -> Vec<Dq> {
+        let transition = self.transitions(&drive.motor);
+        let gain = drive.nuisance.observer_gain;
+        let (weights, _) = weights.as_chunks::<2>();
+        let mut effects = vec![Dq::default(); self.periods.len()];
+        let mut behind = Dq::default();
+        for (k, period) in self.periods.iter().enumerate().rev() {
+            let [d, q] = weights[k + 1];
+            let after = Dq { d: behind.d + d, q: behind.q + q };
+            let (by_current, by_voltage) = transition(period).transposed(after);
+            effects[k] = by_voltage;
+            behind = Dq { d: (1.0 - gain.d) * by_current.d, q: (1.0 - gain.q) * by_current.q };
+        }
+        effects
+    }
+}
+
+/// A vector turned forward, rad.
+fn turned(vector: Dq, by: f64) -> Dq {
+    if by == 0.0 {
+        return vector;
+    }
+    let AlphaBeta { alpha, beta } = vector.to_alpha_beta(by);
+    Dq { d: alpha, q: beta }
+}
+
+/// Flux, Wb, beyond `L i + psi_f`.
+fn extra_flux(i: Dq, faults: &Nuisance) -> Dq {
+    let cross = faults.cross_saturation;
+    Dq {
+        d: faults.saturation.d * i.d * i.d.abs() + cross * i.q * i.q,
+        q: faults.saturation.q * i.q * i.q.abs() + 2.0 * cross * i.d * i.q,
     }
 }
 

@@ -20,15 +20,24 @@
 //!
 //! A *centred* column, the mean of the two periods around the row seen from the frame at the row, is that vector times `cos x`.
 
-use crate::frames::Dq;
+use crate::{frames::Dq, objective::acting_voltage::VoltageReading};
 
-/// What `ud, uq` of a row mean.
+/// What `ud, uq` of a row mean, as far as a drive that stands still shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VoltageTiming {
     /// The mean of the two periods around the row, in the frame at the row.
     Centered,
     /// The vector that acts over one period, in the frame at that period's middle. Its delay does not matter while the drive stands still.
     Compensated,
+}
+
+impl From<VoltageReading> for VoltageTiming {
+    fn from(reading: VoltageReading) -> Self {
+        match reading {
+            VoltageReading::Centered => Self::Centered,
+            VoltageReading::Delayed { .. } => Self::Compensated,
+        }
+    }
 }
 
 /// Beyond this angle per sample, rad, a log's period is no inverter's: such logs are decimated or filtered, and the inverter's

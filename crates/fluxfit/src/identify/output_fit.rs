@@ -1,0 +1,414 @@
+//! What the output error makes of a log: a motor in an imperfect drive whose simulated currents are nearest the measured ones.
+//!
+//! ```text
+//! start → reading of the voltages → faults of the drive → disturbances → covariance → judgement
+//! ```
+//!
+//! Its statistical uncertainty is that of its scores, the products of derivatives and residuals: `(J'J)^-1 S (J'J)^-1` with their
+//! [long-run covariance](super::long_run) `S`. The voltages' accuracy comes through the adjoint equations, which tell what a volt at any
+//! row does to each parameter.
+
+use super::{
+    Known, Provenance, Search, Settings,
+    excitation::Excitation,
+    long_run, search_box,
+    steady_fit::SteadyFit,
+    terms::{self, Candidate, Outcome, Term, inverse_normal},
+    timing,
+    uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
+    verdict::{self, Judgement},
+};
+use crate::{
+    error::Error,
+    frames::Dq,
+    least_squares::{Equation, TriangularFactor},
+    levenberg_marquardt::{Belief, MOTOR, jacobian},
+    log::Log,
+    motor::{Motor, PARAMETERS, Parameter},
+    objective::{
+        acting_voltage::VoltageReading,
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
+    optimizer::Optimizer,
+    steady::{OperatingPoint, windows},
+};
+use nalgebra::DMatrix;
+use std::{collections::BTreeMap, ops::Range};
+
+/// The simulated currents, and the motor that they ask for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputFit {
+    /// The motor, and what was found to stand between it and the log.
+    pub drive: Adjustable,
+    /// How the voltage columns were read, and whether that was stated or found.
+    pub voltage_reading: (VoltageReading, Provenance),
+    /// Every reading that was tried, without faults of the drive, the best first.
+    pub readings: Vec<timing::Tried>,
+    /// Every fault that was tried, those taken first.
+    pub terms: Vec<terms::Tried>,
+    /// Numbers of the drive beside the motor that were found.
+    pub nuisance: Vec<Nuisance>,
+    /// Stretches of the log whose rows are compared.
+    pub stretches: Vec<Range<usize>>,
+    /// Measured less simulated current, A: `d, q` of each of those rows in turn; with an observer, less the prediction from the row before.
+    pub residuals: Vec<f64>,
+    /// Sum of their squares, A².
+    pub cost: f64,
+    /// Residuals less unknowns.
+    pub redundancy: usize,
+    /// Correlation of neighbouring residuals, the larger of both axes.
+    pub correlation_of_neighbours: f64,
+    uncertainty: Uncertainty,
+}
+
+/// A number of the drive beside the motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nuisance {
+    /// Which.
+    pub unknown: Unknown,
+    /// SI.
+    pub value: f64,
+    /// Statistical standard error, SI.
+    pub standard_error: f64,
+}
+
+impl OutputFit {
+    /// Fits the rows of the log, or of the windows that are named.
+    ///
+    /// # Errors
+    /// If a window is not in the log, or no stretch is long enough.
+    pub fn of(log: &Log, steady: Option<&SteadyFit>, settings: &Settings) -> Result<Self, Error> {
+        let stretches = stretches(log, settings)?;
+        let scale = Excitation::of(&whole(log, &stretches), &settings.known).scale;
+        let start = start(log, &stretches, steady, settings, &scale);
+        let free = free(settings);
+        let rough = timing::readings(log, &stretches, &start, &free, &[], settings)?;
+        let beliefs = beliefs(settings, rough.first().map_or(0.0, timing::Tried::mean_square));
+        let readings = timing::readings(log, &stretches, &start, &free, &beliefs, settings)?;
+        let Some(best) = readings.first() else { return Err(Error::TooShort { rows: log.rows(), least: 2 }) };
+
+        let objective = OutputError::of_rows(log, &stretches, best.reading)?;
+        let (drive, cost) = (best.polished.drive, best.polished.cost);
+        let mut candidate = Candidate { objective: &objective, beliefs: &beliefs, drive, unknowns: free, cost, voltage_accuracy: settings.voltage_accuracy };
+        let mut tried = candidate.add_faults();
+        let undisturbed = candidate.drive.motor;
+        let process_noise = candidate.add_process_noise();
+        let disturbed = process_noise.outcome == Outcome::Taken;
+        tried.push(process_noise);
+        tried.sort_by_key(|tried| tried.outcome != Outcome::Taken);
+
+        let Candidate { drive, unknowns, cost, .. } = candidate;
+        let residuals = objective.residuals(&drive);
+        let doubt = Doubt {
+            timing: timing::doubt(&readings, terms::independent(&residuals)),
+            process_noise: if disturbed { difference(&drive.motor, &undisturbed) } else { [0.0; PARAMETERS] },
+            sensors: sensors(&drive),
+        };
+        let errors = Errors::of(&objective, &drive, &unknowns, &beliefs, &residuals, settings, &scale);
+        Ok(Self {
+            drive,
+            voltage_reading: (best.reading, if settings.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
+            terms: tried,
+            nuisance: errors.nuisance(&drive, &unknowns),
+            stretches: objective.stretches().collect(),
+            redundancy: residuals.len().saturating_sub(unknowns.len()),
+            correlation_of_neighbours: errors.correlation_of_neighbours,
+            uncertainty: errors.uncertainty(&unknowns, &doubt),
+            readings,
+            residuals,
+            cost,
+        })
+    }
+
+    /// Whether a term is part of the answer.
+    pub fn has(&self, term: Term) -> bool {
+        self.terms.iter().any(|tried| tried.term == term && tried.outcome == Outcome::Taken)
+    }
+
+    /// Root mean square of the residuals along d and q, A.
+    pub fn residual_rms(&self) -> Dq {
+        let (rows, _) = self.residuals.as_chunks::<2>();
+        let rms = |axis: usize| (rows.iter().map(|row| row[axis].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
+        Dq { d: rms(0), q: rms(1) }
+    }
+
+    /// The parameters, judged, and the correlation of their errors.
+    pub(super) fn judge(&self, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
+        let parameters = verdict::judge_currents(&self.drive.motor, &self.uncertainty, settings);
+        (parameters, self.uncertainty.correlation)
+    }
+
+    /// Lets the swarm that is asked for minimize the same output error.
+    pub(super) fn search(&self, log: &Log, steady: Option<&SteadyFit>, settings: &Settings) -> Result<Option<Search>, Error> {
+        let Some(method) = settings.method else { return Ok(None) };
+        let bounds = match (&settings.bounds, steady) {
+            (Some(bounds), _) => bounds.clone(),
+            (None, Some(steady)) => search_box::from_points(&steady.operating_points)?,
+            (None, None) => search_box::from_points(&whole(log, &self.stretches))?,
+        };
+        let objective = OutputError::of_rows(log, &self.stretches, self.voltage_reading.0)?.holding(self.drive.nuisance);
+        let report = Optimizer::start(method, settings.search, bounds.clone(), &objective)?.run(&objective);
+        let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
+        Ok(Some(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report }))
+    }
+}
+
+/// The windows that are named, or all that the log has without a gap.
+fn stretches(log: &Log, settings: &Settings) -> Result<Vec<Range<usize>>, Error> {
+    if settings.windows.is_empty() {
+        return Ok(log.segments().iter().map(|segment| segment.rows.clone()).collect());
+    }
+    let mut named = Vec::new();
+    for times in &settings.windows {
+        named.extend(windows::between(log, *times)?);
+    }
+    Ok(named)
+}
+
+/// Each stretch as one operating point, steady or not: for the size of things.
+fn whole(log: &Log, stretches: &[Range<usize>]) -> Vec<OperatingPoint> {
+    stretches.iter().map(|rows| OperatingPoint::measure(log, rows.clone(), None)).collect()
+}
+
+/// Parameters that are not fixed.
+fn free(settings: &Settings) -> Vec<Unknown> {
+    let is_free = |(_, known): &(Unknown, &Known)| !matches!(known, Known::Fixed(_));
+    MOTOR.into_iter().zip(&settings.known).filter(is_free).map(|(unknown, _)| unknown).collect()
+}
+
+/// Priors as residuals, given the mean square of a current's.
+fn beliefs(settings: &Settings, mean_square: f64) -> Vec<Belief> {
+    let priors = MOTOR.into_iter().zip(settings.known).filter_map(|(unknown, known)| match known {
+        Known::Prior { value, standard_error } => Some(Belief { unknown, value, weight: mean_square.sqrt() / standard_error }),
+        Known::Nothing | Known::Fixed(_) => None,
+    });
+    priors.collect()
+}
+
+/// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations.
+fn start(log: &Log, stretches: &[Range<usize>], steady: Option<&SteadyFit>, settings: &Settings, scale: &[f64; PARAMETERS]) -> Adjustable {
+    let rows = by_differences(log, stretches).to_array();
+    let mut values: [f64; PARAMETERS] = std::array::from_fn(|p| {
+        let parameter = Parameter::ALL[p];
+        let of_points = steady.filter(|fit| !fit.excitation.is_open(parameter)).map(|fit| fit.estimate.motor.get(parameter));
+        // A tenth of what the voltage allows is nobody's motor and everybody's start.
+        [of_points, Some(rows[p])].into_iter().flatten().find(|value| *value > 0.0 && value.is_finite()).unwrap_or(0.1 * scale[p])
+    });
+    for (value, known) in values.iter_mut().zip(settings.known) {
+        match known {
+            Known::Fixed(known) | Known::Prior { value: known, .. } => *value = known,
+            Known::Nothing => {}
+        }
+    }
+    Adjustable::from(Motor::from(values))
+}
+
+/// Rows over which a difference of currents stands for their slope: enough to calm noise, few enough to follow a transient.
+const DIFFERENCE: usize = 10;
+
+/// The motor of equation (1), with differences of currents over some rows and means of the rest: biased by noise and delay, and
+/// good enough to start from.
+fn by_differences(log: &Log, stretches: &[Range<usize>]) -> Motor {
+    let columns = log.columns();
+    let mut equations = Vec::new();
+    for rows in stretches {
+        for first in rows.clone().step_by(DIFFERENCE).filter(|first| first + DIFFERENCE < rows.end) {
+            let span = first..first + DIFFERENCE;
+            let mean = |value: &dyn Fn(usize) -> f64| span.clone().map(value).sum::<f64>() / DIFFERENCE as f64;
+            let slope = |current: &[f64]| (current[span.end] - current[first]) / (columns.t[span.end] - columns.t[first]);
+            let omega_i = |current: &[f64]| mean(&|row| columns.omega_e[row] * current[row]);
+            let (id, iq) = (mean(&|row| columns.id[row]), mean(&|row| columns.iq[row]));
+            let d = [id, slope(&columns.id), -omega_i(&columns.iq), 0.0];
+            let q = [iq, omega_i(&columns.id), slope(&columns.iq), mean(&|row| columns.omega_e[row])];
+            equations.push(Equation { coefficients: d, value: mean(&|row| columns.ud[row]) });
+            equations.push(Equation { coefficients: q, value: mean(&|row| columns.uq[row]) });
+        }
+    }
+    equations.into_iter().collect::<TriangularFactor>().solve().motor
+}
+
+/// How far each parameter moves with what is not certain, SI.
+struct Doubt {
+    timing: [f64; PARAMETERS],
+    process_noise: [f64; PARAMETERS],
+    sensors: [f64; PARAMETERS],
+}
+
+fn difference(one: &Motor, other: &Motor) -> [f64; PARAMETERS] {
+    let (one, other) = (one.to_array(), other.to_array());
+    std::array::from_fn(|p| (one[p] - other[p]).abs())
+}
+
+/// Where gains of sensors differ, nobody knows which of them is right: a gain common to all would scale every impedance.
+fn sensors(drive: &Adjustable) -> [f64; PARAMETERS] {
+    let imbalance = drive.nuisance.imbalance;
+    let common = imbalance.alpha.hypot(imbalance.beta);
+    let Motor { rs, ld, lq, .. } = drive.motor;
+    [common * rs, common * ld, common * lq, 0.0]
+}
+
+/// Errors of everything that was fitted.
+struct Errors {
+    /// Of the unknowns, from noise.
+    covariance: DMatrix<f64>,
+    degrees_of_freedom: f64,
+    /// Of the unknowns, from the voltages' accuracy.
+    accuracy: DMatrix<f64>,
+    /// Of the unknowns, per prior.
+    priors: Vec<Vec<f64>>,
+    /// How far what the rows do not tell at all could move each unknown.
+    open: Vec<f64>,
+    correlation_of_neighbours: f64,
+}
+
+impl Errors {
+    fn of(
+        objective: &OutputError,
+        drive: &Adjustable,
+        unknowns: &[Unknown],
+        beliefs: &[Belief],
+        residuals: &[f64],
+        settings: &Settings,
+        scale: &[f64; PARAMETERS],
+    ) -> Self {
+        let slopes = jacobian(objective, drive, unknowns);
+        let mut with_beliefs = slopes.clone();
+        for (column, unknown) in with_beliefs.iter_mut().zip(unknowns) {
+            column.extend(beliefs.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
+        }
+        let inverse = inverse_normal(&with_beliefs);
+        let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
+        let (rows, _) = residuals.as_chunks::<2>();
+        // A score per row: both axes together.
+        let scores = slopes.iter().map(|slope| {
+            let (slope, _) = slope.as_chunks::<2>();
+            slope.iter().zip(rows).map(|(slope, residual)| slope[0] * residual[0] + slope[1] * residual[1]).collect()
+        });
+        let scores: Vec<Vec<f64>> = scores.collect();
+        let long_run = long_run::covariance(&scores, &lengths);
+        let axis = |axis: usize| rows.iter().map(|row| row[axis]).collect::<Vec<_>>();
+        Self {
+            covariance: &inverse * long_run.covariance * &inverse,
+            degrees_of_freedom: long_run.degrees_of_freedom,
+            accuracy: accuracy(objective, drive, &inverse, &slopes, settings.voltage_accuracy),
+            priors: beliefs
+                .iter()
+                .map(|belief| {
+                    let column = unknowns.iter().position(|unknown| *unknown == belief.unknown);
+                    let noise = (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt();
+                    // A belief's own error is one standard error, which is the noise of a current over its weight.
+                    column.map_or(vec![0.0; unknowns.len()], |q| (0..unknowns.len()).map(|p| inverse[(p, q)] * belief.weight * noise).collect())
+                })
+                .collect(),
+            open: open(&with_beliefs, &inverse, unknowns, scale),
+            correlation_of_neighbours: [0, 1].map(|k| long_run::first_correlation(&axis(k), &lengths)).into_iter().fold(f64::MIN, f64::max),
+        }
+    }
+
+    fn nuisance(&self, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Nuisance> {
+        let beside = unknowns.iter().enumerate().filter(|(_, unknown)| !matches!(unknown, Unknown::Motor(_)));
+        beside
+            .map(|(k, unknown)| Nuisance {
+                unknown: *unknown,
+                value: drive.get(*unknown),
+                standard_error: (self.covariance[(k, k)].max(0.0) + self.accuracy[(k, k)].max(0.0)).sqrt(),
+            })
+            .collect()
+    }
+
+    fn uncertainty(&self, unknowns: &[Unknown], doubt: &Doubt) -> Uncertainty {
+        let place: Vec<Option<usize>> = MOTOR.iter().map(|parameter| unknowns.iter().position(|unknown| unknown == parameter)).collect();
+        let parameters = std::array::from_fn(|p| {
+            let Some(k) = place[p] else { return ParameterUncertainty::default() };
+            let systematic = Systematic {
+                accuracy: self.accuracy[(k, k)].max(0.0).sqrt(),
+                prior: self.priors.iter().map(|prior| prior[k].powi(2)).sum::<f64>().sqrt(),
+                timing: doubt.timing[p],
+                process_noise: doubt.process_noise[p],
+                sensors: doubt.sensors[p],
+                excitation: self.open[k],
+                ..Systematic::default()
+            };
+            ParameterUncertainty::of(self.covariance[(k, k)].max(0.0).sqrt(), self.degrees_of_freedom, systematic)
+        });
+        let both = |p: usize, q: usize| match (place[p], place[q]) {
+            (Some(k), Some(l)) => {
+                self.covariance[(k, l)] + self.accuracy[(k, l)] + self.priors.iter().map(|prior| prior[k] * prior[l]).sum::<f64>()
+            }
+            _ => 0.0,
+        };
+        let correlation = std::array::from_fn(|p| {
+            std::array::from_fn(|q| {
+                let scale = (both(p, p) * both(q, q)).sqrt();
+                if scale > 0.0 { both(p, q) / scale } else { 0.0 }
+            })
+        });
+        Uncertainty { parameters, correlation }
+    }
+}
+
+/// A parameter is open if the rows tell less than all but this part of it.
+const OPEN_PART: f64 = 0.01;
+
+/// Per unknown: the range of a parameter that is open, as a standard deviation; zero for others.
+fn open(columns: &[Vec<f64>], inverse: &DMatrix<f64>, unknowns: &[Unknown], scale: &[f64; PARAMETERS]) -> Vec<f64> {
+    let dot = |p: usize, q: usize| columns[p].iter().zip(&columns[q]).map(|(a, b)| a * b).sum::<f64>();
+    let told = |k: usize| (0..columns.len()).map(|l| inverse[(k, l)] * dot(l, k)).sum::<f64>();
+    let range = |(k, unknown): (usize, &Unknown)| match unknown {
+        Unknown::Motor(parameter) if !((told(k) - 1.0).abs() <= OPEN_PART) => scale[*parameter as usize] / 3.0_f64.sqrt(),
+        _ => 0.0,
+    };
+    unknowns.iter().enumerate().map(range).collect()
+}
+
+/// Operating points this far apart, as a fraction of the largest current and speed, are as good as independent in their voltages'
+/// errors: a drive's voltage error is a function of where it runs, smooth on that scale.
+const SMOOTH: f64 = 0.1;
+
+/// Periods are gathered by where they run, in cells of this fraction: a few to that scale.
+const CELL: f64 = 0.04;
+
+/// Covariance of the unknowns from the voltages' accuracy: their error along either axis is a random function of the operating point,
+/// of that fraction of the voltage there, alike at points that lie close.
+pub(super) fn accuracy(objective: &OutputError, drive: &Adjustable, inverse: &DMatrix<f64>, slopes: &[Vec<f64>], fraction: f64) -> DMatrix<f64> {
+    let size = slopes.len();
+    if fraction == 0.0 {
+        return DMatrix::zeros(size, size);
+    }
+    let (mut most_current, mut most_speed) = (f64::MIN_POSITIVE, f64::MIN_POSITIVE);
+    for (_, i, omega_e) in objective.periods() {
+        most_current = most_current.max(i.magnitude());
+        most_speed = most_speed.max(omega_e.abs());
+    }
+    let cell = |i: Dq, omega_e: f64| [i.d / most_current, i.q / most_current, omega_e / most_speed].map(|x| (x / CELL).round() as i32);
+    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents have the opposite sign.
+    let mut cells: BTreeMap<[i32; 3], Vec<Dq>> = BTreeMap::new();
+    for p in 0..size {
+        let mut weights = vec![0.0; slopes[0].len()];
+        for (q, slope) in slopes.iter().enumerate() {
+            weights.iter_mut().zip(slope).for_each(|(weight, slope)| *weight += inverse[(p, q)] * slope);
+        }
+        let effects = objective.by_voltage(drive, &weights);
+        for ((u, i, omega_e), effect) in objective.periods().zip(effects) {
+            let sums = cells.entry(cell(i, omega_e)).or_insert_with(|| vec![Dq::default(); size]);
+            let volts = fraction * u.magnitude();
+            sums[p].d += volts * effect.d;
+            sums[p].q += volts * effect.q;
+        }
+    }
+    let mut covariance = DMatrix::zeros(size, size);
+    let cells: Vec<_> = cells.into_iter().collect();
+    for (one, effects) in &cells {
+        for (other, others) in &cells {
+            let distance: f64 = one.iter().zip(other).map(|(a, b)| (f64::from(a - b) * CELL / SMOOTH).powi(2)).sum();
+            let alike = (-0.5 * distance).exp();
+            for p in 0..size {
+                for q in 0..size {
+                    covariance[(p, q)] += alike * (effects[p].d * others[q].d + effects[p].q * others[q].q);
+                }
+            }
+        }
+    }
+    covariance
+}

@@ -1,0 +1,70 @@
+//! Which voltage acted when: every reading of the voltage columns is tried, and the currents decide.
+//!
+//! A period's delay that is wrong shows wherever the voltage moves. In a log that stands still at one speed it does not show; then the
+//! readings that fit about as well as the best one tell how much it matters.
+
+use super::Settings;
+use crate::{
+    error::Error,
+    levenberg_marquardt::{Belief, Polished, polish_unknowns},
+    log::Log,
+    motor::PARAMETERS,
+    objective::{
+        acting_voltage::VoltageReading,
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
+};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Twice the logarithm of the odds against a reading from which on it is ruled out: e^-5, one in 150. R. E. Kass and A. E. Raftery, "Bayes
+/// factors", J. Am. Stat. Assoc. 90 (1995) 773, call it very strong.
+pub(super) const VERY_STRONG: f64 = 10.0;
+
+/// A reading, tried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tried {
+    /// The reading.
+    pub reading: VoltageReading,
+    /// What came of it.
+    pub polished: Polished,
+    /// Rows that it compares: a delay loses some.
+    pub rows: usize,
+}
+
+impl Tried {
+    /// Mean square of a residual, A²: what readings are compared by.
+    pub fn mean_square(&self) -> f64 {
+        self.polished.cost / (2 * self.rows) as f64
+    }
+}
+
+/// Tries every reading, or the one that is stated, from the same start. The best one first.
+pub(super) fn readings(
+    log: &Log,
+    stretches: &[Range<usize>],
+    start: &Adjustable,
+    unknowns: &[Unknown],
+    beliefs: &[Belief],
+    settings: &Settings,
+) -> Result<Vec<Tried>, Error> {
+    let readings = settings.voltage_timing.map_or(VoltageReading::ALL.to_vec(), |stated| vec![stated]);
+    let try_one = |reading: &VoltageReading| {
+        let objective = OutputError::of_rows(log, stretches, *reading)?;
+        Ok(Tried { reading: *reading, polished: polish_unknowns(&objective, start, unknowns, beliefs), rows: objective.rows() })
+    };
+    let mut tried: Vec<Tried> = readings.par_iter().map(try_one).collect::<Result<_, Error>>()?;
+    tried.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
+    Ok(tried)
+}
+
+/// How far each parameter moves between the readings that are not ruled out, given how many independent residuals there are.
+pub(super) fn doubt(tried: &[Tried], independent: f64) -> [f64; PARAMETERS] {
+    let Some((best, others)) = tried.split_first() else { return [0.0; PARAMETERS] };
+    let possible = others.iter().filter(|other| independent * (other.mean_square() / best.mean_square()).ln() < VERY_STRONG);
+    possible.fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
+        let (one, other) = (best.polished.drive.motor.to_array(), other.polished.drive.motor.to_array());
+        std::array::from_fn(|p| most[p].max((one[p] - other[p]).abs()))
+    })
+}
