@@ -144,8 +144,8 @@ fn a_converter_reads_its_steps_and_its_range() {
     // Phase a alone, at rotor angles: alpha = a when the three sum to zero, up to the steps of b and c.
     let step = 20.0 / 2048.0;
     let angle = recording.columns.theta_e.as_deref().unwrap();
-    for k in 0..recording.columns.t.len() {
-        let i = Dq { d: recording.columns.id[k], q: recording.columns.iq[k] }.to_alpha_beta(angle[k]);
+    for (k, theta_e) in angle.iter().enumerate() {
+        let i = Dq { d: recording.columns.id[k], q: recording.columns.iq[k] }.to_alpha_beta(*theta_e);
         // beta = (b - c) / sqrt(3): a whole number of steps.
         let steps = i.beta * 3.0_f64.sqrt() / step;
         assert!((steps - steps.round()).abs() < 1e-6, "row {k}: {steps}");
