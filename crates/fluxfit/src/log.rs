@@ -181,6 +181,7 @@ pub fn check_values(column: &'static str, values: &[f64]) -> Result<(), Error> {
     values.iter().enumerate().try_for_each(|(row, value)| check_value(column, row, *value))
 }
 
+#[inline]
 fn check_value(column: &'static str, row: usize, value: f64) -> Result<(), Error> {
     if !value.is_finite() {
         return Err(Error::NotFinite { column, row, value });
