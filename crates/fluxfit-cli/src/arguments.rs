@@ -34,7 +34,8 @@ pub(crate) struct LogArguments {
     /// Logs of one motor, as CSV with a header; - is standard input
     #[arg(required = true, value_name = "LOG")]
     pub(crate) logs: Vec<PathBuf>,
-    /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed; canonical are t, ud, uq, id, iq, omega_e
+    /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed; canonical are t, ud, uq, id, iq, omega_e, and optionally
+    /// theta_e, u_dc
     #[arg(long, value_name = "NAME=COLUMN,..", value_delimiter = ',', value_parser = fluxfit_files::parse_map)]
     pub(crate) map: Vec<(String, String)>,
     /// Units of columns, e.g. omega=rpm-mech,t=ms; without, the column's name or SI decides

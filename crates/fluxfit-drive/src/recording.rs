@@ -28,16 +28,12 @@ pub struct Row {
 /// What a simulated drive logs.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recording {
-    /// What identification needs.
+    /// What identification reads, with angle (between minus and plus pi) and DC voltage, as measured.
     pub columns: Columns,
-    /// Electrical angle, rad, between minus and plus pi.
-    pub theta_e: Vec<f64>,
     /// Command along d, V.
     pub ud_ref: Vec<f64>,
     /// Command along q, V.
     pub uq_ref: Vec<f64>,
-    /// DC voltage, V.
-    pub u_dc: Vec<f64>,
 }
 
 impl Recording {
@@ -45,11 +41,18 @@ impl Recording {
     pub fn with_capacity(rows: usize) -> Self {
         let room = || Vec::with_capacity(rows);
         Self {
-            columns: Columns { t: room(), ud: room(), uq: room(), id: room(), iq: room(), omega_e: room(), ..Columns::default() },
-            theta_e: room(),
+            columns: Columns {
+                t: room(),
+                ud: room(),
+                uq: room(),
+                id: room(),
+                iq: room(),
+                omega_e: room(),
+                theta_e: Some(room()),
+                u_dc: Some(room()),
+            },
             ud_ref: room(),
             uq_ref: room(),
-            u_dc: room(),
         }
     }
 
@@ -63,10 +66,10 @@ impl Recording {
             (&mut columns.id, row.i.d),
             (&mut columns.iq, row.i.q),
             (&mut columns.omega_e, row.omega_e),
-            (&mut self.theta_e, row.theta_e),
+            (columns.theta_e.get_or_insert_default(), row.theta_e),
             (&mut self.ud_ref, row.u_ref.d),
             (&mut self.uq_ref, row.u_ref.q),
-            (&mut self.u_dc, row.u_dc),
+            (columns.u_dc.get_or_insert_default(), row.u_dc),
         ] {
             column.push(value);
         }
@@ -74,13 +77,11 @@ impl Recording {
 
     /// Canonical names and columns, `t` first.
     pub fn named(&self) -> Vec<(&'static str, &[f64])> {
-        let mut named: Vec<(&'static str, &[f64])> = self.columns.named().map(|(name, column)| (name, column.as_slice())).into();
-        named.extend([
-            ("theta_e", self.theta_e.as_slice()),
-            ("ud_ref", self.ud_ref.as_slice()),
-            ("uq_ref", self.uq_ref.as_slice()),
-            ("u_dc", self.u_dc.as_slice()),
-        ]);
+        let columns = &self.columns;
+        let mut named: Vec<(&'static str, &[f64])> = columns.named().map(|(name, column)| (name, column.as_slice())).into();
+        named.extend(columns.theta_e.as_deref().map(|angle| ("theta_e", angle)));
+        named.extend([("ud_ref", self.ud_ref.as_slice()), ("uq_ref", self.uq_ref.as_slice())]);
+        named.extend(columns.u_dc.as_deref().map(|voltage| ("u_dc", voltage)));
         named
     }
 

@@ -39,9 +39,13 @@ fn apart(a: f64, b: f64) -> f64 {
     TAU * (turns - turns.round()).abs()
 }
 
+fn angle(recording: &Recording) -> &[f64] {
+    recording.columns.theta_e.as_deref().unwrap()
+}
+
 /// The vector that acts from row `k + 1` to row `k + 2`: the command of row `k`, in the frame at the middle between those two.
 fn acts(recording: &Recording, k: usize) -> AlphaBeta {
-    let middle = recording.theta_e[k + 1] + 0.5 * recording.columns.omega_e[k + 1] * SAMPLE_PERIOD;
+    let middle = angle(recording)[k + 1] + 0.5 * recording.columns.omega_e[k + 1] * SAMPLE_PERIOD;
     Dq { d: recording.ud_ref[k], q: recording.uq_ref[k] }.to_alpha_beta(middle)
 }
 
@@ -63,7 +67,7 @@ fn the_logged_voltage_is_the_mean_of_the_commands_around_its_sample() {
     for k in 0..recording.columns.t.len() - 2 {
         let (before, after) = (acts(&recording, k), acts(&recording, k + 1));
         let mean = AlphaBeta { alpha: 0.5 * (before.alpha + after.alpha), beta: 0.5 * (before.beta + after.beta) };
-        let expected = mean.to_dq(recording.theta_e[k + 2]);
+        let expected = mean.to_dq(angle(&recording)[k + 2]);
         let (d, q) = (recording.columns.ud[k + 2] - expected.d, recording.columns.uq[k + 2] - expected.q);
         assert!(d.hypot(q) < 1e-9, "row {}: {d:e} {q:e} V", k + 2);
     }
@@ -82,8 +86,8 @@ fn the_logged_command_acts_in_the_period_after_the_next_sample() {
     for k in 0..columns.t.len() - 2 {
         let u = acts(&recording, k);
         let (from, to) = (k + 1, k + 2);
-        let (a, b) = (flux(from).to_alpha_beta(recording.theta_e[from]), flux(to).to_alpha_beta(recording.theta_e[to]));
-        let (i, j) = (current(from).to_alpha_beta(recording.theta_e[from]), current(to).to_alpha_beta(recording.theta_e[to]));
+        let (a, b) = (flux(from).to_alpha_beta(angle(&recording)[from]), flux(to).to_alpha_beta(angle(&recording)[to]));
+        let (i, j) = (current(from).to_alpha_beta(angle(&recording)[from]), current(to).to_alpha_beta(angle(&recording)[to]));
         let alpha = (b.alpha - a.alpha) / SAMPLE_PERIOD + 0.5 * paper::MOTOR.rs * (i.alpha + j.alpha) - u.alpha;
         let beta = (b.beta - a.beta) / SAMPLE_PERIOD + 0.5 * paper::MOTOR.rs * (i.beta + j.beta) - u.beta;
         assert!(alpha.hypot(beta) < 0.05, "row {k}: {alpha} {beta} V");
@@ -118,11 +122,11 @@ fn a_dynamometer_turns_as_its_schedule_says() {
         // The sample that meets the step at 0.03 s still reads the speed before it.
         let read = if k == 300 { 120.0 } else { now };
         assert!((omega_e / 4.0 - read).abs() < 1e-9, "row {k}: {omega_e}");
-        let Some(next) = recording.theta_e.get(k + 1) else { break };
+        let Some(next) = angle(&recording).get(k + 1) else { break };
         // Up to the next row it moves as before; a step comes with its row.
         let end = speed(k as f64 * SAMPLE_PERIOD + 0.999_999 * SAMPLE_PERIOD);
         let turned = 4.0 * 0.5 * (now + end) * SAMPLE_PERIOD;
-        assert!(apart(*next, recording.theta_e[k] + turned) < 1e-8, "row {k}: {}", next - recording.theta_e[k] - turned);
+        assert!(apart(*next, angle(&recording)[k] + turned) < 1e-8, "row {k}: {}", next - angle(&recording)[k] - turned);
     }
 }
 

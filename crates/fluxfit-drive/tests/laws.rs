@@ -143,8 +143,9 @@ fn a_converter_reads_its_steps_and_its_range() {
     let recording = simulate(&scenario, 0, || ()).unwrap();
     // Phase a alone, at rotor angles: alpha = a when the three sum to zero, up to the steps of b and c.
     let step = 20.0 / 2048.0;
-    for k in 0..recording.columns.t.len() {
-        let i = Dq { d: recording.columns.id[k], q: recording.columns.iq[k] }.to_alpha_beta(recording.theta_e[k]);
+    let angle = recording.columns.theta_e.as_deref().unwrap();
+    for (k, theta_e) in angle.iter().enumerate() {
+        let i = Dq { d: recording.columns.id[k], q: recording.columns.iq[k] }.to_alpha_beta(*theta_e);
         // beta = (b - c) / sqrt(3): a whole number of steps.
         let steps = i.beta * 3.0_f64.sqrt() / step;
         assert!((steps - steps.round()).abs() < 1e-6, "row {k}: {steps}");
@@ -214,6 +215,6 @@ fn ripple_of_the_dc_voltage_is_logged_and_survived() {
     scenario.inverter = Inverter { ripple: 10.0, ripple_frequency: 300.0, update: Update::Single, ..scenario.inverter };
     let recording = simulate(&scenario, 0, || ()).unwrap();
     assert_eq!(recording.columns.t[1], 2e-4);
-    assert!((deviation(&recording.u_dc) / (10.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.01);
+    assert!((deviation(recording.columns.u_dc.as_deref().unwrap()) / (10.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.01);
     assert!((mean(&recording.columns.iq[2200..]) - 9.886).abs() < 0.01);
 }

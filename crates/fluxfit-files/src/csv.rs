@@ -7,6 +7,9 @@
 //! Read without being told: comma, semicolon or tab, also at the end of a line; quotes and spaces around names and values; a byte
 //! order mark; `#` and `%` comments above the header; blank lines; columns in any order, and others among them; a decimal comma,
 //! unless the comma separates. Of a log of millions of rows only the needed cells become numbers.
+//!
+//! Angle and DC voltage are optional. Where nobody asked for them, by `map`, nothing about them refuses a log: what cannot be read
+//! is left out, with a note.
 
 mod columns;
 pub(crate) mod flux_map;
@@ -21,7 +24,7 @@ use crate::{
     unit::Unit,
 };
 use columns::Chosen;
-use fluxfit::log::{Columns, Log};
+use fluxfit::log::{self, Columns, Log};
 use std::path::Path;
 
 /// What the reader is told about a log.
@@ -32,7 +35,7 @@ pub struct LogOptions {
     pub map: Vec<(String, String)>,
     /// Canonical name and unit of the columns whose header does not say it, as from [`parse_unit`](crate::parse_unit).
     pub units: Vec<(String, Unit)>,
-    /// Pole pairs: only a mechanical speed needs them.
+    /// Pole pairs: only a mechanical speed or angle needs them.
     pub pole_pairs: Option<u32>,
 }
 
@@ -79,12 +82,28 @@ fn parse(text: &str, told: &Told) -> Result<ReadLog, FileError> {
     if looks_normalized(&rows.values[1..]) {
         notes.push(NORMALIZED.to_owned());
     }
+    let to_si = |column: &Chosen, values: &mut [f64]| column.unit.to_si(values, told.pole_pairs.unwrap_or(1));
     for (column, values) in chosen.iter().zip(&mut rows.values) {
-        column.unit.to_si(values, told.pole_pairs.unwrap_or(1));
+        to_si(column, values);
     }
     let [t, ud, uq, id, iq, omega_e] = rows.values;
-    let log = Log::new(Columns { t, ud, uq, id, iq, omega_e, ..Columns::default() })
-        .map_err(|error| located(error, text, &chosen, &rows.starts))?;
+    let mut columns = Columns { t, ud, uq, id, iq, omega_e, ..Columns::default() };
+    let refuse = |error| located(error, text, &chosen, &rows.starts);
+    for (column, mut values) in rows.optional {
+        to_si(column, &mut values);
+        // The library would refuse the log for it.
+        if column.dispensable
+            && let Err(error) = log::check_values(column.channel.name(), &values)
+        {
+            notes.push(columns::left_out(column.channel, &refuse(error)));
+            continue;
+        }
+        match column.channel {
+            Channel::ThetaE => columns.theta_e = Some(values),
+            _ => columns.u_dc = Some(values),
+        }
+    }
+    let log = Log::new(columns).map_err(refuse)?;
     Ok(ReadLog { log, notes })
 }
 
@@ -184,7 +203,10 @@ mod tests {
             ..LogOptions::default()
         };
         assert_eq!(refusal(map(&[("omega", "a"), ("omega_e", "b")])), "omega_e is given twice; give it once");
-        assert_eq!(refusal(map(&[("uxx", "a")])), "\"uxx\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e");
+        assert_eq!(
+            refusal(map(&[("uxx", "a")])),
+            "\"uxx\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e and u_dc"
+        );
         let units = LogOptions { units: vec![("ud".into(), Unit::RpmMechanical)], ..LogOptions::default() };
         assert_eq!(refusal(units), "\"rpm-mech\" is no unit of ud; it can be V or mV");
         assert_eq!(

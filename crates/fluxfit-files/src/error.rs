@@ -133,9 +133,9 @@ pub(crate) enum Problem {
     #[error("{} in the header is no unit of {channel} known here; say the unit with --unit {channel}={}", quote(.text), choice(.units))]
     HeaderUnit { channel: &'static str, text: String, units: Vec<&'static str> },
     #[error(
-        "the speed is in {unit}, and only the pole pairs make it electrical; add --pole-pairs N, or --unit {channel}={electrical} if it is electrical already"
+        "the {what} is in {unit}, and only the pole pairs make it electrical; add --pole-pairs N, or --unit {channel}={electrical} if it is electrical already"
     )]
-    PolePairs { channel: &'static str, unit: &'static str, electrical: &'static str },
+    PolePairs { what: &'static str, channel: &'static str, unit: &'static str, electrical: &'static str },
 
     // The rows of a log
     #[error("{} looks like a row of units; delete this line and say with --unit which columns are not in SI units", quote(.text))]
@@ -156,8 +156,11 @@ pub(crate) enum Problem {
     // Arguments
     #[error("{} is not understood; write {form}, as in {example}", quote(.text))]
     Form { text: String, form: &'static str, example: &'static str },
-    #[error("{} is no column of a log; the columns are {}{}", quote(.name), list(.known), did_you_mean(*.nearest))]
-    Channel { name: String, known: Vec<&'static str>, nearest: Option<&'static str> },
+    #[error(
+        "{} is no column of a log; the columns are {}, and optionally {}{}",
+        quote(.name), list(.needed), list(.optional), did_you_mean(*.nearest)
+    )]
+    Channel { name: String, needed: Vec<&'static str>, optional: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("{} is no unit of {channel}; it can be {}", quote(.unit), choice(.allowed))]
     Unit { channel: &'static str, unit: String, allowed: Vec<&'static str> },
     #[error("{channel} is given twice; give it once")]

@@ -56,6 +56,8 @@ mod tests {
         assert!(read.notes.is_empty(), "{:?}", read.notes);
         let bits = |columns: [(&str, &Vec<f64>); 6]| columns.map(|(_, column)| column.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
         assert_eq!(bits(read.log.columns().named()), bits(recording.columns.named()));
+        assert_eq!(read.log, recording.log().unwrap());
+        assert_eq!(read.log.columns().optional().count(), 2);
         assert!(bytes.starts_with(b"t,ud,uq,id,iq,omega_e,theta_e,ud_ref,uq_ref,u_dc\n0,"));
     }
 

@@ -42,7 +42,7 @@ pub enum Unit {
     DegreeMechanical,
 }
 
-/// Whether a header says which speed it means.
+/// Whether a header says which speed or angle it means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Side {
     Mechanical,
@@ -173,6 +173,8 @@ impl Unit {
                 either(Self::RadianPerSecond, Self::RadianPerSecondMechanical, Self::RadianPerSecond)
             }
             "hz" => either(Self::HertzElectrical, Self::HertzMechanical, Self::HertzElectrical),
+            "rad" => either(Self::Radian, Self::RadianMechanical, Self::Radian),
+            "deg" | "degree" | "degrees" | "°" => either(Self::Degree, Self::DegreeMechanical, Self::Degree),
             _ => return Self::from_name(&text, dimension),
         };
         (unit.dimension() == dimension).then_some(unit)
@@ -253,6 +255,11 @@ mod tests {
             ("lu_WS_RPM", Speed, ("lu_WS", Named::Unit(Unit::RpmMechanical))),
             ("f [Hz-mech]", Speed, ("f", Named::Unit(Unit::HertzMechanical))),
             ("motor_speed", Speed, ("motor_speed", Nothing)),
+            ("theta_e [°]", Angle, ("theta_e", Named::Unit(Unit::Degree))),
+            ("mech_angle_deg", Angle, ("mech_angle", Named::Unit(Unit::DegreeMechanical))),
+            ("theta_mech (rad)", Angle, ("theta_mech", Named::Unit(Unit::RadianMechanical))),
+            ("theta_e_rad", Angle, ("theta_e", Named::Unit(Unit::Radian))),
+            ("speed_rad", Speed, ("speed_rad", Nothing)),
             ("ü)", Speed, ("ü)", Nothing)),
         ];
         for (header, dimension, expected) in cases {
@@ -272,6 +279,7 @@ mod tests {
         assert_eq!(si(Unit::RpmElectrical), 300.0 * (TAU / 60.0));
         assert_eq!(si(Unit::RpmMechanical), 300.0 * (TAU / 60.0 * 4.0));
         assert_eq!(si(Unit::HertzMechanical), 300.0 * (TAU * 4.0));
+        assert_eq!(si(Unit::DegreeMechanical), 300.0 * (PI / 180.0 * 4.0));
     }
 
     #[test]

@@ -105,7 +105,7 @@ impl Log {
         if rows < MIN_ROWS {
             return Err(Error::TooShort { rows, least: MIN_ROWS });
         }
-        check_values(&columns)?;
+        check_rows(&columns)?;
         check_time(&columns.t)?;
         let silent = |columns: [&Vec<f64>; 2]| columns.iter().all(|column| column.iter().all(|value| *value == 0.0));
         if silent([&columns.id, &columns.iq]) {
@@ -173,17 +173,31 @@ impl Log {
     }
 }
 
-fn check_values(columns: &Columns) -> Result<(), Error> {
+/// Checks one column's values, as [`Log::new`] does; `column` is its canonical name.
+///
+/// # Errors
+/// If a value is not finite or implausibly large.
+pub fn check_values(column: &'static str, values: &[f64]) -> Result<(), Error> {
+    values.iter().enumerate().try_for_each(|(row, value)| check_value(column, row, *value))
+}
+
+#[inline]
+fn check_value(column: &'static str, row: usize, value: f64) -> Result<(), Error> {
+    if !value.is_finite() {
+        return Err(Error::NotFinite { column, row, value });
+    }
+    // Times may be seconds since 1970.
+    if value.abs() > MAX_MAGNITUDE && column != "t" || value.abs() > MAX_MAGNITUDE * 1e3 {
+        return Err(Error::Implausible { column, row, value, limit: MAX_MAGNITUDE });
+    }
+    Ok(())
+}
+
+/// The first row that is refused is the one that is named.
+fn check_rows(columns: &Columns) -> Result<(), Error> {
     for row in 0..columns.t.len() {
         for (column, values) in columns.all() {
-            let value = values[row];
-            if !value.is_finite() {
-                return Err(Error::NotFinite { column, row, value });
-            }
-            // Times may be seconds since 1970.
-            if value.abs() > MAX_MAGNITUDE && column != "t" || value.abs() > MAX_MAGNITUDE * 1e3 {
-                return Err(Error::Implausible { column, row, value, limit: MAX_MAGNITUDE });
-            }
+            check_value(column, row, values[row])?;
         }
     }
     Ok(())

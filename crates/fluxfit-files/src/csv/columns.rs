@@ -4,6 +4,7 @@ use super::{Told, header::Header, resemblance::propose};
 use crate::{
     channel::Channel,
     error::{FileError, Problem},
+    quantity::Dimension,
     unit::{Named, Unit, in_header, says_electrical},
     wording::{list, nearest, shorten},
 };
@@ -15,17 +16,30 @@ pub(super) struct Chosen {
     pub(super) index: usize,
     pub(super) header: String,
     pub(super) unit: Unit,
+    /// Nobody asked for it: if its cells are no numbers it is left out, and the log is read.
+    pub(super) dispensable: bool,
 }
 
-/// One column for each of [`Channel::NEEDED`], in that order.
+/// What a note says of a dispensable column that cannot be read.
+pub(super) fn left_out(channel: Channel, error: &FileError) -> String {
+    format!("{} is left out: {error}", channel.name())
+}
+
+/// One column for each of [`Channel::NEEDED`], in that order; then those of [`Channel::OPTIONAL`] that the file has.
 pub(super) fn choose(header: &Header, told: &Told, notes: &mut Vec<String>) -> Result<Vec<Chosen>, FileError> {
     let indices = indices(&header.names, told).map_err(|error| error.at_line(header.line))?;
     let mut unsaid = Vec::new();
-    let mut chosen = Vec::new();
-    for (channel, index) in Channel::NEEDED.into_iter().zip(indices) {
+    let mut chosen: Vec<Chosen> = Vec::new();
+    for (channel, index) in indices {
         let name = &header.names[index];
         let unit = unit(channel, name, told, &mut unsaid, notes).map_err(|error| error.at_line(header.line).in_column(name))?;
-        chosen.push(Chosen { channel, index, header: name.clone(), unit });
+        chosen.push(Chosen { channel, index, header: name.clone(), unit, dispensable: false });
+    }
+    for channel in Channel::OPTIONAL.into_iter().filter(|channel| told.header(*channel).is_none()) {
+        match unasked(channel, &header.names, told, &chosen, notes) {
+            Ok(column) => chosen.extend(column),
+            Err(error) => notes.push(left_out(channel, &error.at_line(header.line))),
+        }
     }
     if !unsaid.is_empty() {
         let example = "--unit says otherwise, as in --unit omega=rpm-mech";
@@ -34,13 +48,33 @@ pub(super) fn choose(header: &Header, told: &Told, notes: &mut Vec<String>) -> R
     if let Some(pole_pairs) = told.pole_pairs.filter(|_| chosen.iter().all(|column| !column.unit.is_mechanical())) {
         notes.push(format!("the number of pole pairs, {pole_pairs}, is not used: the speed is electrical already"));
     }
-    if told.header(Channel::ThetaE).is_some() || told.unit(Channel::ThetaE).is_some() {
-        notes.push("theta_e is not read: nothing uses it yet".to_owned());
-    }
     Ok(chosen)
 }
 
-fn indices(names: &[String], told: &Told) -> Result<Vec<usize>, FileError> {
+/// An optional column that the user did not name, if the file has it and it is no other column already.
+fn unasked(
+    channel: Channel,
+    names: &[String],
+    told: &Told,
+    taken: &[Chosen],
+    notes: &mut Vec<String>,
+) -> Result<Option<Chosen>, FileError> {
+    let free = automatic(channel, names)?.filter(|index| taken.iter().all(|column| column.index != *index));
+    let Some(index) = free else {
+        if let Some(unit) = told.unit(channel) {
+            let (name, unit) = (channel.name(), unit.name());
+            notes.push(format!("the unit of {name}, {unit}, is not used: the log has no such column; --map {name}=COLUMN names one"));
+        }
+        return Ok(None);
+    };
+    let name = &names[index];
+    // Its header is canonical or names the unit, so there is nothing unsaid.
+    let unit = unit(channel, name, told, &mut Vec::new(), notes).map_err(|error| error.in_column(name))?;
+    Ok(Some(Chosen { channel, index, header: name.clone(), unit, dispensable: true }))
+}
+
+/// The needed columns in their order, and the optional ones that the user named.
+fn indices(names: &[String], told: &Told) -> Result<Vec<(Channel, usize)>, FileError> {
     let mut found = Vec::new();
     let mut missing = Vec::new();
     for channel in Channel::NEEDED {
@@ -55,13 +89,18 @@ fn indices(names: &[String], told: &Told) -> Result<Vec<usize>, FileError> {
     if !missing.is_empty() {
         return Err(refuse_missing(&missing, names, &found));
     }
+    for channel in Channel::OPTIONAL {
+        if let Some(header) = told.header(channel) {
+            found.push((channel, mapped(channel, header, names)?));
+        }
+    }
     for (place, (second, index)) in found.iter().enumerate() {
         if let Some((first, _)) = found[..place].iter().find(|(_, earlier)| earlier == index) {
             let shared = Problem::Shared { first: first.name(), second: second.name() };
             return Err(FileError::from(shared).in_column(&names[*index]));
         }
     }
-    Ok(found.into_iter().map(|(_, index)| index).collect())
+    Ok(found)
 }
 
 fn refuse_missing(missing: &[Channel], names: &[String], found: &[(Channel, usize)]) -> FileError {
@@ -146,10 +185,11 @@ fn unit(channel: Channel, name: &str, told: &Told, unsaid: &mut Vec<String>, not
         }
     };
     if unit.is_mechanical() && told.pole_pairs.is_none() {
-        return Err(Problem::PolePairs { channel: canonical, unit: unit.prose(), electrical: electrical(unit).name() }.into());
+        let what = if dimension == Dimension::Angle { "angle" } else { "speed" };
+        return Err(Problem::PolePairs { what, channel: canonical, unit: unit.prose(), electrical: electrical(unit).name() }.into());
     }
     let column = format!("{canonical}: column '{}'", shorten(name));
-    let turning = matches!(unit, Unit::RadianPerSecond | Unit::HertzElectrical);
+    let turning = matches!(unit, Unit::RadianPerSecond | Unit::HertzElectrical | Unit::Radian | Unit::Degree);
     if told.unit(channel).is_none() && !is_canonical && turning && !says_electrical(name) {
         notes.push(format!("{column} read as {}; if it is mechanical, say so with --unit", unit.prose()));
     } else if unit != si {
@@ -166,6 +206,8 @@ fn electrical(mechanical: Unit) -> Unit {
     match mechanical {
         Unit::RpmMechanical => Unit::RpmElectrical,
         Unit::HertzMechanical => Unit::HertzElectrical,
+        Unit::RadianMechanical => Unit::Radian,
+        Unit::DegreeMechanical => Unit::Degree,
         _ => Unit::RadianPerSecond,
     }
 }
@@ -208,13 +250,12 @@ mod tests {
                 "omega_e: column 'speed_rpm' read as mechanical r/min with 1 pole pair"
             ]
         );
-        let options = LogOptions { pole_pairs: Some(3), ..map(&[("omega_e", "speed"), ("theta", "x"), ("ud", "v")]) };
+        let options = LogOptions { pole_pairs: Some(3), ..map(&[("omega_e", "speed"), ("ud", "v")]) };
         assert_eq!(
             told("t,v,uq,id,iq,speed", &options),
             [
                 "units that no header names are taken as SI: ud ('v') in V and omega_e ('speed') in electrical rad/s; --unit says otherwise, as in --unit omega=rpm-mech",
                 "the number of pole pairs, 3, is not used: the speed is electrical already",
-                "theta_e is not read: nothing uses it yet",
             ]
         );
         assert_eq!(
