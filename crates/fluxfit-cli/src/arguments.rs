@@ -1,7 +1,15 @@
 //! The command line, as clap reads it. Texts of values are turned into values by `fluxfit-files`; nothing is decided here.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use fluxfit::{motor::Parameter, objective::voltage_error::IdZero, optimizer::Method, steady::held_vector::VoltageTiming};
+use fluxfit::{
+    identify::model,
+    motor::Parameter,
+    objective::{
+        acting_voltage::{VoltageFrame, VoltageReading},
+        voltage_error::IdZero,
+    },
+    optimizer::Method,
+};
 use fluxfit_files::Unit;
 use std::path::PathBuf;
 
@@ -81,10 +89,10 @@ pub(crate) struct Demo {
 pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) log: LogArguments,
-    /// Model of the motor's voltage
+    /// What is fitted to what
     #[arg(long, value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
-    /// Who searches beside the exact answer; auto is tgfpa
+    /// Who searches beside the exact answer; auto is tgfpa at operating points, and nobody on the output error, where it takes seconds
     #[arg(long, default_value = "auto", value_parser = parse_search_method)]
     pub(crate) method: SearchMethod,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
@@ -155,10 +163,23 @@ pub(crate) struct Simulate {
 /// Models that `identify` knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Model {
-    /// The one that suits the log; now always steady
+    /// The one that suits the log
     Auto,
     /// Equation (2) on the means of steady windows
     Steady,
+    /// Currents simulated row by row from the voltages
+    OutputError,
+}
+
+impl Model {
+    /// What is stated; nothing, if it is for the library to choose.
+    pub(crate) fn stated(self) -> Option<model::Model> {
+        match self {
+            Self::Auto => None,
+            Self::Steady => Some(model::Model::Steady),
+            Self::OutputError => Some(model::Model::OutputError),
+        }
+    }
 }
 
 /// Models that `compare` knows.
@@ -171,7 +192,7 @@ pub(crate) enum StudyModel {
 /// Timing of the voltage columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Timing {
-    /// Centred, the doubt counted as uncertainty
+    /// Found by the output error; at operating points centred, the doubt counted as uncertainty
     Auto,
     /// The mean of the two periods around the row
     Centered,
@@ -188,12 +209,14 @@ pub(crate) enum Timing {
 
 impl Timing {
     /// What is stated; nothing, if it is for the library to choose.
-    pub(crate) fn stated(self) -> Option<VoltageTiming> {
+    pub(crate) fn stated(self) -> Option<VoltageReading> {
+        let delayed = |delay| Some(VoltageReading::Delayed { delay, frame: VoltageFrame::Middle });
         match self {
             Self::Auto => None,
-            Self::Centered => Some(VoltageTiming::Centered),
-            // Steady voltages do not know their delay.
-            Self::Zero | Self::One | Self::Two => Some(VoltageTiming::Compensated),
+            Self::Centered => Some(VoltageReading::Centered),
+            Self::Zero => delayed(0),
+            Self::One => delayed(1),
+            Self::Two => delayed(2),
         }
     }
 }

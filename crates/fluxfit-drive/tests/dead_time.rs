@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use fluxfit::{
-    identify::{Identification, Settings, identify, verdict::Verdict},
+    identify::{Identification, Settings, identify, model::Model, verdict::Verdict},
     motor::Parameter,
     paper,
 };
@@ -18,7 +18,11 @@ fn found(change: impl Fn(&mut Inverter), noise: f64) -> Identification {
     let mut scenario = Scenario::paper();
     change(&mut scenario.inverter);
     scenario.sensors.current_noise = noise;
-    identify(&simulate(&scenario, 0, || ()).unwrap().log().unwrap(), &Settings { method: None, ..Settings::default() }).unwrap()
+    identify(
+        &simulate(&scenario, 0, || ()).unwrap().log().unwrap(),
+        &Settings { model: Some(Model::Steady), method: None, ..Settings::default() },
+    )
+    .unwrap()
 }
 
 /// Where the losses show, no parameter is identified whose interval does not hold the truth.
@@ -38,7 +42,7 @@ fn losses_are_seen_and_no_wrong_number_is_confident() {
         let found = found(change, noise);
         // The square wave's fundamental.
         let expected = 4.0 / PI * (310.0 * dead_time * 5e3 + drop);
-        for loss in &found.voltage_losses {
+        for loss in &found.steady.as_ref().unwrap().voltage_losses {
             assert!((loss / expected - 1.0).abs() < 0.25, "{name}: {loss} V of {expected} V");
         }
         assert!(found.warnings.iter().any(|warning| warning.code == "dead-time"), "{name}");
@@ -58,6 +62,10 @@ fn an_inverter_without_losses_is_not_suspected() {
         [(0.0, Modulation::Switched), (0.0, Modulation::Averaged), (0.05, Modulation::Switched), (0.2, Modulation::Averaged)]
     {
         let found = found(|inverter| inverter.modulation = modulation, noise);
-        assert!(found.voltage_losses.iter().all(|loss| *loss == 0.0), "{noise} {modulation:?}: {:?}", found.voltage_losses);
+        assert!(
+            found.steady.as_ref().unwrap().voltage_losses.iter().all(|loss| *loss == 0.0),
+            "{noise} {modulation:?}: {:?}",
+            found.steady.as_ref().unwrap().voltage_losses
+        );
     }
 }

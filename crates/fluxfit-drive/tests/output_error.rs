@@ -4,7 +4,7 @@
 
 use fluxfit::{
     Columns, Log,
-    levenberg_marquardt::{Polished, jacobian, polish},
+    levenberg_marquardt::{self, Polished, jacobian, polish},
     motor::{Motor, PARAMETERS},
     objective::{
         acting_voltage::{VoltageFrame, VoltageReading},
@@ -65,9 +65,9 @@ fn independent_logs_give_their_motor_and_their_timing() {
         (noisy, commands, NEXT_PERIOD, noise),
     ] {
         let (reading, found) = best(&example(name, voltages));
-        println!("{name}, {voltages:?}: {reading:?}, {:.4?} %", errors(&found.motor));
+        println!("{name}, {voltages:?}: {reading:?}, {:.4?} %", errors(&found.drive.motor));
         assert_eq!(reading, expected, "{name}");
-        assert!(found.converged && errors(&found.motor).iter().zip(limits).all(|(error, limit)| error.abs() < limit), "{name}");
+        assert!(found.converged && errors(&found.drive.motor).iter().zip(limits).all(|(error, limit)| error.abs() < limit), "{name}");
     }
 }
 
@@ -96,7 +96,7 @@ fn errors_are_those_of_the_bound() {
     let objective = OutputError::of(&log(0), VoltageReading::Centered).unwrap();
     // Three sensors: sqrt(2/3) of a sensor's noise on each axis.
     let variance = 0.05_f64.powi(2) * 2.0 / 3.0;
-    let slopes = jacobian(&objective, &paper::MOTOR);
+    let slopes = jacobian(&objective, &paper::MOTOR.into(), &levenberg_marquardt::MOTOR);
     let information = nalgebra::Matrix4::from_fn(|p, q| slopes[p].iter().zip(&slopes[q]).map(|(a, b)| a * b).sum::<f64>() / variance);
     let bound = information.try_inverse().unwrap().diagonal().map(f64::sqrt);
     let mut squares = [0.0; PARAMETERS];
@@ -104,7 +104,7 @@ fn errors_are_those_of_the_bound() {
     for draw in 0..DRAWS {
         let found = polish(&OutputError::of(&log(draw), VoltageReading::Centered).unwrap(), &paper::MOTOR);
         for (p, square) in squares.iter_mut().enumerate() {
-            *square += (found.motor.to_array()[p] - paper::MOTOR.to_array()[p]).powi(2) / DRAWS as f64;
+            *square += (found.drive.motor.to_array()[p] - paper::MOTOR.to_array()[p]).powi(2) / DRAWS as f64;
         }
     }
     let ratios: [f64; PARAMETERS] = std::array::from_fn(|p| squares[p].sqrt() / bound[p]);
@@ -139,7 +139,7 @@ fn a_stiff_motor_at_speed_is_integrated_exactly() {
     assert!(rms < 1e-6, "the true motor misses the log by {rms:e} A");
     let start = Motor { rs: 0.06, ld: 15e-6, lq: 30e-6, psi_f: 2.2e-3 };
     let found = polish(&objective, &start);
-    for (found, truth) in found.motor.to_array().iter().zip(motor.to_array()) {
+    for (found, truth) in found.drive.motor.to_array().iter().zip(motor.to_array()) {
         assert!((found / truth - 1.0).abs() < 1e-5, "{found:?}");
     }
 }
@@ -171,7 +171,7 @@ fn the_papers_swarm_ends_where_the_polish_does() {
     let report = Optimizer::start(Method::all()[0], settings, bounds, &objective).unwrap().run(&objective);
     let found = polish(&objective, &START);
     let swarm = Motor::from([report.best[0], report.best[1], report.best[2], report.best[3]]);
-    println!("swarm {:.4?} %, polish {:.4?} %, cost {:e} above", errors(&swarm), errors(&found.motor), report.cost - found.cost);
+    println!("swarm {:.4?} %, polish {:.4?} %, cost {:e} above", errors(&swarm), errors(&found.drive.motor), report.cost - found.cost);
     assert!(report.cost >= found.cost * (1.0 - 1e-12));
-    assert!(errors(&swarm).iter().zip(errors(&found.motor)).all(|(one, other)| (one - other).abs() < 1.0));
+    assert!(errors(&swarm).iter().zip(errors(&found.drive.motor)).all(|(one, other)| (one - other).abs() < 1.0));
 }

@@ -7,7 +7,7 @@ use crate::{
 };
 use fluxfit::identify::{
     Identification,
-    uncertainty::{Part, Systematic},
+    uncertainty::Part,
     verdict::{IDENTIFIED, Judgement, Verdict, WEAK},
 };
 use fluxfit_files::number::{Scale, significant};
@@ -134,27 +134,21 @@ fn warnings(found: &Identification) -> Markup {
     }
 }
 
-/// Parts of an uncertainty, in the order in which they are shown.
-const PARTS: [Part; 7] = [Part::Noise, Part::Accuracy, Part::Timing, Part::DeadTime, Part::Excitation, Part::Prior, Part::Misfit];
+/// Parts of an uncertainty, noise first.
+fn all_parts(judgement: &Judgement) -> impl Iterator<Item = (f64, Part)> {
+    std::iter::once((judgement.uncertainty.statistical, Part::Noise)).chain(judgement.uncertainty.systematic.parts())
+}
 
-fn part(judgement: &Judgement, part: Part) -> f64 {
-    let Systematic { accuracy, prior, timing, dead_time, excitation, misfit } = judgement.uncertainty.systematic;
-    match part {
-        Part::Noise => judgement.uncertainty.statistical,
-        Part::Accuracy => accuracy,
-        Part::Prior => prior,
-        Part::Timing => timing,
-        Part::DeadTime => dead_time,
-        Part::Excitation => excitation,
-        Part::Misfit => misfit,
-    }
+fn part(judgement: &Judgement, wanted: Part) -> f64 {
+    all_parts(judgement).find(|(_, part)| *part == wanted).map_or(0.0, |(value, _)| value)
 }
 
 /// Where the uncertainty comes from: each part's standard error in percent of the value. Parts that nobody has are left out.
 fn parts(found: &Identification) -> Markup {
     let answered: Vec<&Judgement> =
         found.parameters.iter().filter(|judgement| intervals::relative_half_width(judgement).is_some()).collect();
-    let shown: Vec<Part> = PARTS.into_iter().filter(|which| answered.iter().any(|judgement| part(judgement, *which) > 0.0)).collect();
+    let all = found.parameters.first().into_iter().flat_map(all_parts).map(|(_, part)| part);
+    let shown: Vec<Part> = all.filter(|which| answered.iter().any(|judgement| part(judgement, *which) > 0.0)).collect();
     html! {
         @if !shown.is_empty() {
             h3 { "Where the uncertainty comes from" }

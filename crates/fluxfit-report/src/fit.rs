@@ -5,7 +5,7 @@ use crate::{
     frame,
     typography::{decimals, number, prose},
 };
-use fluxfit::{identify::Identification, steady::OperatingPoint};
+use fluxfit::{identify::steady_fit::SteadyFit, steady::OperatingPoint};
 use fluxfit_files::number::significant;
 use maud::{Markup, html};
 
@@ -13,7 +13,7 @@ use maud::{Markup, html};
 const DECIMALS: usize = 3;
 
 /// The section.
-pub(crate) fn section(found: &Identification) -> Markup {
+pub(crate) fn section(found: &SteadyFit) -> Markup {
     let redundancy = found.estimate.redundancy;
     html! {
         p {
@@ -51,7 +51,7 @@ fn percent(fraction: f64) -> String {
     number(100.0 * fraction, |percent| significant(percent, 2))
 }
 
-fn points(found: &Identification) -> Markup {
+fn points(found: &SteadyFit) -> Markup {
     let uncertainties = residuals::uncertainties(found);
     // The same digits down a column: those of its best value.
     let least: [f64; 2] = [0, 1].map(|axis| uncertainties.iter().map(|both| both[axis]).fold(f64::INFINITY, f64::min));

@@ -23,7 +23,7 @@
 //!     title: "drive.csv",
 //!     log: &log,
 //!     notes: &[],
-//!     operating_points: &found.operating_points,
+//!     operating_points: found.operating_points(),
 //!     identification: Some((&found, settings.method)),
 //!     study: None,
 //!     origin: &origin,

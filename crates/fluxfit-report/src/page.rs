@@ -66,7 +66,9 @@ fn sections(report: &Report) -> Vec<Section> {
     let mut sections = Vec::new();
     if let Some((found, method)) = report.identification {
         sections.push(Section { anchor: "answer", heading: "The answer", content: answer::section(found) });
-        sections.push(Section { anchor: "fit", heading: "Measured against fitted", content: fit::section(found) });
+        if let Some(fit) = &found.steady {
+            sections.push(Section { anchor: "fit", heading: "Operating points, measured against fitted", content: fit::section(fit) });
+        }
         if let Some(content) = search::section(found, method.as_ref()) {
             sections.push(Section { anchor: "search", heading: "The swarm’s answer", content });
         }

@@ -7,7 +7,6 @@ use crate::{
 use fluxfit::{
     identify::{Identification, Search},
     optimizer::{Method, StopReason},
-    study::error_percent,
 };
 use fluxfit_files::number::Scale;
 use maud::{Markup, html};
@@ -53,7 +52,7 @@ fn values(exact: &Identification, search: &Search, method: &Method) -> Markup {
                             @let scale = Scale::for_value(judgement.parameter, value);
                             @let show = |value: f64| number(value, |value| scale.format(value, FINER * judgement.uncertainty.standard_error()));
                             @let found = search.motor.get(judgement.parameter);
-                            @let difference = error_percent(&search.motor, &exact.estimate.motor, judgement.parameter);
+                            @let difference = (value != 0.0).then(|| 100.0 * (found / value - 1.0).abs());
                             tr {
                                 th scope="row" { (symbol(judgement.parameter)) ", " (unit(judgement.parameter, &scale)) }
                                 td { (show(value)) }

@@ -6,7 +6,7 @@
 use fluxfit::{
     Columns, Log, Motor, Verdict,
     frames::Dq,
-    identify::{Identification, Known, Settings, identify},
+    identify::{Identification, Known, Settings, identify, model::Model},
     motor::Parameter,
     objective::voltage_error::IdZero,
     optimizer::{Method, bounds::Bounds, draws::Draws},
@@ -47,7 +47,7 @@ fn origin() -> Origin {
 fn page(title: &str, log: &Log, found: &Identification, method: Option<Method>) -> String {
     let origin = origin();
     let notes = ["omega_e: column 'n' read as <mechanical> r/min".to_owned()];
-    let points = &found.operating_points;
+    let points = found.operating_points();
     html(&Report {
         title,
         log,
@@ -161,7 +161,7 @@ fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict()
     let (_, page) = identified(&TWO[..1], &Settings::default());
     assert!(checked(&page).contains("One of four parameters identified"));
     let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
-    let (_, page) = identified(&TWO, &Settings { known, method: None, ..Settings::default() });
+    let (_, page) = identified(&TWO, &Settings { model: Some(Model::Steady), known, method: None, ..Settings::default() });
     let text = checked(&page);
     assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("The swarm"), "{text}");
 }
@@ -228,9 +228,11 @@ fn figures_stand_alone() {
     let log = log(&TWO, 0.1);
     let found = identify(&log, &Settings::default()).unwrap();
     for size in [Size::Wide, Size::Narrow] {
-        for svg in
-            [figure::intervals(&found, size), figure::residuals(&found, size), figure::operating_points(&found.operating_points, size)]
-        {
+        for svg in [
+            figure::intervals(&found, size),
+            figure::residuals(found.steady.as_ref().unwrap(), size),
+            figure::operating_points(found.operating_points(), size),
+        ] {
             assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && svg.ends_with("</svg>\n"));
             assert!(svg.contains("prefers-color-scheme:dark") && svg.contains("role=\"img\" aria-label=\""));
             assert_eq!(svg.matches("://").count(), 1, "the name space alone");

@@ -51,12 +51,8 @@ pub struct Polished {
 }
 
 /// All four parameters.
-pub const MOTOR: [Unknown; 4] = [
-    Unknown::Motor(Parameter::Rs),
-    Unknown::Motor(Parameter::Ld),
-    Unknown::Motor(Parameter::Lq),
-    Unknown::Motor(Parameter::PsiF),
-];
+pub const MOTOR: [Unknown; 4] =
+    [Unknown::Motor(Parameter::Rs), Unknown::Motor(Parameter::Ld), Unknown::Motor(Parameter::Lq), Unknown::Motor(Parameter::PsiF)];
 
 /// Polishes a motor in a perfect drive. A start that has no finite cost is where it ends.
 pub fn polish(objective: &OutputError, start: &Motor) -> Polished {
@@ -67,7 +63,14 @@ pub fn polish(objective: &OutputError, start: &Motor) -> Polished {
 pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> Polished {
     let scale: Vec<f64> = unknowns.iter().map(|unknown| unit(*unknown, start, objective)).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
-    let (problem, report) = LevenbergMarquardt::new().with_ftol(NO_STEP).with_xtol(NO_STEP).with_patience(PATIENCE).minimize(Problem { objective, start, unknowns, beliefs, scale, units });
+    let (problem, report) = LevenbergMarquardt::new().with_ftol(NO_STEP).with_xtol(NO_STEP).with_patience(PATIENCE).minimize(Problem {
+        objective,
+        start,
+        unknowns,
+        beliefs,
+        scale,
+        units,
+    });
     let drive = problem.drive();
     Polished { drive, cost: objective.cost_of(&drive), converged: report.termination.was_successful() }
 }

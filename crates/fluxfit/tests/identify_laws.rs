@@ -7,13 +7,17 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Identification, Known, Settings, identify, verdict::Verdict},
+    identify::{Identification, Known, Settings, identify, model::Model, verdict::Verdict},
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
+    objective::acting_voltage::{VoltageFrame, VoltageReading},
     optimizer::draws::Draws,
-    steady::held_vector::VoltageTiming,
 };
+
 use proptest::prelude::*;
+
+/// Steady voltages do not know their delay.
+const NEXT: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
 /// Rows of an operating point.
 const ROWS: usize = 60;
@@ -69,7 +73,7 @@ fn columns(drive: &Drive, noise: f64, seed: u64) -> Columns {
 fn settings(columns: &Columns) -> Settings {
     let period = columns.t[1] - columns.t[0];
     let ends = columns.t.chunks(ROWS).map(|t| (t[0] - 0.5 * period, t[t.len() - 1] + 0.5 * period));
-    Settings { windows: ends.collect(), voltage_timing: Some(VoltageTiming::Compensated), method: None, ..Settings::default() }
+    Settings { model: Some(Model::Steady), windows: ends.collect(), voltage_timing: Some(NEXT), method: None, ..Settings::default() }
 }
 
 fn found_with(columns: Columns, settings: &Settings) -> Identification {
@@ -181,7 +185,7 @@ proptest! {
         for p in 0..PARAMETERS {
             prop_assert!((values(&twice)[p] - values(&once)[p]).abs() <= ROUNDING * errors(&once)[p]);
         }
-        prop_assert_eq!(twice.estimate.redundancy, once.estimate.redundancy);
+        prop_assert_eq!(twice.steady.as_ref().unwrap().estimate.redundancy, once.steady.as_ref().unwrap().estimate.redundancy);
     }
 
     #[test]
@@ -191,7 +195,7 @@ proptest! {
             for (value, truth) in values(&found).into_iter().zip(drive.motor.to_array()) {
                 prop_assert!((value / truth - 1.0).abs() < 1e-6, "{:?} {:?}", values(&found), drive.motor);
             }
-            prop_assert_eq!(found.misfit, None);
+            prop_assert_eq!(found.steady.as_ref().unwrap().misfit, None);
         }
     }
 
@@ -200,7 +204,7 @@ proptest! {
     fn fixing_a_parameter_where_it_is_leaves_the_others(drive in drives(2), seed: u64, p in 0..PARAMETERS) {
         let columns = columns(&drive, NOISE, seed);
         let free = found(columns.clone());
-        prop_assume!(free.excitation.excited().count() == PARAMETERS);
+        prop_assume!(free.steady.as_ref().unwrap().excitation.excited().count() == PARAMETERS);
         let mut settings = settings(&columns);
         settings.known[p] = Known::Fixed(values(&free)[p]);
         let fixed = found_with(columns, &settings);
@@ -216,7 +220,7 @@ proptest! {
     fn a_prior_goes_from_nothing_to_fixed(drive in drives(3), seed: u64, p in 0..PARAMETERS, off in 0.9..1.1) {
         let columns = columns(&drive, NOISE, seed);
         let free = found(columns.clone());
-        prop_assume!(free.excitation.excited().count() == PARAMETERS && free.misfit.is_none());
+        prop_assume!(free.steady.as_ref().unwrap().excitation.excited().count() == PARAMETERS && free.steady.as_ref().unwrap().misfit.is_none());
         let value = off * drive.motor.to_array()[p];
         let with = |known: Known| {
             let mut settings = settings(&columns);
@@ -227,7 +231,7 @@ proptest! {
         same(&free, &weak, SAME_UNITS, 1e-3)?;
         let (sharp, fixed) = (with(Known::Prior { value, standard_error: 1e-9 * value }), with(Known::Fixed(value)));
         // A contradiction between prior and log widens both answers by rules of their own; without one they are the same.
-        prop_assume!(sharp.misfit.is_none() && fixed.misfit.is_none());
+        prop_assume!(sharp.steady.as_ref().unwrap().misfit.is_none() && fixed.steady.as_ref().unwrap().misfit.is_none());
         for q in 0..PARAMETERS {
             let (one, other) = (values(&sharp)[q], values(&fixed)[q]);
             prop_assert!((one - other).abs() <= 1e-3 * errors(&free)[q], "{q}: {one} {other}");
@@ -278,7 +282,7 @@ proptest! {
         let settings = Settings {
             // Thirty rows to the row.
             windows: if named { vec![(t[0], t[29]), (t[t.len() - 30], t[t.len() - 1])] } else { Vec::new() },
-            voltage_timing: [None, Some(VoltageTiming::Centered), Some(VoltageTiming::Compensated)][timing],
+            voltage_timing: [None, Some(VoltageReading::Centered), Some(NEXT)][timing],
             voltage_accuracy: if exact { 0.0 } else { 1e-4 },
             method: None,
             ..Settings::default()
@@ -293,11 +297,11 @@ proptest! {
                 prop_assert!(number.is_finite(), "{judgement:?}");
             }
         }
-        for point in &found.operating_points {
+        for point in &found.steady.as_ref().unwrap().operating_points {
             prop_assert!(point.means.iter().all(|mean| mean.is_finite()), "{point:?}");
         }
-        prop_assert!(found.estimate.residuals.iter().flatten().chain([&found.estimate.chi_squared]).all(|x| x.is_finite()));
-        prop_assert!(found.misfit.is_none_or(|misfit| misfit.ratio.is_finite() && misfit.voltage_accuracy.is_finite()));
+        prop_assert!(found.steady.as_ref().unwrap().estimate.residuals.iter().flatten().chain([&found.steady.as_ref().unwrap().estimate.chi_squared]).all(|x| x.is_finite()));
+        prop_assert!(found.steady.as_ref().unwrap().misfit.is_none_or(|misfit| misfit.ratio.is_finite() && misfit.voltage_accuracy.is_finite()));
     }
 }
 
@@ -308,6 +312,10 @@ fn a_window_without_voltage_or_speed_is_no_trap() {
     let t = (0..80).map(|k| 20.0 * f64::from(k)).collect();
     let (ud, uq, id, iq) = (halves(0.0, 0.0), halves(0.0, -4.2e-8), halves(2e-2, -1e-2), halves(-4.2e-6, 2.1e-6));
     let log = Log::new(Columns { t, ud, uq, id, iq, omega_e: halves(0.0, -8.2e-5), ..Columns::default() }).unwrap();
-    let found = identify(&log, &Settings { method: None, ..Settings::default() }).unwrap();
-    assert!(found.estimate.motor.to_array().iter().all(|value| value.is_finite()), "{:?}", found.estimate.motor);
+    let found = identify(&log, &Settings { model: Some(Model::Steady), method: None, ..Settings::default() }).unwrap();
+    assert!(
+        found.steady.as_ref().unwrap().estimate.motor.to_array().iter().all(|value| value.is_finite()),
+        "{:?}",
+        found.steady.as_ref().unwrap().estimate.motor
+    );
 }

@@ -8,12 +8,15 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Settings, identify},
+    identify::{Settings, identify, model::Model},
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
+    objective::acting_voltage::{VoltageFrame, VoltageReading},
     optimizer::draws::Draws,
-    steady::held_vector::VoltageTiming,
 };
+
+/// Steady voltages do not know their delay.
+const NEXT: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
 const TRUTH: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
@@ -80,14 +83,15 @@ fn outcome(modes: &[(f64, f64, f64)], rho: f64, draws_count: usize, seed: u64) -
         let (log, windows) = noisy_log(modes, &noise, &mut Draws::seeded(seed, draw as u64));
         // Known exactly: no systematic part, no doubt of the timing; the swarm adds nothing here.
         let settings = Settings {
+            model: Some(Model::Steady),
             windows,
-            voltage_timing: Some(VoltageTiming::Compensated),
+            voltage_timing: Some(NEXT),
             voltage_accuracy: 0.0,
             method: None,
             ..Settings::default()
         };
         let found = identify(&log, &settings).unwrap();
-        outcome.misfits += usize::from(found.misfit.is_some());
+        outcome.misfits += usize::from(found.steady.as_ref().unwrap().misfit.is_some());
         for parameter in Parameter::ALL {
             let (p, judgement) = (parameter as usize, found.parameter(parameter));
             let error = judgement.raw - TRUTH.get(parameter);
@@ -166,7 +170,7 @@ fn currents_on_a_coarse_grid_widen_the_intervals() {
             columns.omega_e.push(418.879);
         }
         let settings =
-            Settings { voltage_timing: Some(VoltageTiming::Compensated), voltage_accuracy: 0.0, method: None, ..Settings::default() };
+            Settings { model: Some(Model::Steady), voltage_timing: Some(NEXT), voltage_accuracy: 0.0, method: None, ..Settings::default() };
         let found = identify(&Log::new(columns).unwrap(), &settings).unwrap();
         for parameter in Parameter::ALL {
             let judgement = found.parameter(parameter);

@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
             title: NAME,
             log: &log,
             notes: &notes(&scenario, &log),
-            operating_points: &found.operating_points,
+            operating_points: found.operating_points(),
             identification: Some((&found, settings.method)),
             study: Some((&facts, &methods)),
             origin,

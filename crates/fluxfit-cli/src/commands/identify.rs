@@ -7,7 +7,11 @@ use crate::{
     terminal,
 };
 use fluxfit::{
-    identify::{Known, Settings, identify},
+    identify::{
+        Known, Settings, identify,
+        model::{self, Model},
+    },
+    log::Log,
     motor::PARAMETERS,
     optimizer::{self, Method, tgfpa::Tgfpa},
 };
@@ -19,8 +23,10 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     report::check(&arguments.log, [])?;
     let input = input::read(&arguments.log)?;
     let mut settings = settings(arguments)?;
-    let points = fluxfit::identify::operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
-    settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &points)?);
+    settings.method = searcher(arguments, &input.log, &settings);
+    if let Ok(points) = fluxfit::identify::operating_points(&input.log, &settings) {
+        settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &points)?);
+    }
     let found = identify(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
@@ -33,7 +39,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
             title: &input.name,
             log: &input.log,
             notes: &input.notes,
-            operating_points: &found.operating_points,
+            operating_points: found.operating_points(),
             identification: Some((&found, settings.method)),
             study: None,
             origin,
@@ -48,14 +54,20 @@ fn settings(arguments: &Identify) -> Result<Settings, CommandError> {
         voltage_timing: arguments.log.voltage_timing.stated(),
         voltage_accuracy: arguments.voltage_accuracy,
         known: known(arguments)?,
-        method: match arguments.method {
-            SearchMethod::Auto => Some(Method::Tgfpa(Tgfpa::default())),
-            SearchMethod::LeastSquares => None,
-            SearchMethod::Swarm(method) => Some(method),
-        },
+        model: arguments.model.stated(),
+        method: None,
         search: optimizer::Settings { seed: arguments.log.seed, ..optimizer::Settings::default() },
         bounds: None,
     })
+}
+
+/// The swarm: by itself only where it takes no time.
+fn searcher(arguments: &Identify, log: &Log, settings: &Settings) -> Option<Method> {
+    match arguments.method {
+        SearchMethod::Auto => (model::choose(log, settings).0 == Model::Steady).then(|| Method::Tgfpa(Tgfpa::default())),
+        SearchMethod::LeastSquares => None,
+        SearchMethod::Swarm(method) => Some(method),
+    }
 }
 
 fn known(arguments: &Identify) -> Result<[Known; PARAMETERS], CommandError> {

@@ -5,6 +5,7 @@ use super::{BAD, DIM, GOOD, HEADING, WARNING, table};
 use fluxfit::{
     identify::{
         Identification,
+        steady_fit::SteadyFit,
         verdict::{Judgement, Verdict},
     },
     log::Log,
@@ -18,7 +19,10 @@ pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option
     let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(log, found));
     text += &parameters(found);
     text += &explanations(found);
-    text += &format!("\n{DIM}Operating points (means){DIM:#}\n{}", operating_points(found));
+    text += &format!("\n{}\n", model(found));
+    if let Some(fit) = &found.steady {
+        text += &format!("\n{DIM}Operating points (means){DIM:#}\n{}", operating_points(fit));
+    }
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
     if let Some(method) = method.filter(|_| answered) {
         text += &format!("\n{}\n", search(found, method));
@@ -39,8 +43,8 @@ fn read(log: &Log, found: &Identification) -> String {
         log.rows(),
         significant(log.duration(), 3),
         count(log.segments().len(), "segment"),
-        count(found.operating_points.len(), "operating point"),
-        found.operating_points.iter().map(|point| point.rows.len()).sum::<usize>(),
+        count(found.operating_points().len(), "operating point"),
+        found.operating_points().iter().map(|point| point.rows.len()).sum::<usize>(),
     )
 }
 
@@ -101,7 +105,31 @@ fn explanations(found: &Identification) -> String {
     text
 }
 
-fn operating_points(found: &Identification) -> String {
+/// The model that answered, and what it found beside the motor.
+fn model(found: &Identification) -> String {
+    let (model, why) = &found.model;
+    let mut text = format!("Model: {} ({why}).", model.label());
+    if let Some(fit) = &found.output {
+        let rms = fit.residual_rms();
+        text += &format!(
+            " Voltages: {}.\nCurrents are missed by {} A (d) and {} A (q), root mean square.",
+            fit.voltage_reading.0.label(),
+            significant(rms.d, 2),
+            significant(rms.q, 2)
+        );
+        for nuisance in &fit.nuisance {
+            let (label, unit) = (nuisance.unknown.label(), nuisance.unknown.unit());
+            text += &format!(
+                "\nFound beside the motor: {label} {} ± {} {unit}",
+                significant(nuisance.value, 3),
+                significant(2.0 * nuisance.standard_error, 1)
+            );
+        }
+    }
+    text
+}
+
+fn operating_points(found: &SteadyFit) -> String {
     let rows = found.operating_points.iter().zip(&found.estimate.residuals).map(|(point, residual)| {
         let (u, i) = (point.voltage(), point.current());
         let mut row = vec![times(point.time), point.rows.len().to_string()];

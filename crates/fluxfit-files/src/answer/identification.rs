@@ -2,12 +2,19 @@
 
 use super::by_parameter;
 use fluxfit::{
-    identify::{Identification, Provenance, verdict::Judgement},
+    frames::Dq,
+    identify::{
+        Identification, Provenance,
+        output_fit::{Nuisance, OutputFit},
+        steady_fit::SteadyFit,
+        terms::Outcome,
+        verdict::Judgement,
+    },
     log::Log,
     motor::{Motor, PARAMETERS},
     steady::{OperatingPoint, held_vector::VoltageTiming},
 };
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// The document of an identification; `method` is the name of the swarm that searched, or `least-squares`.
 pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value {
@@ -19,13 +26,16 @@ pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value
             "duration_s": log.duration(),
             "segments": log.segments().len(),
             "sample_period_s": log.segments().first().map(|segment| segment.sample_period),
-            "operating_points": answer.operating_points.iter().map(operating_point).collect::<Vec<_>>(),
+            "operating_points": answer.operating_points().iter().map(operating_point).collect::<Vec<_>>(),
         },
-        "model": "steady",
+        "model": answer.model.0.key(),
+        "model_reason": answer.model.1,
         "method": method,
         "parameters": by_parameter(answer.parameters.each_ref().map(parameter)),
-        "nuisance": { "voltage_timing": voltage_timing(answer), "dead_time_voltage": { "along_current": answer.voltage_losses } },
-        "least_squares": with(found(&answer.estimate.motor), json!({ "cost": answer.estimate.objective.cost(&answer.estimate.motor) })),
+        "nuisance": nuisance(answer),
+        "least_squares": answer.steady.as_ref().map(|fit| {
+            with(found(&fit.estimate.motor), json!({ "cost": fit.estimate.objective.cost(&fit.estimate.motor) }))
+        }),
         "search": answer.search.as_ref().map(|search| with(found(&search.motor), json!({
             "cost": search.report.cost,
             "cost_above_optimum": search.cost_above_optimum,
@@ -34,21 +44,43 @@ pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value
         }))),
         "fit": {
             "residual_rms": residual_rms(answer),
-            "redundancy": answer.estimate.redundancy,
+            "redundancy": redundancy(answer),
         },
         "warnings": answer.warnings.iter().map(|warning| json!({ "code": warning.code, "message": warning.message })).collect::<Vec<_>>(),
         "diagnostics": diagnostics(answer),
     })
 }
 
-/// How the voltage columns were read.
+/// What stands between the motor and the log: how the voltage columns were read, and the drive's faults.
+fn nuisance(answer: &Identification) -> Value {
+    let mut found = Map::new();
+    found.insert("voltage_timing".to_owned(), voltage_timing(answer));
+    if let Some(fit) = &answer.output {
+        for Nuisance { unknown, value, standard_error } in &fit.nuisance {
+            let entry = json!({ "value": value, "unit": unknown.unit(), "standard_error": standard_error });
+            found.insert(unknown.key().to_owned(), entry);
+        }
+    } else if let Some(fit) = &answer.steady {
+        found.insert("dead_time_voltage".to_owned(), json!({ "along_current": fit.voltage_losses }));
+    }
+    Value::Object(found)
+}
+
+/// How the voltage columns were read, and where that comes from.
 fn voltage_timing(answer: &Identification) -> Value {
-    let (timing, provenance) = answer.voltage_timing;
-    let timing = match timing {
-        VoltageTiming::Centered => "centered",
-        VoltageTiming::Compensated => "compensated",
-    };
-    json!({ "value": timing, "stated": provenance == Provenance::Stated })
+    let of_currents = answer.output.as_ref().map(|fit| (fit.voltage_reading.0.key(), fit.voltage_reading.1));
+    let of_points = answer.steady.as_ref().map(|fit| match fit.voltage_timing {
+        (VoltageTiming::Centered, provenance) => ("centered", provenance),
+        (VoltageTiming::Compensated, provenance) => ("compensated", provenance),
+    });
+    of_currents.or(of_points).map_or(Value::Null, |(reading, provenance)| {
+        let from = match provenance {
+            Provenance::Stated => "stated",
+            Provenance::Found => "found",
+            Provenance::Assumed => "assumed",
+        };
+        json!({ "value": reading, "stated": provenance == Provenance::Stated, "from": from })
+    })
 }
 
 fn operating_point(point: &OperatingPoint) -> Value {
@@ -90,38 +122,74 @@ fn with(values: [Option<f64>; PARAMETERS], fields: Value) -> Value {
     Value::Object(object)
 }
 
-/// Root mean square over the operating points of each equation's residual, V.
+/// Root mean square of what is left: of currents, A, or of each voltage equation over the operating points, V.
 fn residual_rms(answer: &Identification) -> Value {
-    let points = answer.estimate.residuals.len() as f64;
-    let rms = |axis: usize| (answer.estimate.residuals.iter().map(|residual| residual[axis].powi(2)).sum::<f64>() / points).sqrt();
+    if let Some(fit) = &answer.output {
+        let Dq { d, q } = fit.residual_rms();
+        return json!({ "id": d, "iq": q });
+    }
+    let residuals = answer.steady.as_ref().map_or(&[][..], |fit| &fit.estimate.residuals);
+    let rms = |axis: usize| (residuals.iter().map(|residual| residual[axis].powi(2)).sum::<f64>() / residuals.len() as f64).sqrt();
     json!({ "ud": rms(0), "uq": rms(1) })
+}
+
+fn redundancy(answer: &Identification) -> Option<usize> {
+    let of_currents = answer.output.as_ref().map(|fit| fit.redundancy);
+    of_currents.or(answer.steady.as_ref().map(|fit| fit.estimate.redundancy))
 }
 
 /// Raw numbers, whatever the verdicts say of them.
 fn diagnostics(answer: &Identification) -> Value {
     let systematic = answer.parameters.each_ref().map(|judgement| {
-        let parts = &judgement.uncertainty.systematic;
-        json!({
-            "accuracy": parts.accuracy, "prior": parts.prior, "timing": parts.timing, "dead_time": parts.dead_time,
-            "excitation": parts.excitation, "misfit": parts.misfit,
-        })
+        let parts = judgement.uncertainty.systematic.parts();
+        Value::Object(parts.into_iter().map(|(value, part)| (part.key().to_owned(), json!(value))).collect())
     });
     json!({
-        "raw": by_parameter(answer.estimate.motor.to_array()),
+        "raw": by_parameter(answer.parameters.each_ref().map(|judgement| judgement.raw)),
         "raw_standard_error": by_parameter(answer.parameters.each_ref().map(|judgement| judgement.uncertainty.standard_error())),
         "raw_search": answer.search.as_ref().map(|search| by_parameter(search.motor.to_array())),
         "systematic": by_parameter(systematic),
         "degrees_of_freedom": by_parameter(answer.parameters.each_ref().map(|judgement| judgement.uncertainty.degrees_of_freedom)),
         "correlation": answer.correlation,
-        "excitation": answer.excitation.directions.iter().map(|direction| json!({
+        "search_box": answer.search.as_ref().map(|search| by_parameter::<Value>(
+            search.bounds.iter().map(|(lower, upper)| json!([lower, upper])).collect::<Vec<_>>().try_into().unwrap_or_default(),
+        )),
+        "steady": answer.steady.as_ref().map(steady),
+        "output_error": answer.output.as_ref().map(output_error),
+    })
+}
+
+/// The operating points' side of it.
+fn steady(fit: &SteadyFit) -> Value {
+    json!({
+        "raw": by_parameter(fit.estimate.motor.to_array()),
+        "excitation": fit.excitation.directions.iter().map(|direction| json!({
             "direction": by_parameter(direction.components),
             "signal_to_noise": direction.signal_to_noise,
             "excited": direction.excited,
         })).collect::<Vec<_>>(),
-        "chi_squared": answer.estimate.chi_squared,
-        "misfit": answer.misfit.map(|misfit| json!({ "ratio": misfit.ratio, "voltage_accuracy": misfit.voltage_accuracy })),
-        "search_box": answer.search.as_ref().map(|search| by_parameter::<Value>(
-            search.bounds.iter().map(|(lower, upper)| json!([lower, upper])).collect::<Vec<_>>().try_into().unwrap_or_default(),
-        )),
+        "chi_squared": fit.estimate.chi_squared,
+        "misfit": fit.misfit.map(|misfit| json!({ "ratio": misfit.ratio, "voltage_accuracy": misfit.voltage_accuracy })),
+        "voltage_losses": fit.voltage_losses,
+    })
+}
+
+/// The simulated currents' side of it: everything that was tried.
+fn output_error(fit: &OutputFit) -> Value {
+    json!({
+        "rows": fit.stretches.iter().map(|rows| json!([rows.start, rows.end])).collect::<Vec<_>>(),
+        "cost": fit.cost,
+        "correlation_of_neighbours": fit.correlation_of_neighbours,
+        "readings": fit.readings.iter().map(|tried| json!({
+            "voltage_timing": tried.reading.key(),
+            "residual_rms": tried.mean_square().sqrt(),
+            "raw": by_parameter(tried.polished.drive.motor.to_array()),
+        })).collect::<Vec<_>>(),
+        "terms": fit.terms.iter().map(|tried| json!({
+            "term": tried.term.key(),
+            "gain": tried.gain,
+            "taken": tried.outcome == Outcome::Taken,
+            "outcome": tried.outcome.label(),
+        })).collect::<Vec<_>>(),
     })
 }

@@ -21,7 +21,7 @@ pub(crate) mod residuals;
 
 use canvas::Drawing;
 use fluxfit::{
-    identify::Identification,
+    identify::{Identification, steady_fit::SteadyFit},
     motor::{Motor, Parameter},
     steady::OperatingPoint,
     study::MethodStudy,
@@ -60,7 +60,7 @@ pub fn intervals(found: &Identification, size: Size) -> String {
 }
 
 /// Residuals of the two voltage equations at each operating point, with two standard uncertainties.
-pub fn residuals(found: &Identification, size: Size) -> String {
+pub fn residuals(found: &SteadyFit, size: Size) -> String {
     residuals::draw(found, size).standalone()
 }
 

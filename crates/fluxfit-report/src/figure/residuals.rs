@@ -7,7 +7,7 @@ use super::{
     palette::Ink,
     plot::Plot,
 };
-use fluxfit::identify::Identification;
+use fluxfit::identify::steady_fit::SteadyFit;
 use plotters::{
     element::{Circle, PathElement, Polygon},
     style::text_anchor::{HPos, VPos},
@@ -23,7 +23,7 @@ const ASIDE: f64 = 0.15;
 const MARKER: i32 = 4;
 
 /// Standard uncertainty, V, of both residuals of each operating point: noise of the means, and accuracy of the voltages.
-pub(crate) fn uncertainties(found: &Identification) -> Vec<[f64; 2]> {
+pub(crate) fn uncertainties(found: &SteadyFit) -> Vec<[f64; 2]> {
     let points = found.operating_points.iter().zip(&found.estimate.accuracy);
     let both = points.map(|(point, accuracy)| {
         let noise = point.residual_covariance(&found.estimate.motor);
@@ -33,12 +33,12 @@ pub(crate) fn uncertainties(found: &Identification) -> Vec<[f64; 2]> {
 }
 
 /// Draws both residuals of each operating point, mV.
-pub(crate) fn draw(found: &Identification, size: Size) -> Drawing {
+pub(crate) fn draw(found: &SteadyFit, size: Size) -> Drawing {
     let label = format!("Residuals of u_d and u_q in millivolts at {} operating points, with bars", found.operating_points.len());
     Drawing::new((size.width(), 290), label, |area| paint(area, found, size))
 }
 
-fn paint(area: &Area, found: &Identification, size: Size) -> Drawn {
+fn paint(area: &Area, found: &SteadyFit, size: Size) -> Drawn {
     // The marks of one axis: where it stands, the residual and its bar, mV.
     let marks = |axis: usize| {
         let of_points = found.estimate.residuals.iter().zip(uncertainties(found)).enumerate();

@@ -57,11 +57,11 @@ fn significant_ratio(points: &[OperatingPoint], estimate: &Estimate) -> Option<f
 mod tests {
     use crate::{
         frames::Dq,
-        identify::{Identification, Settings, identify},
+        identify::{Identification, Settings, identify, model::Model},
         log::{Columns, Log},
         motor::{Motor, Parameter},
+        objective::acting_voltage::{VoltageFrame, VoltageReading},
         optimizer::draws::Draws,
-        steady::held_vector::VoltageTiming,
     };
 
     const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
@@ -82,7 +82,12 @@ mod tests {
                 columns.omega_e.push(400.0);
             }
         }
-        let settings = Settings { method: None, voltage_timing: Some(VoltageTiming::Compensated), ..Settings::default() };
+        let settings = Settings {
+            model: Some(Model::Steady),
+            method: None,
+            voltage_timing: Some(VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle }),
+            ..Settings::default()
+        };
         identify(&Log::new(columns).unwrap(), &settings).unwrap()
     }
 
@@ -90,7 +95,7 @@ mod tests {
     fn a_saturating_motor_is_found_out_and_its_interval_holds_every_points_inductance() {
         let lq = [11e-3, 12e-3, 12.5e-3];
         let found = found(lq);
-        let misfit = found.misfit.expect("saturation of 14 % is far beyond 0.2 % noise");
+        let misfit = found.steady.as_ref().unwrap().misfit.expect("saturation of 14 % is far beyond 0.2 % noise");
         assert!(misfit.ratio > 3.0 && misfit.voltage_accuracy > 1e-3, "{misfit:?}");
         let (raw, half) = (found.parameter(Parameter::Lq).raw, found.parameter(Parameter::Lq).uncertainty.half_width);
         assert!(lq.iter().all(|lq| (lq - raw).abs() <= half), "{raw} ± {half}");
@@ -99,6 +104,6 @@ mod tests {
 
     #[test]
     fn points_of_one_motor_do_not_contradict_each_other() {
-        assert_eq!(found([12e-3; 3]).misfit, None);
+        assert_eq!(found([12e-3; 3]).steady.unwrap().misfit, None);
     }
 }

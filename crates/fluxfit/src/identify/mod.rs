@@ -26,11 +26,12 @@ use crate::{
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::VoltageReading,
     optimizer::{self, Method, Report, bounds::Bounds},
+    steady::OperatingPoint,
 };
 use model::Model;
 use output_fit::OutputFit;
-pub use steady_fit::{beliefs, operating_points, voltage_timing};
 use steady_fit::SteadyFit;
+pub use steady_fit::{beliefs, operating_points, voltage_timing};
 use verdict::Judgement;
 use warning::Warning;
 
@@ -138,6 +139,11 @@ impl Identification {
     /// One parameter's judgement.
     pub fn parameter(&self, parameter: Parameter) -> &Judgement {
         &self.parameters[parameter as usize]
+    }
+
+    /// The log's operating points; none where it never holds still.
+    pub fn operating_points(&self) -> &[OperatingPoint] {
+        self.steady.as_ref().map_or(&[], |fit| &fit.operating_points)
     }
 
     /// Whether everything asked for was identified.

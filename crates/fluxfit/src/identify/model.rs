@@ -37,7 +37,7 @@ impl Model {
 const SLOWEST_CONTROL: f64 = 1000.0;
 
 /// The model that the settings state, or the one that suits the log; and why.
-pub(super) fn choose(log: &Log, settings: &Settings) -> (Model, String) {
+pub fn choose(log: &Log, settings: &Settings) -> (Model, String) {
     if let Some(model) = settings.model {
         return (model, "as stated".to_owned());
     }

@@ -90,7 +90,14 @@ impl OutputFit {
 
         let objective = OutputError::of_rows(log, &stretches, best.reading)?;
         let (drive, cost) = (best.polished.drive, best.polished.cost);
-        let mut candidate = Candidate { objective: &objective, beliefs: &beliefs, drive, unknowns: free, cost, voltage_accuracy: settings.voltage_accuracy };
+        let mut candidate = Candidate {
+            objective: &objective,
+            beliefs: &beliefs,
+            drive,
+            unknowns: free,
+            cost,
+            voltage_accuracy: settings.voltage_accuracy,
+        };
         let mut tried = candidate.add_faults();
         let undisturbed = candidate.drive.motor;
         let process_noise = candidate.add_process_noise();
@@ -298,7 +305,9 @@ impl Errors {
                     let column = unknowns.iter().position(|unknown| *unknown == belief.unknown);
                     let noise = (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt();
                     // A belief's own error is one standard error, which is the noise of a current over its weight.
-                    column.map_or(vec![0.0; unknowns.len()], |q| (0..unknowns.len()).map(|p| inverse[(p, q)] * belief.weight * noise).collect())
+                    column.map_or(vec![0.0; unknowns.len()], |q| {
+                        (0..unknowns.len()).map(|p| inverse[(p, q)] * belief.weight * noise).collect()
+                    })
                 })
                 .collect(),
             open: open(&with_beliefs, &inverse, unknowns, scale),
@@ -371,7 +380,13 @@ const CELL: f64 = 0.04;
 
 /// Covariance of the unknowns from the voltages' accuracy: their error along either axis is a random function of the operating point,
 /// of that fraction of the voltage there, alike at points that lie close.
-pub(super) fn accuracy(objective: &OutputError, drive: &Adjustable, inverse: &DMatrix<f64>, slopes: &[Vec<f64>], fraction: f64) -> DMatrix<f64> {
+pub(super) fn accuracy(
+    objective: &OutputError,
+    drive: &Adjustable,
+    inverse: &DMatrix<f64>,
+    slopes: &[Vec<f64>],
+    fraction: f64,
+) -> DMatrix<f64> {
     let size = slopes.len();
     if fraction == 0.0 {
         return DMatrix::zeros(size, size);

@@ -16,11 +16,11 @@ use crate::{
     frames::Dq,
     levenberg_marquardt::{Belief, jacobian, polish_unknowns},
     motor::PARAMETERS,
-    singular_values::Decomposition,
     objective::{
         adjustable::{Adjustable, SensorPair, Unknown},
         output_error::OutputError,
     },
+    singular_values::Decomposition,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -191,7 +191,8 @@ impl Term {
             Self::Imbalance | Self::TwoSensors(_) => nuisance.imbalance.alpha.hypot(nuisance.imbalance.beta) < WHOLE,
             Self::Saturation => {
                 let Dq { d, q } = nuisance.saturation;
-                let (d, q, cross) = (d * peak / drive.motor.ld, q * peak / drive.motor.lq, nuisance.cross_saturation * peak / drive.motor.lq);
+                let (d, q, cross) =
+                    (d * peak / drive.motor.ld, q * peak / drive.motor.lq, nuisance.cross_saturation * peak / drive.motor.lq);
                 // Iron takes flux away; and what it takes is seen.
                 d.abs().max(q.abs()).max(cross.abs()) > LEAST_SATURATION
             }
@@ -310,7 +311,9 @@ impl Scene {
     }
 
     fn gain(&self, before: f64, after: f64, unknowns: usize) -> f64 {
-        if after <= 0.0 && before <= 0.0 { return f64::NEG_INFINITY }
+        if after <= 0.0 && before <= 0.0 {
+            return f64::NEG_INFINITY;
+        }
         self.independent * (before / after).ln() - unknowns as f64 * self.independent.ln()
     }
 
@@ -354,7 +357,8 @@ pub(super) fn independent(residuals: &[f64]) -> f64 {
 pub(super) fn inverse_normal(columns: &[Vec<f64>]) -> DMatrix<f64> {
     let size = columns.len();
     // Columns of equal length: henries and ohms differ by orders of magnitude.
-    let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).map(|length| if length > 0.0 { length } else { 1.0 }).collect();
+    let lengths: Vec<f64> =
+        columns.iter().map(|column| dot(column, column).sqrt()).map(|length| if length > 0.0 { length } else { 1.0 }).collect();
     let normal = DMatrix::from_fn(size, size, |p, q| dot(&columns[p], &columns[q]) / lengths[p] / lengths[q]);
     let decomposition = Decomposition::of(normal);
     let inverse = decomposition.pseudo_inverse(RANK_TOLERANCE * decomposition.values.first().copied().unwrap_or(0.0));

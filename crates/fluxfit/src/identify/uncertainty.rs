@@ -130,6 +130,22 @@ pub enum Part {
 }
 
 impl Part {
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Noise => "noise",
+            Self::Accuracy => "accuracy",
+            Self::Prior => "prior",
+            Self::Timing => "timing",
+            Self::DeadTime => "dead_time",
+            Self::ProcessNoise => "process_noise",
+            Self::Sensors => "sensors",
+            Self::Saturation => "saturation",
+            Self::Excitation => "excitation",
+            Self::Misfit => "misfit",
+        }
+    }
+
     /// Name in a table.
     pub fn label(self) -> &'static str {
         match self {

@@ -114,8 +114,7 @@ fn coarse_sampling(log: &Log, found: &SteadyFit) -> Option<String> {
 fn outside_box(found: &Identification) -> Option<String> {
     let search = found.search.as_ref()?;
     let judged = found.parameters.iter().zip(search.bounds.iter());
-    let outside = judged
-        .filter(|(judgement, (lower, upper))| judgement.value().is_some() && !(lower..=upper).contains(&&judgement.raw));
+    let outside = judged.filter(|(judgement, (lower, upper))| judgement.value().is_some() && !(lower..=upper).contains(&&judgement.raw));
     let symbols: Vec<&str> = outside.map(|(judgement, _)| judgement.parameter.symbol()).collect();
     (!symbols.is_empty()).then(|| format!("least squares lies outside the search box in {}: the swarm cannot reach it", symbols.join(", ")))
 }

@@ -65,7 +65,9 @@ impl VoltageReading {
             Self::Delayed { delay: 0, frame: VoltageFrame::Middle } => "what acts over the period that begins at the row",
             Self::Delayed { delay: 1, frame: VoltageFrame::Middle } => "what acts one period later",
             Self::Delayed { frame: VoltageFrame::Middle, .. } => "what acts two periods later",
-            Self::Delayed { delay: 0, frame: VoltageFrame::Row } => "what acts over the period that begins at the row, in the frame at the row",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Row } => {
+                "what acts over the period that begins at the row, in the frame at the row"
+            }
             Self::Delayed { delay: 1, frame: VoltageFrame::Row } => "what acts one period later, in the frame at the row",
             Self::Delayed { frame: VoltageFrame::Row, .. } => "what acts two periods later, in the frame at the row",
         }

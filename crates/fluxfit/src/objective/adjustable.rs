@@ -75,6 +75,64 @@ pub enum Unknown {
     GainQ,
 }
 
+impl Unknown {
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Motor(parameter) => parameter.key(),
+            Self::DeadTime => "dead_time_voltage",
+            Self::DeadTimeWidth => "dead_time_width",
+            Self::AngleOffset => "angle_offset",
+            Self::OffsetAlpha => "current_offset_alpha",
+            Self::OffsetBeta => "current_offset_beta",
+            Self::ImbalanceAlpha => "current_imbalance_alpha",
+            Self::ImbalanceBeta => "current_imbalance_beta",
+            Self::TwoSensors(SensorPair::Ab) => "current_gain_a_over_b",
+            Self::TwoSensors(SensorPair::Bc) => "current_gain_b_over_c",
+            Self::TwoSensors(SensorPair::Ca) => "current_gain_c_over_a",
+            Self::SaturationD => "saturation_d",
+            Self::SaturationQ => "saturation_q",
+            Self::CrossSaturation => "cross_saturation",
+            Self::GainD => "observer_gain_d",
+            Self::GainQ => "observer_gain_q",
+        }
+    }
+
+    /// Name in prose.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Motor(parameter) => parameter.symbol(),
+            Self::DeadTime => "dead-time voltage per phase",
+            Self::DeadTimeWidth => "phase current below which less is lost",
+            Self::AngleOffset => "angle read too large by",
+            Self::OffsetAlpha => "current sensor offset, alpha",
+            Self::OffsetBeta => "current sensor offset, beta",
+            Self::ImbalanceAlpha => "current sensor imbalance, alpha",
+            Self::ImbalanceBeta => "current sensor imbalance, beta",
+            Self::TwoSensors(SensorPair::Ab) => "gain of current sensor a over that of b, less one",
+            Self::TwoSensors(SensorPair::Bc) => "gain of current sensor b over that of c, less one",
+            Self::TwoSensors(SensorPair::Ca) => "gain of current sensor c over that of a, less one",
+            Self::SaturationD => "saturation of L_d per ampere of i_d",
+            Self::SaturationQ => "saturation of L_q per ampere of i_q",
+            Self::CrossSaturation => "cross saturation",
+            Self::GainD => "observer gain, d",
+            Self::GainQ => "observer gain, q",
+        }
+    }
+
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Motor(parameter) => parameter.unit(),
+            Self::DeadTime => "V",
+            Self::DeadTimeWidth | Self::OffsetAlpha | Self::OffsetBeta => "A",
+            Self::AngleOffset => "rad",
+            Self::SaturationD | Self::SaturationQ | Self::CrossSaturation => "H/A",
+            _ => "1",
+        }
+    }
+}
+
 /// The phases that have a current sensor, where only two have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SensorPair {

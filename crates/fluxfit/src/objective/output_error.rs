@@ -371,10 +371,7 @@ fn turned(vector: Dq, by: f64) -> Dq {
 /// Flux, Wb, beyond `L i + psi_f`.
 fn extra_flux(i: Dq, faults: &Nuisance) -> Dq {
     let cross = faults.cross_saturation;
-    Dq {
-        d: faults.saturation.d * i.d * i.d.abs() + cross * i.q * i.q,
-        q: faults.saturation.q * i.q * i.q.abs() + 2.0 * cross * i.d * i.q,
-    }
+    Dq { d: faults.saturation.d * i.d * i.d.abs() + cross * i.q * i.q, q: faults.saturation.q * i.q * i.q.abs() + 2.0 * cross * i.d * i.q }
 }
 
 impl Table {

@@ -21,7 +21,8 @@ pub(super) fn mean_loss(start: AlphaBeta, end: AlphaBeta, width: f64) -> AlphaBe
 
 /// Mean of the ramp while its argument goes from one value to another.
 fn mean_of_ramp(from: f64, to: f64, width: f64) -> f64 {
-    let ramp = |i: f64| if width > 0.0 { (i / width).clamp(-1.0, 1.0) } else { f64::from(u8::from(i > 0.0)) - f64::from(u8::from(i < 0.0)) };
+    let ramp =
+        |i: f64| if width > 0.0 { (i / width).clamp(-1.0, 1.0) } else { f64::from(u8::from(i > 0.0)) - f64::from(u8::from(i < 0.0)) };
     // Its integral: a parabola up to the width, straight from there on.
     let integral = |i: f64| if i.abs() < width { 0.5 * i * i / width } else { i.abs() - 0.5 * width.max(0.0) };
     // A difference of integrals over a short way loses its digits to rounding; there the ramp is straight or about to be.
