@@ -3,6 +3,7 @@
 //! [`identify`] is the main path. Its model is the steady one: equation (2) on the means of steady windows, for which weighted
 //! least squares is exact; the swarm's answer is reported beside it.
 
+pub mod conventions;
 pub mod dead_time;
 pub mod estimate;
 pub mod excitation;
