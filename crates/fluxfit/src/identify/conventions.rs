@@ -336,6 +336,19 @@ fn of_each<'a>(ratios: impl Iterator<Item = &'a Ratio>, number: impl Fn(&Ratio) 
 }
 
 fn three_digits(value: f64) -> String {
+    // What rounds up to the next power of ten has its digits.
+    let value = format!("{value:.2e}").parse().unwrap_or(value);
     let decimals = (2.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ratios_have_three_digits() {
+        let shown = [1.7634, 0.99996, 0.000_999_9, 1732.4, 54.96].map(three_digits);
+        assert_eq!(shown, ["1.76", "1.00", "0.00100", "1730", "55.0"]);
+    }
 }
