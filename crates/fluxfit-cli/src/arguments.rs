@@ -58,7 +58,7 @@ pub(crate) struct LogArguments {
     /// What ud, uq of a row mean: the mean of the two periods around it (centered), or the vector of one period, so many periods later
     #[arg(long, value_enum, default_value_t = Timing::Auto)]
     pub(crate) voltage_timing: Timing,
-    /// Motor file: pole pairs, and a rating for the search box
+    /// Motor file: pole pairs, a rating for the search box, and for identify nameplate values that the log is held against
     #[arg(long, value_name = "MOTOR.toml")]
     pub(crate) motor: Option<PathBuf>,
     /// Search box of the swarms, e.g. ld=0:50mH; what is not named comes from the rating or the log

@@ -7,8 +7,9 @@ use crate::{
     terminal,
 };
 use fluxfit::{
+    error::Error,
     identify::{
-        Known, Settings, identify,
+        Known, Settings, conventions, identify,
         model::{self, Model},
     },
     log::Log,
@@ -23,14 +24,27 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     report::check(&arguments.log, [])?;
     let input = input::read(&arguments.log)?;
     let mut settings = settings(arguments)?;
+    let nameplate = input::nameplate(&arguments.log, &input.motor);
+    let refuse = |error: Error| {
+        // A log without an operating point may be one in the wrong units: its rows still say so.
+        conventions::check(&input.log, None, &nameplate)
+            .warning()
+            .iter()
+            .for_each(|warning| terminal::warn(warning.code, &warning.message));
+        input::of_log(&input.name, error)
+    };
     settings.method = searcher(arguments, &input.log, &settings);
     if let Ok(points) = fluxfit::identify::operating_points(&input.log, &settings) {
         settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &points)?);
     }
-    let found = identify(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
+    let mut found = identify(&input.log, &settings).map_err(refuse)?;
+    let convention = conventions::check(&input.log, Some((&found, &settings.known)), &nameplate);
+    found.warnings.extend(convention.warning());
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
-        terminal::print(&answer::to_text(&answer::identification(&input.log, &found, method)))?;
+        let mut document = answer::identification(&input.log, &found, method);
+        document["diagnostics"]["convention"] = answer::convention(&convention);
+        terminal::print(&answer::to_text(&document))?;
     } else {
         terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
     }

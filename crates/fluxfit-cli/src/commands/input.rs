@@ -5,7 +5,14 @@ use crate::{
     error::CommandError,
     terminal,
 };
-use fluxfit::{error::Error, identify::search_box, log::Log, motor::Parameter, optimizer::bounds::Bounds, steady::OperatingPoint};
+use fluxfit::{
+    error::Error,
+    identify::{conventions::Nameplate, search_box},
+    log::Log,
+    motor::Parameter,
+    optimizer::bounds::Bounds,
+    steady::OperatingPoint,
+};
 use fluxfit_files::{LogOptions, MotorFile, read_log, read_motor};
 use std::path::Path;
 
@@ -36,6 +43,12 @@ pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
     notes.iter().for_each(|note| terminal::note(note));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
     Ok(Input { log: Log::join(logs)?, motor, name: names.join(", "), notes })
+}
+
+/// What the motor file says of the motor, for the check of conventions.
+pub(crate) fn nameplate(arguments: &LogArguments, motor: &MotorFile) -> Nameplate {
+    let MotorFile { rs, ld, lq, psi_f, pole_pairs, .. } = *motor;
+    Nameplate { values: [rs, ld, lq, psi_f], pole_pairs: arguments.pole_pairs.or(pole_pairs) }
 }
 
 /// The search box: what `--bounds` names; the rest from the operating points, or from the rating where that is larger.

@@ -2,9 +2,11 @@
 //!
 //! Others read these documents: fields are added, never renamed. Every number in them is finite; what is not known is null.
 
+mod convention;
 mod identification;
 mod study;
 
+pub use convention::convention;
 pub use identification::identification;
 pub use study::{StudyFacts, study};
 
