@@ -9,8 +9,14 @@ use crate::{
     scenario::{Mechanics, Scenario},
     sensors::{Instruments, Measured},
 };
-use fluxfit::frames::{AlphaBeta, Dq};
+use fluxfit::{
+    frames::{AlphaBeta, Dq},
+    optimizer::draws::Draws,
+};
 use std::f64::consts::TAU;
+
+/// What makes the seed of the disturbance another one than the sensors': the digits of pi in hexadecimal.
+const DISTURBANCE: u64 = 0x243f_6a88_85a3_08d3;
 
 /// Simulates a scenario with draw number `draw` of its noise; `done` is called after each row.
 ///
@@ -39,6 +45,8 @@ pub struct Drive<'a> {
     acting: Command,
     /// What acted, as far as the drive knows, over the period that ended now.
     acted: AlphaBeta,
+    /// What disturbs the voltage.
+    disturbance: Draws,
     /// Number of the sample.
     sample: u64,
 }
@@ -60,6 +68,8 @@ impl<'a> Drive<'a> {
             controller: Controller::new(scenario),
             acting: Command { u: Dq::default(), u_stator: zero, duties: duties(zero, scenario.inverter.u_dc) },
             acted: zero,
+            // A stream of its own: with or without disturbance the sensors' noise is the same.
+            disturbance: Draws::seeded(scenario.seed ^ DISTURBANCE, draw),
             sample: 0,
         }
     }
@@ -79,7 +89,8 @@ impl<'a> Drive<'a> {
         let row = self.row(t, &measured, &command);
 
         self.set_load(t);
-        if !self.bridge.run(&mut self.plant, self.acting.duties, t) {
+        let duties = self.disturbed_duties();
+        if !self.bridge.run(&mut self.plant, duties, t) {
             return Err(self.scenario.outside_map(t, self.plant.current()));
         }
         self.acted = self.acting.u_stator;
@@ -100,6 +111,17 @@ impl<'a> Drive<'a> {
     fn asked(&self, t: f64) -> Asked {
         let schedule = &self.scenario.schedule;
         Asked { id: schedule.id.at(t), iq: schedule.iq.at(t), speed: schedule.speed.at(t) }
+    }
+
+    /// The duties that act: those of the command, or of the command with its disturbance.
+    fn disturbed_duties(&mut self) -> [f64; 3] {
+        let noise = self.scenario.inverter.voltage_noise;
+        if noise == 0.0 {
+            return self.acting.duties;
+        }
+        let AlphaBeta { alpha, beta } = self.acting.u_stator;
+        let u = AlphaBeta { alpha: alpha + noise * self.disturbance.normal(), beta: beta + noise * self.disturbance.normal() };
+        duties(u, self.scenario.inverter.u_dc)
     }
 
     /// Load and imposed speed over the period that begins at `t`: the load is held, the speed moves evenly; a

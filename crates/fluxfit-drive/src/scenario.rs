@@ -96,6 +96,8 @@ pub struct Inverter {
     pub switch_drop: f64,
     /// The same of a diode, V.
     pub diode_drop: f64,
+    /// White noise of the vector that acts, on each axis, standard deviation, V: unknown to the drive, new each sample period.
+    pub voltage_noise: f64,
 }
 
 /// How closely the switching is simulated.
@@ -240,6 +242,7 @@ impl Inverter {
             dead_time: 0.0,
             switch_drop: 0.0,
             diode_drop: 0.0,
+            voltage_noise: 0.0,
         }
     }
 

@@ -42,7 +42,21 @@ const SHAPE: Shape = Shape {
     tables: &[
         ("motor", &["rs", "ld", "lq", "psi_f", "flux_map", "pole_pairs"]),
         ("mechanics", &["kind", "inertia", "friction"]),
-        ("inverter", &["modulation", "u_dc", "ripple", "ripple_frequency", "carrier", "update", "dead_time", "switch_drop", "diode_drop"]),
+        (
+            "inverter",
+            &[
+                "modulation",
+                "u_dc",
+                "ripple",
+                "ripple_frequency",
+                "carrier",
+                "update",
+                "dead_time",
+                "switch_drop",
+                "diode_drop",
+                "voltage_noise",
+            ],
+        ),
         ("control", &["current_bandwidth", "speed_bandwidth", "max_current", "trip_current", "field_weakening"]),
         ("schedule", &["id", "iq", "speed", "load"]),
         ("injection", &["axis", "waveform", "frequency", "voltage"]),
@@ -195,7 +209,7 @@ mod tests {
                 "u_dc = \"310 V\"",
                 "udc = 310",
                 "line 22, key 'udc': this key is not known; [inverter] can hold modulation, u_dc, ripple, \
-              ripple_frequency, carrier, update, dead_time, switch_drop and diode_drop; did you mean u_dc?",
+              ripple_frequency, carrier, update, dead_time, switch_drop, diode_drop and voltage_noise; did you mean u_dc?",
             ),
             ("u_dc = \"310 V\"", "max_current = 3", "line 22, key 'max_current': this key belongs to [control]; move it there"),
             (

@@ -21,9 +21,9 @@ const STEP: f64 = 6e-6;
 /// What a motor that cannot be simulated misses the log by, A: more than any that can, and still a number when squared and summed.
 const HOPELESS: f64 = 1e100;
 
-/// A step that would lower the cost, or move the unknowns, by less than this fraction is none: far below any noise, and above what
-/// differences and rounding leave.
-const NO_STEP: f64 = 1e-12;
+/// A step that would lower the cost, or move the unknowns, by less than this fraction is none: a thousandth of what noise makes of a
+/// million rows, and above what differences and rounding leave.
+const NO_STEP: f64 = 1e-9;
 
 /// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
 const PATIENCE: usize = 8;
@@ -91,7 +91,7 @@ fn unit(unknown: Unknown, drive: &Adjustable, objective: &OutputError) -> f64 {
     let usual = match unknown {
         Unknown::Motor(parameter) => return Some(drive.motor.get(parameter).abs()).filter(|value| *value > 0.0).unwrap_or(1.0),
         Unknown::DeadTime => drive.motor.rs.abs() * peak(),
-        Unknown::DeadTimeWidth | Unknown::OffsetAlpha | Unknown::OffsetBeta => peak(),
+        Unknown::DeadTimeWidth | Unknown::DeadTimeRipple | Unknown::OffsetAlpha | Unknown::OffsetBeta => peak(),
         Unknown::SaturationD => drive.motor.ld.abs() / peak(),
         Unknown::SaturationQ | Unknown::CrossSaturation => drive.motor.lq.abs() / peak(),
         _ => 1.0,

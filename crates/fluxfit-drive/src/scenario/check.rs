@@ -63,6 +63,7 @@ impl Scenario {
         not_negative("inverter.dead_time", inverter.dead_time)?;
         not_negative("inverter.switch_drop", inverter.switch_drop)?;
         not_negative("inverter.diode_drop", inverter.diode_drop)?;
+        not_negative("inverter.voltage_noise", inverter.voltage_noise)?;
         if inverter.dead_time >= 0.25 / inverter.carrier {
             return Err(setting("inverter.dead_time", inverter.dead_time, "less than a quarter of the carrier's period"));
         }

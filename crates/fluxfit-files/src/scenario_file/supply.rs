@@ -20,6 +20,7 @@ pub(super) fn inverter(table: &Table<'_>) -> Result<Inverter, FileError> {
         dead_time: table.quantity("dead_time", Dimension::Time)?.unwrap_or(0.0),
         switch_drop: table.quantity("switch_drop", Dimension::Voltage)?.unwrap_or(0.0),
         diode_drop: table.quantity("diode_drop", Dimension::Voltage)?.unwrap_or(0.0),
+        voltage_noise: table.quantity("voltage_noise", Dimension::Voltage)?.unwrap_or(0.0),
         ..ideal
     })
 }

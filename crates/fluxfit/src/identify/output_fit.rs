@@ -22,7 +22,7 @@ use crate::{
     error::Error,
     frames::Dq,
     least_squares::{Equation, TriangularFactor},
-    levenberg_marquardt::{Belief, MOTOR, jacobian},
+    levenberg_marquardt::{Belief, MOTOR, jacobian, polish_unknowns},
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::{
@@ -43,7 +43,7 @@ pub struct OutputFit {
     pub drive: Adjustable,
     /// How the voltage columns were read, and whether that was stated or found.
     pub voltage_reading: (VoltageReading, Provenance),
-    /// Every reading that was tried, without faults of the drive, the best first.
+    /// Every reading that was tried, with the faults that were found, the best first.
     pub readings: Vec<timing::Tried>,
     /// Every fault that was tried, those taken first.
     pub terms: Vec<terms::Tried>,
@@ -83,39 +83,30 @@ impl OutputFit {
         let scale = Excitation::of(&whole(log, &stretches), &settings.known).scale;
         let start = start(log, &stretches, steady, settings, &scale);
         let free = free(settings);
-        let rough = timing::readings(log, &stretches, &start, &free, &[], settings)?;
-        let beliefs = beliefs(settings, rough.first().map_or(0.0, timing::Tried::mean_square));
-        let readings = timing::readings(log, &stretches, &start, &free, &beliefs, settings)?;
-        let Some(best) = readings.first() else { return Err(Error::TooShort { rows: log.rows(), least: 2 }) };
-
-        let objective = OutputError::of_rows(log, &stretches, best.reading)?;
-        let (drive, cost) = (best.polished.drive, best.polished.cost);
-        let mut candidate = Candidate {
-            objective: &objective,
-            beliefs: &beliefs,
-            drive,
-            unknowns: free,
-            cost,
-            voltage_accuracy: settings.voltage_accuracy,
+        let objectives = timing::objectives(log, &stretches, settings)?;
+        let rough = timing::readings(&objectives, &start, &free, &[]);
+        let beliefs = beliefs(settings, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
+        let Some((place, best)) = timing::readings(&objectives, &start, &free, &beliefs).into_iter().next() else {
+            return Err(Error::TooShort { rows: log.rows(), least: 2 });
         };
-        let mut tried = candidate.add_faults();
-        let undisturbed = candidate.drive.motor;
-        let process_noise = candidate.add_process_noise();
-        let disturbed = process_noise.outcome == Outcome::Taken;
-        tried.push(process_noise);
-        tried.sort_by_key(|tried| tried.outcome != Outcome::Taken);
+        let (drive, cost, voltage_accuracy) = (best.polished.drive, best.polished.cost, settings.voltage_accuracy);
+        let mut candidate =
+            Candidate { objectives: &objectives, reading: place, beliefs: &beliefs, drive, unknowns: free, cost, voltage_accuracy };
+        let tried = candidate.add_terms();
 
-        let Candidate { drive, unknowns, cost, .. } = candidate;
+        let Candidate { drive, unknowns, cost, reading, .. } = candidate;
+        let (reading, objective) = &objectives[reading];
         let residuals = objective.residuals(&drive);
+        let readings: Vec<_> = timing::readings(&objectives, &drive, &unknowns, &beliefs).into_iter().map(|(_, tried)| tried).collect();
         let doubt = Doubt {
             timing: timing::doubt(&readings, terms::independent(&residuals)),
-            process_noise: if disturbed { difference(&drive.motor, &undisturbed) } else { [0.0; PARAMETERS] },
+            process_noise: without_observer(objective, &drive, &unknowns, &beliefs),
             sensors: sensors(&drive),
         };
-        let errors = Errors::of(&objective, &drive, &unknowns, &beliefs, &residuals, settings, &scale);
+        let errors = Errors::of(objective, &drive, &unknowns, &beliefs, &residuals, settings, &scale);
         Ok(Self {
             drive,
-            voltage_reading: (best.reading, if settings.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
+            voltage_reading: (*reading, if settings.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
             terms: tried,
             nuisance: errors.nuisance(&drive, &unknowns),
             stretches: objective.stretches().collect(),
@@ -242,9 +233,16 @@ struct Doubt {
     sensors: [f64; PARAMETERS],
 }
 
-fn difference(one: &Motor, other: &Motor) -> [f64; PARAMETERS] {
-    let (one, other) = (one.to_array(), other.to_array());
-    std::array::from_fn(|p| (one[p] - other[p]).abs())
+/// How far the motor lies from that of a drive without disturbance, if an observer was found: either may be right.
+fn without_observer(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> [f64; PARAMETERS] {
+    let gains = [Unknown::GainD, Unknown::GainQ];
+    let rest: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| !gains.contains(unknown)).collect();
+    if rest.len() == unknowns.len() {
+        return [0.0; PARAMETERS];
+    }
+    let start = gains.into_iter().fold(*drive, |drive, gain| drive.with(gain, 0.0));
+    let other = polish_unknowns(objective, &start, &rest, beliefs).drive.motor.to_array();
+    std::array::from_fn(|p| (drive.motor.to_array()[p] - other[p]).abs())
 }
 
 /// Where gains of sensors differ, nobody knows which of them is right: a gain common to all would scale every impedance.

@@ -3,20 +3,26 @@
 //! A term is first judged where it is zero, by how much of the residual its derivatives explain beyond the other unknowns' (a score test);
 //! only one that would pay is fitted. It is taken if
 //!
-//! - Schwarz's criterion pays for its unknowns, `N ln(cost before / cost after) > unknowns ln N`, with `N` independent residuals, fewer
-//!   than there are rows where they are correlated (G. Schwarz, Ann. Stat. 6 (1978) 461, doi:10.1214/aos/1176344136);
+//! - Schwarz's criterion speaks for it very strongly, `N ln(cost before / cost after) > unknowns ln N + 10`, with `N` independent
+//!   residuals, fewer than there are rows where they are correlated (G. Schwarz, Ann. Stat. 6 (1978) 461, doi:10.1214/aos/1176344136);
 //! - its value is physical;
 //! - it moves a parameter by more than its standard error, or takes a noticeable part of the residual with it, so that intervals become
 //!   sharper.
 //!
-//! The best term is taken first, and the others are judged again beside it.
+//! The best term is taken first; then the voltages are read again, because a fault may have passed for a delay, and the other terms are
+//! judged again beside it.
 
-use super::{long_run::first_correlation, output_fit::accuracy};
+use super::{
+    long_run::first_correlation,
+    output_fit::accuracy,
+    timing::{VERY_STRONG, readings},
+};
 use crate::{
     frames::Dq,
     levenberg_marquardt::{Belief, jacobian, polish_unknowns},
     motor::PARAMETERS,
     objective::{
+        acting_voltage::VoltageReading,
         adjustable::{Adjustable, SensorPair, Unknown},
         output_error::OutputError,
     },
@@ -92,8 +98,8 @@ impl Outcome {
 /// Widths of the dead time's ramp that are tried, as fractions of the largest current: from next to nothing to a ripple nearly as large as the current.
 const WIDTHS: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8];
 
-/// Least part of the residual's power that a term takes with it to be worth having when no parameter moves.
-const NOTICEABLE: f64 = 0.01;
+/// Least part of the residual's power that a term takes with it to be worth having when no parameter moves, or where the motor is disturbed.
+const NOTICEABLE: f64 = 0.02;
 
 /// Residuals below this fraction of the largest current are rounding and the model's own last digits: nothing to explain.
 const LEAST_RESIDUAL: f64 = 1e-4;
@@ -153,7 +159,7 @@ impl Term {
     /// Its unknowns.
     pub fn unknowns(self) -> Vec<Unknown> {
         match self {
-            Self::DeadTime => vec![Unknown::DeadTime, Unknown::DeadTimeWidth],
+            Self::DeadTime => vec![Unknown::DeadTime, Unknown::DeadTimeWidth, Unknown::DeadTimeRipple],
             Self::AngleOffset => vec![Unknown::AngleOffset],
             Self::CurrentOffset => vec![Unknown::OffsetAlpha, Unknown::OffsetBeta],
             Self::Imbalance => vec![Unknown::ImbalanceAlpha, Unknown::ImbalanceBeta],
@@ -198,7 +204,7 @@ impl Term {
             }
             Self::ProcessNoise => {
                 let Dq { d, q } = nuisance.observer_gain;
-                d.max(q) > 0.0 && d.min(q) > -WHOLE && d.max(q) < WHOLE + WHOLE
+                d.max(q) > 0.0 && d.abs().max(q.abs()) < WHOLE
             }
         }
     }
@@ -206,7 +212,10 @@ impl Term {
 
 /// What is known while terms are chosen.
 pub(super) struct Candidate<'a> {
-    pub(super) objective: &'a OutputError,
+    /// The fitness under each reading of the voltages.
+    pub(super) objectives: &'a [(VoltageReading, OutputError)],
+    /// The reading that fits best now.
+    pub(super) reading: usize,
     pub(super) beliefs: &'a [Belief],
     pub(super) drive: Adjustable,
     pub(super) unknowns: Vec<Unknown>,
@@ -215,57 +224,112 @@ pub(super) struct Candidate<'a> {
 }
 
 impl Candidate<'_> {
-    /// Adds the faults that the log carries. All that were tried are told.
-    pub(super) fn add_faults(&mut self) -> Vec<Tried> {
-        let mut taken: Vec<Tried> = Vec::new();
-        loop {
-            let tried = self.judge(&Term::FAULTS, &taken);
-            match tried.iter().find(|tried| tried.outcome == Outcome::Taken).cloned() {
-                Some(best) => taken.push(best),
-                None => return taken.into_iter().chain(tried).collect(),
+    /// The fitness under the reading that fits best now.
+    pub(super) fn objective(&self) -> &OutputError {
+        &self.objectives[self.reading].1
+    }
+
+    /// Adds what the log carries: first an observer, if it would help, because beside it residuals are white and faults are judged
+    /// by what they are worth; then faults; then the observer goes again, if they have made it useless. All that were tried are told.
+    pub(super) fn add_terms(&mut self) -> Vec<Tried> {
+        let mut taken = self.take_best(&[Term::ProcessNoise], &[]);
+        let whitened = taken.pop_if(|tried| tried.outcome == Outcome::Taken);
+        if whitened.is_some() {
+            self.settle();
+        }
+        taken.clear();
+        let tried = loop {
+            let tried = self.take_best(&Term::FAULTS, &taken);
+            match tried.iter().find(|tried| tried.outcome == Outcome::Taken) {
+                Some(best) => taken.push(best.clone()),
+                None => break tried,
             }
+            self.settle();
+        };
+        let observer = match whitened {
+            Some(_) => self.drop_observer(),
+            None => Tried { term: Term::ProcessNoise, gain: 0.0, outcome: Outcome::NotNeeded },
+        };
+        let mut all: Vec<Tried> = taken.into_iter().chain([observer]).chain(tried).collect();
+        all.sort_by_key(|tried| tried.outcome != Outcome::Taken);
+        all
+    }
+
+    /// Reads the voltages again, now that more is known; another reading may fit better.
+    fn settle(&mut self) {
+        if let Some((place, best)) = readings(self.objectives, &self.drive, &self.unknowns, self.beliefs).into_iter().next() {
+            (self.reading, self.drive, self.cost) = (place, best.polished.drive, best.polished.cost);
         }
     }
 
-    /// Adds an observer, if unknown voltages disturb the motor.
-    pub(super) fn add_process_noise(&mut self) -> Tried {
-        let judged = self.judge(&[Term::ProcessNoise], &[]).into_iter().next();
-        judged.unwrap_or(Tried { term: Term::ProcessNoise, gain: 0.0, outcome: Outcome::NotNeeded })
+    /// Whether the observer is still worth its unknowns; if not, it goes.
+    fn drop_observer(&mut self) -> Tried {
+        let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !OBSERVER.contains(unknown)).collect();
+        let start = OBSERVER.into_iter().fold(self.drive, |drive, gain| drive.with(gain, 0.0));
+        let Some((place, without)) = readings(self.objectives, &start, &unknowns, self.beliefs).into_iter().next() else {
+            return Tried { term: Term::ProcessNoise, gain: 0.0, outcome: Outcome::Taken };
+        };
+        let rows = 2.0 * self.objective().rows() as f64;
+        let gain = schwarz(without.polished.cost, self.cost, OBSERVER.len(), rows);
+        // What it is worth beside the faults found, and a sign that observers have.
+        let outcome = if gain <= VERY_STRONG {
+            Outcome::NotNeeded
+        } else if Term::ProcessNoise.is_physical(&self.drive, self.objective().peak_current()) {
+            return Tried { term: Term::ProcessNoise, gain, outcome: Outcome::Taken };
+        } else {
+            Outcome::NotPhysical
+        };
+        (self.reading, self.drive, self.cost, self.unknowns) = (place, without.polished.drive, without.polished.cost, unknowns);
+        Tried { term: Term::ProcessNoise, gain, outcome }
     }
 
     /// Judges terms; of those that deserve it the best is taken, and comes first.
-    fn judge(&mut self, terms: &[Term], taken: &[Tried]) -> Vec<Tried> {
+    fn take_best(&mut self, terms: &[Term], taken: &[Tried]) -> Vec<Tried> {
         let scene = Scene::of(self, terms);
-        let mut tried: Vec<Tried> = terms
+        let mut tried: Vec<(Tried, Vec<Adjustable>)> = terms
             .iter()
             .filter(|term| !taken.iter().any(|taken| taken.term == **term))
             .map(|term| {
                 let outcome = if taken.iter().any(|taken| taken.term.same_fault(*term)) {
                     Outcome::Covered
-                } else if term.needs_angle() && !self.objective.angle_known() {
+                } else if term.needs_angle() && !self.objective().angle_known() {
                     Outcome::NeedsAngle
                 } else {
                     Outcome::NotNeeded
                 };
-                Tried { term: *term, gain: if outcome == Outcome::NotNeeded { scene.promise(self, *term) } else { 0.0 }, outcome }
+                let (gain, starts) = if outcome == Outcome::NotNeeded { scene.promise(self, *term) } else { (0.0, Vec::new()) };
+                (Tried { term: *term, gain, outcome }, starts)
             })
             .collect();
-        tried.sort_by(|one, other| other.gain.total_cmp(&one.gain));
+        tried.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
         for place in 0..tried.len() {
-            if tried[place].gain <= 0.0 {
+            let (one, starts) = &mut tried[place];
+            if one.gain <= VERY_STRONG {
                 break;
             }
-            let (outcome, fitted) = scene.fit(self, tried[place].term);
-            tried[place].outcome = outcome;
-            if let (Outcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
-                (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
-                // The others are as they were judged without it, if nothing more is taken.
-                tried.swap(0, place);
-                break;
-            }
+            let (outcome, fitted) = scene.fit(self, one.term, starts);
         }
-        tried
+        tried.into_iter().map(|(tried, _)| tried).collect()
     }
+}
+
+/// The observer's unknowns.
+const OBSERVER: [Unknown; 2] = [Unknown::GainD, Unknown::GainQ];
+
+/// Starts of a term that are fitted: the most promising of those that were looked at.
+const FITTED_STARTS: usize = 2;
+
+/// Schwarz's criterion for so many further unknowns, given how many independent residuals there are.
+fn schwarz(before: f64, after: f64, unknowns: usize, independent: f64) -> f64 {
+    if before <= 0.0 || after >= before || after.is_nan() {
+        return f64::NEG_INFINITY;
+    }
+    if before.is_infinite() {
+        return f64::INFINITY;
+    }
+    // A cost of zero explains everything, once.
+    let after = after.max(f64::EPSILON * before);
+    independent * (before / after).ln() - unknowns as f64 * independent.ln()
 }
 
 /// Residuals and derivatives where the terms are judged.
@@ -281,7 +345,8 @@ struct Scene {
 
 impl Scene {
     fn of(candidate: &Candidate, terms: &[Term]) -> Self {
-        let Candidate { objective, drive, unknowns, cost, .. } = candidate;
+        let Candidate { drive, unknowns, cost, .. } = candidate;
+        let objective = candidate.objective();
         let residuals = objective.residuals(drive);
         let jacobian = jacobian(objective, drive, unknowns);
         // With an observer, what is left is to be white: correlation is what it takes away, and every row counts.
@@ -293,49 +358,46 @@ impl Scene {
         Self { residuals, jacobian, standard_errors, independent, peak: objective.peak_current() }
     }
 
-    /// What a term would gain by Schwarz's criterion if the cost were as quadratic as it looks from here.
-    fn promise(&self, candidate: &Candidate, term: Term) -> f64 {
-        let peak = self.peak;
-        if (candidate.cost / self.residuals.len() as f64).sqrt() <= LEAST_RESIDUAL * peak {
-            return 0.0;
+    /// What a term would gain by Schwarz's criterion if the cost were as quadratic as it looks from here, and where to start with it.
+    fn promise(&self, candidate: &Candidate, term: Term) -> (f64, Vec<Adjustable>) {
+        if (candidate.cost / self.residuals.len() as f64).sqrt() <= LEAST_RESIDUAL * self.peak {
+            return (0.0, Vec::new());
         }
+        let unknowns = term.unknowns();
         let gain_from = |start: Adjustable| {
-            let unknowns = term.unknowns();
-            let columns = jacobian(candidate.objective, &start, &unknowns);
+            let columns = jacobian(candidate.objective(), &start, &unknowns);
             let all = [self.jacobian.clone(), columns].concat();
             let right = DVector::from_iterator(all.len(), all.iter().map(|column| dot(column, &self.residuals)));
-            let explained = right.dot(&(inverse_normal(&all) * &right)).min(candidate.cost * (1.0 - f64::EPSILON));
-            self.gain(candidate.cost, candidate.cost - explained, unknowns.len())
+            let explained = right.dot(&(inverse_normal(&all) * &right)).min(candidate.cost);
+            (schwarz(candidate.cost, candidate.cost - explained, unknowns.len(), self.independent), start)
         };
-        term.starts(&candidate.drive, peak).into_iter().map(gain_from).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    fn gain(&self, before: f64, after: f64, unknowns: usize) -> f64 {
-        if after <= 0.0 && before <= 0.0 {
-            return f64::NEG_INFINITY;
-        }
-        self.independent * (before / after).ln() - unknowns as f64 * self.independent.ln()
+        let mut gains: Vec<(f64, Adjustable)> = term.starts(&candidate.drive, self.peak).into_iter().map(gain_from).collect();
+        gains.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let best = gains.first().map_or(f64::NEG_INFINITY, |best| best.0);
+        (best, gains.into_iter().take(FITTED_STARTS).map(|(_, start)| start).collect())
     }
 
     /// Fits a term and says whether it deserves to be taken.
-    fn fit(&self, candidate: &Candidate, term: Term) -> (Outcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
+    fn fit(&self, candidate: &Candidate, term: Term, starts: &[Adjustable]) -> (Outcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
         let unknowns = [candidate.unknowns.clone(), term.unknowns()].concat();
-        let polished = term
-            .starts(&candidate.drive, self.peak)
-            .into_iter()
-            .map(|start| polish_unknowns(candidate.objective, &start, &unknowns, candidate.beliefs))
+        let polished = starts
+            .iter()
+            .map(|start| polish_unknowns(candidate.objective(), start, &unknowns, candidate.beliefs))
             .min_by(|one, other| one.cost.total_cmp(&other.cost));
         let Some(polished) = polished else { return (Outcome::NotNeeded, None) };
-        if self.gain(candidate.cost, polished.cost, term.unknowns().len()) <= 0.0 {
+        if schwarz(candidate.cost, polished.cost, term.unknowns().len(), self.independent) <= VERY_STRONG {
             return (Outcome::NotNeeded, None);
         }
-        if !term.is_physical(&polished.drive, self.peak) {
+        // An observer need not be one yet: it makes residuals white while faults are looked for.
+        if term != Term::ProcessNoise && !term.is_physical(&polished.drive, self.peak) {
             return (Outcome::NotPhysical, None);
         }
         let moved = candidate.unknowns.iter().zip(&self.standard_errors).any(|(unknown, standard_error)| {
             matches!(unknown, Unknown::Motor(_)) && (polished.drive.get(*unknown) - candidate.drive.get(*unknown)).abs() > *standard_error
         });
-        if !moved && polished.cost > (1.0 - NOTICEABLE) * candidate.cost {
+        // Beside an observer the residuals are what a simple filter leaves of disturbances that nobody knows: small gains prove little.
+        let disturbed = candidate.unknowns.contains(&Unknown::GainD);
+        if (!moved || disturbed) && polished.cost > (1.0 - NOTICEABLE) * candidate.cost {
             return (Outcome::NoMatter, None);
         }
         (Outcome::Taken, Some((polished.drive, polished.cost, unknowns)))

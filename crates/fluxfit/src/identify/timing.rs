@@ -40,23 +40,29 @@ impl Tried {
     }
 }
 
-/// Tries every reading, or the one that is stated, from the same start. The best one first.
+/// The fitness under every reading, or under the one that is stated.
+///
+/// # Errors
+/// If no stretch is long enough.
+pub(super) fn objectives(log: &Log, stretches: &[Range<usize>], settings: &Settings) -> Result<Vec<(VoltageReading, OutputError)>, Error> {
+    let readings = settings.voltage_timing.map_or(VoltageReading::ALL.to_vec(), |stated| vec![stated]);
+    readings.into_iter().map(|reading| Ok((reading, OutputError::of_rows(log, stretches, reading)?))).collect()
+}
+
+/// Tries every reading from the same start. The best one first, with its place among the objectives.
 pub(super) fn readings(
-    log: &Log,
-    stretches: &[Range<usize>],
+    objectives: &[(VoltageReading, OutputError)],
     start: &Adjustable,
     unknowns: &[Unknown],
     beliefs: &[Belief],
-    settings: &Settings,
-) -> Result<Vec<Tried>, Error> {
-    let readings = settings.voltage_timing.map_or(VoltageReading::ALL.to_vec(), |stated| vec![stated]);
-    let try_one = |reading: &VoltageReading| {
-        let objective = OutputError::of_rows(log, stretches, *reading)?;
-        Ok(Tried { reading: *reading, polished: polish_unknowns(&objective, start, unknowns, beliefs), rows: objective.rows() })
+) -> Vec<(usize, Tried)> {
+    let try_one = |(place, (reading, objective)): (usize, &(VoltageReading, OutputError))| {
+        let polished = polish_unknowns(objective, start, unknowns, beliefs);
+        (place, Tried { reading: *reading, polished, rows: objective.rows() })
     };
-    let mut tried: Vec<Tried> = readings.par_iter().map(try_one).collect::<Result<_, Error>>()?;
-    tried.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
-    Ok(tried)
+    let mut tried: Vec<(usize, Tried)> = objectives.par_iter().enumerate().map(try_one).collect();
+    tried.sort_by(|(_, one), (_, other)| one.mean_square().total_cmp(&other.mean_square()));
+    tried
 }
 
 /// How far each parameter moves between the readings that are not ruled out, given how many independent residuals there are.

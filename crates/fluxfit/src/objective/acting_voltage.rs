@@ -95,31 +95,46 @@ pub(super) struct Period {
     pub(super) theta_e: f64,
 }
 
+/// The electrical angle at the rows of one stretch, rad, without jumps.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Angles {
+    /// As the drive had it when it turned currents and voltages into its frame.
+    pub(super) logged: Vec<f64>,
+    /// As the rotor most likely was: without the steps of an encoder.
+    pub(super) rotor: Vec<f64>,
+    /// Whether the log has it. Without, both are the speed, summed up from the first row on: a frame that stands still in the stator all
+    /// the same, but nobody knows where.
+    pub(super) known: bool,
+}
+
 /// The periods between these rows of one segment, from row [`lost_rows`](VoltageReading::lost_rows) on: one less than there are
-/// rows left. `theta_e` has an angle per row, as [`angles`] gives them.
-pub(super) fn periods(log: &Log, rows: &Range<usize>, theta_e: &[f64], reading: VoltageReading) -> Vec<Period> {
+/// rows left.
+pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: VoltageReading) -> Vec<Period> {
     let columns = log.columns();
     let first = rows.start + reading.lost_rows();
-    let theta = |row: usize| theta_e[row - rows.start];
+    let frame = |row: usize| angles.logged[row - rows.start];
     let logged = |row: usize| Dq { d: columns.ud[row], q: columns.uq[row] };
     // Of a centred column: what acted over the period before, in the stator. At the start nothing better is known than the row itself.
-    let mut before = logged(rows.start).to_alpha_beta(theta(rows.start));
+    let mut before = logged(rows.start).to_alpha_beta(frame(rows.start));
     (first..rows.end.saturating_sub(1))
         .map(|row| {
-            let middle = 0.5 * (theta(row) + theta(row + 1));
-            let u = match reading {
+            let middle = 0.5 * (angles.rotor[row - rows.start] + angles.rotor[row + 1 - rows.start]);
+            let length = columns.t[row + 1] - columns.t[row];
+            let stator = match reading {
                 VoltageReading::Centered => {
-                    let mean = logged(row).to_alpha_beta(theta(row));
+                    let mean = logged(row).to_alpha_beta(frame(row));
                     before = AlphaBeta { alpha: 2.0 * mean.alpha - before.alpha, beta: 2.0 * mean.beta - before.beta };
-                    before.to_dq(middle)
+                    before
                 }
-                VoltageReading::Delayed { delay, frame: VoltageFrame::Middle } => logged(row - delay),
-                VoltageReading::Delayed { delay, frame: VoltageFrame::Row } => {
-                    logged(row - delay).to_alpha_beta(theta(row - delay)).to_dq(middle)
+                VoltageReading::Delayed { delay, frame: VoltageFrame::Middle } => {
+                    // The drive looked ahead with the speed that it had.
+                    let ahead = columns.omega_e[row - delay] * (delay as f64 + 0.5) * length;
+                    logged(row - delay).to_alpha_beta(frame(row - delay) + ahead)
                 }
+                VoltageReading::Delayed { delay, frame: VoltageFrame::Row } => logged(row - delay).to_alpha_beta(frame(row - delay)),
             };
-            let omega_e = 0.5 * (columns.omega_e[row] + columns.omega_e[row + 1]);
-            Period { length: columns.t[row + 1] - columns.t[row], omega_e, u, theta_e: middle }
+            let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
+            Period { length, omega_e: turn / length, u: stator.to_dq(middle), theta_e: middle }
         })
         .collect()
 }
@@ -131,29 +146,53 @@ const ANGLE_MISFIT: f64 = 0.1;
 /// Share of the rows that may miss it, as where an index pulse sets the angle right.
 const MISFITS: f64 = 0.01;
 
-/// The electrical angle at these rows of one segment, rad, without jumps; and whether it is the logged one. Without one, or where it
-/// does not turn with the speed, the speed is summed up from the first row on: a frame that stands still in the stator all the same,
-/// but nobody knows where.
-pub(super) fn angles(log: &Log, rows: &Range<usize>) -> (Vec<f64>, bool) {
+/// Rows to either side over which the steps of an encoder are averaged: what is left of uniform steps is a tenth or less, and the
+/// speed, which fills in between, need be right over so many rows only.
+const SMOOTHED: usize = 25;
+
+/// The angles at these rows of one segment. A logged angle that does not turn with the speed is none.
+pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
     let columns = log.columns();
     let turn = |row: usize| 0.5 * (columns.omega_e[row - 1] + columns.omega_e[row]) * (columns.t[row] - columns.t[row - 1]);
     let later = rows.start + 1..rows.end;
+    let turns = later.clone().scan(0.0, |theta, row| {
+        *theta += turn(row);
+        Some(*theta)
+    });
+    let summed: Vec<f64> = std::iter::once(0.0).chain(turns).collect();
     if let Some(logged) = &columns.theta_e {
         let mut angles = vec![logged[rows.start]];
         let mut misfits = 0;
-        for row in later.clone() {
+        for row in later {
             let expected = angles[angles.len() - 1] + turn(row);
             let angle = logged[row] + TAU * ((expected - logged[row]) / TAU).round();
             misfits += usize::from((angle - expected).abs() > ANGLE_MISFIT);
             angles.push(angle);
         }
         if misfits as f64 <= MISFITS * rows.len() as f64 {
-            return (angles, true);
+            return Angles { rotor: smoothed(&angles, &summed), logged: angles, known: true };
         }
     }
-    let sum = later.scan(0.0, |theta, row| {
-        *theta += turn(row);
-        Some(*theta)
-    });
-    (std::iter::once(0.0).chain(sum).collect(), false)
+    Angles { rotor: summed.clone(), logged: summed, known: false }
+}
+
+/// The summed speed, brought to the mean of the logged angle around each row; twice, so that the slope is calm too.
+fn smoothed(logged: &[f64], summed: &[f64]) -> Vec<f64> {
+    let apart: Vec<f64> = logged.iter().zip(summed).map(|(one, other)| one - other).collect();
+    let calm = moving_mean(&moving_mean(&apart));
+    summed.iter().zip(calm).map(|(summed, apart)| summed + apart).collect()
+}
+
+/// Mean of as many rows on one side as on the other, so that a trend is not shifted: fewer near the ends.
+fn moving_mean(series: &[f64]) -> Vec<f64> {
+    let mut sums = vec![0.0];
+    sums.extend(series.iter().scan(0.0, |sum, value| {
+        *sum += value;
+        Some(*sum)
+    }));
+    let mean = |row: usize| {
+        let reach = SMOOTHED.min(row).min(series.len() - 1 - row);
+        (sums[row + reach + 1] - sums[row - reach]) / (2 * reach + 1) as f64
+    };
+    (0..series.len()).map(mean).collect()
 }

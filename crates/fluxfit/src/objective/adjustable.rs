@@ -24,6 +24,9 @@ pub struct Nuisance {
     pub dead_time: f64,
     /// Phase current, A, from which on it loses all of that; below, in proportion.
     pub dead_time_width: f64,
+    /// Ripple of a phase current between the carrier's rising and falling half, A: where each half is a row, the loss changes its sign at
+    /// plus that current in one row and at minus it in the next. Its sign says which half comes first.
+    pub dead_time_ripple: f64,
     /// What the logged angle is too large by, electrical rad.
     pub angle_offset: f64,
     /// What the current sensors read at zero, A.
@@ -51,6 +54,8 @@ pub enum Unknown {
     DeadTime,
     /// [`Nuisance::dead_time_width`].
     DeadTimeWidth,
+    /// [`Nuisance::dead_time_ripple`].
+    DeadTimeRipple,
     /// [`Nuisance::angle_offset`].
     AngleOffset,
     /// Component of [`Nuisance::current_offset`].
@@ -82,6 +87,7 @@ impl Unknown {
             Self::Motor(parameter) => parameter.key(),
             Self::DeadTime => "dead_time_voltage",
             Self::DeadTimeWidth => "dead_time_width",
+            Self::DeadTimeRipple => "dead_time_ripple",
             Self::AngleOffset => "angle_offset",
             Self::OffsetAlpha => "current_offset_alpha",
             Self::OffsetBeta => "current_offset_beta",
@@ -104,6 +110,7 @@ impl Unknown {
             Self::Motor(parameter) => parameter.symbol(),
             Self::DeadTime => "dead-time voltage per phase",
             Self::DeadTimeWidth => "phase current below which less is lost",
+            Self::DeadTimeRipple => "phase current's ripple between the carrier's halves",
             Self::AngleOffset => "angle read too large by",
             Self::OffsetAlpha => "current sensor offset, alpha",
             Self::OffsetBeta => "current sensor offset, beta",
@@ -125,7 +132,7 @@ impl Unknown {
         match self {
             Self::Motor(parameter) => parameter.unit(),
             Self::DeadTime => "V",
-            Self::DeadTimeWidth | Self::OffsetAlpha | Self::OffsetBeta => "A",
+            Self::DeadTimeWidth | Self::DeadTimeRipple | Self::OffsetAlpha | Self::OffsetBeta => "A",
             Self::AngleOffset => "rad",
             Self::SaturationD | Self::SaturationQ | Self::CrossSaturation => "H/A",
             _ => "1",
@@ -181,6 +188,7 @@ impl Adjustable {
             Unknown::Motor(parameter) => self.motor.get(parameter),
             Unknown::DeadTime => nuisance.dead_time,
             Unknown::DeadTimeWidth => nuisance.dead_time_width,
+            Unknown::DeadTimeRipple => nuisance.dead_time_ripple,
             Unknown::AngleOffset => nuisance.angle_offset,
             Unknown::OffsetAlpha => nuisance.current_offset.alpha,
             Unknown::OffsetBeta => nuisance.current_offset.beta,
@@ -206,6 +214,7 @@ impl Adjustable {
             }
             Unknown::DeadTime => nuisance.dead_time = value,
             Unknown::DeadTimeWidth => nuisance.dead_time_width = value,
+            Unknown::DeadTimeRipple => nuisance.dead_time_ripple = value,
             Unknown::AngleOffset => nuisance.angle_offset = value,
             Unknown::OffsetAlpha => nuisance.current_offset.alpha = value,
             Unknown::OffsetBeta => nuisance.current_offset.beta = value,
@@ -257,7 +266,7 @@ mod tests {
     fn what_is_set_is_got() {
         use Unknown::*;
         let all = Parameter::ALL.map(Motor);
-        let rest = [DeadTime, DeadTimeWidth, AngleOffset, OffsetAlpha, OffsetBeta, ImbalanceAlpha, ImbalanceBeta];
+        let rest = [DeadTime, DeadTimeWidth, DeadTimeRipple, AngleOffset, OffsetAlpha, OffsetBeta, ImbalanceAlpha, ImbalanceBeta];
         let more = [TwoSensors(SensorPair::Bc), SaturationD, SaturationQ, CrossSaturation, GainD, GainQ];
         for unknown in all.into_iter().chain(rest).chain(more) {
             let found = Adjustable::from(crate::motor::Motor::from([1.0; 4])).with(unknown, 0.25).get(unknown);

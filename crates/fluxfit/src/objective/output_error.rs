@@ -59,7 +59,7 @@ struct Course {
     periods: Vec<Period>,
     /// One more than periods.
     measured: Vec<Dq>,
-    /// The electrical angle at each of them, rad.
+    /// The electrical angle at each of them, rad: their frame against the stator.
     theta_e: Vec<f64>,
     /// Whether that angle is the logged one.
     angle_known: bool,
@@ -195,15 +195,18 @@ const UNKNOWNS: usize = 4;
 
 impl Course {
     fn of(log: &Log, rows: &Range<usize>, reading: VoltageReading) -> Self {
-        let (theta_e, angle_known) = angles(log, rows);
-        let periods = periods(log, rows, &theta_e, reading);
+        let angles = angles(log, rows);
+        let periods = periods(log, rows, &angles, reading);
         let (lost, columns) = (reading.lost_rows(), log.columns());
         let rows = rows.start + lost..rows.end;
-        let measured = rows.clone().map(|row| Dq { d: columns.id[row], q: columns.iq[row] }).collect();
+        let theta_e = angles.rotor[lost..].to_vec();
+        // Out of the drive's frame, into the rotor's.
+        let frames = angles.logged[lost..].iter().zip(&theta_e);
+        let turned = |(row, (logged, rotor)): (usize, (&f64, &f64))| turned(Dq { d: columns.id[row], q: columns.iq[row] }, logged - rotor);
+        let measured = rows.clone().zip(frames).map(turned).collect();
         let length = (columns.t[rows.end - 1] - columns.t[rows.start]) / periods.len() as f64;
         let even = periods.iter().all(|period| (period.length / length - 1.0).abs() < EVEN).then_some(length);
-        let theta_e = theta_e[lost..].to_vec();
-        Self { rows, periods, measured, theta_e, angle_known, centered: reading == VoltageReading::Centered, even }
+        Self { rows, periods, measured, theta_e, angle_known: angles.known, centered: reading == VoltageReading::Centered, even }
     }
 
     fn unknowns(&self) -> usize {
@@ -233,7 +236,9 @@ impl Course {
         if faults.dead_time != 0.0 {
             // As the sensors' frame has it; over a period the current hardly moves against the rotor.
             let seen = turned(i, -faults.angle_offset);
-            let loss = mean_loss(seen.to_alpha_beta(self.theta_e[k]), seen.to_alpha_beta(self.theta_e[k + 1]), faults.dead_time_width);
+            let (start, end) = (seen.to_alpha_beta(self.theta_e[k]), seen.to_alpha_beta(self.theta_e[k + 1]));
+            let half = if (self.rows.start + k) % 2 == 0 { faults.dead_time_ripple } else { -faults.dead_time_ripple };
+            let loss = mean_loss(start, end, half, faults.dead_time_width);
             let loss = loss.to_dq(theta_e);
             u = Dq { d: u.d - faults.dead_time * loss.d, q: u.q - faults.dead_time * loss.q };
         }

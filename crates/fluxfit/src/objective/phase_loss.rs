@@ -4,8 +4,13 @@
 //! switching instants of a period, a part of it. A ramp of the width of that ripple describes the mean over a period:
 //!
 //! ```text
-//! u_phase = commanded - V f(i_phase),    f(i) = i / width, but at most 1 and at least -1
+//! u_phase = commanded - V f(i_phase - shift),    f(i) = i / width, but at most 1 and at least -1
 //! ```
+//!
+//! Where a row is half a carrier period, each phase switches once in it, up in one row and down in the next. A late edge up takes
+//! voltage while current flows out, a late edge down gives some while it flows in: per row that is `V (f + 1)` and `V (f - 1)`, and what
+//! is common to all phases does nothing. But the current at an edge up is the lowest of its ripple, at an edge down the highest: near its
+//! zero the deciding sign alternates, which is the shift.
 //!
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, doi:10.1109/41.88903.
@@ -13,9 +18,9 @@
 use crate::frames::{Abc, AlphaBeta};
 
 /// Mean loss over a period, per volt, in the stator, of a current that goes straight from `start` to `end`, A.
-pub(super) fn mean_loss(start: AlphaBeta, end: AlphaBeta, width: f64) -> AlphaBeta {
+pub(super) fn mean_loss(start: AlphaBeta, end: AlphaBeta, shift: f64, width: f64) -> AlphaBeta {
     let (start, end) = (start.to_abc(), end.to_abc());
-    let phase = |from: f64, to: f64| mean_of_ramp(from, to, width);
+    let phase = |from: f64, to: f64| mean_of_ramp(from - shift, to - shift, width);
     Abc { a: phase(start.a, end.a), b: phase(start.b, end.b), c: phase(start.c, end.c) }.to_alpha_beta()
 }
 
@@ -54,7 +59,7 @@ mod tests {
         };
         let along = |k: u32| {
             let (start, end) = (vector(k), vector(k + 1));
-            let loss = mean_loss(start, end, 0.0);
+            let loss = mean_loss(start, end, 0.0, 0.0);
             (loss.alpha * (start.alpha + end.alpha) + loss.beta * (start.beta + end.beta)) / 10.0
         };
         let mean = (0..STEPS).map(along).sum::<f64>() / f64::from(STEPS);
