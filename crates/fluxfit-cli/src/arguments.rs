@@ -1,7 +1,15 @@
 //! The command line, as clap reads it. Texts of values are turned into values by `fluxfit-files`; nothing is decided here.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use fluxfit::{motor::Parameter, objective::voltage_error::IdZero, optimizer::Method, steady::held_vector::VoltageTiming};
+use fluxfit::{
+    motor::Parameter,
+    objective::{
+        acting_voltage::{VoltageFrame, VoltageReading},
+        voltage_error::IdZero,
+    },
+    optimizer::Method,
+    steady::held_vector::VoltageTiming,
+};
 use fluxfit_files::Unit;
 use std::path::PathBuf;
 
@@ -22,7 +30,7 @@ pub(crate) enum Verb {
     Demo(Demo),
     /// Identify a motor: four parameters, each with an interval and a verdict
     Identify(Identify),
-    /// Compare swarm optimizers on the paper's fitness: many runs of each, beside the exact answer
+    /// Compare swarm optimizers on the paper's fitness, or on the output error: many runs of each, beside the minimum
     Compare(Compare),
     /// Simulate a motor in a drive: a log, and its truth beside it
     Simulate(Simulate),
@@ -104,7 +112,7 @@ pub(crate) struct Compare {
     /// Methods: tgfpa, fpa, lpso, apso
     #[arg(long, value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
     pub(crate) methods: Vec<Method>,
-    /// Model of the motor's voltage
+    /// What is minimized
     #[arg(long, value_enum, default_value_t = StudyModel::Steady)]
     pub(crate) model: StudyModel,
     /// Independent runs of each method
@@ -116,7 +124,7 @@ pub(crate) struct Compare {
     /// Iterations of each run
     #[arg(long, value_name = "N", default_value_t = 300)]
     pub(crate) iterations: usize,
-    /// Stop a run once its cost is this close to the exact minimum
+    /// Stop a run once its cost is this close to the minimum
     #[arg(long, value_name = "COST")]
     pub(crate) tolerance: Option<f64>,
     /// Stop a run once its cost is at or below this
@@ -165,12 +173,14 @@ pub(crate) enum Model {
 pub(crate) enum StudyModel {
     /// Fitness (11) on the samples of steady windows
     Steady,
+    /// The simulated currents against the measured ones, on every row: slow, half an hour a core for the whole study
+    OutputError,
 }
 
 /// Timing of the voltage columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Timing {
-    /// Centred, the doubt counted as uncertainty
+    /// Centred, the doubt counted as uncertainty; of the output error what fits best
     Auto,
     /// The mean of the two periods around the row
     Centered,
@@ -193,6 +203,18 @@ impl Timing {
             Self::Centered => Some(VoltageTiming::Centered),
             // Steady voltages do not know their delay.
             Self::Zero | Self::One | Self::Two => Some(VoltageTiming::Compensated),
+        }
+    }
+
+    /// What is stated to the output error, which knows delays; nothing, if the best fit is to choose.
+    pub(crate) fn reading(self) -> Option<VoltageReading> {
+        let delayed = |delay| Some(VoltageReading::Delayed { delay, frame: VoltageFrame::Middle });
+        match self {
+            Self::Auto => None,
+            Self::Centered => Some(VoltageReading::Centered),
+            Self::Zero => delayed(0),
+            Self::One => delayed(1),
+            Self::Two => delayed(2),
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     terminal,
 };
 use fluxfit::{
-    identify::{Known, Settings, identify},
+    identify::{Known, Settings, identify, search_box::from_points},
     motor::PARAMETERS,
     optimizer::{self, Method, tgfpa::Tgfpa},
 };
@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let input = input::read(&arguments.log)?;
     let mut settings = settings(arguments)?;
     let points = fluxfit::identify::operating_points(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
-    settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &points)?);
+    settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &from_points(&points)?)?);
     let found = identify(&input.log, &settings).map_err(|error| input::of_log(&input.name, error))?;
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {

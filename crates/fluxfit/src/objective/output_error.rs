@@ -31,6 +31,10 @@ const EVEN: f64 = 1e-3;
 /// Turn, rad, from one tabulated transition to the next: a cubic between four of them is right to 0.005⁴ · 3/128 = 1e-11.
 const TABLE_STEP: f64 = 0.005;
 
+/// If less than this part of the cost is left by the unknowns, too few digits are left too, and residuals are squared one by one: an
+/// unstable motor's currents, wrong by far, are much like the response to a wrong start, and their cost must not come out negative.
+const CANCELLED: f64 = 1e-8;
+
 /// Fewest rows that a segment must have left.
 const MIN_ROWS: usize = 10;
 
@@ -47,8 +51,9 @@ struct Course {
     periods: Vec<Period>,
     /// One more than periods.
     measured: Vec<Dq>,
-    /// The unknown first vector of centred voltages counts.
-    centered: bool,
+    /// What the first vector of centred voltages adds to each period's, per volt along alpha; none of delayed ones. Along beta it is
+    /// the same, turned by a right angle.
+    alternating: Vec<Dq>,
     /// The length of its periods, s, if they are even.
     even: Option<f64>,
 }
@@ -74,7 +79,8 @@ impl OutputError {
                 let measured = (first..segment.rows.end).map(|row| Dq { d: columns.id[row], q: columns.iq[row] }).collect();
                 let length = segment.sample_period;
                 let even = periods.iter().all(|period| (period.length / length - 1.0).abs() < EVEN).then_some(length);
-                Course { periods, measured, centered: reading == VoltageReading::Centered, even }
+                let alternating = if reading == VoltageReading::Centered { alternating(&periods) } else { Vec::new() };
+                Course { periods, measured, alternating, even }
             })
             .collect();
         let rows = courses.iter().map(|course| course.measured.len()).sum();
@@ -90,6 +96,11 @@ impl OutputError {
         self.rows
     }
 
+    /// The same for each segment that is long enough.
+    pub fn rows_per_segment(&self) -> Vec<usize> {
+        self.courses.iter().map(|course| course.measured.len()).collect()
+    }
+
     /// Cost of one motor, A².
     pub fn cost(&self, motor: &Motor) -> f64 {
         self.courses.iter().map(|course| course.cost(motor)).sum()
@@ -99,6 +110,12 @@ impl OutputError {
     pub fn residuals(&self, motor: &Motor) -> Vec<f64> {
         self.courses.iter().flat_map(|course| course.residuals(motor)).collect()
     }
+}
+
+/// A volt along alpha whose sign alternates, seen from the rotor.
+fn alternating(periods: &[Period]) -> Vec<Dq> {
+    let signs = [1.0, -1.0].into_iter().cycle();
+    periods.iter().zip(signs).map(|(period, sign)| AlphaBeta { alpha: sign, beta: 0.0 }.to_dq(period.theta_e)).collect()
 }
 
 impl Objective for OutputError {
@@ -119,7 +136,7 @@ const UNKNOWNS: usize = 4;
 
 impl Course {
     fn unknowns(&self) -> usize {
-        if self.centered { UNKNOWNS } else { UNKNOWNS / 2 }
+        if self.alternating.is_empty() { UNKNOWNS / 2 } else { UNKNOWNS }
     }
 
     /// Simulates, and shows for each row the difference of measured and simulated current, and what each unknown does to the simulated one.
@@ -130,28 +147,23 @@ impl Course {
         let unit = |k: usize| Dq { d: f64::from(u8::from(k == 0)), q: f64::from(u8::from(k == 1)) };
         let mut response: [Dq; UNKNOWNS] = std::array::from_fn(unit);
         see(Dq::default(), &response[..unknowns]);
-        let mut sign = 1.0;
-        for (period, measured) in self.periods.iter().zip(&self.measured[1..]) {
+        for (k, (period, measured)) in self.periods.iter().zip(&self.measured[1..]).enumerate() {
             let transition = match &table {
                 Some(table) => table.at(period.omega_e),
                 None => Transition::of(motor, period.omega_e, period.length),
             };
             i = transition.after(i, period.u);
-            for (k, response) in response[..unknowns].iter_mut().enumerate() {
-                let alternating = match k {
-                    2 => AlphaBeta { alpha: sign, beta: 0.0 }.to_dq(period.theta_e),
-                    3 => AlphaBeta { alpha: 0.0, beta: sign }.to_dq(period.theta_e),
-                    _ => Dq::default(),
-                };
-                *response = transition.difference_after(*response, alternating);
+            let alpha = self.alternating.get(k).copied().unwrap_or_default();
+            let beta = Dq { d: -alpha.q, q: alpha.d };
+            for (response, u) in response[..unknowns].iter_mut().zip([Dq::default(), Dq::default(), alpha, beta]) {
+                *response = transition.difference_after(*response, u);
             }
-            sign = -sign;
             see(Dq { d: measured.d - i.d, q: measured.q - i.q }, &response[..unknowns]);
         }
     }
 
-    /// The unknowns that fit best, and the cost that is left.
-    fn fit(&self, motor: &Motor) -> (DVector<f64>, f64) {
+    /// The unknowns that fit best, the part of the cost that is left, and the cost without them.
+    fn fit(&self, motor: &Motor) -> (DVector<f64>, f64, f64) {
         let n = self.unknowns();
         let (mut normal, mut right, mut total) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS], 0.0);
         self.walk(motor, |error, response| {
@@ -169,18 +181,23 @@ impl Course {
             Some(factor) => {
                 let best = factor.solve(&right);
                 let cost = total - right.dot(&best);
-                (best, cost)
+                (best, cost, total)
             }
-            None => (DVector::zeros(n), total),
+            None => (DVector::zeros(n), total, total),
         }
     }
 
     fn cost(&self, motor: &Motor) -> f64 {
-        self.fit(motor).1
+        let (best, left, total) = self.fit(motor);
+        if left > CANCELLED * total { left } else { self.residuals_with(motor, &best).iter().map(|residual| residual * residual).sum() }
     }
 
     fn residuals(&self, motor: &Motor) -> Vec<f64> {
-        let (best, _) = self.fit(motor);
+        self.residuals_with(motor, &self.fit(motor).0)
+    }
+
+    /// The residuals that these unknowns leave.
+    fn residuals_with(&self, motor: &Motor, best: &DVector<f64>) -> Vec<f64> {
         let mut residuals = Vec::with_capacity(2 * self.measured.len());
         self.walk(motor, |mut error, response| {
             for (value, response) in best.iter().zip(response) {
