@@ -94,6 +94,27 @@ mod tests {
     }
 
     #[test]
+    fn rows_give_a_box_by_hand() {
+        // |u| is at most 50; |i|² is 25 and 9, root mean square sqrt(17); omega² 100² and 20², sqrt(5200).
+        let log = Log::new(Columns {
+            t: vec![0.0, 1.0],
+            id: vec![-3.0, 0.0],
+            iq: vec![4.0, 3.0],
+            omega_e: vec![-100.0, 20.0],
+            ud: vec![-30.0, 5.0],
+            uq: vec![40.0, 12.0],
+            ..Columns::default()
+        });
+        let (current, speed) = (17.0_f64.sqrt(), 5200.0_f64.sqrt());
+        let inductance = 50.0 / (current * speed);
+        for (found, expected) in
+            upper(&from_rows(&log.unwrap()).unwrap()).into_iter().zip([50.0 / current, inductance, inductance, 50.0 / speed])
+        {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
     fn a_motor_is_in_its_own_box_while_the_voltages_do_not_cancel() {
         let motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
         let rows = [(0.0, 9.0, 400.0), (2.0, 8.5, 400.0)].map(|(d, q, omega)| {
