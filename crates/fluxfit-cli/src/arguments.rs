@@ -30,7 +30,7 @@ pub(crate) enum Verb {
     Demo(Demo),
     /// Identify a motor: four parameters, each with an interval and a verdict
     Identify(Identify),
-    /// Compare swarm optimizers on the paper's fitness: many runs of each, beside the exact answer
+    /// Compare swarm optimizers on the paper's fitness, or on the output error: many runs of each, beside the minimum
     Compare(Compare),
     /// Simulate a motor in a drive: a log, and its truth beside it
     Simulate(Simulate),
@@ -113,7 +113,7 @@ pub(crate) struct Compare {
     /// Methods: tgfpa, fpa, lpso, apso
     #[arg(long, value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
     pub(crate) methods: Vec<Method>,
-    /// Model of the motor's voltage
+    /// What is minimized
     #[arg(long, value_enum, default_value_t = StudyModel::Steady)]
     pub(crate) model: StudyModel,
     /// Independent runs of each method
@@ -125,7 +125,7 @@ pub(crate) struct Compare {
     /// Iterations of each run
     #[arg(long, value_name = "N", default_value_t = 300)]
     pub(crate) iterations: usize,
-    /// Stop a run once its cost is this close to the exact minimum
+    /// Stop a run once its cost is this close to the minimum
     #[arg(long, value_name = "COST")]
     pub(crate) tolerance: Option<f64>,
     /// Stop a run once its cost is at or below this
@@ -187,6 +187,8 @@ impl Model {
 pub(crate) enum StudyModel {
     /// Fitness (11) on the samples of steady windows
     Steady,
+    /// The simulated currents against the measured ones, on every row: slow, half an hour a core for the whole study
+    OutputError,
 }
 
 /// Timing of the voltage columns.

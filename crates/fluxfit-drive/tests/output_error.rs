@@ -175,3 +175,15 @@ fn the_papers_swarm_ends_where_the_polish_does() {
     assert!(report.cost >= found.cost * (1.0 - 1e-12));
     assert!(errors(&swarm).iter().zip(errors(&found.drive.motor)).all(|(one, other)| (one - other).abs() < 1.0));
 }
+
+/// Of an unstable motor nearly all of the cost is explained by its unknown start; what is left still is the sum of squares.
+#[test]
+fn a_cost_is_the_sum_of_its_squared_residuals_wherever_the_motor_is() {
+    let log = example("paper_rig_ideal.csv", ["ud", "uq"]);
+    let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
+    for motor in [paper::MOTOR, START, Motor { ld: -2e-2, ..START }, Motor { rs: -0.05, ..START }, Motor { rs: 5.0, ld: 1e-9, ..START }] {
+        let direct: f64 = objective.residuals(&motor.into()).iter().map(|residual| residual * residual).sum();
+        let cost = objective.cost(&motor);
+        assert!(direct.is_finite() && (cost / direct - 1.0).abs() < 1e-6, "{motor:?}: {cost:e} {direct:e}");
+    }
+}

@@ -11,12 +11,14 @@ use maud::{Markup, html};
 /// What was read.
 pub(crate) fn read(report: &Report) -> Markup {
     let log = report.log;
+    let has_windows = !report.operating_points.is_empty();
     let used: usize = report.operating_points.iter().map(|point| point.rows.len()).sum();
     let of_search = report.identification.and_then(|(found, _)| found.search.as_ref()).map(|search| &search.bounds);
     let bounds = of_search.or(report.study.map(|(facts, _)| facts.bounds));
     html! {
         dl.facts {
-            dt { "Rows" } dd { (grouped(log.rows() as u64)) ", of which " (grouped(used as u64)) " in the windows below" }
+            dt { "Rows" }
+            dd { (grouped(log.rows() as u64)) @if has_windows { ", of which " (grouped(used as u64)) " in the windows below" } }
             dt { "Rate" } dd { (rate(report)) }
             dt { "Duration" } dd { (number(log.duration(), |seconds| significant(seconds, 3))) " s" }
             dt { "Segments between gaps" } dd { (log.segments().len()) }
@@ -28,7 +30,7 @@ pub(crate) fn read(report: &Report) -> Markup {
             }
         }
         @if !report.notes.is_empty() { ul { @for note in report.notes { li { (prose(note)) } } } }
-        (windows(report.operating_points))
+        @if has_windows { (windows(report.operating_points)) }
     }
 }
 

@@ -6,13 +6,9 @@ use crate::{
     fit, origin, search, study,
     typography::{capitalized, count, in_words, list, symbol},
 };
-use fluxfit::{
-    identify::{
-        Identification, Known,
-        excitation::Excitation,
-        verdict::{Judgement, Verdict},
-    },
-    motor::{PARAMETERS, Parameter},
+use fluxfit::identify::{
+    Identification,
+    verdict::{Judgement, Verdict},
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -74,18 +70,12 @@ fn sections(report: &Report) -> Vec<Section> {
         }
     }
     if let Some((facts, methods)) = report.study {
-        let content = study::section(facts, methods, &unexcited(report));
+        let content = study::section(facts, methods);
         sections.push(Section { anchor: "study", heading: "Methods compared", content });
     }
     sections.push(Section { anchor: "read", heading: "What was read", content: origin::read(report) });
     sections.push(Section { anchor: "reproduce", heading: "How to reproduce", content: origin::reproduce(report.origin) });
     sections
-}
-
-/// Parameters of which the log tells nothing: what a swarm says of them is chance.
-fn unexcited(report: &Report) -> Vec<Parameter> {
-    let excitation = Excitation::of(report.operating_points, &[Known::Nothing; PARAMETERS]);
-    Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).collect()
 }
 
 /// What was found, in a line.

@@ -2,13 +2,13 @@
 
 use crate::{
     frame,
-    typography::{DASH, minus, number, symbol, unit},
+    typography::{DASH, capitalized, minus, number, symbol, unit},
 };
 use fluxfit::{
     motor::{Motor, Parameter},
     optimizer::Method,
     paper::{self, Column},
-    study::{MethodStudy, error_percent},
+    study::{MethodStudy, error_percent, fitness::Fitness},
 };
 use fluxfit_files::{
     answer::StudyFacts,
@@ -28,6 +28,14 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexci
     html! {
         (table(facts, methods, unexcited, beside_paper))
         (words(facts, methods, unexcited, beside_paper))
+    }
+}
+
+/// The answer that the swarms approach.
+fn answer(facts: &StudyFacts) -> &'static str {
+    match facts.problem.fitness {
+        Fitness::VoltageError(_) => "exact least squares",
+        Fitness::OutputError { .. } => "the polish",
     }
 }
 
@@ -53,7 +61,7 @@ fn table(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
                         @for (study, _) in methods {
                             th scope="colgroup" colspan=(if papers(study).is_some() { 2 } else { 1 }) { (study.method.label()) }
                         }
-                        th scope="col" rowspan="2" { "Exact least squares" }
+                        th scope="col" rowspan="2" { (capitalized(answer(facts))) }
                     }
                     tr { @for (study, _) in methods {
                         th scope="col" { "here" }
@@ -74,7 +82,7 @@ type Papers<'a> = dyn Fn(&MethodStudy) -> Option<&'static Column> + 'a;
 
 /// A row of means.
 fn estimates(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Parameter, known: bool, papers: &Papers) -> Markup {
-    let exact = facts.objective.least_squares().motor;
+    let (exact, _) = facts.problem.fitness.minimum();
     let scale = Scale::for_value(parameter, facts.truth.unwrap_or(&exact).get(parameter));
     let show = |motor: &Motor| number(motor.get(parameter), |value| scale.format(value, value.abs() * PRECISION));
     let ours = |motor: &Motor| if known { show(motor) } else { DASH.to_owned() };
@@ -109,7 +117,7 @@ fn papers_error(column: &Column, parameter: Parameter) -> String {
 
 /// A row of errors, %.
 fn errors(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Parameter, truth: &Motor, known: bool, papers: &Papers) -> Markup {
-    let exact = facts.objective.least_squares().motor;
+    let (exact, _) = facts.problem.fitness.minimum();
     let show = |error: Option<f64>| match error {
         Some(error) if known => number(error, |error| significant(error, 3)),
         _ => DASH.to_owned(),
@@ -129,17 +137,18 @@ fn errors(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Paramet
 
 /// Careful words: what the table shows, and what it cannot.
 fn words(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter], beside_paper: bool) -> Markup {
+    let answer = answer(facts);
     let distance = distance_from_exact(facts, methods, unexcited);
     let distance_text = number(distance, |percent| significant(percent, 2));
     html! {
         p {
             @if distance < CONVERGED {
-                "The means of all methods lie within " (distance_text) " % of exact least squares. "
+                "The means of all methods lie within " (distance_text) " % of " (answer) ". "
             } @else {
-                "Not every search has converged here: the means lie up to " (distance_text) " % from exact least squares. "
+                "Not every search has converged here: the means lie up to " (distance_text) " % from " (answer) ". "
             }
             @if facts.truth.is_some() {
-                "The error is the mean over the runs of the distance from the truth. The last column is the error of the exact minimum itself, which is "
+                "The error is the mean over the runs of the distance from the truth. The last column is the error of the " (facts.problem.fitness.minimum_label()) " itself, which is "
                 "that of the log and its noise. A method that lies nearer to the truth than that column has been lucky, "
                 "so ranking methods by this error ranks luck."
             }
@@ -161,7 +170,7 @@ fn words(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
 
 /// Largest distance of a method's mean from the exact answer, %.
 fn distance_from_exact(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> f64 {
-    let exact = facts.objective.least_squares().motor;
+    let (exact, _) = facts.problem.fitness.minimum();
     let known = || Parameter::ALL.into_iter().filter(|parameter| !unexcited.contains(parameter));
     let distances =
         methods.iter().flat_map(|(study, _)| known().filter_map(move |parameter| error_percent(&study.mean(), &exact, parameter)));

@@ -5,7 +5,7 @@ use fluxfit_files::number::{Scale, small};
 use maud::{Markup, PreEscaped, html};
 
 /// Symbols as the texts of the program write them: the word, its letter, its subscript.
-const SYMBOLS: [(&str, &str, &str); 10] = [
+const SYMBOLS: [(&str, &str, &str); 11] = [
     ("omega_e", "ω", "e"),
     ("psi_f", "ψ", "f"),
     ("R_s", "R", "s"),
@@ -16,6 +16,7 @@ const SYMBOLS: [(&str, &str, &str); 10] = [
     ("u_d", "u", "d"),
     ("u_q", "u", "q"),
     ("F_LS", "F", "LS"),
+    ("F_LM", "F", "LM"),
 ];
 
 /// A parameter's symbol.

@@ -11,7 +11,7 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{Method, bounds::Bounds, draws::Draws},
     paper,
-    study::{Convergence, Fitness, MethodStudy, fitness, run_method},
+    study::{Convergence, MethodStudy, fitness::Problem, run_method},
 };
 use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{
@@ -69,22 +69,22 @@ fn identified(currents: &[(f64, f64)], settings: &Settings) -> (Identification, 
 /// A study, its page checked; `change` bends what the runs left behind.
 fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)], change: impl Fn(&mut MethodStudy)) -> String {
     let log = log(currents, 0.1);
-    let Fitness { operating_points: points, rows, objective } = fitness(&log, &Settings::default(), IdZero::Measured).unwrap();
+    let problem = Problem::steady(&log, &Settings::default(), IdZero::Measured).unwrap();
     let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
     let settings = fluxfit::optimizer::Settings { population: 20, iterations: 12, ..Default::default() };
     let run = |method: &Method| {
-        let mut study = run_method(*method, 3, settings, &bounds, &objective, || ()).unwrap();
+        let mut study = run_method(*method, 3, settings, &bounds, &problem.fitness, || ()).unwrap();
         change(&mut study);
         (study, 1e-3)
     };
     let methods: Vec<_> = methods.iter().map(run).collect();
-    let facts = StudyFacts { settings: &settings, runs: 3, bounds: &bounds, objective: &objective, rows: &rows, truth: truth.as_ref() };
+    let facts = StudyFacts { settings: &settings, runs: 3, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
     let origin = origin();
     html(&Report {
         title: "drive.csv",
         log: &log,
         notes: &[],
-        operating_points: &points,
+        operating_points: &problem.operating_points,
         identification: None,
         study: Some((&facts, &methods)),
         origin: &origin,

@@ -1,38 +1,42 @@
-//! `fluxfit compare`: many runs of many methods on fitness (11), as the paper compares them.
+//! `fluxfit compare`: many runs of many methods on one fitness, as the paper compares them.
 
 use super::{Status, input, report};
-use crate::{arguments::Compare, error::CommandError, terminal};
+use crate::{
+    arguments::{Compare, StudyModel},
+    error::CommandError,
+    terminal,
+};
 use fluxfit::{
-    identify::{Known, Settings, excitation::Excitation},
-    motor::{PARAMETERS, Parameter},
-    objective::voltage_error::VoltageError,
+    identify::Settings,
+    log::Log,
+    motor::Parameter,
+    objective::voltage_error::IdZero,
     optimizer::{self, CloseTo, Method, bounds::Bounds},
-    study::{MethodStudy, fitness, run_method},
+    study::{
+        MethodStudy,
+        fitness::{Fitness, Problem},
+        run_method, settle,
+    },
 };
 use fluxfit_files::{answer, read_truth};
 use fluxfit_report::{Report, html};
 use std::time::Instant;
 
+/// Runs of fitness (11) beyond which a progress bar is shown: fewer end within a second.
+const MANY_RUNS: usize = 1000;
+
 /// Runs the verb.
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     report::check(&arguments.log, arguments.truth.as_deref())?;
+    check(arguments)?;
     let input = input::read(&arguments.log)?;
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
-    let settings =
-        Settings { windows: arguments.log.window.clone(), voltage_timing: arguments.log.voltage_timing.stated(), ..Settings::default() };
-    let fitness = fitness(&input.log, &settings, arguments.id_zero).map_err(|error| input::of_log(&input.name, error))?;
-    let bounds = input::search_box(&arguments.log, &input.motor, &fitness.operating_points)?;
-    let settings = search_settings(arguments, &fitness.objective)?;
+    let mut problem = problem(arguments, &input.log).map_err(|error| input::of_log(&input.name, error))?;
+    let bounds = input::search_box(&arguments.log, &input.motor, &problem.bounds)?;
+    let settings = search_settings(arguments, &problem.fitness)?;
 
-    let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &fitness.objective, arguments.log.json)?;
-    let facts = answer::StudyFacts {
-        settings: &settings,
-        runs: arguments.runs,
-        bounds: &bounds,
-        objective: &fitness.objective,
-        rows: &fitness.rows,
-        truth: truth.as_ref(),
-    };
+    let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &mut problem.fitness, arguments.log.json)?;
+    let facts = answer::StudyFacts { settings: &settings, runs: arguments.runs, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
     if arguments.log.json {
         terminal::print(&answer::to_text(&answer::study(&facts, &methods)))?;
     } else {
@@ -43,19 +47,40 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
             title: &input.name,
             log: &input.log,
             notes: &input.notes,
-            operating_points: &fitness.operating_points,
+            operating_points: &problem.operating_points,
             identification: None,
             study: Some((&facts, &methods)),
             origin,
         })
     })?;
-    let excitation = Excitation::of(&fitness.operating_points, &[Known::Nothing; PARAMETERS]);
-    let open: Vec<&str> = Parameter::ALL.into_iter().filter(|parameter| excitation.is_open(*parameter)).map(Parameter::symbol).collect();
-    if open.is_empty() {
+    if problem.unexcited.is_empty() {
         return Ok(Status::Complete);
     }
+    let open: Vec<&str> = problem.unexcited.iter().copied().map(Parameter::symbol).collect();
     terminal::note(&format!("this log does not excite {}: what the methods say of it is chance; see fluxfit identify", open.join(", ")));
     Ok(Status::Incomplete)
+}
+
+/// Refuses what the output error has no use for.
+fn check(arguments: &Compare) -> Result<(), CommandError> {
+    let stated = [("--window", !arguments.log.window.is_empty()), ("--id-zero", arguments.id_zero != IdZero::Measured)];
+    match stated.into_iter().find(|(_, stated)| *stated && arguments.model == StudyModel::OutputError) {
+        Some((option, _)) => {
+            Err(CommandError::Usage(format!("{option} is for --model steady; the output error takes every row as measured")))
+        }
+        None => Ok(()),
+    }
+}
+
+fn problem(arguments: &Compare, log: &Log) -> Result<Problem, fluxfit::error::Error> {
+    match arguments.model {
+        StudyModel::Steady => {
+            let windows = arguments.log.window.clone();
+            let settings = Settings { windows, voltage_timing: arguments.log.voltage_timing.stated(), ..Settings::default() };
+            Problem::steady(log, &settings, arguments.id_zero)
+        }
+        StudyModel::OutputError => Problem::output_error(log, arguments.log.voltage_timing.stated()),
+    }
 }
 
 /// Every method in turn, with the seconds of wall time that one of its runs took.
@@ -64,21 +89,23 @@ pub(super) fn study(
     runs: usize,
     settings: optimizer::Settings,
     bounds: &Bounds,
-    objective: &VoltageError,
+    fitness: &mut Fitness,
     quiet: bool,
 ) -> Result<Vec<(MethodStudy, f64)>, CommandError> {
-    let progress = terminal::progress(runs * methods.len(), "runs", quiet);
-    let mut studies = Vec::new();
+    let is_short = matches!(fitness, Fitness::VoltageError(_)) && runs * methods.len() < MANY_RUNS;
+    let progress = terminal::progress(runs * methods.len() * settings.iterations, "iterations", quiet || is_short);
+    let (mut studies, mut seconds) = (Vec::new(), Vec::new());
     for method in methods {
         let start = Instant::now();
-        let study = run_method(*method, runs, settings, bounds, objective, || progress.inc(1))?;
-        studies.push((study, start.elapsed().as_secs_f64() / runs as f64));
+        studies.push(run_method(*method, runs, settings, bounds, fitness, || progress.inc(1))?);
+        seconds.push(start.elapsed().as_secs_f64() / runs as f64);
     }
     progress.finish_and_clear();
-    Ok(studies)
+    settle(fitness, &mut studies);
+    Ok(studies.into_iter().zip(seconds).collect())
 }
 
-fn search_settings(arguments: &Compare, objective: &VoltageError) -> Result<optimizer::Settings, CommandError> {
+fn search_settings(arguments: &Compare, fitness: &Fitness) -> Result<optimizer::Settings, CommandError> {
     for (option, value) in [("--tolerance", arguments.tolerance), ("--target-cost", arguments.target_cost)] {
         if value.is_some_and(|value| !(value >= 0.0 && value.is_finite())) {
             return Err(CommandError::Usage(format!("{option} must be a finite number, zero or more")));
@@ -89,7 +116,7 @@ fn search_settings(arguments: &Compare, objective: &VoltageError) -> Result<opti
         iterations: arguments.iterations,
         seed: arguments.log.seed,
         run: 0,
-        close_to_optimum: arguments.tolerance.map(|tolerance| CloseTo { optimum: objective.least_squares().cost, tolerance }),
+        close_to_optimum: arguments.tolerance.map(|tolerance| CloseTo { optimum: fitness.minimum().1, tolerance }),
         target_cost: arguments.target_cost,
     })
 }

@@ -9,7 +9,7 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{self, Method, bounds::Bounds},
     paper,
-    study::fitness,
+    study::fitness::Problem,
 };
 use fluxfit_drive::{Scenario, simulate};
 use fluxfit_files::answer::StudyFacts;
@@ -30,16 +30,9 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     let found = identify(&log, &settings)?;
     terminal::identification::show(NAME, &log, &found, settings.method.as_ref())?;
 
-    let fitness = fitness(&log, &settings, IdZero::Measured)?;
-    let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &fitness.objective, false)?;
-    let facts = StudyFacts {
-        settings: &search,
-        runs: paper::RUNS,
-        bounds: &bounds,
-        objective: &fitness.objective,
-        rows: &fitness.rows,
-        truth: Some(&paper::MOTOR),
-    };
+    let mut problem = Problem::steady(&log, &settings, IdZero::Measured)?;
+    let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &mut problem.fitness, false)?;
+    let facts = StudyFacts { settings: &search, runs: paper::RUNS, bounds: &bounds, problem: &problem, truth: Some(&paper::MOTOR) };
     terminal::print("\n")?;
     terminal::study::show(NAME, &facts, &methods)?;
 

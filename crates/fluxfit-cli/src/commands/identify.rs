@@ -11,6 +11,7 @@ use fluxfit::{
     identify::{
         Known, Settings, conventions, identify,
         model::{self, Model},
+        search_box::from_points,
     },
     log::Log,
     motor::PARAMETERS,
@@ -35,7 +36,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     };
     settings.method = searcher(arguments, &input.log, &settings);
     if let Ok(points) = fluxfit::identify::operating_points(&input.log, &settings) {
-        settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &points)?);
+        settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &from_points(&points)?)?);
     }
     let mut found = identify(&input.log, &settings).map_err(refuse)?;
     let convention = conventions::check(&input.log, Some((&found, &settings.known)), &nameplate);

@@ -11,7 +11,6 @@ use fluxfit::{
     log::Log,
     motor::Parameter,
     optimizer::bounds::Bounds,
-    steady::OperatingPoint,
 };
 use fluxfit_files::{LogOptions, MotorFile, read_log, read_motor};
 use std::path::Path;
@@ -51,12 +50,12 @@ pub(crate) fn nameplate(arguments: &LogArguments, motor: &MotorFile) -> Nameplat
     Nameplate { values: [rs, ld, lq, psi_f], pole_pairs: arguments.pole_pairs.or(pole_pairs) }
 }
 
-/// The search box: what `--bounds` names; the rest from the operating points, or from the rating where that is larger.
-pub(crate) fn search_box(arguments: &LogArguments, motor: &MotorFile, points: &[OperatingPoint]) -> Result<Bounds, CommandError> {
+/// The search box: what `--bounds` names; the rest is what the log allows, or the rating where that is larger.
+pub(crate) fn search_box(arguments: &LogArguments, motor: &MotorFile, of_log: &Bounds) -> Result<Bounds, CommandError> {
     let given: Vec<(Parameter, (f64, f64))> =
         arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
     let given = by_parameter(&given, "--bounds")?;
-    let mut rest: Vec<(f64, f64)> = search_box::from_points(points)?.iter().collect();
+    let mut rest: Vec<(f64, f64)> = of_log.iter().collect();
     let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
     if let (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) =
         (motor.rating.voltage, motor.rating.current, motor.rating.speed, pole_pairs)

@@ -21,9 +21,6 @@ const BAD: Style = AnsiColor::Red.on_default();
 const DIM: Style = Style::new().dimmed();
 const HEADING: Style = Style::new().bold();
 
-/// Runs beyond which a progress bar is shown: fewer end within a second.
-const MANY_RUNS: usize = 1000;
-
 /// Prints an answer.
 pub(crate) fn print(text: &str) -> std::io::Result<()> {
     let mut out = anstream::stdout().lock();
@@ -63,9 +60,9 @@ fn say(line: &str) {
     let _ = writeln!(anstream::stderr().lock(), "{line}");
 }
 
-/// A progress bar on standard error, where that is a terminal and there is much to do.
+/// A progress bar on standard error, where that is a terminal.
 pub(crate) fn progress(length: usize, what: &str, quiet: bool) -> ProgressBar {
-    let target = if quiet || length < MANY_RUNS { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}, {eta} left").unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::with_draw_target(Some(length as u64), target).with_style(style).with_message(what.to_owned())
 }

@@ -22,7 +22,7 @@ fn pen(study: &MethodStudy) -> (char, Color, AnsiColor) {
     }
 }
 
-/// The medians of `F - F_LS`, drawn.
+/// The medians of the cost above the minimum, drawn.
 pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
     let curves: Vec<Vec<(f64, f64)>> = methods.iter().map(|(study, _)| curve(study)).collect();
     let all = || curves.iter().flatten();

@@ -1,9 +1,9 @@
-//! A study: the paper's Table 2, the ranking by `F - F_LS`, and its Fig. 4 in characters.
+//! A study: the paper's Table 2, the ranking by cost above the minimum, and its Fig. 4 in characters.
 
 use super::{DIM, HEADING, plot, table};
 use fluxfit::{
     motor::{Motor, Parameter},
-    study::{MethodStudy, error_percent},
+    study::{MethodStudy, error_percent, fitness::Fitness},
 };
 use fluxfit_files::{
     answer::StudyFacts,
@@ -12,9 +12,13 @@ use fluxfit_files::{
 
 /// Shows a study.
 pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {
-    let rows: Vec<String> = facts.rows.iter().map(ToString::to_string).collect();
+    let fitness = &facts.problem.fitness;
+    let (minimum, index) = (fitness.minimum_label(), fitness.minimum_index());
+    let rows: Vec<String> = facts.problem.rows.iter().map(ToString::to_string).collect();
+    let reading = fitness.voltage_reading().map(|reading| format!(", voltages read as {reading}")).unwrap_or_default();
     let mut text = format!(
-        "{HEADING}{name}{HEADING:#}\nfitness (11) on {} rows; {} runs of each method, population {}, {} iterations, seed {}\nsearch box {}\n",
+        "{HEADING}{name}{HEADING:#}\n{} on {} rows{reading}; {} runs of each method, population {}, {} iterations, seed {}\nsearch box {}\n",
+        fitness.label(),
         rows.join(" + "),
         facts.runs,
         facts.settings.population,
@@ -24,15 +28,29 @@ pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)
     );
     text += &format!("\n{HEADING}Mean of the runs' estimates{HEADING:#} (Table 2 of the paper)\n{}", table_2(facts, methods));
     text += &format!(
-        "\n{HEADING}Cost above the exact minimum{HEADING:#}, F - F_LS, median over the runs; F_LS = {}\n{}",
-        small(facts.objective.least_squares().cost),
+        "\n{HEADING}Cost above the {minimum}{HEADING:#}, F - F_{index}, {}, median over the runs; F_{index} = {}\n{}",
+        fitness.unit(),
+        small(fitness.minimum().1),
         ranking(methods)
     );
-    text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_LS (Fig. 4 of the paper)\n{}", plot::convergence(methods));
-    text += &format!(
-        "\n{DIM}Fitness (11) is linear least squares: its minimum is exact and costs microseconds. The swarms approach the same answer.{DIM:#}\n"
-    );
+    text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_{index} (Fig. 4 of the paper)\n{}", plot::convergence(methods));
+    text += &format!("\n{DIM}{}{DIM:#}\n", remark(fitness));
     super::print(&text)
+}
+
+/// What the minimum is.
+fn remark(fitness: &Fitness) -> &'static str {
+    match fitness {
+        Fitness::VoltageError(_) => {
+            "Fitness (11) is linear least squares: its minimum is exact and costs microseconds. The swarms approach the same answer."
+        }
+        Fitness::OutputError { minimum, .. } if minimum.converged => {
+            "The output error simulates the currents. Its minimum is the lowest that a Levenberg-Marquardt polish has found, in some tens of evaluations."
+        }
+        Fitness::OutputError { .. } => {
+            "The output error simulates the currents. Its Levenberg-Marquardt polish did not converge: F_LM is the lowest cost found, and may be no minimum."
+        }
+    }
 }
 
 fn search_box(facts: &StudyFacts) -> String {
@@ -50,27 +68,27 @@ fn significant_or_zero(value: f64, scale: &Scale) -> String {
 
 /// Rows as the paper has them: a parameter's estimates, then their errors where the truth is known.
 fn table_2(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> String {
-    let exact = facts.objective.least_squares().motor;
+    let (lowest, _) = facts.problem.fitness.minimum();
     let mut rows = Vec::new();
     for parameter in Parameter::ALL {
-        let scale = Scale::for_value(parameter, facts.truth.unwrap_or(&exact).get(parameter));
+        let scale = Scale::for_value(parameter, facts.truth.unwrap_or(&lowest).get(parameter));
         let estimate = |motor: &Motor| {
             let value = motor.get(parameter);
             scale.format(value, value.abs() * 2e-5)
         };
         let mut row = vec![format!("{} {}", parameter.symbol(), scale.unit(parameter.unit()))];
         row.extend(methods.iter().map(|(study, _)| estimate(&study.mean())));
-        row.push(estimate(&exact));
+        row.push(estimate(&lowest));
         rows.push(row);
         if let Some(truth) = facts.truth {
             let mut row = vec!["error %".to_owned()];
             row.extend(methods.iter().map(|(study, _)| percent(study.mean_error_percent(truth)[parameter as usize])));
-            row.push(percent(error_percent(&exact, truth, parameter)));
+            row.push(percent(error_percent(&lowest, truth, parameter)));
             rows.push(row);
         }
     }
     let labels = methods.iter().map(|(study, _)| study.method.label());
-    let heading: Vec<&str> = [""].into_iter().chain(labels).chain(["least squares"]).collect();
+    let heading: Vec<&str> = [""].into_iter().chain(labels).chain([facts.problem.fitness.solver()]).collect();
     table(&heading, 1, rows)
 }
 

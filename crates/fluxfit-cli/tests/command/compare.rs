@@ -2,7 +2,7 @@
 
 use super::{fluxfit, json};
 use serde_json::Value;
-use std::process::Command;
+use std::{path::PathBuf, process::Command};
 
 const LOG: &str = "examples/logs/paper_rig_pwm_noise.csv";
 const TRUTH: &str = "examples/logs/paper_rig_pwm_noise.truth.json";
@@ -105,4 +105,74 @@ fn a_person_sees_table_2_the_ranking_and_the_curves() {
     for expected in ["Table 2", "tGFPA", "LPSO", "error %", "least squares", "iteration 30", "worst run", "Fig. 4", "A APSO"] {
         assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);
     }
+}
+
+/// Rows of the noisy rig around the step of i_d: too short for a steady window, and long enough for the output error.
+fn short_log(name: &str) -> PathBuf {
+    let text = std::fs::read_to_string(super::root().join(LOG)).unwrap();
+    let rows: Vec<&str> = text.lines().collect();
+    let current = |row: &str| row.split(',').nth(3).unwrap().parse::<f64>().unwrap();
+    let step = 1 + rows[1..].iter().position(|row| current(row) < -1.0).unwrap();
+    let path = std::env::temp_dir().join(format!("fluxfit-{}-{name}.csv", std::process::id()));
+    std::fs::write(&path, format!("{}\n{}\n", rows[0], rows[step - 60..step + 120].join("\n"))).unwrap();
+    path
+}
+
+#[test]
+fn the_output_error_on_a_short_log_as_text_json_and_page() {
+    let (log, page) = (short_log("output-error"), std::env::temp_dir().join(format!("fluxfit-{}-output-error.html", std::process::id())));
+    let (log, page) = (log.display().to_string(), page.display().to_string());
+    let arguments = ["compare", &log, "--model", "output-error", "--runs", "2", "--iterations", "20", "--truth", TRUTH];
+
+    let (status, document) = json(&[&arguments[..], &BOX].concat());
+    assert_eq!(status, 0);
+    assert_eq!((&document["schema"], &document["model"]), (&"fluxfit.study/1".into(), &"output-error".into()));
+    assert_eq!((&document["cost_unit"], &document["voltage_reading"]), (&"A²".into(), &"centered".into()));
+    assert_eq!((&document["rows"], &document["converged"]), (&serde_json::json!([180]), &true.into()));
+    assert!(document["least_squares"].is_null() && document["rank"].is_null());
+    for (key, truth) in [("rs", 0.958), ("ld", 5.25e-3), ("lq", 12e-3), ("psi_f", 0.1827)] {
+        assert!((document["minimum"][key].as_f64().unwrap() / truth - 1.0).abs() < 0.1, "{}", document["minimum"]);
+    }
+    for method in document["methods"].as_array().unwrap() {
+        let (median, worst) = (&method["cost_above_optimum"]["median"], &method["cost_above_optimum"]["worst"]);
+        assert!(median.as_f64().unwrap() >= 0.0 && worst.as_f64().unwrap() >= median.as_f64().unwrap(), "{method}");
+        assert_eq!(method["evaluations_per_run"], 50 * 21);
+    }
+
+    let run = fluxfit(&[&arguments[..], &BOX, &["--report", &page]].concat());
+    assert_eq!(run.status, 0);
+    for expected in
+        ["the output error on 180 rows, voltages read as centered", "polished minimum", "F - F_LM, A²", "polish", "iteration 20"]
+    {
+        assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);
+    }
+    let html = std::fs::read_to_string(&page).unwrap();
+    for expected in ["the output error", "Cost above the polished minimum", "F<sub>LM</sub>", "A²", "The polish"] {
+        assert!(html.contains(expected), "{expected} is not in the page");
+    }
+    for text in [&run.out, &html] {
+        for wrong in ["least squares", "exact minimum", "itness (11)", "F_LS", "V²", "<sub>LS</sub>", "windows below"] {
+            assert!(!text.contains(wrong), "{wrong} is said of the output error in\n{text}");
+        }
+    }
+    [log, page].into_iter().for_each(|path| std::fs::remove_file(path).unwrap());
+}
+
+#[test]
+fn the_voltage_reading_is_the_one_stated_and_the_rest_is_refused() {
+    let log = short_log("stated").display().to_string();
+    let output_error = ["compare", &log, "--model", "output-error", "--runs", "1", "--iterations", "1", "--methods", "tgfpa"];
+    let cost = |timing: &str| {
+        let (_, document) = json(&[&output_error[..], &["--voltage-timing", timing]].concat());
+        (document["voltage_reading"].as_str().unwrap().to_owned(), document["minimum"]["cost"].as_f64().unwrap())
+    };
+    let (centered, one) = (cost("centered"), cost("1"));
+    assert_eq!((centered.0.as_str(), one.0.as_str()), ("centered", "1"));
+    assert!(one.1 > 1.2 * centered.1, "{centered:?} {one:?}");
+    for refused in [["--window", "0.1:0.2"], ["--id-zero", "as-paper"]] {
+        let run = fluxfit(&[&output_error[..], &refused].concat());
+        assert_eq!(run.status, 2);
+        assert!(run.err.contains(refused[0]) && run.err.contains("--model steady"), "{}", run.err);
+    }
+    std::fs::remove_file(log).unwrap();
 }

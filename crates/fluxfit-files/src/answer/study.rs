@@ -3,9 +3,11 @@
 use super::{by_parameter, motor_with_cost};
 use fluxfit::{
     motor::Motor,
-    objective::voltage_error::VoltageError,
     optimizer::{Settings, bounds::Bounds},
-    study::{Convergence, MethodStudy},
+    study::{
+        Convergence, MethodStudy,
+        fitness::{Fitness, Problem},
+    },
 };
 use serde_json::{Value, json};
 
@@ -19,26 +21,34 @@ pub struct StudyFacts<'a> {
     /// Where they searched.
     pub bounds: &'a Bounds,
     /// What they minimized.
-    pub objective: &'a VoltageError,
-    /// Rows that the fitness sums over, per window.
-    pub rows: &'a [usize],
+    pub problem: &'a Problem,
     /// The true motor, if known.
     pub truth: Option<&'a Motor>,
 }
 
 /// The document of a study; each method with the seconds that one of its runs took.
 pub fn study(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Value {
-    let solution = facts.objective.least_squares();
+    let fitness = &facts.problem.fitness;
+    let (motor, cost) = fitness.minimum();
+    let solution = match fitness {
+        Fitness::VoltageError(objective) => Some(objective.least_squares()),
+        Fitness::OutputError { .. } => None,
+    };
     json!({
         "schema": "fluxfit.study/1",
+        "model": fitness.key(),
+        "voltage_reading": fitness.voltage_reading(),
+        "cost_unit": fitness.unit(),
         "seed": facts.settings.seed,
         "runs": facts.runs,
         "population": facts.settings.population,
         "iterations": facts.settings.iterations,
         "truth": facts.truth.map(|truth| by_parameter(truth.to_array())),
-        "least_squares": motor_with_cost(&solution.motor, solution.cost),
-        "rank": solution.rank,
-        "rows": facts.rows,
+        "minimum": motor_with_cost(&motor, cost),
+        "converged": fitness.has_converged(),
+        "least_squares": solution.map(|solution| motor_with_cost(&solution.motor, solution.cost)),
+        "rank": solution.map(|solution| solution.rank),
+        "rows": facts.problem.rows,
         "search_box": by_parameter::<Value>(
             facts.bounds.iter().map(|(lower, upper)| json!([lower, upper])).collect::<Vec<_>>().try_into().unwrap_or_default(),
         ),

@@ -1,4 +1,4 @@
-//! Fig. 4 of the paper, as it can be read on a logarithmic scale: cost above the exact minimum against iteration. Each method has
+//! Fig. 4 of the paper, as it can be read on a logarithmic scale: cost above the minimum against iteration. Each method has
 //! its colour, its dashes and its name at the end of its curve.
 
 use super::{
@@ -8,7 +8,7 @@ use super::{
     palette::Ink,
     plot::{Chart, Plot},
 };
-use fluxfit::study::MethodStudy;
+use fluxfit::study::{MethodStudy, fitness::Fitness};
 use plotters::{
     element::{Circle, PathElement, Polygon},
     style::text_anchor::{HPos, VPos},
@@ -21,13 +21,14 @@ pub(crate) const FLOOR: f64 = 1e-12;
 const NAMES_APART: i32 = 16;
 
 /// Draws the curves of all methods.
-pub(crate) fn draw(methods: &[(MethodStudy, f64)], size: Size) -> Drawing {
+pub(crate) fn draw(fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> Drawing {
     let names: Vec<&str> = methods.iter().map(|(study, _)| study.method.label()).collect();
     let label = format!(
-        "Curves: cost above the exact minimum against iteration, logarithmic, median and quartiles over the runs, for {}",
+        "Curves: cost above the {} against iteration, logarithmic, median and quartiles over the runs, for {}",
+        fitness.minimum_label(),
         names.join(", ")
     );
-    Drawing::new((size.width(), size.pick(400, 340)), label, |area| paint(area, methods, size))
+    Drawing::new((size.width(), size.pick(400, 340)), label, |area| paint(area, fitness, methods, size))
 }
 
 /// Whether some value lies below the floor of the drawing.
@@ -40,14 +41,15 @@ fn height(cost: f64) -> f64 {
     if cost.is_finite() { cost.max(FLOOR).log10() } else { f64::MAX.log10() }
 }
 
-fn paint(area: &Area, methods: &[(MethodStudy, f64)], size: Size) -> Drawn {
+fn paint(area: &Area, fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> Drawn {
     let all = methods.iter().flat_map(|(study, _)| study.convergence.quartiles.iter().flatten());
     let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len().saturating_sub(1)).max().unwrap_or(0).max(1) as f64;
+    let cost = format!("F − F_{}, {}", fitness.minimum_index(), fitness.unit());
     let plot = Plot {
         x: Axis::between(0.0, last, size.pick(6, 3)),
         y: Axis::decades(all.map(|cost| height(*cost)), size.pick(9, 8)),
         x_name: "iteration",
-        y_name: "F − F_LS, V²",
+        y_name: &cost,
         left: 42,
         right: 76,
         x_label: &|x| format!("{x:.0}"),

@@ -6,7 +6,7 @@
 //! | [`intervals`] | how wide each parameter's interval is, against the limits of the verdicts |
 //! | [`residuals`] | what the fitted motor leaves of the measured voltages |
 //! | [`operating_points`] | where in the i_d–i_q plane the log held still |
-//! | [`convergence`] | Fig. 4 of the paper: cost above the exact minimum against iteration |
+//! | [`convergence`] | Fig. 4 of the paper: cost above the minimum against iteration |
 //! | [`parameter_courses`] | Fig. 5 of the paper: the parameters against iteration |
 
 mod axis;
@@ -24,7 +24,7 @@ use fluxfit::{
     identify::{Identification, steady_fit::SteadyFit},
     motor::{Motor, Parameter},
     steady::OperatingPoint,
-    study::MethodStudy,
+    study::{MethodStudy, fitness::Fitness},
 };
 
 /// For which width a figure is drawn. Letters have the same size in both.
@@ -69,9 +69,9 @@ pub fn operating_points(points: &[OperatingPoint], size: Size) -> String {
     plane::draw(points, size).standalone()
 }
 
-/// `F - F_LS` against iteration: the median of each method's runs, and the band from quartile to quartile.
-pub fn convergence(methods: &[(MethodStudy, f64)], size: Size) -> String {
-    convergence::draw(methods, size).standalone()
+/// Cost above the minimum against iteration: the median of each method's runs, and the band from quartile to quartile.
+pub fn convergence(fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> String {
+    convergence::draw(fitness, methods, size).standalone()
 }
 
 /// The median of each parameter over one method's runs against iteration, without those in `unexcited`; the truth, if known,

@@ -6,7 +6,7 @@
 //!
 //! Where the points have no current, voltage or speed at all, a parameter is in no equation, and the swarm may look for it anywhere.
 
-use crate::{error::Error, motor::PARAMETERS, optimizer::bounds::Bounds, steady::OperatingPoint};
+use crate::{error::Error, log::Log, motor::PARAMETERS, optimizer::bounds::Bounds, steady::OperatingPoint};
 
 /// Side of the box, SI, along parameters that are in no equation.
 const ANYWHERE: f64 = 1.0;
@@ -19,15 +19,32 @@ const LARGEST: f64 = 1e60;
 /// # Errors
 /// If a bound is beyond what an optimizer takes.
 pub fn from_points(points: &[OperatingPoint]) -> Result<Bounds, Error> {
+    enclosing(points.iter().map(|point| largest(point.voltage().magnitude(), point.current().magnitude(), point.omega_e().abs())))
+}
+
+/// The box from zero that holds all of these.
+fn enclosing(boxes: impl IntoIterator<Item = [f64; PARAMETERS]>) -> Result<Bounds, Error> {
     let mut upper = [0.0_f64; PARAMETERS];
-    for point in points {
-        let box_of_point = largest(point.voltage().magnitude(), point.current().magnitude(), point.omega_e().abs());
-        for (upper, one) in upper.iter_mut().zip(box_of_point) {
+    for one in boxes {
+        for (upper, one) in upper.iter_mut().zip(one) {
             *upper = upper.max(Some(one).filter(|one| *one <= LARGEST).unwrap_or(0.0));
         }
     }
     upper.iter_mut().filter(|upper| **upper == 0.0).for_each(|upper| *upper = ANYWHERE);
     Bounds::new(vec![0.0; PARAMETERS], upper.to_vec())
+}
+
+/// The box of a log without operating points: its largest voltage against the root mean square of its currents and speeds, as if
+/// that were a point.
+///
+/// # Errors
+/// If a bound is beyond what an optimizer takes.
+pub fn from_rows(log: &Log) -> Result<Bounds, Error> {
+    let columns = log.columns();
+    let mean_square = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>() / column.len() as f64;
+    let voltage = columns.ud.iter().zip(&columns.uq).map(|(d, q)| d.hypot(*q)).fold(0.0, f64::max);
+    let current = (mean_square(&columns.id) + mean_square(&columns.iq)).sqrt();
+    enclosing([largest(voltage, current, mean_square(&columns.omega_e).sqrt())])
 }
 
 /// The box of a rating: phase-peak voltage (V) and current (A), electrical speed (rad/s).
@@ -74,6 +91,27 @@ mod tests {
         }
         assert_eq!(upper(&from_rating(50.0, 5.0, 100.0).unwrap()), [10.0, 0.1, 0.1, 0.5]);
         assert!(from_rating(50.0, 0.0, 100.0).is_err());
+    }
+
+    #[test]
+    fn rows_give_a_box_by_hand() {
+        // |u| is at most 50; |i|² is 25 and 9, root mean square sqrt(17); omega² 100² and 20², sqrt(5200).
+        let log = Log::new(Columns {
+            t: vec![0.0, 1.0],
+            id: vec![-3.0, 0.0],
+            iq: vec![4.0, 3.0],
+            omega_e: vec![-100.0, 20.0],
+            ud: vec![-30.0, 5.0],
+            uq: vec![40.0, 12.0],
+            ..Columns::default()
+        });
+        let (current, speed) = (17.0_f64.sqrt(), 5200.0_f64.sqrt());
+        let inductance = 50.0 / (current * speed);
+        for (found, expected) in
+            upper(&from_rows(&log.unwrap()).unwrap()).into_iter().zip([50.0 / current, inductance, inductance, 50.0 / speed])
+        {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
     }
 
     #[test]

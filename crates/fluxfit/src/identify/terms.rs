@@ -308,6 +308,12 @@ impl Candidate<'_> {
                 break;
             }
             let (outcome, fitted) = scene.fit(self, one.term, starts);
+            one.outcome = outcome;
+            if let (Outcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
+                (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
+                tried.swap(0, place);
+                break;
+            }
         }
         tried.into_iter().map(|(tried, _)| tried).collect()
     }

@@ -39,6 +39,10 @@ const EVEN: f64 = 1e-3;
 /// Turn, rad, from one tabulated transition to the next: a cubic between four of them is right to 0.005⁴ · 3/128 = 1e-11.
 const TABLE_STEP: f64 = 0.005;
 
+/// If less than this part of the cost is left by the unknowns, too few digits are left too, and residuals are squared one by one: an
+/// unstable motor's currents, wrong by far, are much like the response to a wrong start, and their cost must not come out negative.
+const CANCELLED: f64 = 1e-8;
+
 /// Fewest rows that a segment must have left.
 const MIN_ROWS: usize = 10;
 
@@ -63,8 +67,9 @@ struct Course {
     theta_e: Vec<f64>,
     /// Whether that angle is the logged one.
     angle_known: bool,
-    /// The unknown first vector of centred voltages counts.
-    centered: bool,
+    /// What the first vector of centred voltages adds to each period's, per volt along alpha; none of delayed ones. Along beta it is
+    /// the same, turned by a right angle.
+    alternating: Vec<Dq>,
     /// The length of its periods, s, if they are even.
     even: Option<f64>,
 }
@@ -106,6 +111,11 @@ impl OutputError {
     /// Rows whose currents are compared.
     pub fn rows(&self) -> usize {
         self.rows
+    }
+
+    /// The same for each stretch.
+    pub fn rows_per_segment(&self) -> Vec<usize> {
+        self.courses.iter().map(|course| course.measured.len()).collect()
     }
 
     /// Rows of the log whose currents are compared, stretch by stretch.
@@ -175,6 +185,12 @@ impl OutputError {
     }
 }
 
+/// A volt along alpha whose sign alternates, seen from the rotor.
+fn alternating(periods: &[Period]) -> Vec<Dq> {
+    let signs = [1.0, -1.0].into_iter().cycle();
+    periods.iter().zip(signs).map(|(period, sign)| AlphaBeta { alpha: sign, beta: 0.0 }.to_dq(period.theta_e)).collect()
+}
+
 impl Objective for OutputError {
     fn dimension(&self) -> usize {
         PARAMETERS
@@ -206,11 +222,12 @@ impl Course {
         let measured = rows.clone().zip(frames).map(turned).collect();
         let length = (columns.t[rows.end - 1] - columns.t[rows.start]) / periods.len() as f64;
         let even = periods.iter().all(|period| (period.length / length - 1.0).abs() < EVEN).then_some(length);
-        Self { rows, periods, measured, theta_e, angle_known: angles.known, centered: reading == VoltageReading::Centered, even }
+        let alternating = if reading == VoltageReading::Centered { alternating(&periods) } else { Vec::new() };
+        Self { rows, periods, measured, theta_e, angle_known: angles.known, alternating, even }
     }
 
     fn unknowns(&self) -> usize {
-        if self.centered { UNKNOWNS } else { UNKNOWNS / 2 }
+        if self.alternating.is_empty() { UNKNOWNS / 2 } else { UNKNOWNS }
     }
 
     /// The current of a row as the adjustable drive says that it was, in the frame of the magnet.
@@ -273,7 +290,6 @@ impl Course {
         let unit = |k: usize| Dq { d: f64::from(u8::from(k == 0)), q: f64::from(u8::from(k == 1)) };
         let mut response: [Dq; UNKNOWNS] = std::array::from_fn(unit);
         see(Dq::default(), &response[..unknowns]);
-        let mut sign = 1.0;
         let mut error = Dq::default();
         for (k, period) in self.periods.iter().enumerate() {
             let transition = transition(period);
@@ -284,23 +300,19 @@ impl Course {
             } else {
                 (self.period(k, &transition, followed, drive), self.seen(k + 1, drive))
             };
-            for (k, response) in response[..unknowns].iter_mut().enumerate() {
-                let alternating = match k {
-                    2 => AlphaBeta { alpha: sign, beta: 0.0 }.to_dq(period.theta_e),
-                    3 => AlphaBeta { alpha: 0.0, beta: sign }.to_dq(period.theta_e),
-                    _ => Dq::default(),
-                };
+            let alpha = self.alternating.get(k).copied().unwrap_or_default();
+            let beta = Dq { d: -alpha.q, q: alpha.d };
+            for (response, u) in response[..unknowns].iter_mut().zip([Dq::default(), Dq::default(), alpha, beta]) {
                 let followed = Dq { d: (1.0 - gain.d) * response.d, q: (1.0 - gain.q) * response.q };
-                *response = transition.difference_after(followed, alternating);
+                *response = transition.difference_after(followed, u);
             }
-            sign = -sign;
             error = Dq { d: measured.d - i.d, q: measured.q - i.q };
             see(error, &response[..unknowns]);
         }
     }
 
-    /// The unknowns that fit best, and the cost that is left.
-    fn fit(&self, drive: &Adjustable, mut keep: impl FnMut(Dq, &[Dq])) -> (DVector<f64>, f64) {
+    /// The unknowns that fit best, the part of the cost that is left, and the cost without them.
+    fn fit(&self, drive: &Adjustable, mut keep: impl FnMut(Dq, &[Dq])) -> (DVector<f64>, f64, f64) {
         let n = self.unknowns();
         let (mut normal, mut right, mut total) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS], 0.0);
         self.walk(drive, |error, response| {
@@ -319,21 +331,22 @@ impl Course {
             Some(factor) => {
                 let best = factor.solve(&right);
                 let cost = total - right.dot(&best);
-                (best, cost)
+                (best, cost, total)
             }
-            None => (DVector::zeros(n), total),
+            None => (DVector::zeros(n), total, total),
         }
     }
 
     fn cost(&self, drive: &Adjustable) -> f64 {
-        self.fit(drive, |_, _| ()).1
+        let (_, left, total) = self.fit(drive, |_, _| ());
+        if left > CANCELLED * total { left } else { self.residuals(drive).iter().map(|residual| residual * residual).sum() }
     }
 
     fn residuals(&self, drive: &Adjustable) -> Vec<f64> {
         let n = self.unknowns();
         let mut residuals = Vec::with_capacity(2 * self.measured.len());
         let mut responses = Vec::with_capacity(n * self.measured.len());
-        let (best, _) = self.fit(drive, |error, response| {
+        let (best, _, _) = self.fit(drive, |error, response| {
             residuals.extend([error.d, error.q]);
             responses.extend_from_slice(response);
         });

@@ -11,7 +11,7 @@ use fluxfit::{
         tgfpa::{Start, Tgfpa},
     },
     paper,
-    study::{Fitness, MethodStudy, fitness, run_method},
+    study::{MethodStudy, fitness::Problem, run_method},
 };
 use fluxfit_drive::{
     Scenario,
@@ -38,7 +38,7 @@ pub(crate) enum Rig {
 /// What one of them logged.
 pub(crate) struct Data {
     pub(crate) rig: Rig,
-    pub(crate) fitness: Fitness,
+    pub(crate) problem: Problem,
 }
 
 impl Rig {
@@ -63,7 +63,7 @@ impl Data {
             Rig::Noisy => (scenario.sensors.current_noise, scenario.sensors.adc) = (NOISE, Some(ADC)),
         }
         let log = simulate(&scenario, 0, || ())?.log()?;
-        Ok(Self { rig, fitness: fitness(&log, &identify::Settings::default(), IdZero::Measured)? })
+        Ok(Self { rig, problem: Problem::steady(&log, &identify::Settings::default(), IdZero::Measured)? })
     }
 
     /// The paper's number of runs of each method.
@@ -73,7 +73,7 @@ impl Data {
 
     pub(crate) fn study_with(&self, methods: &[Method], runs: usize, settings: Settings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
         let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
-        let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.fitness.objective, || ());
+        let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.problem.fitness, || ());
         Ok(methods.iter().map(run).collect::<Result<_, _>>()?)
     }
 }

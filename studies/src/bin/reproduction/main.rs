@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     page.finish()?;
 
     let timed: Vec<_> = study.iter().map(|study| (study.clone(), 0.0)).collect();
-    page::figure(&docs.join("reproduction/convergence.svg"), &convergence(&timed, Size::Wide), check)?;
+    page::figure(&docs.join("reproduction/convergence.svg"), &convergence(&rig.problem.fitness, &timed, Size::Wide), check)?;
     let tgfpa = study.iter().find(|study| matches!(study.method, Method::Tgfpa(_))).ok_or("no study of tGFPA")?;
     let courses = parameter_courses(tgfpa, Some(&paper::MOTOR), &[], Size::Wide);
     page::figure(&docs.join("reproduction/parameters.svg"), &courses, check)?;

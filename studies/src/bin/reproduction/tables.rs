@@ -46,7 +46,7 @@ fn percent(error: Option<f64>) -> String {
 
 /// Ours beside the paper's: means, and errors in percent.
 pub(crate) fn table_2(study: &[MethodStudy], data: &Data) -> String {
-    let exact = data.fitness.objective.least_squares().motor;
+    let (exact, _) = data.problem.fitness.minimum();
     let mut heading = vec![String::new()];
     for study in study {
         heading.extend([format!("{} here", study.method.label()), "in the paper".to_owned()]);
@@ -75,7 +75,7 @@ pub(crate) fn errors(data: &[Data], studies: &[Vec<MethodStudy>]) -> String {
     let heading: Vec<String> =
         ["mean error, %".to_owned(), String::new()].into_iter().chain(labels).chain(["least squares".to_owned()]).collect();
     let rows = data.iter().zip(studies).flat_map(|(data, study)| {
-        let exact = data.fitness.objective.least_squares().motor;
+        let (exact, _) = data.problem.fitness.minimum();
         Parameter::ALL.map(|parameter| {
             let mut row = vec![data.rig.label().to_owned(), parameter.symbol().to_owned()];
             row.extend(study.iter().map(|study| percent(study.mean_error_percent(&paper::MOTOR)[parameter as usize])));

@@ -1,18 +1,18 @@
 //! The study: many independent runs of many methods on one fitness, as the paper compares them.
 //!
 //! Run `k` of every method takes stream `k` of the same seed. Runs are spread over all cores; each depends on its own stream
-//! alone and results are collected in order, so any number of threads gives the same bits. Swarms are compared by `F - F_LS`, how
-//! far they end above the exact minimum: on a noisy log their distance from the truth ranks the noise.
+//! alone and results are collected in order, so any number of threads gives the same bits. Swarms are compared by how far they end
+//! above the minimum, which is known: `F - F_LS` of fitness (11), `F - F_LM` of the output error. On a noisy log their distance from
+//! the truth ranks the noise.
+
+pub mod fitness;
 
 use crate::{
     error::Error,
-    identify,
-    log::Log,
     motor::{Motor, PARAMETERS, Parameter},
-    objective::voltage_error::{IdZero, VoltageError},
     optimizer::{Method, Optimizer, Report, Settings, bounds::Bounds},
-    steady::{OperatingPoint, windows::at_most_paper_rows},
 };
+use fitness::Fitness;
 use rayon::prelude::*;
 use statrs::statistics::{Data, OrderStatistics};
 
@@ -25,7 +25,7 @@ pub struct MethodStudy {
     pub evaluations_per_run: u64,
     /// Where each run ended.
     pub motors: Vec<Motor>,
-    /// `F - F_LS` of each run's end.
+    /// Cost above the minimum of each run's end.
     pub cost_above_optimum: Vec<f64>,
     /// The course of the runs, iteration by iteration.
     pub convergence: Convergence,
@@ -34,42 +34,15 @@ pub struct MethodStudy {
 /// The course of many runs: one entry per iteration, the start included. A run that stopped early keeps its last value.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Convergence {
-    /// `F - F_LS`: lower quartile, median and upper quartile over the runs.
+    /// Cost above the minimum: lower quartile, median and upper quartile over the runs.
     pub quartiles: Vec<[f64; 3]>,
     /// Median of each parameter over the runs.
     pub parameters_median: Vec<[f64; PARAMETERS]>,
 }
 
-/// The paper's fitness on a log, and what it was made of.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fitness {
-    /// What it sums over, before any correction.
-    pub operating_points: Vec<OperatingPoint>,
-    /// Rows that the fitness sums over, per window.
-    pub rows: Vec<usize>,
-    /// Fitness (11) itself.
-    pub objective: VoltageError,
-}
-
-/// Fitness (11) on the steady windows of a log: on at most the paper's 4000 samples of each, with the held-vector correction that
-/// an identification makes.
+/// Runs one method `runs` times; `done` is called after each iteration, from any thread.
 ///
-/// # Errors
-/// If there is no steady window.
-pub fn fitness(log: &Log, settings: &identify::Settings, id_zero: IdZero) -> Result<Fitness, Error> {
-    let whole = identify::operating_points(log, settings)?;
-    let rows = at_most_paper_rows(&whole.into_iter().map(|point| point.rows).collect::<Vec<_>>());
-    let points: Vec<_> = rows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect();
-    let beliefs = identify::beliefs(log, &points, identify::voltage_timing(settings).0, settings);
-    let windows: Vec<_> = points.iter().zip(beliefs).map(|(point, belief)| (point.rows.clone(), belief.held_vector)).collect();
-    Ok(Fitness {
-        operating_points: points,
-        rows: windows.iter().map(|(rows, _)| rows.len()).collect(),
-        objective: VoltageError::of_samples(log, &windows, id_zero),
-    })
-}
-
-/// Runs one method `runs` times; `done` is called after each run, from any thread.
+/// Of the output error costs may lie below the minimum known, until [`settle`] has seen all methods.
 ///
 /// # Errors
 /// If `runs` is zero or a run cannot start.
@@ -78,7 +51,7 @@ pub fn run_method(
     runs: usize,
     settings: Settings,
     bounds: &Bounds,
-    objective: &VoltageError,
+    fitness: &Fitness,
     done: impl Fn() + Sync,
 ) -> Result<MethodStudy, Error> {
     if runs == 0 {
@@ -86,9 +59,12 @@ pub fn run_method(
     }
     let run = |run: usize| {
         let settings = Settings { run: run as u64, ..settings };
-        let report = Optimizer::start(method, settings, bounds.clone(), objective)?.run(objective);
-        done();
-        Ok(Course::of(&report, objective))
+        let mut optimizer = Optimizer::start(method, settings, bounds.clone(), fitness)?;
+        while optimizer.stop_reason().is_none() {
+            optimizer.step(fitness);
+            done();
+        }
+        Ok(Course::of(&optimizer.run(fitness), fitness))
     };
     let courses: Vec<Course> = (0..runs).into_par_iter().map(run).collect::<Result<_, Error>>()?;
     Ok(MethodStudy {
@@ -100,7 +76,23 @@ pub fn run_method(
     })
 }
 
+/// Counts every study from the lowest cost that is known: where a swarm has ended below the polish, that of a polish from there.
+pub fn settle(fitness: &mut Fitness, studies: &mut [MethodStudy]) {
+    let ends = studies.iter().flat_map(|study| study.cost_above_optimum.iter().zip(&study.motors));
+    let lowest = ends.min_by(|a, b| a.0.total_cmp(b.0)).filter(|(above, _)| **above < 0.0).map(|(_, motor)| *motor);
+    if let Some(motor) = lowest {
+        let fall = fitness.lower_to(&motor);
+        studies.iter_mut().for_each(|study| study.raise(fall));
+    }
+}
+
 impl MethodStudy {
+    /// Counts from a minimum that is lower by this much. No run lies below it: what is negative now is rounding.
+    fn raise(&mut self, by: f64) {
+        let quartiles = self.convergence.quartiles.iter_mut().flatten();
+        self.cost_above_optimum.iter_mut().chain(quartiles).for_each(|above| *above = (*above + by).max(0.0));
+    }
+
     /// The mean of the runs' motors: what the paper reports.
     pub fn mean(&self) -> Motor {
         let runs = self.motors.len() as f64;
@@ -115,12 +107,12 @@ impl MethodStudy {
         })
     }
 
-    /// Median over the runs of `F - F_LS`.
+    /// Median over the runs of the cost above the minimum.
     pub fn median(&self) -> f64 {
         quartiles(self.cost_above_optimum.clone())[1]
     }
 
-    /// Largest `F - F_LS` of a run.
+    /// Largest cost above the minimum of a run.
     pub fn worst(&self) -> f64 {
         self.cost_above_optimum.iter().copied().fold(0.0, f64::max)
     }
@@ -132,16 +124,18 @@ pub fn error_percent(motor: &Motor, truth: &Motor, parameter: Parameter) -> Opti
     (truth != 0.0).then(|| 100.0 * (motor.get(parameter) / truth - 1.0).abs())
 }
 
-/// One run, iteration by iteration: the best motor and its cost above the optimum.
+/// One run, iteration by iteration: the best motor and its cost above the minimum.
 struct Course {
     evaluations: u64,
     best: Vec<(Motor, f64)>,
 }
 
 impl Course {
-    fn of(report: &Report, objective: &VoltageError) -> Self {
-        let motor = |best: &[f64]| Motor::from(std::array::from_fn(|p| best[p]));
-        let best = report.history.iter().map(|record| motor(&record.best)).map(|motor| (motor, objective.cost_above_optimum(&motor)));
+    fn of(report: &Report, fitness: &Fitness) -> Self {
+        let best = report.history.iter().map(|record| {
+            let motor = Motor::from(std::array::from_fn(|p| record.best[p]));
+            (motor, fitness.cost_above_optimum(&motor, record.cost))
+        });
         Self { evaluations: report.evaluations, best: best.collect() }
     }
 

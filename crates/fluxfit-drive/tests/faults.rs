@@ -1,0 +1,181 @@
+//! Faults of a drive that identification with the output error finds, each in the paper's rig with noise: the fault inside its own
+//! interval, the motor within the limits, and nothing identified that is wrong.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use fluxfit::{
+    identify::{Identification, Settings, identify, output_fit::OutputFit, terms::Term, verdict::Verdict},
+    motor::{Motor, PARAMETERS, Parameter},
+    objective::{
+        acting_voltage::{VoltageFrame, VoltageReading},
+        adjustable::{SensorPair, Unknown},
+    },
+    paper,
+};
+use fluxfit_drive::{
+    Recording, Scenario,
+    scenario::{Control, CurrentSensors, Inverter, Mechanics, Schedule, Sensors, SimulatedMotor},
+    schedule::{Course, Move},
+    simulate,
+};
+use std::f64::consts::FRAC_PI_3;
+
+/// The paper's rig with 50 mA of noise on each current sensor, and a fault.
+fn rig(fault: impl FnOnce(&mut Scenario)) -> Recording {
+    let mut scenario = Scenario::paper();
+    scenario.sensors.current_noise = 0.05;
+    fault(&mut scenario);
+    simulate(&scenario, 0, || ()).unwrap()
+}
+
+fn found(recording: &Recording) -> Identification {
+    identify(&recording.log().unwrap(), &Settings::default()).unwrap()
+}
+
+/// The motor lies within these limits, in percent of the truth, and within its own 95 % intervals, which are half as wide again as
+/// two standard errors for being one of many; what is identified is so.
+fn holds(name: &str, found: &Identification, truth: &Motor, limits: [f64; PARAMETERS]) {
+    for (judgement, limit) in found.parameters.iter().zip(limits) {
+        let truth = truth.get(judgement.parameter);
+        let (error, standard_error) = (judgement.raw - truth, judgement.uncertainty.standard_error());
+        let percent = 100.0 * error / truth;
+        println!(
+            "{name}: {} {percent:+.3} % ± {:.3} %, {:?}",
+            judgement.parameter.key(),
+            200.0 * standard_error / truth,
+            judgement.verdict
+        );
+        assert!(percent.abs() < limit, "{name}: {} is {percent:.2} % off", judgement.parameter.key());
+        assert!(
+            error.abs() < 3.0 * standard_error,
+            "{name}: {} by {:.1} standard errors",
+            judgement.parameter.key(),
+            error / standard_error
+        );
+    }
+}
+
+/// The faults found are these, with these values inside three of their own standard errors.
+fn finds(name: &str, fit: &OutputFit, term: Term, values: &[(Unknown, f64)]) {
+    let terms: Vec<&str> = fit.terms.iter().filter(|tried| fit.has(tried.term)).map(|tried| tried.term.key()).collect();
+    assert_eq!(terms, [term.key()], "{name}");
+    for (unknown, expected) in values {
+        let nuisance = fit.nuisance.iter().find(|nuisance| nuisance.unknown == *unknown).unwrap();
+        println!("{name}: {} {:.5} ± {:.5}, truly {expected:.5}", unknown.key(), nuisance.value, 2.0 * nuisance.standard_error);
+        assert!((nuisance.value - expected).abs() < 3.0 * nuisance.standard_error, "{name}: {nuisance:?} instead of {expected}");
+    }
+}
+
+const WITHIN_ONE_PERCENT: [f64; PARAMETERS] = [1.0; PARAMETERS];
+
+#[test]
+fn a_perfect_drive_has_no_faults() {
+    let found = found(&rig(|_| ()));
+    let fit = found.output.as_ref().unwrap();
+    assert!(fit.terms.iter().all(|tried| !fit.has(tried.term)), "{:?}", fit.terms);
+    holds("perfect", &found, &paper::MOTOR, [0.2, 0.2, 0.05, 0.05]);
+}
+
+#[test]
+fn an_encoder_that_is_three_degrees_off() {
+    let offset = 3.0_f64.to_radians();
+    let found = found(&rig(|scenario| scenario.sensors.angle_offset = offset));
+    finds("angle", found.output.as_ref().unwrap(), Term::AngleOffset, &[(Unknown::AngleOffset, offset)]);
+    holds("angle", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
+}
+
+/// 1 % of 20 A on phase a alone: two thirds of it along alpha, a third in the zero sequence that no frame sees.
+#[test]
+fn a_sensor_that_reads_one_percent_at_zero() {
+    let found = found(&rig(|scenario| scenario.sensors.current_offset = [0.2, 0.0, 0.0]));
+    let expected = [(Unknown::OffsetAlpha, 0.2 * 2.0 / 3.0), (Unknown::OffsetBeta, 0.0)];
+    finds("offset", found.output.as_ref().unwrap(), Term::CurrentOffset, &expected);
+    holds("offset", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
+}
+
+/// Of three sensors one reads 2 % too much: the imbalance is a third of that. So is the common gain, which no log shows: every
+/// impedance comes out 0.66 % too small, and the interval knows.
+#[test]
+fn one_of_three_sensors_that_reads_two_percent_too_much() {
+    let found = found(&rig(|scenario| scenario.sensors.current_gain = [1.0, 1.02, 1.0]));
+    // Phase b lies a third of a turn ahead of a; the imbalance turns twice as far.
+    let (sin, cos) = (-2.0 * FRAC_PI_3).sin_cos();
+    // Relative to the common gain of 1 + 0.02/3.
+    let imbalance = 0.02 / 3.0 / (1.0 + 0.02 / 3.0);
+    let expected = [(Unknown::ImbalanceAlpha, imbalance * cos), (Unknown::ImbalanceBeta, imbalance * sin)];
+    finds("gain of three", found.output.as_ref().unwrap(), Term::Imbalance, &expected);
+    holds("gain of three", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
+}
+
+/// Of two sensors, the common gain is half of the fault: 1 % that no log shows, and a hair of noise beyond it.
+#[test]
+fn one_of_two_sensors_that_reads_two_percent_too_much() {
+    let recording = rig(|scenario| {
+        scenario.sensors.current_sensors = CurrentSensors::Two;
+        scenario.sensors.current_gain = [1.0, 1.02, 1.0];
+    });
+    let found = found(&recording);
+    // a over b, relative to the common gain of 1.01.
+    let expected = [(Unknown::TwoSensors(SensorPair::Ab), -0.02 / 1.01)];
+    finds("gain of two", found.output.as_ref().unwrap(), Term::TwoSensors(SensorPair::Ab), &expected);
+    holds("gain of two", &found, &paper::MOTOR, [1.1; PARAMETERS]);
+}
+
+/// A commanded voltage that acts one period later, and the same column moved by a row to either side.
+#[test]
+fn a_delay_of_no_one_and_two_periods() {
+    let recording = rig(|_| ());
+    let rows = recording.columns.t.len();
+    for delay in [0_usize, 1, 2] {
+        let mut columns = recording.columns.clone();
+        let moved = |column: &[f64]| -> Vec<f64> { (0..rows).map(|k| column[(k + delay).saturating_sub(1).min(rows - 1)]).collect() };
+        (columns.ud, columns.uq) = (moved(&recording.ud_ref), moved(&recording.uq_ref));
+        let found = identify(&fluxfit::Log::new(columns).unwrap(), &Settings::default()).unwrap();
+        let fit = found.output.as_ref().unwrap();
+        // The frame is that of the period in which it acts: two periods' looking ahead, if the column is that late, and so on.
+        let frame = VoltageFrame::Middle;
+        assert_eq!(fit.voltage_reading.0, VoltageReading::Delayed { delay, frame }, "{delay}");
+        holds("delay", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
+    }
+}
+
+/// White voltages of 1 V that nobody knows: warned of, and nothing identified is wrong.
+#[test]
+fn disturbing_voltages() {
+    let found = found(&rig(|scenario| scenario.inverter.voltage_noise = 1.0));
+    assert!(found.output.as_ref().unwrap().has(Term::ProcessNoise));
+    assert!(found.warnings.iter().any(|warning| warning.code == "process-noise"));
+    holds("disturbed", &found, &paper::MOTOR, [2.0; PARAMETERS]);
+}
+
+/// A traction motor at 100 A, 300 V, 10 kHz, with and without 2 us of dead time: 6 V per phase, four times what R_s takes.
+#[test]
+fn dead_time_that_takes_more_than_the_resistance() {
+    let truth = Motor { rs: 18e-3, ld: 175e-6, lq: 250e-6, psi_f: 0.0515 };
+    let scenario = |dead_time: f64| Scenario {
+        motor: SimulatedMotor { rs: truth.rs, magnetics: truth.into(), pole_pairs: 10 },
+        inverter: Inverter { dead_time, ..Inverter::ideal(300.0, 10e3) },
+        mechanics: Mechanics::Dyno,
+        control: Control::new(200.0, 10.0, 150.0),
+        schedule: Schedule {
+            id: Course::new(vec![Move { at: 0.2, to: -30.0, over: 0.0 }]),
+            iq: Course::new(vec![Move { at: 0.02, to: 100.0, over: 0.0 }]),
+            speed: Course::constant(100.0),
+            ..Schedule::default()
+        },
+        duration: 0.4,
+        sensors: Sensors { current_noise: 0.5, ..Sensors::IDEAL },
+        ..Scenario::paper()
+    };
+    let with = found(&simulate(&scenario(2e-6), 0, || ()).unwrap());
+    let fit = with.output.as_ref().unwrap();
+    assert!(fit.has(Term::DeadTime));
+    let lost = fit.drive.nuisance.dead_time;
+    assert!((lost / 6.0 - 1.0).abs() < 0.02, "{lost} V");
+    holds("dead time", &with, &truth, [10.0, 1.0, 1.0, 1.0]);
+
+    let without = found(&simulate(&scenario(0.0), 0, || ()).unwrap());
+    assert!(!without.output.as_ref().unwrap().has(Term::DeadTime));
+    holds("no dead time", &without, &truth, [2.0, 1.0, 1.0, 1.0]);
+    assert!(Parameter::ALL.iter().all(|parameter| without.parameter(*parameter).verdict == Verdict::Identified));
+}
