@@ -120,6 +120,16 @@ impl Excitation {
         covariance
     }
 
+    /// Covariance of the parameters, SI, along the unexcited directions: each uniform over a parameter's whole range to either side.
+    pub(super) fn unexcited_parameters(&self) -> Matrix4<f64> {
+        let of_direction = |direction: &Direction| {
+            let largest = direction.components.iter().fold(0.0_f64, |most, component| most.max(component.abs()));
+            let moved = Vector4::from_fn(|p, _| direction.components[p] * self.scale[p] / largest);
+            moved * moved.transpose() / 3.0
+        };
+        self.directions.iter().filter(|direction| !direction.excited).map(of_direction).sum()
+    }
+
     fn excited_part(&self, vector: [f64; PARAMETERS]) -> [f64; PARAMETERS] {
         let mut part = [0.0; PARAMETERS];
         for direction in self.excited() {

@@ -3,6 +3,7 @@
 //! A parameter that the log leaves open gets the reason why it is open; any other, the largest part of its interval.
 
 use super::{
+    advice::{Advice, one_digit},
     excitation::Excitation,
     uncertainty::{ParameterUncertainty, Part},
     verdict::{IDENTIFIED, WEAK},
@@ -16,21 +17,33 @@ pub(super) fn explain(
     excitation: &Excitation,
     raw: f64,
     uncertainty: &ParameterUncertainty,
+    advice: &Advice,
 ) -> (String, String) {
     let width = if raw == 0.0 { f64::INFINITY } else { uncertainty.half_width / raw.abs() };
     if excitation.is_open(parameter) {
-        open(parameter, points, excitation)
+        let (reason, phrase) = open(parameter, points, excitation);
+        (reason, advice.remedy(parameter).unwrap_or(phrase))
     } else if raw <= 0.0 && width < WEAK {
         negative(parameter)
     } else {
-        wide(parameter, width, uncertainty.largest_part())
+        wide(parameter, width, uncertainty.largest_part(), advice)
     }
 }
 
 /// The same of the motor whose currents were simulated.
-pub(super) fn explain_currents(parameter: Parameter, raw: f64, uncertainty: &ParameterUncertainty) -> (String, String) {
+pub(super) fn explain_currents(parameter: Parameter, raw: f64, uncertainty: &ParameterUncertainty, advice: &Advice) -> (String, String) {
     let width = if raw == 0.0 { f64::INFINITY } else { uncertainty.half_width / raw.abs() };
-    if raw <= 0.0 && width < WEAK { negative(parameter) } else { wide(parameter, width, uncertainty.largest_part()) }
+    if raw <= 0.0 && width < WEAK { negative(parameter) } else { wide(parameter, width, uncertainty.largest_part(), advice) }
+}
+
+/// What the simulated currents miss is no noise.
+pub(super) fn explain_no_noise(correlation: f64) -> (String, String) {
+    (
+        format!(
+            "what the simulated currents miss is no noise (neighbouring rows are correlated by {correlation:.2}): something is in the log that the model does not have"
+        ),
+        "compare with --model steady, look at the residuals in --report, and log theta_e and u_dc too if the drive has them".to_owned(),
+    )
 }
 
 fn negative(parameter: Parameter) -> (String, String) {
@@ -44,19 +57,19 @@ fn negative(parameter: Parameter) -> (String, String) {
 const MUCH_LONGER: f64 = 100.0;
 
 /// Why an interval is wide.
-fn wide(parameter: Parameter, width: f64, part: Part) -> (String, String) {
+fn wide(parameter: Parameter, width: f64, part: Part, advice: &Advice) -> (String, String) {
     let symbol = parameter.symbol();
     let leaves = if width < 10.0 { format!("leaves ±{:.2} %", 100.0 * width) } else { "leaves more than the value itself".to_owned() };
-    let apart = farther_apart(parameter).to_owned();
+    let apart = || advice.remedy(parameter).unwrap_or_else(|| farther_apart(parameter).to_owned());
     match part {
         Part::Noise => {
             // A standard error falls with the root of the time.
             let longer = (width / IDENTIFIED).powi(2).ceil();
             let remedy =
-                if longer < MUCH_LONGER { format!("hold each operating point about {longer:.0} times as long, or {apart}") } else { apart };
+                if longer < MUCH_LONGER { format!("hold each operating point about {longer:.0} times as long, or {}", apart()) } else { apart() };
             (format!("noise {leaves}"), remedy)
         }
-        Part::Accuracy => (format!("the voltages' accuracy {leaves}: the operating points are too much alike to tell {symbol}"), apart),
+        Part::Accuracy => (format!("the voltages' accuracy {leaves}: the operating points are too much alike to tell {symbol}"), apart()),
         Part::Timing => (
             format!("it is not known which instant the voltage columns belong to, which {leaves}"),
             "state it with --voltage-timing".to_owned(),
@@ -85,7 +98,7 @@ fn wide(parameter: Parameter, width: f64, part: Part) -> (String, String) {
                 .to_owned(),
         ),
         Part::Prior => (format!("the prior that was given {leaves}"), "give a sharper --prior, or log another operating point".to_owned()),
-        Part::Excitation => (format!("what the log does not excite could move it, which {leaves}"), apart),
+        Part::Excitation => (format!("what the log does not excite could move it, which {leaves}"), apart()),
     }
 }
 
@@ -150,13 +163,6 @@ fn open(parameter: Parameter, points: &[OperatingPoint], excitation: &Excitation
     }
 }
 
-/// A number with one significant digit, and no exponent.
-fn one_digit(x: f64) -> String {
-    let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
-    let unit = 10.0_f64.powi(exponent);
-    format!("{:.*}", exponent.saturating_neg().clamp(0, 12) as usize, (x / unit).round() * unit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,13 +196,5 @@ mod tests {
         assert!(one.starts_with("there is one speed and one load"), "{one}");
         let constant = reason(Parameter::PsiF, &[(-20.0, 90.0, 1400.0), (-20.0, 40.0, 700.0)]);
         assert!(constant.starts_with("i_d is the same"), "{constant}");
-    }
-
-    #[test]
-    fn one_digit_is_enough_for_advice() {
-        assert_eq!(one_digit(-1.9774), "-2");
-        assert_eq!(one_digit(-29.9), "-30");
-        assert_eq!(one_digit(0.000_87), "0.0009");
-        assert_eq!(one_digit(0.0), "0");
     }
 }

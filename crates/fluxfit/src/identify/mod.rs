@@ -4,6 +4,7 @@
 //! sampled fast enough, the [simulated currents](output_fit) to its rows; the [model] that suits the log answers. The swarm's own
 //! answer is reported beside it.
 
+mod advice;
 pub mod conventions;
 pub mod dead_time;
 pub mod estimate;

@@ -10,10 +10,11 @@
 
 use super::{
     Known, Provenance, Search, Settings,
+    advice::{self, Advice},
     excitation::Excitation,
     long_run, search_box,
     steady_fit::SteadyFit,
-    terms::{self, Candidate, Outcome, Term, inverse_normal},
+    terms::{self, Candidate, LEAST_RESIDUAL, Outcome, Term, inverse_normal},
     timing,
     uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
     verdict::{self, Judgement},
@@ -60,6 +61,9 @@ pub struct OutputFit {
     /// Correlation of neighbouring residuals, the larger of both axes.
     pub correlation_of_neighbours: f64,
     uncertainty: Uncertainty,
+    advice: Advice,
+    /// Correlation of neighbours, zero where the residuals are too small to mean anything.
+    correlation_beyond_rounding: f64,
 }
 
 /// A number of the drive beside the motor.
@@ -104,7 +108,16 @@ impl OutputFit {
             sensors: sensors(&drive),
         };
         let errors = Errors::of(objective, &drive, &unknowns, &beliefs, &residuals, settings, &scale);
+        let uncertainty = errors.uncertainty(&unknowns, &doubt);
+        let points = steady.map_or_else(|| whole(log, &stretches), |fit| fit.operating_points.clone());
+        let rms = (cost / residuals.len() as f64).sqrt();
         Ok(Self {
+            advice: advice(&drive.motor, &uncertainty, &points, rms, errors.correlation_of_neighbours, log, settings),
+            correlation_beyond_rounding: if rms > LEAST_RESIDUAL * objective.peak_current() {
+                errors.correlation_of_neighbours
+            } else {
+                0.0
+            },
             drive,
             voltage_reading: (*reading, if settings.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
             terms: tried,
@@ -112,7 +125,7 @@ impl OutputFit {
             stretches: objective.stretches().collect(),
             redundancy: residuals.len().saturating_sub(unknowns.len()),
             correlation_of_neighbours: errors.correlation_of_neighbours,
-            uncertainty: errors.uncertainty(&unknowns, &doubt),
+            uncertainty,
             readings,
             residuals,
             cost,
@@ -133,7 +146,8 @@ impl OutputFit {
 
     /// The parameters, judged, and the correlation of their errors.
     pub(super) fn judge(&self, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
-        let parameters = verdict::judge_currents(&self.drive.motor, &self.uncertainty, settings);
+        let parameters =
+            verdict::judge_currents(&self.drive.motor, &self.uncertainty, &self.advice, self.correlation_beyond_rounding, settings);
         (parameters, self.uncertainty.correlation)
     }
 
@@ -224,6 +238,35 @@ fn by_differences(log: &Log, stretches: &[Range<usize>]) -> Motor {
         }
     }
     equations.into_iter().collect::<TriangularFactor>().solve().motor
+}
+
+/// What is known from noise, accuracy and excitation: what a further stretch would cure.
+fn advice(
+    motor: &Motor,
+    uncertainty: &Uncertainty,
+    points: &[OperatingPoint],
+    rms: f64,
+    correlation: f64,
+    log: &Log,
+    settings: &Settings,
+) -> Advice {
+    let standard_errors = uncertainty.parameters.map(|parameter| {
+        let Systematic { accuracy, excitation, .. } = parameter.systematic;
+        parameter.statistical.hypot(accuracy).hypot(excitation)
+    });
+    let fastest = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    // A current's noise as a voltage, and how much longer than white noise correlated noise lasts.
+    let impedance = motor.rs.abs() + fastest * motor.ld.abs().max(motor.lq.abs());
+    let lasting = (1.0 + correlation.clamp(0.0, 0.9)) / (1.0 - correlation.clamp(0.0, 0.9));
+    Advice {
+        motor: Advice::guessed(*motor, |parameter| uncertainty.parameters[parameter as usize].systematic.excitation == 0.0),
+        covariance: advice::covariance(standard_errors, &uncertainty.correlation),
+        held: points.iter().map(|point| (point.current(), point.omega_e())).collect(),
+        row_variance: (impedance * rms).powi(2) * lasting,
+        sample_period: log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max),
+        voltage: points.iter().map(|point| point.voltage().magnitude()).fold(0.0, f64::max),
+        voltage_accuracy: settings.voltage_accuracy,
+    }
 }
 
 /// How far each parameter moves with what is not certain, SI.

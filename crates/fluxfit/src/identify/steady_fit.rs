@@ -1,7 +1,9 @@
 //! What the steady model makes of a log: equation (2) on the means of steady windows, for which weighted least squares is exact.
 
 use super::{
-    Known, Provenance, Search, Settings, dead_time,
+    Known, Provenance, Search, Settings,
+    advice::{self, Advice},
+    dead_time,
     estimate::Estimate,
     excitation::Excitation,
     misfit::{self, Misfit},
@@ -68,8 +70,29 @@ impl SteadyFit {
     /// The parameters, judged, and the correlation of their errors.
     pub(super) fn judge(&self, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
         let uncertainty = Uncertainty::of(&self.operating_points, &self.excitation, &self.estimate, self.misfit.as_ref(), &self.doubt);
-        let parameters = verdict::judge(&self.operating_points, &self.excitation, &self.estimate, &uncertainty, settings);
+        let advice = self.advice(&uncertainty, settings);
+        let parameters = verdict::judge(&self.operating_points, &self.excitation, &self.estimate, &uncertainty, &advice, settings);
         (parameters, uncertainty.correlation)
+    }
+
+    /// What is known from noise, accuracy and excitation: what more operating points would cure.
+    fn advice(&self, uncertainty: &Uncertainty, settings: &Settings) -> Advice {
+        let points = &self.operating_points;
+        let standard_errors = uncertainty.parameters.map(|parameter| parameter.statistical.hypot(parameter.systematic.accuracy));
+        let row_variance = points.iter().map(|point| {
+            let noise = point.residual_covariance(&self.estimate.motor);
+            0.5 * (noise[0][0] + noise[1][1]) * point.rows.len() as f64
+        });
+        let mean_period = points.iter().map(|point| (point.time.1 - point.time.0) / (point.rows.len() - 1).max(1) as f64);
+        Advice {
+            motor: Advice::guessed(self.estimate.motor, |parameter| !self.excitation.is_open(parameter)),
+            covariance: advice::covariance(standard_errors, &uncertainty.correlation) + self.excitation.unexcited_parameters(),
+            held: points.iter().map(|point| (point.current(), point.omega_e())).collect(),
+            row_variance: row_variance.sum::<f64>() / points.len() as f64,
+            sample_period: mean_period.fold(0.0, f64::max),
+            voltage: points.iter().map(|point| point.voltage().magnitude()).fold(0.0, f64::max),
+            voltage_accuracy: settings.voltage_accuracy,
+        }
     }
 
     /// Lets the swarm minimize the same weighted equations that least squares solved.

@@ -102,7 +102,7 @@ const WIDTHS: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8];
 const NOTICEABLE: f64 = 0.02;
 
 /// Residuals below this fraction of the largest current are rounding and the model's own last digits: nothing to explain.
-const LEAST_RESIDUAL: f64 = 1e-4;
+pub(super) const LEAST_RESIDUAL: f64 = 1e-4;
 
 /// The most that a current sensor's gain or an observer's can be.
 const WHOLE: f64 = 1.0;

@@ -5,9 +5,10 @@
 
 use super::{
     Known, Settings,
+    advice::Advice,
     estimate::Estimate,
     excitation::Excitation,
-    explain::{explain, explain_currents},
+    explain::{explain, explain_currents, explain_no_noise},
     uncertainty::{ParameterUncertainty, Uncertainty},
 };
 use crate::{
@@ -73,22 +74,43 @@ impl Judgement {
 }
 
 /// Judges every parameter of the operating points' motor.
-pub fn judge(
+pub(super) fn judge(
     points: &[OperatingPoint],
     excitation: &Excitation,
     estimate: &Estimate,
     uncertainty: &Uncertainty,
+    advice: &Advice,
     settings: &Settings,
 ) -> [Judgement; PARAMETERS] {
-    let explained =
-        |parameter: Parameter, raw: f64, uncertainty: &ParameterUncertainty| explain(parameter, points, excitation, raw, uncertainty);
+    let explained = |parameter: Parameter, raw: f64, uncertainty: &ParameterUncertainty| {
+        explain(parameter, points, excitation, raw, uncertainty, advice)
+    };
     judge_motor(&estimate.motor, uncertainty, settings, explained)
 }
 
 /// Judges every parameter of the simulated currents' motor.
-pub(super) fn judge_currents(motor: &Motor, uncertainty: &Uncertainty, settings: &Settings) -> [Judgement; PARAMETERS] {
-    judge_motor(motor, uncertainty, settings, |parameter, raw, uncertainty| explain_currents(parameter, raw, uncertainty))
+pub(super) fn judge_currents(
+    motor: &Motor,
+    uncertainty: &Uncertainty,
+    advice: &Advice,
+    correlation_of_neighbours: f64,
+    settings: &Settings,
+) -> [Judgement; PARAMETERS] {
+    let mut judged =
+        judge_motor(motor, uncertainty, settings, |parameter, raw, uncertainty| explain_currents(parameter, raw, uncertainty, advice));
+    if correlation_of_neighbours > NO_NOISE {
+        for judgement in judged.iter_mut().filter(|judgement| judgement.verdict == Verdict::Identified && judgement.reason.is_none()) {
+            judgement.verdict = Verdict::Weak;
+            let (reason, remedy) = explain_no_noise(correlation_of_neighbours);
+            (judgement.reason, judgement.remedy) = (Some(reason), Some(remedy));
+        }
+    }
+    judged
 }
+
+/// Correlation of neighbouring residuals from which on they are not noise: something is in the log that the model does not have, and
+/// an interval that comes from noise says nothing of it.
+const NO_NOISE: f64 = 0.3;
 
 fn judge_motor(
     motor: &Motor,
