@@ -96,7 +96,7 @@ fn joint(found: &Identification) -> Markup {
             @let pair = Pair { x, y, correlation: of(found, x, y) };
             (frame::figure(|size| ellipse::draw(&pair, size), &html! {
                 "The joint 95 % region about the value (dot), in percent of it, from the standard errors and their correlation, "
-                (minus(format!("{:.2}", pair.correlation))) ". The box is made of the two single 95 % intervals. Where the ellipse is narrow and "
+                (minus(format!("{:.2}", pair.correlation))) " (of noise, accuracy and priors alone). The box is made of the two single 95 % intervals. Where the ellipse is narrow and "
                 "slanted, a pair in a corner of the box is not believable, though each of its two numbers alone is. " (prose("R_s and psi_f"))
                 " share the voltage along q: points at different speeds part them."
             }))

@@ -292,6 +292,25 @@ fn gaps_are_not_bridged_and_a_log_without_operating_points_is_told_as_such() {
 }
 
 #[test]
+fn a_million_rows_make_a_page_of_two_megabytes_at_most_that_shows_a_single_row() {
+    let mut found = identify(&recorded(0.08, |_| ()), &of_currents()).unwrap();
+    let rows = 1_000_000;
+    let mut draws = Draws::seeded(5, 0);
+    let mut column = |mean: f64| (0..rows).map(|_| mean + 0.1 * draws.normal()).collect::<Vec<f64>>();
+    let [ud, uq, mut id, iq, omega_e] = [0.0, 50.0, -2.0, 9.0, 400.0].map(&mut column);
+    id[654_321] = 37.0;
+    let log = Log::new(Columns { t: (0..rows).map(|k| k as f64 * 1e-4).collect(), ud, uq, id, iq, omega_e, ..Columns::default() }).unwrap();
+    let fit = found.output.as_mut().unwrap();
+    fit.stretches = vec![0..rows];
+    fit.residuals = [column(0.0), column(0.0)].concat();
+    let page = page("x", &log, &found, None);
+    assert!(page.len() < 2_000_000, "{}", page.len());
+    // The axis of i_d reaches up to the row that stands out.
+    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    assert!(svg.lines().any(|line| line.trim() == "20") && svg.lines().any(|line| line.trim() == "0"), "no tick at 20 A");
+}
+
+#[test]
 fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
     let log = recorded(0.08, |_| ());
     let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };

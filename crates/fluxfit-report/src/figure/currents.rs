@@ -118,7 +118,7 @@ impl Course<'_> {
         let (factor, name) = if largest < 1.0 { (1e3, "missed, mA") } else { (1.0, "missed, A") };
         let scaled: Vec<Vec<_>> = residuals.iter().map(|curve| curve.iter().map(|(t, i)| (*t, factor * i)).collect()).collect();
         let zero = vec![self.times.map(|t| (t, 0.0)).to_vec()];
-        let y = Axis::around(scaled.iter().flatten().map(|(_, i)| *i).chain([0.0]), 3);
+        let y = Axis::around(scaled.iter().flatten().map(|(_, i)| *i).chain([0.0]), 4);
         self.panel(area, y, ("time, s", name), size, &[(scaled, line(self.ink(), 0.8)), (zero, line(Ink::Axis, 1.0))])
     }
 
