@@ -301,7 +301,7 @@ fn a_million_rows_make_a_page_of_two_megabytes_at_most_that_shows_a_single_row()
     id[654_321] = 37.0;
     let log = Log::new(Columns { t: (0..rows).map(|k| k as f64 * 1e-4).collect(), ud, uq, id, iq, omega_e, ..Columns::default() }).unwrap();
     let fit = found.output.as_mut().unwrap();
-    fit.stretches = vec![0..rows];
+    fit.stretches = log.segments().iter().map(|segment| segment.rows.clone()).collect();
     fit.residuals = [column(0.0), column(0.0)].concat();
     let page = page("x", &log, &found, None);
     assert!(page.len() < 2_000_000, "{}", page.len());

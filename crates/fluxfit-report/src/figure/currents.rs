@@ -33,6 +33,9 @@ const SIDES: (i32, i32) = (50, 12);
 /// Measured curves stand behind simulated ones, and do not shout.
 const BEHIND: f64 = 0.7;
 
+/// A curve, piece by piece: time, s, and value.
+type Curve = Vec<Vec<(f64, f64)>>;
+
 /// What is drawn of one axis: per stretch of the log its times, and measured and simulated less measured current.
 struct Course<'a> {
     log: &'a Log,
@@ -80,7 +83,7 @@ impl Course<'_> {
     }
 
     /// Per stretch a curve of what `value` makes of a row's measured current and its residual.
-    fn curves(&self, value: fn(f64, f64) -> f64, size: Size) -> Vec<Vec<(f64, f64)>> {
+    fn curves(&self, value: fn(f64, f64) -> f64, size: Size) -> Curve {
         let (left, right) = SIDES;
         let columns = size.width() - (left + right).unsigned_abs();
         let (t, measured) = (&self.log.columns().t, self.measured());
@@ -116,21 +119,14 @@ impl Course<'_> {
         let largest = residuals.iter().flatten().map(|(_, residual)| residual.abs()).fold(0.0, f64::max);
         // Milliamperes where amperes would be nothing but zeros.
         let (factor, name) = if largest < 1.0 { (1e3, "missed, mA") } else { (1.0, "missed, A") };
-        let scaled: Vec<Vec<_>> = residuals.iter().map(|curve| curve.iter().map(|(t, i)| (*t, factor * i)).collect()).collect();
+        let scaled: Curve = residuals.iter().map(|curve| curve.iter().map(|(t, i)| (*t, factor * i)).collect()).collect();
         let zero = vec![self.times.map(|t| (t, 0.0)).to_vec()];
         let y = Axis::around(scaled.iter().flatten().map(|(_, i)| *i).chain([0.0]), 4);
         self.panel(area, y, ("time, s", name), size, &[(scaled, line(self.ink(), 0.8)), (zero, line(Ink::Axis, 1.0))])
     }
 
     /// Curves over time; without a name of the time its numbers are left out too.
-    fn panel(
-        &self,
-        area: &Area,
-        y: Axis,
-        (x_name, y_name): (&str, &str),
-        size: Size,
-        curves: &[(Vec<Vec<(f64, f64)>>, ShapeStyle)],
-    ) -> Drawn {
+    fn panel(&self, area: &Area, y: Axis, (x_name, y_name): (&str, &str), size: Size, curves: &[(Curve, ShapeStyle)]) -> Drawn {
         let x = Axis::between(self.times[0], self.times[1], size.pick(8, 5));
         let (x_label, y_label) = (x.clone(), y.clone());
         let (left, right) = SIDES;
