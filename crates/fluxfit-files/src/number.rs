@@ -1,7 +1,7 @@
 //! Numbers as engineers read them, on a terminal or a page: with the prefix that fits, and no more digits than are known.
 //! [`quantity`](crate::quantity) reads what people write; this writes what they read.
 
-use fluxfit::motor::Parameter;
+use fluxfit::{motor::Parameter, objective::adjustable::Unknown};
 
 /// Prefixes by power of ten.
 const PREFIXES: [(i32, &str); 5] = [(3, "k"), (0, ""), (-3, "m"), (-6, "u"), (-9, "n")];
@@ -40,6 +40,26 @@ impl Scale {
     }
 }
 
+/// A number of the drive beside the motor, with what it may be wrong by: value, margin and unit. Angles are in degrees, ratios in
+/// percent, everything else under the prefix that fits.
+pub fn beside_the_motor(unknown: Unknown, value: f64, margin: f64) -> [String; 3] {
+    let (factor, unit) = match (unknown, unknown.unit()) {
+        (Unknown::GainD | Unknown::GainQ, _) => (1.0, String::new()),
+        (_, "rad") => (1.0_f64.to_radians(), "deg".to_owned()),
+        (_, "1") => (1e-2, "%".to_owned()),
+        (_, unit) => {
+            let largest = value.abs().max(margin);
+            let (power, prefix) = PREFIXES.into_iter().find(|(power, _)| largest >= 10.0_f64.powi(*power)).unwrap_or((0, ""));
+            (10.0_f64.powi(power), format!("{prefix}{unit}"))
+        }
+    };
+    let (value, margin) = (value / factor, margin / factor);
+    // Two digits of the margin; four of the value where there is none.
+    let digit = if margin > 0.0 && margin.is_finite() { margin } else { value.abs() * 1e-2 };
+    let decimals = if digit > 0.0 { (1 - digit.log10().floor() as i32).clamp(0, 12) as usize } else { 0 };
+    [format!("{value:.decimals$}"), format!("{margin:.decimals$}"), unit]
+}
+
 /// A small positive number, as 1.2e-8; plain where that is shorter to read.
 pub fn small(value: f64) -> String {
     match value {
@@ -72,6 +92,19 @@ mod tests {
         assert_eq!(show(Parameter::PsiF, 0.18262, 0.00017), "0.18262 Wb");
         assert_eq!(show(Parameter::PsiF, 0.00344, 0.0), "3.440 mWb");
         assert_eq!(show(Parameter::Rs, 0.0, 0.0), "0 ohm");
+    }
+
+    #[test]
+    fn numbers_beside_the_motor_get_units_that_people_use() {
+        let show = |unknown, value, margin| beside_the_motor(unknown, value, margin).join(" ");
+        // 2 us of 100 us at 310 V are 6.2 V; 3 degrees are 0.05236 rad.
+        assert_eq!(show(Unknown::DeadTime, 6.2, 0.012), "6.200 0.012 V");
+        assert_eq!(show(Unknown::AngleOffset, 0.052_36, 1.746e-4), "3.000 0.010 deg");
+        assert_eq!(show(Unknown::OffsetAlpha, -0.0213, 0.0011), "-21.3 1.1 mA");
+        assert_eq!(show(Unknown::ImbalanceBeta, 0.0123, 0.0002), "1.230 0.020 %");
+        assert_eq!(show(Unknown::SaturationD, -2.5e-5, 4e-6), "-25.0 4.0 uH/A");
+        assert_eq!(show(Unknown::GainQ, 0.25, 0.013), "0.250 0.013 ");
+        assert_eq!(show(Unknown::DeadTime, 0.0, 0.0), "0 0 V");
     }
 
     #[test]

@@ -2,11 +2,11 @@
 
 use crate::{
     figure::intervals,
-    frame,
+    frame, tried,
     typography::{DASH, capitalized, list, minus, number, prose, symbol, unit},
 };
 use fluxfit::identify::{
-    Identification,
+    Identification, Provenance,
     uncertainty::Part,
     verdict::{IDENTIFIED, Judgement, Verdict, WEAK},
 };
@@ -17,6 +17,7 @@ use maud::{Markup, html};
 pub(crate) fn section(found: &Identification) -> Markup {
     html! {
         (parameters(found))
+        (model(found))
         (explanations(found))
         (warnings(found))
         (frame::figure(|size| intervals::draw(found, size), &html! {
@@ -24,6 +25,27 @@ pub(crate) fn section(found: &Identification) -> Markup {
             (thresholds())
         }))
         (parts(found))
+    }
+}
+
+/// The model, why it was chosen, and what it found beside the motor.
+fn model(found: &Identification) -> Markup {
+    let (model, why) = &found.model;
+    html! {
+        p {
+            strong { "Model: " (model.label()) } " (" (prose(why)) "). "
+            @if let Some(fit) = &found.output {
+                "The motor is the one whose simulated currents are nearest the measured ones, row by row. Its voltages are read as "
+                (fit.voltage_reading.0.label()) @if fit.voltage_reading.1 == Provenance::Found { ", as the currents ask for" } ". "
+                @if fit.nuisance.is_empty() { "No fault of the drive shows" } @else {
+                    "Found beside the motor, and taken into account: "
+                    @for (k, nuisance) in fit.nuisance.iter().enumerate() {
+                        @if k > 0 { "; " } (prose(nuisance.unknown.label())) " " (tried::found(nuisance))
+                    }
+                }
+                " (" a href="#tried" { "what was tried" } ")."
+            } @else { "The steady voltage equations hold for the means of windows in which the log stands still." }
+        }
     }
 }
 
@@ -171,7 +193,7 @@ fn parts(found: &Identification) -> Markup {
                 }
             }))
             p.small {
-                "The parts are added in quadrature. “Noise” falls with longer windows; the others do not. "
+                "The parts are added in quadrature. “Noise” falls with more rows; the others do not. "
                 "The 95 % interval is Student’s t times the whole."
             }
         }

@@ -12,13 +12,19 @@ use maud::{Markup, html};
 /// Digits of a voltage without uncertainty.
 const DECIMALS: usize = 3;
 
-/// The section.
-pub(crate) fn section(found: &SteadyFit) -> Markup {
+/// The section; `answered` where the operating points are the answer, and not only held beside it.
+pub(crate) fn section(found: &SteadyFit, answered: bool) -> Markup {
     let redundancy = found.estimate.redundancy;
     html! {
+        @if !answered {
+            p {
+                "The answer above is that of the simulated currents. Where the log holds still, a second and simpler model can be held beside it: "
+                "fitted here is the motor that the operating points alone ask for, not the one above."
+            }
+        }
         p {
             "At each operating point the steady voltage equations hold for the means of a window. "
-            "Fitted is what they give for the motor found; the residual is measured less fitted."
+            "Fitted is what they give for the motor that suits them best; the residual is measured less fitted."
             @if redundancy == 0 {
                 " " strong { "There are no more equations than unknowns that the log excites" }
                 ", so the fit must be perfect here, and proves nothing."
@@ -26,7 +32,7 @@ pub(crate) fn section(found: &SteadyFit) -> Markup {
                 " There " (if redundancy == 1 { "is one equation" } else { "are several equations" })
                 " more than the unknowns need (redundancy " (redundancy) ")"
                 @if found.misfit.is_none() { ", so residuals within their bars speak for the model." }
-                @else { ", and " strong { "they contradict each other" } " beyond noise and accuracy: see the warning above." }
+                @else { ", and " strong { "they contradict each other" } " beyond noise and accuracy: see the warning “misfit” above." }
             }
         }
         (points(found))

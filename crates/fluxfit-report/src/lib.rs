@@ -36,7 +36,10 @@
 //! |---|---|
 //! | `page` | the document: head, heading, sections in order |
 //! | `answer` | the parameters, their intervals, verdicts, reasons and warnings |
-//! | `fit` | measured against fitted |
+//! | `currents` | measured against simulated currents; whether the residual is noise |
+//! | `fit` | operating points, measured against fitted |
+//! | `correlation` | how the parameters' errors hang together |
+//! | `tried` | faults of the drive and readings of the voltages that were tried |
 //! | `search` | the swarm's answer beside the exact one |
 //! | `study`, `table_2` | the methods compared; estimates beside the paper's |
 //! | `origin` | what was read, and how to make the page again |
@@ -45,6 +48,8 @@
 //! | [`figure`] | every figure, as SVG |
 
 mod answer;
+mod correlation;
+mod currents;
 pub mod figure;
 mod fit;
 mod frame;
@@ -53,6 +58,7 @@ mod page;
 mod search;
 mod study;
 mod table_2;
+mod tried;
 mod typography;
 
 use fluxfit::{identify::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy};

@@ -4,21 +4,18 @@ use crate::{
     Origin, Report, frame,
     typography::{grouped, minus, number, prose, symbol, unit},
 };
-use fluxfit::{motor::Parameter, steady::OperatingPoint};
+use fluxfit::{identify::output_fit::OutputFit, motor::Parameter, steady::OperatingPoint};
 use fluxfit_files::number::{Scale, significant};
 use maud::{Markup, html};
 
 /// What was read.
 pub(crate) fn read(report: &Report) -> Markup {
     let log = report.log;
-    let has_windows = !report.operating_points.is_empty();
-    let used: usize = report.operating_points.iter().map(|point| point.rows.len()).sum();
     let of_search = report.identification.and_then(|(found, _)| found.search.as_ref()).map(|search| &search.bounds);
     let bounds = of_search.or(report.study.map(|(facts, _)| facts.bounds));
     html! {
         dl.facts {
-            dt { "Rows" }
-            dd { (grouped(log.rows() as u64)) @if has_windows { ", of which " (grouped(used as u64)) " in the windows below" } }
+            dt { "Rows" } dd { (grouped(log.rows() as u64)) (used(report)) }
             dt { "Rate" } dd { (rate(report)) }
             dt { "Duration" } dd { (number(log.duration(), |seconds| significant(seconds, 3))) " s" }
             dt { "Segments between gaps" } dd { (log.segments().len()) }
@@ -30,7 +27,62 @@ pub(crate) fn read(report: &Report) -> Markup {
             }
         }
         @if !report.notes.is_empty() { ul { @for note in report.notes { li { (prose(note)) } } } }
-        @if has_windows { (windows(report.operating_points)) }
+        @if let Some(fit) = output(report) { (stretches(report, fit)) }
+        @if !report.operating_points.is_empty() { (windows(report.operating_points)) }
+    }
+}
+
+fn output<'a>(report: &Report<'a>) -> Option<&'a OutputFit> {
+    report.identification.and_then(|(found, _)| found.output.as_ref())
+}
+
+/// What became of the rows.
+fn used(report: &Report) -> Markup {
+    let in_windows: usize = report.operating_points.iter().map(|point| point.rows.len()).sum();
+    let in_windows = grouped(in_windows as u64);
+    html! {
+        @if let Some(fit) = output(report) {
+            ", of which " (grouped((fit.residuals.len() / 2) as u64)) " were simulated"
+            @if report.operating_points.is_empty() { "; the log never holds still, so there is no operating point to check with" }
+            @else { "; " (in_windows) " lie in operating points, which are only a check" }
+        } @else if !report.operating_points.is_empty() { ", of which " (in_windows) " in the windows below" }
+    }
+}
+
+/// Stretches that are listed; more are counted.
+const LISTED: usize = 20;
+
+/// Where the simulation started anew; nothing to say of a single stretch.
+fn stretches(report: &Report, fit: &OutputFit) -> Markup {
+    let t = &report.log.columns().t;
+    let stretches = fit.stretches.len();
+    html! {
+        @if stretches > 1 {
+            h3 { "Stretches simulated" }
+            (frame::scrolling("Stretches simulated", &html! {
+                table {
+                    thead { tr { th scope="col" { "Stretch" } th scope="col" { "From, s" } th scope="col" { "To, s" } th scope="col" { "Rows" } } }
+                    tbody { @for (k, rows) in fit.stretches.iter().enumerate().take(LISTED) {
+                        (span(k + 1, (t[rows.start], t[rows.end - 1]), rows.len()))
+                    } }
+                }
+            }))
+            @if stretches > LISTED { p.small { "And " (stretches - LISTED) " more." } }
+        }
+    }
+}
+
+/// A row of a table of times.
+fn span(number_of: usize, (start, end): (f64, f64), rows: usize) -> Markup {
+    // Digits that tell the length to a hundredth of it.
+    let decimals = (2.0 - (end - start).log10().floor()).clamp(0.0, 9.0) as usize;
+    html! {
+        tr {
+            th scope="row" { (number_of) }
+            td { (number(start, |t| format!("{t:.decimals$}"))) }
+            td { (number(end, |t| format!("{t:.decimals$}"))) }
+            td { (grouped(rows as u64)) }
+        }
     }
 }
 
@@ -53,20 +105,11 @@ fn rate(report: &Report) -> String {
 
 fn windows(points: &[OperatingPoint]) -> Markup {
     html! {
+        h3 { "Windows of the operating points" }
         (frame::scrolling("Windows used", &html! {
             table {
                 thead { tr { th scope="col" { "Point" } th scope="col" { "From, s" } th scope="col" { "To, s" } th scope="col" { "Rows" } } }
-                tbody { @for (k, point) in points.iter().enumerate() {
-                    @let (start, end) = point.time;
-                    // Digits that tell the window's length to a hundredth of it.
-                    @let decimals = (2.0 - (end - start).log10().floor()).clamp(0.0, 9.0) as usize;
-                    tr {
-                        th scope="row" { (k + 1) }
-                        td { (number(start, |t| format!("{t:.decimals$}"))) }
-                        td { (number(end, |t| format!("{t:.decimals$}"))) }
-                        td { (grouped(point.rows.len() as u64)) }
-                    }
-                } }
+                tbody { @for (k, point) in points.iter().enumerate() { (span(k + 1, point.time, point.rows.len())) } }
             }
         }))
     }

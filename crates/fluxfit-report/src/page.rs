@@ -1,10 +1,10 @@
 //! The document: its head, its heading, its sections in order.
 
 use crate::{
-    Report, answer,
+    Report, answer, correlation, currents,
     figure::palette,
-    fit, origin, search, study,
-    typography::{capitalized, count, in_words, list, symbol},
+    fit, origin, search, study, tried,
+    typography::{capitalized, count, grouped, in_words, list, symbol},
 };
 use fluxfit::identify::{
     Identification,
@@ -62,8 +62,20 @@ fn sections(report: &Report) -> Vec<Section> {
     let mut sections = Vec::new();
     if let Some((found, method)) = report.identification {
         sections.push(Section { anchor: "answer", heading: "The answer", content: answer::section(found) });
+        if let Some(fit) = &found.output {
+            let content = currents::section(report.log, fit);
+            sections.push(Section { anchor: "currents", heading: "Measured against simulated", content });
+        }
+        if let Some(content) = correlation::section(found) {
+            sections.push(Section { anchor: "correlation", heading: "How the errors hang together", content });
+        }
+        if let Some(fit) = &found.output {
+            sections.push(Section { anchor: "tried", heading: "What was tried", content: tried::section(fit) });
+        }
         if let Some(fit) = &found.steady {
-            sections.push(Section { anchor: "fit", heading: "Operating points, measured against fitted", content: fit::section(fit) });
+            let answered = found.output.is_none();
+            let heading = if answered { "Operating points, measured against fitted" } else { "Operating points, as a check" };
+            sections.push(Section { anchor: "fit", heading, content: fit::section(fit, answered) });
         }
         if let Some(content) = search::section(found, method.as_ref()) {
             sections.push(Section { anchor: "search", heading: "The swarm’s answer", content });
@@ -101,6 +113,20 @@ fn identified(found: &Identification) -> Markup {
         @if !given.is_empty() { "; given: " (list(&given)) }
         @if !weak.is_empty() { "; weak: " (list(&weak)) }
         @if !none.is_empty() { "; not identifiable from this log: " (list(&none)) }
-        "."
+        ". "
+        (fitted(found))
+    }
+}
+
+/// To what the motor was fitted, in a sentence.
+fn fitted(found: &Identification) -> Markup {
+    html! {
+        @if let Some(fit) = &found.output {
+            @let (rms, rows) = (fit.residual_rms(), fit.residuals.len() / 2);
+            "Simulated currents miss the measured ones by " (currents::amperes(rms.d)) " (d) and " (currents::amperes(rms.q)) " (q), root mean square "
+            "over " (grouped(rows as u64)) " rows."
+        } @else {
+            "Fitted to the means of " (count(found.operating_points().len(), "operating point")) "."
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The swarm's answer beside the exact one.
+//! The swarm's answer beside that of least squares.
 
 use crate::{
     frame,
@@ -22,13 +22,28 @@ pub(crate) fn section(found: &Identification, method: Option<&Method>) -> Option
     }
     Some(html! {
         p {
-            "The equations are linear in the parameters, so least squares solves them exactly; that is the answer above. "
-            (method.label()) " searched for the same minimum and, after " (grouped(search.report.evaluations)) " evaluations, ended "
-            (power(search.cost_above_optimum)) " above it (" (stop_reason(search.report.stop_reason)) "). "
-            "The unit of that cost is one squared standard uncertainty: below 1 the difference does not matter."
+            @if found.output.is_none() {
+                "The equations are linear in the parameters, so least squares solves them exactly; that is the answer above. "
+            } @else {
+                "Simulated currents are not linear in the parameters, so the answer above was reached step by step, from the operating points or "
+                "from differences of rows (Levenberg and Marquardt). "
+            }
+            (method.label()) " searched " @if found.output.is_some() { "the whole box " } "for the same minimum"
+            @if found.output.as_ref().is_some_and(|fit| !fit.nuisance.is_empty()) { ", with what was found beside the motor held," }
+            " and, after " (grouped(search.report.evaluations)) " evaluations, ended " (distance(found, search)) " it ("
+            (stop_reason(search.report.stop_reason)) "). "
+            @if found.output.is_none() { "The unit of that cost is one squared standard uncertainty: below 1 the difference does not matter." }
+            @else { "The cost is the sum of squared residuals, and its unit here their mean square: below 1 the difference does not matter." }
         }
         (values(found, search, method))
     })
+}
+
+/// How far above the answer's cost the swarm's is, in the unit in which 1 is noise; or below, should it have found a better one.
+fn distance(found: &Identification, search: &Search) -> Markup {
+    let unit = found.output.as_ref().map_or(1.0, |fit| fit.cost / fit.redundancy.max(1) as f64);
+    let distance = if unit > 0.0 { search.cost_above_optimum / unit } else { search.cost_above_optimum };
+    html! { (power(distance.abs())) @if distance < 0.0 { " below" } @else { " above" } }
 }
 
 fn stop_reason(reason: StopReason) -> &'static str {
@@ -44,7 +59,7 @@ fn values(exact: &Identification, search: &Search, method: &Method) -> Markup {
         (frame::scrolling("The swarm’s answer", &html! {
             table {
                 thead { tr {
-                    th scope="col" { "Parameter" } th scope="col" { "Exact" } th scope="col" { (method.label()) } th scope="col" { "Difference" }
+                    th scope="col" { "Parameter" } th scope="col" { "Answer" } th scope="col" { (method.label()) } th scope="col" { "Difference" }
                 } }
                 tbody {
                     @for judgement in &exact.parameters {

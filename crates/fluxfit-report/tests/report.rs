@@ -13,6 +13,11 @@ use fluxfit::{
     paper,
     study::{Convergence, MethodStudy, fitness::Problem, run_method},
 };
+use fluxfit_drive::{
+    Scenario,
+    schedule::{Course, Move},
+    simulate,
+};
 use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{
     Origin, Report,
@@ -132,7 +137,7 @@ fn walk(node: &Handle, text: &mut String, ids: &mut Vec<String>) {
 
 #[test]
 fn an_identification_has_its_values_verdicts_and_command() {
-    let (found, page) = identified(&TWO, &Settings::default());
+    let (found, page) = identified(&TWO, &Settings { method: Some(Method::all()[0]), ..Settings::default() });
     assert!(found.is_complete());
     let text = checked(&page);
     for expected in
@@ -174,6 +179,145 @@ fn nothing_identifiable_is_still_a_page() {
     let text = checked(&page("x", &log, &found, Settings::default().method));
     assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
     assert!(!text.contains("The swarm") && !text.contains("Where the uncertainty"));
+}
+
+/// A log of the paper's motor as a drive records it: up to speed in 0.1 s, a step of i_d on the way; noise of 50 mA on each current.
+/// After 0.08 s it is only recorded again from `resumed` s on.
+fn recorded(resumed: f64, change: impl Fn(&mut Scenario)) -> Log {
+    let mut scenario = Scenario { duration: 0.16, ..Scenario::paper() };
+    let step = |at, to| Course::new(vec![Move { at, to, over: 0.0 }]);
+    scenario.schedule.speed = Course::new(vec![Move { at: 0.0, to: 100.0, over: 0.1 }]);
+    (scenario.schedule.load, scenario.schedule.id) = (step(0.05, 5.0), step(0.04, -2.0));
+    scenario.sensors.current_noise = 0.05;
+    change(&mut scenario);
+    let all = simulate(&scenario, 0, || ()).unwrap().columns;
+    let kept: Vec<usize> = (0..all.t.len()).filter(|row| !(0.08..resumed).contains(&all.t[*row])).collect();
+    let of = |column: &[f64]| kept.iter().map(|row| column[*row]).collect::<Vec<f64>>();
+    let [t, ud, uq, id, iq, omega_e] = [&all.t, &all.ud, &all.uq, &all.id, &all.iq, &all.omega_e].map(|column| of(column));
+    Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e: all.theta_e.as_deref().map(of), ..Columns::default() }).unwrap()
+}
+
+fn of_currents() -> Settings {
+    Settings { model: Some(Model::OutputError), ..Settings::default() }
+}
+
+#[test]
+fn simulated_currents_have_their_own_sections() {
+    let log = recorded(0.08, |_| ());
+    let found = identify(&log, &of_currents()).unwrap();
+    let text = checked(&page("x", &log, &found, None));
+    // Noise of 50 mA a phase is 50 mA times the root of two thirds, 40.8 mA, along each axis; its rms of 1601 rows is right to 0.7 mA.
+    let (_, missed) = text.split_once("Simulated currents miss the measured ones by ").unwrap();
+    for mark in [" mA (d)", " mA (q)"] {
+        let number = missed.split_once(mark).unwrap().0.rsplit(' ').next().unwrap();
+        assert!((number.parse::<f64>().unwrap() - 40.8).abs() < 2.1, "{number}");
+    }
+    for expected in [
+        "Model: output error (as stated)",
+        "Measured against simulated",
+        "White, as noise is:",
+        "Its voltages are read as the mean of the two periods around the row, as the currents ask for. No fault of the drive shows",
+        "Nothing was found between the motor and its log",
+        "explains too little of the residual",
+        "ruled out",
+        "1601, of which 1601 were simulated",
+    ] {
+        assert!(text.contains(expected), "{expected} is not in\n{text}");
+    }
+    assert!(!text.contains("squared standard uncertainty") && !text.contains("Gaps of the log"));
+}
+
+#[test]
+fn correlations_stand_in_a_table_whose_numbers_are_those_of_the_answer() {
+    let log = recorded(0.08, |_| ());
+    let found = identify(&log, &of_currents()).unwrap();
+    let page = page("x", &log, &found, None);
+    let (_, table) = page.split_once("<table class=\"heat\">").unwrap();
+    let (table, _) = table.split_once("</table>").unwrap();
+    assert_eq!(table.matches("<td class=\"own\">1</td>").count(), 4);
+    let [rs, psi_f] = [Parameter::Rs, Parameter::PsiF].map(|parameter| parameter as usize);
+    let shown = format!("{:.2}", found.correlation[rs][psi_f]).replace('-', "\u{2212}");
+    assert!(table.matches(&format!(">{shown}</td>")).count() >= 2, "{shown} is not twice in {table}");
+    assert!(page.contains("aria-label=\"Ellipse: joint 95 % region of R_s and psi_f"));
+}
+
+#[test]
+fn there_is_no_ellipse_of_a_given_or_missing_parameter() {
+    let log = recorded(0.08, |_| ());
+    let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
+    let mut found = identify(&log, &Settings { known, ..of_currents() }).unwrap();
+    let text = checked(&page("x", &log, &found, None));
+    assert!(text.contains("There is no joint region: Rs was given."), "{text}");
+    found.parameters[Parameter::PsiF as usize].verdict = Verdict::NotIdentifiable;
+    let text = checked(&page("x", &log, &found, None));
+    assert!(text.contains("There is no joint region: ψf cannot be identified from this log."), "{text}");
+}
+
+#[test]
+fn faults_of_the_drive_are_told_with_their_size() {
+    let log = recorded(0.08, |scenario| scenario.sensors.current_offset = [0.0, 0.3, 0.0]);
+    let found = identify(&log, &of_currents()).unwrap();
+    let page = page("x", &log, &found, None);
+    let text = checked(&page);
+    // A third of the offset of phase b is common to all three and seen by nobody; Clarke makes of it -0.1 A and 0.3 / sqrt 3 = 0.173 A.
+    let shown = |key: &str| {
+        let (_, rest) = page.split_once(&format!("<th scope=\"row\">Current sensor offset, {key}</th><td>")).unwrap();
+        let (value, rest) = rest.split_once(" ± ").unwrap();
+        let (margin, _) = rest.split_once(" mA").unwrap();
+        (value.replace('\u{2212}', "-").parse::<f64>().unwrap(), margin.parse::<f64>().unwrap())
+    };
+    for (key, expected) in [("alpha", -100.0), ("beta", 300.0 / 3.0_f64.sqrt())] {
+        let (value, margin) = shown(key);
+        assert!((value - expected).abs() < 2.0 * margin && margin < 0.2 * expected.abs(), "{key}: {value} ± {margin}");
+    }
+    assert!(text.contains("shown as the faulty sensors found would read it"), "{text}");
+}
+
+#[test]
+fn gaps_are_not_bridged_and_a_log_without_operating_points_is_told_as_such() {
+    let log = recorded(0.09, |_| ());
+    let mut found = identify(&log, &of_currents()).unwrap();
+    found.steady = None;
+    let text = checked(&page("x", &log, &found, None));
+    for expected in
+        ["1501, of which 1501 were simulated; the log never holds still", "Gaps of the log are not bridged", "Stretches simulated"]
+    {
+        assert!(text.contains(expected), "{expected} is not in\n{text}");
+    }
+    assert!(!text.contains("Operating points, as a check") && !text.contains("Windows of the operating points"));
+    // Per axis a measured and a simulated piece on either side of the gap, and a residual.
+    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    let long = svg.split("<polyline").skip(1).filter(|line| line.split_once('>').unwrap().0.matches(',').count() > 100);
+    assert_eq!(long.count(), 2 * 3 * 2);
+}
+
+#[test]
+fn a_million_rows_make_a_page_of_two_megabytes_at_most_that_shows_a_single_row() {
+    let mut found = identify(&recorded(0.08, |_| ()), &of_currents()).unwrap();
+    let rows = 1_000_000;
+    let mut draws = Draws::seeded(5, 0);
+    let mut column = |mean: f64| (0..rows).map(|_| mean + 0.1 * draws.normal()).collect::<Vec<f64>>();
+    let [ud, uq, mut id, iq, omega_e] = [0.0, 50.0, -2.0, 9.0, 400.0].map(&mut column);
+    id[654_321] = 37.0;
+    let log = Log::new(Columns { t: (0..rows).map(|k| k as f64 * 1e-4).collect(), ud, uq, id, iq, omega_e, ..Columns::default() }).unwrap();
+    let fit = found.output.as_mut().unwrap();
+    fit.stretches = log.segments().iter().map(|segment| segment.rows.clone()).collect();
+    fit.residuals = [column(0.0), column(0.0)].concat();
+    let page = page("x", &log, &found, None);
+    assert!(page.len() < 2_000_000, "{}", page.len());
+    // The axis of i_d reaches up to the row that stands out.
+    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    assert!(svg.lines().any(|line| line.trim() == "20") && svg.lines().any(|line| line.trim() == "0"), "no tick at 20 A");
+}
+
+#[test]
+fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
+    let log = recorded(0.08, |_| ());
+    let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };
+    let method = Some(Method::all()[0]);
+    let found = identify(&log, &Settings { method, search, ..of_currents() }).unwrap();
+    let text = checked(&page("x", &log, &found, method));
+    assert!(text.contains("Simulated currents are not linear in the parameters") && !text.contains("solves them exactly"), "{text}");
 }
 
 #[test]
@@ -227,8 +371,11 @@ fn costs_of_zero_no_iterations_and_broken_numbers() {
 fn figures_stand_alone() {
     let log = log(&TWO, 0.1);
     let found = identify(&log, &Settings::default()).unwrap();
+    let fast = recorded(0.08, |_| ());
+    let of_fast = identify(&fast, &of_currents()).unwrap();
     for size in [Size::Wide, Size::Narrow] {
         for svg in [
+            figure::currents(&fast, of_fast.output.as_ref().unwrap(), size),
             figure::intervals(&found, size),
             figure::residuals(found.steady.as_ref().unwrap(), size),
             figure::operating_points(found.operating_points(), size),

@@ -4,15 +4,17 @@
 use super::{BAD, DIM, GOOD, HEADING, WARNING, table};
 use fluxfit::{
     identify::{
-        Identification,
+        Identification, Provenance,
+        output_fit::OutputFit,
         steady_fit::SteadyFit,
+        terms::{Outcome, Term},
         verdict::{Judgement, Verdict},
     },
     log::Log,
     motor::Parameter,
     optimizer::Method,
 };
-use fluxfit_files::number::{Scale, significant, small};
+use fluxfit_files::number::{Scale, beside_the_motor, significant, small};
 
 /// Shows an identification; warnings go to standard error.
 pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option<&Method>) -> std::io::Result<()> {
@@ -21,7 +23,12 @@ pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option
     text += &explanations(found);
     text += &format!("\n{}\n", model(found));
     if let Some(fit) = &found.steady {
-        text += &format!("\n{DIM}Operating points (means){DIM:#}\n{}", operating_points(fit));
+        let what = if found.output.is_some() {
+            "Operating points (means), as a check: the residual is that of their own fit"
+        } else {
+            "Operating points (means)"
+        };
+        text += &format!("\n{DIM}{what}{DIM:#}\n{}", operating_points(fit));
     }
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
     if let Some(method) = method.filter(|_| answered) {
@@ -38,14 +45,12 @@ fn read(log: &Log, found: &Identification) -> String {
     let period = periods.first().copied().unwrap_or(f64::NAN);
     let rate =
         if periods.iter().any(|other| (other / period - 1.0).abs() > 0.01) { "mixed rates".to_owned() } else { frequency(1.0 / period) };
-    format!(
-        "{} rows at {rate}, {} s in {}; {} with {} rows used",
-        log.rows(),
-        significant(log.duration(), 3),
-        count(log.segments().len(), "segment"),
-        count(found.operating_points().len(), "operating point"),
-        found.operating_points().iter().map(|point| point.rows.len()).sum::<usize>(),
-    )
+    let points = count(found.operating_points().len(), "operating point");
+    let used = match &found.output {
+        Some(fit) => format!("{} rows simulated, {points}", fit.residuals.len() / 2),
+        None => format!("{points} with {} rows used", found.operating_points().iter().map(|point| point.rows.len()).sum::<usize>()),
+    };
+    format!("{} rows at {rate}, {} s in {}; {used}", log.rows(), significant(log.duration(), 3), count(log.segments().len(), "segment"),)
 }
 
 fn frequency(hertz: f64) -> String {
@@ -97,36 +102,108 @@ fn explanations(found: &Identification) -> String {
     }
     let mut text = String::new();
     for (symbols, judgement) in shared {
-        text += &format!("\n{HEADING}{}{HEADING:#}: {}.\n", symbols.join(", "), judgement.reason.as_deref().unwrap_or_default());
+        let (symbols, reason) = (symbols.join(", "), judgement.reason.as_deref().unwrap_or_default());
+        let lines = wrapped("", &format!("{symbols}: {reason}."));
+        text += &format!("\n{HEADING}{symbols}{HEADING:#}{}", lines.strip_prefix(&symbols).unwrap_or(&lines));
         if let Some(remedy) = &judgement.remedy {
-            text += &format!("  To do: {remedy}.\n");
+            text += &wrapped("  ", &format!("To do: {remedy}."));
         }
     }
     text
 }
 
+/// Columns that a line of words may have.
+const WIDTH: usize = 100;
+
+/// Words in lines. The first line begins with `indent`, the others are two letters further in.
+fn wrapped(indent: &str, text: &str) -> String {
+    let mut lines = String::new();
+    let mut line = indent.to_owned();
+    for word in text.split(' ') {
+        let starts = line.trim().is_empty();
+        if !starts && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines += &format!("{line}\n");
+            line = format!("{indent}  {word}");
+        } else {
+            line += &format!("{}{word}", if starts { "" } else { " " });
+        }
+    }
+    format!("{lines}{line}\n")
+}
+
 /// The model that answered, and what it found beside the motor.
 fn model(found: &Identification) -> String {
     let (model, why) = &found.model;
-    let mut text = format!("Model: {} ({why}).", model.label());
-    if let Some(fit) = &found.output {
-        let rms = fit.residual_rms();
-        text += &format!(
-            " Voltages: {}.\nCurrents are missed by {} A (d) and {} A (q), root mean square.",
-            fit.voltage_reading.0.label(),
-            significant(rms.d, 2),
-            significant(rms.q, 2)
-        );
-        for nuisance in &fit.nuisance {
-            let (label, unit) = (nuisance.unknown.label(), nuisance.unknown.unit());
-            text += &format!(
-                "\nFound beside the motor: {label} {} ± {} {unit}",
-                significant(nuisance.value, 3),
-                significant(2.0 * nuisance.standard_error, 1)
-            );
+    let text = format!("{HEADING}Model{HEADING:#}: {}\n  {DIM}{why}{DIM:#}", model.label());
+    let Some(fit) = &found.output else { return text };
+    let rms = fit.residual_rms();
+    let how = if fit.voltage_reading.1 == Provenance::Stated { "as stated" } else { "found" };
+    let mut text = format!(
+        "{text}\nCurrents of {} rows simulated; they miss the measured ones by {} (d) and {} (q) rms.\nVoltages read as {} ({how}).",
+        fit.residuals.len() / 2,
+        amperes(rms.d),
+        amperes(rms.q),
+        fit.voltage_reading.0.label(),
+    );
+    if !fit.nuisance.is_empty() {
+        text += &format!("\n\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit).trim_end());
+    }
+    for (outcome, lines) in [("Not taken", not_taken(fit, false)), ("Not tried without theta_e", not_taken(fit, true))] {
+        if !lines.is_empty() {
+            text += &format!("\n{DIM}{outcome}: {}.{DIM:#}", lines.join(", "));
         }
     }
     text
+}
+
+fn amperes(current: f64) -> String {
+    let (factor, unit) = if current >= 1.0 {
+        (1.0, "A")
+    } else if current >= 1e-3 {
+        (1e3, "mA")
+    } else {
+        (1e6, "uA")
+    };
+    format!("{} {unit}", significant(factor * current, 2))
+}
+
+/// Standard errors in half of a 95 % interval.
+const INTERVAL: f64 = 1.959_964;
+
+fn beside(fit: &OutputFit) -> String {
+    let rows = fit.nuisance.iter().map(|nuisance| {
+        let [value, margin, unit] = beside_the_motor(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
+        // Units stand at the left of their column.
+        (nuisance.unknown.label(), value, margin, unit)
+    });
+    let rows: Vec<_> = rows.collect();
+    let width = |of: fn(&(&str, String, String, String)) -> usize| rows.iter().map(of).max().unwrap_or(0);
+    let (label, value, margin) = (width(|row| row.0.len()), width(|row| row.1.len()), width(|row| row.2.len()));
+    rows.iter()
+        .map(|row| format!("  {:label$}  {:>value$} ± {:>margin$} {}", row.0, row.1, row.2, row.3).trim_end().to_owned() + "\n")
+        .collect()
+}
+
+/// Faults that the answer does without, in few words: for want of the electrical angle, or for any other reason.
+fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
+    let mut words = Vec::new();
+    for tried in &fit.terms {
+        let left_out = if needs_angle {
+            tried.outcome == Outcome::NeedsAngle
+        } else {
+            !matches!(tried.outcome, Outcome::NeedsAngle | Outcome::Taken | Outcome::Covered)
+        };
+        let word = match tried.term {
+            Term::CurrentOffset => "sensor offset",
+            Term::Imbalance | Term::TwoSensors(_) => "sensor imbalance",
+            Term::ProcessNoise => "disturbances",
+            term => term.label(),
+        };
+        if left_out && !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    words
 }
 
 fn operating_points(found: &SteadyFit) -> String {
@@ -166,10 +243,27 @@ fn search(found: &Identification, method: &Method) -> String {
         })
         .collect();
     format!(
-        "{HEADING}{}{HEADING:#} alone, after {} evaluations, is {} above the exact least-squares minimum (the answer above):\n  {}",
+        "{HEADING}{}{HEADING:#} alone, after {} evaluations, is {}{} above the {} minimum:\n  {}",
         method.label(),
         search.report.evaluations,
         small(search.cost_above_optimum),
+        if found.output.is_some() { " A²" } else { "" },
+        if found.output.is_some() { "least-squares" } else { "exact least-squares" },
         values.join(", "),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{WIDTH, wrapped};
+
+    #[test]
+    fn words_are_wrapped_and_none_is_lost() {
+        assert_eq!(wrapped("  ", "To do: nothing."), "  To do: nothing.\n");
+        let text = vec!["letters"; 40].join(" ");
+        let lines = wrapped("", &text);
+        assert!(lines.lines().count() == 4 && lines.lines().all(|line| line.len() <= WIDTH), "{lines}");
+        assert_eq!(lines.split_whitespace().count(), 40);
+        assert!(lines.lines().skip(1).all(|line| line.starts_with("  letters")));
+    }
 }

@@ -6,13 +6,18 @@
 //! | [`intervals`] | how wide each parameter's interval is, against the limits of the verdicts |
 //! | [`residuals`] | what the fitted motor leaves of the measured voltages |
 //! | [`operating_points`] | where in the i_d–i_q plane the log held still |
+//! | [`currents`] | measured and simulated currents over time, and what the simulation misses |
 //! | [`convergence`] | Fig. 4 of the paper: cost above the minimum against iteration |
 //! | [`parameter_courses`] | Fig. 5 of the paper: the parameters against iteration |
 
+pub(crate) mod autocorrelation;
 mod axis;
 pub(crate) mod canvas;
 pub(crate) mod convergence;
 pub(crate) mod courses;
+pub(crate) mod currents;
+mod decimation;
+pub(crate) mod ellipse;
 pub(crate) mod intervals;
 pub(crate) mod palette;
 mod plane;
@@ -21,7 +26,8 @@ pub(crate) mod residuals;
 
 use canvas::Drawing;
 use fluxfit::{
-    identify::{Identification, steady_fit::SteadyFit},
+    identify::{Identification, output_fit::OutputFit, steady_fit::SteadyFit},
+    log::Log,
     motor::{Motor, Parameter},
     steady::OperatingPoint,
     study::{MethodStudy, fitness::Fitness},
@@ -62,6 +68,12 @@ pub fn intervals(found: &Identification, size: Size) -> String {
 /// Residuals of the two voltage equations at each operating point, with two standard uncertainties.
 pub fn residuals(found: &SteadyFit, size: Size) -> String {
     residuals::draw(found, size).standalone()
+}
+
+/// Measured and simulated currents of the rows that were fitted, A, and their differences. Of a sensor's faults that were found, both
+/// curves have the same.
+pub fn currents(log: &Log, found: &OutputFit, size: Size) -> String {
+    currents::draw(log, found, size).standalone()
 }
 
 /// The operating points in the plane of i_d and i_q, A.

@@ -75,6 +75,11 @@ fn bandwidth(scores: &[Vec<f64>], lengths: &[usize]) -> f64 {
 
 /// Correlation of neighbours.
 pub(super) fn first_correlation(series: &[f64], lengths: &[usize]) -> f64 {
+    correlation(series, 1, lengths).clamp(-MOST_CORRELATED, MOST_CORRELATED)
+}
+
+/// Correlation, about zero, of values this many rows apart; zero of a series that is nothing but zeros.
+pub(super) fn correlation(series: &[f64], shift: usize, lengths: &[usize]) -> f64 {
     let own = products(series, series, 0, lengths);
-    if own > 0.0 { (products(series, series, 1, lengths) / own).clamp(-MOST_CORRELATED, MOST_CORRELATED) } else { 0.0 }
+    if own > 0.0 { products(series, series, shift, lengths) / own } else { 0.0 }
 }

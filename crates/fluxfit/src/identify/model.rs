@@ -48,7 +48,7 @@ pub fn choose(log: &Log, settings: &Settings) -> (Model, String) {
     } else if turn > MAX_ANGLE_PER_SAMPLE {
         (Model::Steady, format!("the rotor turns up to {turn:.2} rad from row to row, too far for the inverter's own periods"))
     } else {
-        (Model::OutputError, format!("rows come at {:.4} kHz and the rotor turns at most {turn:.3} rad between them", 1e-3 / slowest))
+        (Model::OutputError, format!("rows come at {:.1} kHz and the rotor turns at most {turn:.3} rad between them", 1e-3 / slowest))
     }
 }
 

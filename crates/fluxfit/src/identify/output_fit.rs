@@ -144,6 +144,21 @@ impl OutputFit {
         Dq { d: rms(0), q: rms(1) }
     }
 
+    /// Autocorrelation, about zero, of the residuals along d and q at lags of 1 to `lags` rows; none reaches across a gap.
+    pub fn autocorrelation(&self, lags: usize) -> [Vec<f64>; 2] {
+        let lengths: Vec<usize> = self.stretches.iter().map(ExactSizeIterator::len).collect();
+        let (rows, _) = self.residuals.as_chunks::<2>();
+        [0, 1].map(|axis| {
+            let series: Vec<f64> = rows.iter().map(|row| row[axis]).collect();
+            (1..=lags).map(|lag| long_run::correlation(&series, lag, &lengths)).collect()
+        })
+    }
+
+    /// The readings of the voltages that are not ruled out, the best first: they fit about as well as it does.
+    pub fn possible_readings(&self) -> impl Iterator<Item = &timing::Tried> {
+        timing::possible(&self.readings, terms::independent(&self.residuals))
+    }
+
     /// The parameters, judged, and the correlation of their errors.
     pub(super) fn judge(&self, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
         let parameters =

@@ -65,11 +65,17 @@ pub(super) fn readings(
     tried
 }
 
-/// How far each parameter moves between the readings that are not ruled out, given how many independent residuals there are.
+/// The readings that are not ruled out, given how many independent residuals there are. The best one first.
+pub(super) fn possible(tried: &[Tried], independent: f64) -> impl Iterator<Item = &Tried> {
+    let least = tried.first().map_or(0.0, Tried::mean_square);
+    // Where the best is perfect, so is every other one that is possible.
+    tried.iter().filter(move |other| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG)
+}
+
+/// How far each parameter moves between them.
 pub(super) fn doubt(tried: &[Tried], independent: f64) -> [f64; PARAMETERS] {
-    let Some((best, others)) = tried.split_first() else { return [0.0; PARAMETERS] };
-    let possible = others.iter().filter(|other| independent * (other.mean_square() / best.mean_square()).ln() < VERY_STRONG);
-    possible.fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
+    let Some(best) = tried.first() else { return [0.0; PARAMETERS] };
+    possible(tried, independent).fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
         let (one, other) = (best.polished.drive.motor.to_array(), other.polished.drive.motor.to_array());
         std::array::from_fn(|p| most[p].max((one[p] - other[p]).abs()))
     })
