@@ -47,6 +47,7 @@
 mod answer;
 pub mod figure;
 mod fit;
+mod flux;
 mod frame;
 mod origin;
 mod page;

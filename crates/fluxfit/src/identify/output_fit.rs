@@ -11,7 +11,9 @@
 use super::{
     Known, Provenance, Search, Settings,
     excitation::Excitation,
-    long_run, search_box,
+    long_run,
+    saturation::Saturation,
+    search_box,
     steady_fit::SteadyFit,
     terms::{self, Candidate, Outcome, Term, inverse_normal},
     timing,
@@ -59,7 +61,7 @@ pub struct OutputFit {
     pub redundancy: usize,
     /// Correlation of neighbouring residuals, the larger of both axes.
     pub correlation_of_neighbours: f64,
-    uncertainty: Uncertainty,
+    pub(super) uncertainty: Uncertainty,
 }
 
 /// A number of the drive beside the motor.
@@ -141,8 +143,9 @@ impl OutputFit {
     }
 
     /// The parameters, judged, and the correlation of their errors.
-    pub(super) fn judge(&self, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
-        let parameters = verdict::judge_currents(&self.drive.motor, &self.uncertainty, settings);
+    pub(super) fn judge(&self, saturation: Option<&Saturation>, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
+        let uncertainty = self.uncertainty.clone().with_saturation(saturation, &self.drive.motor);
+        let parameters = verdict::judge_currents(&self.drive.motor, &uncertainty, settings);
         (parameters, self.uncertainty.correlation)
     }
 
