@@ -21,6 +21,7 @@
 //! explain the contradiction best by Schwarz's criterion, and iron takes flux away.
 
 use super::{
+    verdict::WEAK,
     Known, Settings,
     excitation::Excitation,
     misfit::Misfit,
@@ -62,7 +63,7 @@ pub struct Flux {
     pub psi: Dq,
     /// Its standard uncertainty, Wb: noise of the means, accuracy of the voltages, resistance.
     pub uncertainty: Dq,
-    /// `psi_q / i_q`, H; none where i_q is too small for it.
+    /// `psi_q / i_q`, H; none where i_q is too small for it, or the flux not known to a half of it.
     pub apparent_lq: Option<f64>,
     /// `(psi_d - psi_f) / i_d`, H; none where i_d is too small for it, or psi_f is not known beforehand.
     pub apparent_ld: Option<f64>,
@@ -165,11 +166,12 @@ impl Saturation {
                 d: (u.q - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
                 q: (rs * i.d + small_currents.ld * point.drift.d - u.d) / omega_e,
             };
+            let uncertainty = Dq { d: uncertainty(1, i.q), q: uncertainty(0, i.d) };
             let flux = Flux {
                 current: i,
                 psi,
-                uncertainty: Dq { d: uncertainty(1, i.q), q: uncertainty(0, i.d) },
-                apparent_lq: (i.q.abs() > least).then_some(psi.q / i.q),
+                uncertainty,
+                apparent_lq: (i.q.abs() > least && is_told(psi.q, uncertainty.q)).then_some(psi.q / i.q),
                 apparent_ld: psi_f.filter(|_| i.d.abs() > least).map(|psi_f| (psi.d - psi_f) / i.d),
             };
             [psi.d, psi.q, flux.uncertainty.d, flux.uncertainty.q].iter().all(|value| value.is_finite()).then_some(flux)
@@ -196,6 +198,9 @@ impl Saturation {
             if let Some(lq) = apparent_lq {
                 hold(Parameter::Lq, lq - answer.lq, uncertainty.q / i.q);
             }
+            if !is_told(psi.d, uncertainty.d) {
+                continue;
+            }
             if i.d.abs() > least {
                 hold(Parameter::Ld, (psi.d - answer.psi_f) / i.d - answer.ld, uncertainty.d / i.d);
             }
@@ -203,6 +208,12 @@ impl Saturation {
         }
         spread.map(|spread| spread / QUANTILE)
     }
+}
+
+/// Whether a flux is known well enough to speak of saturation: two standard uncertainties are at most the part of it at which a
+/// parameter would be no answer any more.
+fn is_told(psi: f64, uncertainty: f64) -> bool {
+    2.0 * uncertainty <= WEAK * psi.abs()
 }
 
 /// The largest current, A.

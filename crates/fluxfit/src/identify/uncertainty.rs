@@ -205,8 +205,12 @@ impl Uncertainty {
             let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
             // Degrees of freedom of both parts together, back to those of the statistical one.
             let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
-            // Saturation is why the points contradict each other: one doubt, told twice.
-            (systematic.saturation, systematic.misfit) = (part.max(systematic.misfit), 0.0);
+            // Saturation is why the points contradict each other: one doubt, told twice. And its spread is about this very answer, so that
+            // what else is doubtful there is within it.
+            let needed = part.max(systematic.misfit);
+            systematic.misfit = 0.0;
+            let rest = statistical.hypot(systematic.total());
+            systematic.saturation = (needed * needed - rest * rest).max(0.0).sqrt();
             *parameter = ParameterUncertainty::of(statistical, behind, systematic);
         }
         self
