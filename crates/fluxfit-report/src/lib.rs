@@ -37,6 +37,7 @@
 //! | `page` | the document: head, heading, sections in order |
 //! | `answer` | the parameters, their intervals, verdicts, reasons and warnings |
 //! | `fit` | measured against fitted |
+//! | `flux` | flux per operating point of a motor that saturates |
 //! | `search` | the swarm's answer beside the exact one |
 //! | `study`, `table_2` | the methods compared; estimates beside the paper's |
 //! | `origin` | what was read, and how to make the page again |

@@ -17,8 +17,7 @@ use fluxfit::{
 const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
 /// Four loads and two speeds: i_d, i_q (A), omega_e (rad/s).
-const POINTS: [(f64, f64, f64); 5] =
-    [(0.0, 3.0, 400.0), (0.0, 9.0, 400.0), (-3.0, 6.0, 400.0), (-2.0, 12.0, 300.0), (0.0, -12.0, 400.0)];
+const POINTS: [(f64, f64, f64); 5] = [(0.0, 3.0, 400.0), (0.0, 9.0, 400.0), (-3.0, 6.0, 400.0), (-2.0, 12.0, 300.0), (0.0, -12.0, 400.0)];
 
 const ROWS: usize = 100;
 
@@ -33,10 +32,7 @@ fn columns(points: &[(f64, f64, f64)], flux: impl Fn(Dq) -> Dq, loss: f64, noise
     let mut columns = Columns::default();
     for (w, &(d, q, omega_e)) in points.iter().enumerate() {
         let (psi, i) = (flux(Dq { d, q }), d.hypot(q));
-        let u = Dq {
-            d: MOTOR.rs * d - omega_e * psi.q + loss * d / i,
-            q: MOTOR.rs * q + omega_e * psi.d + loss * q / i,
-        };
+        let u = Dq { d: MOTOR.rs * d - omega_e * psi.q + loss * d / i, q: MOTOR.rs * q + omega_e * psi.d + loss * q / i };
         for k in 0..ROWS {
             columns.t.push((2 * w * ROWS + k) as f64 * 0.01);
             columns.ud.push(u.d + noise * draws.normal());
@@ -124,7 +120,8 @@ fn low_speed_is_said_where_the_inverter_takes_what_the_magnet_gives() {
     }
 }
 
-/// The largest voltage of these points is sqrt((0.958 12)² + ...) below 110 V, so 200 V / sqrt 3 = 115 V is enough and 150 V / sqrt 3 = 87 V not.
+/// The largest voltage of these points is sqrt((0.958 12)² + ...) below 110 V, so 200 V / sqrt 3 = 115 V is enough and 150 V / sqrt
+/// 3 = 87 V not.
 #[test]
 fn more_voltage_than_there_is_is_said() {
     for (u_dc, expected) in [(150.0, true), (200.0, false)] {

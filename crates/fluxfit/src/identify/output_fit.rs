@@ -143,7 +143,11 @@ impl OutputFit {
     }
 
     /// The parameters, judged, and the correlation of their errors.
-    pub(super) fn judge(&self, saturation: Option<&Saturation>, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
+    pub(super) fn judge(
+        &self,
+        saturation: Option<&Saturation>,
+        settings: &Settings,
+    ) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
         let uncertainty = self.uncertainty.clone().with_saturation(saturation, &self.drive.motor);
         let parameters = verdict::judge_currents(&self.drive.motor, &uncertainty, settings);
         (parameters, self.uncertainty.correlation)
@@ -400,7 +404,8 @@ pub(super) fn accuracy(
         most_speed = most_speed.max(omega_e.abs());
     }
     let cell = |i: Dq, omega_e: f64| [i.d / most_current, i.q / most_current, omega_e / most_speed].map(|x| (x / CELL).round() as i32);
-    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents have the opposite sign.
+    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents
+    // have the opposite sign.
     let mut cells: BTreeMap<[i32; 3], Vec<Dq>> = BTreeMap::new();
     for p in 0..size {
         let mut weights = vec![0.0; slopes[0].len()];

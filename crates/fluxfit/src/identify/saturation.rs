@@ -7,8 +7,8 @@
 //! psi_q = (R_s i_d - u_d) / omega_e + L_d drift_d / omega_e
 //! ```
 //!
-//! Its *apparent* inductances are `psi_q / i_q` and `(psi_d - psi_f) / i_d`; the incremental ones, `d psi / d i`, are other numbers, and points
-//! that lie far apart do not tell them.
+//! Its *apparent* inductances are `psi_q / i_q` and `(psi_d - psi_f) / i_d`; the incremental ones, `d psi / d i`, are other
+//! numbers, and points that lie far apart do not tell them.
 //!
 //! That points contradict each other says [`misfit`](super::misfit); why, the equations themselves: constant parameters are solved
 //! again beside terms of saturation, those of the [adjustable drive](crate::objective::adjustable::Nuisance),
@@ -20,14 +20,7 @@
 //! and beside what else follows the current, a voltage of constant size along it (dead time, device drops). Saturation it is if its terms
 //! explain the contradiction best by Schwarz's criterion, and iron takes flux away.
 
-use super::{
-    verdict::WEAK,
-    Known, Settings,
-    excitation::Excitation,
-    misfit::Misfit,
-    output_fit::OutputFit,
-    terms::Term,
-};
+use super::{Known, Settings, excitation::Excitation, misfit::Misfit, output_fit::OutputFit, terms::Term, verdict::WEAK};
 use crate::{
     frames::Dq,
     log::Log,
@@ -63,6 +56,8 @@ pub struct Flux {
     pub psi: Dq,
     /// Its standard uncertainty, Wb: noise of the means, accuracy of the voltages, resistance.
     pub uncertainty: Dq,
+    /// Whether the point itself tells both fluxes, R_s left aside: to half of their size, beyond which a parameter would be no answer.
+    pub is_told: bool,
     /// `psi_q / i_q`, H; none where i_q is too small for it, or the flux not known to a half of it.
     pub apparent_lq: Option<f64>,
     /// `(psi_d - psi_f) / i_d`, H; none where i_d is too small for it, or psi_f is not known beforehand.
@@ -104,7 +99,8 @@ impl Saturation {
             return None;
         }
         let scene = Scene { points, excitation, motor, settings, peak: peak(points) };
-        let rival = scene.solve(&[]).criterion.min(scene.solve(&[Cause::Loss]).criterion);
+        let loss = Some(scene.solve(&[Cause::Loss])).filter(|solved| solved.loses_less_than(LARGEST_LOSS * least_voltage(points)));
+        let rival = scene.solve(&[]).criterion.min(loss.map_or(f64::INFINITY, |solved| solved.criterion));
         let best = SATURATIONS
             .iter()
             .map(|causes| scene.solve(causes))
@@ -159,19 +155,19 @@ impl Saturation {
             let (omega_e, u, i) = (point.omega_e(), point.voltage(), point.current());
             let noise = point.residual_covariance(&small_currents);
             let accuracy = settings.voltage_accuracy * u.magnitude();
-            let uncertainty = |axis: usize, i: f64| {
-                (noise[axis][axis].max(0.0) + accuracy.powi(2) + (rs_uncertainty * i).powi(2)).sqrt() / omega_e.abs()
-            };
+            let own = [0, 1].map(|axis: usize| noise[axis][axis].max(0.0).sqrt().hypot(accuracy) / omega_e.abs());
+            let of_rs = |i: f64| rs_uncertainty * i / omega_e;
             let psi = Dq {
                 d: (u.q - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
                 q: (rs * i.d + small_currents.ld * point.drift.d - u.d) / omega_e,
             };
-            let uncertainty = Dq { d: uncertainty(1, i.q), q: uncertainty(0, i.d) };
+            let own = Dq { d: own[1], q: own[0] };
             let flux = Flux {
                 current: i,
                 psi,
-                uncertainty,
-                apparent_lq: (i.q.abs() > least && is_told(psi.q, uncertainty.q)).then_some(psi.q / i.q),
+                uncertainty: Dq { d: own.d.hypot(of_rs(i.q)), q: own.q.hypot(of_rs(i.d)) },
+                is_told: 2.0 * own.d <= WEAK * psi.d.abs() && 2.0 * own.q <= WEAK * psi.q.abs(),
+                apparent_lq: (i.q.abs() > least && 2.0 * own.q <= WEAK * psi.q.abs()).then_some(psi.q / i.q),
                 apparent_ld: psi_f.filter(|_| i.d.abs() > least).map(|psi_f| (psi.d - psi_f) / i.d),
             };
             [psi.d, psi.q, flux.uncertainty.d, flux.uncertainty.q].iter().all(|value| value.is_finite()).then_some(flux)
@@ -194,12 +190,9 @@ impl Saturation {
         };
         hold(Parameter::Rs, answer.rs - self.rs, self.rs_uncertainty);
         let least = LEAST_CURRENT * self.fluxes.iter().flatten().map(|flux| flux.current.magnitude()).fold(0.0, f64::max);
-        for Flux { current: i, psi, uncertainty, apparent_lq, .. } in self.fluxes.iter().flatten() {
+        for Flux { current: i, psi, uncertainty, apparent_lq, .. } in self.fluxes.iter().flatten().filter(|flux| flux.is_told) {
             if let Some(lq) = apparent_lq {
                 hold(Parameter::Lq, lq - answer.lq, uncertainty.q / i.q);
-            }
-            if !is_told(psi.d, uncertainty.d) {
-                continue;
             }
             if i.d.abs() > least {
                 hold(Parameter::Ld, (psi.d - answer.psi_f) / i.d - answer.ld, uncertainty.d / i.d);
@@ -210,15 +203,17 @@ impl Saturation {
     }
 }
 
-/// Whether a flux is known well enough to speak of saturation: two standard uncertainties are at most the part of it at which a
-/// parameter would be no answer any more.
-fn is_told(psi: f64, uncertainty: f64) -> bool {
-    2.0 * uncertainty <= WEAK * psi.abs()
-}
-
 /// The largest current, A.
 fn peak(points: &[OperatingPoint]) -> f64 {
     points.iter().map(|point| point.current().magnitude()).fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// Most that dead time and devices take of any point's voltage: what takes more is no loss but a formula that bends to the data.
+const LARGEST_LOSS: f64 = 0.5;
+
+/// The smallest voltage, V.
+fn least_voltage(points: &[OperatingPoint]) -> f64 {
+    points.iter().map(|point| point.voltage().magnitude()).fold(f64::INFINITY, f64::min)
 }
 
 /// How many operating points differ in their current.
@@ -247,8 +242,7 @@ enum Cause {
 }
 
 /// Saturation, from the simplest kind on.
-const SATURATIONS: [&[Cause]; 4] =
-    [&[Cause::Q], &[Cause::Cross], &[Cause::Q, Cause::Cross], &[Cause::Q, Cause::Cross, Cause::D]];
+const SATURATIONS: [&[Cause]; 4] = [&[Cause::Q], &[Cause::Cross], &[Cause::Q, Cause::Cross], &[Cause::Q, Cause::Cross, Cause::D]];
 
 impl Cause {
     /// What one unit of it does to both voltages, V; of saturation, a henry at the current `peak`.
@@ -287,11 +281,16 @@ struct Solved {
 }
 
 impl Solved {
-    /// Whether it is what iron does: flux along q is lost, and not all of it; or the magnet's, where it is that alone.
+    /// Whether the voltage lost along the current is less than so many volts.
+    fn loses_less_than(&self, limit: f64) -> bool {
+        self.causes.iter().all(|(_, value)| value.abs() < limit)
+    }
+
+    /// Whether it is what iron does: flux along q is lost; or the magnet's, where it is that alone.
     fn takes_flux_away(&self) -> bool {
         let of = |cause: Cause| self.causes.iter().find(|(other, _)| *other == cause).map(|(_, value)| *value);
         match (of(Cause::Q), of(Cause::Cross)) {
-            (Some(q), _) => q < 0.0 && self.motor.lq > -q,
+            (Some(q), _) => q < 0.0 && self.motor.lq > 0.0,
             (None, Some(cross)) => cross * self.motor.psi_f < 0.0,
             (None, None) => false,
         }
@@ -303,20 +302,21 @@ const RANK_TOLERANCE: f64 = 1e-9;
 
 impl Scene<'_> {
     fn solve(&self, causes: &[Cause]) -> Solved {
-        let Self { points, excitation, motor, settings, peak } = self;
+        let Self { points, excitation, motor: noisy, settings, peak } = self;
         let directions: Vec<[f64; PARAMETERS]> =
             excitation.excited().map(|direction| std::array::from_fn(|p| direction.components[p] * excitation.scale[p])).collect();
         let fixed: [f64; PARAMETERS] = settings.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 });
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for point in *points {
             let equations = point.equations();
-            let noise = point.residual_covariance(motor);
+            let noise = point.residual_covariance(noisy);
             let open = excitation.unexcited_covariance(&equations);
             let accuracy = settings.voltage_accuracy * point.voltage().magnitude();
             for (axis, equation) in equations.iter().enumerate() {
                 let variance = noise[axis][axis].max(0.0) + open[axis][axis] + accuracy.powi(2);
                 let weight = 1.0 / variance.sqrt().max(LEAST_ACCURACY * point.voltage().magnitude()).max(f64::MIN_POSITIVE);
-                let known = directions.iter().map(|direction| (0..PARAMETERS).map(|p| equation.coefficients[p] * direction[p]).sum::<f64>());
+                let known =
+                    directions.iter().map(|direction| (0..PARAMETERS).map(|p| equation.coefficients[p] * direction[p]).sum::<f64>());
                 let beside = causes.iter().map(|cause| cause.voltage(point, *peak)[axis]);
                 rows.push(known.chain(beside).chain([equation.residual(&fixed)]).map(|entry| weight * entry).collect());
             }
@@ -344,10 +344,20 @@ impl Scene<'_> {
         // to trust it.
         let rs = DVector::from_fn(unknowns, |k, _| directions.get(k).map_or(0.0, |direction| direction[0] / lengths[k]));
         let degrees = count - unknowns as f64;
-        let scatter = if degrees > 0.0 { (chi_squared / degrees).max(1.0) } else { 1.0 };
+        let motor = Motor::from(std::array::from_fn(of_motor));
+        let noise = (inverse.transpose() * rs).norm();
+        // A resistance below zero is wrong by at least that much. Where nothing is left over there is no scatter: anything that the voltage
+        // allows.
+        let range = excitation.scale[Parameter::Rs as usize] / 3.0_f64.sqrt();
+        let rs_uncertainty = match settings.known[Parameter::Rs as usize] {
+            Known::Fixed(_) => 0.0,
+            _ if degrees > 0.0 => (noise * (chi_squared / degrees).max(1.0).sqrt()).hypot(motor.rs.min(0.0)).min(range),
+            Known::Prior { standard_error, .. } => standard_error,
+            Known::Nothing => range,
+        };
         Solved {
-            motor: Motor::from(std::array::from_fn(of_motor)),
-            rs_uncertainty: ((inverse.transpose() * rs).norm_squared() * scatter).sqrt(),
+            motor,
+            rs_uncertainty,
             causes: causes.iter().copied().zip(x[directions.len()..].iter().copied()).collect(),
             // One is what noise alone leaves of each equation.
             criterion: count * (1.0 + chi_squared / count).ln() + unknowns as f64 * count.ln(),

@@ -16,7 +16,9 @@
 
 use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit, saturation::Saturation};
 use crate::{
-    motor::{Motor, PARAMETERS}, steady::OperatingPoint};
+    motor::{Motor, PARAMETERS},
+    steady::OperatingPoint,
+};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Probability that the interval holds.

@@ -1,6 +1,8 @@
 //! Warnings: what the reader should know of the whole, whatever the verdicts.
 
-use super::{Identification, Settings, conventions::three_digits, output_fit::OutputFit, saturation::Saturation, steady_fit::SteadyFit, terms::Term};
+use super::{
+    Identification, Settings, conventions::three_digits, output_fit::OutputFit, saturation::Saturation, steady_fit::SteadyFit, terms::Term,
+};
 use crate::{
     log::Log,
     motor::Parameter,
