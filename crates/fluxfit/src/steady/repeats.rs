@@ -10,8 +10,12 @@ use std::ops::Range;
 /// noise.
 const SLOWEST_CONTROL: f64 = 1e-3;
 
-/// A log repeats itself if this part of its rows does.
+/// A log repeats itself if more than this part of its rows does, and more than this part of what changes comes after a repetition: a
+/// simulation without noise stands still for long, but where it moves, it moves in every row.
 const MANY: f64 = 0.5;
+
+/// Changes after a repetition that make a habit.
+const HABIT: usize = 30;
 
 /// Whether rows of a log are counted by what changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,9 +25,10 @@ impl Repeats {
     /// Looks at the segments of one log.
     pub(super) fn of(log: &Log, segments: &[Segment]) -> Self {
         let slow = segments.iter().all(|segment| segment.sample_period > SLOWEST_CONTROL);
-        let rows: usize = segments.iter().map(|segment| segment.rows.len()).sum();
-        let told: usize = segments.iter().map(|segment| changes(log, &segment.rows)).sum();
-        Self(slow && told > segments.len() && ((rows - told) as f64) > MANY * rows as f64)
+        let of_all = |count: fn(&Log, &Range<usize>) -> usize| segments.iter().map(|segment| count(log, &segment.rows)).sum::<usize>();
+        let (rows, told, waited) = (of_all(|_, rows| rows.len()), of_all(changes), of_all(waits));
+        let most = |part: usize, whole: usize| part as f64 > MANY * whole as f64;
+        Self(slow && waited >= HABIT && most(waited, told) && most(rows - told, rows))
     }
 
     /// Whether the log repeats itself.
@@ -37,10 +42,18 @@ impl Repeats {
     }
 }
 
+/// Whether anything differs from the row before.
+fn changed(log: &Log, row: usize) -> bool {
+    let columns = log.columns();
+    [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].iter().any(|column| column[row] != column[row - 1])
+}
+
 /// Rows in which anything changes, the first one included.
 fn changes(log: &Log, rows: &Range<usize>) -> usize {
-    let columns = log.columns();
-    let all = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e];
-    let changed = |row: &usize| all.iter().any(|column| column[*row] != column[row - 1]);
-    rows.len().min(1) + rows.clone().skip(1).filter(changed).count()
+    rows.len().min(1) + rows.clone().skip(1).filter(|row| changed(log, *row)).count()
+}
+
+/// Rows in which something changes after one in which nothing did.
+fn waits(log: &Log, rows: &Range<usize>) -> usize {
+    rows.clone().skip(2).filter(|row| changed(log, *row) && !changed(log, row - 1)).count()
 }
