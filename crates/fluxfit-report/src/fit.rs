@@ -2,7 +2,7 @@
 
 use crate::{
     figure::{self, residuals},
-    frame,
+    flux, frame,
     typography::{decimals, number, prose},
 };
 use fluxfit::{identify::steady_fit::SteadyFit, steady::OperatingPoint};
@@ -36,6 +36,7 @@ pub(crate) fn section(found: &SteadyFit, answered: bool) -> Markup {
             }
         }
         (points(found))
+        @if let Some(saturation) = &found.saturation { (flux::table(saturation)) }
         (frame::figure(|size| residuals::draw(found, size), &html! {
             "Residuals of both voltage equations with bars of two standard uncertainties, from the noise of the means and "
             @if let Some(misfit) = found.misfit {

@@ -38,6 +38,7 @@
 //! | `answer` | the parameters, their intervals, verdicts, reasons and warnings |
 //! | `currents` | measured against simulated currents; whether the residual is noise |
 //! | `fit` | operating points, measured against fitted |
+//! | `flux` | flux per operating point of a motor that saturates |
 //! | `correlation` | how the parameters' errors hang together |
 //! | `tried` | faults of the drive and readings of the voltages that were tried |
 //! | `search` | the swarm's answer beside the exact one |
@@ -52,6 +53,7 @@ mod correlation;
 mod currents;
 pub mod figure;
 mod fit;
+mod flux;
 mod frame;
 mod origin;
 mod page;

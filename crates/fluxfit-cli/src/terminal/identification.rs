@@ -6,6 +6,7 @@ use fluxfit::{
     identify::{
         Identification, Provenance,
         output_fit::OutputFit,
+        saturation::{Flux, Saturation},
         steady_fit::SteadyFit,
         terms::{Outcome, Term},
         verdict::{Judgement, Verdict},
@@ -29,6 +30,9 @@ pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option
             "Operating points (means)"
         };
         text += &format!("\n{DIM}{what}{DIM:#}\n{}", operating_points(fit));
+    }
+    if let Some(saturation) = &found.saturation {
+        text += &fluxes(saturation);
     }
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
     if let Some(method) = method.filter(|_| answered) {
@@ -215,6 +219,40 @@ fn operating_points(found: &SteadyFit) -> String {
         row
     });
     table(&["t s", "rows", "i_d A", "i_q A", "omega_e rad/s", "u_d V", "u_q V", "residual d mV", "q mV"], 0, rows)
+}
+
+/// Flux per operating point, where inductances depend on the current.
+fn fluxes(found: &Saturation) -> String {
+    let given = if found.rs_uncertainty > 0.0 { format!(" ± {}", significant(2.0 * found.rs_uncertainty, 2)) } else { String::new() };
+    // The same digits down a column: two of its best error.
+    let decimals = |error: fn(&Flux) -> f64| {
+        let least = found.fluxes.iter().flatten().map(error).fold(f64::INFINITY, f64::min);
+        (1 - (2e3 * least).log10().floor() as i32).clamp(0, 6) as usize
+    };
+    let (of_d, of_q) = (decimals(|flux| flux.uncertainty.d), decimals(|flux| flux.uncertainty.q));
+    let rows = found.fluxes.iter().flatten().map(|flux| {
+        let millis = |value: f64, decimals: usize| format!("{:.decimals$}", 1e3 * value);
+        let apparent = |henries: Option<f64>| henries.map_or("-".to_owned(), |henries| significant(1e3 * henries, 4));
+        vec![
+            format!("{:.3}", flux.current.d),
+            format!("{:.3}", flux.current.q),
+            millis(flux.psi.d, of_d),
+            millis(2.0 * flux.uncertainty.d, of_d),
+            millis(flux.psi.q, of_q),
+            millis(2.0 * flux.uncertainty.q, of_q),
+            apparent(flux.apparent_ld),
+            apparent(flux.apparent_lq),
+        ]
+    });
+    let rows: Vec<_> = rows.collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\n{DIM}Flux from voltage, with R_s = {}{given} ohm{DIM:#}\n{}",
+        significant(found.rs, 4),
+        table(&["i_d A", "i_q A", "psi_d mWb", "±", "psi_q mWb", "±", "apparent L_d mH", "L_q mH"], 0, rows)
+    )
 }
 
 /// Start and end, with digits that tell the window's length to a hundredth of it.

@@ -6,6 +6,7 @@ use fluxfit::{
     identify::{
         Identification, Provenance,
         output_fit::{Nuisance, OutputFit},
+        saturation::Saturation,
         steady_fit::SteadyFit,
         terms::Outcome,
         verdict::Judgement,
@@ -154,8 +155,29 @@ fn diagnostics(answer: &Identification) -> Value {
         "search_box": answer.search.as_ref().map(|search| by_parameter::<Value>(
             search.bounds.iter().map(|(lower, upper)| json!([lower, upper])).collect::<Vec<_>>().try_into().unwrap_or_default(),
         )),
+        "saturation": answer.saturation.as_ref().map(saturation),
         "steady": answer.steady.as_ref().map(steady),
         "output_error": answer.output.as_ref().map(output_error),
+    })
+}
+
+/// Flux per operating point, where inductances depend on the current: Wb, H, A.
+fn saturation(found: &Saturation) -> Value {
+    json!({
+        "rs": found.rs,
+        "rs_standard_uncertainty": found.rs_uncertainty,
+        "apparent_lq": found.lq.map(|ends| ends.map(|end| json!({ "iq": end.current, "value": end.inductance }))),
+        "small_currents": by_parameter(found.small_currents.to_array()),
+        "flux": found.fluxes.iter().map(|flux| flux.map(|flux| json!({
+            "id": flux.current.d,
+            "iq": flux.current.q,
+            "psi_d": flux.psi.d,
+            "psi_q": flux.psi.q,
+            "psi_d_standard_uncertainty": flux.uncertainty.d,
+            "psi_q_standard_uncertainty": flux.uncertainty.q,
+            "apparent_ld": flux.apparent_ld,
+            "apparent_lq": flux.apparent_lq,
+        }))).collect::<Vec<_>>(),
     })
 }
 

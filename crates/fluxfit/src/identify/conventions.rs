@@ -335,10 +335,10 @@ fn of_each<'a>(ratios: impl Iterator<Item = &'a Ratio>, number: impl Fn(&Ratio) 
     }
 }
 
-fn three_digits(value: f64) -> String {
+pub(super) fn three_digits(value: f64) -> String {
     // What rounds up to the next power of ten has its digits.
     let value = format!("{value:.2e}").parse().unwrap_or(value);
-    let decimals = (2.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
+    let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.decimals$}")
 }
 

@@ -14,6 +14,7 @@ mod long_run;
 pub mod misfit;
 pub mod model;
 pub mod output_fit;
+pub mod saturation;
 pub mod search_box;
 pub mod steady_fit;
 pub mod terms;
@@ -32,6 +33,7 @@ use crate::{
 };
 use model::Model;
 use output_fit::OutputFit;
+use saturation::Saturation;
 use steady_fit::SteadyFit;
 pub use steady_fit::{beliefs, operating_points, voltage_timing};
 use verdict::Judgement;
@@ -105,6 +107,8 @@ pub struct Identification {
     pub steady: Option<SteadyFit>,
     /// What the simulated currents say; none where the steady model answered.
     pub output: Option<OutputFit>,
+    /// Flux at the operating points, where inductances depend on the current; none where nothing says so.
+    pub saturation: Option<Saturation>,
     /// Correlation of the parameters' errors.
     pub correlation: [[f64; PARAMETERS]; PARAMETERS],
     /// The swarm's own answer.
@@ -175,15 +179,18 @@ pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error>
 fn of_points(fit: SteadyFit, model: (Model, String), settings: &Settings) -> Result<Identification, Error> {
     let (parameters, correlation) = fit.judge(settings);
     let search = fit.search(settings)?;
-    Ok(Identification { parameters, model, steady: Some(fit), output: None, correlation, search, warnings: Vec::new() })
+    let saturation = fit.saturation.clone();
+    Ok(Identification { parameters, model, steady: Some(fit), output: None, saturation, correlation, search, warnings: Vec::new() })
 }
 
 /// The answer of the simulated currents.
 fn of_currents(log: &Log, steady: Option<SteadyFit>, model: (Model, String), settings: &Settings) -> Result<Identification, Error> {
     let fit = OutputFit::of(log, steady.as_ref(), settings)?;
-    let (parameters, correlation) = fit.judge(settings);
+    let of_points = steady.as_ref().map_or((&[][..], None), |fit| (&fit.operating_points[..], fit.saturation.as_ref()));
+    let saturation = Saturation::of_currents(&fit, log, of_points, settings);
+    let (parameters, correlation) = fit.judge(saturation.as_ref(), settings);
     let search = fit.search(log, steady.as_ref(), settings)?;
-    Ok(Identification { parameters, model, steady, output: Some(fit), correlation, search, warnings: Vec::new() })
+    Ok(Identification { parameters, model, steady, output: Some(fit), saturation, correlation, search, warnings: Vec::new() })
 }
 
 fn check(settings: &Settings) -> Result<(), Error> {

@@ -12,7 +12,9 @@ use super::{
     Known, Provenance, Search, Settings,
     advice::{self, Advice},
     excitation::Excitation,
-    long_run, search_box,
+    long_run,
+    saturation::Saturation,
+    search_box,
     steady_fit::SteadyFit,
     terms::{self, Candidate, LEAST_RESIDUAL, Outcome, Term, inverse_normal},
     timing,
@@ -60,7 +62,7 @@ pub struct OutputFit {
     pub redundancy: usize,
     /// Correlation of neighbouring residuals, the larger of both axes.
     pub correlation_of_neighbours: f64,
-    uncertainty: Uncertainty,
+    pub(super) uncertainty: Uncertainty,
     advice: Advice,
     /// Correlation of neighbours, zero where the residuals are too small to mean anything.
     correlation_beyond_rounding: f64,
@@ -160,9 +162,13 @@ impl OutputFit {
     }
 
     /// The parameters, judged, and the correlation of their errors.
-    pub(super) fn judge(&self, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
-        let parameters =
-            verdict::judge_currents(&self.drive.motor, &self.uncertainty, &self.advice, self.correlation_beyond_rounding, settings);
+    pub(super) fn judge(
+        &self,
+        saturation: Option<&Saturation>,
+        settings: &Settings,
+    ) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
+        let uncertainty = self.uncertainty.clone().with_saturation(saturation, &self.drive.motor);
+        let parameters = verdict::judge_currents(&self.drive.motor, &uncertainty, &self.advice, self.correlation_beyond_rounding, settings);
         (parameters, self.uncertainty.correlation)
     }
 
@@ -453,7 +459,8 @@ pub(super) fn accuracy(
         most_speed = most_speed.max(omega_e.abs());
     }
     let cell = |i: Dq, omega_e: f64| [i.d / most_current, i.q / most_current, omega_e / most_speed].map(|x| (x / CELL).round() as i32);
-    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents have the opposite sign.
+    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents
+    // have the opposite sign.
     let mut cells: BTreeMap<[i32; 3], Vec<Dq>> = BTreeMap::new();
     for p in 0..size {
         let mut weights = vec![0.0; slopes[0].len()];

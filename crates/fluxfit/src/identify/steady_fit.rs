@@ -7,6 +7,7 @@ use super::{
     estimate::Estimate,
     excitation::Excitation,
     misfit::{self, Misfit},
+    saturation::Saturation,
     search_box,
     uncertainty::{Doubt, Uncertainty},
     verdict::{self, Judgement},
@@ -37,6 +38,8 @@ pub struct SteadyFit {
     pub voltage_timing: (VoltageTiming, Provenance),
     /// Contradiction between the operating points, if proven.
     pub misfit: Option<Misfit>,
+    /// Saturation, if it explains the contradiction.
+    pub saturation: Option<Saturation>,
     /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
     pub voltage_losses: Vec<f64>,
     /// How far the motor moves with what nobody stated.
@@ -54,6 +57,7 @@ impl SteadyFit {
         let excitation = Excitation::of(&points, &settings.known);
         let estimate = Estimate::solve(&points, &excitation, settings);
         let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, settings);
+        let saturation = Saturation::of_points(&points, &excitation, &estimate.motor, misfit.as_ref(), settings);
         let losses = dead_time::losses(log, &points, &excitation, &estimate);
         let doubt = Doubt { timing: timing_doubt, dead_time: dead_time::doubt(log, &points, &estimate, &losses) };
         Ok(Self {
@@ -62,6 +66,7 @@ impl SteadyFit {
             excitation,
             voltage_timing: voltage_timing(settings),
             misfit,
+            saturation,
             voltage_losses: losses,
             doubt,
         })
@@ -69,7 +74,8 @@ impl SteadyFit {
 
     /// The parameters, judged, and the correlation of their errors.
     pub(super) fn judge(&self, settings: &Settings) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
-        let uncertainty = Uncertainty::of(&self.operating_points, &self.excitation, &self.estimate, self.misfit.as_ref(), &self.doubt);
+        let uncertainty = Uncertainty::of(&self.operating_points, &self.excitation, &self.estimate, self.misfit.as_ref(), &self.doubt)
+            .with_saturation(self.saturation.as_ref(), &self.estimate.motor);
         let advice = self.advice(&uncertainty, settings);
         let parameters = verdict::judge(&self.operating_points, &self.excitation, &self.estimate, &uncertainty, &advice, settings);
         (parameters, uncertainty.correlation)

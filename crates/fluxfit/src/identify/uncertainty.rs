@@ -8,13 +8,17 @@
 //! - the timing of the voltage columns, where nobody stated it;
 //! - dead time or device drops, where their [ripple](super::dead_time) shows;
 //! - directions that the log does not excite, a uniform distribution over their reach;
+//! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
 //! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is
 //!   widened to their scatter.
 //!
 //! JCGM 100:2008 (GUM), sections 4 and 5 and G.4.
 
-use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit};
-use crate::{motor::PARAMETERS, steady::OperatingPoint};
+use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit, saturation::Saturation};
+use crate::{
+    motor::{Motor, PARAMETERS},
+    steady::OperatingPoint,
+};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Probability that the interval holds.
@@ -194,6 +198,24 @@ impl Uncertainty {
             *parameter = ParameterUncertainty::of(statistical, degrees_of_freedom, systematic);
         }
         Self { parameters, correlation: correlation(points, estimate) }
+    }
+
+    /// The same of an answer with constant parameters, where they are not constant.
+    pub(super) fn with_saturation(mut self, saturation: Option<&Saturation>, answer: &Motor) -> Self {
+        let Some(saturation) = saturation else { return self };
+        for (parameter, part) in self.parameters.iter_mut().zip(saturation.uncertainty(answer)) {
+            let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
+            // Degrees of freedom of both parts together, back to those of the statistical one.
+            let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
+            // Saturation is why the points contradict each other: one doubt, told twice. And its spread is about this very answer, so that
+            // what else is doubtful there is within it.
+            let needed = part.max(systematic.misfit);
+            systematic.misfit = 0.0;
+            let rest = statistical.hypot(systematic.total());
+            systematic.saturation = (needed * needed - rest * rest).max(0.0).sqrt();
+            *parameter = ParameterUncertainty::of(statistical, behind, systematic);
+        }
+        self
     }
 }
 

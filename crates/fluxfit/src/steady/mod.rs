@@ -15,6 +15,7 @@
 pub mod autocorrelation;
 pub mod held_vector;
 mod hold;
+mod repeats;
 pub mod windows;
 
 use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor, resolution};

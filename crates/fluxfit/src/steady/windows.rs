@@ -5,7 +5,7 @@
 //! and speed, or what the noise of the means allows. Blocks without current are left out: while a drive coasts, its voltage
 //! columns are not voltages that act.
 
-use super::hold::mended;
+use super::{hold::mended, repeats::Repeats};
 use crate::{
     error::Error,
     log::{Log, Segment},
@@ -65,20 +65,25 @@ pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     let scale = Scale::of(log);
     let (mut windows, mut short) = (Vec::new(), Vec::new());
     for of_one_log in log.segments().chunk_by(|one, other| one.log == other.log) {
-        let stretches = stretches_of_one_log(log, of_one_log, &scale);
-        let longest = stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
-        let (long, rest): (Vec<_>, Vec<_>) = stretches.into_iter().partition(|rows| rows.len() as f64 >= MIN_SHARE * longest as f64);
+        let repeats = Repeats::of(log, of_one_log);
+        let told = |rows: &Range<usize>| repeats.told(log, rows);
+        let mut stretches = stretches_of_one_log(log, of_one_log, &scale, repeats);
+        // One reading, however often it is repeated, does not show that anything is steady.
+        stretches.retain(|rows| told(rows) > 1 || !repeats.any());
+        let longest = stretches.iter().map(told).max().unwrap_or(0);
+        let (long, rest): (Vec<_>, Vec<_>) = stretches.into_iter().partition(|rows| told(rows) as f64 >= MIN_SHARE * longest as f64);
         windows.extend(long);
-        short.extend(rest.into_iter().filter(|rows| rows.len() as f64 >= MIN_SHARE * MIN_SHARE * longest as f64));
+        short.extend(rest.into_iter().filter(|rows| told(rows) as f64 >= MIN_SHARE * MIN_SHARE * longest as f64));
     }
     (windows, short)
 }
 
 /// The steady stretches of the segments of one log: those of short blocks; or those of blocks that average a ripple, where these
 /// see much more.
-fn stretches_of_one_log(log: &Log, segments: &[Segment], scale: &Scale) -> Vec<Range<usize>> {
+fn stretches_of_one_log(log: &Log, segments: &[Segment], scale: &Scale, repeats: Repeats) -> Vec<Range<usize>> {
     let rows: usize = segments.iter().map(|segment| segment.rows.len()).sum();
-    let short = (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1);
+    // Long blocks calm noise; a recorder's rows are too far apart for that, and a drive holds few of them.
+    let short = if repeats.any() { BLOCK_ROWS.0 } else { (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1) };
     let found = stretches(log, segments, scale, |_, _| short);
     let averaging = stretches(log, segments, scale, |segment, start| {
         let turn = (log.columns().omega_e[start] * segment.sample_period).abs();
