@@ -7,6 +7,7 @@
 //! Parameters that the log cannot tell are not tested. They are taken as given, so that what hangs on them is tested under that
 //! condition: one load tells nothing of R_s and psi_f alone, but it tells psi_f for a given R_s.
 
+mod explain;
 mod prediction;
 pub mod wald;
 
@@ -93,6 +94,16 @@ impl Outcome {
         }
     }
 
+    /// Name in prose.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Agrees => "agrees",
+            Self::DiffersLittle => "differs by little",
+            Self::Contradicts => "contradicts",
+            Self::CannotTell => "cannot tell",
+        }
+    }
+
     /// Of a test, and the share by which predictions differ.
     fn of(test: &Test, share: f64) -> Self {
         match test.probability {
@@ -153,6 +164,12 @@ impl Difference {
     /// Own less given, SI.
     pub fn difference(&self) -> Option<f64> {
         self.own.map(|own| own.value - self.given)
+    }
+
+    /// The same in percent of the given one; none where that is zero.
+    pub fn percent(&self) -> Option<f64> {
+        let difference = self.difference().filter(|_| self.given > 0.0)?;
+        Some(100.0 * difference / self.given)
     }
 
     /// The same in standard errors.

@@ -7,12 +7,14 @@
 //! | [`residuals`] | what the fitted motor leaves of the measured voltages |
 //! | [`operating_points`] | where in the i_d–i_q plane the log held still |
 //! | [`convergence`] | Fig. 4 of the paper: cost above the exact minimum against iteration |
+//! | [`currents`] | measured and predicted currents over time, and what is left between them |
 //! | [`parameter_courses`] | Fig. 5 of the paper: the parameters against iteration |
 
 mod axis;
 pub(crate) mod canvas;
 pub(crate) mod convergence;
 pub(crate) mod courses;
+pub(crate) mod currents;
 pub(crate) mod intervals;
 pub(crate) mod palette;
 mod plane;
@@ -22,9 +24,11 @@ pub(crate) mod residuals;
 use canvas::Drawing;
 use fluxfit::{
     identify::{Identification, steady_fit::SteadyFit},
+    log::Log,
     motor::{Motor, Parameter},
     steady::OperatingPoint,
     study::MethodStudy,
+    validate::Course,
 };
 
 /// For which width a figure is drawn. Letters have the same size in both.
@@ -78,6 +82,11 @@ pub fn convergence(methods: &[(MethodStudy, f64)], size: Size) -> String {
 /// beside it.
 pub fn parameter_courses(study: &MethodStudy, truth: Option<&Motor>, unexcited: &[Parameter], size: Size) -> String {
     courses::draw(study, truth, unexcited, size).standalone()
+}
+
+/// Measured and predicted currents over time, A, and the residuals below them on a band of the noise of both channels, A rms.
+pub fn currents(log: &Log, courses: &[Course], noise: [f64; 2], size: Size) -> String {
+    currents::draw(log, courses, noise, size).standalone()
 }
 
 /// [`operating_points`] for the page.
