@@ -1,6 +1,6 @@
 //! Validation on logs whose truth is known: the true motor is accepted as often as is stated, a wrong one is found out.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
     Columns, Log,

@@ -98,7 +98,6 @@ fn parameter(difference: &Difference) -> Markup {
 
 fn prediction(report: &ValidationReport) -> Markup {
     let found = report.found;
-    let noise = found.channels.each_ref().map(|channel| channel.noise);
     html! {
         p { @match &found.prediction {
             Prediction::Currents(_) => {
@@ -112,9 +111,9 @@ fn prediction(report: &ValidationReport) -> Markup {
         } }
         (channels(found))
         @match &found.prediction {
-            Prediction::Currents(courses) => (frame::figure(|size| currents::draw(report.log, courses, noise, size), &prose(
+            Prediction::Currents(courses) => (frame::figure(|size| currents::draw(report.log, courses, size), &prose(
                 "Above: i_d and i_q, measured (wide, light) and predicted (thin, dark); below each, measured less predicted at its own scale. Every column of pixels \
-                 spans from the least to the largest value in it, so that no transient is lost. The grey band is twice the log's own noise to either side: a prediction that holds stays in it, but for one row in twenty."
+                 spans from the least to the largest value in it, so that no transient is lost. The bold line is the mean over short spans: a prediction that holds keeps it at zero, and leaves noise around it."
             ))),
             Prediction::Voltages(left) => @if let Some(fit) = &found.own.steady {
                 (frame::figure(|size| {
@@ -132,7 +131,7 @@ fn prediction(report: &ValidationReport) -> Markup {
 fn channels(found: &Validation) -> Markup {
     html! {
         (frame::scrolling("Channels", &html! {
-            table.parameters {
+            table {
                 thead { tr {
                     th scope="col" { "Channel" } th scope="col" { "Missed by, rms" } th scope="col" { "Noise, rms" } th scope="col" { "Ratio" }
                     th scope="col" { "Variance explained" } th scope="col" { "Prediction differs by" } th scope="col" { "Verdict" }

@@ -257,8 +257,9 @@ fn own_answer(log: &Log, given: &Given, settings: &Settings) -> Result<(Identifi
     let mut tested = Parameter::ALL.to_vec();
     loop {
         let own = identify(log, &settings)?;
-        let untold = |parameter: &Parameter| Some((*parameter, width(&own, given, *parameter))).filter(|(_, width)| !(*width <= WEAK));
-        let Some((worst, _)) = tested.iter().filter_map(untold).max_by(|one, other| one.1.total_cmp(&other.1)) else {
+        let widths = tested.iter().map(|parameter| (*parameter, width(&own, given, *parameter)));
+        let untold = widths.filter(|(_, width)| *width > WEAK || width.is_nan());
+        let Some((worst, _)) = untold.max_by(|one, other| one.1.total_cmp(&other.1)) else {
             return Ok((own, tested));
         };
         tested.retain(|parameter| *parameter != worst);

@@ -61,7 +61,9 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
             }
             (Some(_), None) => terminal::note("what was held out is not predicted: that takes all four parameters"),
             (None, _) if input.log.segments().len() > 1 => {
-                terminal::note("how well this predicts a part of the log that it was not found from: --hold-out; another log: fluxfit validate");
+                terminal::note(
+                    "how well this predicts a part of the log that it was not found from: --hold-out; another log: fluxfit validate",
+                );
             }
             (None, _) => {}
         }

@@ -55,7 +55,9 @@ fn three_percent_of_lq_are_named() {
 fn a_person_sees_the_verdict_both_motors_and_the_channels() {
     let run = fluxfit(&["validate", TWO_LOADS, "--motor", MOTOR, "--model", "steady"]);
     assert_eq!(run.status, 0, "{}", run.err);
-    for expected in ["Agrees within the noise", "This log cannot tell L_d: it is taken as given.", "in standard errors", "missed by", "explained"] {
+    for expected in
+        ["Agrees within the noise", "This log cannot tell L_d: it is taken as given.", "in standard errors", "missed by", "explained"]
+    {
         assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);
     }
 }
@@ -87,7 +89,11 @@ fn what_is_no_motor_is_refused_in_a_sentence() {
     ] {
         let run = fluxfit(&["validate", NOISY, "--motor", path]);
         assert!(run.status == 2 && run.out.is_empty(), "{path}: {}", run.out);
-        assert!(run.err.starts_with(&format!("error: {path}")) && run.err.contains(sentence) && run.err.lines().count() == 1, "{}", run.err);
+        assert!(
+            run.err.starts_with(&format!("error: {path}")) && run.err.contains(sentence) && run.err.lines().count() == 1,
+            "{}",
+            run.err
+        );
     }
     let run = fluxfit(&["validate", NOISY]);
     assert!(run.status == 2 && run.err.contains("--motor"), "{}", run.err);

@@ -5,18 +5,19 @@
 use super::{
     Size,
     axis::Axis,
-    canvas::{Area, Drawing, Drawn, UNITS, anchored, line, shade},
+    canvas::{Area, Drawing, Drawn, UNITS, anchored, line},
     palette::Ink,
     plot::{Chart, Plot},
 };
 use fluxfit::{frames::Dq, log::Log, validate::Course};
 use plotters::{
-    element::{PathElement, Rectangle},
+    element::PathElement,
     style::{
         Color, ShapeStyle,
         text_anchor::{HPos, VPos},
     },
 };
+use std::collections::BTreeMap;
 
 /// Height of a panel of currents, and of residuals, pixels.
 const PANELS: [u32; 2] = [230, 150];
@@ -24,21 +25,20 @@ const PANELS: [u32; 2] = [230, 150];
 /// Room for the numbers of the y axis, and beside the plot, pixels.
 const SIDES: (i32, i32) = (52, 12);
 
-/// Widths of the measured and the predicted line, pixels.
-const WIDTHS: [f64; 2] = [3.5, 1.2];
+/// Widths of the measured and the predicted line, and of the residuals' means, pixels.
+const WIDTHS: [f64; 3] = [3.5, 1.2, 2.0];
 
-/// How much of its ink the measured line has: the predicted one is drawn over it.
+/// How much of its ink a line has over which another one is drawn.
 const FAINT: f64 = 0.45;
 
-/// The band of noise reaches so many times its root mean square to either side, in a shade of its ink.
-const BAND: f64 = 2.0;
-const SHADE: f64 = 0.25;
+/// Spans over which the residuals' means are taken: noise is averaged, and what is left of a transient is not.
+const SPANS: usize = 90;
 
 /// One value over time, in the pieces between gaps.
 type Pieces = Vec<Vec<(f64, f64)>>;
 
-/// Draws both axes: the currents, A, and below them measured less predicted, on a band of the log's own noise, A rms.
-pub(crate) fn draw(log: &Log, courses: &[Course], noise: [f64; 2], size: Size) -> Drawing {
+/// Draws both axes: the currents, A, and below them measured less predicted, with its means over short spans.
+pub(crate) fn draw(log: &Log, courses: &[Course], size: Size) -> Drawing {
     let label = "Curves over time: i_d and i_q, measured and predicted, and below each what is left between them".to_owned();
     let [tall, low] = PANELS;
     Drawing::new((size.width(), 2 * (tall + low)), label, |area| {
@@ -46,13 +46,13 @@ pub(crate) fn draw(log: &Log, courses: &[Course], noise: [f64; 2], size: Size) -
         let (d, q) = area.split_vertically((tall + low) * unit);
         for (area, axis, name) in [(d, 0, "i_d"), (q, 1, "i_q")] {
             let (above, below) = area.split_vertically(tall * unit);
-            paint(&above, &below, log, courses, (axis, name, noise[axis]), size)?;
+            paint(&above, &below, log, courses, (axis, name), size)?;
         }
         Ok(())
     })
 }
 
-fn paint(above: &Area, below: &Area, log: &Log, courses: &[Course], (axis, name, noise): (usize, &str, f64), size: Size) -> Drawn {
+fn paint(above: &Area, below: &Area, log: &Log, courses: &[Course], (axis, name): (usize, &str), size: Size) -> Drawn {
     let columns = size.width() as i32 - SIDES.0 - SIDES.1;
     let starts = starts(log);
     let time = |row: usize| log.columns().t[row] - starts[log.segment_of(row).map_or(0, |segment| segment.log)];
@@ -70,21 +70,35 @@ fn paint(above: &Area, below: &Area, log: &Log, courses: &[Course], (axis, name,
     };
     let measured = pieces(&|course, k| of(&course.measured[k]));
     let predicted = pieces(&|course, k| of(&course.predicted[k]));
-    let left = pieces(&|course, k| of(&course.measured[k]) - of(&course.predicted[k]));
+    let difference = |course: &Course, k: usize| of(&course.measured[k]) - of(&course.predicted[k]);
+    let left = pieces(&difference);
+    let over_spans =
+        |course: &Course| means(course.rows.clone().enumerate().map(|(k, row)| (time(row), difference(course, k))), from, to, SPANS);
+    let means: Pieces = courses.iter().map(over_spans).collect();
 
     let ink = [Ink::D, Ink::Q][axis];
     let name_above = format!("{name}, A");
-    let mut chart = panel(above, &x, &[&measured, &predicted], &name_above, "")?;
-    curve(&mut chart, &measured, faint())?;
+    let mut chart = panel(above, &x, &[&measured, &predicted], 4, &name_above, "")?;
+    curve(&mut chart, &measured, faint(Ink::Axis, WIDTHS[0]))?;
     curve(&mut chart, &predicted, line(ink, WIDTHS[1]))?;
     legend(above, ink, size)?;
-    let reach = BAND * noise;
-    let band = vec![vec![(x.low, -reach), (x.high, reach)]];
-    let mut chart = panel(below, &x, &[&left, &band], "measured − predicted, A", "time, s")?;
-    chart.series.draw_series([Rectangle::new([(x.low, -reach), (x.high, reach)], shade(Ink::Axis, SHADE))])?;
-    curve(&mut chart, &left, line(ink, WIDTHS[1]))?;
+    let zero = vec![vec![(from, 0.0)]];
+    let mut chart = panel(below, &x, &[&left, &zero], 6, "measured − predicted, A", "time, s")?;
+    curve(&mut chart, &left, faint(ink, WIDTHS[1]))?;
     chart.series.draw_series([PathElement::new(vec![(x.low, 0.0), (x.high, 0.0)], line(Ink::Text, 1.0))])?;
-    Ok(())
+    curve(&mut chart, &means, line(ink, WIDTHS[2]))
+}
+
+/// Means over equal spans from one time to another, s, each at the middle of its points.
+fn means(points: impl Iterator<Item = (f64, f64)>, from: f64, to: f64, spans: usize) -> Vec<(f64, f64)> {
+    let mut sums: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
+    for (t, value) in points.filter(|point| point.1.is_finite()) {
+        // The last point belongs to the last span.
+        let place = if to > from { ((t - from) / (to - from) * spans as f64) as usize } else { 0 }.min(spans.saturating_sub(1));
+        let sum = sums.entry(place).or_default();
+        *sum = (sum.0 + t, sum.1 + value, sum.2 + 1.0);
+    }
+    sums.into_values().map(|(t, value, count)| (t / count, value / count)).filter(|mean| mean.1.is_finite()).collect()
 }
 
 /// What is taken from each log's time, s, so that logs of their own clocks follow each other.
@@ -95,7 +109,7 @@ fn starts(log: &Log) -> Vec<f64> {
     let mut end = None;
     for number in 0..logs {
         let rows = || log.segments().iter().filter(|segment| segment.log == number).map(|segment| &segment.rows);
-        let (Some(first), Some(last)) = (rows().next(), rows().last()) else {
+        let (Some(first), Some(last)) = (rows().next(), rows().next_back()) else {
             starts.push(0.0);
             continue;
         };
@@ -138,11 +152,12 @@ fn panel<'a>(
     area: &Area<'a>,
     x: &Axis,
     shown: &[&Pieces],
+    ticks: usize,
     y_name: &str,
     x_name: &str,
 ) -> Result<Chart<'a>, plotters::prelude::DrawingAreaErrorKind<std::io::Error>> {
     let values = shown.iter().flat_map(|pieces| pieces.iter().flatten()).map(|point| point.1);
-    let y = Axis::around(values, 4);
+    let y = Axis::around(values, ticks);
     let (x_label, y_label) = (x.clone(), y.clone());
     let plot = Plot {
         x: x.clone(),
@@ -157,8 +172,8 @@ fn panel<'a>(
     plot.on(area)
 }
 
-fn faint() -> ShapeStyle {
-    ShapeStyle { color: Ink::Axis.color().mix(FAINT), ..line(Ink::Axis, WIDTHS[0]) }
+fn faint(ink: Ink, width: f64) -> ShapeStyle {
+    ShapeStyle { color: ink.color().mix(FAINT), ..line(ink, width) }
 }
 
 fn curve(chart: &mut Chart, pieces: &Pieces, style: ShapeStyle) -> Drawn {
@@ -168,7 +183,7 @@ fn curve(chart: &mut Chart, pieces: &Pieces, style: ShapeStyle) -> Drawn {
 
 fn legend(area: &Area, ink: Ink, size: Size) -> Drawn {
     let right = size.width() as i32 * UNITS;
-    for (style, name, from_right) in [(faint(), "measured", 196), (line(ink, WIDTHS[1]), "predicted", 96)] {
+    for (style, name, from_right) in [(faint(Ink::Axis, WIDTHS[0]), "measured", 196), (line(ink, WIDTHS[1]), "predicted", 96)] {
         let (x, y) = (right - from_right * UNITS, 13 * UNITS);
         area.draw(&PathElement::new(vec![(x, y), (x + 18 * UNITS, y)], style))?;
         area.draw_text(name, &anchored(Ink::Text, HPos::Left, VPos::Center), (x + 23 * UNITS, y))?;
@@ -186,6 +201,13 @@ mod tests {
         let kept = thinned(points, 0.0, 100.0);
         assert!(kept.len() <= 400 && kept.contains(&(4321.0, 7.0)), "{}", kept.len());
         assert!(kept.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    }
+
+    #[test]
+    fn means_of_each_span() {
+        let points = [(0.0, 1.0), (0.5, 3.0), (1.0, 5.0), (1.2, f64::NAN), (2.0, 9.0)];
+        assert_eq!(means(points.into_iter(), 0.0, 2.0, 2), [(0.25, 2.0), (1.5, 7.0)]);
+        assert_eq!(means(points.into_iter(), 0.0, 0.0, 2), [(0.875, 4.5)]);
     }
 
     #[test]

@@ -84,9 +84,9 @@ pub fn parameter_courses(study: &MethodStudy, truth: Option<&Motor>, unexcited: 
     courses::draw(study, truth, unexcited, size).standalone()
 }
 
-/// Measured and predicted currents over time, A, and the residuals below them on a band of the noise of both channels, A rms.
-pub fn currents(log: &Log, courses: &[Course], noise: [f64; 2], size: Size) -> String {
-    currents::draw(log, courses, noise, size).standalone()
+/// Measured and predicted currents over time, A, and the residuals below them.
+pub fn currents(log: &Log, courses: &[Course], size: Size) -> String {
+    currents::draw(log, courses, size).standalone()
 }
 
 /// [`operating_points`] for the page.
