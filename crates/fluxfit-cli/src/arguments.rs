@@ -21,8 +21,7 @@ pub(crate) struct Command {
     pub(crate) verb: Verb,
 }
 
-const EXIT_STATUS: &str =
-    "Exit status: 0 everything asked for was identified; 1 the log cannot carry some parameter; 2 misuse or unreadable input.";
+const EXIT_STATUS: &str = "Exit status: 0 everything asked for was identified, or the log agrees; 1 the log cannot carry some parameter, or differs; 2 misuse or unreadable input.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
@@ -34,6 +33,8 @@ pub(crate) enum Verb {
     Compare(Compare),
     /// Simulate a motor in a drive: a log, and its truth beside it
     Simulate(Simulate),
+    /// Validate parameters on a log that they were not found from: predicted, compared, tested
+    Validate(Validate),
 }
 
 /// Which log, and how to read it.
@@ -104,6 +105,9 @@ pub(crate) struct Identify {
     /// A parameter that is known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
     #[arg(long, value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_files::parse_prior, allow_hyphen_values = true)]
     pub(crate) prior: Vec<(Parameter, f64, f64)>,
+    /// Identify from all but the last log (of one log: its last segment), and validate the answer on that
+    #[arg(long)]
+    pub(crate) hold_out: bool,
 }
 
 #[derive(Debug, Args)]
@@ -160,7 +164,23 @@ pub(crate) struct Simulate {
     pub(crate) template: bool,
 }
 
-/// Models that `identify` knows.
+#[derive(Debug, Args)]
+#[command(override_usage = "fluxfit validate <LOG>... --motor <MOTOR> [OPTIONS]")]
+#[command(mut_arg("motor", |motor| motor.required(true).value_name("MOTOR").help(VALIDATED)))]
+pub(crate) struct Validate {
+    #[command(flatten)]
+    pub(crate) log: LogArguments,
+    /// What is predicted: currents or steady voltages
+    #[arg(long, value_enum, default_value_t = Model::Auto)]
+    pub(crate) model: Model,
+    /// Systematic uncertainty of the voltages, as a fraction of the vector
+    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
+    pub(crate) voltage_accuracy: f64,
+}
+
+const VALIDATED: &str = "The motor that is validated: a motor file with all four parameters, the JSON of fluxfit identify with its standard errors, or a truth file";
+
+/// Models that `identify` and `validate` know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Model {
     /// The one that suits the log

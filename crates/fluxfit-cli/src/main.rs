@@ -1,7 +1,7 @@
 //! The command `fluxfit`: arguments become settings, a verb becomes a file under `commands`.
 //!
-//! Answers go to standard output, everything else to standard error. Exit status: 0 everything asked for was identified; 1 the
-//! log was read but cannot carry some parameter; 2 misuse or unreadable input.
+//! Answers go to standard output, everything else to standard error. Exit status: 0 everything asked for was identified, or the
+//! log agrees; 1 the log was read but cannot carry some parameter, or differs; 2 misuse or unreadable input.
 
 mod arguments;
 mod commands;
@@ -20,6 +20,7 @@ fn main() -> ExitCode {
         arguments::Verb::Identify(arguments) => commands::identify::run(arguments),
         arguments::Verb::Compare(arguments) => commands::compare::run(arguments),
         arguments::Verb::Simulate(arguments) => commands::simulate::run(arguments),
+        arguments::Verb::Validate(arguments) => commands::validate::run(arguments),
     };
     match outcome {
         Ok(status) => status.into(),

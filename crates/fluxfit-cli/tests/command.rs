@@ -17,6 +17,8 @@ mod pages;
 mod report;
 #[path = "command/simulate.rs"]
 mod simulate;
+#[path = "command/validate.rs"]
+mod validate;
 
 use serde_json::Value;
 use std::{

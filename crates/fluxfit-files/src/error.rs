@@ -207,6 +207,23 @@ pub(crate) enum Problem {
     NoConstants,
     #[error("the schema is {} where {wanted} is needed; give a truth file", shorten(.found))]
     Schema { found: String, wanted: &'static str },
+    #[error("the schema is {}, which holds no motor; give a motor file, the JSON of fluxfit identify or a truth file", quote(.found))]
+    MotorSchema { found: String },
+    #[error("the {} missing; a motor is validated with all four: write {} below [motor]", parameters(.missing, "is", "are"), them(.missing))]
+    MissingParameters { missing: Vec<&'static str> },
+    #[error(
+        "the {} no value, because the log could not tell {them} when the motor was identified; identify again with a log that excites {them}, or with --fix",
+        parameters(.untold, "has", "have"), them = them(.untold)
+    )]
+    UntoldParameters { untold: Vec<&'static str> },
+}
+
+fn parameters(keys: &[&str], one: &str, several: &str) -> String {
+    if keys.len() == 1 { format!("parameter {} {one}", list(keys)) } else { format!("parameters {} {several}", list(keys)) }
+}
+
+fn them(keys: &[&str]) -> &'static str {
+    if keys.len() == 1 { "it" } else { "them" }
 }
 
 fn missing_map_columns(missing: &[&str], present: &[String]) -> String {

@@ -24,6 +24,7 @@
 //! | [`number`] | numbers with units, as people read them |
 //! | [`argument`] | `key=value` arguments |
 //! | [`motor_file`] | `MOTOR.toml` |
+//! | [`given_motor`] | a motor of which everything is known |
 //! | [`scenario_file`] | `SCENARIO.toml` |
 //! | [`recording`] | a simulated log as CSV |
 //! | [`truth`] | the true parameters of a simulated log |
@@ -36,6 +37,7 @@ pub mod argument;
 mod channel;
 pub mod csv;
 pub mod error;
+pub mod given_motor;
 mod input;
 pub mod motor_file;
 pub mod number;
@@ -51,6 +53,7 @@ mod wording;
 pub use argument::{parse_bounds, parse_fix, parse_map, parse_prior, parse_unit, parse_window};
 pub use csv::{LogOptions, ReadLog, parse_log, read_log};
 pub use error::FileError;
+pub use given_motor::{GivenMotor, read_given_motor};
 pub use motor_file::{MotorFile, Rating, read_motor};
 pub use output::{Output, check_writable, is_replaceable, write_atomically};
 pub use quantity::{Dimension, parse_quantity};

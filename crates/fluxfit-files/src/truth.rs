@@ -115,7 +115,7 @@ fn pole_pairs(holder: &Value) -> Result<Option<u32>, FileError> {
 }
 
 /// The message without its place, which is told in front.
-fn syntax(error: &serde_json::Error) -> FileError {
+pub(crate) fn syntax(error: &serde_json::Error) -> FileError {
     let message = error.to_string();
     let message = message.split_once(" at line ").map_or(message.as_str(), |(message, _)| message).to_owned();
     FileError::from(Problem::Syntax { format: "JSON", message }).at_line(error.line() as u64)

@@ -43,6 +43,7 @@
 //! | `tried` | faults of the drive and readings of the voltages that were tried |
 //! | `search` | the swarm's answer beside the exact one |
 //! | `study`, `table_2` | the methods compared; estimates beside the paper's |
+//! | `validation` | given parameters held against a log: a page of its own |
 //! | `origin` | what was read, and how to make the page again |
 //! | `frame` | what stands around figures and tables |
 //! | `typography` | symbols, units and numbers as a page sets them |
@@ -62,8 +63,9 @@ mod study;
 mod table_2;
 mod tried;
 mod typography;
+mod validation;
 
-use fluxfit::{identify::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy};
+use fluxfit::{identify::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy, validate::Validation};
 use fluxfit_files::answer::StudyFacts;
 
 /// What is shown; what is `None` is left out.
@@ -94,6 +96,28 @@ pub struct Origin {
     pub version: String,
     /// Seed of all random numbers.
     pub seed: u64,
+}
+
+/// A validation to be shown.
+#[derive(Debug, Clone, Copy)]
+pub struct ValidationReport<'a> {
+    /// Heading of the page, such as the log's name.
+    pub title: &'a str,
+    /// Name of the motor that is validated.
+    pub motor: &'a str,
+    /// The log.
+    pub log: &'a Log,
+    /// What reading had to infer: a sentence each.
+    pub notes: &'a [String],
+    /// What was found.
+    pub found: &'a Validation,
+    /// Where the page comes from.
+    pub origin: &'a Origin,
+}
+
+/// A validation as one HTML document.
+pub fn validation_html(report: &ValidationReport) -> String {
+    validation::document(report).into_string()
 }
 
 /// The report as one HTML document.

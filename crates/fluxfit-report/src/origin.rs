@@ -4,7 +4,7 @@ use crate::{
     Origin, Report, frame,
     typography::{grouped, minus, number, prose, symbol, unit},
 };
-use fluxfit::{identify::output_fit::OutputFit, motor::Parameter, steady::OperatingPoint};
+use fluxfit::{identify::output_fit::OutputFit, log::Log, motor::Parameter, steady::OperatingPoint};
 use fluxfit_files::number::{Scale, significant};
 use maud::{Markup, html};
 
@@ -16,7 +16,7 @@ pub(crate) fn read(report: &Report) -> Markup {
     html! {
         dl.facts {
             dt { "Rows" } dd { (grouped(log.rows() as u64)) (used(report)) }
-            dt { "Rate" } dd { (rate(report)) }
+            dt { "Rate" } dd { (rate(report.log)) }
             dt { "Duration" } dd { (number(log.duration(), |seconds| significant(seconds, 3))) " s" }
             dt { "Segments between gaps" } dd { (log.segments().len()) }
             @if let Some(bounds) = bounds {
@@ -93,8 +93,8 @@ fn side(parameter: Parameter, (lower, upper): (f64, f64)) -> Markup {
     html! { (symbol(parameter)) " " (short(lower)) " … " (short(upper)) " " (unit(parameter, &scale)) }
 }
 
-fn rate(report: &Report) -> String {
-    let periods = || report.log.segments().iter().map(|segment| segment.sample_period);
+pub(crate) fn rate(log: &Log) -> String {
+    let periods = || log.segments().iter().map(|segment| segment.sample_period);
     let Some(period) = periods().next() else { return "unknown".to_owned() };
     if periods().any(|other| (other / period - 1.0).abs() > 0.01) {
         return "mixed".to_owned();

@@ -1,7 +1,7 @@
 //! The document: its head, its heading, its sections in order.
 
 use crate::{
-    Report, answer, correlation, currents,
+    Origin, Report, answer, correlation, currents,
     figure::palette,
     fit, origin, search, study, tried,
     typography::{capitalized, count, grouped, in_words, list, symbol},
@@ -16,15 +16,19 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const STYLE: &str = include_str!("style.css");
 
 /// A section: its anchor, its heading, what it holds.
-struct Section {
-    anchor: &'static str,
-    heading: &'static str,
-    content: Markup,
+pub(crate) struct Section {
+    pub(crate) anchor: &'static str,
+    pub(crate) heading: &'static str,
+    pub(crate) content: Markup,
 }
 
 /// The whole page.
 pub(crate) fn document(report: &Report) -> Markup {
-    let sections = sections(report);
+    sheet(report.title, &found(report), &sections(report), report.origin)
+}
+
+/// A page: its heading, what was found in a line, its sections.
+pub(crate) fn sheet(title: &str, found: &Markup, sections: &[Section], origin: &Origin) -> Markup {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -32,21 +36,21 @@ pub(crate) fn document(report: &Report) -> Markup {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                meta name="generator" content={ "fluxfit " (report.origin.version) };
-                title { (report.title) " – fluxfit" }
+                meta name="generator" content={ "fluxfit " (origin.version) };
+                title { (title) " – fluxfit" }
                 style { (PreEscaped(STYLE)) "@media screen and (prefers-color-scheme:dark){" (PreEscaped(palette::dark_rules())) "}" }
             }
             body {
                 header {
-                    p.program { "fluxfit " (report.origin.version) " · motor parameters from a drive log" }
-                    h1 { (report.title) }
-                    p.found { (found(report)) }
+                    p.program { "fluxfit " (origin.version) " · motor parameters from a drive log" }
+                    h1 { (title) }
+                    p.found { (found) }
                     nav aria-label="Sections" {
-                        ul { @for section in &sections { li { a href={ "#" (section.anchor) } { (section.heading) } } } }
+                        ul { @for section in sections { li { a href={ "#" (section.anchor) } { (section.heading) } } } }
                     }
                 }
                 main {
-                    @for section in &sections {
+                    @for section in sections {
                         section id=(section.anchor) aria-labelledby={ (section.anchor) "-heading" } {
                             h2 id={ (section.anchor) "-heading" } { (section.heading) }
                             (section.content)

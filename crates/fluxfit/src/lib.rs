@@ -31,6 +31,7 @@
 //! | [`levenberg_marquardt`] | the polish: from near a minimum of the output error into it |
 //! | [`optimizer`] | who minimizes: tGFPA, FPA, LPSO, APSO; knows nothing of motors |
 //! | [`identify`](mod@identify) | the main path: from a log to values, intervals, verdicts |
+//! | [`validate`](mod@validate) | given parameters held against another log |
 //! | [`study`] | many runs of many methods, as the paper compares them |
 //! | [`paper`] | what the paper states: its motor, its rig, its results |
 //! | [`error`] | the only error |
@@ -51,6 +52,7 @@ mod resolution;
 mod singular_values;
 pub mod steady;
 pub mod study;
+pub mod validate;
 
 pub use error::Error;
 pub use identify::{Identification, identify, verdict::Verdict};

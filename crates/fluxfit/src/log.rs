@@ -43,6 +43,20 @@ impl Columns {
         self.named().into_iter().chain(self.optional())
     }
 
+    fn of_rows(&self, rows: Range<usize>) -> Self {
+        let of = |column: &Vec<f64>| column[rows.clone()].to_vec();
+        Self {
+            t: of(&self.t),
+            ud: of(&self.ud),
+            uq: of(&self.uq),
+            id: of(&self.id),
+            iq: of(&self.iq),
+            omega_e: of(&self.omega_e),
+            theta_e: self.theta_e.as_ref().map(of),
+            u_dc: self.u_dc.as_ref().map(of),
+        }
+    }
+
     /// Appends the rows of another log. An optional column stays only if both have it.
     fn append(&mut self, other: Self) {
         self.t.extend(other.t);
@@ -139,6 +153,21 @@ impl Log {
             joined.columns.append(log.columns);
         }
         Ok(joined)
+    }
+
+    /// Parts the last of several logs, or of one log the last segment, from the rest; none where there is nothing to part.
+    pub fn part_last(&self) -> Option<(Self, Self)> {
+        let last = self.segments.last()?;
+        let several = self.segments.iter().any(|segment| segment.log != last.log);
+        let belongs = |segment: &Segment| if several { segment.log == last.log } else { segment.rows == last.rows };
+        let at = self.segments.iter().position(belongs).filter(|at| *at > 0)?;
+        let row = self.segments[at].rows.start;
+        let (first, rest) = self.segments.split_at(at);
+        let rest = rest.iter().map(|segment| Segment { rows: segment.rows.start - row..segment.rows.end - row, log: 0, ..segment.clone() });
+        Some((
+            Self { columns: self.columns.of_rows(0..row), segments: first.to_vec() },
+            Self { columns: self.columns.of_rows(row..self.rows()), segments: rest.collect() },
+        ))
     }
 
     /// The columns.
@@ -257,6 +286,19 @@ mod tests {
         assert_eq!(rows, [0..3, 3..5]);
         assert_eq!(log.rows(), 5);
         assert!(Log::join([]).is_err());
+    }
+
+    #[test]
+    fn the_last_log_or_segment_is_parted_from_the_rest() {
+        let gap = || Log::new(columns(&[0.0, 0.1, 0.2, 1.0, 1.1])).unwrap();
+        let ends = |log: &Log| log.segments().iter().map(|segment| (segment.rows.start, segment.rows.end)).collect::<Vec<_>>();
+        let (first, last) = gap().part_last().unwrap();
+        assert_eq!((&first.columns().t[..], &last.columns().t[..]), (&[0.0, 0.1, 0.2][..], &[1.0, 1.1][..]));
+        assert_eq!((ends(&first), ends(&last)), (vec![(0, 3)], vec![(0, 2)]));
+        let (first, last) = Log::join([Log::new(columns(&[5.0, 5.1])).unwrap(), gap()]).unwrap().part_last().unwrap();
+        assert_eq!((&first.columns().t[..], &last.columns().t[..]), (&[5.0, 5.1][..], &[0.0, 0.1, 0.2, 1.0, 1.1][..]));
+        assert_eq!((ends(&first), ends(&last)), (vec![(0, 2)], vec![(0, 3), (3, 5)]));
+        assert!(Log::new(columns(&[0.0, 0.1])).unwrap().part_last().is_none());
     }
 
     #[test]

@@ -9,21 +9,24 @@ use crate::{
 use fluxfit::{
     error::Error,
     identify::{
-        Known, Settings, conventions, identify,
+        Identification, Known, Settings, conventions, identify,
         model::{self, Model},
         search_box::from_points,
     },
     log::Log,
     motor::PARAMETERS,
     optimizer::{self, Method, tgfpa::Tgfpa},
+    validate::{Given, Validation, validate},
 };
 use fluxfit_files::answer;
 use fluxfit_report::{Report, html};
+use serde_json::Value;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     report::check(&arguments.log, [])?;
-    let input = input::read(&arguments.log)?;
+    let mut input = input::read(&arguments.log)?;
+    let held_out = if arguments.hold_out { Some(hold_out(&mut input)?) } else { None };
     let mut settings = settings(arguments)?;
     let nameplate = input::nameplate(&arguments.log, &input.motor);
     let refuse = |error: Error| {
@@ -41,13 +44,30 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let mut found = identify(&input.log, &settings).map_err(refuse)?;
     let convention = conventions::check(&input.log, Some((&found, &settings.known)), &nameplate);
     found.warnings.extend(convention.warning());
+    let validation = held_out.as_ref().map(|log| check(log, &found, &settings)).transpose()?.flatten();
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
         let mut document = answer::identification(&input.log, &found, method);
         document["diagnostics"]["convention"] = answer::convention(&convention);
+        if let Some(log) = &held_out {
+            document["validation"] = validation.as_ref().map_or(Value::Null, |validation| answer::validation(log, validation));
+        }
         terminal::print(&answer::to_text(&document))?;
     } else {
         terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
+        match (&held_out, &validation) {
+            (Some(log), Some(validation)) => {
+                terminal::print("\n")?;
+                terminal::validation::show("what was held out", "This answer", log, validation)?;
+            }
+            (Some(_), None) => terminal::note("what was held out is not predicted: that takes all four parameters"),
+            (None, _) if input.log.segments().len() > 1 => {
+                terminal::note(
+                    "how well this predicts a part of the log that it was not found from: --hold-out; another log: fluxfit validate",
+                );
+            }
+            (None, _) => {}
+        }
     }
     report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
         html(&Report {
@@ -61,6 +81,22 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         })
     })?;
     Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
+}
+
+/// Takes the last log, or segment, out of what is identified from.
+fn hold_out(input: &mut input::Input) -> Result<Log, CommandError> {
+    let (rest, last) = input.log.part_last().ok_or_else(|| {
+        CommandError::Usage("--hold-out needs several logs, or one with a gap in time: this one has a single segment".to_owned())
+    })?;
+    input.log = rest;
+    Ok(last)
+}
+
+/// Validates the answer on what was held out; nothing, if the answer lacks a parameter.
+fn check(log: &Log, found: &Identification, settings: &Settings) -> Result<Option<Validation>, CommandError> {
+    let Some(given) = Given::of(found) else { return Ok(None) };
+    let validation = validate(log, &given, &Settings { windows: Vec::new(), ..settings.clone() });
+    validation.map(Some).map_err(|error| input::of_log("what was held out", error))
 }
 
 fn settings(arguments: &Identify) -> Result<Settings, CommandError> {

@@ -27,10 +27,15 @@ pub(crate) struct Input {
 
 /// Reads everything that the arguments name; what was inferred is said on standard error.
 pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
+    let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
+    read_beside(arguments, motor)
+}
+
+/// Reads the logs, where the motor file is read already.
+pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<Input, CommandError> {
     if arguments.logs.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
         return Err(CommandError::Usage("standard input can be read only once; give - once".to_owned()));
     }
-    let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
     let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
     let options = LogOptions { map: arguments.map.clone(), units: arguments.unit.clone(), pole_pairs };
     let (mut logs, mut notes) = (Vec::new(), Vec::new());

@@ -6,6 +6,7 @@ pub(crate) mod identify;
 mod input;
 mod report;
 pub(crate) mod simulate;
+pub(crate) mod validate;
 
 use std::process::ExitCode;
 

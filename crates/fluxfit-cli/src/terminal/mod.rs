@@ -5,6 +5,7 @@ pub(crate) mod identification;
 mod plot;
 pub(crate) mod simulation;
 pub(crate) mod study;
+pub(crate) mod validation;
 
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};

@@ -5,8 +5,16 @@ use super::{fluxfit, root};
 #[test]
 fn console_blocks_are_true() {
     let mut blocks = 0;
-    for page in ["README.md", "docs/log.md", "docs/identify.md", "docs/study.md", "docs/drive.md", "docs/report.md", "docs/reproduction.md"]
-    {
+    for page in [
+        "README.md",
+        "docs/log.md",
+        "docs/identify.md",
+        "docs/validate.md",
+        "docs/study.md",
+        "docs/drive.md",
+        "docs/report.md",
+        "docs/reproduction.md",
+    ] {
         let text = std::fs::read_to_string(root().join(page)).unwrap();
         for block in text.split("```console\n$ fluxfit ").skip(1) {
             let (block, _) = block.split_once("```").unwrap();

@@ -68,7 +68,7 @@ fn nuisance(answer: &Identification) -> Value {
 }
 
 /// How the voltage columns were read, and where that comes from.
-fn voltage_timing(answer: &Identification) -> Value {
+pub(super) fn voltage_timing(answer: &Identification) -> Value {
     let of_currents = answer.output.as_ref().map(|fit| (fit.voltage_reading.0.key(), fit.voltage_reading.1));
     let of_points = answer.steady.as_ref().map(|fit| match fit.voltage_timing {
         (VoltageTiming::Centered, provenance) => ("centered", provenance),

@@ -1,14 +1,16 @@
-//! Answers as JSON documents: `fluxfit.identification/1` and `fluxfit.study/1`.
+//! Answers as JSON documents: `fluxfit.identification/1`, `fluxfit.validation/1` and `fluxfit.study/1`.
 //!
 //! Others read these documents: fields are added, never renamed. Every number in them is finite; what is not known is null.
 
 mod convention;
 mod identification;
 mod study;
+mod validation;
 
 pub use convention::convention;
 pub use identification::identification;
 pub use study::{StudyFacts, study};
+pub use validation::validation;
 
 use fluxfit::motor::{Motor, PARAMETERS, Parameter};
 use serde_json::{Map, Value, json};

@@ -7,6 +7,7 @@
 //! | [`residuals`] | what the fitted motor leaves of the measured voltages |
 //! | [`operating_points`] | where in the i_d–i_q plane the log held still |
 //! | [`currents`] | measured and simulated currents over time, and what the simulation misses |
+//! | [`prediction`] | the same of given parameters, with the means of what is left |
 //! | [`convergence`] | Fig. 4 of the paper: cost above the minimum against iteration |
 //! | [`parameter_courses`] | Fig. 5 of the paper: the parameters against iteration |
 
@@ -22,6 +23,7 @@ pub(crate) mod intervals;
 pub(crate) mod palette;
 mod plane;
 mod plot;
+pub(crate) mod prediction;
 pub(crate) mod residuals;
 
 use canvas::Drawing;
@@ -31,6 +33,7 @@ use fluxfit::{
     motor::{Motor, Parameter},
     steady::OperatingPoint,
     study::{MethodStudy, fitness::Fitness},
+    validate::Course,
 };
 
 /// For which width a figure is drawn. Letters have the same size in both.
@@ -90,6 +93,11 @@ pub fn convergence(fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size
 /// beside it.
 pub fn parameter_courses(study: &MethodStudy, truth: Option<&Motor>, unexcited: &[Parameter], size: Size) -> String {
     courses::draw(study, truth, unexcited, size).standalone()
+}
+
+/// Measured and predicted currents over time, A, and the residuals below them.
+pub fn prediction(log: &Log, courses: &[Course], size: Size) -> String {
+    prediction::draw(log, courses, size).standalone()
 }
 
 /// [`operating_points`] for the page.

@@ -174,7 +174,7 @@ pub(super) fn covariance(standard_errors: [f64; PARAMETERS], correlation: &[[f64
 
 /// A number with one significant digit, and no exponent.
 pub(super) fn one_digit(x: f64) -> String {
-    let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    let exponent = if x == 0.0 || !x.is_finite() { 0 } else { x.abs().log10().floor() as i32 };
     let unit = 10.0_f64.powi(exponent);
     format!("{:.*}", exponent.saturating_neg().clamp(0, 12) as usize, (x / unit).round() * unit)
 }
@@ -182,7 +182,8 @@ pub(super) fn one_digit(x: f64) -> String {
 /// A fraction in percent, with two digits.
 fn percent(fraction: f64) -> String {
     let value = 100.0 * fraction;
-    let decimals = (1 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    // From 0.1 to 50 in practice; a number beyond that has no digits worth showing.
+    let decimals = if value > 0.0 { (1.0 - value.log10().floor()).clamp(0.0, 4.0) as usize } else { 0 };
     format!("{value:.decimals$} %")
 }
 

@@ -25,7 +25,7 @@ use crate::{
     error::Error,
     frames::Dq,
     least_squares::{Equation, TriangularFactor},
-    levenberg_marquardt::{Belief, MOTOR, jacobian, polish_unknowns},
+    levenberg_marquardt::{Belief, MOTOR, Polished, jacobian, polish_unknowns},
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::{
@@ -89,23 +89,13 @@ impl OutputFit {
         let scale = Excitation::of(&whole(log, &stretches), &settings.known).scale;
         let start = start(log, &stretches, steady, settings, &scale);
         let free = free(settings);
-        let objectives = timing::objectives(log, &stretches, settings)?;
-        let rough = timing::readings(&objectives, &start, &free, &[]);
-        let beliefs = beliefs(settings, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
-        let Some((place, best)) = timing::readings(&objectives, &start, &free, &beliefs).into_iter().next() else {
-            return Err(Error::TooShort { rows: log.rows(), least: 2 });
-        };
-        let (drive, cost, voltage_accuracy) = (best.polished.drive, best.polished.cost, settings.voltage_accuracy);
-        let mut candidate =
-            Candidate { objectives: &objectives, reading: place, beliefs: &beliefs, drive, unknowns: free, cost, voltage_accuracy };
-        let tried = candidate.add_terms();
-
-        let Candidate { drive, unknowns, cost, reading, .. } = candidate;
-        let (reading, objective) = &objectives[reading];
+        let chosen = choose(log, &stretches, &start, free, settings)?;
+        let Chosen { reading, unknowns, beliefs, readings, terms: tried, independent, .. } = chosen;
+        let objective = &OutputError::of_rows(log, &stretches, reading)?;
+        let Polished { drive, cost, .. } = polish_unknowns(objective, &chosen.drive, &unknowns, &beliefs);
         let residuals = objective.residuals(&drive);
-        let readings: Vec<_> = timing::readings(&objectives, &drive, &unknowns, &beliefs).into_iter().map(|(_, tried)| tried).collect();
         let doubt = Doubt {
-            timing: timing::doubt(&readings, terms::independent(&residuals)),
+            timing: timing::doubt(&readings, independent),
             process_noise: without_observer(objective, &drive, &unknowns, &beliefs),
             sensors: sensors(&drive),
         };
@@ -121,7 +111,7 @@ impl OutputFit {
                 0.0
             },
             drive,
-            voltage_reading: (*reading, if settings.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
+            voltage_reading: (reading, if settings.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
             terms: tried,
             nuisance: errors.nuisance(&drive, &unknowns),
             stretches: objective.stretches().collect(),
@@ -180,11 +170,96 @@ impl OutputFit {
             (None, Some(steady)) => search_box::from_points(&steady.operating_points)?,
             (None, None) => search_box::from_points(&whole(log, &self.stretches))?,
         };
-        let objective = OutputError::of_rows(log, &self.stretches, self.voltage_reading.0)?.holding(self.drive.nuisance);
+        let objective = OutputError::of_rows(log, &stretches(log, settings)?, self.voltage_reading.0)?.holding(self.drive.nuisance);
         let report = Optimizer::start(method, settings.search, bounds.clone(), &objective)?.run(&objective);
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Some(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report }))
     }
+}
+
+/// What is to be fitted to all rows.
+struct Chosen {
+    reading: VoltageReading,
+    drive: Adjustable,
+    unknowns: Vec<Unknown>,
+    beliefs: Vec<Belief>,
+    /// Every reading with these unknowns, the best first.
+    readings: Vec<timing::Tried>,
+    terms: Vec<terms::Tried>,
+    /// Independent residuals of the rows by which it was chosen.
+    independent: f64,
+    /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
+    criterion: f64,
+    /// Whether what is left is noise, and no observer was needed to make it so.
+    explained: bool,
+}
+
+/// Rows by which readings and faults are chosen: enough to see faults of a tenth of the noise; the fit itself takes all rows.
+const CHOICE_ROWS: usize = 40_000;
+
+/// Rows of a piece, of a log that is longer: transients and turns in it, and its start of a few rows does not weigh.
+const PIECE_ROWS: usize = 5_000;
+
+/// Readings from which faults are looked for, where the first one leaves something unexplained: a fault may pass for a delay.
+const TRIED_READINGS: usize = 3;
+
+/// Correlation of neighbours below which residuals are white enough.
+const WHITE: f64 = 0.1;
+
+/// Chooses the reading of the voltages and the faults of the drive.
+fn choose(log: &Log, stretches: &[Range<usize>], start: &Adjustable, free: Vec<Unknown>, settings: &Settings) -> Result<Chosen, Error> {
+    let objectives = timing::objectives(log, &pieces(stretches), settings)?;
+    let rough = timing::readings(&objectives, start, &free, &[]);
+    let beliefs = beliefs(settings, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
+    let mut best: Option<Chosen> = None;
+    for (place, tried) in timing::readings(&objectives, start, &free, &beliefs).into_iter().take(TRIED_READINGS) {
+        let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, settings.voltage_accuracy);
+        let candidate =
+            Candidate { objectives: &objectives, reading: place, beliefs: &beliefs, drive, unknowns: free.clone(), cost, voltage_accuracy };
+        let one = with_faults(candidate, &objectives, &beliefs);
+        let explained = one.explained;
+        if best.as_ref().is_none_or(|best| one.criterion < best.criterion) {
+            best = Some(one);
+        }
+        if explained {
+            break;
+        }
+    }
+    best.ok_or(Error::TooShort { rows: log.rows(), least: 2 })
+}
+
+/// The faults that a log carries under a reading, and the reading that suits them.
+fn with_faults(mut candidate: Candidate, objectives: &[(VoltageReading, OutputError)], beliefs: &[Belief]) -> Chosen {
+    let terms = candidate.add_terms();
+    let Candidate { drive, unknowns, cost, reading, .. } = candidate;
+    let (reading, objective) = &objectives[reading];
+    let residuals = objective.residuals(&drive);
+    let count = residuals.len() as f64;
+    let independent = terms::independent(&residuals);
+    Chosen {
+        reading: *reading,
+        readings: timing::readings(objectives, &drive, &unknowns, beliefs).into_iter().map(|(_, tried)| tried).collect(),
+        independent,
+        criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
+        explained: !unknowns.contains(&Unknown::GainD) && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+        drive,
+        unknowns,
+        beliefs: beliefs.to_vec(),
+        terms,
+    }
+}
+
+/// The stretches, or pieces spread over them if they are long.
+fn pieces(stretches: &[Range<usize>]) -> Vec<Range<usize>> {
+    let rows: usize = stretches.iter().map(ExactSizeIterator::len).sum();
+    if rows <= CHOICE_ROWS {
+        return stretches.to_vec();
+    }
+    let all = stretches.iter().flat_map(|rows| rows.clone().step_by(PIECE_ROWS).map(|first| first..(first + PIECE_ROWS).min(rows.end)));
+    let all: Vec<Range<usize>> = all.collect();
+    let wanted = (CHOICE_ROWS / PIECE_ROWS).min(all.len());
+    // Evenly over the log: the middle of each share.
+    (0..wanted).map(|k| all[(2 * k + 1) * all.len() / (2 * wanted)].clone()).collect()
 }
 
 /// The windows that are named, or all that the log has without a gap.

@@ -1,0 +1,42 @@
+//! `fluxfit validate`: a motor held against a log that it was not found from.
+
+use super::{Status, input, report};
+use crate::{arguments::Validate, error::CommandError, terminal};
+use fluxfit::{
+    identify::Settings,
+    validate::{Outcome, validate},
+};
+use fluxfit_files::{answer, read_given_motor};
+use fluxfit_report::{ValidationReport, validation_html};
+use std::path::Path;
+
+/// Runs the verb.
+pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
+    report::check(&arguments.log, [])?;
+    let Some(path) = arguments.log.motor.as_deref() else {
+        return Err(CommandError::Usage("there is no motor to validate; name one with --motor".to_owned()));
+    };
+    if path == Path::new("-") && arguments.log.logs.iter().any(|log| log == path) {
+        return Err(CommandError::Usage("standard input can be read only once; give the motor or the log as a file".to_owned()));
+    }
+    let motor = read_given_motor(path)?;
+    let input = input::read_beside(&arguments.log, motor.file)?;
+    let settings = Settings {
+        model: arguments.model.stated(),
+        windows: arguments.log.window.clone(),
+        voltage_timing: arguments.log.voltage_timing.stated(),
+        voltage_accuracy: arguments.voltage_accuracy,
+        ..Settings::default()
+    };
+    let found = validate(&input.log, &motor.given, &settings).map_err(|error| input::of_log(&input.name, error))?;
+    let name = path.display().to_string();
+    if arguments.log.json {
+        terminal::print(&answer::to_text(&answer::validation(&input.log, &found)))?;
+    } else {
+        terminal::validation::show(&input.name, &name, &input.log, &found)?;
+    }
+    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
+        validation_html(&ValidationReport { title: &input.name, motor: &name, log: &input.log, notes: &input.notes, found: &found, origin })
+    })?;
+    Ok(if found.outcome == Outcome::Agrees { Status::Complete } else { Status::Incomplete })
+}

@@ -1,0 +1,86 @@
+//! A validation, to be read at a glance: the verdict, what the log asks for instead, and how well each channel is predicted.
+
+use super::{BAD, GOOD, HEADING, WARNING, table};
+use anstyle::Style;
+use fluxfit::{
+    log::Log,
+    validate::{Channel, Difference, Outcome, Validation},
+};
+use fluxfit_files::number::{Scale, significant, small};
+
+/// Shows a validation; warnings go to standard error.
+pub(crate) fn show(name: &str, motor: &str, log: &Log, found: &Validation) -> std::io::Result<()> {
+    let style = style(found.outcome);
+    let mut text = format!("{HEADING}{motor} on {name}{HEADING:#}\n{}\n\n", read(log, found));
+    text += &format!("{style}{}{style:#}\n\n", found.verdict());
+    text += &parameters(found);
+    text += "\n";
+    text += &channels(found);
+    super::print(&text)?;
+    found.own.warnings.iter().for_each(|warning| super::warn(warning.code, &warning.message));
+    Ok(())
+}
+
+fn style(outcome: Outcome) -> Style {
+    match outcome {
+        Outcome::Agrees => GOOD,
+        Outcome::DiffersLittle | Outcome::CannotTell => WARNING,
+        Outcome::Contradicts => BAD,
+    }
+}
+
+/// What was read and what is predicted, in one line.
+fn read(log: &Log, found: &Validation) -> String {
+    let seconds = significant(log.duration(), 3);
+    let what = if found.own.output.is_some() { "currents simulated row by row" } else { "voltages of steady operating points" };
+    format!("{} rows, {seconds} s; {what}", log.rows())
+}
+
+fn parameters(found: &Validation) -> String {
+    let rows = found.parameters.iter().map(|difference| {
+        let Difference { parameter, given, own } = *difference;
+        let scale = Scale::for_value(parameter, given);
+        let mut row = vec![parameter.symbol().to_owned()];
+        let Some(own) = own else {
+            row.extend([scale.format(given, 0.0), "-".to_owned(), scale.unit(parameter.unit())]);
+            row.extend([String::new(), String::new(), String::new(), "cannot tell".to_owned()]);
+            return row;
+        };
+        row.extend([scale.format(given, own.standard_error), scale.format(own.value, own.standard_error), scale.unit(parameter.unit())]);
+        let percent = |value: f64| format!("{} %", significant(100.0 * value / given, 2));
+        let difference_percent =
+            difference.percent().map_or(String::new(), |value| format!("{value:+.*} %", decimals(own.half_width / given)));
+        row.extend([difference_percent, format!("±{}", percent(own.half_width))]);
+        row.extend([difference.standard_errors().map_or(String::new(), |errors| format!("{errors:+.1}")), String::new()]);
+        row
+    });
+    table(&["", "given", "the log", "", "difference", "95 %", "in standard errors", ""], 1, rows)
+}
+
+/// Decimals of a percentage that show two digits of its uncertainty.
+fn decimals(fraction: f64) -> usize {
+    let percent = 100.0 * fraction.abs();
+    if percent > 0.0 && percent.is_finite() { (1.0 - percent.log10().floor()).clamp(0.0, 6.0) as usize } else { 2 }
+}
+
+fn channels(found: &Validation) -> String {
+    let rows = found.channels.iter().map(|channel| {
+        let Channel { name, unit, rms, noise, explained, share, outcome, .. } = *channel;
+        vec![
+            name.to_owned(),
+            format!("{} {unit}", small(rms)),
+            format!("{} {unit}", small(noise)),
+            channel.ratio().map_or("-".to_owned(), |ratio| significant(ratio, 3)),
+            explained.map_or("-".to_owned(), |explained| format!("{} %", explained_percent(explained))),
+            format!("{} %", small(100.0 * share)),
+            outcome.label().to_owned(),
+        ]
+    });
+    table(&["", "missed by", "noise", "ratio", "explained", "differs by", ""], 1, rows)
+}
+
+/// As many nines as there are.
+fn explained_percent(explained: f64) -> String {
+    let decimals = decimals(1.0 - explained);
+    format!("{:.decimals$}", 100.0 * explained)
+}
