@@ -1,7 +1,8 @@
 //! Faults of a drive that identification with the output error finds, each in the paper's rig with noise: the fault inside its own
 //! interval, the motor within the limits, and nothing identified that is wrong.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
+// What was found is worth seeing when a test fails.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
     identify::{Identification, Settings, identify, output_fit::OutputFit, terms::Term, verdict::Verdict},

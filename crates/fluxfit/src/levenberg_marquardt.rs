@@ -132,7 +132,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let drive = self.drive();
         let mut residuals = self.objective.residuals(&drive);
         // Not a failure but a bad candidate: the next step is shorter.
-        residuals.iter_mut().filter(|residual| !(residual.abs() < HOPELESS)).for_each(|residual| *residual = HOPELESS);
+        residuals.iter_mut().filter(|residual| residual.abs() > HOPELESS || residual.is_nan()).for_each(|residual| *residual = HOPELESS);
         residuals.extend(self.beliefs.iter().map(|belief| belief.weight * (belief.value - drive.get(belief.unknown))));
         Some(DVector::from_vec(residuals))
     }

@@ -297,11 +297,16 @@ proptest! {
                 prop_assert!(number.is_finite(), "{judgement:?}");
             }
         }
-        for point in &found.steady.as_ref().unwrap().operating_points {
+        for point in found.operating_points() {
             prop_assert!(point.means.iter().all(|mean| mean.is_finite()), "{point:?}");
         }
-        prop_assert!(found.steady.as_ref().unwrap().estimate.residuals.iter().flatten().chain([&found.steady.as_ref().unwrap().estimate.chi_squared]).all(|x| x.is_finite()));
-        prop_assert!(found.steady.as_ref().unwrap().misfit.is_none_or(|misfit| misfit.ratio.is_finite() && misfit.voltage_accuracy.is_finite()));
+        if let Some(fit) = &found.steady {
+            prop_assert!(fit.estimate.residuals.iter().flatten().chain([&fit.estimate.chi_squared]).all(|x| x.is_finite()));
+            prop_assert!(fit.misfit.is_none_or(|misfit| misfit.ratio.is_finite() && misfit.voltage_accuracy.is_finite()));
+        }
+        if let Some(fit) = &found.output {
+            prop_assert!(fit.residuals.iter().chain([&fit.cost]).all(|x| x.is_finite()));
+        }
     }
 }
 

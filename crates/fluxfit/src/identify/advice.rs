@@ -208,16 +208,16 @@ mod tests {
 
     #[test]
     fn a_multimeter_tells_the_flux_that_hides_behind_the_resistance() {
-        // One point at i_d = 0: R_s 10 A + 400 rad/s psi_f is known, neither of them is.
-        let direction = Vector4::new(1.0, 0.0, 0.0, -10.0 / 400.0);
-        let held = vec![(Dq { d: 0.0, q: 10.0 }, 400.0)];
+        // One point at i_d = 0: R_s 8 A + 400 rad/s psi_f is known, neither of them is.
+        let direction = Vector4::new(1.0, 0.0, 0.0, -8.0 / 400.0);
+        let held = vec![(Dq { d: 0.0, q: 8.0 }, 400.0)];
         let covariance = direction * direction.transpose();
         let advice =
             Advice { motor: MOTOR, covariance, held, row_variance: 1e-6, sample_period: 1e-4, voltage: 80.0, voltage_accuracy: 1e-6 };
-        // 1 % of 1 ohm moves psi_f by 10/400 of 10 mohm, 0.25 mWb of 200: 0.125 %, and 1.96 times that.
+        // 1 % of 1 ohm moves psi_f by 8/400 of 10 mohm, 0.2 mWb of 200: 0.1 %, and 1.96 times that.
         assert_eq!(
             advice.remedy(Parameter::PsiF).unwrap(),
-            "measure R_s at the terminals to 1 % and give it with --prior rs=VALUE±1%: psi_f to about ±0.25 %"
+            "measure R_s at the terminals to 1 % and give it with --prior rs=VALUE±1%: psi_f to about ±0.20 %"
         );
     }
 

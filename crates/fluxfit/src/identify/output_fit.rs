@@ -502,7 +502,7 @@ fn open(columns: &[Vec<f64>], inverse: &DMatrix<f64>, unknowns: &[Unknown], scal
     let dot = |p: usize, q: usize| columns[p].iter().zip(&columns[q]).map(|(a, b)| a * b).sum::<f64>();
     let told = |k: usize| (0..columns.len()).map(|l| inverse[(k, l)] * dot(l, k)).sum::<f64>();
     let range = |(k, unknown): (usize, &Unknown)| match unknown {
-        Unknown::Motor(parameter) if !((told(k) - 1.0).abs() <= OPEN_PART) => scale[*parameter as usize] / 3.0_f64.sqrt(),
+        Unknown::Motor(parameter) if (told(k) - 1.0).abs() > OPEN_PART || told(k).is_nan() => scale[*parameter as usize] / 3.0_f64.sqrt(),
         _ => 0.0,
     };
     unknowns.iter().enumerate().map(range).collect()

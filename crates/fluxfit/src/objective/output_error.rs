@@ -254,7 +254,7 @@ impl Course {
             // As the sensors' frame has it; over a period the current hardly moves against the rotor.
             let seen = turned(i, -faults.angle_offset);
             let (start, end) = (seen.to_alpha_beta(self.theta_e[k]), seen.to_alpha_beta(self.theta_e[k + 1]));
-            let half = if (self.rows.start + k) % 2 == 0 { faults.dead_time_ripple } else { -faults.dead_time_ripple };
+            let half = if (self.rows.start + k).is_multiple_of(2) { faults.dead_time_ripple } else { -faults.dead_time_ripple };
             let loss = mean_loss(start, end, half, faults.dead_time_width);
             let loss = loss.to_dq(theta_e);
             u = Dq { d: u.d - faults.dead_time * loss.d, q: u.q - faults.dead_time * loss.q };
