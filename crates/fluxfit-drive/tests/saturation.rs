@@ -1,6 +1,6 @@
 //! What an identification says of a motor that saturates: a measured flux map on a simulated test bench.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
     frames::Dq,

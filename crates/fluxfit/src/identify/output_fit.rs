@@ -241,7 +241,8 @@ fn with_faults(mut candidate: Candidate, objectives: &[(VoltageReading, OutputEr
         readings: timing::readings(objectives, &drive, &unknowns, beliefs).into_iter().map(|(_, tried)| tried).collect(),
         independent,
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
-        explained: !unknowns.contains(&Unknown::GainD) && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+        explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
+            || !unknowns.contains(&Unknown::GainD) && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
         drive,
         unknowns,
         beliefs: beliefs.to_vec(),

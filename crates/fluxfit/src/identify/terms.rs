@@ -272,7 +272,8 @@ impl Candidate<'_> {
         let rows = 2.0 * self.objective().rows() as f64;
         let gain = schwarz(without.polished.cost, self.cost, OBSERVER.len(), rows);
         // What it is worth beside the faults found, and a sign that observers have.
-        let outcome = if gain <= VERY_STRONG {
+        let nothing_left = (without.polished.cost / rows).sqrt() <= LEAST_RESIDUAL * self.objective().peak_current();
+        let outcome = if gain <= VERY_STRONG || nothing_left {
             Outcome::NotNeeded
         } else if Term::ProcessNoise.is_physical(&self.drive, self.objective().peak_current()) {
             return Tried { term: Term::ProcessNoise, gain, outcome: Outcome::Taken };
