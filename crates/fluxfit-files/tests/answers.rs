@@ -6,7 +6,7 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Settings, identify},
+    identify::{Settings, identify, model::Model},
     log::{Columns, Log},
     motor::Motor,
     optimizer::{self, draws::Draws},
@@ -86,7 +86,11 @@ fn check(log: &Log, settings: &Settings) -> Option<Vec<String>> {
 
 /// A swarm that is done before it begins: the document does not depend on what it finds.
 fn quick() -> Settings {
-    Settings { search: optimizer::Settings { population: 6, iterations: 2, ..optimizer::Settings::default() }, ..Settings::default() }
+    Settings {
+        model: Some(Model::Steady),
+        search: optimizer::Settings { population: 6, iterations: 2, ..optimizer::Settings::default() },
+        ..Settings::default()
+    }
 }
 
 /// The paper's motor at (i_d, i_q), 0.5 % noise on the voltages.

@@ -138,7 +138,7 @@ fn walk(node: &Handle, text: &mut String, ids: &mut Vec<String>) {
 
 #[test]
 fn an_identification_has_its_values_verdicts_and_command() {
-    let (found, page) = identified(&TWO, &Settings { method: Some(Method::all()[0]), ..Settings::default() });
+    let (found, page) = identified(&TWO, &Settings { model: Some(Model::Steady), method: Some(Method::all()[0]), ..Settings::default() });
     assert!(found.is_complete());
     let text = checked(&page);
     for expected in
@@ -151,12 +151,12 @@ fn an_identification_has_its_values_verdicts_and_command() {
 
 #[test]
 fn what_is_not_identifiable_has_no_number_anywhere() {
-    let (found, page) = identified(&[(0.0, 9.0), (0.0, 5.0)], &Settings::default());
+    let (found, page) = identified(&[(0.0, 9.0), (0.0, 5.0)], &Settings { model: Some(Model::Steady), ..Settings::default() });
     let ld = found.parameter(Parameter::Ld);
     assert_eq!(ld.verdict, Verdict::NotIdentifiable);
     let text = checked(&page);
     assert!(text.contains("Three of four parameters identified; not identifiable from this log: Ld."));
-    assert!(text.contains("To do: add a stretch at the same speed with id near −2 A."), "{text}");
+    assert!(text.contains("To do: add 0.2 s at id = −2 A, same speed: Ld to about ±"), "{text}");
     // A row of the answer, and none of any other table.
     assert_eq!(page.matches("<th scope=\"row\"><i>L</i><sub>d</sub></th>").count(), 1);
     assert!(page.contains("<th scope=\"row\"><i>L</i><sub>d</sub></th><td class=\"value\">–</td>"));

@@ -42,7 +42,9 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &from_points(&points)?)?);
     }
     let mut found = identify(&input.log, &settings).map_err(refuse)?;
-    let convention = conventions::check(&input.log, Some((&found, &settings.known)), &nameplate);
+    // Wrong units scale the answer of the operating points alone: the slope of a current knows the time.
+    let of_points = identify(&input.log, &Settings { model: Some(Model::Steady), method: None, ..settings.clone() });
+    let convention = conventions::check(&input.log, Some((of_points.as_ref().unwrap_or(&found), &settings.known)), &nameplate);
     found.warnings.extend(convention.warning());
     let validation = held_out.as_ref().map(|log| check(log, &found, &settings)).transpose()?.flatten();
     let method = settings.method.map_or("least-squares", |method| method.key());

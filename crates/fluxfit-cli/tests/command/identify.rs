@@ -41,7 +41,7 @@ fn noisy_log_within_its_noise_and_its_own_standard_errors() {
 
 #[test]
 fn without_d_current_ld_has_no_value_and_the_rest_is_good() {
-    let (status, document) = json(&["identify", "examples/logs/id_zero_two_loads.csv"]);
+    let (status, document) = json(&["identify", "examples/logs/id_zero_two_loads.csv", "--model", "steady"]);
     assert_eq!(status, 1);
     assert_eq!(verdicts(&document), ["identified", "not-identifiable", "identified", "identified"]);
     for (((percent, _), (key, _)), limit) in errors(&document).into_iter().zip(TRUTH).zip([1.0, f64::NAN, 0.1, 0.1]) {
@@ -51,6 +51,29 @@ fn without_d_current_ld_has_no_value_and_the_rest_is_good() {
     assert!(ld["value"].is_null() && ld["standard_error"].is_null() && ld["ci95"].is_null());
     assert!(document["least_squares"]["ld"].is_null() && document["search"]["ld"].is_null());
     assert!(ld["reason"].as_str().unwrap().starts_with("i_d stays at zero"), "{ld}");
+}
+
+/// What the output error makes of the three logs: within the limits of what their noise allows, in percent, and within four of its
+/// own standard errors; whichever of the voltage columns is taken, it finds by itself what they mean.
+#[test]
+fn simulated_currents_find_the_motor_and_the_timing() {
+    let commands = ["--map", "ud=ud_ref,uq=uq_ref"];
+    let table = [
+        ("examples/logs/paper_rig_ideal.csv", &[][..], "centered", [0.05, 0.02, 0.02, 0.02]),
+        (NOISY, &[][..], "centered", [0.2, 0.1, 0.03, 0.03]),
+        (NOISY, &commands[..], "1", [0.2, 0.1, 0.03, 0.03]),
+        // Only its noise moves i_d: L_d is known to its interval.
+        ("examples/logs/id_zero_two_loads.csv", &[][..], "centered", [0.2, f64::INFINITY, 0.05, 0.05]),
+    ];
+    for (log, columns, timing, limits) in table {
+        let (status, document) = json(&[&["identify", log][..], columns].concat());
+        assert_eq!(status, 0, "{log}");
+        assert_eq!((&document["model"], &document["nuisance"]["voltage_timing"]["value"]), (&"output-error".into(), &timing.into()));
+        for (((percent, sigmas), (key, _)), limit) in errors(&document).into_iter().zip(TRUTH).zip(limits) {
+            assert!(percent.abs() < limit && sigmas.abs() < 4.0, "{log} {columns:?} {key}: {percent} %, {sigmas} standard errors");
+        }
+        assert_eq!(document["warnings"].as_array().unwrap().len(), 0, "{}", document["warnings"]);
+    }
 }
 
 /// One speed, one load: R_s and psi_f act alike, and only L_q shows.
@@ -63,13 +86,13 @@ fn one_operating_point_tells_only_lq() {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), half.join("\n")).unwrap();
         let path = file.path().to_str().unwrap();
-        let (status, document) = json(&["identify", path]);
+        let (status, document) = json(&["identify", path, "--model", "steady"]);
         assert_eq!(status, 1);
         assert_eq!(verdicts(&document), ["not-identifiable", "not-identifiable", "identified", "not-identifiable"]);
         assert!(errors(&document)[2].0.abs() < 0.1);
         // Before the load came there was a short pause without it: named, it is a second load, and tells R_s and psi_f.
         assert!(document["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "short-stretches"));
-        let (_, named) = json(&["identify", path, "--window", "0.173:0.1999", "--window", "0.26:0.4499"]);
+        let (_, named) = json(&["identify", path, "--model", "steady", "--window", "0.173:0.1999", "--window", "0.26:0.4499"]);
         assert_eq!(verdicts(&named), ["identified", "not-identifiable", "identified", "identified"]);
         assert!(errors(&named)[0].1.abs() < 4.0 && errors(&named)[3].1.abs() < 4.0);
     }
@@ -106,7 +129,7 @@ fn real_log_of_a_saturating_machine_names_it() {
 
 #[test]
 fn named_windows_several_logs_and_standard_input() {
-    let windows = ["--window", "0.48:0.595", "--window", "0.78:0.895"];
+    let windows = ["--model", "steady", "--window", "0.48:0.595", "--window", "0.78:0.895"];
     let (_, one) = json(&[&["identify", NOISY][..], &windows].concat());
     assert_eq!(one["log"]["operating_points"][0]["rows"], 1151);
     let (_, two) = json(&[&["identify", NOISY, NOISY][..], &windows].concat());
@@ -138,7 +161,7 @@ fn what_is_known_beforehand_counts() {
         assert!(half_width(&fixed, key) <= half_width(&prior, key), "{key}");
     }
     // A multimeter's R_s separates it from psi_f where one load does not.
-    let (status, cured) = json(&["identify", NOISY, "--window", "0.48:0.595", "--prior", "rs=0.958±1%"]);
+    let (status, cured) = json(&["identify", NOISY, "--model", "steady", "--window", "0.48:0.595", "--prior", "rs=0.958±1%"]);
     assert_eq!(status, 1);
     assert_eq!(verdicts(&cured), ["identified", "not-identifiable", "identified", "identified"]);
 }
@@ -146,19 +169,19 @@ fn what_is_known_beforehand_counts() {
 #[test]
 fn every_method_reaches_the_exact_answer_and_says_how_near() {
     for method in ["tgfpa", "fpa", "lpso", "apso"] {
-        let (_, document) = json(&["identify", NOISY, "--method", method]);
+        let (_, document) = json(&["identify", NOISY, "--model", "steady", "--method", method]);
         assert_eq!(document["method"], method);
         let search = &document["search"];
         assert_eq!(search["evaluations"], 15_050);
         assert!(search["cost_above_optimum"].as_f64().unwrap() < 1e-2, "{search}");
     }
-    let (_, exact) = json(&["identify", NOISY, "--method", "least-squares"]);
+    let (_, exact) = json(&["identify", NOISY, "--model", "steady", "--method", "least-squares"]);
     assert!(exact["search"].is_null());
 }
 
 #[test]
 fn a_person_sees_values_verdicts_reasons_and_remedies() {
-    let run = fluxfit(&["identify", "examples/logs/id_zero_two_loads.csv"]);
+    let run = fluxfit(&["identify", "examples/logs/id_zero_two_loads.csv", "--model", "steady"]);
     assert_eq!(run.status, 1);
     for expected in [
         "R_s",
@@ -167,13 +190,13 @@ fn a_person_sees_values_verdicts_reasons_and_remedies() {
         "identified",
         "not identifiable",
         "L_d: i_d stays at zero",
-        "To do: add a stretch",
+        "To do: add 0.2 s at i_d = -2 A, same speed: L_d to about ±",
         "tGFPA alone, after 15050 evaluations",
     ] {
         assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);
     }
     assert!(!run.out.contains('\u{1b}'), "no colour in a pipe");
-    assert!(fluxfit(&["identify", "examples/logs/paper_rig_ideal.csv"]).err.contains("warning [no-redundancy]"));
+    assert!(fluxfit(&["identify", "examples/logs/paper_rig_ideal.csv", "--model", "steady"]).err.contains("warning [no-redundancy]"));
 }
 
 fn warns_of_conventions(document: &Value) -> Option<&str> {

@@ -20,10 +20,10 @@ fn files(directory: &TempDir) -> usize {
 #[test]
 fn identify_writes_a_page_beside_the_same_answer() {
     let (directory, path) = directory();
-    let run = fluxfit(&["identify", LOG, "--report", &path]);
+    let run = fluxfit(&["identify", LOG, "--model", "steady", "--report", &path]);
     assert_eq!(run.status, 0, "{}", run.err);
     assert!(run.err.contains(&format!("report: {path}")), "{}", run.err);
-    assert_eq!(run.out, fluxfit(&["identify", LOG]).out);
+    assert_eq!(run.out, fluxfit(&["identify", LOG, "--model", "steady"]).out);
     let page = fs::read_to_string(&path).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>"));
     for expected in ["Four of four parameters identified", "0.9610", "Warning: no-redundancy", "'"] {
@@ -67,7 +67,7 @@ fn a_page_that_cannot_be_written_costs_the_status_and_not_the_answer() {
     let missing = Path::new(&path).with_file_name("no").join("r.html").display().to_string();
     let run = fluxfit(&["identify", LOG, "--report", &missing]);
     assert_eq!(run.status, 2);
-    assert_eq!(run.out, fluxfit(&["identify", LOG]).out);
+    assert_eq!(run.out, fluxfit(&["identify", LOG, "--model", "steady"]).out);
     let sentence = run.err.lines().last().unwrap();
     assert!(sentence.starts_with(&format!("error: {missing}: ")) && sentence.contains("does not exist; create it"), "{}", run.err);
     assert_eq!(files(&directory), 0);
