@@ -4,6 +4,7 @@
 //! scenario file gives it.
 
 mod check;
+pub mod exact;
 mod reach;
 
 use crate::{

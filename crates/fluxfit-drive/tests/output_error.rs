@@ -4,7 +4,7 @@
 
 use fluxfit::{
     Columns, Log,
-    levenberg_marquardt::{self, Polished, jacobian, polish},
+    levenberg_marquardt::{Polished, polish},
     motor::{Motor, PARAMETERS},
     objective::{
         acting_voltage::{VoltageFrame, VoltageReading},
@@ -14,12 +14,13 @@ use fluxfit::{
     paper,
 };
 use fluxfit_drive::{
-    Scenario,
-    scenario::{Adc, Mechanics, Modulation},
-    schedule::{Course, Move},
+    scenario::{
+        Adc,
+        exact::{acceleration, small_motor},
+    },
     simulate,
 };
-use std::{f64::consts::TAU, path::Path};
+use std::path::Path;
 
 const NEXT_PERIOD: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
@@ -71,68 +72,12 @@ fn independent_logs_give_their_motor_and_their_timing() {
     }
 }
 
-/// The rig from 200 to 1500 r/min while i_d toggles; in the dark about the inverter, which is averaged and whose voltages are known.
-fn acceleration() -> Scenario {
-    let rpm = TAU / 60.0;
-    let mut scenario = Scenario::paper();
-    scenario.duration = 0.25;
-    scenario.inverter.modulation = Modulation::Averaged;
-    scenario.mechanics = Mechanics::Free { inertia: 0.01, friction: paper::FRICTION };
-    scenario.schedule.speed =
-        Course::new(vec![Move { at: 0.0, to: 200.0 * rpm, over: 0.0 }, Move { at: 0.03, to: 1500.0 * rpm, over: 0.2 }]);
-    scenario.schedule.load = Course::constant(1.0);
-    scenario.schedule.id =
-        Course::new((0..10).map(|k| Move { at: 0.025 * f64::from(k), to: if k % 2 == 0 { 0.0 } else { -2.0 }, over: 0.0 }).collect());
-    scenario.sensors.current_noise = 0.05;
-    scenario
-}
-
-/// Maximum likelihood reaches the Cramér–Rao bound: root-mean-square errors over the bound lie near 1. Of 100 draws the ratio's
-/// standard error is 1/sqrt(200) = 0.07; four of them.
-#[test]
-fn errors_are_those_of_the_bound() {
-    let scenario = acceleration();
-    let log = |draw| simulate(&scenario, draw, || ()).unwrap().log().unwrap();
-    let objective = OutputError::of(&log(0), VoltageReading::Centered).unwrap();
-    // Three sensors: sqrt(2/3) of a sensor's noise on each axis.
-    let variance = 0.05_f64.powi(2) * 2.0 / 3.0;
-    let slopes = jacobian(&objective, &paper::MOTOR.into(), &levenberg_marquardt::MOTOR);
-    let information = nalgebra::Matrix4::from_fn(|p, q| slopes[p].iter().zip(&slopes[q]).map(|(a, b)| a * b).sum::<f64>() / variance);
-    let bound = information.try_inverse().unwrap().diagonal().map(f64::sqrt);
-    let mut squares = [0.0; PARAMETERS];
-    const DRAWS: u64 = 100;
-    for draw in 0..DRAWS {
-        let found = polish(&OutputError::of(&log(draw), VoltageReading::Centered).unwrap(), &paper::MOTOR);
-        for (p, square) in squares.iter_mut().enumerate() {
-            *square += (found.drive.motor.to_array()[p] - paper::MOTOR.to_array()[p]).powi(2) / DRAWS as f64;
-        }
-    }
-    let ratios: [f64; PARAMETERS] = std::array::from_fn(|p| squares[p].sqrt() / bound[p]);
-    println!("root-mean-square error over the bound: {ratios:.3?}");
-    assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.28), "{ratios:?}");
-}
-
 /// The smallest motors of the field: 20 uH, samples at 20 kHz, 0.1 rad of turn between them, R_s T_s / L of 0.13.
 #[test]
 fn a_stiff_motor_at_speed_is_integrated_exactly() {
-    let motor = Motor { rs: 0.05, ld: 19e-6, lq: 23e-6, psi_f: 2e-3 };
-    let mut scenario = Scenario::paper();
-    scenario.motor.rs = motor.rs;
-    scenario.motor.magnetics = motor.into();
-    scenario.mechanics = Mechanics::Dyno;
-    scenario.duration = 0.1;
-    scenario.inverter.u_dc = 24.0;
-    scenario.inverter.carrier = 10e3;
-    scenario.inverter.modulation = Modulation::Averaged;
-    scenario.control.current_bandwidth = 500.0;
-    scenario.control.max_current = 30.0;
-    scenario.control.trip_current = 60.0;
-    scenario.schedule.load = Course::default();
-    scenario.schedule.speed = Course::constant(500.0);
-    scenario.schedule.iq =
-        Course::new((0..8).map(|k| Move { at: 0.012 * f64::from(k), to: [5.0, -5.0][k as usize % 2], over: 0.0 }).collect());
-    scenario.schedule.id =
-        Course::new((0..8).map(|k| Move { at: 0.006 + 0.012 * f64::from(k), to: [-8.0, 0.0][k as usize % 2], over: 0.0 }).collect());
+    let mut scenario = small_motor();
+    let motor = scenario.motor.unsaturated();
+    scenario.sensors.current_noise = 0.0;
     let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
     let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
     let rms = (objective.cost(&motor) / (2 * objective.rows()) as f64).sqrt();

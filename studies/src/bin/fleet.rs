@@ -1,14 +1,15 @@
 //! Many motors, each in a rig scaled to its rating: simulated, identified, counted.
 //!
-//! `fleet MOTORS.csv` reads one motor a row (`Ld_H, Lq_H, Rs_ohm, pole_pairs, psi_pm_Wb, Udc_V, I_nom_A, omega_e_nom_rad_s`). Each
-//! turns at half its nominal speed against half its rated torque, first with i_d = 0 and then with -0.2 of its rated current, under
-//! a switched inverter and with 0.5 % of the rated current as noise on each current sensor. One table: how many parameters were
-//! identified, and how many of those lie within four of their own standard errors of the truth; then the rest, with reasons.
+//! `fleet MOTORS.csv [--model steady|output-error]` reads one motor a row (`Ld_H, Lq_H, Rs_ohm, pole_pairs, psi_pm_Wb, Udc_V,
+//! I_nom_A, omega_e_nom_rad_s`). Each turns at half its nominal speed against half its rated torque, first with i_d = 0 and then
+//! with -0.2 of its rated current, under a switched inverter and with 0.5 % of the rated current as noise on each current sensor.
+//! One table: how many parameters were identified, and how many of those lie within four of their own standard errors of the truth;
+//! then the rest, with reasons.
 // The table on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
 use fluxfit::{
-    identify::{Identification, Settings, identify, verdict::Verdict},
+    identify::{Identification, Settings, identify, model::Model, verdict::Verdict},
     motor::{Motor, Parameter},
 };
 use fluxfit_drive::{
@@ -50,11 +51,16 @@ struct Rated {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let Some(path) = std::env::args_os().nth(1) else { return Err("give a file of motors: fleet MOTORS.csv".into()) };
-    let motors = read(Path::new(&path)).map_err(|error| format!("{}: {error}", Path::new(&path).display()))?;
-    let found: Vec<(&Rated, Result<Identification, String>)> = motors.par_iter().map(|rated| (rated, find(rated))).collect();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (path, model) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [path] | [path, "--model", "output-error"] => (Path::new(path), Model::OutputError),
+        [path, "--model", "steady"] => (Path::new(path), Model::Steady),
+        _ => return Err("give a file of motors: fleet MOTORS.csv [--model steady|output-error]".into()),
+    };
+    let motors = read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let found: Vec<(&Rated, Result<Identification, String>)> = motors.par_iter().map(|rated| (rated, find(rated, model))).collect();
     let answered: Vec<(&Rated, &Identification)> = found.iter().filter_map(|(rated, found)| Some((*rated, found.as_ref().ok()?))).collect();
-    println!("{} motors, {} simulated and identified\n", motors.len(), answered.len());
+    println!("{} motors, {} simulated and identified with {}\n", motors.len(), answered.len(), model.label());
     println!(
         "           identified   weak   not   within {STANDARD_ERRORS} standard errors   median error %   median standard error %   rms of error / statistical part"
     );
@@ -105,10 +111,10 @@ fn scenario(rated: &Rated) -> Scenario {
     }
 }
 
-fn find(rated: &Rated) -> Result<Identification, String> {
+fn find(rated: &Rated, model: Model) -> Result<Identification, String> {
     let recording = simulate(&scenario(rated), 0, || ()).map_err(|error| error.to_string())?;
     let log = recording.log().map_err(|error| error.to_string())?;
-    identify(&log, &Settings { method: None, ..Settings::default() }).map_err(|error| error.to_string())
+    identify(&log, &Settings { model: Some(model), ..Settings::default() }).map_err(|error| error.to_string())
 }
 
 /// The error of a parameter, and its standard error, as fractions of the truth.

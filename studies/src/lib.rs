@@ -1,0 +1,3 @@
+//! What a program of this crate shares with its test.
+
+pub mod coverage;
