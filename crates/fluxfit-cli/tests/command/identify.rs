@@ -152,14 +152,19 @@ fn what_is_known_beforehand_counts() {
         let interval = &document["parameters"][key]["ci95"];
         interval[1].as_f64().unwrap() - interval[0].as_f64().unwrap()
     };
-    let (_, free) = json(&["identify", NOISY]);
-    let (_, prior) = json(&["identify", NOISY, "--prior", "rs=0.958±0.1%"]);
-    let (_, fixed) = json(&["identify", NOISY, "--fix", "rs=0.958"]);
+    let (_, free) = json(&["identify", NOISY, "--model", "steady"]);
+    let (_, prior) = json(&["identify", NOISY, "--model", "steady", "--prior", "rs=0.958±0.1%"]);
+    let (_, fixed) = json(&["identify", NOISY, "--model", "steady", "--fix", "rs=0.958"]);
     assert_eq!(fixed["parameters"]["rs"]["value"], 0.958);
     for key in ["ld", "psi_f"] {
         assert!(half_width(&prior, key) < half_width(&free, key), "{key}");
         assert!(half_width(&fixed, key) <= half_width(&prior, key), "{key}");
     }
+    // Of simulated currents too, where they know R_s less well than a multimeter would.
+    let short = ["identify", NOISY, "--window", "0.3:0.4"];
+    let (_, free) = json(&short);
+    let (_, fixed) = json(&[&short[..], &["--fix", "rs=0.958"]].concat());
+    assert!(half_width(&fixed, "psi_f") < half_width(&free, "psi_f"));
     // A multimeter's R_s separates it from psi_f where one load does not.
     let (status, cured) = json(&["identify", NOISY, "--model", "steady", "--window", "0.48:0.595", "--prior", "rs=0.958±1%"]);
     assert_eq!(status, 1);

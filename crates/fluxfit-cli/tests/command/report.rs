@@ -65,7 +65,7 @@ fn the_command_on_the_page_makes_the_same_page() {
 fn a_page_that_cannot_be_written_costs_the_status_and_not_the_answer() {
     let (directory, path) = directory();
     let missing = Path::new(&path).with_file_name("no").join("r.html").display().to_string();
-    let run = fluxfit(&["identify", LOG, "--report", &missing]);
+    let run = fluxfit(&["identify", LOG, "--model", "steady", "--report", &missing]);
     assert_eq!(run.status, 2);
     assert_eq!(run.out, fluxfit(&["identify", LOG, "--model", "steady"]).out);
     let sentence = run.err.lines().last().unwrap();
