@@ -7,8 +7,9 @@
 //! C - C a a' C / (a' C a + variance)
 //! ```
 //!
-//! (R. E. Kalman, "A new approach to linear filtering and prediction problems", J. Basic Eng. 82 (1960) 35, doi:10.1115/1.3662552). The first
-//! proposal, in the order of how easy they are at the bench, that would make the parameter identified is the advice; else the best.
+//! (R. E. Kalman, "A new approach to linear filtering and prediction problems", J. Basic Eng. 82 (1960) 35, doi:10.1115/1.3662552).
+//! The first proposal, in the order of how easy they are at the bench, that would make the parameter identified is the advice; else
+//! the best.
 
 use super::verdict::IDENTIFIED;
 use crate::{

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! with Bartlett's weights and the lag `M` that minimizes the error if the scores were autoregressive of first order. W. K. Newey and
-//! K. D. West, Econometrica 55 (1987) 703, doi:10.2307/1913610; D. W. K. Andrews, Econometrica 59 (1991) 817, doi:10.2307/2938229, equations
-//! (5.1), (6.2) and (6.4). No lag reaches across a gap.
+//! K. D. West, Econometrica 55 (1987) 703, doi:10.2307/1913610; D. W. K. Andrews, Econometrica 59 (1991) 817, doi:10.2307/2938229,
+//! equations (5.1), (6.2) and (6.4). No lag reaches across a gap.
 
 use nalgebra::DMatrix;
 

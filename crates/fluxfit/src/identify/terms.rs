@@ -95,10 +95,12 @@ impl Outcome {
     }
 }
 
-/// Widths of the dead time's ramp that are tried, as fractions of the largest current: from next to nothing to a ripple nearly as large as the current.
+/// Widths of the dead time's ramp that are tried, as fractions of the largest current: from next to nothing to a ripple nearly as
+/// large as the current.
 const WIDTHS: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8];
 
-/// Least part of the residual's power that a term takes with it to be worth having when no parameter moves, or where the motor is disturbed.
+/// Least part of the residual's power that a term takes with it to be worth having when no parameter moves, or where the motor is
+/// disturbed.
 const NOTICEABLE: f64 = 0.02;
 
 /// Residuals below this fraction of the largest current are rounding and the model's own last digits: nothing to explain.
