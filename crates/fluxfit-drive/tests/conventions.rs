@@ -7,6 +7,7 @@ use fluxfit::{
         Known, Settings,
         conventions::{Convention, Nameplate, check},
         identify,
+        model::Model,
     },
     log::{Columns, Log},
     motor::{PARAMETERS, Parameter},
@@ -49,7 +50,7 @@ fn nameplate(factors: [f64; PARAMETERS]) -> Nameplate {
 }
 
 fn checked(log: &Log, nameplate: &Nameplate) -> Convention {
-    let settings = Settings { method: None, ..Settings::default() };
+    let settings = Settings { model: Some(Model::Steady), ..Settings::default() };
     let found = identify(log, &settings).unwrap();
     check(log, Some((&found, &settings.known)), nameplate)
 }
@@ -194,7 +195,7 @@ fn saturation_is_no_convention() {
 #[test]
 fn only_what_the_log_tells_is_compared() {
     let log = log([1.0; 3]);
-    let mut settings = Settings { method: None, ..Settings::default() };
+    let mut settings = Settings { model: Some(Model::Steady), ..Settings::default() };
     settings.known[0] = Known::Fixed(0.958);
     let found = identify(&log, &settings).unwrap();
     let compared = |nameplate: &Nameplate| check(&log, Some((&found, &settings.known)), nameplate);

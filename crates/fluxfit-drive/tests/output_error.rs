@@ -4,7 +4,7 @@
 
 use fluxfit::{
     Columns, Log,
-    levenberg_marquardt::{Polished, polish},
+    levenberg_marquardt::{MOTOR, Polished, jacobian, polish},
     motor::{Motor, PARAMETERS},
     objective::{
         acting_voltage::{VoltageFrame, VoltageReading},
@@ -130,5 +130,36 @@ fn a_cost_is_the_sum_of_its_squared_residuals_wherever_the_motor_is() {
         let direct: f64 = objective.residuals(&motor.into()).iter().map(|residual| residual * residual).sum();
         let cost = objective.cost(&motor);
         assert!(direct.is_finite() && (cost / direct - 1.0).abs() < 1e-6, "{motor:?}: {cost:e} {direct:e}");
+    }
+}
+
+/// What a volt at one row does to the answer, by the adjoint equations, is what happens when that row has a volt more.
+#[test]
+fn the_adjoint_tells_what_a_volt_does() {
+    let mut scenario = acceleration();
+    scenario.sensors.current_noise = 0.0;
+    let recording = simulate(&scenario, 0, || ()).unwrap();
+    // Commands act one period later as they stand: nothing is left over that would bend the cost.
+    let fit = |change: &dyn Fn(&mut Columns)| {
+        let mut columns = recording.columns.clone();
+        (columns.ud, columns.uq) = (recording.ud_ref.clone(), recording.uq_ref.clone());
+        change(&mut columns);
+        let objective = OutputError::of(&Log::new(columns).unwrap(), NEXT_PERIOD).unwrap();
+        let found = polish(&objective, &paper::MOTOR).drive;
+        (objective, found)
+    };
+    let (objective, drive) = fit(&|_| ());
+    let slopes = jacobian(&objective, &drive, &MOTOR);
+    let normal = nalgebra::Matrix4::from_fn(|p, q| slopes[p].iter().zip(&slopes[q]).map(|(a, b)| a * b).sum::<f64>());
+    let inverse = normal.try_inverse().unwrap();
+    const VOLT: f64 = 0.1;
+    for (parameter, row) in [(0, 700), (1, 400), (2, 1500), (3, 90)] {
+        let weights: Vec<f64> =
+            (0..slopes[0].len()).map(|k| (0..PARAMETERS).map(|q| inverse[(parameter, q)] * slopes[q][k]).sum()).collect();
+        let expected = VOLT * objective.by_voltage(&drive, &weights)[row].q;
+        let (_, above) = fit(&|columns| columns.uq[row] += VOLT);
+        let (_, below) = fit(&|columns| columns.uq[row] -= VOLT);
+        let found = 0.5 * (above.motor.to_array()[parameter] - below.motor.to_array()[parameter]);
+        assert!((found / expected - 1.0).abs() < 0.02, "{parameter} at {row}: {found:e} instead of {expected:e}");
     }
 }

@@ -1,8 +1,9 @@
 //! Validation: how well given parameters predict a log that they were not found from.
 //!
-//! [`validate`] lets the log answer for itself first: what it [identifies](crate::identify) is the reference, and what that leaves is the
-//! log's own noise. Then two questions are kept apart. *Is there a difference?* A [test](wald) of the given parameters against the
-//! log's own, with the covariance of both. *Does it matter?* The share of the current (or voltage) by which the predictions differ.
+//! [`validate`] lets the log answer for itself first: what it [identifies](mod@crate::identify) is the reference, and what that
+//! leaves is the log's own noise. Then two questions are kept apart. *Is there a difference?* A [test](wald) of the given
+//! parameters against the log's own, with the covariance of both. *Does it matter?* The share of the current (or voltage) by which
+//! the predictions differ.
 //!
 //! Parameters that the log cannot tell are not tested. They are taken as given, so that what hangs on them is tested under that
 //! condition: one load tells nothing of R_s and psi_f alone, but it tells psi_f for a given R_s.

@@ -41,7 +41,8 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     if let Ok(points) = fluxfit::identify::operating_points(&input.log, &settings) {
         settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &from_points(&points)?)?);
     }
-    let mut found = identify(&input.log, &settings).map_err(refuse)?;
+    let found = terminal::working(format!("fitting {} rows", input.log.rows()), || identify(&input.log, &settings));
+    let mut found = found.map_err(refuse)?;
     // Wrong units scale the answer of the operating points alone: the slope of a current knows the time.
     let of_points = identify(&input.log, &Settings { model: Some(Model::Steady), method: None, ..settings.clone() });
     let convention = conventions::check(&input.log, Some((of_points.as_ref().unwrap_or(&found), &settings.known)), &nameplate);

@@ -28,7 +28,8 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
         voltage_accuracy: arguments.voltage_accuracy,
         ..Settings::default()
     };
-    let found = validate(&input.log, &motor.given, &settings).map_err(|error| input::of_log(&input.name, error))?;
+    let found = terminal::working(format!("fitting {} rows", input.log.rows()), || validate(&input.log, &motor.given, &settings));
+    let found = found.map_err(|error| input::of_log(&input.name, error))?;
     let name = path.display().to_string();
     if arguments.log.json {
         terminal::print(&answer::to_text(&answer::validation(&input.log, &found)))?;

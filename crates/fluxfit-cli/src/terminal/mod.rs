@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
     io::{BufWriter, Write},
     path::Path,
+    time::Duration,
 };
 
 const ERROR: Style = AnsiColor::Red.on_default().bold();
@@ -66,6 +67,19 @@ pub(crate) fn progress(length: usize, what: &str, quiet: bool) -> ProgressBar {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}, {eta} left").unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::with_draw_target(Some(length as u64), target).with_style(style).with_message(what.to_owned())
+}
+
+/// Between two turns of a sign of life: fast enough to be seen moving.
+const TICK: Duration = Duration::from_millis(100);
+
+/// A sign of life on standard error, where that is a terminal, for work of unknown length; it goes when that is done.
+pub(crate) fn working<T>(what: String, work: impl FnOnce() -> T) -> T {
+    let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner());
+    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_style(style).with_message(what);
+    spinner.enable_steady_tick(TICK);
+    let done = work();
+    spinner.finish_and_clear();
+    done
 }
 
 /// A table without frame: a heading, and rows whose columns after the first `left` are aligned to the right.

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Its statistical uncertainty is that of its scores, the products of derivatives and residuals: `(J'J)^-1 S (J'J)^-1` with their
-//! [long-run covariance](super::long_run) `S`. The voltages' accuracy comes through the adjoint equations, which tell what a volt at any
+//! long-run covariance `S` (long_run.rs). The voltages' accuracy comes through the adjoint equations, which tell what a volt at any
 //! row does to each parameter.
 
 use super::{

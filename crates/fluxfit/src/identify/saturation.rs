@@ -76,6 +76,9 @@ pub struct Apparent {
 /// Currents below this fraction of the largest divide no flux: the quotient would be their own error.
 const LEAST_CURRENT: f64 = 0.05;
 
+/// Up to this fraction of the largest current a point's flux says something of the magnet.
+const LIGHT: f64 = 0.5;
+
 /// Operating points whose currents differ by less than this fraction of the largest say the same of saturation.
 const DISTINCT: f64 = 0.02;
 
@@ -189,7 +192,8 @@ impl Saturation {
             *spread = spread.max(distance.abs() + 2.0 * uncertainty.abs());
         };
         hold(Parameter::Rs, answer.rs - self.rs, self.rs_uncertainty);
-        let least = LEAST_CURRENT * self.fluxes.iter().flatten().map(|flux| flux.current.magnitude()).fold(0.0, f64::max);
+        let peak = self.fluxes.iter().flatten().map(|flux| flux.current.magnitude()).fold(0.0, f64::max);
+        let least = LEAST_CURRENT * peak;
         for Flux { current: i, psi, uncertainty, apparent_lq, .. } in self.fluxes.iter().flatten().filter(|flux| flux.is_told) {
             if let Some(lq) = apparent_lq {
                 hold(Parameter::Lq, lq - answer.lq, uncertainty.q / i.q);
@@ -197,7 +201,10 @@ impl Saturation {
             if i.d.abs() > least {
                 hold(Parameter::Ld, (psi.d - answer.psi_f) / i.d - answer.ld, uncertainty.d / i.d);
             }
-            hold(Parameter::PsiF, psi.d - answer.ld * i.d - answer.psi_f, uncertainty.d);
+            // The magnet's flux is what is left without current; what load takes from it by cross saturation is no other magnet.
+            if i.magnitude() <= LIGHT * peak {
+                hold(Parameter::PsiF, psi.d - answer.ld * i.d - answer.psi_f, uncertainty.d);
+            }
         }
         spread.map(|spread| spread / QUANTILE)
     }
