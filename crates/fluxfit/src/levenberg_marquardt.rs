@@ -26,7 +26,7 @@ const HOPELESS: f64 = 1e100;
 const NO_STEP: f64 = 1e-9;
 
 /// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
-const PATIENCE: usize = 8;
+const PATIENCE: usize = 4;
 
 /// What is known of an unknown beside the log: one more residual, `(value - x) weight`, A.
 #[derive(Debug, Clone, Copy, PartialEq)]

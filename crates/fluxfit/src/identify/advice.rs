@@ -11,7 +11,7 @@
 //! The first proposal, in the order of how easy they are at the bench, that would make the parameter identified is the advice; else
 //! the best.
 
-use super::verdict::IDENTIFIED;
+use super::verdict::{IDENTIFIED, WEAK};
 use crate::{
     frames::Dq,
     motor::{Motor, PARAMETERS, Parameter},
@@ -85,8 +85,8 @@ impl Advice {
                 _ => Some(one),
             });
         let (width, words) = best?;
-        // Less than half of what there is now is no advice.
-        (width < 0.5 * self.width(&self.covariance, parameter))
+        // What leaves more than half of what there is now, or no value at all, is no advice.
+        (width < (0.5 * self.width(&self.covariance, parameter)).min(WEAK))
             .then(|| format!("{words}: {} to about ±{}", parameter.symbol(), percent(width)))
     }
 

@@ -36,6 +36,14 @@ pub(super) fn explain_currents(parameter: Parameter, raw: f64, uncertainty: &Par
     if raw <= 0.0 && width < WEAK { negative(parameter) } else { wide(parameter, width, uncertainty.largest_part(), advice) }
 }
 
+/// Disturbances that may be faults of the drive.
+pub(super) fn explain_no_angle() -> (String, String) {
+    (
+        "something disturbs the motor, and without the electrical angle it cannot be told from dead time or unequal current sensors, which move every parameter".to_owned(),
+        "log theta_e too (electrical, as the drive uses it), or hold the drive still and use --model steady".to_owned(),
+    )
+}
+
 /// What the simulated currents miss is no noise.
 pub(super) fn explain_no_noise(correlation: f64) -> (String, String) {
     (

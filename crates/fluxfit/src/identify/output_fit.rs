@@ -19,7 +19,7 @@ use super::{
     terms::{self, Candidate, LEAST_RESIDUAL, Outcome, Term, inverse_normal},
     timing,
     uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
-    verdict::{self, Judgement},
+    verdict::{self, Judgement, Trust},
 };
 use crate::{
     error::Error,
@@ -62,6 +62,8 @@ pub struct OutputFit {
     pub redundancy: usize,
     /// Correlation of neighbouring residuals, the larger of both axes.
     pub correlation_of_neighbours: f64,
+    /// Whether the electrical angle was in the log and turned with the speed.
+    pub angle_known: bool,
     pub(super) uncertainty: Uncertainty,
     advice: Advice,
     /// Correlation of neighbours, zero where the residuals are too small to mean anything.
@@ -115,6 +117,7 @@ impl OutputFit {
             terms: tried,
             nuisance: errors.nuisance(&drive, &unknowns),
             stretches: objective.stretches().collect(),
+            angle_known: objective.angle_known(),
             redundancy: residuals.len().saturating_sub(unknowns.len()),
             correlation_of_neighbours: errors.correlation_of_neighbours,
             uncertainty,
@@ -158,7 +161,11 @@ impl OutputFit {
         settings: &Settings,
     ) -> ([Judgement; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]) {
         let uncertainty = self.uncertainty.clone().with_saturation(saturation, &self.drive.motor);
-        let parameters = verdict::judge_currents(&self.drive.motor, &uncertainty, &self.advice, self.correlation_beyond_rounding, settings);
+        let trust = Trust {
+            correlation_of_neighbours: self.correlation_beyond_rounding,
+            disturbed_without_angle: self.has(Term::ProcessNoise) && !self.angle_known,
+        };
+        let parameters = verdict::judge_currents(&self.drive.motor, &uncertainty, &self.advice, &trust, settings);
         (parameters, self.uncertainty.correlation)
     }
 
@@ -201,7 +208,7 @@ const CHOICE_ROWS: usize = 40_000;
 const PIECE_ROWS: usize = 5_000;
 
 /// Readings from which faults are looked for, where the first one leaves something unexplained: a fault may pass for a delay.
-const TRIED_READINGS: usize = 3;
+const TRIED_READINGS: usize = 2;
 
 /// Correlation of neighbours below which residuals are white enough.
 const WHITE: f64 = 0.1;
@@ -225,7 +232,10 @@ fn choose(log: &Log, stretches: &[Range<usize>], start: &Adjustable, free: Vec<U
             break;
         }
     }
-    best.ok_or(Error::TooShort { rows: log.rows(), least: 2 })
+    let mut best = best.ok_or(Error::TooShort { rows: log.rows(), least: 2 })?;
+    let readings = timing::readings(&objectives, &best.drive, &best.unknowns, &beliefs);
+    best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
+    Ok(best)
 }
 
 /// The faults that a log carries under a reading, and the reading that suits them.
@@ -238,7 +248,7 @@ fn with_faults(mut candidate: Candidate, objectives: &[(VoltageReading, OutputEr
     let independent = terms::independent(&residuals);
     Chosen {
         reading: *reading,
-        readings: timing::readings(objectives, &drive, &unknowns, beliefs).into_iter().map(|(_, tried)| tried).collect(),
+        readings: Vec::new(),
         independent,
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
         explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()

@@ -113,7 +113,10 @@ const WHOLE: f64 = 1.0;
 const MAX_ANGLE: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Least extra flux, as a fraction of an inductance over the range of its current, that is worth calling saturation.
-const LEAST_SATURATION: f64 = 0.01;
+const LEAST_SATURATION: f64 = 0.02;
+
+/// At half of the inductance the flux no longer grows at the largest current; some more is left to a formula that is no iron.
+const MOST_SATURATION: f64 = 0.8;
 
 impl Term {
     /// Those that a drive may have, sensors first; disturbances, which would explain any fault a little, are tried on their own.
@@ -201,8 +204,9 @@ impl Term {
                 let Dq { d, q } = nuisance.saturation;
                 let (d, q, cross) =
                     (d * peak / drive.motor.ld, q * peak / drive.motor.lq, nuisance.cross_saturation * peak / drive.motor.lq);
-                // Iron takes flux away; and what it takes is seen.
-                d.abs().max(q.abs()).max(cross.abs()) > LEAST_SATURATION
+                // Iron takes flux away, what it takes is seen, and more current never makes less flux.
+                let most = d.abs().max(q.abs()).max(cross.abs());
+                d.max(q) < LEAST_SATURATION && most > LEAST_SATURATION && most < MOST_SATURATION
             }
             Self::ProcessNoise => {
                 let Dq { d, q } = nuisance.observer_gain;

@@ -8,7 +8,7 @@ use super::{
     advice::Advice,
     estimate::Estimate,
     excitation::Excitation,
-    explain::{explain, explain_currents, explain_no_noise},
+    explain::{explain, explain_currents, explain_no_angle, explain_no_noise},
     uncertainty::{ParameterUncertainty, Uncertainty},
 };
 use crate::{
@@ -93,19 +93,45 @@ pub(super) fn judge_currents(
     motor: &Motor,
     uncertainty: &Uncertainty,
     advice: &Advice,
-    correlation_of_neighbours: f64,
+    trust: &Trust,
     settings: &Settings,
 ) -> [Judgement; PARAMETERS] {
     let mut judged =
         judge_motor(motor, uncertainty, settings, |parameter, raw, uncertainty| explain_currents(parameter, raw, uncertainty, advice));
-    if correlation_of_neighbours > NO_NOISE {
+    let why = if trust.correlation_of_neighbours > NO_NOISE {
+        Some(explain_no_noise(trust.correlation_of_neighbours))
+    } else {
+        trust.disturbed_without_angle.then(explain_no_angle)
+    };
+    if let Some((reason, remedy)) = why {
         for judgement in judged.iter_mut().filter(|judgement| judgement.verdict == Verdict::Identified && judgement.reason.is_none()) {
             judgement.verdict = Verdict::Weak;
-            let (reason, remedy) = explain_no_noise(correlation_of_neighbours);
-            (judgement.reason, judgement.remedy) = (Some(reason), Some(remedy));
+            (judgement.reason, judgement.remedy) = (Some(reason.clone()), Some(remedy.clone()));
+        }
+    }
+    // What no motor has is no accident of one parameter: the others come from the same fit.
+    if let Some(negative) =
+        judged.iter().position(|judgement| judgement.raw <= 0.0 && judgement.uncertainty.half_width < WEAK * judgement.raw.abs())
+    {
+        let symbol = judged[negative].parameter.symbol();
+        let remedy = judged[negative].remedy.clone();
+        for (p, judgement) in judged.iter_mut().enumerate() {
+            if p != negative && !matches!(settings.known[p], Known::Fixed(_)) && judgement.raw > 0.0 {
+                judgement.verdict = Verdict::NotIdentifiable;
+                judgement.reason = Some(format!("{symbol} came out negative, so nothing else of this fit is to be trusted"));
+                judgement.remedy = remedy.clone();
+            }
         }
     }
     judged
+}
+
+/// What speaks against a fit of simulated currents, whatever its intervals say.
+pub(super) struct Trust {
+    /// Correlation of neighbouring residuals.
+    pub(super) correlation_of_neighbours: f64,
+    /// An observer follows disturbances that nobody could ask for dead time or faults of the sensors.
+    pub(super) disturbed_without_angle: bool,
 }
 
 /// Correlation of neighbouring residuals from which on they are not noise: something is in the log that the model does not have, and

@@ -1,7 +1,12 @@
 //! Warnings: what the reader should know of the whole, whatever the verdicts.
 
 use super::{
-    Identification, Settings, conventions::three_digits, output_fit::OutputFit, saturation::Saturation, steady_fit::SteadyFit, terms::Term,
+    Identification, Settings,
+    conventions::three_digits,
+    output_fit::OutputFit,
+    saturation::{Apparent, Saturation},
+    steady_fit::SteadyFit,
+    terms::Term,
 };
 use crate::{
     log::Log,
@@ -32,7 +37,7 @@ pub(super) fn warnings(log: &Log, found: &Identification, settings: &Settings) -
             ("coarse-sampling", coarse_sampling(log, fit)),
         ]
     });
-    let of_currents = found.output.as_ref().map(|fit| [("process-noise", process_noise(fit))]);
+    let of_currents = found.output.as_ref().map(|fit| [("process-noise", process_noise(fit)), ("angle", angle(log, fit))]);
     let of_either = [
         ("saturation", found.saturation.as_ref().map(saturated)),
         ("low-speed", low_speed(log, found)),
@@ -138,8 +143,12 @@ fn dead_time(found: &SteadyFit) -> Option<String> {
     })
 }
 
+/// Change of an inductance that is worth two numbers.
+const VISIBLE: f64 = 0.01;
+
 fn saturated(saturation: &Saturation) -> String {
-    let lq = saturation.lq.map_or_else(String::new, |[least, most]| {
+    let visible = |[least, most]: &[Apparent; 2]| (most.inductance / least.inductance - 1.0).abs() >= VISIBLE;
+    let lq = saturation.lq.filter(visible).map_or_else(String::new, |[least, most]| {
         let (scale, unit) = if most.inductance.abs() < 1e-3 { (1e6, "uH") } else { (1e3, "mH") };
         let verb = if most.inductance < least.inductance { "falls" } else { "moves" };
         format!(
@@ -160,6 +169,14 @@ fn process_noise(found: &OutputFit) -> Option<String> {
     found.has(Term::ProcessNoise).then(|| {
         "voltages that the log does not hold disturb the motor: what the simulated currents miss depends on what went before; each row is \
          predicted from the row before instead, and the difference this makes is counted as uncertainty"
+            .to_owned()
+    })
+}
+
+fn angle(log: &Log, found: &OutputFit) -> Option<String> {
+    (log.columns().theta_e.is_some() && !found.angle_known).then(|| {
+        "theta_e does not turn with omega_e, so it was not used, and dead time and faults of the sensors were not looked for: is it the shaft's \
+         angle instead of the electrical one, or in degrees, or is the speed in another unit?"
             .to_owned()
     })
 }

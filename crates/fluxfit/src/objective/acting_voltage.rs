@@ -146,6 +146,9 @@ const ANGLE_MISFIT: f64 = 0.1;
 /// Share of the rows that may miss it, as where an index pulse sets the angle right.
 const MISFITS: f64 = 0.01;
 
+/// Part of the whole turn by which a logged speed may miss it: a filtered one lags at both ends.
+const WHOLE_MISFIT: f64 = 0.02;
+
 /// Rows to either side over which the steps of an encoder are averaged: what is left of uniform steps is a tenth or less, and the
 /// speed, which fills in between, need be right over so many rows only.
 const SMOOTHED: usize = 25;
@@ -169,7 +172,10 @@ pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
             misfits += usize::from((angle - expected).abs() > ANGLE_MISFIT);
             angles.push(angle);
         }
-        if misfits as f64 <= MISFITS * rows.len() as f64 {
+        // Of the shaft instead of the field, or of the other sense, it turns too little or backward on the whole.
+        let (whole, expected) = (angles[angles.len() - 1] - angles[0], summed[summed.len() - 1]);
+        let turns = (whole - expected).abs() <= WHOLE_MISFIT * expected.abs() + TAU;
+        if turns && misfits as f64 <= MISFITS * rows.len() as f64 {
             return Angles { rotor: smoothed(&angles, &summed), logged: angles, known: true };
         }
     }
