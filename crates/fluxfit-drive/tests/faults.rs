@@ -180,3 +180,17 @@ fn dead_time_that_takes_more_than_the_resistance() {
     holds("no dead time", &without, &truth, [2.0, 1.0, 1.0, 1.0]);
     assert!(Parameter::ALL.iter().all(|parameter| without.parameter(*parameter).verdict == Verdict::Identified));
 }
+
+/// Device drops in a log without the angle cannot be told from disturbances: nothing is identified, and what is said holds the truth.
+#[test]
+fn losses_without_an_angle_are_no_confident_number() {
+    let mut recording = rig(|scenario| (scenario.inverter.switch_drop, scenario.inverter.diode_drop) = (1.5, 1.0));
+    recording.columns.theta_e = None;
+    let found = found(&recording);
+    for judgement in &found.parameters {
+        println!("no angle: {} {:?} {:?}", judgement.parameter.key(), judgement.interval(), judgement.verdict);
+        assert_ne!(judgement.verdict, Verdict::Identified);
+        let truth = paper::MOTOR.get(judgement.parameter);
+        assert!(judgement.interval().is_none_or(|[low, high]| (low..=high).contains(&truth)), "{judgement:?}");
+    }
+}

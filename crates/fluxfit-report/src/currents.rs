@@ -87,7 +87,7 @@ fn whiteness(fit: &OutputFit) -> Markup {
     let band = BAND / (rows.max(1) as f64).sqrt();
     html! {
         h3 { "Is what is left noise?" }
-        p { (verdict(&correlations, band)) }
+        p { (verdict(&correlations, band, fit.leaves_something())) }
         (frame::figure(|size| autocorrelation::draw(&correlations, band, size), &html! {
             "Autocorrelation of the residuals at " (lags) " lags. Of white noise 95 in 100 stay within the grey band, ±2/√n = ±"
             (number(band, |band| significant(band, 2))) " for " (grouped(rows as u64)) " rows. Each figure has its own scale."
@@ -96,7 +96,7 @@ fn whiteness(fit: &OutputFit) -> Markup {
 }
 
 /// What a statistician would say of these correlations.
-fn verdict(correlations: &[Vec<f64>; 2], band: f64) -> Markup {
+fn verdict(correlations: &[Vec<f64>; 2], band: f64, leaves_something: bool) -> Markup {
     let lags = correlations[0].len() as f64;
     let allowed = BEYOND * lags + CHANCE * (lags * BEYOND * (1.0 - BEYOND)).sqrt();
     let beyond = |axis: usize| correlations[axis].iter().filter(|value| value.abs() > band).count();
@@ -110,6 +110,9 @@ fn verdict(correlations: &[Vec<f64>; 2], band: f64) -> Markup {
             strong { "White, as noise is: " }
             "of " (lags) " lags each, " (beyond(0)) " (d) and " (beyond(1)) " (q) lie beyond the band, where chance alone puts about "
             (format!("{:.0}", BEYOND * lags)) ". Nothing is left in the currents that lasts from row to row."
+        } @else if !leaves_something {
+            strong { "Too small to matter: " }
+            (residuals_of(white)) " are correlated, but less than 0.01 % of the largest current is missed: an inverter’s ripple, or rounding."
         } @else if slight {
             strong { "Almost white: " }
             (beyond(0)) " (d) and " (beyond(1)) " (q) of " (lags) " lags lie beyond the band, but none of the correlations is larger than "
@@ -139,7 +142,7 @@ mod tests {
     #[test]
     fn a_verdict_for_every_kind_of_residual() {
         let with = |beyond: usize, value: f64| -> Vec<f64> { (0..50).map(|lag| if lag < beyond { value } else { 0.01 }).collect() };
-        let of = |d: Vec<f64>, q: Vec<f64>| verdict(&[d, q], 0.02).into_string();
+        let of = |d: Vec<f64>, q: Vec<f64>| verdict(&[d, q], 0.02, true).into_string();
         assert!(of(with(6, 0.9), with(0, 0.0)).contains("White, as noise is"));
         assert!(of(with(7, -0.05), with(0, 0.0)).contains("none of the correlations is larger than \u{2212}0.050"));
         let text = of(with(0, 0.0), with(7, 0.9));

@@ -132,6 +132,11 @@ impl OutputFit {
         self.terms.iter().any(|tried| tried.term == term && tried.outcome == Outcome::Taken)
     }
 
+    /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.
+    pub fn leaves_something(&self) -> bool {
+        self.correlation_beyond_rounding != 0.0
+    }
+
     /// Root mean square of the residuals along d and q, A.
     pub fn residual_rms(&self) -> Dq {
         let (rows, _) = self.residuals.as_chunks::<2>();

@@ -96,6 +96,14 @@ impl ParameterUncertainty {
         Self { statistical, systematic, degrees_of_freedom, half_width: quantile(degrees_of_freedom) * standard_error }
     }
 
+    /// The same with so much misfit that the interval is at least as wide as this to either side, SI.
+    pub(super) fn no_sharper_than(self, half_width: f64) -> Self {
+        let Self { statistical, mut systematic, degrees_of_freedom, .. } = self;
+        // Student's t is never narrower than the normal distribution, so this part alone makes the interval that wide.
+        systematic.misfit = systematic.misfit.hypot(half_width / quantile(NORMAL));
+        Self::of(statistical, degrees_of_freedom, systematic)
+    }
+
     /// Both parts in quadrature.
     pub fn standard_error(&self) -> f64 {
         self.statistical.hypot(self.systematic.total())

@@ -106,6 +106,8 @@ pub(super) fn judge_currents(
     if let Some((reason, remedy)) = why {
         for judgement in judged.iter_mut().filter(|judgement| judgement.verdict == Verdict::Identified && judgement.reason.is_none()) {
             judgement.verdict = Verdict::Weak;
+            // The interval says what the verdict says: an interval from noise alone would be as sharp as it is wrong.
+            judgement.uncertainty = judgement.uncertainty.no_sharper_than(IDENTIFIED * judgement.raw.abs());
             (judgement.reason, judgement.remedy) = (Some(reason.clone()), Some(remedy.clone()));
         }
     }
