@@ -5,13 +5,13 @@
 use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageReading};
 use fluxfit_studies::coverage::Case;
 
-const DRAWS: usize = 40;
+const DRAWS: usize = 100;
 
-/// Of 40 draws more than 7 miss a 95 % interval in less than one case of a thousand: the binomial distribution.
-const MOST_MISSED: usize = 7;
+/// Of 100 draws more than 13 miss a 95 % interval in less than one case of a thousand: the binomial distribution.
+const MOST_MISSED: usize = 13;
 
 /// Four standard errors, 1/sqrt(2 N), of a root-mean-square error.
-const RATIO: f64 = 0.45;
+const RATIO: f64 = 0.29;
 
 /// The normal distribution's 95 %, in standard errors.
 const TWO_SIDED: f64 = 1.96;
