@@ -25,6 +25,10 @@ const EXIT_STATUS: &str = "Exit status: 0 everything asked for was identified, o
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// Show what is understood of a log: its layout, columns, units, repairs; and write a mapping file to start from
+    Inspect(Inspect),
+    /// List the layouts of logs that are known
+    Formats,
     /// See all of it on the paper's rig: simulate, identify, compare four methods, write a report
     Demo(Demo),
     /// Identify a motor: four parameters, each with an interval and a verdict
@@ -43,16 +47,8 @@ pub(crate) struct LogArguments {
     /// Logs of one motor, as CSV with a header; - is standard input
     #[arg(required = true, value_name = "LOG")]
     pub(crate) logs: Vec<PathBuf>,
-    /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed; canonical are t, ud, uq, id, iq, omega_e, and optionally
-    /// theta_e, u_dc
-    #[arg(long, value_name = "NAME=COLUMN,..", value_delimiter = ',', value_parser = fluxfit_files::parse_map)]
-    pub(crate) map: Vec<(String, String)>,
-    /// Units of columns, e.g. omega=rpm-mech,t=ms; without, the column's name or SI decides
-    #[arg(long, value_name = "NAME=UNIT,..", value_delimiter = ',', value_parser = fluxfit_files::parse_unit)]
-    pub(crate) unit: Vec<(String, Unit)>,
-    /// Pole pairs, for speeds and angles in mechanical units
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(crate) pole_pairs: Option<u32>,
+    #[command(flatten)]
+    pub(crate) columns: ColumnArguments,
     /// A steady window in seconds of the log's own time, e.g. 0.48:0.595; may be repeated; without, windows are found
     #[arg(long, value_name = "T0:T1", value_parser = fluxfit_files::parse_window, allow_hyphen_values = true)]
     pub(crate) window: Vec<(f64, f64)>,
@@ -74,6 +70,36 @@ pub(crate) struct LogArguments {
     /// Write the results as a page for a browser, beside the answer
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
+}
+
+/// What a log's columns mean.
+#[derive(Debug, Args)]
+pub(crate) struct ColumnArguments {
+    /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed; canonical are t, ud, uq, id, iq, omega_e, and optionally
+    /// theta_e, u_dc; or, with theta_e, the phases ia, ib, ic, ua, ub, uc
+    #[arg(long, value_name = "NAME=COLUMN,..", value_delimiter = ',', value_parser = fluxfit_files::parse_map)]
+    pub(crate) map: Vec<(String, String)>,
+    /// Units of columns, e.g. omega=rpm-mech,t=ms; without, the column's name or SI decides
+    #[arg(long, value_name = "NAME=UNIT,..", value_delimiter = ',', value_parser = fluxfit_files::parse_unit)]
+    pub(crate) unit: Vec<(String, Unit)>,
+    /// Pole pairs, for speeds and angles in mechanical units
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) pole_pairs: Option<u32>,
+    /// Mapping file: names, units, scales and signs of columns (fluxfit inspect writes one to start from)
+    #[arg(long, value_name = "MAPPING.toml")]
+    pub(crate) mapping: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Inspect {
+    /// A log; - is standard input
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    #[command(flatten)]
+    pub(crate) columns: ColumnArguments,
+    /// Write a mapping file that says what was understood, with places for what was not
+    #[arg(short, long, value_name = "MAPPING.toml")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

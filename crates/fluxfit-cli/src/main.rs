@@ -17,6 +17,8 @@ fn main() -> ExitCode {
     let command = arguments::Command::parse();
     let outcome = match &command.verb {
         arguments::Verb::Demo(arguments) => commands::demo::run(arguments),
+        arguments::Verb::Inspect(arguments) => commands::inspect::run(arguments),
+        arguments::Verb::Formats => commands::formats::run(),
         arguments::Verb::Identify(arguments) => commands::identify::run(arguments),
         arguments::Verb::Compare(arguments) => commands::compare::run(arguments),
         arguments::Verb::Simulate(arguments) => commands::simulate::run(arguments),

@@ -18,6 +18,14 @@ pub(crate) enum Channel {
     OmegaE,
     ThetaE,
     UDc,
+    IA,
+    IB,
+    IC,
+    UA,
+    UB,
+    UC,
+    /// Number of the run that a row belongs to: where it changes, time does not go on.
+    Run,
 }
 
 impl Channel {
@@ -26,6 +34,14 @@ impl Channel {
 
     /// Those that a log may have besides.
     pub(crate) const OPTIONAL: [Self; 2] = [Self::ThetaE, Self::UDc];
+
+    /// Those from which dq voltages and currents are made, with the angle.
+    pub(crate) const PHASES: [Self; 6] = [Self::UA, Self::UB, Self::UC, Self::IA, Self::IB, Self::IC];
+
+    /// All that a column can be.
+    pub(crate) fn all() -> impl Iterator<Item = Self> + Clone {
+        Self::NEEDED.into_iter().chain(Self::OPTIONAL).chain(Self::PHASES).chain([Self::Run])
+    }
 
     /// The canonical name.
     pub(crate) fn name(self) -> &'static str {
@@ -38,6 +54,13 @@ impl Channel {
             Self::OmegaE => "omega_e",
             Self::ThetaE => "theta_e",
             Self::UDc => "u_dc",
+            Self::IA => "ia",
+            Self::IB => "ib",
+            Self::IC => "ic",
+            Self::UA => "ua",
+            Self::UB => "ub",
+            Self::UC => "uc",
+            Self::Run => "run",
         }
     }
 
@@ -45,8 +68,9 @@ impl Channel {
     pub(crate) fn unit(self) -> Unit {
         match self {
             Self::T => Unit::Second,
-            Self::Ud | Self::Uq | Self::UDc => Unit::Volt,
-            Self::Id | Self::Iq => Unit::Ampere,
+            Self::Ud | Self::Uq | Self::UDc | Self::UA | Self::UB | Self::UC => Unit::Volt,
+            Self::Id | Self::Iq | Self::IA | Self::IB | Self::IC => Unit::Ampere,
+            Self::Run => Unit::Number,
             Self::OmegaE => Unit::RadianPerSecond,
             Self::ThetaE => Unit::Radian,
         }
@@ -67,6 +91,13 @@ impl Channel {
             Self::OmegaE => &["omega", "omegae", "omegael", "omegam", "speed", "velocity", "rpm", "erpm"],
             Self::ThetaE => &["theta", "thetae", "thetael", "thetam", "angle", "electricalangle", "rotorangle"],
             Self::UDc => &["udc", "vdc", "dcvoltage", "dclinkvoltage", "busvoltage", "vbus", "inputvoltage"],
+            Self::IA => &["ia", "iu", "i1", "currenta", "phaseacurrent"],
+            Self::IB => &["ib", "iv", "i2", "currentb", "phasebcurrent"],
+            Self::IC => &["ic", "iw", "i3", "currentc", "phaseccurrent"],
+            Self::UA => &["ua", "uu", "va", "v1", "u1", "voltagea", "phaseavoltage"],
+            Self::UB => &["ub", "uv", "vb", "v2", "u2", "voltageb", "phasebvoltage"],
+            Self::UC => &["uc", "uw", "vc", "v3", "u3", "voltagec", "phasecvoltage"],
+            Self::Run => &["run", "profileid"],
         }
     }
 
@@ -77,11 +108,12 @@ impl Channel {
             "theta" => return Ok(Self::ThetaE),
             _ => {}
         }
-        let known = Self::NEEDED.into_iter().chain(Self::OPTIONAL);
+        let known = Self::all();
         known.clone().find(|channel| channel.name() == name).ok_or_else(|| {
             let by_spelling = known.clone().find(|channel| channel.spellings().contains(&name)).map(Self::name);
-            let nearest = by_spelling.or_else(|| nearest(name, known.map(Self::name)));
-            let (needed, optional) = (Self::NEEDED.map(Self::name).to_vec(), Self::OPTIONAL.map(Self::name).to_vec());
+            let nearest = by_spelling.or_else(|| nearest(name, known.clone().map(Self::name)));
+            let needed = Self::NEEDED.map(Self::name).to_vec();
+            let optional = known.map(Self::name).filter(|name| !needed.contains(name)).collect();
             Problem::Channel { name: name.to_owned(), needed, optional, nearest }.into()
         })
     }
@@ -99,15 +131,15 @@ mod tests {
         let refusal = |name| Channel::from_name(name).unwrap_err().to_string();
         assert_eq!(
             refusal("speed"),
-            "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e and u_dc; did you mean omega_e?"
+            "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
         );
         assert_eq!(
             refusal("time"),
-            "\"time\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e and u_dc; did you mean t?"
+            "\"time\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean t?"
         );
         assert_eq!(
             refusal("flux_density"),
-            "\"flux_density\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e and u_dc"
+            "\"flux_density\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run"
         );
     }
 

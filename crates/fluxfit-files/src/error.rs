@@ -116,12 +116,22 @@ pub(crate) enum Problem {
     NoRows,
     #[error("{} are numbers where the header should be; put a line with the names of the columns above them", quote(.text))]
     NumbersForHeader { text: String },
-    #[error("{} has only {} and does not look like a header; delete this line{}", quote(.text), cells(*.count), also_lacking(.lacking))]
-    Title { text: String, count: usize, lacking: Vec<&'static str> },
     #[error("{} is only one column; separate the names, and the values, by comma, semicolon or tab", quote(.text))]
     OneColumn { text: String },
-    #[error("{}", missing_columns(.missing, .present, .proposals))]
-    Missing { missing: Vec<&'static str>, present: Vec<String>, proposals: Vec<(&'static str, String)> },
+    #[error("{}{}", missing_columns(.missing, .present, .proposals), no_measurements(.references))]
+    Missing { missing: Vec<&'static str>, present: Vec<String>, proposals: Vec<(&'static str, String)>, references: Vec<String> },
+    #[error(
+        "the name says that this is a reference, and what a drive asked for is not the current that flowed; name the measured current with --map {channel}=COLUMN, or log it"
+    )]
+    Reference { channel: &'static str },
+    #[error("this is a file of the layout '{layout}': {reason}")]
+    NoLog { layout: &'static str, reason: &'static str },
+    #[error(
+        "ud, uq, id, iq and omega_e all have a mean near 0 and a standard deviation near 1: the file is standardized, its values are not in V, A and rad/s; identify from the original"
+    )]
+    Standardized,
+    #[error("the wanted columns are of different lengths and no times tell how they belong together: {}; give each its time, or equal lengths", list(.lengths))]
+    Lengths { lengths: Vec<String> },
     #[error("the header names this column {count} times; rename or remove all but one")]
     Duplicate { count: usize },
     #[error("the columns {} could each be {channel}; choose one with --map {channel}=COLUMN", columns(.headers))]
@@ -138,11 +148,9 @@ pub(crate) enum Problem {
     PolePairs { what: &'static str, channel: &'static str, unit: &'static str, electrical: &'static str },
 
     // The rows of a log
-    #[error("{} looks like a row of units; delete this line and say with --unit which columns are not in SI units", quote(.text))]
-    UnitsRow { text: String },
     #[error("the row has {} where the header has {expected}; {}", cells(*.found), row_remedy(*.found > *.expected, *.multiline))]
     RowLength { found: usize, expected: usize, multiline: bool },
-    #[error("the cell is empty; write a number or remove the row")]
+    #[error("the cell holds no value; write a number or remove the row")]
     EmptyCell,
     #[error("{} is not a number; correct it or remove the row", quote(.text))]
     NotANumber { text: String },
@@ -150,6 +158,8 @@ pub(crate) enum Problem {
     ClockTime { text: String },
     #[error("{} does not have the decimal mark of line {other}; use one mark throughout, and no thousands separators", quote(.text))]
     DecimalMarks { text: String, other: u64 },
+    #[error("this cell does not have the decimal mark of line {other}; use one mark throughout, and no thousands separators")]
+    OtherMark { other: u64 },
     #[error("{0}")]
     Log(fluxfit::error::Error),
 
@@ -232,12 +242,16 @@ fn missing_map_columns(missing: &[&str], present: &[String]) -> String {
     format!("{what}, and a flux map needs id, iq in A, psi_d, psi_q in Wb")
 }
 
-fn cells(count: usize) -> String {
-    if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") }
+fn no_measurements(references: &[String]) -> String {
+    match references {
+        [] => String::new(),
+        [one] => format!("; '{}' is a reference, not the current that flowed", shorten(one)),
+        several => format!("; {} are references, not the currents that flowed", columns(several)),
+    }
 }
 
-fn also_lacking(lacking: &[&str]) -> String {
-    if lacking.is_empty() { String::new() } else { format!("; the next one names nothing like {}, which are needed too", list(lacking)) }
+fn cells(count: usize) -> String {
+    if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") }
 }
 
 fn row_remedy(too_many: bool, multiline: bool) -> &'static str {
@@ -281,6 +295,6 @@ mod tests {
     #[test]
     fn the_innermost_place_stays() {
         let error = FileError::from(Problem::EmptyCell).at_line(3).at_line(1).in_file("a").in_file("b");
-        assert_eq!(error.to_string(), "a, line 3: the cell is empty; write a number or remove the row");
+        assert_eq!(error.to_string(), "a, line 3: the cell holds no value; write a number or remove the row");
     }
 }

@@ -17,6 +17,21 @@ pub(crate) fn name(path: &Path) -> String {
     if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
+/// The file, to be read from its beginning.
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Read>, FileError> {
+    if is_standard(path) {
+        return Ok(Box::new(io::stdin()));
+    }
+    let file = fs::File::open(path).and_then(|file| {
+        // Opening a directory succeeds on some systems.
+        if file.metadata()?.is_dir() { Err(io::ErrorKind::IsADirectory.into()) } else { Ok(file) }
+    });
+    match file {
+        Ok(file) => Ok(Box::new(file)),
+        Err(error) => Err(FileError::from(io_problem("reading", &error)).in_file(&name(path))),
+    }
+}
+
 /// The whole file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let bytes = if is_standard(path) {

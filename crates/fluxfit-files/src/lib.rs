@@ -18,7 +18,8 @@
 //!
 //! | file | concept |
 //! |---|---|
-//! | [`csv`] | a log from a table of text, whatever its dialect |
+//! | [`reading`] | a log from a table: its layout, its columns, its repairs |
+//! | `csv` | a table of text, whatever its dialect |
 //! | [`mod@unit`] | units of a log's columns: given, or named by the header |
 //! | [`quantity`] | numbers with units, as people write them |
 //! | [`number`] | numbers with units, as people read them |
@@ -35,7 +36,7 @@
 pub mod answer;
 pub mod argument;
 mod channel;
-pub mod csv;
+mod csv;
 pub mod error;
 pub mod given_motor;
 mod input;
@@ -43,6 +44,7 @@ pub mod motor_file;
 pub mod number;
 pub mod output;
 pub mod quantity;
+pub mod reading;
 pub mod recording;
 pub mod scenario_file;
 mod toml_table;
@@ -51,12 +53,18 @@ pub mod unit;
 mod wording;
 
 pub use argument::{parse_bounds, parse_fix, parse_map, parse_prior, parse_unit, parse_window};
-pub use csv::{LogOptions, ReadLog, parse_log, read_log};
 pub use error::FileError;
 pub use given_motor::{GivenMotor, read_given_motor};
 pub use motor_file::{MotorFile, Rating, read_motor};
 pub use output::{Output, check_writable, is_replaceable, write_atomically};
 pub use quantity::{Dimension, parse_quantity};
+pub use reading::{
+    LogOptions, ReadLog,
+    inspect::{Inspection, inspect},
+    layout::{LAYOUTS, Layout},
+    mapping::{Mapping, read_mapping},
+    parse_log, read_log,
+};
 pub use recording::write_recording;
 pub use scenario_file::{ReadScenario, paper_scenario, read_scenario};
 pub use truth::{Truth, read_truth, truth_of, truth_path};

@@ -40,6 +40,8 @@ pub enum Unit {
     RadianMechanical,
     /// Mechanical degrees.
     DegreeMechanical,
+    /// Without a unit.
+    Number,
 }
 
 /// Whether a header says which speed or angle it means.
@@ -63,7 +65,7 @@ pub(crate) enum Named<'a> {
 
 impl Unit {
     /// All of them; of each dimension the SI unit first.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Second,
         Self::Millisecond,
         Self::Microsecond,
@@ -81,6 +83,7 @@ impl Unit {
         Self::Degree,
         Self::RadianMechanical,
         Self::DegreeMechanical,
+        Self::Number,
     ];
 
     /// Name on the command line, name in prose, dimension, SI units in one (of mechanical units: for one pole pair).
@@ -103,6 +106,7 @@ impl Unit {
             Self::Degree => ("deg", "electrical degrees", Dimension::Angle, PI / 180.0),
             Self::RadianMechanical => ("rad-mech", "mechanical rad", Dimension::Angle, 1.0),
             Self::DegreeMechanical => ("deg-mech", "mechanical degrees", Dimension::Angle, PI / 180.0),
+            Self::Number => ("1", "1", Dimension::Ratio, 1.0),
         }
     }
 
@@ -206,6 +210,16 @@ pub(crate) fn in_header(header: &str, dimension: Dimension) -> (&str, Named<'_>)
         Some(unit) if header.len() > 1 => ("", Named::Unit(unit)),
         _ => (header, Named::Nothing),
     }
+}
+
+/// What a unit of a row of units, or of a container, says of a column with this name.
+pub(crate) fn in_units_row<'a>(text: &'a str, header: &str, dimension: Dimension) -> Named<'a> {
+    let bare = text.trim().trim_matches(['[', ']', '(', ')']);
+    let side = match (side(text), side(header)) {
+        (Side::Unsaid, of_header) => of_header,
+        (of_text, _) => of_text,
+    };
+    Unit::spelled(bare, dimension, side).map_or(Named::Unknown(text), Named::Unit)
 }
 
 /// Whether a header says that it is electrical rather than leaving it to custom.

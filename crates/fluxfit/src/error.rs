@@ -101,6 +101,11 @@ pub enum Error {
         /// Values allowed.
         range: &'static str,
     },
+    /// Rows that were interpolated, where the output error needs those of one instant.
+    #[error(
+        "the log's channels were sampled at different instants, so no row is one instant of the drive and the output error means nothing; leave --model at auto or steady, or log all channels together"
+    )]
+    Interpolated,
     /// Every parameter was given.
     #[error("all four parameters are fixed; leave at least one to be identified")]
     NothingToIdentify,

@@ -88,6 +88,7 @@ const GAP_FACTOR: f64 = 2.5;
 pub struct Log {
     columns: Columns,
     segments: Vec<Segment>,
+    interpolated: bool,
 }
 
 /// Rows without a gap between them.
@@ -133,7 +134,7 @@ impl Log {
         }
         let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| resolution::step(column));
         let segments = split(&columns.t, steps);
-        Ok(Self { columns, segments })
+        Ok(Self { columns, segments, interpolated: false })
     }
 
     /// Several logs of one motor as one; no segment reaches from one into the next.
@@ -150,6 +151,7 @@ impl Log {
                 log: number,
                 ..segment
             }));
+            joined.interpolated |= log.interpolated;
             joined.columns.append(log.columns);
         }
         Ok(joined)
@@ -165,9 +167,20 @@ impl Log {
         let (first, rest) = self.segments.split_at(at);
         let rest = rest.iter().map(|segment| Segment { rows: segment.rows.start - row..segment.rows.end - row, log: 0, ..segment.clone() });
         Some((
-            Self { columns: self.columns.of_rows(0..row), segments: first.to_vec() },
-            Self { columns: self.columns.of_rows(row..self.rows()), segments: rest.collect() },
+            Self { columns: self.columns.of_rows(0..row), segments: first.to_vec(), interpolated: self.interpolated },
+            Self { columns: self.columns.of_rows(row..self.rows()), segments: rest.collect(), interpolated: self.interpolated },
         ))
+    }
+
+    /// The same log, whose channels were sampled at different instants and interpolated onto common ones: its rows never were one
+    /// instant of the drive, so only its steady stretches mean anything.
+    pub fn of_different_instants(self) -> Self {
+        Self { interpolated: true, ..self }
+    }
+
+    /// Whether the channels were interpolated onto common instants.
+    pub fn is_interpolated(&self) -> bool {
+        self.interpolated
     }
 
     /// The columns.

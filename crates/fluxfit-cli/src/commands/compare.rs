@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let input = input::read(&arguments.log)?;
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
     let mut problem = problem(arguments, &input.log).map_err(|error| input::of_log(&input.name, error))?;
-    let bounds = input::search_box(&arguments.log, &input.motor, &problem.bounds)?;
+    let bounds = input::search_box(&arguments.log, &input, &problem.bounds)?;
     let settings = search_settings(arguments, &problem.fitness)?;
 
     let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &mut problem.fitness, arguments.log.json)?;

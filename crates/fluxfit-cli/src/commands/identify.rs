@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let mut input = input::read(&arguments.log)?;
     let held_out = if arguments.hold_out { Some(hold_out(&mut input)?) } else { None };
     let mut settings = settings(arguments)?;
-    let nameplate = input::nameplate(&arguments.log, &input.motor);
+    let nameplate = input::nameplate(&input);
     let refuse = |error: Error| {
         // A log without an operating point may be one in the wrong units: its rows still say so.
         conventions::check(&input.log, None, &nameplate)
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     };
     settings.method = searcher(arguments, &input.log, &settings);
     if let Ok(points) = fluxfit::identify::operating_points(&input.log, &settings) {
-        settings.bounds = Some(input::search_box(&arguments.log, &input.motor, &from_points(&points)?)?);
+        settings.bounds = Some(input::search_box(&arguments.log, &input, &from_points(&points)?)?);
     }
     let found = terminal::working(format!("fitting {} rows", input.log.rows()), || identify(&input.log, &settings));
     let mut found = found.map_err(refuse)?;

@@ -1,7 +1,7 @@
 //! What both verbs read: the logs as one, the motor file, the search box.
 
 use crate::{
-    arguments::{LogArguments, by_parameter},
+    arguments::{ColumnArguments, LogArguments, by_parameter},
     error::CommandError,
     terminal,
 };
@@ -12,7 +12,7 @@ use fluxfit::{
     motor::Parameter,
     optimizer::bounds::Bounds,
 };
-use fluxfit_files::{LogOptions, MotorFile, read_log, read_motor};
+use fluxfit_files::{LogOptions, MotorFile, read_log, read_mapping, read_motor};
 use std::path::Path;
 
 /// The logs, joined, and the motor file.
@@ -23,6 +23,8 @@ pub(crate) struct Input {
     pub(crate) name: String,
     /// What reading them had to infer.
     pub(crate) notes: Vec<String>,
+    /// Pole pairs, from whoever tells them.
+    pub(crate) pole_pairs: Option<u32>,
 }
 
 /// Reads everything that the arguments name; what was inferred is said on standard error.
@@ -36,8 +38,7 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     if arguments.logs.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
         return Err(CommandError::Usage("standard input can be read only once; give - once".to_owned()));
     }
-    let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
-    let options = LogOptions { map: arguments.map.clone(), units: arguments.unit.clone(), pole_pairs };
+    let options = options(&arguments.columns, motor.pole_pairs)?;
     let (mut logs, mut notes) = (Vec::new(), Vec::new());
     for path in &arguments.logs {
         let read = read_log(path, &options)?;
@@ -46,24 +47,30 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     }
     notes.iter().for_each(|note| terminal::note(note));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
-    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", "), notes })
+    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", "), notes, pole_pairs: options.pole_pairs })
+}
+
+/// What the reader is told; the motor file's pole pairs count where nothing else tells them.
+pub(crate) fn options(arguments: &ColumnArguments, of_motor: Option<u32>) -> Result<LogOptions, CommandError> {
+    let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?.unwrap_or_default();
+    let pole_pairs = arguments.pole_pairs.or(mapping.pole_pairs).or(of_motor);
+    Ok(LogOptions { map: arguments.map.clone(), units: arguments.unit.clone(), pole_pairs, mapping })
 }
 
 /// What the motor file says of the motor, for the check of conventions.
-pub(crate) fn nameplate(arguments: &LogArguments, motor: &MotorFile) -> Nameplate {
-    let MotorFile { rs, ld, lq, psi_f, pole_pairs, .. } = *motor;
-    Nameplate { values: [rs, ld, lq, psi_f], pole_pairs: arguments.pole_pairs.or(pole_pairs) }
+pub(crate) fn nameplate(input: &Input) -> Nameplate {
+    let MotorFile { rs, ld, lq, psi_f, .. } = input.motor;
+    Nameplate { values: [rs, ld, lq, psi_f], pole_pairs: input.pole_pairs }
 }
 
 /// The search box: what `--bounds` names; the rest is what the log allows, or the rating where that is larger.
-pub(crate) fn search_box(arguments: &LogArguments, motor: &MotorFile, of_log: &Bounds) -> Result<Bounds, CommandError> {
+pub(crate) fn search_box(arguments: &LogArguments, input: &Input, of_log: &Bounds) -> Result<Bounds, CommandError> {
     let given: Vec<(Parameter, (f64, f64))> =
         arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
     let given = by_parameter(&given, "--bounds")?;
     let mut rest: Vec<(f64, f64)> = of_log.iter().collect();
-    let pole_pairs = arguments.pole_pairs.or(motor.pole_pairs);
-    if let (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) =
-        (motor.rating.voltage, motor.rating.current, motor.rating.speed, pole_pairs)
+    let rating = &input.motor.rating;
+    if let (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) = (rating.voltage, rating.current, rating.speed, input.pole_pairs)
     {
         let rated = search_box::from_rating(voltage, current, speed * f64::from(pole_pairs))?;
         rest.iter_mut().zip(rated.iter()).for_each(|(side, rated)| side.1 = side.1.max(rated.1));
@@ -80,6 +87,7 @@ pub(crate) fn of_log(name: &str, error: Error) -> CommandError {
     }
 }
 
-fn name(path: &Path) -> String {
+/// The file's name in a message.
+pub(crate) fn name(path: &Path) -> String {
     if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
 }

@@ -2,8 +2,10 @@
 
 pub(crate) mod compare;
 pub(crate) mod demo;
+pub(crate) mod formats;
 pub(crate) mod identify;
 mod input;
+pub(crate) mod inspect;
 mod report;
 pub(crate) mod simulate;
 pub(crate) mod validate;

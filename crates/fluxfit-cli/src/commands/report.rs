@@ -32,7 +32,7 @@ pub(crate) fn write(path: Option<&Path>, seed: u64, report: impl FnOnce(&Origin)
     let Some(path) = path else { return Ok(()) };
     let origin = Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed };
     write_atomically(path, report(&origin).as_bytes())?;
-    terminal::wrote(path);
+    terminal::wrote("report", path);
     Ok(())
 }
 

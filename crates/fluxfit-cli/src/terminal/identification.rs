@@ -57,7 +57,7 @@ fn read(log: &Log, found: &Identification) -> String {
     format!("{} rows at {rate}, {} s in {}; {used}", log.rows(), significant(log.duration(), 3), count(log.segments().len(), "segment"),)
 }
 
-fn frequency(hertz: f64) -> String {
+pub(super) fn frequency(hertz: f64) -> String {
     if hertz >= 1000.0 { format!("{} kHz", significant(hertz / 1000.0, 3)) } else { format!("{} Hz", significant(hertz, 3)) }
 }
 

@@ -1,7 +1,9 @@
 //! What a person sees. Answers on standard output, everything else on standard error; colour only where it is wanted (a terminal,
 //! and no `NO_COLOR`).
 
+pub(crate) mod formats;
 pub(crate) mod identification;
+pub(crate) mod inspection;
 mod plot;
 pub(crate) mod simulation;
 pub(crate) mod study;
@@ -52,9 +54,11 @@ pub(crate) fn note(message: &str) {
     say(&format!("{DIM}note:{DIM:#} {message}"));
 }
 
-/// Says that a report was written.
-pub(crate) fn wrote(report: &Path) {
-    say(&format!("{DIM}report:{DIM:#} {}", report.display()));
+/// Says that a file was written, and what it is.
+pub(crate) fn wrote(what: &str, file: &Path) {
+    if file.as_os_str() != "-" {
+        say(&format!("{DIM}{what}:{DIM:#} {}", file.display()));
+    }
 }
 
 fn say(line: &str) {

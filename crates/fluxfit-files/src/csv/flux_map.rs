@@ -28,7 +28,7 @@ fn parse(text: &str) -> Result<FluxMap, FileError> {
     let header = header::find(text, &mut Vec::new())?;
     let (mut points, mut starts) = (Vec::new(), Vec::new());
     let columns = columns(&header)?;
-    let mut reader = rows::reader(&text[header.body..], header.separator);
+    let mut reader = rows::reader(&text.as_bytes()[header.body..], header.separator);
     let mut record = ByteRecord::new();
     while rows::next(&mut reader, &mut record)? {
         let start = header.body + rows::offset(&record);

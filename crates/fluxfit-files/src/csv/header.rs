@@ -1,23 +1,61 @@
 //! Where the header is, and what separates its names.
 
-use super::{resemblance, rows};
-use crate::error::{FileError, Problem};
+use super::rows;
+use crate::{
+    error::{FileError, Problem},
+    input,
+    wording::{list, quote},
+};
 
 /// The names of a table's columns, and where its rows begin.
 pub(super) struct Header {
     /// Without spaces and quotes, and without the empty names of trailing separators.
     pub(super) names: Vec<String>,
+    /// What a row below the names says of their units; empty without such a row.
+    pub(super) units: Vec<String>,
     /// Line, from 1.
     pub(super) line: u64,
     pub(super) separator: u8,
-    /// Offset of the first byte below.
+    /// Offset of the first byte below, and its line.
     pub(super) body: usize,
+    pub(super) body_line: u64,
 }
 
-/// Finds the header: the first line that is neither blank nor a comment.
+/// Most lines of titles above a header.
+const TITLES: usize = 20;
+
+/// Longest unit in a row of units, in characters: `electrical rad/s`.
+const LONGEST_UNIT: usize = 16;
+
+/// Finds the header: the first line that is neither blank, a comment nor a title; and the row of units below it, if there is one.
 pub(super) fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
+    let mut header = names(text, notes)?;
+    if let Some((units, end)) = units(text, &header) {
+        notes.push(format!("line {} is a row of units", rows::line_of(text, header.body)));
+        header.units = units;
+        header.body = end;
+    }
+    header.body_line = input::line_at(text.as_bytes(), header.body);
+    Ok(header)
+}
+
+/// A row of short texts and no number, above one with numbers; and where it ends.
+fn units(text: &str, header: &Header) -> Option<(Vec<String>, usize)> {
+    let record = |from: usize| {
+        let (start, line) = lines(&text[from..]).find(|(_, line)| !line.trim().is_empty())?;
+        Some((rows::first_record(line, header.separator).0, from + start + line.len()))
+    };
+    let (cells, end) = record(header.body)?;
+    let (below, _) = record(end)?;
+    let is_unit = |cell: &String| !is_number(cell, header.separator) && cell.chars().count() <= LONGEST_UNIT;
+    let is_row = cells.iter().all(is_unit) && cells.iter().filter(|cell| !cell.is_empty()).count() > 1;
+    (is_row && cells.len() <= header.names.len() && below.iter().any(|cell| is_number(cell, header.separator))).then_some((cells, end))
+}
+
+fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     let mut comment = None;
     let mut told_separator = None;
+    let mut titles = Vec::new();
     let mut lines = lines(text);
     let (start, first) = loop {
         let (start, line) = lines.next().ok_or(Problem::NoHeader)?;
@@ -27,21 +65,30 @@ pub(super) fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileEr
         } else if let Some(separator) = told_by_spreadsheet(line) {
             told_separator = Some(separator);
         } else if !trimmed.trim_matches([',', ';', ' ', '\t']).is_empty() {
+            if titles.len() < TITLES && is_title(text, start, line) {
+                titles.push(quote(trimmed));
+                continue;
+            }
             break (start, line);
         }
     };
+    if !titles.is_empty() {
+        notes.push(format!("taken for titles above the header: {}", list(&titles)));
+    }
     let separator = told_separator.unwrap_or_else(|| sniff(first));
     let header = at(text, start, separator);
     if header.names.len() > 1 && header.names.iter().all(|name| is_number(name, separator)) {
         return from_comment(text, comment, start, &header, notes);
     }
-    refuse_title(text, first, &header)?;
+    if header.names.len() < 2 {
+        return Err(FileError::from(Problem::OneColumn { text: first.trim().to_owned() }).at_line(header.line));
+    }
     Ok(header)
 }
 
 fn at(text: &str, start: usize, separator: u8) -> Header {
     let (names, length) = rows::first_record(&text[start..], separator);
-    Header { names, line: rows::line_of(text, start), separator, body: start + length }
+    Header { names, units: Vec::new(), line: rows::line_of(text, start), separator, body: start + length, body_line: 0 }
 }
 
 /// Some tools write the header as the last comment above the rows.
@@ -59,32 +106,25 @@ fn from_comment(
         if names.len() == first.names.len() && names.iter().all(|name| !is_number(name, separator)) {
             let line = rows::line_of(text, start);
             notes.push(format!("the names of the columns were taken from the comment in line {line}"));
-            return Ok(Header { names, line, separator: first.separator, body });
+            return Ok(Header { names, units: Vec::new(), line, separator: first.separator, body, body_line: 0 });
         }
     }
     let problem = Problem::NumbersForHeader { text: first.names.join(", ") };
     Err(FileError::from(problem).at_line(first.line))
 }
 
-/// A title or a timestamp above the header: one cell, or one that begins with a digit, above a line of more cells. Says as well
-/// what the line below lacks, lest deleting the title is a waste of time.
-fn refuse_title(text: &str, first: &str, header: &Header) -> Result<(), FileError> {
+/// A title or a timestamp above the header: one cell, or one that begins with a digit, above a line of more cells.
+fn is_title(text: &str, start: usize, line: &str) -> bool {
+    let header = at(text, start, sniff(line));
     let cells = header.names.len();
-    let dated = header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()));
+    let dated =
+        header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name, header.separator));
     if cells > 1 && !dated {
-        return Ok(());
+        return false;
     }
     let below = lines(&text[header.body..]).find(|(_, line)| !line.trim().is_empty());
     let below = below.map(|(_, line)| rows::first_record(line, sniff(line)).0).unwrap_or_default();
-    let problem = if below.len() > cells {
-        let lacking = if below.iter().any(|name| is_number(name, b',')) { Vec::new() } else { resemblance::lacking(&below) };
-        Problem::Title { text: first.trim().to_owned(), count: cells, lacking }
-    } else if cells > 1 {
-        return Ok(());
-    } else {
-        Problem::OneColumn { text: first.trim().to_owned() }
-    };
-    Err(FileError::from(problem).at_line(header.line))
+    below.len() > cells
 }
 
 /// `sep=;`, which spreadsheets write and obey.

@@ -1,246 +1,257 @@
-//! The rows: six numbers of each, those of the optional columns, and where it begins in the file.
+//! The rows: the wanted cells of each as numbers, and the line that it stands in.
 
-use super::{
-    columns::{Chosen, left_out},
-    header::Header,
-};
+use super::{header::Header, text::Text};
 use crate::{
-    channel::Channel,
     error::{FileError, Problem},
     input::line_at,
+    reading::table::{Block, Wanted},
 };
 use ::csv::{ByteRecord, Reader, ReaderBuilder};
 
-/// The columns as they are written, not yet in SI units.
-pub(super) struct Rows<'a> {
-    /// In the order of [`Channel::NEEDED`].
-    pub(super) values: [Vec<f64>; 6],
-    pub(super) optional: Vec<(&'a Chosen, Vec<f64>)>,
-    /// Offset of each row in the text; its line is counted only when somebody asks.
-    pub(super) starts: Vec<usize>,
+/// Rows of a block that is handed on.
+const BLOCK_ROWS: usize = 1 << 13;
+
+/// The rows on their way: what is carried from one to the next.
+struct Rows<'a> {
+    header: &'a Header,
+    wanted: &'a [Wanted],
+    block: Block,
+    any: bool,
+    marks: Marks,
+    optional: Vec<Marks>,
+    scratch: String,
 }
 
 /// A row on its way from cells to numbers.
 struct Row<'a> {
     record: &'a ByteRecord,
-    text: &'a str,
-    start: usize,
+    line: u64,
     separator: u8,
-    first: bool,
+    /// The file ends within it.
+    cut: bool,
 }
 
-/// An optional column on its way.
-struct Optional<'a> {
-    column: &'a Chosen,
-    values: Vec<f64>,
-    /// Its own until the end: what may be left out does not decide the mark of the others.
-    marks: Marks,
-    refusal: Option<FileError>,
-}
-
-/// Offsets of rows with a decimal point and with a decimal comma.
-#[derive(Default)]
+/// Lines of rows with a decimal point and with a decimal comma.
+#[derive(Default, Clone)]
 struct Marks {
-    point: Option<usize>,
-    comma: Option<usize>,
+    point: Option<u64>,
+    comma: Option<u64>,
 }
 
-pub(super) fn read<'a>(text: &str, header: &Header, chosen: &'a [Chosen], notes: &mut Vec<String>) -> Result<Rows<'a>, FileError> {
-    let (needed, optional) = chosen.split_at(Channel::NEEDED.len());
-    let mut optional: Vec<Optional> = optional.iter().map(Optional::new).collect();
-    let mut rows = Rows { values: Default::default(), optional: Vec::new(), starts: Vec::new() };
-    let mut marks = Marks::default();
-    let mut scratch = String::new();
-    let mut record = ByteRecord::new();
-    let mut reader = reader(&text[header.body..], header.separator);
-    while next(&mut reader, &mut record)? {
-        let (start, first) = (header.body + offset(&record), rows.starts.is_empty());
-        let row = Row { record: &record, text, start, separator: header.separator, first };
-        let at_line = |error: FileError| error.at_line(line_of(text, start));
-        if let Some(numbers) = row.numbers(header, needed, &mut marks, &mut scratch).map_err(at_line)? {
-            rows.starts.push(start);
-            rows.values.iter_mut().zip(numbers).for_each(|(column, number)| column.push(number));
-            for column in &mut optional {
-                column.push(&row, &mut scratch)?;
+/// What becomes of a row.
+enum Outcome {
+    Taken,
+    Blank,
+    /// The last one, whose end is missing.
+    CutOff,
+}
+
+/// Reads the wanted columns. Missing values, which are empty cells, are NaN; of a dispensable column, so is what is no number.
+/// Returns what had to be inferred.
+pub(super) fn read(
+    header: &Header,
+    text: Text,
+    wanted: &[Wanted],
+    take: &mut dyn FnMut(Block) -> Result<(), FileError>,
+) -> Result<Vec<String>, FileError> {
+    let mut rows = Rows {
+        header,
+        wanted,
+        block: Block::of(wanted.len()),
+        any: false,
+        marks: Marks::default(),
+        optional: vec![Marks::default(); wanted.len()],
+        scratch: String::new(),
+    };
+    let mut notes = Vec::new();
+    text.blocks(header.body, header.body_line, |bytes, line, is_last| rows.read(bytes, line, is_last, &mut notes, take))?;
+    if !rows.any {
+        return Err(FileError::from(Problem::NoRows).at_line(header.line));
+    }
+    rows.compare_marks();
+    if rows.marks.comma.is_some() {
+        notes.push("decimal commas were read as decimal points".to_owned());
+    }
+    take(std::mem::take(&mut rows.block))?;
+    Ok(notes)
+}
+
+impl Rows<'_> {
+    /// The rows of a block of text.
+    fn read(
+        &mut self,
+        bytes: &[u8],
+        first_line: u64,
+        is_last: bool,
+        notes: &mut Vec<String>,
+        take: &mut dyn FnMut(Block) -> Result<(), FileError>,
+    ) -> Result<(), FileError> {
+        let mut reader = reader(bytes, self.header.separator);
+        let mut record = ByteRecord::new();
+        let (mut line, mut counted) = (first_line, 0);
+        while next(&mut reader, &mut record)? {
+            let start = begin(bytes, offset(&record));
+            line += line_at(&bytes[counted..start], start - counted) - 1;
+            counted = start;
+            let end = place(reader.position().byte());
+            let cut = is_last && end >= bytes.len() && !bytes.ends_with(b"\n") && !bytes.ends_with(b"\r");
+            let row = Row { record: &record, line, separator: self.header.separator, cut };
+            match self.take(&row).map_err(|error| error.at_line(line))? {
+                Outcome::Taken => {
+                    self.any = true;
+                    self.block.lines.push(line);
+                }
+                Outcome::Blank => {}
+                Outcome::CutOff => notes.push(format!("line {line}, the last one, is cut off and left out")),
+            }
+            if self.block.lines.len() == BLOCK_ROWS {
+                take(std::mem::replace(&mut self.block, Block::of(self.wanted.len())))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The row's numbers, appended to the block.
+    fn take(&mut self, row: &Row) -> Result<Outcome, FileError> {
+        let expected = self.header.names.len();
+        let found = row.record.len();
+        // More cells than names are trailing separators, as long as they are empty.
+        if found < expected || row.record.iter().skip(expected).any(|cell| !trimmed(cell).is_empty()) {
+            if row.is_blank() {
+                return Ok(Outcome::Blank);
+            }
+            if row.cut && found < expected && self.any {
+                return Ok(Outcome::CutOff);
+            }
+            let multiline = row.record.as_slice().contains(&b'\n');
+            return Err(Problem::RowLength { found, expected, multiline }.into());
+        }
+        let mut missing = 0;
+        for (place, column) in self.wanted.iter().enumerate() {
+            let cell = row.cell(column.index);
+            let value = match number(cell, row.separator, &mut self.scratch) {
+                Some(value) => {
+                    self.agree(place, cell, row)?;
+                    value
+                }
+                None if cell.is_empty() => {
+                    missing += 1;
+                    f64::NAN
+                }
+                None => {
+                    let refused = FileError::from(refusal(cell, column.is_time)).in_column(&column.header);
+                    if row.cut && self.any {
+                        self.undo(place);
+                        return Ok(Outcome::CutOff);
+                    }
+                    if !column.dispensable {
+                        return Err(refused);
+                    }
+                    self.block.refuse(place, refused.at_line(row.line));
+                    f64::NAN
+                }
+            };
+            self.block.values[place].push(value);
+        }
+        if missing == self.wanted.len() || missing > 0 && row.is_blank() {
+            self.undo(self.wanted.len());
+            return Ok(Outcome::Blank);
+        }
+        Ok(Outcome::Taken)
+    }
+
+    /// Refuses dispensable columns whose decimal mark is not that of the others; takes over the mark of the rest.
+    fn compare_marks(&mut self) {
+        for (place, column) in self.wanted.iter().enumerate().filter(|(_, column)| column.dispensable) {
+            let own = &self.optional[place];
+            let against = own.point.zip(self.marks.comma).or(own.comma.zip(self.marks.point));
+            if let Some((line, other)) = against {
+                let problem = Problem::OtherMark { other };
+                self.block.refuse(place, FileError::from(problem).in_column(&column.header).at_line(line));
+            } else if self.block.refused[place].is_none() {
+                self.marks.comma = self.marks.comma.or(own.comma);
+                self.marks.point = self.marks.point.or(own.point);
             }
         }
     }
-    if rows.starts.is_empty() {
-        return Err(FileError::from(Problem::NoRows).at_line(header.line));
-    }
-    for column in optional {
-        rows.optional.extend(column.finish(text, header.separator, &mut marks, notes)?);
-    }
-    if marks.comma.is_some() {
-        notes.push("decimal commas were read as decimal points".to_owned());
-    }
-    Ok(rows)
-}
 
-impl<'a> Optional<'a> {
-    fn new(column: &'a Chosen) -> Self {
-        Self { column, values: Vec::new(), marks: Marks::default(), refusal: None }
+    /// Takes back the values of a row that does not count, in the first `columns`.
+    fn undo(&mut self, columns: usize) {
+        self.block.values[..columns].iter_mut().for_each(|values| {
+            values.pop();
+        });
     }
 
-    fn push(&mut self, row: &Row, scratch: &mut String) -> Result<(), FileError> {
-        if self.refusal.is_some() {
+    /// Takes note of the cell's decimal mark. One mark throughout: else the 1,234 of a file with decimal points would be 1.234. A
+    /// column that may be left out answers for itself.
+    fn agree(&mut self, place: usize, cell: &[u8], row: &Row) -> Result<(), FileError> {
+        if row.separator == b',' {
             return Ok(());
         }
-        match row.number(self.column, &mut self.marks, scratch) {
-            Ok(number) => self.values.push(number),
-            Err(error) => self.refuse(error.at_line(line_of(row.text, row.start)))?,
+        let column = &self.wanted[place];
+        let own = if column.dispensable { &mut self.optional[place] } else { &mut self.marks };
+        let Some(other) = own.disagree(cell, row.line) else { return Ok(()) };
+        let refused = FileError::from(Problem::DecimalMarks { text: lossy(cell), other }).in_column(&column.header);
+        if column.dispensable {
+            self.block.refuse(place, refused.at_line(row.line));
+            return Ok(());
         }
-        Ok(())
-    }
-
-    /// Leaves the column out, or refuses the log whose user asked for it.
-    fn refuse(&mut self, error: FileError) -> Result<(), FileError> {
-        if !self.column.dispensable {
-            return Err(error);
-        }
-        self.values = Vec::new();
-        self.refusal = Some(error);
-        Ok(())
-    }
-
-    /// The column, if its decimal mark is that of the others; else, or if it was refused before, a note.
-    fn finish(
-        mut self,
-        text: &str,
-        separator: u8,
-        others: &mut Marks,
-        notes: &mut Vec<String>,
-    ) -> Result<Option<(&'a Chosen, Vec<f64>)>, FileError> {
-        if let (None, Some((own, other))) = (&self.refusal, self.marks.against(others)) {
-            let cell = first_record(&text[own..], separator).0.into_iter().nth(self.column.index).unwrap_or_default();
-            let problem = Problem::DecimalMarks { text: cell, other: line_of(text, other) };
-            self.refuse(FileError::from(problem).in_column(&self.column.header).at_line(line_of(text, own)))?;
-        }
-        if let Some(error) = self.refusal {
-            notes.push(left_out(self.column.channel, &error));
-            return Ok(None);
-        }
-        others.take(&self.marks);
-        Ok(Some((self.column, self.values)))
+        Err(refused)
     }
 }
 
 impl Row<'_> {
-    /// The needed numbers; none of a blank row.
-    fn numbers(&self, header: &Header, needed: &[Chosen], marks: &mut Marks, scratch: &mut String) -> Result<Option<[f64; 6]>, FileError> {
-        let expected = header.names.len();
-        let found = self.record.len();
-        // More cells than names are trailing separators, as long as they are empty.
-        if found < expected || self.record.iter().skip(expected).any(|cell| !trimmed(cell).is_empty()) {
-            if self.is_blank() {
-                return Ok(None);
-            }
-            let multiline = self.record.as_slice().contains(&b'\n');
-            return Err(Problem::RowLength { found, expected, multiline }.into());
-        }
-        let mut numbers = [0.0; 6];
-        for (slot, column) in numbers.iter_mut().zip(needed) {
-            match self.number(column, marks, scratch) {
-                Ok(number) => *slot = number,
-                Err(_) if self.is_blank() => return Ok(None),
-                Err(_) if self.first && self.is_of_units(needed) => {
-                    let cells: Vec<_> = self.record.iter().map(|cell| String::from_utf8_lossy(trimmed(cell))).collect();
-                    return Err(Problem::UnitsRow { text: cells.join(", ") }.into());
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(Some(numbers))
-    }
-
-    /// The number of one column, whose decimal mark agrees with `marks`.
-    #[inline(always)] // Called for each cell: 4 % of the reader's instructions.
-    fn number(&self, column: &Chosen, marks: &mut Marks, scratch: &mut String) -> Result<f64, FileError> {
-        let cell = self.cell(column);
-        let Some(number) = number(cell, self.separator, scratch) else {
-            return Err(FileError::from(refusal(cell, column.channel)).in_column(&column.header));
-        };
-        if self.separator != b','
-            && let Some(other) = marks.disagree(cell, self.start)
-        {
-            let problem = Problem::DecimalMarks { text: lossy(cell), other: line_of(self.text, other) };
-            return Err(FileError::from(problem).in_column(&column.header));
-        }
-        Ok(number)
-    }
-
-    fn cell(&self, column: &Chosen) -> &[u8] {
-        trimmed(self.record.get(column.index).unwrap_or_default())
+    fn cell(&self, index: usize) -> &[u8] {
+        trimmed(self.record.get(index).unwrap_or_default())
     }
 
     fn is_blank(&self) -> bool {
         self.record.iter().all(|cell| trimmed(cell).is_empty())
     }
-
-    /// Text in every needed column.
-    fn is_of_units(&self, needed: &[Chosen]) -> bool {
-        let mut cells = needed.iter().map(|column| self.cell(column));
-        cells.all(|cell| !cell.is_empty() && number(cell, self.separator, &mut String::new()).is_none())
-    }
 }
 
-fn refusal(cell: &[u8], channel: Channel) -> Problem {
+fn refusal(cell: &[u8], is_time: bool) -> Problem {
     let text = lossy(cell);
-    if text.is_empty() {
-        Problem::EmptyCell
-    } else if channel == Channel::T && text.contains(':') {
-        Problem::ClockTime { text }
-    } else {
-        Problem::NotANumber { text }
-    }
+    if is_time && text.contains(':') { Problem::ClockTime { text } } else { Problem::NotANumber { text } }
 }
 
 impl Marks {
-    /// Takes note of the cell's decimal mark; the offset of a row with the other mark, if there is one. Without this, the 1,234
-    /// of a file with decimal points would be read as 1.234.
-    fn disagree(&mut self, cell: &[u8], start: usize) -> Option<usize> {
+    /// Takes note of the cell's decimal mark; the line of a row with the other mark, if there is one.
+    #[inline]
+    fn disagree(&mut self, cell: &[u8], line: u64) -> Option<u64> {
         // Once points are the rule only a comma matters, and the other way around.
-        if self.point.is_none() && cell.contains(&b'.') {
-            self.point = Some(start);
-        }
-        if self.comma.is_none() && cell.contains(&b',') {
-            self.comma = Some(start);
+        let has_comma = cell.contains(&b',');
+        if has_comma {
+            self.comma.get_or_insert(line);
+        } else if self.point.is_none() && cell.contains(&b'.') {
+            self.point = Some(line);
         }
         let (point, comma) = (self.point?, self.comma?);
-        Some(if cell.contains(&b',') { point } else { comma })
-    }
-
-    /// Offsets of a row with a mark, and of a row of `others` with the other one.
-    fn against(&self, others: &Self) -> Option<(usize, usize)> {
-        self.point.zip(others.comma).or(self.comma.zip(others.point))
-    }
-
-    fn take(&mut self, others: &Self) {
-        self.point = self.point.or(others.point);
-        self.comma = self.comma.or(others.comma);
+        Some(if has_comma { point } else { comma })
     }
 }
 
 /// The number in a cell. `nan` and `inf` are numbers here: the log refuses them by row and column. A comma is a decimal one if it
 /// does not separate.
+#[inline]
 pub(super) fn number(cell: &[u8], separator: u8, scratch: &mut String) -> Option<f64> {
-    let text = str::from_utf8(trimmed(cell)).ok()?;
-    if let Ok(number) = text.parse() {
+    let cell = trimmed(cell);
+    if let Ok(number) = fast_float2::parse(cell) {
         return Some(number);
     }
-    if separator == b',' || text.contains('.') {
+    if separator == b',' || cell.contains(&b'.') {
         return None;
     }
-    let (whole, fraction) = text.split_once(',')?;
+    let (whole, fraction) = str::from_utf8(cell).ok()?.split_once(',')?;
     scratch.clear();
     scratch.extend([whole, ".", fraction]);
     // A second comma is still there and spoils it.
-    scratch.parse().ok()
+    fast_float2::parse(scratch.as_bytes()).ok()
 }
 
 /// Names, without those of trailing separators, and how many bytes they take with the end of the line.
 pub(super) fn first_record(text: &str, separator: u8) -> (Vec<String>, usize) {
-    let mut reader = reader(text, separator);
+    let mut reader = reader(text.as_bytes(), separator);
     let mut record = ByteRecord::new();
     if next(&mut reader, &mut record).is_err() {
         return (Vec::new(), text.len());
@@ -249,17 +260,22 @@ pub(super) fn first_record(text: &str, separator: u8) -> (Vec<String>, usize) {
     while names.last().is_some_and(String::is_empty) {
         names.pop();
     }
-    (names, bytes(reader.position().byte()))
+    (names, place(reader.position().byte()))
 }
 
-/// The line, from 1, of the record that begins at or after `start`: the reader counts the blank lines above a record to it.
+/// The line, from 1, of the record that begins at or after `start`.
 pub(super) fn line_of(text: &str, start: usize) -> u64 {
-    let ends = text.as_bytes()[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n'));
-    line_at(text.as_bytes(), start + ends.count())
+    line_at(text.as_bytes(), begin(text.as_bytes(), start))
 }
 
-pub(super) fn reader(text: &str, separator: u8) -> Reader<&[u8]> {
-    ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(text.as_bytes())
+/// Where the record begins: the reader counts the blank lines above a record to it.
+fn begin(bytes: &[u8], start: usize) -> usize {
+    let start = start.min(bytes.len());
+    start + bytes[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count()
+}
+
+pub(super) fn reader(bytes: &[u8], separator: u8) -> Reader<&[u8]> {
+    ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(bytes)
 }
 
 pub(super) fn next(reader: &mut Reader<&[u8]>, record: &mut ByteRecord) -> Result<bool, FileError> {
@@ -267,11 +283,11 @@ pub(super) fn next(reader: &mut Reader<&[u8]>, record: &mut ByteRecord) -> Resul
 }
 
 pub(super) fn offset(record: &ByteRecord) -> usize {
-    record.position().map_or(0, |position| bytes(position.byte()))
+    record.position().map_or(0, |position| place(position.byte()))
 }
 
-/// Offsets into a text in memory fit.
-fn bytes(offset: u64) -> usize {
+/// Offsets into bytes in memory fit.
+fn place(offset: u64) -> usize {
     usize::try_from(offset).unwrap_or(usize::MAX)
 }
 

@@ -43,7 +43,9 @@ pub fn choose(log: &Log, settings: &Settings) -> (Model, String) {
     }
     let slowest = log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max);
     let turn = largest_turn(log);
-    if slowest > 1.0 / SLOWEST_CONTROL {
+    if log.is_interpolated() {
+        (Model::Steady, "its channels were sampled at different instants".to_owned())
+    } else if slowest > 1.0 / SLOWEST_CONTROL {
         (Model::Steady, format!("rows come at {:.3} Hz, no drive's own sampling", 1.0 / slowest))
     } else if turn > MAX_ANGLE_PER_SAMPLE {
         (Model::Steady, format!("the rotor turns up to {turn:.2} rad from row to row, too far for the inverter's own periods"))

@@ -85,7 +85,7 @@ impl OutputError {
     /// The segments of a log that are long enough.
     ///
     /// # Errors
-    /// If none is.
+    /// As [`of_rows`](Self::of_rows).
     pub fn of(log: &Log, reading: VoltageReading) -> Result<Self, Error> {
         let segments: Vec<_> = log.segments().iter().map(|segment| segment.rows.clone()).collect();
         Self::of_rows(log, &segments, reading)
@@ -94,8 +94,11 @@ impl OutputError {
     /// Stretches of a log, none of them across a gap; those that are long enough.
     ///
     /// # Errors
-    /// If none is.
+    /// If none is, or if the log's channels were sampled at different instants.
     pub fn of_rows(log: &Log, stretches: &[Range<usize>], reading: VoltageReading) -> Result<Self, Error> {
+        if log.is_interpolated() {
+            return Err(Error::Interpolated);
+        }
         let least = MIN_ROWS + reading.lost_rows();
         let long_enough = stretches.iter().filter(|rows| rows.len() >= least);
         let courses: Vec<Course> = long_enough.map(|rows| Course::of(log, rows, reading)).collect();

@@ -25,11 +25,6 @@ pub(super) fn propose(channel: Channel, names: &[String]) -> Option<usize> {
     scored.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(index, _)| index)
 }
 
-/// Canonical names of the needed columns that nothing resembles.
-pub(super) fn lacking(names: &[String]) -> Vec<&'static str> {
-    Channel::NEEDED.into_iter().filter(|channel| propose(*channel, names).is_none()).map(Channel::name).collect()
-}
-
 /// Similarity of the best run of words to a spelling.
 fn score(channel: Channel, name: &str) -> Option<f64> {
     let words = words(name);
@@ -57,7 +52,7 @@ fn similarity(channel: Channel, run: &str, spelling: &str) -> f64 {
 }
 
 /// Words in lower case: parted by punctuation, and where a capital follows a small letter, as in `MotorVd`.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut small_before = false;
     for c in name.chars() {

@@ -1,0 +1,36 @@
+//! `fluxfit inspect`: what is understood of a log, before an answer hangs on it.
+
+use super::{Status, input};
+use crate::{arguments::Inspect, error::CommandError, terminal};
+use fluxfit_files::{check_writable, inspect, write_atomically};
+use std::{fs, path::Path};
+
+/// Runs the verb.
+pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
+    if let Some(path) = arguments.output.as_deref() {
+        check_output(path, arguments)?;
+    }
+    let options = input::options(&arguments.columns, None)?;
+    let inspection = terminal::working("reading".to_owned(), || inspect(&arguments.log, &options))?;
+    if arguments.output.as_deref() != Some(Path::new("-")) {
+        terminal::inspection::show(&input::name(&arguments.log), &inspection)?;
+    }
+    if let Some(path) = arguments.output.as_deref() {
+        write_atomically(path, inspection.mapping(&options).as_bytes())?;
+        terminal::wrote("mapping", path);
+    }
+    match inspection.log {
+        Ok(_) => Ok(Status::Complete),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Refuses to write over what is read.
+fn check_output(path: &Path, arguments: &Inspect) -> Result<(), CommandError> {
+    let place = |path: &Path| fs::canonicalize(path).ok().filter(|path| path.is_file());
+    let read = [Some(arguments.log.as_path()), arguments.columns.mapping.as_deref()];
+    if place(path).is_some_and(|written| read.into_iter().flatten().filter_map(place).any(|read| read == written)) {
+        return Err(CommandError::Usage(format!("{} is read, and would be overwritten; name another file with -o", path.display())));
+    }
+    Ok(check_writable(path)?)
+}

@@ -1,0 +1,79 @@
+//! What was understood of a file, to be checked at a glance: columns, units, ranges, rows, gaps, and the courses of the currents.
+
+use super::{BAD, DIM, HEADING, identification::frequency, plot, table};
+use fluxfit::log::Log;
+use fluxfit_files::{Inspection, number::significant};
+
+/// Most columns that are listed.
+const LISTED: usize = 60;
+
+/// Most gaps that are listed.
+const GAPS: usize = 3;
+
+/// Shows an inspection; notes go to standard error.
+pub(crate) fn show(name: &str, inspection: &Inspection) -> std::io::Result<()> {
+    let layout = inspection.layout.map_or("a layout that is not known".to_owned(), |layout| format!("layout: {}", layout.name));
+    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}; {layout}\n\n", inspection.kind);
+    let log = inspection.log.as_ref().ok().map(|read| &read.log);
+    text += &columns(inspection, log);
+    if let Some(log) = log {
+        text += &format!("\n{}\n", rows(log));
+        text += &format!("\n{}", plot::courses(log));
+    }
+    super::print(&text)?;
+    if let Ok(read) = &inspection.log {
+        read.notes.iter().for_each(|note| super::note(note));
+    }
+    Ok(())
+}
+
+fn columns(inspection: &Inspection, log: Option<&Log>) -> String {
+    let rows = inspection.columns.iter().take(LISTED).map(|column| {
+        let taken = match (column.channel, column.resembles) {
+            (Some(channel), _) => channel.to_owned(),
+            (None, Some(channel)) => format!("{channel}?"),
+            (None, None) => "-".to_owned(),
+        };
+        let range = column.channel.zip(log).and_then(|(channel, log)| range(log, channel)).unwrap_or_default();
+        let unit = column.read_as.map(|(_, prose)| prose.to_owned()).or(column.unit.clone()).unwrap_or_default();
+        vec![column.header.chars().take(40).collect(), taken, unit, range]
+    });
+    let mut text = table(&["column", "taken for", "in", "range, SI"], 3, rows);
+    if inspection.columns.len() > LISTED {
+        text += &format!("  {DIM}and {} more{DIM:#}\n", inspection.columns.len() - LISTED);
+    }
+    text
+}
+
+/// Least and largest value.
+fn range(log: &Log, channel: &str) -> Option<String> {
+    let columns = log.columns();
+    let (_, values) = columns.named().into_iter().chain(columns.optional()).find(|(name, _)| *name == channel)?;
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    Some(if low == high { significant(low, 4) } else { format!("{} .. {}", significant(low, 4), significant(high, 4)) })
+}
+
+/// Rows, rates and gaps, in a few lines.
+fn rows(log: &Log) -> String {
+    let segments = log.segments();
+    let rate = segments.first().map_or(String::new(), |segment| frequency(1.0 / segment.sample_period));
+    let mut text = format!("{} rows at {rate}, {} s", log.rows(), significant(log.duration(), 4));
+    let t = &log.columns().t;
+    let gaps: Vec<String> = segments
+        .windows(2)
+        .map(|pair| {
+            let (end, start) = (t[pair[0].rows.end - 1], t[pair[1].rows.start]);
+            format!("{} s behind t = {} s", significant(start - end, 3), significant(end, 6))
+        })
+        .collect();
+    text += &match gaps.as_slice() {
+        [] => ", without a gap".to_owned(),
+        [one] => format!(", with a gap of {one}"),
+        many if many.len() <= GAPS => format!(", with {} gaps: {}", many.len(), many.join("; ")),
+        many => format!(", with {} gaps: {}; ..", many.len(), many[..GAPS].join("; ")),
+    };
+    if log.is_interpolated() {
+        text += &format!("\n{BAD}channels at different instants{BAD:#}: for steady operating points only");
+    }
+    text
+}
