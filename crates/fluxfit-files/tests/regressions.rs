@@ -1,0 +1,27 @@
+//! Files that once broke a promise of a reader, as fuzzing found them: `regressions/READER/NAME`. None breaks one again.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test may fail")]
+
+mod promises;
+
+use promises::READERS;
+use std::{fs, path::Path};
+
+#[test]
+fn what_once_broke_a_promise_keeps_it() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/regressions");
+    for entry in fs::read_dir(&folder).unwrap() {
+        let entry = entry.unwrap();
+        let reader = entry.file_name().into_string().unwrap();
+        if !entry.file_type().unwrap().is_dir() {
+            continue;
+        }
+        let (_, promise) = READERS.into_iter().find(|(name, _)| *name == reader).unwrap_or_else(|| panic!("{reader} is no reader"));
+        for file in fs::read_dir(entry.path()).unwrap() {
+            let path = file.unwrap().path();
+            // Told before, because a panic says only what broke, not on which file.
+            println!("{}", path.display());
+            promise(&fs::read(&path).unwrap());
+        }
+    }
+}
