@@ -1,4 +1,5 @@
-//! Files that once broke a promise of a reader, as fuzzing found them: `regressions/READER/NAME`. None breaks one again.
+//! Files that once broke a promise of a reader, as fuzzing found them: `regressions/READER/NAME`. None breaks one again, and neither
+//! do the logs of the corpus with damage.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test may fail")]
 
@@ -22,6 +23,26 @@ fn what_once_broke_a_promise_keeps_it() {
             // Told before, because a panic says only what broke, not on which file.
             println!("{}", path.display());
             promise(&fs::read(&path).unwrap());
+        }
+    }
+}
+
+/// A log may be cut off anywhere, and any byte of it may be wrong.
+#[test]
+fn damaged_logs_keep_the_promises() {
+    const PLACES: usize = 12;
+    for file in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus/logs")).unwrap() {
+        let path = file.unwrap().path();
+        println!("{}", path.display());
+        let bytes = fs::read(&path).unwrap();
+        promises::log(&bytes);
+        // The first places are in the header, where most can break; the others are spread.
+        let spread = (0..PLACES).flat_map(|place| [place * place, bytes.len() * place / PLACES]);
+        for at in spread.filter(|at| *at < bytes.len()) {
+            promises::log(&bytes[..at]);
+            let mut wrong = bytes.clone();
+            wrong[at] ^= 1 << (at % 8);
+            promises::log(&wrong);
         }
     }
 }

@@ -12,10 +12,10 @@ use std::{fs, path::Path};
 const NAME: &str = "any.file";
 
 /// Holds one reader to its promises.
-pub type Promise = fn(&[u8]);
+pub(crate) type Promise = fn(&[u8]);
 
 /// The readers. Targets of fuzzing and folders of regressions have these names.
-pub const READERS: [(&str, Promise); 7] = [
+pub(crate) const READERS: [(&str, Promise); 7] = [
     ("log", log),
     ("motor_file", motor_file),
     ("scenario_file", scenario_file),
@@ -26,7 +26,7 @@ pub const READERS: [(&str, Promise); 7] = [
 ];
 
 /// A log, as it is and with what a user may say of it.
-pub fn log(bytes: &[u8]) {
+pub(crate) fn log(bytes: &[u8]) {
     let map = |text: &str| text.split(',').filter_map(|pair| parse_map(pair).ok()).collect();
     let units = |text: &str| text.split(',').filter_map(|pair| parse_unit(pair).ok()).collect();
     let told = [
@@ -48,7 +48,7 @@ pub fn log(bytes: &[u8]) {
 }
 
 /// A motor file.
-pub fn motor_file(bytes: &[u8]) {
+fn motor_file(bytes: &[u8]) {
     if let Some(file) = one_line(MotorFile::parse(NAME, bytes)) {
         let MotorFile { rs, ld, lq, psi_f, pole_pairs, rating } = file;
         let numbers = [rs, ld, lq, psi_f, rating.current, rating.voltage, rating.speed];
@@ -58,7 +58,7 @@ pub fn motor_file(bytes: &[u8]) {
 }
 
 /// A scenario. Its flux map is looked for in a folder that has none.
-pub fn scenario_file(bytes: &[u8]) {
+fn scenario_file(bytes: &[u8]) {
     // A scenario may name any file of its user's; this one may not wait for a device or for standard input.
     if bytes.windows(8).any(|window| window == b"flux_map") {
         return;
@@ -70,7 +70,7 @@ pub fn scenario_file(bytes: &[u8]) {
 }
 
 /// A flux map, of which only a scenario's reader knows.
-pub fn flux_map(bytes: &[u8]) {
+fn flux_map(bytes: &[u8]) {
     const SCENARIO: &str = "duration = 0.01\n[motor]\nrs = 0.6\nflux_map = \"map.csv\"\npole_pairs = 2\n\
                             [mechanics]\nkind = \"dyno\"\n[inverter]\nu_dc = 500\n";
     let Ok(folder) = tempfile::tempdir() else { return };
@@ -80,7 +80,7 @@ pub fn flux_map(bytes: &[u8]) {
 }
 
 /// A truth.
-pub fn truth(bytes: &[u8]) {
+fn truth(bytes: &[u8]) {
     if let Some(Truth { motor, pole_pairs }) = one_line(Truth::parse(NAME, bytes)) {
         assert!([motor.rs, motor.ld, motor.lq, motor.psi_f].into_iter().all(|number| number.is_finite() && number >= 0.0), "{motor:?}");
         assert_ne!(pole_pairs, Some(0));
@@ -88,7 +88,7 @@ pub fn truth(bytes: &[u8]) {
 }
 
 /// A motor file, a truth or an identification's document.
-pub fn given_motor(bytes: &[u8]) {
+fn given_motor(bytes: &[u8]) {
     if let Some(read) = one_line(GivenMotor::parse(NAME, bytes)) {
         let numbers = [read.file.rs, read.file.ld, read.file.lq, read.file.psi_f];
         assert!(numbers.into_iter().flatten().all(|number| number.is_finite() && number >= 0.0), "{:?}", read.file);
@@ -96,7 +96,7 @@ pub fn given_motor(bytes: &[u8]) {
 }
 
 /// Arguments, of which none is a file.
-pub fn argument(bytes: &[u8]) {
+fn argument(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     one_line(parse_map(&text));
     one_line(parse_unit(&text));
