@@ -106,6 +106,8 @@ pub(crate) enum Problem {
     NoDirectory { directory: String },
     #[error("this is not text in UTF-8; export it as {wanted} in UTF-8")]
     NotText { wanted: &'static str },
+    #[error("the gzip file is cut off or damaged: {reason}; pack it again")]
+    Packed { reason: String },
     #[error("the file is empty; export it again")]
     Empty,
 
@@ -150,10 +152,12 @@ pub(crate) enum Problem {
     // The rows of a log
     #[error("the row has {} where the header has {expected}; {}", cells(*.found), row_remedy(*.found > *.expected, *.multiline))]
     RowLength { found: usize, expected: usize, multiline: bool },
-    #[error("the cell holds no value; write a number or remove the row")]
+    #[error("the cell is empty or NaN; write a number or remove the row")]
     EmptyCell,
     #[error("{} is not a number; correct it or remove the row", quote(.text))]
     NotANumber { text: String },
+    #[error("{} has both marks, and which one is decimal is a guess; write numbers without thousands separators", quote(.text))]
+    Thousands { text: String },
     #[error("{} is not a number; write time as a number, in s", quote(.text))]
     ClockTime { text: String },
     #[error("{} does not have the decimal mark of line {other}; use one mark throughout, and no thousands separators", quote(.text))]
@@ -295,6 +299,6 @@ mod tests {
     #[test]
     fn the_innermost_place_stays() {
         let error = FileError::from(Problem::EmptyCell).at_line(3).at_line(1).in_file("a").in_file("b");
-        assert_eq!(error.to_string(), "a, line 3: the cell holds no value; write a number or remove the row");
+        assert_eq!(error.to_string(), "a, line 3: the cell is empty or NaN; write a number or remove the row");
     }
 }

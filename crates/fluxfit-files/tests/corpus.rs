@@ -4,7 +4,7 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test may fail")]
 
 use fluxfit::log::Columns;
-use fluxfit_files::{LogOptions, ReadLog, parse_map, parse_unit, read_log};
+use fluxfit_files::{LogOptions, ReadLog, parse_map, parse_unit, read_log, read_mapping};
 use std::{
     collections::BTreeSet,
     fs,
@@ -51,17 +51,12 @@ fn every_file_has_one_case_and_is_small() {
 /// What the user says of a log. The one place that knows how.
 fn options(case: &Table) -> LogOptions {
     let pairs = |key: &str| list(case, key).into_iter();
-    // A mapping file goes in here: `case["mapping"]` is its path, from `home()`.
     LogOptions {
         map: pairs("map").map(|pair| parse_map(pair).unwrap()).collect(),
         units: pairs("units").map(|pair| parse_unit(pair).unwrap()).collect(),
         pole_pairs: case.get("pole_pairs").map(|number| u32::try_from(number.as_integer().unwrap()).unwrap()),
+        mapping: case.get("mapping").map(|path| read_mapping(&home().join(path.as_str().unwrap())).unwrap()).unwrap_or_default(),
     }
-}
-
-/// The layout that the reader recognized. The one place that knows where it says so; until then nothing is compared.
-fn layout(_read: &ReadLog) -> Option<&str> {
-    None
 }
 
 /// Whether the reader that a case needs is built.
@@ -95,9 +90,8 @@ fn check_reading(case: &Table, read: &ReadLog) -> Result<(), String> {
     let log = &read.log;
     let columns = log.columns();
     let notes = read.notes.join("\n");
-    if let Some(found) = layout(read) {
-        ensure(found == text(case, "layout"), || format!("layout {found} in place of {}", text(case, "layout")))?;
-    }
+    let found = read.layout.map_or("none", |layout| layout.name);
+    ensure(found == text(case, "layout"), || format!("layout {found} in place of {}", text(case, "layout")))?;
     if let Some(rows) = case.get("rows") {
         let allowed: Vec<&Value> = rows.as_array().map_or_else(|| vec![rows], |several| several.iter().collect());
         let found = i64::try_from(log.rows()).unwrap();

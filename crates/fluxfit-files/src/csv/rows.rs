@@ -212,7 +212,12 @@ impl Row<'_> {
 
 fn refusal(cell: &[u8], is_time: bool) -> Problem {
     let text = lossy(cell);
-    if is_time && text.contains(':') { Problem::ClockTime { text } } else { Problem::NotANumber { text } }
+    let is_grouped = text.contains(',') && text.contains('.') && text.bytes().all(|byte| byte.is_ascii_digit() || b",.+-".contains(&byte));
+    match is_time && text.contains(':') {
+        true => Problem::ClockTime { text },
+        false if is_grouped => Problem::Thousands { text },
+        false => Problem::NotANumber { text },
+    }
 }
 
 impl Marks {

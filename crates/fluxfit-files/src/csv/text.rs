@@ -29,6 +29,7 @@ pub(crate) struct Text {
     /// Its beginning; all of it, if it is short.
     pub(super) head: String,
     rest: Box<dyn Read>,
+    is_packed: bool,
     /// What had to be inferred.
     pub(super) notes: Vec<String>,
 }
@@ -40,19 +41,19 @@ impl Text {
     /// If it cannot be read, is empty, or is binary.
     pub(crate) fn open(mut raw: Box<dyn Read>) -> Result<Self, FileError> {
         let mut notes = Vec::new();
-        let magic = read_up_to(&mut *raw, GZIP.len())?;
+        let magic = read_up_to(&mut *raw, GZIP.len(), false)?;
         let is_packed = magic == GZIP;
         let raw: Box<dyn Read> = Box::new(Cursor::new(magic).chain(raw));
         let raw: Box<dyn Read> = if is_packed { Box::new(MultiGzDecoder::new(raw)) } else { raw };
         let mut decoded = DecodeReaderBytesBuilder::new().utf8_passthru(true).strip_bom(true).build(raw);
-        let head = read_up_to(&mut decoded, HEAD)?;
+        let head = read_up_to(&mut decoded, HEAD, is_packed)?;
         if let Some(at) = head.iter().position(|byte| *byte == 0) {
             return Err(FileError::from(Problem::NotText { wanted: "CSV text" }).at_line(line_at(&head, at)));
         }
         if head.trim_ascii().is_empty() {
             return Err(Problem::Empty.into());
         }
-        let mut text = Self { head: String::new(), rest: Box::new(decoded), notes: Vec::new() };
+        let mut text = Self { head: String::new(), rest: Box::new(decoded), is_packed, notes: Vec::new() };
         text.head = match String::from_utf8(head) {
             Ok(head) => head,
             // The block may end within a character.
@@ -81,12 +82,12 @@ impl Text {
         first_line: u64,
         mut take: impl FnMut(&[u8], u64, bool) -> Result<(), FileError>,
     ) -> Result<(), FileError> {
-        let Self { head, mut rest, .. } = self;
+        let Self { head, mut rest, is_packed, .. } = self;
         let mut bytes = head.into_bytes();
         bytes.drain(..from);
         let mut line = first_line;
         loop {
-            let more = read_up_to(&mut *rest, BLOCK)?;
+            let more = read_up_to(&mut *rest, BLOCK, is_packed)?;
             let ended = more.is_empty();
             // What was held back before has no end in it: only what is new is searched, unless it is all there is.
             bytes.extend(more);
@@ -117,7 +118,7 @@ fn end_of_lines(bytes: &[u8]) -> usize {
     // Back over the open quotation to a line's end before it.
     if let Some(open) = memchr::memrchr(b'"', &bytes[..end]) {
         end = last_end(&bytes[..open]);
-        if memchr::memchr_iter(b'"', &bytes[..end]).count() % 2 != 0 {
+        if !memchr::memchr_iter(b'"', &bytes[..end]).count().is_multiple_of(2) {
             end = 0;
         }
     }
@@ -135,10 +136,11 @@ fn lines(bytes: &[u8]) -> u64 {
 }
 
 /// The next `most` bytes, fewer only at the end.
-fn read_up_to(reader: &mut dyn Read, most: usize) -> Result<Vec<u8>, FileError> {
+fn read_up_to(reader: &mut dyn Read, most: usize, is_packed: bool) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
     match reader.take(most as u64).read_to_end(&mut bytes) {
         Ok(_) => Ok(bytes),
+        Err(error) if is_packed => Err(Problem::Packed { reason: error.to_string() }.into()),
         Err(error) => Err(io_problem("reading", &error).into()),
     }
 }

@@ -175,7 +175,17 @@ impl Finder<'_> {
         if speed.is_some() || !is_told {
             take(OmegaE, speed);
         }
-        if of_phases || speed.is_none() && is_told {
+        // Currents in both frames tell the angle too.
+        let currents = [self.place(IA)?, self.place(IB)?];
+        let of_currents =
+            of_phases && !is_told && currents.iter().all(Option::is_some) && self.place(Id)?.is_some() && self.place(Iq)?.is_some();
+        if of_currents {
+            [IA, IB, Channel::IC]
+                .into_iter()
+                .zip([currents[0], currents[1], self.place(Channel::IC)?])
+                .filter(|(_, place)| place.is_some())
+                .for_each(|(channel, place)| take(channel, place));
+        } else if of_phases || speed.is_none() && is_told {
             take(ThetaE, theta?);
         }
         if !missing.is_empty() {
@@ -262,9 +272,8 @@ impl Finder<'_> {
         let currents: Vec<Channel> = missing.iter().copied().filter(|channel| channel.dimension() == Dimension::Current).collect();
         let mut references = Vec::new();
         for name in free.iter_mut().filter(|name| doubt::is_reference(name)) {
-            let name = std::mem::take(name);
-            if currents.iter().any(|channel| propose(*channel, std::slice::from_ref(&name)).is_some()) {
-                references.push(name);
+            if currents.iter().any(|channel| propose(*channel, std::slice::from_ref(name)).is_some()) {
+                references.push(std::mem::take(name));
             }
         }
         let mut proposals = Vec::new();
@@ -345,7 +354,7 @@ fn mapped(channel: Channel, header: &str, names: &[String]) -> Result<usize, Fil
 }
 
 /// The column with the canonical name; if there is none, in other case; if there is none, with a unit after it; of a structure,
-/// the field of that name.
+/// the field of that name; of a voltage, its reference, which is what most drives log.
 fn automatic(channel: Channel, heads: &[Head]) -> Result<Option<usize>, FileError> {
     let canonical = channel.name();
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
@@ -359,6 +368,7 @@ fn automatic(channel: Channel, heads: &[Head]) -> Result<Option<usize>, FileErro
         positions(&names, |name| name.eq_ignore_ascii_case(canonical)),
         positions(&names, with_unit),
         positions(&names, field),
+        if matches!(channel, Ud | Uq) { positions(&names, |name| name.eq_ignore_ascii_case(&format!("{canonical}_ref"))) } else { Vec::new() },
     ];
     only(channel, &names, tiers)
 }

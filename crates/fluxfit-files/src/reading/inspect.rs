@@ -70,7 +70,8 @@ impl Inspection {
             Some(period) => _ = writeln!(text, "sample_period = {period:?}       # s"),
             None => text += "# sample_period = \"0.1 ms\"  # where no column tells the time\n",
         }
-        text += "# park = \"amplitude\"        # dq values are phase peaks; or \"power\", \"rms\"\n";
+        text += "# park = \"amplitude-invariant\"  # dq values are phase peaks; or \"power-invariant\", \"rms\"\n\n[columns]\n";
+        text += "# besides column and unit: scale = 0.01, and sign = -1 for the other way around\n";
         for channel in Channel::NEEDED {
             let found =
                 |of: fn(&InspectedColumn) -> Option<&'static str>| self.columns.iter().find(|column| of(column) == Some(channel.name()));
@@ -78,24 +79,18 @@ impl Inspection {
             if taken.is_none() && (channel == Channel::T && period.is_some() || self.is_made_of_phases(channel)) {
                 continue;
             }
-            let _ = writeln!(text, "\n[{}]", channel.name());
-            match taken.or(resembling) {
-                Some(column) => {
-                    let doubt = if taken.is_some() { "" } else { "   # by its name: is it?" };
-                    let _ = writeln!(text, "column = {}{doubt}", quoted(&column.header));
-                }
-                None => text += "column = \"\"               # nothing resembles it\n",
-            }
+            let (column, remark) = match (taken, resembling) {
+                (Some(column), _) => (column.header.as_str(), ""),
+                (None, Some(column)) => (column.header.as_str(), "  # by its name: is it?"),
+                (None, None) => ("", "  # nothing resembles it"),
+            };
             let unit = taken.and_then(|column| column.read_as).map_or(channel.unit().name(), |(unit, _)| unit);
-            let _ = writeln!(text, "unit = \"{unit}\"");
+            let _ = writeln!(text, "{} = {{ column = {}, unit = \"{unit}\" }}{remark}", channel.name(), quoted(column));
         }
         for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
-            let taken = self.columns.iter().find(|column| column.channel == Some(channel.name()));
-            if let Some(column) = taken {
-                let _ = writeln!(text, "\n[{}]\ncolumn = {}", channel.name(), quoted(&column.header));
-                if let Some((unit, _)) = column.read_as.filter(|(unit, _)| *unit != "1") {
-                    let _ = writeln!(text, "unit = \"{unit}\"");
-                }
+            if let Some(column) = self.columns.iter().find(|column| column.channel == Some(channel.name())) {
+                let unit = column.read_as.filter(|(unit, _)| *unit != "1").map(|(unit, _)| format!(", unit = \"{unit}\""));
+                let _ = writeln!(text, "{} = {{ column = {}{} }}", channel.name(), quoted(&column.header), unit.unwrap_or_default());
             }
         }
         text
@@ -149,6 +144,7 @@ mod tests {
         assert!(found.log.is_err());
         assert_eq!(found.columns.iter().map(|column| column.resembles).collect::<Vec<_>>(), [Some("ud"), Some("omega_e"), Some("id")]);
         let mapping = found.mapping(&LogOptions::default());
-        assert!(mapping.contains("[uq]\ncolumn = \"\"") && mapping.contains("[ud]\ncolumn = \"u_d\"   # by its name: is it?"), "{mapping}");
+        assert!(mapping.contains("\nuq = { column = \"\", unit = \"V\" }  # nothing resembles it\n"), "{mapping}");
+        assert!(mapping.contains("\nud = { column = \"u_d\", unit = \"V\" }  # by its name: is it?\n"), "{mapping}");
     }
 }

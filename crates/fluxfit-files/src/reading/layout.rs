@@ -147,7 +147,7 @@ pub const LAYOUTS: &[Layout] = &[
         ..LOG
     },
     Layout {
-        name: "Tritium, with units",
+        name: "Tritium",
         source: "Tritium WaveSculptor telemetry as a dynamometer's log holds it",
         signature: &["motor_id_A", "motor_iq_A", "motor_vd_V", "motor_vq_V", "motor_velocity_rpm"],
         columns: &[
@@ -159,7 +159,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(OmegaE, "motor_velocity_rpm", Unit::RpmMechanical),
             column(UDc, "bus_voltage_V", Unit::Volt),
         ],
-        remark: "as Tritium",
+        remark: "the same, with units behind the names",
         ..LOG
     },
     Layout {
@@ -181,7 +181,7 @@ pub const LAYOUTS: &[Layout] = &[
     Layout {
         name: "phase quantities",
         source: "published drive data sets with these names",
-        signature: &["timeInS", "i_aInA", "i_bInA", "u_aInV", "u_bInV", "epsilon_elInRad"],
+        signature: &["timeInS", "i_aInA", "i_bInA", "u_aInV", "u_bInV"],
         columns: &[
             column(T, "timeInS", Unit::Second),
             column(IA, "i_aInA", Unit::Ampere),

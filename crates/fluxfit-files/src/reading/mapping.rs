@@ -2,14 +2,13 @@
 //!
 //! ```toml
 //! pole_pairs = 4
-//! sample_period = "0.1 ms"   # where no column tells the time
-//! park = "amplitude"         # or "power", "rms": how long the dq vectors are
+//! sample_period = "0.1 ms"        # where no column tells the time
+//! park = "amplitude-invariant"    # or "power-invariant", "rms": how long the dq vectors are
 //!
-//! [ud]
-//! column = "motor_vd"
-//! unit = "mV"                # as with --unit; without, the header or SI decides
-//! scale = 2.0                # times this; in units of the unit
-//! reversed = true            # the other sign
+//! [columns]
+//! t = "time_ms"
+//! # unit as with --unit, without it the header or SI decides; scale: times this; sign = -1: the other way around
+//! ud = { column = "motor_vd", unit = "mV", scale = 2.0, sign = -1 }
 //! ```
 
 use crate::{
@@ -67,28 +66,15 @@ impl Park {
     }
 }
 
-const COLUMN: &[&str] = &["column", "unit", "scale", "reversed"];
+/// What can be said of a column.
+const SAID: &[&str] = &["column", "unit", "scale", "sign"];
+
+const EXAMPLE: &str = "ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit = \"mV\" }";
 
 const SHAPE: Shape = Shape {
     noun: "a mapping file",
     keys: &["pole_pairs", "sample_period", "park"],
-    tables: &[
-        ("t", COLUMN),
-        ("ud", COLUMN),
-        ("uq", COLUMN),
-        ("id", COLUMN),
-        ("iq", COLUMN),
-        ("omega_e", COLUMN),
-        ("theta_e", COLUMN),
-        ("u_dc", COLUMN),
-        ("ua", COLUMN),
-        ("ub", COLUMN),
-        ("uc", COLUMN),
-        ("ia", COLUMN),
-        ("ib", COLUMN),
-        ("ic", COLUMN),
-        ("run", COLUMN),
-    ],
+    tables: &[("columns", &["t", "ud", "uq", "id", "iq", "omega_e", "theta_e", "u_dc", "ua", "ub", "uc", "ia", "ib", "ic", "run"])],
 };
 
 /// Reads a mapping file; the path `-` is standard input.
@@ -117,7 +103,7 @@ impl Mapping {
 fn parse(text: &str) -> Result<Mapping, FileError> {
     let document = Document::parse(text, &SHAPE)?;
     let root = document.root();
-    let parks = [("amplitude", Park::Amplitude), ("power", Park::Power), ("rms", Park::Rms)];
+    let parks = [("amplitude-invariant", Park::Amplitude), ("power-invariant", Park::Power), ("rms", Park::Rms)];
     let sample_period = root.get("sample_period").map(|entry| match entry.quantity(Dimension::Time)? {
         period if period > 0.0 => Ok(period),
         _ => Err(entry.out_of_range("a time above zero")),
@@ -131,10 +117,11 @@ fn parse(text: &str) -> Result<Mapping, FileError> {
 }
 
 fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColumn>, FileError> {
-    let table = document.table(channel.name());
-    if !table.is_there() {
-        return Ok(None);
+    let Some(entry) = document.table("columns").get(channel.name()) else { return Ok(None) };
+    if let Ok(header) = entry.text() {
+        return Ok(Some(MappedColumn { channel, header: Some(header.trim().to_owned()), unit: None, factor: 1.0 }));
     }
+    let table = entry.table(SAID, "a column's name, or a table of what is known of it", EXAMPLE)?;
     let unit = table.get("unit").map(|entry| {
         let text = entry.text()?;
         let allowed = || Unit::of(channel.dimension()).map(Unit::name).collect();
@@ -145,13 +132,13 @@ fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColu
         scale if scale != 0.0 => Ok(scale),
         _ => Err(entry.out_of_range("a number other than zero")),
     });
-    let reversed = table.get("reversed").map(|entry| entry.truth()).transpose()?.unwrap_or(false);
+    let sign = table.get("sign").map(|entry| entry.word(&[("1", 1.0), ("-1", -1.0)])).transpose()?.unwrap_or(1.0);
     let header = table.get("column").map(|entry| entry.text()).transpose()?;
     Ok(Some(MappedColumn {
         channel,
         header: header.map(|header| header.trim().to_owned()),
         unit: unit.transpose()?,
-        factor: scale.transpose()?.unwrap_or(1.0) * if reversed { -1.0 } else { 1.0 },
+        factor: scale.transpose()?.unwrap_or(1.0) * sign,
     }))
 }
 
@@ -166,11 +153,13 @@ mod tests {
 
     #[test]
     fn a_mapping_says_what_columns_mean() {
-        let text = "pole_pairs = 4\nsample_period = \"0.1 ms\"\npark = \"power\"\n[iq]\ncolumn = \"Iq [A]\"\nscale = 0.5\nreversed = true\n[t]\nunit = \"ms\"\n";
+        let text = "pole_pairs = 4\nsample_period = \"0.1 ms\"\npark = \"power-invariant\"\n[columns]\n\
+                    iq = { column = \"Iq [A]\", scale = 0.5, sign = -1 }\nt = { unit = \"ms\" }\nud = \"vd\"\n";
         let mapping = read(text).unwrap();
         assert_eq!((mapping.pole_pairs, mapping.sample_period, mapping.park), (Some(4), Some(1e-4), Park::Power));
         let expected = [
             MappedColumn { channel: Channel::T, header: None, unit: Some(Unit::Millisecond), factor: 1.0 },
+            MappedColumn { channel: Channel::Ud, header: Some("vd".into()), unit: None, factor: 1.0 },
             MappedColumn { channel: Channel::Iq, header: Some("Iq [A]".into()), unit: None, factor: -0.5 },
         ];
         assert_eq!(mapping.columns, expected);
@@ -182,12 +171,19 @@ mod tests {
     #[test]
     fn refusals_name_line_and_key() {
         let cases = [
-            ("[ud]\nunit = \"A\"", "line 2, key 'unit': \"A\" is no unit of ud; it can be V or mV"),
-            ("[ud]\nscale = 0", "line 2, key 'scale': \"0\" is out of range; it must be a number other than zero"),
+            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is no unit of ud; it can be V or mV"),
+            ("[columns]\nud = { scale = 0 }", "line 2, key 'scale': \"0\" is out of range; it must be a number other than zero"),
             ("sample_period = 0", "line 1, key 'sample_period': \"0\" is out of range; it must be a time above zero"),
-            ("park = \"peak\"", "line 1, key 'park': \"peak\" is not known here; it can be amplitude, power or rms"),
-            ("[id]\ncolumn = 3", "line 2, key 'column': this is not a text in quotes; correct it"),
-            ("[id]\nname = \"x\"", "line 2, key 'name': this key is not known; [id] can hold column, unit, scale and reversed"),
+            ("park = \"peak\"", "line 1, key 'park': \"peak\" is not known here; it can be amplitude-invariant, power-invariant or rms"),
+            (
+                "[columns]\nid = 3",
+                "line 2, key 'id': this is not a column's name, or a table of what is known of it, \
+                 as in ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit = \"mV\" }; correct it",
+            ),
+            (
+                "[columns]\nid = { name = \"x\" }",
+                "line 2, key 'name': this key is not known; a column's name, or a table of what is known of it can hold column, unit, scale and sign",
+            ),
         ];
         for (text, sentence) in cases {
             assert_eq!(read(text), Err(format!("map.toml, {sentence}")), "{text}");
@@ -196,7 +192,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_panic(text in "\\PC*|(\\[ud\\]\n|column = |scale=|[0-9.\"'\\[\\]{}= \n]){0,20}") {
+        fn no_bytes_panic(text in "\\PC*|(\\[columns\\]\nud = |column = |scale=|[0-9.\"'\\[\\]{}= \n]){0,20}") {
             if let Err(sentence) = read(&text) {
                 prop_assert_eq!(sentence.lines().count(), 1);
             }

@@ -28,6 +28,7 @@ use crate::{
     channel::Channel,
     error::{FileError, Problem},
     input,
+    number::significant,
     unit::Unit,
 };
 use columns::Chosen;
@@ -124,6 +125,7 @@ fn read(mut table: Table, told: &Told) -> Result<ReadLog, FileError> {
     notes.extend(repair::repair(&mut channels));
     notes.extend(doubt::note_references(&channels));
     let log = log(channels, &chosen, &lines, &mut notes)?;
+    notes.extend(gaps(&log));
     Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes })
 }
 
@@ -157,6 +159,19 @@ fn log(mut channels: Channels, chosen: &[Chosen], lines: &Lines, notes: &mut Vec
     let [theta_e, u_dc] = [0, 1].map(|k| optional[k].take());
     let [t, ud, uq, id, iq, omega_e] = Channel::NEEDED.map(|channel| channels.take(channel).unwrap_or_default());
     Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e, u_dc }).map_err(|error| place.refuse(error))
+}
+
+/// Where time jumps.
+fn gaps(log: &Log) -> Option<String> {
+    let t = &log.columns().t;
+    let gap = |pair: &[log::Segment]| (t[pair[0].rows.end - 1], t[pair[1].rows.start]);
+    let gaps: Vec<(f64, f64)> = log.segments().windows(2).map(gap).collect();
+    let (from, to) = *gaps.iter().max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))?;
+    let longest = format!("{} s at t = {} s", significant(to - from, 3), significant(from, 6));
+    Some(match gaps.len() {
+        1 => format!("a gap of {longest}: nothing is computed across it"),
+        count => format!("{count} gaps, the longest of {longest}: nothing is computed across them"),
+    })
 }
 
 /// Where rows and columns stand in the file.

@@ -18,6 +18,10 @@ const MOST_ROWS: usize = 1000;
 /// Clarke and Park transforms where only phase quantities are there; the angle's slope where no speed is. What was done.
 pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
     let mut notes = Vec::new();
+    if let Some(theta) = angle_between(channels) {
+        channels.set(Channel::ThetaE, theta);
+        notes.push("theta_e is the angle between the current's vector in the phases and in dq".to_owned());
+    }
     let Some(theta) = channels.get(Channel::ThetaE).map(<[f64]>::to_vec) else { return notes };
     let sets = [
         ([Channel::UA, Channel::UB, Channel::UC], [Channel::Ud, Channel::Uq]),
@@ -47,6 +51,20 @@ pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
         notes.push("omega_e is the slope of theta_e".to_owned());
     }
     notes
+}
+
+/// The angle of a log that has the voltages of the phases, no angle, and the currents in both frames: theirs is the angle between.
+fn angle_between(channels: &Channels) -> Option<Vec<f64>> {
+    let is_missing = channels.get(Channel::ThetaE).is_none() && channels.get(Channel::UA).is_some();
+    let (id, iq) = (channels.get(Channel::Id)?, channels.get(Channel::Iq)?);
+    let (ia, ib) = (channels.get(Channel::IA)?, channels.get(Channel::IB)?);
+    let ic = channels.get(Channel::IC);
+    let angle = |row: usize| {
+        let (a, b) = (ia[row], ib[row]);
+        let phases = Abc { a, b, c: ic.map_or(-a - b, |c| c[row]) }.to_alpha_beta();
+        (phases.beta.atan2(phases.alpha) - iq[row].atan2(id[row])).rem_euclid(TAU)
+    };
+    is_missing.then(|| (0..id.len()).map(angle).collect())
 }
 
 /// Slope of an angle, rad/s, over [`TURN_OF_SPEED`] around each row, by the straight line of least squares.

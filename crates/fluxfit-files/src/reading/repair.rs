@@ -15,7 +15,7 @@ const LIVE: [Channel; 4] = [Ud, Uq, Id, Iq];
 const STANDSTILL: usize = 50;
 
 /// A value that stays for at least this many rows,
-const FROZEN: usize = 50;
+const FROZEN: usize = 30;
 
 /// and this many times longer than the channel's values stay nine times in ten, is frozen,
 const LONGER: usize = 20;
@@ -38,7 +38,7 @@ fn standstill(channels: &mut Channels) -> Option<String> {
     if still < STANDSTILL || still == t.len() {
         return None;
     }
-    let note = format!("the first {still} rows, {} s, are zero in every channel and left out", significant(t[still] - t[0], 3));
+    let note = format!("standstill: the first {still} rows, {} s, are zero in every channel and left out", significant(t[still] - t[0], 3));
     let kept: Vec<bool> = (0..t.len()).map(|row| row >= still).collect();
     channels.retain(&kept);
     Some(note)
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn a_start_at_standstill_is_left_out() {
         let (notes, rows) = spoilt(|channels| ALL.iter().for_each(|channel| fill(channels, *channel, 0..200, 0.0)));
-        assert_eq!((notes[0].as_str(), rows), ("the first 200 rows, 0.200 s, are zero in every channel and left out", 800));
+        assert_eq!((notes[0].as_str(), rows), ("standstill: the first 200 rows, 0.200 s, are zero in every channel and left out", 800));
     }
 
     #[test]

@@ -40,7 +40,7 @@ U_DC = 310.0
 
 # What the reader calls each layout: one place to rename them.
 CANONICAL, VESC_TOOL, VESC_SAMPLED, PHOBIA, ST_MCSDK, TRITIUM, PADERBORN, PHASES, MAPPED = (
-    "canonical", "vesc-tool", "vesc-sampled", "phobia", "st-mcsdk", "tritium", "paderborn", "phase-quantities", "mapped")
+    "canonical", "VESC Tool", "VESC sampled data", "phobia", "ST MCSDK", "Tritium", "Paderborn", "phase quantities", "none")
 
 RPM = 60.0 / (2.0 * math.pi)
 NAMES = ["t", "ud", "uq", "id", "iq", "omega_e"]
@@ -454,7 +454,9 @@ def traps():
     back = slow["t"].copy()
     back[60] -= 1.0
     refuse(put("time_runs_backward.csv", table(changed(SLOW, t=back))), "a row in the past", "time|t ", "increase|backward", line=62)
-    refuse(put("truncated_row.csv", text[:-18]), "the last line is cut off", "cells", "row", line=len(lines))
+    put("truncated_row.csv", text[:-18])
+    read("truncated_row.csv", "the last line is cut off, as where the power went", {name: values[:-1] for name, values in slow.items()}, CANONICAL,
+         notes=["cut off"])
     refuse(put("empty.csv", b""), "an empty file", "empty")
     garbage = bytes((k * k * 7 + k * 13 + (k >> 3)) % 256 for k in range(2000))
     refuse(put("garbage.bin", garbage), "bytes without meaning", "binary|not text|no log")
