@@ -55,7 +55,7 @@ pub use csv::{LogOptions, ReadLog, parse_log, read_log};
 pub use error::FileError;
 pub use given_motor::{GivenMotor, read_given_motor};
 pub use motor_file::{MotorFile, Rating, read_motor};
-pub use output::{Output, check_writable, is_replaceable, write_atomically};
+pub use output::{Output, check_writable, discard_unfinished, is_replaceable, write_atomically};
 pub use quantity::{Dimension, parse_quantity};
 pub use recording::write_recording;
 pub use scenario_file::{ReadScenario, paper_scenario, read_scenario};

@@ -4,6 +4,7 @@ pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod identify;
 mod input;
+pub(crate) mod manual;
 mod report;
 pub(crate) mod simulate;
 pub(crate) mod validate;
