@@ -27,7 +27,7 @@ pub(crate) struct Command {
 /// How much is told on standard error.
 #[derive(Debug, Args)]
 pub(crate) struct Telling {
-    /// Say nothing but answers, warnings and errors: no notes, no progress
+    /// Say no notes and show no progress; warnings and errors stay
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
     /// Say on standard error what is decided on the way, and when
