@@ -1,6 +1,7 @@
 //! The command line, as clap reads it. Texts of values are turned into values by `fluxfit-files`; nothing is decided here.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use anstyle::Style;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, builder::Resettable};
 use fluxfit::{
     identify::model,
     motor::Parameter,
@@ -13,79 +14,184 @@ use fluxfit::{
 use fluxfit_files::Unit;
 use std::path::PathBuf;
 
-/// Finds the electrical parameters of a permanent magnet synchronous motor from a log of its drive.
+/// Finds the parameters of a permanent magnet synchronous motor from a drive's log
 #[derive(Debug, Parser)]
-#[command(name = "fluxfit", version, max_term_width = 110, after_help = EXIT_STATUS)]
+#[command(name = "fluxfit", version, max_term_width = 110, subcommand_value_name = "VERB", after_help = EXIT_STATUS, arg_required_else_help = true)]
 pub(crate) struct Command {
     #[command(subcommand)]
     pub(crate) verb: Verb,
+    #[command(flatten)]
+    pub(crate) telling: Telling,
 }
 
-const EXIT_STATUS: &str = "Exit status: 0 everything asked for was identified, or the log agrees; 1 the log cannot carry some parameter, or differs; 2 misuse or unreadable input.";
+/// How much is told on standard error.
+#[derive(Debug, Args)]
+pub(crate) struct Telling {
+    /// Say no notes and show no progress; warnings and errors stay
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Say on standard error what is decided on the way, and when
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
+}
+
+const EXIT_STATUS: &str = "Exit: 0 all identified, or agrees; 1 not all, or differs; 2 misuse; 130 Ctrl-C";
+
+/// The verbs as the first help shows them; a verb that no group names comes last.
+const GROUPS: [(&str, &[&str]); 3] = [
+    ("Motors", &["identify", "validate", "compare"]),
+    ("Logs", &["inspect", "formats", "simulate"]),
+    ("Program", &["demo", "completions", "man", "help"]),
+];
+
+/// The command with its verbs in groups.
+pub(crate) fn command() -> clap::Command {
+    let command = Command::command();
+    let verbs: Vec<(String, String)> = command
+        .get_subcommands()
+        .map(|verb| (verb.get_name().to_owned(), verb.get_about().map(ToString::to_string).unwrap_or_default()))
+        .chain([("help".to_owned(), "Help for a verb".to_owned())])
+        .collect();
+    let width = verbs.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let is_in = |names: &[&str], name: &str| names.contains(&name);
+    let rest: Vec<&str> =
+        verbs.iter().map(|(name, _)| name.as_str()).filter(|name| !GROUPS.iter().any(|(_, names)| is_in(names, name))).collect();
+    let mut text = String::new();
+    for (title, names) in GROUPS.into_iter().chain([("Others", rest.as_slice())]) {
+        let lines: String = names
+            .iter()
+            .filter_map(|name| verbs.iter().find(|(verb, _)| verb == name))
+            .map(|(name, about)| format!("  {HEAD}{name:width$}{HEAD:#}  {about}\n"))
+            .collect();
+        if !lines.is_empty() {
+            text += &format!("{TITLE}{title}:{TITLE:#}\n{lines}");
+        }
+    }
+    command.help_template(format!("{{about}}\n\n{{usage-heading}} {{usage}}\n\n{text}{TITLE}Options:{TITLE:#}\n{{options}}{{after-help}}"))
+}
+
+/// Styles of clap's own headings and names.
+const TITLE: Style = Style::new().bold().underline();
+const HEAD: Style = Style::new().bold();
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
-    /// Show what is understood of a log: its layout, columns, units, repairs; and write a mapping file to start from
+    /// Inspect a log: its columns, units and repairs
+    ///
+    /// Shows what is understood of it, and writes a mapping file to start from.
     Inspect(Inspect),
     /// List the layouts of logs that are known
     Formats,
-    /// See all of it on the paper's rig: simulate, identify, compare four methods, write a report
+    /// See all of it on the paper's rig, with a report
+    ///
+    /// Simulates the paper's motor in its drive, identifies it, compares four methods, and writes a report.
     Demo(Demo),
-    /// Identify a motor: four parameters, each with an interval and a verdict
+    /// Identify a motor: four parameters with interval and verdict
     Identify(Identify),
-    /// Compare swarm optimizers on the paper's fitness, or on the output error: many runs of each, beside the minimum
+    /// Compare swarm optimizers: many runs of each, beside the minimum
+    ///
+    /// They minimize the paper's fitness, or the output error. Interrupted, the runs that are finished are shown.
     Compare(Compare),
     /// Simulate a motor in a drive: a log, and its truth beside it
     Simulate(Simulate),
-    /// Validate parameters on a log that they were not found from: predicted, compared, tested
+    /// Validate parameters on a log that they were not found from
+    ///
+    /// The log is predicted, compared and tested.
     Validate(Validate),
+    /// Print the completions of a shell
+    ///
+    /// For bash: fluxfit completions bash > ~/.local/share/bash-completion/completions/fluxfit. For zsh: into a file _fluxfit of a
+    /// directory in fpath. For fish: fluxfit completions fish > ~/.config/fish/completions/fluxfit.fish. For PowerShell: into the file
+    /// $PROFILE.
+    Completions(Completions),
+    /// Write the manual, a page for each verb
+    Man(Man),
+}
+
+impl Verb {
+    /// Whether standard output is for a program.
+    pub(crate) fn is_json(&self) -> bool {
+        match self {
+            Self::Identify(Identify { log, .. }) | Self::Compare(Compare { log, .. }) | Self::Validate(Validate { log, .. }) => log.json,
+            _ => false,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// Which shell
+    #[arg(value_name = "SHELL", value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// The directory, as ~/.local/share/man/man1
+    #[arg(value_name = "DIR")]
+    pub(crate) directory: PathBuf,
 }
 
 /// Which log, and how to read it.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Log")]
 pub(crate) struct LogArguments {
     /// Logs of one motor, as CSV with a header; - is standard input
-    #[arg(required = true, value_name = "LOG")]
+    #[arg(required = true, value_name = "LOG", help_heading = Resettable::Reset)]
     pub(crate) logs: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) columns: ColumnArguments,
-    /// A steady window in seconds of the log's own time, e.g. 0.48:0.595; may be repeated; without, windows are found
+    /// A steady window in the log's seconds, e.g. 0.48:0.595; repeatable
+    ///
+    /// Without, windows are found.
     #[arg(long, value_name = "T0:T1", value_parser = fluxfit_files::parse_window, allow_hyphen_values = true)]
     pub(crate) window: Vec<(f64, f64)>,
-    /// What ud, uq of a row mean: the mean of the two periods around it (centered), or the vector of one period, so many periods later
+    /// When the voltages ud, uq of a row act
+    ///
+    /// The mean of the two periods around it (centered), or the vector of one period, so many periods later.
     #[arg(long, value_enum, default_value_t = Timing::Auto)]
     pub(crate) voltage_timing: Timing,
-    /// Motor file: pole pairs, a rating for the search box, and for identify nameplate values that the log is held against
-    #[arg(long, value_name = "MOTOR.toml")]
+    /// Motor file: pole pairs, rating, nameplate
+    ///
+    /// The rating widens the search box; what identify finds is held against the nameplate.
+    #[arg(long, value_name = "MOTOR.toml", help_heading = "Knowledge")]
     pub(crate) motor: Option<PathBuf>,
-    /// Search box of the swarms, e.g. ld=0:50mH; what is not named comes from the rating or the log
-    #[arg(long, value_name = "NAME=LOW:HIGH,..", value_delimiter = ',', value_parser = fluxfit_files::parse_bounds, allow_hyphen_values = true)]
+    /// Search box of the swarms, e.g. ld=0:50mH
+    ///
+    /// What is not named comes from the rating or the log.
+    #[arg(long, help_heading = "Search", value_name = "NAME=LOW:HIGH,..", value_delimiter = ',', value_parser = fluxfit_files::parse_bounds, allow_hyphen_values = true)]
     pub(crate) bounds: Vec<(Parameter, f64, f64)>,
     /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Print one JSON document and nothing else
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(crate) json: bool,
     /// Write the results as a page for a browser, beside the answer
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, help_heading = "Output", value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
 }
 
 /// What a log's columns mean.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Log")]
 pub(crate) struct ColumnArguments {
-    /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed; canonical are t, ud, uq, id, iq, omega_e, and optionally
-    /// theta_e, u_dc; or, with theta_e, the phases ia, ib, ic, ua, ub, uc
+    /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed
+    ///
+    /// Canonical are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc; with theta_e the phases ia, ib, ic, ua, ub, uc do.
     #[arg(long, value_name = "NAME=COLUMN,..", value_delimiter = ',', value_parser = fluxfit_files::parse_map)]
     pub(crate) map: Vec<(String, String)>,
-    /// Units of columns, e.g. omega=rpm-mech,t=ms; without, the column's name or SI decides
+    /// Units of columns, e.g. omega=rpm-mech,t=ms
+    ///
+    /// Without, the column's name, its layout or SI decides.
     #[arg(long, value_name = "NAME=UNIT,..", value_delimiter = ',', value_parser = fluxfit_files::parse_unit)]
     pub(crate) unit: Vec<(String, Unit)>,
     /// Pole pairs, for speeds and angles in mechanical units
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) pole_pairs: Option<u32>,
-    /// Mapping file: names, units, scales and signs of columns (fluxfit inspect writes one to start from)
+    /// Mapping file: names, units, scales and signs of columns
+    ///
+    /// fluxfit inspect writes one to start from.
     #[arg(long, value_name = "MAPPING.toml")]
     pub(crate) mapping: Option<PathBuf>,
 }
@@ -117,22 +223,24 @@ pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) log: LogArguments,
     /// What is fitted to what
-    #[arg(long, value_enum, default_value_t = Model::Auto)]
+    #[arg(long, help_heading = "Search", value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
-    /// Who searches beside the exact answer; auto is tgfpa at operating points, and nobody on the output error, where it takes seconds
-    #[arg(long, default_value = "auto", value_parser = parse_search_method)]
+    /// Who searches beside the exact answer: least-squares (nobody), tgfpa, fpa, lpso, apso
+    ///
+    /// auto is tgfpa at operating points, and nobody on the output error, where it takes seconds.
+    #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method)]
     pub(crate) method: SearchMethod,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
+    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
     /// A parameter that is known exactly, e.g. rs=0.96
-    #[arg(long, value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_files::parse_fix, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_files::parse_fix, allow_hyphen_values = true)]
     pub(crate) fix: Vec<(Parameter, f64)>,
     /// A parameter that is known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
-    #[arg(long, value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_files::parse_prior, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_files::parse_prior, allow_hyphen_values = true)]
     pub(crate) prior: Vec<(Parameter, f64, f64)>,
-    /// Identify from all but the last log (of one log: its last segment), and validate the answer on that
-    #[arg(long)]
+    /// Identify from all but the last log or segment, and validate on that
+    #[arg(long, help_heading = "Output")]
     pub(crate) hold_out: bool,
 }
 
@@ -141,31 +249,31 @@ pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) log: LogArguments,
     /// Methods: tgfpa, fpa, lpso, apso
-    #[arg(long, value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
+    #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
     pub(crate) methods: Vec<Method>,
     /// What is minimized
-    #[arg(long, value_enum, default_value_t = StudyModel::Steady)]
+    #[arg(long, help_heading = "Search", value_enum, default_value_t = StudyModel::Steady)]
     pub(crate) model: StudyModel,
     /// Independent runs of each method
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 50)]
     pub(crate) runs: usize,
     /// Candidates of each run
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 50)]
     pub(crate) population: usize,
     /// Iterations of each run
-    #[arg(long, value_name = "N", default_value_t = 300)]
+    #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 300)]
     pub(crate) iterations: usize,
     /// Stop a run once its cost is this close to the minimum
-    #[arg(long, value_name = "COST")]
+    #[arg(long, help_heading = "Search", value_name = "COST")]
     pub(crate) tolerance: Option<f64>,
     /// Stop a run once its cost is at or below this
-    #[arg(long, value_name = "COST")]
+    #[arg(long, help_heading = "Search", value_name = "COST")]
     pub(crate) target_cost: Option<f64>,
     /// What stands for i_d in the mode i_d = 0: the measured current, or zero as in the paper's equation (3)
-    #[arg(long, value_name = "HOW", default_value = "measured", value_parser = parse_id_zero)]
+    #[arg(long, help_heading = "Search", value_name = "HOW", default_value = "measured", value_parser = parse_id_zero)]
     pub(crate) id_zero: IdZero,
     /// True parameters (LOG.truth.json), for the errors of Table 2
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = "Knowledge", value_name = "FILE")]
     pub(crate) truth: Option<PathBuf>,
 }
 
@@ -197,10 +305,10 @@ pub(crate) struct Validate {
     #[command(flatten)]
     pub(crate) log: LogArguments,
     /// What is predicted: currents or steady voltages
-    #[arg(long, value_enum, default_value_t = Model::Auto)]
+    #[arg(long, help_heading = "Search", value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
+    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
 }
 

@@ -35,3 +35,13 @@ pub(crate) enum CommandError {
     #[error("the answer could not be written: {0}")]
     Output(#[from] std::io::Error),
 }
+
+impl CommandError {
+    /// What is wrong with a file, if that is it.
+    pub(crate) fn in_file(&self) -> Option<&fluxfit_files::FileError> {
+        match self {
+            Self::File(error) => Some(error),
+            _ => None,
+        }
+    }
+}

@@ -9,8 +9,13 @@ mod bad_input;
 mod bad_scenario;
 #[path = "command/compare.rs"]
 mod compare;
+#[path = "command/craft.rs"]
+mod craft;
 #[path = "command/identify.rs"]
 mod identify;
+#[cfg(unix)]
+#[path = "command/interrupt.rs"]
+mod interrupt;
 #[path = "command/pages.rs"]
 mod pages;
 #[path = "command/report.rs"]

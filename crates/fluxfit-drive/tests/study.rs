@@ -17,6 +17,7 @@ use fluxfit::{
 };
 use fluxfit_drive::{Scenario, simulate};
 use rayon::ThreadPoolBuilder;
+use std::ops::ControlFlow;
 
 /// The paper's rig with noise, cut to the rows around the step of i_d, where everything moves.
 fn log() -> Log {
@@ -44,7 +45,8 @@ fn bounds() -> Bounds {
 
 fn study(problem: &mut Problem, runs: usize, iterations: usize) -> Vec<MethodStudy> {
     let settings = Settings { population: 12, iterations, ..Settings::default() };
-    let run = |method: Method| run_method(method, runs, settings, &bounds(), &problem.fitness, || ()).unwrap();
+    let run =
+        |method: Method| run_method(method, runs, settings, &bounds(), &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
     let mut studies = Method::all().map(run).to_vec();
     settle(&mut problem.fitness, &mut studies);
     studies

@@ -56,7 +56,7 @@ pub use argument::{parse_bounds, parse_fix, parse_map, parse_prior, parse_unit, 
 pub use error::FileError;
 pub use given_motor::{GivenMotor, read_given_motor};
 pub use motor_file::{MotorFile, Rating, read_motor};
-pub use output::{Output, check_writable, is_replaceable, write_atomically};
+pub use output::{Output, check_writable, discard_unfinished, is_replaceable, write_atomically};
 pub use quantity::{Dimension, parse_quantity};
 pub use reading::{
     LogOptions, ReadLog,

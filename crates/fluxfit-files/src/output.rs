@@ -8,6 +8,7 @@ use std::{
     fs,
     io::{self, BufWriter, Stdout, Write},
     path::{Path, PathBuf},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 use tempfile::NamedTempFile;
 
@@ -41,6 +42,7 @@ enum Sink {
     Device(fs::File),
     File {
         file: NamedTempFile,
+        listed: Listed,
         target: PathBuf,
         permissions: Option<fs::Permissions>,
     },
@@ -76,7 +78,7 @@ impl Output {
     /// # Errors
     /// Those of writing to the disk and of renaming.
     pub fn commit(self) -> Result<(), FileError> {
-        let Sink::File { file, target, permissions } = self.sink else { return Ok(()) };
+        let Sink::File { file, listed: _listed, target, permissions } = self.sink else { return Ok(()) };
         let replace = || {
             if let Some(permissions) = permissions {
                 file.as_file().set_permissions(permissions)?;
@@ -87,6 +89,33 @@ impl Output {
         };
         replace().map_err(|error: io::Error| FileError::from(problem(&error)).in_file(&self.name))
     }
+}
+
+/// Files that have no name of their own yet. A process that a signal ends drops nothing, so it must know them.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of names is whole at any time.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A name in [`UNFINISHED`], as long as this lives.
+#[derive(Debug)]
+struct Listed(PathBuf);
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.0);
+    }
+}
+
+/// Removes every file of an [`Output`] that has not taken its name yet. For a process that ends at once: no other one can be begun
+/// afterwards, and none of these committed.
+pub fn discard_unfinished() {
+    let unfinished = unfinished();
+    unfinished.iter().for_each(|path| drop(fs::remove_file(path)));
+    // Locked for good: who waits for it ends with the process.
+    std::mem::forget(unfinished);
 }
 
 /// Whether something can be put in place of this path: it is neither standard output nor a device or a pipe.
@@ -117,13 +146,13 @@ fn open(path: &Path) -> Result<Sink, FileError> {
     if !directory.is_dir() {
         return Err(Problem::NoDirectory { directory: directory.display().to_string() }.into());
     }
-    let file = beside(directory).map_err(|error| problem(&error))?;
+    let (file, listed) = beside(directory).map_err(|error| problem(&error))?;
     let permissions = existing.map(|metadata| metadata.permissions());
-    Ok(Sink::File { file, target, permissions })
+    Ok(Sink::File { file, listed, target, permissions })
 }
 
 /// A new file, readable by whom the user's mask allows rather than by the user alone.
-fn beside(directory: &Path) -> io::Result<NamedTempFile> {
+fn beside(directory: &Path) -> io::Result<(NamedTempFile, Listed)> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".fluxfit-").suffix(".tmp");
     #[cfg(unix)]
@@ -131,7 +160,11 @@ fn beside(directory: &Path) -> io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(directory)
+    let mut unfinished = unfinished();
+    let file = builder.tempfile_in(directory)?;
+    unfinished.push(file.path().to_owned());
+    let listed = Listed(file.path().to_owned());
+    Ok((file, listed))
 }
 
 fn problem(error: &io::Error) -> Problem {

@@ -281,7 +281,10 @@ fn rows_are_refused_in_one_sentence() {
             "drive.csv, line 3, column 'uq': \"1,234\" does not have the decimal mark of line 2; use one mark throughout, and no thousands separators",
         ),
         (semicolons("0;1,234,5;2;3;4;5\n"), "drive.csv, line 2, column 'ud': \"1,234,5\" is not a number; correct it or remove the row"),
-        (semicolons("0;1.234,5;2;3;4;5\n"), "drive.csv, line 2, column 'ud': \"1.234,5\" has both marks, and which one is decimal is a guess; write numbers without thousands separators"),
+        (
+            semicolons("0;1.234,5;2;3;4;5\n"),
+            "drive.csv, line 2, column 'ud': \"1.234,5\" has both marks, and which one is decimal is a guess; write numbers without thousands separators",
+        ),
     ];
     check(&cases, &LogOptions::default());
     // The library speaks of its own column; the file calls it otherwise, and in other units.

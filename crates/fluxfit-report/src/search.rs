@@ -51,6 +51,7 @@ fn stop_reason(reason: StopReason) -> &'static str {
         StopReason::IterationLimit => "all iterations were run",
         StopReason::CloseToOptimum => "close enough to the optimum",
         StopReason::TargetCost => "the cost asked for was reached",
+        StopReason::Interrupted => "interrupted",
     }
 }
 

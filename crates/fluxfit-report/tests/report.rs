@@ -27,6 +27,7 @@ use fluxfit_report::{
 };
 use html5ever::{driver::ParseOpts, parse_document, tendril::TendrilSink, tree_builder::TreeBuilderOpts};
 use markup5ever_rcdom::{Handle, NodeData, RcDom};
+use std::ops::ControlFlow;
 
 /// Rows of each operating point.
 const ROWS: usize = 200;
@@ -79,7 +80,7 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
     let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
     let settings = fluxfit::optimizer::Settings { population: 20, iterations: 12, ..Default::default() };
     let run = |method: &Method| {
-        let mut study = run_method(*method, 3, settings, &bounds, &problem.fitness, || ()).unwrap();
+        let mut study = run_method(*method, 3, settings, &bounds, &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
         change(&mut study);
         (study, 1e-3)
     };

@@ -14,6 +14,7 @@ use crate::{
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
+use std::cell::Cell;
 
 /// Step of the differences, in the unknowns' units: the cube root of rounding, at which the errors of a central difference are least.
 const STEP: f64 = 6e-6;
@@ -61,6 +62,17 @@ pub fn polish(objective: &OutputError, start: &Motor) -> Polished {
 
 /// Polishes these unknowns of a drive and leaves the others where they are.
 pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> Polished {
+    polish_watched(objective, start, unknowns, beliefs, &|_| ())
+}
+
+/// [`polish_unknowns`], telling after each step how many simulations it has taken so far.
+pub fn polish_watched(
+    objective: &OutputError,
+    start: &Adjustable,
+    unknowns: &[Unknown],
+    beliefs: &[Belief],
+    done: &dyn Fn(usize),
+) -> Polished {
     let scale: Vec<f64> = unknowns.iter().map(|unknown| unit(*unknown, start, objective)).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
     let (problem, report) = LevenbergMarquardt::new().with_ftol(NO_STEP).with_xtol(NO_STEP).with_patience(PATIENCE).minimize(Problem {
@@ -70,6 +82,8 @@ pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[
         beliefs,
         scale,
         units,
+        simulations: Cell::new(0),
+        done,
     });
     let drive = problem.drive();
     Polished { drive, cost: objective.cost_of(&drive), converged: report.termination.was_successful() }
@@ -106,9 +120,16 @@ struct Problem<'a> {
     beliefs: &'a [Belief],
     scale: Vec<f64>,
     units: DVector<f64>,
+    simulations: Cell<usize>,
+    done: &'a dyn Fn(usize),
 }
 
 impl Problem<'_> {
+    fn simulated(&self, times: usize) {
+        self.simulations.update(|simulations| simulations + times);
+        (self.done)(self.simulations.get());
+    }
+
     fn drive(&self) -> Adjustable {
         let values = self.units.iter().zip(&self.scale).map(|(units, scale)| units * scale);
         self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value))
@@ -131,6 +152,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     fn residuals(&self) -> Option<DVector<f64>> {
         let drive = self.drive();
         let mut residuals = self.objective.residuals(&drive);
+        self.simulated(1);
         // Not a failure but a bad candidate: the next step is shorter.
         residuals.iter_mut().filter(|residual| residual.abs() > HOPELESS || residual.is_nan()).for_each(|residual| *residual = HOPELESS);
         residuals.extend(self.beliefs.iter().map(|belief| belief.weight * (belief.value - drive.get(belief.unknown))));
@@ -139,6 +161,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let columns = jacobian(self.objective, &self.drive(), self.unknowns);
+        self.simulated(2 * self.unknowns.len());
         let rows = columns.first().map_or(0, Vec::len);
         let mut matrix = DMatrix::zeros(rows + self.beliefs.len(), self.unknowns.len());
         for (k, column) in columns.iter().enumerate() {

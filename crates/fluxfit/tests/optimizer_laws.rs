@@ -8,7 +8,7 @@ use fluxfit::optimizer::fpa::Fpa;
 use fluxfit::optimizer::tgfpa::{Start, Tgfpa};
 use fluxfit::optimizer::{CloseTo, Method, Objective, Optimizer, Settings, StopReason, objective_from};
 use proptest::prelude::*;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A search to make: everything but the objective's values.
@@ -363,6 +363,26 @@ fn closeness_to_the_optimum_stops_as_soon_as_it_is_reached() {
         let (last, before) = report.history.split_last().unwrap();
         assert!(last.iteration < settings.iterations);
         assert!(before.iter().all(|record| record.cost - close.optimum > close.tolerance), "{}", method.label());
+    }
+}
+
+#[test]
+fn what_is_interrupted_and_run_on_ends_at_the_same_bits() {
+    for method in Method::all() {
+        let start = || Optimizer::start(method, Settings { iterations: 20, ..Settings::default() }, bowl_box(), &bowl()).unwrap();
+        let mut optimizer = start();
+        let mut asked = 0;
+        let cut = optimizer.run_while(&bowl(), || {
+            asked += 1;
+            if asked == 7 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert_eq!((cut.stop_reason, cut.history.len()), (StopReason::Interrupted, 8), "{}", method.label());
+        assert_eq!(optimizer.run(&bowl()), start().run(&bowl()), "{}", method.label());
+        // A criterion that holds at the same time is the reason.
+        let last = Optimizer::start(method, Settings { iterations: 1, ..Settings::default() }, bowl_box(), &bowl())
+            .unwrap()
+            .run_while(&bowl(), || ControlFlow::Break(()));
+        assert_eq!(last.stop_reason, StopReason::IterationLimit, "{}", method.label());
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Status, input, report};
 use crate::{
     arguments::{Compare, StudyModel},
     error::CommandError,
-    terminal,
+    interrupt, terminal,
 };
 use fluxfit::{
     identify::Settings,
@@ -22,25 +22,30 @@ use fluxfit_files::{answer, read_truth};
 use fluxfit_report::{Report, html};
 use std::time::Instant;
 
-/// Runs of fitness (11) beyond which a progress bar is shown: fewer end within a second.
-const MANY_RUNS: usize = 1000;
-
 /// Runs the verb.
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     report::check(&arguments.log, arguments.truth.as_deref())?;
     check(arguments)?;
     let input = input::read(&arguments.log)?;
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
-    let mut problem = problem(arguments, &input.log).map_err(|error| input::of_log(&input.name, error))?;
+    let problem = terminal::working("looking for the minimum".to_owned(), || problem(arguments, &input.log));
+    let mut problem = problem.map_err(|error| input::of_log(&input.name, error))?;
     let bounds = input::search_box(&arguments.log, &input, &problem.bounds)?;
     let settings = search_settings(arguments, &problem.fitness)?;
 
-    let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &mut problem.fitness, arguments.log.json)?;
+    let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &mut problem.fitness)?;
     let facts = answer::StudyFacts { settings: &settings, runs: arguments.runs, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
+    let is_whole = facts.is_whole(&methods, arguments.methods.len());
     if arguments.log.json {
-        terminal::print(&answer::to_text(&answer::study(&facts, &methods)))?;
+        let mut document = answer::study(&facts, &methods);
+        document["interrupted"] = (!is_whole).into();
+        terminal::print(&answer::to_text(&document))?;
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
+    }
+    if !is_whole {
+        terminal::study::interrupted(&arguments.methods, arguments.runs, &methods);
+        return Ok(Status::Incomplete);
     }
     report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
         html(&Report {
@@ -83,24 +88,32 @@ fn problem(arguments: &Compare, log: &Log) -> Result<Problem, fluxfit::error::Er
     }
 }
 
-/// Every method in turn, with the seconds of wall time that one of its runs took.
+/// Every method in turn, with the seconds of wall time that one of its runs took; interrupted, those that have a finished run.
 pub(super) fn study(
     methods: &[Method],
     runs: usize,
     settings: optimizer::Settings,
     bounds: &Bounds,
     fitness: &mut Fitness,
-    quiet: bool,
 ) -> Result<Vec<(MethodStudy, f64)>, CommandError> {
-    let is_short = matches!(fitness, Fitness::VoltageError(_)) && runs * methods.len() < MANY_RUNS;
-    let progress = terminal::progress(runs * methods.len() * settings.iterations, "iterations", quiet || is_short);
+    let progress = terminal::counting("comparing", runs * methods.len() * settings.iterations);
     let (mut studies, mut seconds) = (Vec::new(), Vec::new());
     for method in methods {
+        terminal::detail(|| format!("{}: {runs} runs begin", method.label()));
         let start = Instant::now();
-        studies.push(run_method(*method, runs, settings, bounds, fitness, || progress.inc(1))?);
-        seconds.push(start.elapsed().as_secs_f64() / runs as f64);
+        let iterated = || {
+            progress.add(1);
+            interrupt::go_on()
+        };
+        if let Some(study) = interrupt::gently(|| run_method(*method, runs, settings, bounds, fitness, iterated))? {
+            seconds.push(start.elapsed().as_secs_f64() / study.motors.len() as f64);
+            studies.push(study);
+        }
+        if interrupt::go_on().is_break() {
+            break;
+        }
     }
-    progress.finish_and_clear();
+    progress.turn_to("polishing the lowest end of a swarm");
     settle(fitness, &mut studies);
     Ok(studies.into_iter().zip(seconds).collect())
 }

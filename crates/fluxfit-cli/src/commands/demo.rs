@@ -22,7 +22,7 @@ const NAME: &str = "The paper's rig, simulated";
 pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     report::check_name(&arguments.report)?;
     let scenario = Scenario::paper();
-    let log = simulate(&scenario, 0, || ())?.log()?;
+    let log = terminal::working("simulating".to_owned(), || simulate(&scenario, 0, || ()))?.log()?;
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
 
     let search = optimizer::Settings { seed: arguments.seed, ..optimizer::Settings::default() };
@@ -31,10 +31,14 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     terminal::identification::show(NAME, &log, &found, settings.method.as_ref())?;
 
     let mut problem = Problem::steady(&log, &settings, IdZero::Measured)?;
-    let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &mut problem.fitness, false)?;
+    let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &mut problem.fitness)?;
     let facts = StudyFacts { settings: &search, runs: paper::RUNS, bounds: &bounds, problem: &problem, truth: Some(&paper::MOTOR) };
     terminal::print("\n")?;
     terminal::study::show(NAME, &facts, &methods)?;
+    if !facts.is_whole(&methods, Method::all().len()) {
+        terminal::study::interrupted(&Method::all(), paper::RUNS, &methods);
+        return Ok(Status::Incomplete);
+    }
 
     report::write(Some(&arguments.report), arguments.seed, |origin| {
         html(&Report {

@@ -4,23 +4,26 @@ use super::{Status, input, report};
 use crate::{
     arguments::{Identify, SearchMethod, by_parameter},
     error::CommandError,
-    terminal,
+    interrupt, terminal,
 };
 use fluxfit::{
     error::Error,
     identify::{
-        Identification, Known, Settings, conventions, identify,
+        Identification, Known, Settings, Step, conventions, identify, identify_watched,
         model::{self, Model},
         search_box::from_points,
     },
     log::Log,
     motor::PARAMETERS,
-    optimizer::{self, Method, tgfpa::Tgfpa},
+    optimizer::{self, Method, StopReason, tgfpa::Tgfpa},
     validate::{Given, Validation, validate},
 };
 use fluxfit_files::answer;
 use fluxfit_report::{Report, html};
 use serde_json::Value;
+
+/// Code of the warning that a search was cut.
+const INTERRUPTED: &str = "interrupted";
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
@@ -41,8 +44,9 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     if let Ok(points) = fluxfit::identify::operating_points(&input.log, &settings) {
         settings.bounds = Some(input::search_box(&arguments.log, &input, &from_points(&points)?)?);
     }
-    let found = terminal::working(format!("fitting {} rows", input.log.rows()), || identify(&input.log, &settings));
+    let found = watched(&input.log, &settings);
     let mut found = found.map_err(refuse)?;
+    terminal::decisions::tell(&found);
     // Wrong units scale the answer of the operating points alone: the slope of a current knows the time.
     let of_points = identify(&input.log, &Settings { model: Some(Model::Steady), method: None, ..settings.clone() });
     let convention = conventions::check(&input.log, Some((of_points.as_ref().unwrap_or(&found), &settings.known)), &nameplate);
@@ -72,6 +76,10 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
             (None, _) => {}
         }
     }
+    if let Some(search) = found.search.as_ref().filter(|search| search.report.stop_reason == StopReason::Interrupted) {
+        let (done, limit) = (search.report.history.len() - 1, settings.search.iterations);
+        terminal::warn(INTERRUPTED, &format!("the swarm made {done} of {limit} iterations; the answer beside it is whole"));
+    }
     report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
         html(&Report {
             title: &input.name,
@@ -84,6 +92,30 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         })
     })?;
     Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
+}
+
+/// Identifies, and tells how far it is. The swarm can be interrupted, and is the last.
+fn watched(log: &Log, settings: &Settings) -> Result<Identification, Error> {
+    let progress = terminal::unknown(&format!("fitting {} rows", log.rows()));
+    let told = |what: &str| progress.turn_to(what);
+    let watch = |step: Step| {
+        match step {
+            Step::OperatingPoints => told("solving the operating points"),
+            Step::Readings => told("trying the readings of the voltages"),
+            Step::Faults => told("looking for faults of the drive"),
+            Step::Fit { simulations, usual } => progress.count(&format!("fitting {} rows", log.rows()), simulations, usual),
+            Step::Uncertainty => told("telling how uncertain the answer is"),
+            Step::Search { iteration: 0, limit } => {
+                interrupt::be_gentle(true);
+                progress.count("searching", 0, limit);
+            }
+            Step::Search { iteration, limit } => progress.count("searching", iteration, limit),
+        }
+        interrupt::go_on()
+    };
+    let found = identify_watched(log, settings, &watch);
+    interrupt::be_gentle(false);
+    found
 }
 
 /// Takes the last log, or segment, out of what is identified from.

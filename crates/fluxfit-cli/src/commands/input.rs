@@ -41,7 +41,9 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     let options = options(&arguments.columns, motor.pole_pairs)?;
     let (mut logs, mut notes) = (Vec::new(), Vec::new());
     for path in &arguments.logs {
-        let read = read_log(path, &options)?;
+        let read = terminal::working(format!("reading {}", name(path)), || read_log(path, &options))?;
+        let (rows, segments) = (read.log.rows(), read.log.segments().len());
+        terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
         notes.extend(read.notes.iter().map(|note| format!("{}: {note}", name(path))));
         logs.push(read.log);
     }

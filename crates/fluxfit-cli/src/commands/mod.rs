@@ -6,6 +6,7 @@ pub(crate) mod formats;
 pub(crate) mod identify;
 mod input;
 pub(crate) mod inspect;
+pub(crate) mod manual;
 mod report;
 pub(crate) mod simulate;
 pub(crate) mod validate;

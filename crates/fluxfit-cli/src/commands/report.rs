@@ -1,7 +1,7 @@
 //! `--report FILE.html`: what the verbs do about it. The file is refused before anything is computed, and written after the
 //! answer is printed.
 
-use crate::{arguments::LogArguments, error::CommandError, shell, terminal};
+use crate::{arguments::LogArguments, error::CommandError, interrupt, shell, terminal};
 use fluxfit_files::write_atomically;
 use fluxfit_report::Origin;
 use std::{fs, path::Path};
@@ -31,6 +31,7 @@ pub(crate) fn check_name(path: &Path) -> Result<(), CommandError> {
 pub(crate) fn write(path: Option<&Path>, seed: u64, report: impl FnOnce(&Origin) -> String) -> Result<(), CommandError> {
     let Some(path) = path else { return Ok(()) };
     let origin = Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed };
+    interrupt::doing("writing the report");
     write_atomically(path, report(&origin).as_bytes())?;
     terminal::wrote("report", path);
     Ok(())

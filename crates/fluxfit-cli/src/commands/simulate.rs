@@ -1,16 +1,22 @@
 //! `fluxfit simulate`: a scenario to a log, and its truth beside it.
 
 use super::Status;
-use crate::{arguments::Simulate, error::CommandError, terminal};
+use crate::{
+    arguments::Simulate,
+    error::CommandError,
+    interrupt,
+    terminal::{self, Progress},
+};
 use fluxfit_drive::{Recording, simulate};
 use fluxfit_files::{
     Output, ReadScenario, answer, check_writable, is_replaceable, paper_scenario, read_scenario, scenario_file::PAPER_RIG, truth_of,
     truth_path, write_recording,
 };
-use std::{fs, path::Path};
-
-/// Rows beyond which a progress bar is shown: fewer are simulated within a second.
-const MANY_ROWS: usize = 400_000;
+use std::{
+    fs,
+    io::{self, Write},
+    path::Path,
+};
 
 /// Rows between two movements of the progress bar.
 const STRIDE: usize = 1024;
@@ -30,6 +36,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<Status, CommandError> {
     [Some(log), truth.as_deref()].into_iter().flatten().try_for_each(check_writable)?;
     let recording = record(arguments, &read)?;
     if log.as_os_str() == "-" {
+        interrupt::doing("writing the log");
         terminal::stream(|out| write_recording(out, &recording))?;
     } else {
         write(log, truth.as_deref(), &recording, &answer::to_text(&truth_of(&read, arguments.draw)))?;
@@ -59,20 +66,18 @@ fn refuse_to_overwrite(read: [Option<&Path>; 2], written: &Path) -> Result<(), C
 }
 
 fn record(arguments: &Simulate, read: &ReadScenario) -> Result<Recording, CommandError> {
-    let rows = read.scenario.rows();
-    let progress = terminal::progress(rows, "rows", rows < MANY_ROWS);
+    let progress = terminal::counting("simulating", read.scenario.rows());
     let mut done = 0;
     let recording = simulate(&read.scenario, arguments.draw, || {
         done += 1;
         if done % STRIDE == 0 {
-            progress.inc(STRIDE as u64);
+            progress.add(STRIDE);
         }
     });
-    progress.finish_and_clear();
     recording.map_err(|error| CommandError::Simulation { scenario: name(arguments), error })
 }
 
-/// Both files or none: neither gets its name before both are on the disk.
+/// Both files or none: neither gets its name before both are on the disk, and no signal comes between.
 fn write(log: &Path, truth: Option<&Path>, recording: &Recording, text: &str) -> Result<(), CommandError> {
     let mut outputs = Vec::new();
     if let Some(path) = truth {
@@ -81,9 +86,36 @@ fn write(log: &Path, truth: Option<&Path>, recording: &Recording, text: &str) ->
         outputs.push(output);
     }
     let mut output = Output::open(log)?;
-    output.fill(|writer| write_recording(writer, recording))?;
+    let progress = terminal::counting(&format!("writing {}", log.display()), recording.columns.t.len());
+    output.fill(|writer| write_recording(&mut Lines { writer, written: 0, progress: &progress }, recording))?;
     outputs.push(output);
-    Ok(outputs.into_iter().try_for_each(Output::commit)?)
+    progress.turn_to("writing to the disk");
+    Ok(interrupt::gently(|| outputs.into_iter().try_for_each(Output::commit))?)
+}
+
+/// A writer that counts lines.
+struct Lines<'a> {
+    writer: &'a mut dyn Write,
+    written: usize,
+    progress: &'a Progress,
+}
+
+impl Write for Lines<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.writer.write(bytes)?;
+        // A recording is written line by line.
+        if bytes[..count].ends_with(b"\n") {
+            self.written += 1;
+            if self.written.is_multiple_of(STRIDE) {
+                self.progress.add(STRIDE);
+            }
+        }
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
 }
 
 /// What the scenario is called.

@@ -1,21 +1,29 @@
 //! What a person sees. Answers on standard output, everything else on standard error; colour only where it is wanted (a terminal,
 //! and no `NO_COLOR`).
 
+pub(crate) mod decisions;
+mod excerpt;
 pub(crate) mod formats;
 pub(crate) mod identification;
 pub(crate) mod inspection;
 mod plot;
+mod progress;
 pub(crate) mod simulation;
 pub(crate) mod study;
 pub(crate) mod validation;
 
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use fluxfit_files::FileError;
+pub(crate) use progress::{Progress, counting, unknown, working};
 use std::{
-    io::{BufWriter, Write},
+    io::{BufWriter, IsTerminal, Write},
     path::Path,
-    time::Duration,
+    sync::{
+        LazyLock,
+        atomic::{AtomicBool, AtomicU8, Ordering},
+    },
+    time::Instant,
 };
 
 const ERROR: Style = AnsiColor::Red.on_default().bold();
@@ -39,9 +47,57 @@ pub(crate) fn stream(write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) 
     out.flush()
 }
 
-/// Says why a command stopped.
-pub(crate) fn complain(error: &dyn std::error::Error) {
+/// How much is told on standard error, beside warnings and errors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub(crate) enum Detail {
+    /// Nothing.
+    Quiet,
+    /// What was inferred and what was written, and how far the work is.
+    Notes,
+    /// What was decided on the way, and when.
+    Everything,
+}
+
+static DETAIL: AtomicU8 = AtomicU8::new(Detail::Notes as u8);
+/// Whether progress may be shown, where there is a terminal.
+static HAS_PROGRESS: AtomicBool = AtomicBool::new(true);
+static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+
+/// Settles how much is told, and starts the clock.
+pub(crate) fn tell(detail: Detail, has_progress: bool) {
+    DETAIL.store(detail as u8, Ordering::Relaxed);
+    HAS_PROGRESS.store(has_progress && detail > Detail::Quiet, Ordering::Relaxed);
+    LazyLock::force(&START);
+}
+
+fn detail_level() -> Detail {
+    match DETAIL.load(Ordering::Relaxed) {
+        0 => Detail::Quiet,
+        1 => Detail::Notes,
+        _ => Detail::Everything,
+    }
+}
+
+/// Says why a command stopped: a sentence, and below it the line of the file that it is about.
+pub(crate) fn complain(error: &dyn std::error::Error, file: Option<&FileError>) {
     say(&format!("{ERROR}error:{ERROR:#} {error}"));
+    if let Some(excerpt) = file.and_then(excerpt::of) {
+        let _ = write!(anstream::stderr().lock(), "{DIM}{excerpt}{DIM:#}");
+    }
+}
+
+/// Says what a signal does, from the first column on, whatever progress has left there.
+pub(crate) fn interrupted(what: &str) {
+    let clear = if std::io::stderr().is_terminal() { "\r\x1b[2K" } else { "" };
+    say(&format!("{clear}{WARNING}interrupted:{WARNING:#} {what}"));
+}
+
+/// Says what was decided, and how long after the start, if everything is to be told.
+pub(crate) fn detail(message: impl FnOnce() -> String) {
+    if detail_level() == Detail::Everything {
+        say(&format!("{DIM}{:8.3} s  {}{DIM:#}", START.elapsed().as_secs_f64(), message()));
+    }
 }
 
 /// Says what the reader should know.
@@ -51,12 +107,14 @@ pub(crate) fn warn(code: &str, message: &str) {
 
 /// Says what was inferred.
 pub(crate) fn note(message: &str) {
-    say(&format!("{DIM}note:{DIM:#} {message}"));
+    if detail_level() > Detail::Quiet {
+        say(&format!("{DIM}note:{DIM:#} {message}"));
+    }
 }
 
 /// Says that a file was written, and what it is.
 pub(crate) fn wrote(what: &str, file: &Path) {
-    if file.as_os_str() != "-" {
+    if detail_level() > Detail::Quiet && file.as_os_str() != "-" {
         say(&format!("{DIM}{what}:{DIM:#} {}", file.display()));
     }
 }
@@ -64,26 +122,6 @@ pub(crate) fn wrote(what: &str, file: &Path) {
 fn say(line: &str) {
     // Nobody listening on standard error is no reason to stop.
     let _ = writeln!(anstream::stderr().lock(), "{line}");
-}
-
-/// A progress bar on standard error, where that is a terminal.
-pub(crate) fn progress(length: usize, what: &str, quiet: bool) -> ProgressBar {
-    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}, {eta} left").unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::with_draw_target(Some(length as u64), target).with_style(style).with_message(what.to_owned())
-}
-
-/// Between two turns of a sign of life: fast enough to be seen moving.
-const TICK: Duration = Duration::from_millis(100);
-
-/// A sign of life on standard error, where that is a terminal, for work of unknown length; it goes when that is done.
-pub(crate) fn working<T>(what: String, work: impl FnOnce() -> T) -> T {
-    let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner());
-    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_style(style).with_message(what);
-    spinner.enable_steady_tick(TICK);
-    let done = work();
-    spinner.finish_and_clear();
-    done
 }
 
 /// A table without frame: a heading, and rows whose columns after the first `left` are aligned to the right.

@@ -3,6 +3,7 @@
 use super::{DIM, HEADING, plot, table};
 use fluxfit::{
     motor::{Motor, Parameter},
+    optimizer::Method,
     study::{MethodStudy, error_percent, fitness::Fitness},
 };
 use fluxfit_files::{
@@ -26,6 +27,9 @@ pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)
         facts.settings.seed,
         search_box(facts),
     );
+    if methods.is_empty() {
+        return super::print(&text);
+    }
     text += &format!("\n{HEADING}Mean of the runs' estimates{HEADING:#} (Table 2 of the paper)\n{}", table_2(facts, methods));
     text += &format!(
         "\n{HEADING}Cost above the {minimum}{HEADING:#}, F - F_{index}, {}, median over the runs; F_{index} = {}\n{}",
@@ -36,6 +40,19 @@ pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)
     text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_{index} (Fig. 4 of the paper)\n{}", plot::convergence(methods));
     text += &format!("\n{DIM}{}{DIM:#}\n", remark(fitness));
     super::print(&text)
+}
+
+/// Says how far an interrupted study has come.
+pub(crate) fn interrupted(methods: &[Method], runs: usize, done: &[(MethodStudy, f64)]) {
+    let of = |method: &Method| {
+        let finished = done.iter().find(|(study, _)| study.method == *method).map_or(0, |(study, _)| study.motors.len());
+        format!("{} {finished}", method.label())
+    };
+    let finished: Vec<String> = methods.iter().map(of).collect();
+    super::warn(
+        "interrupted",
+        &format!("of {runs} runs of each method these are finished: {}; a report is not written", finished.join(", ")),
+    );
 }
 
 /// What the minimum is.

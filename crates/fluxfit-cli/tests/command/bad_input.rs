@@ -112,13 +112,14 @@ fn absurd_settings() {
     }
 }
 
-/// Status 2, nothing answered, and one line that says these things.
+/// Status 2, nothing answered, and one line that says these things; below it, at most the file's line.
 fn refused(name: &str, run: &super::Run, expected: &[&str]) {
     assert_eq!(run.status, 2, "{name}: {}{}", run.out, run.err);
     assert_eq!(run.out, "", "{name}");
-    assert_eq!(run.err.trim_end().lines().count(), 1, "{name}: {}", run.err);
-    assert!(run.err.starts_with("error: "), "{name}: {}", run.err);
+    let (sentence, excerpt) = run.err.split_once('\n').unwrap();
+    assert!(sentence.starts_with("error: "), "{name}: {}", run.err);
+    assert!(excerpt.lines().count() <= 3 && excerpt.lines().all(|line| line.contains(" |")), "{name}: {}", run.err);
     for expected in expected {
-        assert!(run.err.contains(expected), "{name}: {expected} is not in {}", run.err);
+        assert!(sentence.contains(expected), "{name}: {expected} is not in {sentence}");
     }
 }

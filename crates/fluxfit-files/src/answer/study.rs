@@ -26,6 +26,13 @@ pub struct StudyFacts<'a> {
     pub truth: Option<&'a Motor>,
 }
 
+impl StudyFacts<'_> {
+    /// Whether this many methods have finished all their runs, none of them interrupted.
+    pub fn is_whole(&self, methods: &[(MethodStudy, f64)], asked: usize) -> bool {
+        methods.len() == asked && methods.iter().all(|(study, _)| study.motors.len() == self.runs)
+    }
+}
+
 /// The document of a study; each method with the seconds that one of its runs took.
 pub fn study(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Value {
     let fitness = &facts.problem.fitness;
@@ -59,6 +66,7 @@ pub fn study(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Value {
 fn method(study: &MethodStudy, seconds_per_run: f64, truth: Option<&Motor>) -> Value {
     json!({
         "method": study.method.key(),
+        "runs": study.motors.len(),
         "evaluations_per_run": study.evaluations_per_run,
         "seconds_per_run": seconds_per_run,
         "mean": by_parameter(study.mean().to_array()),

@@ -368,7 +368,11 @@ fn automatic(channel: Channel, heads: &[Head]) -> Result<Option<usize>, FileErro
         positions(&names, |name| name.eq_ignore_ascii_case(canonical)),
         positions(&names, with_unit),
         positions(&names, field),
-        if matches!(channel, Ud | Uq) { positions(&names, |name| name.eq_ignore_ascii_case(&format!("{canonical}_ref"))) } else { Vec::new() },
+        if matches!(channel, Ud | Uq) {
+            positions(&names, |name| name.eq_ignore_ascii_case(&format!("{canonical}_ref")))
+        } else {
+            Vec::new()
+        },
     ];
     only(channel, &names, tiers)
 }

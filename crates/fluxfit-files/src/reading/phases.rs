@@ -5,15 +5,17 @@ use crate::channel::Channel;
 use fluxfit::frames::Abc;
 use std::f64::consts::{PI, TAU};
 
-/// Electrical turn over which the speed is the slope of the angle: an angle in 250 steps a turn is known to 1/900 of it, a third of a
-/// step's deviation; less, and the steps become speed.
-const TURN_OF_SPEED: f64 = 2.0 * TAU;
+/// Fewest rows on either side of a slope: less is noise.
+const FEWEST_ROWS: usize = 4;
 
-/// Fewest rows of such a slope, on either side.
-const FEWEST_ROWS: usize = 8;
-
-/// Most of them, where the rotor stands.
+/// Most of them, where the rotor hardly turns.
 const MOST_ROWS: usize = 1000;
+
+/// Relative error of a speed that comes from an angle in steps.
+const SPEED_ERROR: f64 = 2e-3;
+
+/// A step of an angle that most rows repeat, or that is this part of a turn or more, is a converter's.
+const COARSE: f64 = TAU / 5000.0;
 
 /// Clarke and Park transforms where only phase quantities are there; the angle's slope where no speed is. What was done.
 pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
@@ -67,36 +69,60 @@ fn angle_between(channels: &Channels) -> Option<Vec<f64>> {
     is_missing.then(|| (0..id.len()).map(angle).collect())
 }
 
-/// Slope of an angle, rad/s, over [`TURN_OF_SPEED`] around each row, by the straight line of least squares.
+/// Slope of an angle, rad/s, at each row: by the parabola of least squares around it, over as many rows as the angle's steps need.
+/// N rows that each turn by `w` and are uniformly within a step `q` give `w` a relative error of about `(q/w) N^(-3/2)`.
 fn slope(t: &[f64], theta: &[f64]) -> Vec<f64> {
     let turned = unwrapped(theta);
     let rows = turned.len();
-    let (mut from, mut to) = (0, 0);
+    let step = coarse_step(theta);
+    let reach = |row: usize| {
+        // How far the rotor turns from row to row hereabouts.
+        let (from, to) = (row.saturating_sub(MOST_ROWS / 8), (row + MOST_ROWS / 8).min(rows - 1));
+        let turn = (turned[to] - turned[from]).abs() / (to - from).max(1) as f64;
+        let needed = if step > 0.0 && turn > 0.0 { (step / (SPEED_ERROR * turn)).powf(2.0 / 3.0) / 2.0 } else { 0.0 };
+        if step > 0.0 && turn == 0.0 { MOST_ROWS } else { (needed as usize).clamp(FEWEST_ROWS, MOST_ROWS) }
+    };
     (0..rows)
         .map(|row| {
-            let reach = |other: usize| (turned[other] - turned[row]).abs() > TURN_OF_SPEED / 2.0;
-            while from < row && (row - from > MOST_ROWS || (reach(from) && row - from > FEWEST_ROWS)) {
-                from += 1;
-            }
-            to = to.max(row);
-            while to + 1 < rows && to - row < MOST_ROWS && (!reach(to) || to - row < FEWEST_ROWS) {
-                to += 1;
-            }
-            line(&t[from..=to], &turned[from..=to])
+            let reach = reach(row);
+            let around = row.saturating_sub(reach)..(row + reach + 1).min(rows);
+            tangent(&t[around.clone()], &turned[around], t[row])
         })
         .collect()
 }
 
-/// Slope of the straight line of least squares; 0 of a point.
-fn line(t: &[f64], y: &[f64]) -> f64 {
-    let count = t.len() as f64;
-    let (mean_t, mean_y) = (t.iter().sum::<f64>() / count, y.iter().sum::<f64>() / count);
-    let (mut cross, mut square) = (0.0, 0.0);
+/// The step of an angle that comes in coarse ones, rad; 0 of one that does not.
+fn coarse_step(theta: &[f64]) -> f64 {
+    let smallest = theta.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|change| *change > 1e-9).fold(f64::INFINITY, f64::min);
+    let on_grid = |angle: &&f64| ((**angle / smallest) - (**angle / smallest).round()).abs() < 0.01;
+    let is_grid = smallest.is_finite() && smallest >= COARSE && theta.iter().filter(on_grid).count() * 10 >= theta.len() * 9;
+    if is_grid { smallest } else { 0.0 }
+}
+
+/// Slope at `at` of the parabola of least squares.
+fn tangent(t: &[f64], y: &[f64], at: f64) -> f64 {
+    let span = (t[t.len() - 1] - t[0]).max(f64::MIN_POSITIVE);
+    let mean = y.iter().sum::<f64>() / y.len() as f64;
+    // Normal equations in time over the span, around the row: well scaled, three unknowns.
+    let (mut s, mut r) = ([0.0; 5], [0.0; 3]);
     for (t, y) in t.iter().zip(y) {
-        cross += (t - mean_t) * (y - mean_y);
-        square += (t - mean_t).powi(2);
+        let x = (t - at) / span;
+        let mut power = 1.0;
+        for k in 0..5 {
+            s[k] += power;
+            if k < 3 {
+                r[k] += power * (y - mean);
+            }
+            power *= x;
+        }
     }
-    if square > 0.0 { cross / square } else { 0.0 }
+    let determinant = |c: [[f64; 3]; 3]| {
+        c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) - c[0][1] * (c[1][0] * c[2][2] - c[1][2] * c[2][0])
+            + c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0])
+    };
+    let whole = determinant([[s[0], s[1], s[2]], [s[1], s[2], s[3]], [s[2], s[3], s[4]]]);
+    let slope = determinant([[s[0], r[0], s[2]], [s[1], r[1], s[3]], [s[2], r[2], s[4]]]);
+    if whole.abs() > f64::MIN_POSITIVE { slope / whole / span } else { 0.0 }
 }
 
 /// The angle without its jumps from turn to turn.

@@ -218,7 +218,7 @@ def dialects():
     put("prefixed_units.csv", table(prefixes, form=places))
     # An ulp of each: the file's decimals are those of the source, thousandfold.
     small = {name: 1e-15 * float(np.max(np.abs(log[name]))) for name in NAMES[:5]}
-    read("prefixed_units.csv", "ms, mV, mA and r/min in the names", log, tolerances={**small, "omega_e": 0.5e-3 / RPM}, notes=["r/min"])
+    read("prefixed_units.csv", "ms, mV, mA and r/min in the names", log, MAPPED, tolerances={**small, "omega_e": 0.5e-3 / RPM}, notes=["r/min"])
 
     told = {"units": ["t=ms", "omega=rpm-mech"], "pole_pairs": POLE_PAIRS}
     put("units_by_argument.csv", table(changed(FAST, t=log["t"] * 1e3, omega_e=log["omega_e"] * RPM / POLE_PAIRS),
@@ -401,7 +401,7 @@ def traps():
     frozen = slow["iq"].copy()
     frozen[100:140] = frozen[100]
     put("frozen_channel.csv", table(changed(SLOW, iq=frozen)))
-    read("frozen_channel.csv", "iq stands still for 40 rows while everything else moves", changed(SLOW, iq=frozen), notes=["iq", "frozen|stands still"])
+    read("frozen_channel.csv", "iq stands still for 40 rows while everything else moves", notes=["iq", "froze", "40 rows are left out"], rows=160)
 
     # A CAN export: voltages in one message, currents in the next, the speed in a third.
     groups = [["ud", "uq"], ["id", "iq"], ["omega_e"]]
@@ -428,7 +428,7 @@ def traps():
 
     references = {"t": slow["t"], "ud_ref": slow["ud"], "uq_ref": slow["uq"], "id": slow["id"], "iq": slow["iq"], "omega_e": slow["omega_e"]}
     put("voltage_references.csv", table(references))
-    read("voltage_references.csv", "voltage references, which most drives log", slow, notes=["ud_ref"])
+    read("voltage_references.csv", "voltage references, which most drives log", slow, MAPPED, notes=["ud_ref"])
     both = {**slow, "id_ref": slow["id"] * 0 - 1.0, "iq_ref": slow["iq"] * 0 + 3.0, "ud_ref": slow["ud"] + 1.0, "uq_ref": slow["uq"] + 1.0}
     put("references_besides.csv", table(both))
     read("references_besides.csv", "references besides the measured values: the measured ones are taken", slow, same_as="slow.csv")

@@ -28,12 +28,13 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::VoltageReading,
-    optimizer::{self, Method, Report, bounds::Bounds},
+    optimizer::{self, Method, Objective, Optimizer, Report, bounds::Bounds},
     steady::OperatingPoint,
 };
 use model::Model;
 use output_fit::OutputFit;
 use saturation::Saturation;
+use std::ops::ControlFlow;
 use steady_fit::SteadyFit;
 pub use steady_fit::{beliefs, operating_points, voltage_timing};
 use verdict::Judgement;
@@ -128,6 +129,48 @@ pub enum Provenance {
     Assumed,
 }
 
+/// What an identification is about to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// Find the operating points and solve them.
+    OperatingPoints,
+    /// Choose the reading of the voltages.
+    Readings,
+    /// Look for faults of the drive.
+    Faults,
+    /// Fit all rows.
+    Fit {
+        /// Simulations of all rows so far.
+        simulations: usize,
+        /// As many as it usually takes.
+        usual: usize,
+    },
+    /// Tell how uncertain the answer is.
+    Uncertainty,
+    /// Let the swarm search.
+    Search {
+        /// Iterations done.
+        iteration: usize,
+        /// Their limit.
+        limit: usize,
+    },
+}
+
+/// Whoever watches an identification, and says whether to go on.
+pub type Watch<'a> = &'a dyn Fn(Step) -> ControlFlow<()>;
+
+/// Runs the swarm that `settings` ask for, if any, watched.
+fn searched(objective: &impl Objective, bounds: &Bounds, settings: &Settings, watch: Watch) -> Result<Option<Report>, Error> {
+    let Some(method) = settings.method else { return Ok(None) };
+    let (mut iteration, limit) = (0, settings.search.iterations);
+    let _ = watch(Step::Search { iteration, limit });
+    let mut optimizer = Optimizer::start(method, settings.search, bounds.clone(), objective)?;
+    Ok(Some(optimizer.run_while(objective, || {
+        iteration += 1;
+        watch(Step::Search { iteration, limit })
+    })))
+}
+
 /// What the swarm found, unpolished.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
@@ -164,32 +207,48 @@ impl Identification {
 /// If a setting is out of range, or no steady operating point is found. A log that cannot carry some parameter is no error: the
 /// verdicts say so.
 pub fn identify(log: &Log, settings: &Settings) -> Result<Identification, Error> {
+    identify_watched(log, settings, &|_| ControlFlow::Continue(()))
+}
+
+/// [`identify`], telling each step that begins. Told to break, the swarm's search ends after its current iteration; the exact answer is
+/// never cut.
+///
+/// # Errors
+/// As [`identify`].
+pub fn identify_watched(log: &Log, settings: &Settings, watch: Watch) -> Result<Identification, Error> {
     check(settings)?;
+    let _ = watch(Step::OperatingPoints);
     let steady = SteadyFit::of(log, settings);
     let model = model::choose(log, settings);
     let mut found = match model.0 {
-        Model::Steady => of_points(steady?, model, settings)?,
-        Model::OutputError => of_currents(log, steady.ok(), model, settings)?,
+        Model::Steady => of_points(steady?, model, settings, watch)?,
+        Model::OutputError => of_currents(log, steady.ok(), model, settings, watch)?,
     };
     found.warnings = warning::warnings(log, &found, settings);
     Ok(found)
 }
 
 /// The answer of the operating points.
-fn of_points(fit: SteadyFit, model: (Model, String), settings: &Settings) -> Result<Identification, Error> {
+fn of_points(fit: SteadyFit, model: (Model, String), settings: &Settings, watch: Watch) -> Result<Identification, Error> {
     let (parameters, correlation) = fit.judge(settings);
-    let search = fit.search(settings)?;
+    let search = fit.search(settings, watch)?;
     let saturation = fit.saturation.clone();
     Ok(Identification { parameters, model, steady: Some(fit), output: None, saturation, correlation, search, warnings: Vec::new() })
 }
 
 /// The answer of the simulated currents.
-fn of_currents(log: &Log, steady: Option<SteadyFit>, model: (Model, String), settings: &Settings) -> Result<Identification, Error> {
-    let fit = OutputFit::of(log, steady.as_ref(), settings)?;
+fn of_currents(
+    log: &Log,
+    steady: Option<SteadyFit>,
+    model: (Model, String),
+    settings: &Settings,
+    watch: Watch,
+) -> Result<Identification, Error> {
+    let fit = OutputFit::of(log, steady.as_ref(), settings, watch)?;
     let of_points = steady.as_ref().map_or((&[][..], None), |fit| (&fit.operating_points[..], fit.saturation.as_ref()));
     let saturation = Saturation::of_currents(&fit, log, of_points, settings);
     let (parameters, correlation) = fit.judge(saturation.as_ref(), settings);
-    let search = fit.search(log, steady.as_ref(), settings)?;
+    let search = fit.search(log, steady.as_ref(), settings, watch)?;
     Ok(Identification { parameters, model, steady, output: Some(fit), saturation, correlation, search, warnings: Vec::new() })
 }
 

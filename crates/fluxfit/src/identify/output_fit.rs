@@ -9,12 +9,12 @@
 //! row does to each parameter.
 
 use super::{
-    Known, Provenance, Search, Settings,
+    Known, Provenance, Search, Settings, Step, Watch,
     advice::{self, Advice},
     excitation::Excitation,
     long_run,
     saturation::Saturation,
-    search_box,
+    search_box, searched,
     steady_fit::SteadyFit,
     terms::{self, Candidate, LEAST_RESIDUAL, Outcome, Term, inverse_normal},
     timing,
@@ -25,7 +25,7 @@ use crate::{
     error::Error,
     frames::Dq,
     least_squares::{Equation, TriangularFactor},
-    levenberg_marquardt::{Belief, MOTOR, Polished, jacobian, polish_unknowns},
+    levenberg_marquardt::{Belief, MOTOR, Polished, jacobian, polish_unknowns, polish_watched},
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::{
@@ -33,7 +33,6 @@ use crate::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
-    optimizer::Optimizer,
     steady::{OperatingPoint, windows},
 };
 use nalgebra::DMatrix;
@@ -86,15 +85,20 @@ impl OutputFit {
     ///
     /// # Errors
     /// If a window is not in the log, or no stretch is long enough.
-    pub fn of(log: &Log, steady: Option<&SteadyFit>, settings: &Settings) -> Result<Self, Error> {
+    pub fn of(log: &Log, steady: Option<&SteadyFit>, settings: &Settings, watch: Watch) -> Result<Self, Error> {
         let stretches = stretches(log, settings)?;
         let scale = Excitation::of(&whole(log, &stretches), &settings.known).scale;
         let start = start(log, &stretches, steady, settings, &scale);
         let free = free(settings);
-        let chosen = choose(log, &stretches, &start, free, settings)?;
+        let chosen = choose(log, &stretches, &start, free, settings, watch)?;
         let Chosen { reading, unknowns, beliefs, readings, terms: tried, independent, .. } = chosen;
         let objective = &OutputError::of_rows(log, &stretches, reading)?;
-        let Polished { drive, cost, .. } = polish_unknowns(objective, &chosen.drive, &unknowns, &beliefs);
+        let usual = USUAL_STEPS * (1 + 2 * unknowns.len());
+        let fitting = |simulations| {
+            let _ = watch(Step::Fit { simulations, usual });
+        };
+        let Polished { drive, cost, .. } = polish_watched(objective, &chosen.drive, &unknowns, &beliefs, &fitting);
+        let _ = watch(Step::Uncertainty);
         let residuals = objective.residuals(&drive);
         let doubt = Doubt {
             timing: timing::doubt(&readings, independent),
@@ -175,15 +179,17 @@ impl OutputFit {
     }
 
     /// Lets the swarm that is asked for minimize the same output error.
-    pub(super) fn search(&self, log: &Log, steady: Option<&SteadyFit>, settings: &Settings) -> Result<Option<Search>, Error> {
-        let Some(method) = settings.method else { return Ok(None) };
+    pub(super) fn search(&self, log: &Log, steady: Option<&SteadyFit>, settings: &Settings, watch: Watch) -> Result<Option<Search>, Error> {
+        if settings.method.is_none() {
+            return Ok(None);
+        }
         let bounds = match (&settings.bounds, steady) {
             (Some(bounds), _) => bounds.clone(),
             (None, Some(steady)) => search_box::from_points(&steady.operating_points)?,
             (None, None) => search_box::from_points(&whole(log, &self.stretches))?,
         };
         let objective = OutputError::of_rows(log, &stretches(log, settings)?, self.voltage_reading.0)?.holding(self.drive.nuisance);
-        let report = Optimizer::start(method, settings.search, bounds.clone(), &objective)?.run(&objective);
+        let Some(report) = searched(&objective, &bounds, settings, watch)? else { return Ok(None) };
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Some(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report }))
     }
@@ -206,6 +212,9 @@ struct Chosen {
     explained: bool,
 }
 
+/// Steps that a polish of all rows usually takes, each of a simulation and its derivatives: for who waits, and for nothing else.
+const USUAL_STEPS: usize = 3;
+
 /// Rows by which readings and faults are chosen: enough to see faults of a tenth of the noise; the fit itself takes all rows.
 const CHOICE_ROWS: usize = 40_000;
 
@@ -219,12 +228,22 @@ const TRIED_READINGS: usize = 2;
 const WHITE: f64 = 0.1;
 
 /// Chooses the reading of the voltages and the faults of the drive.
-fn choose(log: &Log, stretches: &[Range<usize>], start: &Adjustable, free: Vec<Unknown>, settings: &Settings) -> Result<Chosen, Error> {
+fn choose(
+    log: &Log,
+    stretches: &[Range<usize>],
+    start: &Adjustable,
+    free: Vec<Unknown>,
+    settings: &Settings,
+    watch: Watch,
+) -> Result<Chosen, Error> {
+    let _ = watch(Step::Readings);
     let objectives = timing::objectives(log, &pieces(stretches), settings)?;
     let rough = timing::readings(&objectives, start, &free, &[]);
     let beliefs = beliefs(settings, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut best: Option<Chosen> = None;
-    for (place, tried) in timing::readings(&objectives, start, &free, &beliefs).into_iter().take(TRIED_READINGS) {
+    let tried = timing::readings(&objectives, start, &free, &beliefs);
+    let _ = watch(Step::Faults);
+    for (place, tried) in tried.into_iter().take(TRIED_READINGS) {
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, settings.voltage_accuracy);
         let candidate =
             Candidate { objectives: &objectives, reading: place, beliefs: &beliefs, drive, unknowns: free.clone(), cost, voltage_accuracy };

@@ -1,14 +1,14 @@
 //! What the steady model makes of a log: equation (2) on the means of steady windows, for which weighted least squares is exact.
 
 use super::{
-    Known, Provenance, Search, Settings,
+    Known, Provenance, Search, Settings, Watch,
     advice::{self, Advice},
     dead_time,
     estimate::Estimate,
     excitation::Excitation,
     misfit::{self, Misfit},
     saturation::Saturation,
-    search_box,
+    search_box, searched,
     uncertainty::{Doubt, Uncertainty},
     verdict::{self, Judgement},
 };
@@ -17,7 +17,6 @@ use crate::{
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
-    optimizer::Optimizer,
     steady::{
         Belief, OperatingPoint,
         held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming},
@@ -102,14 +101,13 @@ impl SteadyFit {
     }
 
     /// Lets the swarm minimize the same weighted equations that least squares solved.
-    pub(super) fn search(&self, settings: &Settings) -> Result<Option<Search>, Error> {
-        let Some(method) = settings.method else { return Ok(None) };
+    pub(super) fn search(&self, settings: &Settings, watch: Watch) -> Result<Option<Search>, Error> {
         let bounds = match &settings.bounds {
             Some(bounds) => bounds.clone(),
             None => search_box::from_points(&self.operating_points)?,
         };
         let objective = &self.estimate.objective;
-        let report = Optimizer::start(method, settings.search, bounds.clone(), objective)?.run(objective);
+        let Some(report) = searched(objective, &bounds, settings, watch)? else { return Ok(None) };
         // Where the cost is flat a swarm ends anywhere: only what the log excites is its answer.
         let mut found = self.excitation.excited_motor(&Motor::from(std::array::from_fn(|p| report.best[p]))).to_array();
         for (p, known) in settings.known.iter().enumerate() {

@@ -27,6 +27,7 @@ use lpso::Lpso;
 use particles::Particles;
 use population::{Population, WORST_COST};
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 use tgfpa::Tgfpa;
 
 /// A function to minimize.
@@ -151,6 +152,8 @@ pub enum StopReason {
     CloseToOptimum,
     /// The best cost reached the target.
     TargetCost,
+    /// Whoever watched had seen enough.
+    Interrupted,
 }
 
 /// The best so far, after an iteration.
@@ -253,11 +256,19 @@ impl Optimizer {
 
     /// Steps until a criterion stops it.
     pub fn run(&mut self, objective: &impl Objective) -> Report {
+        self.run_while(objective, || ControlFlow::Continue(()))
+    }
+
+    /// Steps until a criterion stops it, or `go_on`, asked after each iteration, does. What was interrupted can be run on.
+    pub fn run_while(&mut self, objective: &impl Objective, mut go_on: impl FnMut() -> ControlFlow<()>) -> Report {
         let stop_reason = loop {
             if let Some(reason) = self.stop_reason() {
                 break reason;
             }
             self.step(objective);
+            if go_on().is_break() {
+                break self.stop_reason().unwrap_or(StopReason::Interrupted);
+            }
         };
         Report {
             best: self.population.best().to_vec(),

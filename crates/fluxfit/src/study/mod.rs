@@ -10,11 +10,15 @@ pub mod fitness;
 use crate::{
     error::Error,
     motor::{Motor, PARAMETERS, Parameter},
-    optimizer::{Method, Optimizer, Report, Settings, bounds::Bounds},
+    optimizer::{Method, Optimizer, Report, Settings, StopReason, bounds::Bounds},
 };
 use fitness::Fitness;
 use rayon::prelude::*;
 use statrs::statistics::{Data, OrderStatistics};
+use std::{
+    ops::ControlFlow,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 /// Many runs of one method.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +27,7 @@ pub struct MethodStudy {
     pub method: Method,
     /// Candidates evaluated in each run; fewer where a run stopped early.
     pub evaluations_per_run: u64,
-    /// Where each run ended.
+    /// Where each finished run ended; at least one did.
     pub motors: Vec<Motor>,
     /// Cost above the minimum of each run's end.
     pub cost_above_optimum: Vec<f64>,
@@ -40,7 +44,8 @@ pub struct Convergence {
     pub parameters_median: Vec<[f64; PARAMETERS]>,
 }
 
-/// Runs one method `runs` times; `done` is called after each iteration, from any thread.
+/// Runs one method `runs` times; `go_on` is asked after each iteration, from any thread, whether to. Interrupted, only the runs that
+/// are finished count, each the same as if all were; none, if there is no such run.
 ///
 /// Of the output error costs may lie below the minimum known, until [`settle`] has seen all methods.
 ///
@@ -52,28 +57,35 @@ pub fn run_method(
     settings: Settings,
     bounds: &Bounds,
     fitness: &Fitness,
-    done: impl Fn() + Sync,
-) -> Result<MethodStudy, Error> {
+    go_on: impl Fn() -> ControlFlow<()> + Sync,
+) -> Result<Option<MethodStudy>, Error> {
     if runs == 0 {
         return Err(Error::Setting { setting: "the number of runs", value: 0.0, range: "at least 1" });
     }
+    let interrupted = AtomicBool::new(false);
     let run = |run: usize| {
+        // A run that has not begun costs its first population before anybody is asked.
+        if interrupted.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
         let settings = Settings { run: run as u64, ..settings };
         let mut optimizer = Optimizer::start(method, settings, bounds.clone(), fitness)?;
-        while optimizer.stop_reason().is_none() {
-            optimizer.step(fitness);
-            done();
-        }
-        Ok(Course::of(&optimizer.run(fitness), fitness))
+        let report = optimizer.run_while(fitness, || {
+            let next = go_on();
+            interrupted.fetch_or(next.is_break(), Ordering::Relaxed);
+            next
+        });
+        Ok((report.stop_reason != StopReason::Interrupted).then(|| Course::of(&report, fitness)))
     };
-    let courses: Vec<Course> = (0..runs).into_par_iter().map(run).collect::<Result<_, Error>>()?;
-    Ok(MethodStudy {
+    let courses = (0..runs).into_par_iter().map(run).collect::<Result<Vec<_>, Error>>()?;
+    let courses: Vec<Course> = courses.into_iter().flatten().collect();
+    Ok((!courses.is_empty()).then(|| MethodStudy {
         method,
         evaluations_per_run: courses.iter().map(|course| course.evaluations).max().unwrap_or(0),
         motors: courses.iter().map(|course| course.last().0).collect(),
         cost_above_optimum: courses.iter().map(|course| course.last().1).collect(),
         convergence: Convergence::of(&courses),
-    })
+    }))
 }
 
 /// Counts every study from the lowest cost that is known: where a swarm has ended below the polish, that of a polish from there.

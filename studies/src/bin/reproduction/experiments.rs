@@ -18,7 +18,7 @@ use fluxfit_drive::{
     scenario::{Adc, Modulation},
     simulate,
 };
-use std::error::Error;
+use std::{error::Error, ops::ControlFlow};
 
 /// Current noise and converter of the noisy rig: 0.5 % of 10 A, 12 bits over 20 A.
 const NOISE: f64 = 0.05;
@@ -73,8 +73,8 @@ impl Data {
 
     pub(crate) fn study_with(&self, methods: &[Method], runs: usize, settings: Settings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
         let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
-        let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.problem.fitness, || ());
-        Ok(methods.iter().map(run).collect::<Result<_, _>>()?)
+        let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.problem.fitness, || ControlFlow::Continue(()));
+        Ok(methods.iter().filter_map(|method| run(method).transpose()).collect::<Result<_, _>>()?)
     }
 }
 

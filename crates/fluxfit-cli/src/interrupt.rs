@@ -1,0 +1,96 @@
+//! Ctrl-C, and a request to terminate. Work that has a best so far is done [`gently`]: it asks [`go_on`] and ends by itself. Any other
+//! work ends at once, says what it was, and leaves no half-written file. A second signal ends at once in any case.
+
+use crate::terminal;
+use fluxfit_files::discard_unfinished;
+use std::{
+    ops::ControlFlow,
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicI32, Ordering},
+    },
+};
+
+/// What a shell adds to the number of the signal that ended a program, to make an exit status of it: 130 after Ctrl-C.
+const BY_SIGNAL: i32 = 128;
+
+/// Number of the signal that came; zero, as long as none has.
+static SIGNAL: AtomicI32 = AtomicI32::new(0);
+
+static WORK: Mutex<Work> = Mutex::new(Work { what: String::new(), is_gentle: false });
+
+/// What goes on.
+struct Work {
+    what: String,
+    is_gentle: bool,
+}
+
+fn work() -> MutexGuard<'static, Work> {
+    // Each change leaves it whole.
+    WORK.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Listens from now on. A hangup is left alone: `nohup` has its own way with it.
+pub(crate) fn listen() -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use signal_hook::{
+            consts::{SIGINT, SIGTERM},
+            iterator::Signals,
+        };
+        let mut signals = Signals::new([SIGINT, SIGTERM])?;
+        std::thread::Builder::new().name("signals".to_owned()).spawn(move || signals.forever().for_each(came))?;
+    }
+    #[cfg(windows)]
+    {
+        /// Number of Ctrl-C where there are signals.
+        const INTERRUPT: i32 = 2;
+        ctrlc::set_handler(|| came(INTERRUPT)).map_err(std::io::Error::other)?;
+    }
+    Ok(())
+}
+
+/// Says what goes on: what a signal would interrupt.
+pub(crate) fn doing(what: &str) {
+    what.clone_into(&mut work().what);
+}
+
+/// Lets work end by itself that asks [`go_on`], or is over soon.
+pub(crate) fn gently<T>(ends: impl FnOnce() -> T) -> T {
+    be_gentle(true);
+    let done = ends();
+    be_gentle(false);
+    done
+}
+
+/// Whether the work from now on ends by itself.
+pub(crate) fn be_gentle(is_gentle: bool) {
+    work().is_gentle = is_gentle;
+}
+
+/// Whether to go on.
+pub(crate) fn go_on() -> ControlFlow<()> {
+    if exit_status().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+/// The exit status of an interrupted command.
+pub(crate) fn exit_status() -> Option<u8> {
+    match SIGNAL.load(Ordering::Relaxed) {
+        0 => None,
+        signal => u8::try_from(BY_SIGNAL + signal).ok(),
+    }
+}
+
+fn came(signal: i32) {
+    // Held to the end: no work becomes gentle, or over, meanwhile.
+    let work = work();
+    let is_first = SIGNAL.swap(signal, Ordering::Relaxed) == 0;
+    if is_first && work.is_gentle {
+        terminal::interrupted(&format!("{} ends with the best so far; once more ends it at once", work.what));
+        return;
+    }
+    discard_unfinished();
+    terminal::interrupted(&format!("while {}", work.what));
+    #[expect(clippy::exit, reason = "the main thread cannot be asked")]
+    std::process::exit(BY_SIGNAL + signal);
+}

@@ -1,0 +1,30 @@
+//! What an identification decided on the way, for `--verbose`.
+
+use super::detail;
+use fluxfit::identify::{Identification, output_fit::OutputFit};
+use fluxfit_files::number::{significant, small};
+
+/// Tells the windows, the model and, of the output error, the readings and faults that were tried.
+pub(crate) fn tell(found: &Identification) {
+    for point in found.operating_points() {
+        detail(|| format!("window {} .. {} s, {} rows", significant(point.time.0, 6), significant(point.time.1, 6), point.rows.len()));
+    }
+    detail(|| format!("model {}: {}", found.model.0.label(), found.model.1));
+    if let Some(fit) = &found.output {
+        output(fit);
+    }
+    if let Some(search) = &found.search {
+        detail(|| format!("the swarm made {} evaluations", search.report.evaluations));
+    }
+}
+
+fn output(fit: &OutputFit) {
+    for tried in &fit.readings {
+        let converged = if tried.polished.converged { "" } else { ", not converged" };
+        let rms = tried.mean_square().sqrt();
+        detail(|| format!("voltages read as {}: misses the currents by {} A rms{converged}", tried.reading.label(), small(rms)));
+    }
+    for tried in &fit.terms {
+        detail(|| format!("{}: {}", tried.term.label(), tried.outcome.label()));
+    }
+}
