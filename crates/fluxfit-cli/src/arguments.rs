@@ -10,7 +10,7 @@ use fluxfit::{
     },
     optimizer::Method,
 };
-use fluxfit_files::Unit;
+use fluxfit_files::{Unit, export::Target};
 use std::path::PathBuf;
 
 /// Finds the electrical parameters of a permanent magnet synchronous motor from a log of its drive.
@@ -108,6 +108,15 @@ pub(crate) struct Identify {
     /// Identify from all but the last log (of one log: its last segment), and validate the answer on that
     #[arg(long)]
     pub(crate) hold_out: bool,
+    /// Write the answer as the file of another tool: vesc, moteus, mcsdk, matlab; may be repeated
+    #[arg(long, value_name = "TARGET=FILE", value_parser = fluxfit_files::parse_export)]
+    pub(crate) export: Vec<(Target, PathBuf)>,
+    /// Gains of the current controllers for this bandwidth, e.g. 500Hz, with their intervals
+    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_files::parse_frequency)]
+    pub(crate) bandwidth: Option<f64>,
+    /// How often the current controllers run, for their phase margin; without, as often as the log samples
+    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_files::parse_frequency, requires = "bandwidth")]
+    pub(crate) control_rate: Option<f64>,
 }
 
 #[derive(Debug, Args)]

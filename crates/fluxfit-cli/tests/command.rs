@@ -9,6 +9,8 @@ mod bad_input;
 mod bad_scenario;
 #[path = "command/compare.rs"]
 mod compare;
+#[path = "command/export.rs"]
+mod export;
 #[path = "command/identify.rs"]
 mod identify;
 #[path = "command/pages.rs"]

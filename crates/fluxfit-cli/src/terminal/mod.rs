@@ -1,6 +1,7 @@
 //! What a person sees. Answers on standard output, everything else on standard error; colour only where it is wanted (a terminal,
 //! and no `NO_COLOR`).
 
+pub(crate) mod current_loop;
 pub(crate) mod identification;
 mod plot;
 pub(crate) mod simulation;
@@ -55,6 +56,16 @@ pub(crate) fn note(message: &str) {
 /// Says that a report was written.
 pub(crate) fn wrote(report: &Path) {
     say(&format!("{DIM}report:{DIM:#} {}", report.display()));
+}
+
+/// Says that an export was written.
+pub(crate) fn exported(file: &Path) {
+    say(&format!("{DIM}export:{DIM:#} {}", file.display()));
+}
+
+/// Says why one was not.
+pub(crate) fn refuse_export(file: &Path, why: &str) {
+    say(&format!("{ERROR}error:{ERROR:#} {} is not written: {why}", file.display()));
 }
 
 fn say(line: &str) {
