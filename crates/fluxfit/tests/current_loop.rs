@@ -90,9 +90,11 @@ fn frequencies_are_positive_numbers() {
 proptest! {
     /// Twice the bandwidth is twice the gain, to the last digits of the interval.
     #[test]
-    fn gains_are_linear_in_the_bandwidth(bandwidth in 1.0..5e3, factor in 0.01..100.0) {
+    fn gains_are_linear_in_the_bandwidth(bandwidth in 1.0..5e3, factor in 0.01_f64..100.0) {
         for (one, other) in gains(bandwidth).into_iter().zip(gains(factor * bandwidth)) {
-            for (a, b) in [one.value, one.interval[0], one.interval[1]].into_iter().zip([other.value, other.interval[0], other.interval[1]]) {
+            let pairs: [(f64, f64); 3] =
+                [(one.value, other.value), (one.interval[0], other.interval[0]), (one.interval[1], other.interval[1])];
+            for (a, b) in pairs {
                 prop_assert!((b - factor * a).abs() <= 1e-12 * b.abs());
             }
         }
