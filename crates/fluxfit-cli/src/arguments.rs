@@ -11,7 +11,7 @@ use fluxfit::{
     },
     optimizer::Method,
 };
-use fluxfit_files::Unit;
+use fluxfit_files::{Unit, export::Target};
 use std::path::PathBuf;
 
 /// Finds the parameters of a permanent magnet synchronous motor from a drive's log
@@ -242,6 +242,15 @@ pub(crate) struct Identify {
     /// Identify from all but the last log or segment, and validate on that
     #[arg(long, help_heading = "Output")]
     pub(crate) hold_out: bool,
+    /// Write the answer as the file of another tool: vesc, moteus, mcsdk, matlab; may be repeated
+    #[arg(long, value_name = "TARGET=FILE", value_parser = fluxfit_files::parse_export)]
+    pub(crate) export: Vec<(Target, PathBuf)>,
+    /// Gains of the current controllers for this bandwidth, e.g. 500Hz, with their intervals
+    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_files::parse_frequency)]
+    pub(crate) bandwidth: Option<f64>,
+    /// How often the current controllers run, for their phase margin; without, as often as the log samples
+    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_files::parse_frequency, requires = "bandwidth")]
+    pub(crate) control_rate: Option<f64>,
 }
 
 #[derive(Debug, Args)]

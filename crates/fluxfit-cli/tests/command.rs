@@ -11,6 +11,8 @@ mod bad_scenario;
 mod compare;
 #[path = "command/craft.rs"]
 mod craft;
+#[path = "command/export.rs"]
+mod export;
 #[path = "command/identify.rs"]
 mod identify;
 #[cfg(unix)]

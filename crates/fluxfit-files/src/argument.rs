@@ -3,11 +3,13 @@
 use crate::{
     channel::Channel,
     error::{FileError, Problem},
+    export::Target,
     quantity::{Dimension, parse_pair, parse_quantity, split},
     unit::Unit,
     wording::nearest,
 };
 use fluxfit::motor::Parameter;
+use std::path::PathBuf;
 
 /// `ud=motor_vd`: the canonical name of a column of a log, and the header that it has in the file. `omega` is `omega_e`.
 ///
@@ -113,6 +115,27 @@ fn of_parameter<'a>(text: &'a str, shape: &'static str, example: &'static str) -
         Some(parameter) => Ok((parameter, value)),
         None => Err(Problem::Parameter { name: key.to_owned(), known: known.to_vec(), nearest: nearest(key, known) }.into()),
     }
+}
+
+/// `500Hz` or `1 kHz`: a frequency above zero, in Hz.
+///
+/// # Errors
+/// If it is none.
+pub fn parse_frequency(text: &str) -> Result<f64, FileError> {
+    let hertz = parse_quantity(text, Dimension::Frequency)?;
+    if hertz > 0.0 { Ok(hertz) } else { Err(out_of_range(text, "above zero")) }
+}
+
+/// `vesc=motor.xml`: a tool, and the file that is written for it.
+///
+/// # Errors
+/// If there is no `=` with text on both sides, or no such tool is known.
+pub fn parse_export(text: &str) -> Result<(Target, PathBuf), FileError> {
+    let (name, file) = key_value(text, "TARGET=FILE", "vesc=motor.xml")?;
+    let keys = Target::ALL.map(Target::key);
+    let target =
+        Target::named(name).ok_or_else(|| Problem::Target { name: name.to_owned(), known: keys.to_vec(), nearest: nearest(name, keys) })?;
+    Ok((target, PathBuf::from(file)))
 }
 
 fn key_value<'a>(text: &'a str, shape: &'static str, example: &'static str) -> Result<(&'a str, &'a str), FileError> {

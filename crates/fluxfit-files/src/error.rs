@@ -175,6 +175,8 @@ pub(crate) enum Problem {
         quote(.name), list(.needed), list(.optional), did_you_mean(*.nearest)
     )]
     Channel { name: String, needed: Vec<&'static str>, optional: Vec<&'static str>, nearest: Option<&'static str> },
+    #[error("{} is no target of --export; there are {}{}", quote(.name), list(.known), did_you_mean(*.nearest))]
+    Target { name: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("{} is no unit of {channel}; it can be {}", quote(.unit), choice(.allowed))]
     Unit { channel: &'static str, unit: String, allowed: Vec<&'static str> },
     #[error("{channel} is given twice; give it once")]

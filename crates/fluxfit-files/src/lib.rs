@@ -29,6 +29,7 @@
 //! | [`scenario_file`] | `SCENARIO.toml` |
 //! | [`recording`] | a simulated log as CSV |
 //! | [`truth`] | the true parameters of a simulated log |
+//! | [`mod@export`] | an answer as the file that another tool takes |
 //! | [`output`] | writing whole files only |
 //! | [`error`] | the sentence |
 //! | `channel`, `input`, `toml_table`, `wording` | what a log's columns are called; bytes and text; TOML; lists and quotations |
@@ -38,6 +39,7 @@ pub mod argument;
 mod channel;
 mod csv;
 pub mod error;
+pub mod export;
 pub mod given_motor;
 mod input;
 pub mod motor_file;
@@ -52,7 +54,7 @@ pub mod truth;
 pub mod unit;
 mod wording;
 
-pub use argument::{parse_bounds, parse_fix, parse_map, parse_prior, parse_unit, parse_window};
+pub use argument::{parse_bounds, parse_export, parse_fix, parse_frequency, parse_map, parse_prior, parse_unit, parse_window};
 pub use error::FileError;
 pub use given_motor::{GivenMotor, read_given_motor};
 pub use motor_file::{MotorFile, Rating, read_motor};

@@ -31,6 +31,7 @@
 //! | [`levenberg_marquardt`] | the polish: from near a minimum of the output error into it |
 //! | [`optimizer`] | who minimizes: tGFPA, FPA, LPSO, APSO; knows nothing of motors |
 //! | [`identify`](mod@identify) | the main path: from a log to values, intervals, verdicts |
+//! | [`current_loop`] | the current controllers' gains for a wanted bandwidth |
 //! | [`validate`](mod@validate) | given parameters held against another log |
 //! | [`study`] | many runs of many methods, as the paper compares them |
 //! | [`paper`] | what the paper states: its motor, its rig, its results |
@@ -38,6 +39,7 @@
 //!
 //! Results depend on the log, the settings and the seed: not on files, clocks or the number of threads.
 
+pub mod current_loop;
 pub mod error;
 pub mod frames;
 pub mod identify;

@@ -1,15 +1,16 @@
 //! `fluxfit identify`: arguments to settings, the library's answer to the terminal or to JSON.
 
-use super::{Status, input, report};
+use super::{Status, export, input, report};
 use crate::{
     arguments::{Identify, SearchMethod, by_parameter},
     error::CommandError,
     interrupt, terminal,
 };
 use fluxfit::{
+    current_loop::CurrentLoop,
     error::Error,
     identify::{
-        Identification, Known, Settings, Step, conventions, identify, identify_watched,
+        Identification, Known, Provenance, Settings, Step, conventions, identify, identify_watched,
         model::{self, Model},
         search_box::from_points,
     },
@@ -28,10 +29,12 @@ const INTERRUPTED: &str = "interrupted";
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     report::check(&arguments.log, [])?;
+    export::check(arguments)?;
     let mut input = input::read(&arguments.log)?;
     let held_out = if arguments.hold_out { Some(hold_out(&mut input)?) } else { None };
     let mut settings = settings(arguments)?;
     let nameplate = input::nameplate(&input);
+    export::check_pole_pairs(arguments, nameplate.pole_pairs)?;
     let refuse = |error: Error| {
         // A log without an operating point may be one in the wrong units: its rows still say so.
         conventions::check(&input.log, None, &nameplate)
@@ -51,17 +54,23 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let of_points = identify(&input.log, &Settings { model: Some(Model::Steady), method: None, ..settings.clone() });
     let convention = conventions::check(&input.log, Some((of_points.as_ref().unwrap_or(&found), &settings.known)), &nameplate);
     found.warnings.extend(convention.warning());
+    let current_loop = current_loop(arguments, &input.log, &found)?;
+    found.warnings.extend(current_loop.as_ref().and_then(CurrentLoop::warning));
     let validation = held_out.as_ref().map(|log| check(log, &found, &settings)).transpose()?.flatten();
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
         let mut document = answer::identification(&input.log, &found, method);
         document["diagnostics"]["convention"] = answer::convention(&convention);
+        if let Some(current_loop) = &current_loop {
+            document["current_loop"] = answer::current_loop(current_loop);
+        }
         if let Some(log) = &held_out {
             document["validation"] = validation.as_ref().map_or(Value::Null, |validation| answer::validation(log, validation));
         }
         terminal::print(&answer::to_text(&document))?;
     } else {
         terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
+        current_loop.as_ref().map(terminal::current_loop::show).transpose()?;
         match (&held_out, &validation) {
             (Some(log), Some(validation)) => {
                 terminal::print("\n")?;
@@ -80,6 +89,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         let (done, limit) = (search.report.history.len() - 1, settings.search.iterations);
         terminal::warn(INTERRUPTED, &format!("the swarm made {done} of {limit} iterations; the answer beside it is whole"));
     }
+    let exported = export::write(arguments, &input, &found, current_loop.as_ref())?;
     report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
         html(&Report {
             title: &input.name,
@@ -91,7 +101,16 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
             origin,
         })
     })?;
-    Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
+    Ok(if found.is_complete() { exported } else { Status::Incomplete })
+}
+
+/// Gains of the current controllers, if a bandwidth is wanted. Their rate is the log's, unless stated.
+fn current_loop(arguments: &Identify, log: &Log, found: &Identification) -> Result<Option<CurrentLoop>, CommandError> {
+    let Some(bandwidth) = arguments.bandwidth else { return Ok(None) };
+    let period = log.segments().iter().map(|segment| segment.sample_period).fold(f64::INFINITY, f64::min);
+    let of_log = (1.0 / period, Provenance::Assumed);
+    let control_rate = arguments.control_rate.map_or(of_log, |rate| (rate, Provenance::Stated));
+    Ok(Some(CurrentLoop::of(found, bandwidth, control_rate)?))
 }
 
 /// Identifies, and tells how far it is. The swarm can be interrupted, and is the last.

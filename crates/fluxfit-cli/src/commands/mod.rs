@@ -2,6 +2,7 @@
 
 pub(crate) mod compare;
 pub(crate) mod demo;
+mod export;
 pub(crate) mod formats;
 pub(crate) mod identify;
 mod input;

@@ -1,6 +1,7 @@
 //! What a person sees. Answers on standard output, everything else on standard error; colour only where it is wanted (a terminal,
 //! and no `NO_COLOR`).
 
+pub(crate) mod current_loop;
 pub(crate) mod decisions;
 mod excerpt;
 pub(crate) mod formats;
@@ -117,6 +118,11 @@ pub(crate) fn wrote(what: &str, file: &Path) {
     if detail_level() > Detail::Quiet && file.as_os_str() != "-" {
         say(&format!("{DIM}{what}:{DIM:#} {}", file.display()));
     }
+}
+
+/// Says why one was not.
+pub(crate) fn refuse_export(file: &Path, why: &str) {
+    say(&format!("{ERROR}error:{ERROR:#} {} is not written: {why}", file.display()));
 }
 
 fn say(line: &str) {

@@ -3,11 +3,13 @@
 //! Others read these documents: fields are added, never renamed. Every number in them is finite; what is not known is null.
 
 mod convention;
+mod current_loop;
 mod identification;
 mod study;
 mod validation;
 
 pub use convention::convention;
+pub use current_loop::current_loop;
 pub use identification::identification;
 pub use study::{StudyFacts, study};
 pub use validation::validation;

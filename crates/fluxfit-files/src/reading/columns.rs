@@ -92,7 +92,7 @@ pub(super) fn choose(
         notes.push(format!("units that no header names are taken as SI: {}; {example}", list(&unsaid)));
     }
     if let Some(pole_pairs) = told.pole_pairs.filter(|_| chosen.iter().all(|column| !column.unit.is_mechanical())) {
-        notes.push(format!("the number of pole pairs, {pole_pairs}, is not used: the speed is electrical already"));
+        notes.push(format!("the number of pole pairs, {pole_pairs}, is not needed to read this: the speed is electrical already"));
     }
     Ok(chosen)
 }
@@ -446,7 +446,7 @@ mod tests {
             told("t,v,uq,id,iq,speed", &options),
             [
                 "units that no header names are taken as SI: ud ('v') in V and omega_e ('speed') in electrical rad/s; --unit says otherwise, as in --unit omega=rpm-mech",
-                "the number of pole pairs, 3, is not used: the speed is electrical already",
+                "the number of pole pairs, 3, is not needed to read this: the speed is electrical already",
             ]
         );
         assert_eq!(

@@ -1,0 +1,87 @@
+//! `--export TARGET=FILE`: refused before anything is computed where it cannot be written, and after the answer is printed where
+//! the answer does not carry it.
+
+use super::{Status, input::Input};
+use crate::{arguments::Identify, error::CommandError, terminal};
+use fluxfit::{current_loop::CurrentLoop, identify::Identification};
+use fluxfit_files::{
+    check_writable,
+    export::{Answer, export},
+    write_atomically,
+};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Refuses files that would mix with the answer, take the place of what is read or of each other, or cannot be written.
+pub(super) fn check(arguments: &Identify) -> Result<(), CommandError> {
+    let refuse = |path: &Path, why: &str| Err(CommandError::Usage(format!("--export {}: {why}; name another one", path.display())));
+    let read = arguments.log.logs.iter().chain(&arguments.log.motor).filter_map(|path| fs::canonicalize(path).ok());
+    let mut taken: Vec<PathBuf> = read.collect();
+    let inputs = taken.len();
+    taken.extend(arguments.log.report.as_deref().map(place));
+    for (_, path) in &arguments.export {
+        if path.as_os_str() == "-" {
+            return Err(CommandError::Usage("--export needs the name of a file: standard output is for the answer".to_owned()));
+        }
+        let own = place(path);
+        match taken.iter().position(|other| *other == own) {
+            Some(k) if k < inputs => return refuse(path, "this file is read"),
+            Some(_) if fluxfit_files::is_replaceable(path) => return refuse(path, "this file is written already"),
+            _ => {}
+        }
+        check_writable(path)?;
+        taken.push(own);
+    }
+    Ok(())
+}
+
+/// Refuses targets that need pole pairs that nobody gave.
+pub(super) fn check_pole_pairs(arguments: &Identify, pole_pairs: Option<u32>) -> Result<(), CommandError> {
+    let mut targets = arguments.export.iter().map(|(target, _)| target);
+    targets.try_for_each(|target| target.check_pole_pairs(pole_pairs)).map_err(|refusal| CommandError::Usage(refusal.to_string()))
+}
+
+/// Writes what the answer carries; what it does not is said, and costs the status.
+pub(super) fn write(
+    arguments: &Identify,
+    input: &Input,
+    found: &Identification,
+    current_loop: Option<&CurrentLoop>,
+) -> Result<Status, CommandError> {
+    let logs: Vec<String> = arguments.log.logs.iter().map(|path| file_name(path)).collect();
+    let pole_pairs = input.pole_pairs;
+    let answer = Answer { logs: &logs, identification: found, pole_pairs, current_loop };
+    let mut status = Status::Complete;
+    for (target, path) in &arguments.export {
+        match export(*target, &answer) {
+            Ok(text) => {
+                write_atomically(path, text.as_bytes())?;
+                terminal::wrote("export", path);
+            }
+            Err(refusal) => {
+                terminal::refuse_export(path, &refusal.to_string());
+                status = Status::Incomplete;
+            }
+        }
+    }
+    Ok(status)
+}
+
+/// Where a file lies or would lie.
+fn place(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| {
+        let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::canonicalize(directory).unwrap_or_else(|_| directory.to_owned()).join(path.file_name().unwrap_or_default())
+    })
+}
+
+/// Without its directories: an export is passed on, and where a log lay is nobody's business there.
+fn file_name(path: &Path) -> String {
+    match path.file_name() {
+        Some(_) if path.as_os_str() == "-" => "standard input".to_owned(),
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => path.display().to_string(),
+    }
+}
