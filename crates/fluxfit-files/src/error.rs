@@ -153,6 +153,31 @@ pub(crate) enum Problem {
     #[error("{0}")]
     Log(fluxfit::error::Error),
 
+    // Containers
+    #[error("this {format} file cannot be read: {fault}")]
+    Container { format: &'static str, fault: String },
+    #[error("this {format} file has no column of two or more numbers; export the log with each quantity as a column of numbers")]
+    NoNumbers { format: &'static str },
+    #[error("this file has more than {most} columns; export the log alone")]
+    ManyColumns { most: usize },
+    #[error("these columns were not sampled at the same instants; read them one by one")]
+    TwoGroups,
+    #[error("{} is a {} object, which only MATLAB can read; {}", quote(.name), shorten(.class), object_remedy(.name, .class))]
+    MatObject { name: String, class: String },
+    #[error("this HDF5 file uses {what}, which is not read here; write it with libver='earliest', or export the log as Parquet")]
+    NewerHdf5 { what: &'static str },
+    #[error("this HDF5 file is packed by filter {identifier}, which is not read here; pack it with gzip, or export the log as Parquet")]
+    Hdf5Filter { identifier: u16 },
+    #[error("this Parquet file is packed by {codec}, which is not read here; pack it with zstd, gzip, lz4 or snappy")]
+    ParquetCodec { codec: String },
+    #[error("this HDF5 file has chunks of more than {most} MiB; write it with smaller chunks, or export the log as Parquet")]
+    LargeChunks { most: u64 },
+    #[error("this is MDF 3 or older; convert it to MDF 4, or export the log as Parquet or CSV")]
+    OldMdf,
+    #[cfg(not(feature = "mdf4"))]
+    #[error("this fluxfit was built without MDF 4; build it with --features mdf4, or export the log as Parquet or CSV")]
+    NoMdf,
+
     // Arguments
     #[error("{} is not understood; write {form}, as in {example}", quote(.text))]
     Form { text: String, form: &'static str, example: &'static str },
@@ -216,6 +241,17 @@ pub(crate) enum Problem {
         parameters(.untold, "has", "have"), them = them(.untold)
     )]
     UntoldParameters { untold: Vec<&'static str> },
+}
+
+/// What to type in MATLAB.
+fn object_remedy(name: &str, class: &str) -> String {
+    let name = shorten(name);
+    match class {
+        "table" => format!("save it as text with writetable({name}, 'log.csv')"),
+        "timetable" => format!("save it as text with writetimetable({name}, 'log.csv')"),
+        "timeseries" => format!("save its numbers with s = struct('Time', {name}.Time, 'Data', {name}.Data); save('log.mat', 's')"),
+        _ => "save its numbers as vectors, or as a structure of vectors".to_owned(),
+    }
 }
 
 fn parameters(keys: &[&str], one: &str, several: &str) -> String {

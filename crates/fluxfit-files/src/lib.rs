@@ -35,6 +35,8 @@
 pub mod answer;
 pub mod argument;
 mod channel;
+#[allow(dead_code)] // Until `read_log` reads containers.
+mod container;
 pub mod csv;
 pub mod error;
 pub mod given_motor;
