@@ -246,9 +246,9 @@ fn heap_text(reader: &Reader, data: &[u8]) -> Result<Option<Vec<u8>>, FileError>
     let bytes = reader.bytes_up_to(address, 1 << 16)?;
     let mut cursor = Cursor(&bytes);
     let mut find = || {
-        let signature = cursor.take(4)?;
+        (cursor.take(4)? == b"GCOL").then_some(())?;
         cursor.take(12)?;
-        while signature == b"GCOL" {
+        loop {
             let index = cursor.u16()?;
             cursor.take(6)?;
             let size = usize::try_from(cursor.u64()?).ok()?;
@@ -258,7 +258,6 @@ fn heap_text(reader: &Reader, data: &[u8]) -> Result<Option<Vec<u8>>, FileError>
             }
             cursor.take(size.checked_next_multiple_of(8)?)?;
         }
-        None
     };
     Ok(find())
 }
