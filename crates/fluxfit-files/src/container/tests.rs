@@ -305,6 +305,16 @@ fn hdf5_refusals() {
 }
 
 #[test]
+fn several_blocks_follow_each_other() {
+    let x: Vec<f64> = (0..5000).map(|k| f64::from(k % 771)).collect();
+    let y: Vec<f64> = x.iter().rev().copied().collect();
+    assert!(x.len() > 2 * BLOCK);
+    holds(&open("long.parquet"), &[("x", x.clone()), ("y", y.clone())]);
+    holds(&open("long.mat"), &[("x", x.clone()), ("lying(1,:)", x.clone()), ("lying(2,:)", y.clone())]);
+    holds(&open("long.h5"), &[("x", x), ("y(:,1)", y.clone()), ("y(:,2)", y)]);
+}
+
+#[test]
 fn old_mdf_is_refused() {
     assert_eq!(refusal("old.mdf"), "this is MDF 3 or older; convert it to MDF 4, or export the log as Parquet or CSV");
 }

@@ -257,7 +257,18 @@ def mdf4():
     old.save(HERE / "old.mdf", overwrite=True)
 
 
-for make in [parquet, mat, hdf5, mdf4]:
+def several_blocks():
+    """More rows than are given at once, and no multiple of them."""
+    values = (numpy.arange(5000) % 771).astype("u2")
+    log = {"x": values, "y": values[::-1].copy()}
+    pyarrow.parquet.write_table(pyarrow.table(log), HERE / "long.parquet", row_group_size=3000, compression="zstd")
+    scipy.io.savemat(HERE / "long.mat", {"x": values, "lying": numpy.array([log["x"], log["y"]])}, do_compression=True)
+    with h5py.File(HERE / "long.h5", "w") as file:
+        file.create_dataset("x", data=values, chunks=(1500,), compression="gzip")
+        file.create_dataset("y", data=values[::-1].copy()[:, None].repeat(2, 1), chunks=(700, 2), compression="gzip")
+
+
+for make in [parquet, mat, hdf5, mdf4, several_blocks]:
     make()
 for path in sorted(HERE.iterdir()):
     if path.stat().st_size > 20000:
