@@ -15,6 +15,7 @@ pub struct FileError(Box<Located>);
 struct Located {
     file: Option<String>,
     line: Option<u64>,
+    row: Option<u64>,
     field: Option<Field>,
     problem: Problem,
 }
@@ -51,6 +52,12 @@ impl FileError {
         self
     }
 
+    /// Of a container, which has no lines; rows count from 1.
+    pub(crate) fn at_row(mut self, row: u64) -> Self {
+        self.0.row.get_or_insert(row);
+        self
+    }
+
     pub(crate) fn in_column(mut self, header: &str) -> Self {
         self.0.field.get_or_insert_with(|| Field::Column(header.to_owned()));
         self
@@ -64,16 +71,17 @@ impl FileError {
 
 impl From<Problem> for FileError {
     fn from(problem: Problem) -> Self {
-        Self(Box::new(Located { file: None, line: None, field: None, problem }))
+        Self(Box::new(Located { file: None, line: None, row: None, field: None, problem }))
     }
 }
 
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Located { file, line, field, problem } = &*self.0;
+        let Located { file, line, row, field, problem } = &*self.0;
         let place: Vec<String> = [
             file.clone(),
             line.map(|line| format!("line {line}")),
+            row.map(|row| format!("row {row}")),
             field.as_ref().map(|field| match field {
                 Field::Column(header) => format!("column '{}'", shorten(header)),
                 Field::Key(key) => format!("key '{}'", shorten(key)),
@@ -120,8 +128,14 @@ pub(crate) enum Problem {
     NumbersForHeader { text: String },
     #[error("{} is only one column; separate the names, and the values, by comma, semicolon or tab", quote(.text))]
     OneColumn { text: String },
-    #[error("{}{}", missing_columns(.missing, .present, .proposals), no_measurements(.references))]
-    Missing { missing: Vec<&'static str>, present: Vec<String>, proposals: Vec<(&'static str, String)>, references: Vec<String> },
+    #[error("{}{}", missing_columns(.missing, .present, .proposals), no_measurements(.references, .unreadable))]
+    Missing {
+        missing: Vec<&'static str>,
+        present: Vec<String>,
+        proposals: Vec<(&'static str, String)>,
+        references: Vec<String>,
+        unreadable: Vec<String>,
+    },
     #[error(
         "the name says that this is a reference, and what a drive asked for is not the current that flowed; name the measured current with --map {channel}=COLUMN, or log it"
     )]
@@ -166,6 +180,31 @@ pub(crate) enum Problem {
     OtherMark { other: u64 },
     #[error("{0}")]
     Log(fluxfit::error::Error),
+
+    // Containers
+    #[error("this {format} file cannot be read: {fault}")]
+    Container { format: &'static str, fault: String },
+    #[error("this {format} file has no column of two or more numbers; export the log with each quantity as a column of numbers")]
+    NoNumbers { format: &'static str },
+    #[error("this file has more than {most} columns; export the log alone")]
+    ManyColumns { most: usize },
+    #[error("these columns were not sampled at the same instants; read them one by one")]
+    TwoGroups,
+    #[error("{} is a {} object, which only MATLAB can read; {}", quote(.name), shorten(.class), object_remedy(.name, .class))]
+    MatObject { name: String, class: String },
+    #[error("this HDF5 file uses {what}, which is not read here; write it with libver='earliest', or export the log as Parquet")]
+    NewerHdf5 { what: &'static str },
+    #[error("this HDF5 file is packed by filter {identifier}, which is not read here; pack it with gzip, or export the log as Parquet")]
+    Hdf5Filter { identifier: u16 },
+    #[error("this Parquet file is packed by {codec}, which is not read here; pack it with zstd, gzip, lz4 or snappy")]
+    ParquetCodec { codec: String },
+    #[error("this HDF5 file has chunks of more than {most} MiB; write it with smaller chunks, or export the log as Parquet")]
+    LargeChunks { most: u64 },
+    #[error("this is MDF 3 or older; convert it to MDF 4, or export the log as Parquet or CSV")]
+    OldMdf,
+    #[cfg(not(feature = "mdf4"))]
+    #[error("this fluxfit was built without MDF 4; build it with --features mdf4, or export the log as Parquet or CSV")]
+    NoMdf,
 
     // Arguments
     #[error("{} is not understood; write {form}, as in {example}", quote(.text))]
@@ -234,6 +273,17 @@ pub(crate) enum Problem {
     UntoldParameters { untold: Vec<&'static str> },
 }
 
+/// What to type in MATLAB.
+fn object_remedy(name: &str, class: &str) -> String {
+    let name = shorten(name);
+    match class {
+        "table" => format!("save it as text with writetable({name}, 'log.csv')"),
+        "timetable" => format!("save it as text with writetimetable({name}, 'log.csv')"),
+        "timeseries" => format!("save its numbers with s = struct('Time', {name}.Time, 'Data', {name}.Data); save('log.mat', 's')"),
+        _ => "save its numbers as vectors, or as a structure of vectors".to_owned(),
+    }
+}
+
 fn parameters(keys: &[&str], one: &str, several: &str) -> String {
     if keys.len() == 1 { format!("parameter {} {one}", list(keys)) } else { format!("parameters {} {several}", list(keys)) }
 }
@@ -248,12 +298,14 @@ fn missing_map_columns(missing: &[&str], present: &[String]) -> String {
     format!("{what}, and a flux map needs id, iq in A, psi_d, psi_q in Wb")
 }
 
-fn no_measurements(references: &[String]) -> String {
-    match references {
+fn no_measurements(references: &[String], unreadable: &[String]) -> String {
+    let of_references = match references {
         [] => String::new(),
         [one] => format!("; '{}' is a reference, not the current that flowed", shorten(one)),
         several => format!("; {} are references, not the currents that flowed", columns(several)),
-    }
+    };
+    let of_others = if unreadable.is_empty() { String::new() } else { format!("; no numbers are in {}", columns(unreadable)) };
+    of_references + &of_others
 }
 
 fn cells(count: usize) -> String {

@@ -17,17 +17,27 @@ pub(crate) fn name(path: &Path) -> String {
     if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
+/// What a file's bytes come from.
+pub(crate) enum Raw {
+    /// A file, which can be read at any place.
+    File(fs::File),
+    /// Standard input, a pipe, or bytes in memory.
+    Stream(Box<dyn Read>),
+}
+
 /// The file, to be read from its beginning.
-pub(crate) fn open(path: &Path) -> Result<Box<dyn Read>, FileError> {
+pub(crate) fn open(path: &Path) -> Result<Raw, FileError> {
     if is_standard(path) {
-        return Ok(Box::new(io::stdin()));
+        return Ok(Raw::Stream(Box::new(io::stdin())));
     }
     let file = fs::File::open(path).and_then(|file| {
+        let metadata = file.metadata()?;
         // Opening a directory succeeds on some systems.
-        if file.metadata()?.is_dir() { Err(io::ErrorKind::IsADirectory.into()) } else { Ok(file) }
+        if metadata.is_dir() { Err(io::ErrorKind::IsADirectory.into()) } else { Ok((file, metadata.is_file())) }
     });
     match file {
-        Ok(file) => Ok(Box::new(file)),
+        Ok((file, true)) => Ok(Raw::File(file)),
+        Ok((pipe, false)) => Ok(Raw::Stream(Box::new(pipe))),
         Err(error) => Err(FileError::from(io_problem("reading", &error)).in_file(&name(path))),
     }
 }

@@ -37,6 +37,7 @@
 pub mod answer;
 pub mod argument;
 mod channel;
+mod container;
 mod csv;
 pub mod error;
 pub mod export;

@@ -63,8 +63,7 @@ fn options(case: &Table) -> LogOptions {
 fn is_built(case: &Table) -> bool {
     match case.get("needs").map(|needs| needs.as_str().unwrap()) {
         None => true,
-        // The name of a feature of this crate: `Some("mdf4") => cfg!(feature = "mdf4")` as soon as there is one.
-        Some("mdf4") => false,
+        Some("mdf4") => cfg!(feature = "mdf4"),
         Some(other) => panic!("{other} is no feature"),
     }
 }

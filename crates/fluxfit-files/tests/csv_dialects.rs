@@ -483,7 +483,11 @@ fn real_logs_are_read() {
     let Some(path) = shared("emrax228hv_coastdown_dyno.csv") else { return };
     let read = read_log(&path, &LogOptions { pole_pairs: Some(10), ..LogOptions::default() }).unwrap();
     assert_eq!((read.log.rows(), read.layout.map(|layout| layout.name)), (14_595, Some("Tritium")));
-    assert_eq!(read.notes[1..], ["omega_e: column 'motor_velocity_rpm' read as mechanical r/min with 10 pole pairs"]);
+    let notes = [
+        "omega_e: column 'motor_velocity_rpm' read as mechanical r/min with 10 pole pairs",
+        "27 gaps, the longest of 4.19 s at t = 654.604 s: nothing is computed across them",
+    ];
+    assert_eq!(read.notes[1..], notes);
     let expected = -637.188 * std::f64::consts::TAU / 60.0 * 10.0;
     assert!((read.log.columns().omega_e[0] - expected).abs() < 1e-9);
 

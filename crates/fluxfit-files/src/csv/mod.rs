@@ -41,7 +41,13 @@ impl TextTable {
         let mut notes = std::mem::take(&mut text.notes);
         let header = header::find(&text.head, &mut notes)?;
         let unit = |place: usize| header.units.get(place).filter(|unit| !unit.is_empty()).cloned();
-        let heads = header.names.iter().enumerate().map(|(place, name)| Head { name: name.clone(), unit: unit(place), ..Head::default() });
+        let heads = header.names.iter().enumerate().map(|(place, name)| Head {
+            name: name.clone(),
+            unit: unit(place),
+            rows: 0,
+            group: 0,
+            is_time: false,
+        });
         Ok(Self { heads: heads.collect(), header, text: Some(text), notes })
     }
 

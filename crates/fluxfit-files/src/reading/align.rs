@@ -29,7 +29,7 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     let told = counts.iter().all(|(_, count)| *count >= FEWEST) && counts.iter().any(|(channel, count)| *channel == T && *count == rows);
     if complete as f64 > COMPLETE * rows as f64 || !told {
         let (channel, _) = channels.iter().find(|(_, values)| values[first].is_nan()).unwrap_or((T, &[]));
-        return Err(channels.refuse(Problem::EmptyCell, channel, lines.of(first)));
+        return Err(channels.refuse(Problem::EmptyCell, channel, lines, first));
     }
     let t = channels.get(T).map(<[f64]>::to_vec).unwrap_or_default();
     let base = if channels.get(Id).is_some() { Id } else { IA };

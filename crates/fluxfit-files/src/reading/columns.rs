@@ -4,7 +4,7 @@ use super::{
     Told, doubt,
     layout::{Layout, is_called},
     resemblance::propose,
-    table::{Head, Wanted},
+    table::{Head, Table, Wanted},
 };
 use crate::{
     channel::Channel,
@@ -58,14 +58,14 @@ pub(super) fn left_out(channel: Channel, error: &FileError) -> String {
 
 /// The columns that make a log; then those that it may have besides.
 pub(super) fn choose(
-    heads: &[Head],
+    table: &Table,
     layout: Option<&'static Layout>,
     told: &Told,
-    line: Option<u64>,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Chosen>, FileError> {
+    let (heads, line) = (table.heads(), table.line());
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
-    let finder = Finder { heads, layout, told };
+    let finder = Finder { heads, unreadable: table.unreadable(), layout, told };
     let found = finder.needed().map_err(at_header)?;
     let mut unsaid = Vec::new();
     let mut chosen: Vec<Chosen> = Vec::new();
@@ -107,7 +107,7 @@ pub(super) struct Survey {
 pub(super) fn survey(heads: &[Head], layout: Option<&'static Layout>, told: &Told) -> Survey {
     // Without pole pairs no unit is refused for want of them.
     let bold = Told { pole_pairs: told.pole_pairs.or(Some(1)), ..told.clone() };
-    let finder = Finder { heads, layout, told: &bold };
+    let finder = Finder { heads, unreadable: &[], layout, told: &bold };
     let mut survey = Survey { taken: Vec::new(), resembling: Vec::new() };
     for channel in Channel::all() {
         if let Ok(Some(index)) = finder.place(channel)
@@ -131,6 +131,8 @@ pub(super) fn survey(heads: &[Head], layout: Option<&'static Layout>, told: &Tol
 /// Who looks for columns.
 struct Finder<'a> {
     heads: &'a [Head],
+    /// Names of columns that hold no numbers.
+    unreadable: &'a [String],
     layout: Option<&'static Layout>,
     told: &'a Told,
 }
@@ -276,13 +278,16 @@ impl Finder<'_> {
                 references.push(std::mem::take(name));
             }
         }
+        let resembles = |name: &&String| missing.iter().any(|channel| propose(*channel, std::slice::from_ref(*name)).is_some());
+        let unreadable: Vec<String> = self.unreadable.iter().filter(resembles).cloned().collect();
         let mut proposals = Vec::new();
         for channel in missing {
             if let Some(index) = propose(*channel, &free) {
                 proposals.push((channel.name(), std::mem::take(&mut free[index])));
             }
         }
-        Problem::Missing { missing: missing.iter().map(|channel| channel.name()).collect(), present, proposals, references }.into()
+        Problem::Missing { missing: missing.iter().map(|channel| channel.name()).collect(), present, proposals, references, unreadable }
+            .into()
     }
 
     /// The unit that was told; else the layout's; else the one that the header or the row of units names; else SI.

@@ -113,6 +113,7 @@ fn one_group(
     notes.extend(clock.note());
     let (values, lines, note) = kept.finish();
     notes.extend(note);
+    let lines = lines.counting_rows(table.line().is_none());
     let mut channels = Channels::default();
     let names = columns.iter().map(|column| column.channel).chain(counted.is_some().then_some(T));
     channels.columns = names.zip(values).filter(|(channel, _)| *channel != Run).collect();
@@ -152,7 +153,7 @@ fn drop_unreadable(channels: &mut Channels, columns: &[Chosen], refused: Vec<Opt
         let hole = values.iter().position(|value| value.is_nan());
         let is_empty = values.iter().all(|value| value.is_nan());
         let hole = hole.filter(|_| !has_holes || is_empty);
-        if let Some(error) = refused.or_else(|| hole.map(|row| channels.refuse(Problem::EmptyCell, column.channel, lines.of(row)))) {
+        if let Some(error) = refused.or_else(|| hole.map(|row| channels.refuse(Problem::EmptyCell, column.channel, lines, row))) {
             notes.push(left_out(column.channel, &error.in_column(&column.header)));
             channels.take(column.channel);
         }

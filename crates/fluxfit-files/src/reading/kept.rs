@@ -6,6 +6,7 @@
 //! is fitted decides it, so nothing is biased by it.
 
 use super::table::Block;
+use crate::error::FileError;
 
 /// Rows of a stretch: some tenths of a second of a drive, long enough for a steady window.
 const STRETCH: usize = 1 << 12;
@@ -39,6 +40,8 @@ pub(super) struct Lines {
     /// The first row of a run, and its line.
     runs: Vec<(usize, u64)>,
     rows: usize,
+    /// They are rows of a container, not lines of a text.
+    of_container: bool,
 }
 
 impl Lines {
@@ -54,8 +57,22 @@ impl Lines {
         self.rows += other.rows;
     }
 
+    /// The error, at the place of a row.
+    pub(super) fn place(&self, error: FileError, row: usize) -> FileError {
+        match self.of(row) {
+            Some(place) if self.of_container => error.at_row(place),
+            Some(place) => error.at_line(place),
+            None => error,
+        }
+    }
+
+    /// The same, of a container or of a text.
+    pub(super) fn counting_rows(self, of_container: bool) -> Self {
+        Self { of_container, ..self }
+    }
+
     /// The line of a row.
-    pub(super) fn of(&self, row: usize) -> Option<u64> {
+    fn of(&self, row: usize) -> Option<u64> {
         let run = self.runs.partition_point(|(first, _)| *first <= row).checked_sub(1)?;
         let (first, line) = self.runs[run];
         Some(line + (row - first) as u64)

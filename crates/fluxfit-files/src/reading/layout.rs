@@ -247,9 +247,14 @@ impl Layout {
         self.columns.iter().map(said).collect::<Vec<_>>().join(", ")
     }
 
+    /// fluxfit's own.
+    pub(crate) fn canonical() -> &'static Self {
+        &LAYOUTS[0]
+    }
+
     /// Whether it is fluxfit's own, of which nothing need be said.
     pub(crate) fn is_canonical(&self) -> bool {
-        self.name == LAYOUTS[0].name
+        self.name == Self::canonical().name
     }
 
     /// Whether files of it are read.

@@ -37,7 +37,7 @@ use gather::Gathered;
 use kept::Lines;
 use layout::Layout;
 use mapping::Mapping;
-use std::{io::Read, path::Path};
+use std::path::Path;
 use table::{Head, Table};
 
 /// What the reader is told about a log.
@@ -104,7 +104,7 @@ pub fn read_log(path: &Path, options: &LogOptions) -> Result<ReadLog, FileError>
 /// numbers are refused by [`Log::new`].
 pub fn parse_log(name: &str, bytes: &[u8], options: &LogOptions) -> Result<ReadLog, FileError> {
     let told = Told::from(options)?;
-    let raw: Box<dyn Read> = Box::new(std::io::Cursor::new(bytes.to_vec()));
+    let raw = input::Raw::Stream(Box::new(std::io::Cursor::new(bytes.to_vec())));
     let read = Table::open(raw).and_then(|table| read(table, &told));
     read.map_err(|error| error.in_file(name))
 }
@@ -115,7 +115,7 @@ fn read(mut table: Table, told: &Told) -> Result<ReadLog, FileError> {
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
     let layout = recognize(table.heads(), &mut notes).map_err(at_header)?;
     let named = layout.filter(|layout| !layout.is_canonical());
-    let chosen = columns::choose(table.heads(), named, told, line, &mut notes)?;
+    let chosen = columns::choose(&table, named, told, &mut notes)?;
     let Gathered { mut channels, lines, is_moved } = gather::gather(&mut table, &chosen, layout, told, &mut notes)?;
     let aligned = align::align(&mut channels, &lines)?;
     doubt::refuse_standardized(&chosen, &channels)?;
@@ -126,6 +126,8 @@ fn read(mut table: Table, told: &Told) -> Result<ReadLog, FileError> {
     notes.extend(doubt::note_references(&channels));
     let log = log(channels, &chosen, &lines, &mut notes)?;
     notes.extend(gaps(&log));
+    // Columns that nobody and no layout named have the canonical names.
+    let layout = layout.or_else(|| told.headers.is_empty().then(Layout::canonical));
     Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes })
 }
 
@@ -184,11 +186,11 @@ struct Place {
 impl Place {
     /// The library's error, at the line and under the header that the row and the column have in the file.
     fn refuse(&self, error: fluxfit::error::Error) -> FileError {
-        let line = error.row().and_then(|row| self.lines.of(self.origins.get(row).copied().unwrap_or(row)));
+        let row = error.row().map(|row| self.origins.get(row).copied().unwrap_or(row));
         let header = error.column().and_then(|name| self.headers.iter().find(|(channel, _)| channel.name() == name));
         let mut located = FileError::from(Problem::Log(error));
-        if let Some(line) = line {
-            located = located.at_line(line);
+        if let Some(row) = row {
+            located = self.lines.place(located, row);
         }
         if let Some((_, header)) = header {
             located = located.in_column(header);
@@ -239,9 +241,8 @@ impl Channels {
     }
 
     /// The refusal of a value in a column.
-    fn refuse(&self, problem: Problem, channel: Channel, line: Option<u64>) -> FileError {
-        let refused = FileError::from(problem);
-        let refused = line.map_or(refused.clone(), |line| refused.at_line(line));
+    fn refuse(&self, problem: Problem, channel: Channel, lines: &Lines, row: usize) -> FileError {
+        let refused = lines.place(problem.into(), row);
         let header = self.headers.iter().find(|(other, _)| *other == channel);
         header.map_or(refused.clone(), |(_, header)| refused.in_column(header))
     }

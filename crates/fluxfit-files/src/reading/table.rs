@@ -1,20 +1,14 @@
 //! A table, whatever it came in: named columns, and their values in blocks of rows.
 
-use crate::{csv::TextTable, error::FileError};
-use std::io::Read;
+use crate::{
+    container::{self, Binary, Source},
+    csv::TextTable,
+    error::FileError,
+    input::{Raw, io_problem},
+};
+use std::io::{Cursor, Read, Seek};
 
-/// A column as the file has it.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Head {
-    pub(crate) name: String,
-    /// As the file spells it, apart from the name.
-    pub(crate) unit: Option<String>,
-    pub(crate) rows: u64,
-    /// Columns with the same number share their rows' instants; others were sampled at others.
-    pub(crate) group: usize,
-    /// This column is the time of its group.
-    pub(crate) is_time: bool,
-}
+pub(crate) use crate::container::Head;
 
 /// A column whose values are wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +34,11 @@ pub(crate) struct Block {
 /// What a table came in.
 pub(crate) enum Table {
     Text(TextTable),
+    Binary(Binary),
 }
+
+/// Bytes that tell a container.
+const START: u64 = 1024;
 
 impl Block {
     pub(crate) fn of(columns: usize) -> Self {
@@ -58,13 +56,43 @@ impl Table {
     ///
     /// # Errors
     /// If it cannot be read, or has none.
-    pub(crate) fn open(raw: Box<dyn Read>) -> Result<Self, FileError> {
-        TextTable::open(raw).map(Self::Text)
+    pub(crate) fn open(raw: Raw) -> Result<Self, FileError> {
+        let failed = |error: std::io::Error| FileError::from(io_problem("reading", &error));
+        match raw {
+            Raw::File(mut file) => match Binary::open(Source::file(file.try_clone().map_err(failed)?)?)? {
+                Some(binary) => Ok(Self::Binary(binary)),
+                None => {
+                    file.rewind().map_err(failed)?;
+                    TextTable::open(Box::new(file)).map(Self::Text)
+                }
+            },
+            Raw::Stream(mut stream) => {
+                let mut start = Vec::new();
+                (&mut stream).take(START).read_to_end(&mut start).map_err(failed)?;
+                if !container::is_told_by(&start) {
+                    return TextTable::open(Box::new(Cursor::new(start).chain(stream))).map(Self::Text);
+                }
+                stream.read_to_end(&mut start).map_err(failed)?;
+                match Binary::open(Source::memory(start.clone()))? {
+                    Some(binary) => Ok(Self::Binary(binary)),
+                    None => TextTable::open(Box::new(Cursor::new(start))).map(Self::Text),
+                }
+            }
+        }
     }
 
     pub(crate) fn heads(&self) -> &[Head] {
         match self {
             Self::Text(table) => &table.heads,
+            Self::Binary(table) => table.heads(),
+        }
+    }
+
+    /// Columns that hold no numbers, where the container says so.
+    pub(crate) fn unreadable(&self) -> &[String] {
+        match self {
+            Self::Text(_) => &[],
+            Self::Binary(table) => table.unreadable(),
         }
     }
 
@@ -72,6 +100,7 @@ impl Table {
     pub(crate) fn notes(&self) -> &[String] {
         match self {
             Self::Text(table) => &table.notes,
+            Self::Binary(_) => &[],
         }
     }
 
@@ -79,6 +108,7 @@ impl Table {
     pub(crate) fn line(&self) -> Option<u64> {
         match self {
             Self::Text(table) => Some(table.line()),
+            Self::Binary(_) => None,
         }
     }
 
@@ -86,6 +116,7 @@ impl Table {
     pub(crate) fn kind(&self) -> String {
         match self {
             Self::Text(table) => format!("text, separated by {}", table.separator()),
+            Self::Binary(table) => table.kind().to_owned(),
         }
     }
 
@@ -100,6 +131,17 @@ impl Table {
     ) -> Result<Vec<String>, FileError> {
         match self {
             Self::Text(table) => table.read(wanted, take),
+            Self::Binary(table) => {
+                let columns: Vec<usize> = wanted.iter().map(|column| column.index).collect();
+                let mut row = 0;
+                table.read(&columns, &mut |values| {
+                    let rows = values.first().map_or(0, |column| column.len() as u64);
+                    let lines = (row + 1..=row + rows).collect();
+                    row += rows;
+                    take(Block { values, lines, refused: vec![None; columns.len()] })
+                })?;
+                Ok(Vec::new())
+            }
         }
     }
 }

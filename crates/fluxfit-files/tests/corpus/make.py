@@ -218,7 +218,7 @@ def dialects():
     put("prefixed_units.csv", table(prefixes, form=places))
     # An ulp of each: the file's decimals are those of the source, thousandfold.
     small = {name: 1e-15 * float(np.max(np.abs(log[name]))) for name in NAMES[:5]}
-    read("prefixed_units.csv", "ms, mV, mA and r/min in the names", log, MAPPED, tolerances={**small, "omega_e": 0.5e-3 / RPM}, notes=["r/min"])
+    read("prefixed_units.csv", "ms, mV, mA and r/min in the names", log, tolerances={**small, "omega_e": 0.5e-3 / RPM}, notes=["r/min"])
 
     told = {"units": ["t=ms", "omega=rpm-mech"], "pole_pairs": POLE_PAIRS}
     put("units_by_argument.csv", table(changed(FAST, t=log["t"] * 1e3, omega_e=log["omega_e"] * RPM / POLE_PAIRS),
@@ -428,7 +428,7 @@ def traps():
 
     references = {"t": slow["t"], "ud_ref": slow["ud"], "uq_ref": slow["uq"], "id": slow["id"], "iq": slow["iq"], "omega_e": slow["omega_e"]}
     put("voltage_references.csv", table(references))
-    read("voltage_references.csv", "voltage references, which most drives log", slow, MAPPED, notes=["ud_ref"])
+    read("voltage_references.csv", "voltage references, which most drives log", slow, notes=["ud_ref"])
     both = {**slow, "id_ref": slow["id"] * 0 - 1.0, "iq_ref": slow["iq"] * 0 + 3.0, "ud_ref": slow["ud"] + 1.0, "uq_ref": slow["uq"] + 1.0}
     put("references_besides.csv", table(both))
     read("references_besides.csv", "references besides the measured values: the measured ones are taken", slow, same_as="slow.csv")
@@ -511,7 +511,7 @@ def parquet():
     refuse(put_table("missing_columns.parquet", frame.drop_columns(["ud", "uq"])), "Parquet without voltages", "ud", "uq", "missing")
     text = pa.table({**fast, "iq": pa.array([plain(value) for value in fast["iq"]])})
     refuse(put_table("text_column.parquet", text), "iq is a column of text", "iq", "number|numeric|text|string")
-    refuse(put("truncated.parquet", (LOGS / "snappy.parquet").read_bytes()[:-500]), "a Parquet file that was cut off", "parquet", "cut|end|incomplete|damaged|short")
+    refuse(put("truncated.parquet", (LOGS / "snappy.parquet").read_bytes()[:-500]), "a Parquet file that was cut off", "parquet", "cut|end|incomplete|damaged|short|corrupt")
 
 
 # MAT
@@ -611,7 +611,7 @@ def mat():
     refuse("missing_voltages.mat", "MAT v5 without voltages", "ud", "uq", "missing")
     put_mat("unequal_lengths.mat", {**fast, "uq": fast["uq"][:-3]}, oned_as="column")
     refuse("unequal_lengths.mat", "uq has three values less than the others", "uq", "157")
-    refuse(put("truncated.mat", (LOGS / "vectors_v5.mat").read_bytes()[:4000]), "a MAT file that was cut off", "MAT file|MAT v5|MATLAB", "cut|end|incomplete|damaged|short")
+    refuse(put("truncated.mat", (LOGS / "vectors_v5.mat").read_bytes()[:4000]), "a MAT file that was cut off", "MAT file|MAT v5|MATLAB", "cut|end|incomplete|damaged|short|corrupt")
 
 
 # MDF4
