@@ -19,7 +19,7 @@ use fluxfit::{
     },
 };
 use fluxfit_files::{answer, read_truth};
-use fluxfit_report::{Report, html};
+use fluxfit_report::{Report, figures, html};
 use std::time::Instant;
 
 /// Runs of fitness (11) beyond which a progress bar is shown: fewer end within a second.
@@ -42,17 +42,17 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
     }
-    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
-        html(&Report {
-            title: &input.name,
-            log: &input.log,
-            notes: &input.notes,
-            operating_points: &problem.operating_points,
-            identification: None,
-            study: Some((&facts, &methods)),
-            origin,
-        })
-    })?;
+    let shown = Report {
+        title: &input.name,
+        log: &input.log,
+        notes: &input.notes,
+        operating_points: &problem.operating_points,
+        identification: None,
+        held_out: None,
+        study: Some((&facts, &methods)),
+        origin: &report::origin(arguments.log.seed),
+    };
+    report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
     if problem.unexcited.is_empty() {
         return Ok(Status::Complete);
     }

@@ -19,7 +19,7 @@ use fluxfit::{
     validate::{Given, Validation, validate},
 };
 use fluxfit_files::answer;
-use fluxfit_report::{Report, html};
+use fluxfit_report::{Report, figures, html};
 use serde_json::Value;
 
 /// Runs the verb.
@@ -72,17 +72,17 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
             (None, _) => {}
         }
     }
-    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
-        html(&Report {
-            title: &input.name,
-            log: &input.log,
-            notes: &input.notes,
-            operating_points: found.operating_points(),
-            identification: Some((&found, settings.method)),
-            study: None,
-            origin,
-        })
-    })?;
+    let shown = Report {
+        title: &input.name,
+        log: &input.log,
+        notes: &input.notes,
+        operating_points: found.operating_points(),
+        identification: Some((&found, settings.method)),
+        held_out: held_out.as_ref().map(|log| (log, validation.as_ref())),
+        study: None,
+        origin: &report::origin(arguments.log.seed),
+    };
+    report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
     Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
 }
 

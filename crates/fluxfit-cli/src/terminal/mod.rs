@@ -52,9 +52,9 @@ pub(crate) fn note(message: &str) {
     say(&format!("{DIM}note:{DIM:#} {message}"));
 }
 
-/// Says that a report was written.
-pub(crate) fn wrote(report: &Path) {
-    say(&format!("{DIM}report:{DIM:#} {}", report.display()));
+/// Says that something was written.
+pub(crate) fn wrote(what: &str, path: &Path) {
+    say(&format!("{DIM}{what}:{DIM:#} {}", path.display()));
 }
 
 fn say(line: &str) {
