@@ -1,4 +1,4 @@
-//! What fluxfit found, for people: one HTML file that opens offline, and its figures as SVG.
+//! What fluxfit found, for people: one HTML file that opens offline, and its figures as SVG and PNG.
 //!
 //! The promise: nothing is loaded from anywhere, and the one script in it asks for nothing; without it the page says the same; it
 //! reads on a telephone, on a wide screen, in the dark and on paper; a number without a meaning is not on it. The same input makes

@@ -181,8 +181,11 @@ fn walk(node: &Handle, text: &mut String, ids: &mut Vec<String>, scripts: &mut V
     node.children.borrow().iter().for_each(|child| walk(child, text, ids, scripts));
 }
 
-/// The numbers of a page's figures, as its script reads them: per figure the values along, and those of each panel's series.
-fn data(page: &str) -> Vec<(Vec<f64>, Vec<Vec<Vec<f64>>>)> {
+/// The values along a figure, and those of each panel's series.
+type Numbers = (Vec<f64>, Vec<Vec<Vec<f64>>>);
+
+/// The numbers of a page's figures, as its script reads them.
+fn data(page: &str) -> Vec<Numbers> {
     let column = |column: &serde_json::Value| -> Vec<f64> {
         let scale = 10.0_f64.powi(column["exponent"].as_i64().unwrap() as i32);
         let steps = column["steps"].as_array().unwrap().iter().map(serde_json::Value::as_i64);
@@ -237,6 +240,29 @@ fn an_identification_has_its_values_verdicts_and_command() {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
     assert_eq!(page.matches("class=\"badge identified\"").count(), 4 + 1, "four verdicts and the legend");
+}
+
+/// A browser is not certain to be there: without one this says so, and checks nothing.
+#[test]
+fn the_script_draws_every_figure_that_has_its_numbers() {
+    let log = recorded(0.09, |_| ());
+    let found = identify(&log, &of_currents()).unwrap();
+    let page = page("x", &log, &found, None);
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("page.html");
+    std::fs::write(&path, &page).unwrap();
+    let arguments = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", "--dump-dom"];
+    let profile = format!("--user-data-dir={}", directory.path().join("profile").display());
+    let run = |browser: &str| std::process::Command::new(browser).args(arguments).arg(&profile).arg(&path).output();
+    let drawn = ["chromium", "google-chrome", "chromium-browser"].into_iter().find_map(|browser| run(browser).ok());
+    let Some(drawn) = drawn.filter(|drawn| drawn.status.success()) else {
+        println!("skipped: no chromium that runs here, so the script was not tried");
+        return;
+    };
+    let drawn = String::from_utf8(drawn.stdout).unwrap();
+    assert_eq!(drawn.matches("<figure class=\"live\">").count(), data(&page).len());
+    // Four panels of currents, residuals, operating points.
+    assert_eq!(drawn.matches("<canvas").count(), 6);
 }
 
 #[test]

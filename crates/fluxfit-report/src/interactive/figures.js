@@ -287,6 +287,8 @@
     const end = event => { if (pressed) { pressed = false; pass(document, "mouseup", event); } };
     u.over.addEventListener("pointerup", end);
     u.over.addEventListener("pointercancel", end);
+    /* The mouse that a browser makes of a tap has not moved either. */
+    u.over.addEventListener("click", event => u.setCursor({ left: event.offsetX, top: event.offsetY }));
   };
 
   document.querySelectorAll("figure").forEach(figure => {
