@@ -170,6 +170,11 @@ pub(crate) struct LogArguments {
     /// Write the results as a page for a browser, beside the answer
     #[arg(long, help_heading = "Output", value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
+    /// Write every figure of that page as SVG and PNG
+    ///
+    /// Into this directory, which is made if it is not there.
+    #[arg(long, help_heading = "Output", value_name = "DIR")]
+    pub(crate) figures: Option<PathBuf>,
 }
 
 /// What a log's columns mean.
@@ -213,6 +218,9 @@ pub(crate) struct Demo {
     /// Where the report goes
     #[arg(long, value_name = "FILE.html", default_value = "fluxfit-demo.html")]
     pub(crate) report: PathBuf,
+    /// Write every figure of the report into a directory, each as NAME.svg and NAME.png
+    #[arg(long, value_name = "DIR")]
+    pub(crate) figures: Option<PathBuf>,
     /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,

@@ -80,6 +80,12 @@ fn shade(correlation: f64) -> u8 {
     (correlation.abs() * SHADES).clamp(0.0, SHADES - 1.0) as u8
 }
 
+/// The two whose joint region is drawn; none where the section is not there, or one of them has no error.
+pub(crate) fn pair(found: &Identification) -> Option<Pair<'_>> {
+    let [x, y] = [Parameter::Rs, Parameter::PsiF].map(|parameter| found.parameter(parameter));
+    (has_error(x) && has_error(y)).then(|| Pair { x, y, correlation: of(found, x, y) })
+}
+
 /// The ellipse, or why there is none.
 fn joint(found: &Identification) -> Markup {
     let [x, y] = [Parameter::Rs, Parameter::PsiF].map(|parameter| found.parameter(parameter));
@@ -92,8 +98,7 @@ fn joint(found: &Identification) -> Markup {
             p { "There is no joint region: " (list(&missing)) " cannot be identified from this log." }
         } @else if let Some(given) = given {
             p { "There is no joint region: " (symbol(given.parameter)) " was given." }
-        } @else {
-            @let pair = Pair { x, y, correlation: of(found, x, y) };
+        } @else if let Some(pair) = pair(found) {
             (frame::figure(|size| ellipse::draw(&pair, size), &html! {
                 "The joint 95 % region about the value (dot), in percent of it, from the standard errors and their correlation, "
                 (minus(format!("{:.2}", pair.correlation))) " (of noise, accuracy and priors alone). The box is made of the two single 95 % intervals. Where the ellipse is narrow and "

@@ -3,6 +3,7 @@
 use crate::{
     figure::{autocorrelation, currents},
     frame,
+    measured::Measured,
     typography::{grouped, number, prose},
 };
 use fluxfit::{
@@ -45,7 +46,8 @@ pub(crate) fn section(log: &Log, fit: &OutputFit) -> Markup {
             (amperes(rms.q)) " (" (prose("i_q")) "), "
             (number(100.0 * rms.d.max(rms.q) / peak, |percent| significant(percent, 2))) " % of the largest current."
         }
-        (frame::figure(|size| currents::draw(log, fit, size), &caption(fit)))
+        @let both = Measured::and_simulated(log, fit);
+        (frame::live_figure(|size| currents::draw(both, size), &currents::live(both), &caption(fit, both)))
         (whiteness(fit))
     }
 }
@@ -67,12 +69,14 @@ pub(crate) fn amperes(current: f64) -> String {
     format!("{} {unit}", number(current, |current| significant(factor * current, 2)))
 }
 
-fn caption(fit: &OutputFit) -> Markup {
+fn caption(fit: &OutputFit, both: Measured) -> Markup {
     let sensors = [Term::AngleOffset, Term::CurrentOffset, Term::Imbalance];
     let pairs = fluxfit::objective::adjustable::SensorPair::ALL.map(Term::TwoSensors);
     html! {
         "Measured currents, grey, and the simulated ones over them; below each, measured less simulated on a scale of its own. Of many rows in "
-        "a column of pixels the least and the largest are drawn, so a band is noise or ripple, and a peak that lies outside of it is real."
+        "a column of pixels the least and the largest are drawn, so a band is noise or ripple, and a peak that lies outside of it is real. "
+        "The bold line is the mean over short spans: it shows what lasts below the noise."
+        (currents::thinning(&both))
         @if fit.stretches.len() > 1 { " Gaps of the log are not bridged." }
         @if sensors.into_iter().chain(pairs).any(|term| fit.has(term)) {
             " The measured current is the logged one; the simulated one is shown as the faulty sensors found would read it."
@@ -80,11 +84,16 @@ fn caption(fit: &OutputFit) -> Markup {
     }
 }
 
-fn whiteness(fit: &OutputFit) -> Markup {
+/// Autocorrelation of the residuals along both axes, and half of the band in which that of noise stays.
+pub(crate) fn correlations(fit: &OutputFit) -> ([Vec<f64>; 2], f64) {
     let rows = fit.residuals.len() / 2;
     let lags = LAGS.min(rows / ROWS_PER_LAG).max(1);
-    let correlations = fit.autocorrelation(lags);
-    let band = BAND / (rows.max(1) as f64).sqrt();
+    (fit.autocorrelation(lags), BAND / (rows.max(1) as f64).sqrt())
+}
+
+fn whiteness(fit: &OutputFit) -> Markup {
+    let (correlations, band) = correlations(fit);
+    let (rows, lags) = (fit.residuals.len() / 2, correlations[0].len());
     html! {
         h3 { "Is what is left noise?" }
         p { (verdict(&correlations, band, fit.leaves_something())) }

@@ -1,7 +1,7 @@
 //! Measured against fitted: what each operating point was, and what the motor found makes of it.
 
 use crate::{
-    figure::{self, residuals},
+    figure::{plane, residuals},
     flux, frame,
     typography::{decimals, number, prose},
 };
@@ -37,7 +37,7 @@ pub(crate) fn section(found: &SteadyFit, answered: bool) -> Markup {
         }
         (points(found))
         @if let Some(saturation) = &found.saturation { (flux::table(saturation)) }
-        (frame::figure(|size| residuals::draw(found, size), &html! {
+        (frame::live_figure(|size| residuals::draw(found, size), &residuals::live(found), &html! {
             "Residuals of both voltage equations with bars of two standard uncertainties, from the noise of the means and "
             @if let Some(misfit) = found.misfit {
                 "the accuracy to which the points agree, " (percent(misfit.voltage_accuracy)) " % of the voltage. A pattern over the points, "
@@ -47,7 +47,7 @@ pub(crate) fn section(found: &SteadyFit, answered: bool) -> Markup {
             @else if redundancy == 0 { "Without redundancy they are zero by construction." }
             @else { "Bars that miss zero mean that this point contradicts the others." }
         }))
-        (frame::figure(|size| figure::plane(&found.operating_points, size), &prose(
+        (frame::live_figure(|size| plane::draw(&found.operating_points, size), &plane::live(found), &prose(
             "The operating points by their currents, numbered as in the table. The farther apart they lie, the better the parameters can be told apart: \
              L_d needs points that differ in i_d."
         )))

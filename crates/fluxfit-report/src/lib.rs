@@ -1,7 +1,8 @@
-//! What fluxfit found, for people: one HTML file that opens offline, and its figures as SVG.
+//! What fluxfit found, for people: one HTML file that opens offline, and its figures as SVG and PNG.
 //!
-//! The promise: nothing is loaded from anywhere and nothing runs; the page reads on a telephone, on a wide screen, in the dark and
-//! on paper; a number without a meaning is not on it. The same input makes the same bytes, times of runs apart.
+//! The promise: nothing is loaded from anywhere, and the one script in it asks for nothing; without it the page says the same; it
+//! reads on a telephone, on a wide screen, in the dark and on paper; a number without a meaning is not on it. The same input makes
+//! the same bytes, times of runs apart.
 //!
 //! ```
 //! use fluxfit::{Columns, Log, identify::{self, identify}};
@@ -25,6 +26,7 @@
 //!     notes: &[],
 //!     operating_points: found.operating_points(),
 //!     identification: Some((&found, settings.method)),
+//!     held_out: None,
 //!     study: None,
 //!     origin: &origin,
 //! });
@@ -44,6 +46,9 @@
 //! | `search` | the swarm's answer beside the exact one |
 //! | `study`, `table_2` | the methods compared; estimates beside the paper's |
 //! | `validation` | given parameters held against a log: a page of its own |
+//! | `measured` | measured currents and a model's beside them |
+//! | `interactive` | figures that answer to the pointer: their numbers, and the one script |
+//! | `figures` | every figure as files of its own, SVG and PNG |
 //! | `origin` | what was read, and how to make the page again |
 //! | `frame` | what stands around figures and tables |
 //! | `typography` | symbols, units and numbers as a page sets them |
@@ -53,9 +58,12 @@ mod answer;
 mod correlation;
 mod currents;
 pub mod figure;
+mod figures;
 mod fit;
 mod flux;
 mod frame;
+mod interactive;
+mod measured;
 mod origin;
 mod page;
 mod search;
@@ -81,6 +89,8 @@ pub struct Report<'a> {
     pub operating_points: &'a [OperatingPoint],
     /// The answer, and the method of the swarm beside it.
     pub identification: Option<(&'a Identification, Option<Method>)>,
+    /// What was held out of the identification, and how well the answer predicts it; `None` beside it, if it lacks a parameter.
+    pub held_out: Option<(&'a Log, Option<&'a Validation>)>,
     /// What the methods have in common, and each method with the seconds that one of its runs took.
     pub study: Option<(&'a StudyFacts<'a>, &'a [(MethodStudy, f64)])>,
     /// Where the page comes from.
@@ -114,6 +124,8 @@ pub struct ValidationReport<'a> {
     /// Where the page comes from.
     pub origin: &'a Origin,
 }
+
+pub use figures::{FigureFile, figures, validation_figures};
 
 /// A validation as one HTML document.
 pub fn validation_html(report: &ValidationReport) -> String {

@@ -3,8 +3,9 @@
 use crate::{
     Origin, Report, answer, correlation, currents,
     figure::palette,
-    fit, origin, search, study, tried,
+    fit, interactive, origin, search, study, tried,
     typography::{capitalized, count, grouped, in_words, list, symbol},
+    validation,
 };
 use fluxfit::identify::{
     Identification,
@@ -34,11 +35,12 @@ pub(crate) fn sheet(title: &str, found: &Markup, sections: &[Section], origin: &
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(interactive::POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 meta name="generator" content={ "fluxfit " (origin.version) };
                 title { (title) " – fluxfit" }
-                style { (PreEscaped(STYLE)) "@media screen and (prefers-color-scheme:dark){" (PreEscaped(palette::dark_rules())) "}" }
+                style { (PreEscaped(interactive::STYLE)) (PreEscaped(STYLE)) "@media screen and (prefers-color-scheme:dark){" (PreEscaped(palette::dark_rules())) "}" }
             }
             body {
                 header {
@@ -57,6 +59,7 @@ pub(crate) fn sheet(title: &str, found: &Markup, sections: &[Section], origin: &
                         }
                     }
                 }
+                (interactive::script())
             }
         }
     }
@@ -69,6 +72,10 @@ fn sections(report: &Report) -> Vec<Section> {
         if let Some(fit) = &found.output {
             let content = currents::section(report.log, fit);
             sections.push(Section { anchor: "currents", heading: "Measured against simulated", content });
+        }
+        if let Some(held_out) = report.held_out {
+            let content = validation::held_out(held_out);
+            sections.push(Section { anchor: "held-out", heading: "What was held out", content });
         }
         if let Some(content) = correlation::section(found) {
             sections.push(Section { anchor: "correlation", heading: "How the errors hang together", content });

@@ -33,8 +33,8 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Mar
         }
         h3 { "Cost above the " (minimum) }
         (ranking(fitness, methods))
-        @if methods.iter().any(|(study, _)| !study.convergence.quartiles.is_empty()) {
-            (frame::figure(|size| convergence::draw(fitness, methods, size), &html! {
+        @if has_courses(methods) {
+            (frame::live_figure(|size| convergence::draw(fitness, methods, size), &convergence::live(fitness, methods), &html! {
                 "Fig. 4 of the paper on a logarithmic scale: F\u{a0}−\u{a0}F" sub { (index) } " against iteration; lines are medians over the runs, bands reach from the lower to the upper quartile."
                 @if convergence::has_values_below_floor(methods) {
                     " Values below 10" sup { "\u{2212}12" } " " (fitness.unit()) ", zero included, are rounding and drawn at that floor."
@@ -132,15 +132,21 @@ fn median_at(study: &MethodStudy, iteration: usize) -> Markup {
     }
 }
 
-/// Fig. 5, of the paper's own method where it ran.
-fn courses(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
+/// Whether some method has a course that Fig. 4 can show.
+pub(crate) fn has_courses(methods: &[(MethodStudy, f64)]) -> bool {
+    methods.iter().any(|(study, _)| !study.convergence.quartiles.is_empty())
+}
+
+/// Whose parameters Fig. 5 shows: those of the paper's own method where it ran; none where there is nothing to be seen.
+pub(crate) fn shown<'a>(methods: &'a [(MethodStudy, f64)], unexcited: &[Parameter]) -> Option<&'a MethodStudy> {
     let papers = methods.iter().find(|(study, _)| matches!(study.method, Method::Tgfpa(_)));
-    let Some((study, _)) = papers.or(methods.first()).filter(|(study, _)| !study.convergence.parameters_median.is_empty()) else {
-        return html! {};
-    };
-    if unexcited.len() == Parameter::ALL.len() {
-        return html! {};
-    }
+    let (study, _) = papers.or(methods.first())?;
+    (!study.convergence.parameters_median.is_empty() && unexcited.len() < Parameter::ALL.len()).then_some(study)
+}
+
+/// Fig. 5.
+fn courses(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
+    let Some(study) = shown(methods, unexcited) else { return html! {} };
     html! {
         (frame::figure(|size| courses::draw(study, facts.truth, unexcited, size), &html! {
             "Fig. 5 of the paper: the parameters under " (study.method.label()) " against iteration, medians over the runs."

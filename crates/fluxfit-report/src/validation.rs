@@ -3,11 +3,17 @@
 use crate::{
     ValidationReport,
     figure::{self, residuals},
-    frame, origin,
+    frame,
+    measured::Measured,
+    origin,
     page::{self, Section},
     typography::{DASH, capitalized, decimals, grouped, minus, number, power, prose, symbol, unit},
 };
-use fluxfit::validate::{Channel, Difference, LITTLE, Outcome, Prediction, SIGNIFICANCE, Validation};
+use fluxfit::{
+    identify::steady_fit::SteadyFit,
+    log::Log,
+    validate::{Channel, Difference, LITTLE, Outcome, Prediction, SIGNIFICANCE, Validation},
+};
 use fluxfit_files::number::{Scale, significant};
 use maud::{Markup, html};
 
@@ -19,7 +25,7 @@ pub(crate) fn document(report: &ValidationReport) -> Markup {
     let found = report.found;
     let sections = [
         Section { anchor: "parameters", heading: "Given, and as the log has it", content: parameters(found) },
-        Section { anchor: "prediction", heading: "Measured against predicted", content: prediction(report) },
+        Section { anchor: "prediction", heading: "Measured against predicted", content: prediction(report.log, found) },
         Section { anchor: "read", heading: "What was read", content: read(report) },
         Section { anchor: "reproduce", heading: "How to reproduce", content: origin::reproduce(report.origin) },
     ];
@@ -96,8 +102,7 @@ fn parameter(difference: &Difference) -> Markup {
     }
 }
 
-fn prediction(report: &ValidationReport) -> Markup {
-    let found = report.found;
+fn prediction(log: &Log, found: &Validation) -> Markup {
     html! {
         p { @match &found.prediction {
             Prediction::Currents(_) => {
@@ -111,19 +116,44 @@ fn prediction(report: &ValidationReport) -> Markup {
         } }
         (channels(found))
         @match &found.prediction {
-            Prediction::Currents(courses) => (frame::figure(|size| figure::prediction::draw(report.log, courses, size), &prose(
-                "Above: i_d and i_q, measured (wide, light) and predicted (thin, dark); below each, measured less predicted at its own scale. Every column of pixels \
-                 spans from the least to the largest value in it, so that no transient is lost. The bold line is the mean over short spans: a prediction that holds keeps it at zero, and leaves noise around it."
-            ))),
+            Prediction::Currents(courses) => {
+                @let both = Measured::and_predicted(log, courses);
+                (frame::live_figure(|size| figure::currents::draw(both, size), &figure::currents::live(both), &html! {
+                    (prose("Above: i_d and i_q, measured (wide, light) and predicted (thin, dark); below each, measured less predicted at its own scale. Every column of pixels \
+                     spans from the least to the largest value in it, so that no transient is lost. The bold line is the mean over short spans: a prediction that holds keeps it at zero, and leaves noise around it."))
+                    (figure::currents::thinning(&both))
+                }))
+            }
             Prediction::Voltages(left) => @if let Some(fit) = &found.own.steady {
-                (frame::figure(|size| {
-                    let mut fit = fit.clone();
-                    fit.estimate.residuals.clone_from(left);
-                    residuals::draw(&fit, size)
-                }, &html! {
+                @let fit = with_residuals(fit, left);
+                (frame::live_figure(|size| residuals::draw(&fit, size), &residuals::live(&fit), &html! {
                     "Measured less predicted (here: fitted) voltages, with bars of two standard uncertainties. Bars that miss zero mean that the prediction fails there."
                 }))
             },
+        }
+    }
+}
+
+/// The log's own operating points, with what is left of their voltages.
+pub(crate) fn with_residuals(fit: &SteadyFit, left: &[[f64; 2]]) -> SteadyFit {
+    let mut fit = fit.clone();
+    fit.estimate.residuals = left.to_vec();
+    fit
+}
+
+/// What was held out, predicted: a section of the page of an identification.
+pub(crate) fn held_out((log, found): (&Log, Option<&Validation>)) -> Markup {
+    html! {
+        p {
+            "These " (grouped(log.rows() as u64)) " rows, " (number(log.duration(), |seconds| significant(seconds, 3)))
+            " s, had no part in the answer above; here it is “given”, with its uncertainty, and held against them. "
+            @if let Some(found) = found { strong { (prose(&found.verdict())) } }
+            @else { strong { "They are not predicted" } ", because that takes all four parameters." }
+        }
+        @if let Some(found) = found {
+            (parameters(found))
+            h3 { "Measured against predicted" }
+            (prediction(log, found))
         }
     }
 }

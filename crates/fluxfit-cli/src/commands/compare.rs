@@ -19,7 +19,7 @@ use fluxfit::{
     },
 };
 use fluxfit_files::{answer, read_truth};
-use fluxfit_report::{Report, html};
+use fluxfit_report::{Report, figures, html};
 use std::time::Instant;
 
 /// Runs the verb.
@@ -47,17 +47,17 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
         terminal::study::interrupted(&arguments.methods, arguments.runs, &methods);
         return Ok(Status::Incomplete);
     }
-    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
-        html(&Report {
-            title: &input.name,
-            log: &input.log,
-            notes: &input.notes,
-            operating_points: &problem.operating_points,
-            identification: None,
-            study: Some((&facts, &methods)),
-            origin,
-        })
-    })?;
+    let shown = Report {
+        title: &input.name,
+        log: &input.log,
+        notes: &input.notes,
+        operating_points: &problem.operating_points,
+        identification: None,
+        held_out: None,
+        study: Some((&facts, &methods)),
+        origin: &report::origin(arguments.log.seed),
+    };
+    report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
     if problem.unexcited.is_empty() {
         return Ok(Status::Complete);
     }

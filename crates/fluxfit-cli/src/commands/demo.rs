@@ -13,7 +13,7 @@ use fluxfit::{
 };
 use fluxfit_drive::{Scenario, simulate};
 use fluxfit_files::answer::StudyFacts;
-use fluxfit_report::{Report, html};
+use fluxfit_report::{Report, figures, html};
 
 /// What stands where a log's name would.
 const NAME: &str = "The paper's rig, simulated";
@@ -21,6 +21,7 @@ const NAME: &str = "The paper's rig, simulated";
 /// Runs the verb.
 pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     report::check_name(&arguments.report)?;
+    report::check_directory(arguments.figures.as_deref())?;
     let scenario = Scenario::paper();
     let log = terminal::working("simulating".to_owned(), || simulate(&scenario, 0, || ()))?.log()?;
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
@@ -40,17 +41,17 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
         return Ok(Status::Incomplete);
     }
 
-    report::write(Some(&arguments.report), arguments.seed, |origin| {
-        html(&Report {
-            title: NAME,
-            log: &log,
-            notes: &notes(&scenario, &log),
-            operating_points: found.operating_points(),
-            identification: Some((&found, settings.method)),
-            study: Some((&facts, &methods)),
-            origin,
-        })
-    })?;
+    let shown = Report {
+        title: NAME,
+        log: &log,
+        notes: &notes(&scenario, &log),
+        operating_points: found.operating_points(),
+        identification: Some((&found, settings.method)),
+        held_out: None,
+        study: Some((&facts, &methods)),
+        origin: &report::origin(arguments.seed),
+    };
+    report::write(Some(&arguments.report), || html(&shown), arguments.figures.as_deref(), || figures(&shown))?;
     Ok(if found.is_complete() { Status::Complete } else { Status::Incomplete })
 }
 

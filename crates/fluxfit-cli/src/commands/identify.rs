@@ -20,7 +20,7 @@ use fluxfit::{
     validate::{Given, Validation, validate},
 };
 use fluxfit_files::answer;
-use fluxfit_report::{Report, html};
+use fluxfit_report::{Report, figures, html};
 use serde_json::Value;
 
 /// Code of the warning that a search was cut.
@@ -90,17 +90,17 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         terminal::warn(INTERRUPTED, &format!("the swarm made {done} of {limit} iterations; the answer beside it is whole"));
     }
     let exported = export::write(arguments, &input, &found, current_loop.as_ref())?;
-    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
-        html(&Report {
-            title: &input.name,
-            log: &input.log,
-            notes: &input.notes,
-            operating_points: found.operating_points(),
-            identification: Some((&found, settings.method)),
-            study: None,
-            origin,
-        })
-    })?;
+    let shown = Report {
+        title: &input.name,
+        log: &input.log,
+        notes: &input.notes,
+        operating_points: found.operating_points(),
+        identification: Some((&found, settings.method)),
+        held_out: held_out.as_ref().map(|log| (log, validation.as_ref())),
+        study: None,
+        origin: &report::origin(arguments.log.seed),
+    };
+    report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
     Ok(if found.is_complete() { exported } else { Status::Incomplete })
 }
 

@@ -1,13 +1,14 @@
-//! `--report FILE.html`: what the verbs do about it. The file is refused before anything is computed, and written after the
-//! answer is printed.
+//! `--report FILE.html` and `--figures DIR`: what the verbs do about them. They are refused before anything is computed, and written
+//! after the answer is printed.
 
 use crate::{arguments::LogArguments, error::CommandError, interrupt, shell, terminal};
 use fluxfit_files::write_atomically;
-use fluxfit_report::Origin;
+use fluxfit_report::{FigureFile, Origin};
 use std::{fs, path::Path};
 
 /// Refuses a report where it would mix with the answer or destroy what is read.
 pub(crate) fn check<'a>(arguments: &'a LogArguments, others_read: impl IntoIterator<Item = &'a Path>) -> Result<(), CommandError> {
+    check_directory(arguments.figures.as_deref())?;
     let Some(path) = arguments.report.as_deref() else { return Ok(()) };
     check_name(path)?;
     let read = arguments.logs.iter().map(AsRef::as_ref).chain(arguments.motor.as_deref()).chain(others_read);
@@ -27,13 +28,46 @@ pub(crate) fn check_name(path: &Path) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// Writes the report, if one is wanted, and says so.
-pub(crate) fn write(path: Option<&Path>, seed: u64, report: impl FnOnce(&Origin) -> String) -> Result<(), CommandError> {
+/// Refuses a directory for figures that is something else.
+pub(crate) fn check_directory(path: Option<&Path>) -> Result<(), CommandError> {
     let Some(path) = path else { return Ok(()) };
-    let origin = Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed };
-    interrupt::doing("writing the report");
-    write_atomically(path, report(&origin).as_bytes())?;
-    terminal::wrote("report", path);
+    let problem = match fs::metadata(path) {
+        _ if path.as_os_str() == "-" => "standard output is for the answer",
+        Ok(there) if !there.is_dir() => "this is a file",
+        _ => return Ok(()),
+    };
+    Err(CommandError::Usage(format!("--figures {}: {problem}; name a directory", path.display())))
+}
+
+/// How the results can be made again.
+pub(crate) fn origin(seed: u64) -> Origin {
+    Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed }
+}
+
+/// Writes the report and the figures, as far as they are wanted, and says so.
+pub(crate) fn write(
+    report: Option<&Path>,
+    page: impl FnOnce() -> String,
+    directory: Option<&Path>,
+    figures: impl FnOnce() -> Vec<FigureFile>,
+) -> Result<(), CommandError> {
+    if let Some(path) = report {
+        interrupt::doing("writing the report");
+        write_atomically(path, page().as_bytes())?;
+        terminal::wrote("report", path);
+    }
+    if let Some(directory) = directory {
+        interrupt::doing("drawing the figures");
+        fs::create_dir_all(directory).map_err(|error| {
+            CommandError::Usage(format!("--figures {}: {error}; name a directory that can be made", directory.display()))
+        })?;
+        for figure in figures() {
+            let path = |ending: &str| directory.join(format!("{}.{ending}", figure.name));
+            write_atomically(&path("svg"), figure.svg.as_bytes())?;
+            write_atomically(&path("png"), &figure.png())?;
+        }
+        terminal::wrote("figures", directory);
+    }
     Ok(())
 }
 

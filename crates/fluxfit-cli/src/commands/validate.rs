@@ -7,7 +7,7 @@ use fluxfit::{
     validate::{Outcome, validate},
 };
 use fluxfit_files::{answer, read_given_motor};
-use fluxfit_report::{ValidationReport, validation_html};
+use fluxfit_report::{ValidationReport, validation_figures, validation_html};
 use std::path::Path;
 
 /// Runs the verb.
@@ -36,8 +36,9 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     } else {
         terminal::validation::show(&input.name, &name, &input.log, &found)?;
     }
-    report::write(arguments.log.report.as_deref(), arguments.log.seed, |origin| {
-        validation_html(&ValidationReport { title: &input.name, motor: &name, log: &input.log, notes: &input.notes, found: &found, origin })
-    })?;
+    let origin = report::origin(arguments.log.seed);
+    let shown = ValidationReport { title: &input.name, motor: &name, log: &input.log, notes: &input.notes, found: &found, origin: &origin };
+    let (page, figures) = (|| validation_html(&shown), || validation_figures(&shown));
+    report::write(arguments.log.report.as_deref(), page, arguments.log.figures.as_deref(), figures)?;
     Ok(if found.outcome == Outcome::Agrees { Status::Complete } else { Status::Incomplete })
 }

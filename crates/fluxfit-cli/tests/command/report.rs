@@ -1,4 +1,4 @@
-//! `--report FILE.html`: a whole page beside the answer, or no page and a sentence.
+//! `--report FILE.html` and `--figures DIR`: a whole page and its figures beside the answer, or none and a sentence.
 
 use super::{fluxfit, root};
 use std::{fs, path::Path};
@@ -86,4 +86,54 @@ fn a_page_never_takes_the_place_of_the_answer_or_of_what_is_read() {
         assert!(run.status == 2 && run.out.is_empty() && run.err.contains("this file is read; name another one"), "{}", run.err);
     }
     assert_eq!(fs::read(root().join(LOG)).unwrap(), before);
+}
+
+fn names(directory: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn figures_are_files_in_a_directory_that_is_made() {
+    let (directory, _) = directory();
+    let path = directory.path().join("new/figures");
+    let run = fluxfit(&["identify", LOG, "--model", "steady", "--figures", &path.display().to_string()]);
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert!(run.err.contains(&format!("figures: {}", path.display())), "{}", run.err);
+    assert_eq!(run.out, fluxfit(&["identify", LOG, "--model", "steady"]).out);
+    let expected = ["intervals", "joint-region", "operating-points", "residuals"];
+    assert_eq!(names(&path), expected.iter().flat_map(|name| [format!("{name}.png"), format!("{name}.svg")]).collect::<Vec<_>>());
+    for name in expected {
+        assert!(fs::read(path.join(format!("{name}.png"))).unwrap().starts_with(b"\x89PNG\r\n"));
+        assert!(fs::read_to_string(path.join(format!("{name}.svg"))).unwrap().starts_with("<svg xmlns="));
+    }
+    let run = fluxfit(&["compare", LOG, "--runs", "2", "--iterations", "5", "--figures", &path.display().to_string()]);
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert!(names(&path).contains(&"convergence.svg".to_owned()) && names(&path).len() == 12, "{:?}", names(&path));
+    let other = directory.path().join("other");
+    let run = fluxfit(&["validate", LOG, "--motor", TRUTH, "--model", "steady", "--figures", &other.display().to_string()]);
+    assert!(run.status < 2, "{}", run.err);
+    assert_eq!(names(&other), ["prediction.png", "prediction.svg"]);
+}
+
+#[test]
+fn figures_need_a_directory() {
+    let (directory, path) = directory();
+    fs::write(&path, "mine").unwrap();
+    for (given, problem) in [(path.as_str(), "this is a file"), ("-", "standard output is for the answer")] {
+        let run = fluxfit(&["identify", LOG, "--figures", given]);
+        assert_eq!((run.status, run.out.as_str()), (2, ""));
+        assert_eq!(run.err, format!("error: --figures {given}: {problem}; name a directory\n"));
+    }
+    assert_eq!((fs::read_to_string(&path).unwrap().as_str(), files(&directory)), ("mine", 1));
+}
+
+#[test]
+fn what_was_held_out_is_on_the_page() {
+    let (_directory, path) = directory();
+    let run = fluxfit(&["identify", LOG, LOG, "--model", "steady", "--hold-out", "--report", &path]);
+    assert!(run.status < 2, "{}", run.err);
+    let page = fs::read_to_string(&path).unwrap();
+    assert!(page.contains("What was held out") && page.contains("had no part in the answer above"));
 }

@@ -112,7 +112,7 @@ fn a_page_is_written_beside_the_same_answer() {
     let run = fluxfit(&["validate", NOISY, "--motor", MOTOR, "--report", &path]);
     assert_eq!((run.status, &run.out), (0, &fluxfit(&["validate", NOISY, "--motor", MOTOR]).out));
     let page = fs::read_to_string(&path).unwrap();
-    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("Agrees within the noise") && page.contains("measured − predicted, A"));
+    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("Agrees within the noise") && page.contains("measured − predicted, mA"));
     // Thinned to the figure's columns, the page is not the log again.
     assert!(page.len() < 1_000_000, "{}", page.len());
     let run = fluxfit(&["validate", NOISY, "--motor", MOTOR, "--report", MOTOR]);

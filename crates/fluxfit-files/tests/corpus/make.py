@@ -485,7 +485,7 @@ def parquet():
         pq.write_table(content, LOGS / file, **options)
         return file
 
-    for codec in ("NONE", "SNAPPY", "GZIP", "ZSTD", "LZ4", "BROTLI"):
+    for codec in ("NONE", "SNAPPY", "GZIP", "ZSTD", "LZ4"):
         file = put_table(f"{codec.lower()}.parquet", frame, compression=codec)
         read(file, f"Parquet, compression {codec}; written by pyarrow", fast, same_as="canonical.csv")
     put_table("row_groups.parquet", frame, row_group_size=37, use_dictionary=False, data_page_version="2.0", compression="ZSTD")

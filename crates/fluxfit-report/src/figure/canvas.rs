@@ -64,6 +64,14 @@ impl Drawing {
         format!("{}{style}\n{}</svg>\n", self.opening(" xmlns=\"http://www.w3.org/2000/svg\""), self.body)
     }
 
+    /// As a file for white paper, its letters of this family where that is there.
+    pub(crate) fn on_paper(&self, family: &str) -> String {
+        let (width, height) = (self.size.0 * UNITS.unsigned_abs(), self.size.1 * UNITS.unsigned_abs());
+        let body = self.body.replace("font-family=\"sans-serif\"", &format!("font-family=\"{family}, sans-serif\""));
+        let opening = self.opening(" xmlns=\"http://www.w3.org/2000/svg\"");
+        format!("{opening}\n<rect width=\"{width}\" height=\"{height}\" fill=\"#FFFFFF\"/>{body}</svg>\n")
+    }
+
     /// As a part of the page, whose style knows the dark ground.
     pub(crate) fn inline(&self, class: &str) -> Markup {
         PreEscaped(format!("{}\n{}</svg>", self.opening(&format!(" class=\"{class}\"")), self.body))

@@ -8,6 +8,7 @@ use super::{
     palette::Ink,
     plot::{Chart, Plot},
 };
+use crate::interactive::{Along, Column, Kind, Live, Panel, Series};
 use fluxfit::study::{MethodStudy, fitness::Fitness};
 use plotters::{
     element::{Circle, PathElement, Polygon},
@@ -28,7 +29,42 @@ pub(crate) fn draw(fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size
         fitness.minimum_label(),
         names.join(", ")
     );
-    Drawing::new((size.width(), size.pick(400, 340)), label, |area| paint(area, fitness, methods, size))
+    Drawing::new((size.width(), size.pick(HEIGHTS.0, HEIGHTS.1).unsigned_abs()), label, |area| paint(area, fitness, methods, size))
+}
+
+/// Height of the figure, pixels: wide and narrow.
+const HEIGHTS: (i32, i32) = (400, 340);
+
+/// Iterations that the page holds at most; of more, every second, third … one.
+const ITERATIONS: usize = 1_000;
+
+/// How much of its ink a band has.
+const BAND: f64 = 0.16;
+
+/// A logarithm that is told apart from the next one: a hundredth of a decade is two percent.
+const LOGARITHM: f64 = 1e-2;
+
+/// The same for the pointer.
+pub(crate) fn live(fitness: &Fitness, methods: &[(MethodStudy, f64)]) -> Live {
+    let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len()).max().unwrap_or(0).saturating_sub(1);
+    let every = last / ITERATIONS + 1;
+    // The last one is always there.
+    let shown: Vec<usize> = (0..last).step_by(every).chain([last]).collect();
+    let series = methods.iter().map(|(study, _)| {
+        let column = |which: usize| {
+            let of_iteration = |k: &usize| study.convergence.quartiles.get(*k).map_or(f64::NAN, |quartiles| height(quartiles[which]));
+            Column::resolving(&shown.iter().map(of_iteration).collect::<Vec<_>>(), LOGARITHM)
+        };
+        Series::new(study.method.label(), Ink::of_method(&study.method), (2.0, 1.0), column(1)).within(vec![column(0), column(2)])
+    });
+    let panel = Panel { name: cost(fitness), height: HEIGHTS.0, kind: Kind::Decades, whole: None, series: series.collect() };
+    let numbers: Vec<f64> = shown.iter().map(|k| *k as f64).collect();
+    Live { x: Along { name: "iteration", unit: "", values: Column::resolving(&numbers, 1.0) }, panels: vec![panel], told: Vec::new() }
+}
+
+/// Name of the axis of costs.
+fn cost(fitness: &Fitness) -> String {
+    format!("F − F_{}, {}", fitness.minimum_index(), fitness.unit())
 }
 
 /// Whether some value lies below the floor of the drawing.
@@ -44,7 +80,7 @@ fn height(cost: f64) -> f64 {
 fn paint(area: &Area, fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> Drawn {
     let all = methods.iter().flat_map(|(study, _)| study.convergence.quartiles.iter().flatten());
     let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len().saturating_sub(1)).max().unwrap_or(0).max(1) as f64;
-    let cost = format!("F − F_{}, {}", fitness.minimum_index(), fitness.unit());
+    let cost = cost(fitness);
     let plot = Plot {
         x: Axis::between(0.0, last, size.pick(6, 3)),
         y: Axis::decades(all.map(|cost| height(*cost)), size.pick(9, 8)),
@@ -74,7 +110,7 @@ fn band(chart: &mut Chart, study: &MethodStudy) -> Drawn {
     let course =
         |which: usize| study.convergence.quartiles.iter().enumerate().map(move |(k, quartiles)| (k as f64, height(quartiles[which])));
     let outline: Vec<(f64, f64)> = course(0).chain(course(2).collect::<Vec<_>>().into_iter().rev()).collect();
-    chart.series.draw_series([Polygon::new(outline, shade(Ink::of_method(&study.method), 0.16))])?;
+    chart.series.draw_series([Polygon::new(outline, shade(Ink::of_method(&study.method), BAND))])?;
     Ok(())
 }
 

@@ -4,7 +4,7 @@
 //! "M4: a visualization-oriented time series data aggregation", Proc. VLDB Endow. 7 (2014) 797, doi:10.14778/2732951.2732953.
 
 /// A point, and which of the curve it is.
-type Numbered = (usize, (f64, f64));
+pub(super) type Numbered = (usize, (f64, f64));
 
 /// What is kept of a column.
 struct Column {
@@ -31,15 +31,20 @@ impl Column {
         self.last = point;
     }
 
-    fn points(&self) -> impl Iterator<Item = (f64, f64)> + use<> {
+    fn points(&self) -> impl Iterator<Item = Numbered> + use<> {
         let mut kept = [self.first, self.least, self.largest, self.last];
         kept.sort_by_key(|(number, _)| *number);
-        kept.into_iter().enumerate().filter(move |(k, (number, _))| *k == 0 || kept[k - 1].0 != *number).map(|(_, (_, point))| point)
+        kept.into_iter().enumerate().filter(move |(k, (number, _))| *k == 0 || kept[k - 1].0 != *number).map(|(_, point)| point)
     }
 }
 
 /// At most four points per column of those in order of `x`, with `columns` columns from `low` to `high`. What is not finite is left out.
-pub(super) fn decimated(points: impl Iterator<Item = (f64, f64)>, [low, high]: [f64; 2], columns: u32) -> Vec<(f64, f64)> {
+pub(super) fn decimated(points: impl Iterator<Item = (f64, f64)>, range: [f64; 2], columns: u32) -> Vec<(f64, f64)> {
+    numbered(points, range, columns).into_iter().map(|(_, point)| point).collect()
+}
+
+/// The same, each with its number among all points.
+pub(super) fn numbered(points: impl Iterator<Item = (f64, f64)>, [low, high]: [f64; 2], columns: u32) -> Vec<Numbered> {
     let mut kept = Vec::new();
     let mut column: Option<Column> = None;
     for (number, (x, y)) in points.enumerate().filter(|(_, (x, y))| x.is_finite() && y.is_finite()) {

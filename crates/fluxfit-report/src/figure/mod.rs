@@ -7,7 +7,7 @@
 //! | [`residuals`] | what the fitted motor leaves of the measured voltages |
 //! | [`operating_points`] | where in the i_d–i_q plane the log held still |
 //! | [`currents`] | measured and simulated currents over time, and what the simulation misses |
-//! | [`prediction`] | the same of given parameters, with the means of what is left |
+//! | [`prediction`] | the same of given parameters |
 //! | [`convergence`] | Fig. 4 of the paper: cost above the minimum against iteration |
 //! | [`parameter_courses`] | Fig. 5 of the paper: the parameters against iteration |
 
@@ -21,12 +21,11 @@ mod decimation;
 pub(crate) mod ellipse;
 pub(crate) mod intervals;
 pub(crate) mod palette;
-mod plane;
+pub(crate) mod plane;
 mod plot;
-pub(crate) mod prediction;
 pub(crate) mod residuals;
 
-use canvas::Drawing;
+use crate::measured::Measured;
 use fluxfit::{
     identify::{Identification, output_fit::OutputFit, steady_fit::SteadyFit},
     log::Log,
@@ -76,7 +75,7 @@ pub fn residuals(found: &SteadyFit, size: Size) -> String {
 /// Measured and simulated currents of the rows that were fitted, A, and their differences. Of a sensor's faults that were found, both
 /// curves have the same.
 pub fn currents(log: &Log, found: &OutputFit, size: Size) -> String {
-    currents::draw(log, found, size).standalone()
+    currents::draw(Measured::and_simulated(log, found), size).standalone()
 }
 
 /// The operating points in the plane of i_d and i_q, A.
@@ -97,10 +96,5 @@ pub fn parameter_courses(study: &MethodStudy, truth: Option<&Motor>, unexcited: 
 
 /// Measured and predicted currents over time, A, and the residuals below them.
 pub fn prediction(log: &Log, courses: &[Course], size: Size) -> String {
-    prediction::draw(log, courses, size).standalone()
-}
-
-/// [`operating_points`] for the page.
-pub(crate) fn plane(points: &[OperatingPoint], size: Size) -> Drawing {
-    plane::draw(points, size)
+    currents::draw(Measured::and_predicted(log, courses), size).standalone()
 }

@@ -99,6 +99,22 @@ impl Ink {
         RGBColor(r, g, b)
     }
 
+    /// The colour as CSS has it, on white and on dark.
+    pub(crate) fn on_both_grounds(self) -> [String; 2] {
+        let (light, dark) = self.colors();
+        [hex(light), hex(dark)]
+    }
+
+    /// Dashes and gaps, pixels; none: a solid line.
+    pub(crate) fn dashes_in_pixels(self) -> Vec<f64> {
+        self.dashes()
+            .into_iter()
+            .flat_map(str::split_whitespace)
+            .filter_map(|tenths| tenths.parse::<f64>().ok())
+            .map(|tenths| tenths / 10.0)
+            .collect()
+    }
+
     /// Dashes and gaps, in tenths of a pixel; none: a solid line.
     fn dashes(self) -> Option<&'static str> {
         match self {

@@ -7,6 +7,7 @@ use super::{
     palette::Ink,
     plot::Plot,
 };
+use crate::interactive::{Along, Column, Kind, Live, Panel, Series};
 use fluxfit::identify::steady_fit::SteadyFit;
 use plotters::{
     element::{Circle, PathElement, Polygon},
@@ -18,6 +19,9 @@ const BAR: f64 = 2.0;
 
 /// Distance of the two equations' markers from the middle of their operating point, which is one wide.
 const ASIDE: f64 = 0.15;
+
+/// Part of a bar that is told apart.
+const OF_BAR: f64 = 0.01;
 
 /// Radius of a marker, pixels.
 const MARKER: i32 = 4;
@@ -32,25 +36,65 @@ pub(crate) fn uncertainties(found: &SteadyFit) -> Vec<[f64; 2]> {
     both.collect()
 }
 
+/// Height of the figure, pixels, and the name of its y axis.
+const HEIGHT: u32 = 290;
+const NAME: &str = "measured − fitted, mV";
+
 /// Draws both residuals of each operating point, mV.
 pub(crate) fn draw(found: &SteadyFit, size: Size) -> Drawing {
     let label = format!("Residuals of u_d and u_q in millivolts at {} operating points, with bars", found.operating_points.len());
-    Drawing::new((size.width(), 290), label, |area| paint(area, found, size))
+    Drawing::new((size.width(), HEIGHT), label, |area| paint(area, found, size))
+}
+
+/// The marks of one axis: where each stands, the residual and its bar, mV.
+fn marks(found: &SteadyFit, axis: usize) -> impl Iterator<Item = (f64, f64, f64)> {
+    let of_points = found.estimate.residuals.iter().zip(uncertainties(found)).enumerate();
+    let aside = if axis == 0 { -ASIDE } else { ASIDE };
+    of_points
+        .map(move |(w, (residual, uncertainty))| ((w + 1) as f64 + aside, 1e3 * residual[axis], 1e3 * BAR * uncertainty[axis]))
+        .filter(|(_, residual, bar)| residual.is_finite() && bar.is_finite())
+}
+
+/// The y axis: from the lowest end of a bar to the highest one.
+fn heights(found: &SteadyFit) -> Axis {
+    let ends = [0, 1].into_iter().flat_map(|axis| marks(found, axis)).flat_map(|(_, residual, bar)| [residual - bar, residual + bar]);
+    Axis::around(ends.chain([0.0]), 5)
+}
+
+/// Right end of the x axis.
+fn end(found: &SteadyFit) -> f64 {
+    found.operating_points.len().max(1) as f64 + 0.5
+}
+
+/// The same for the pointer.
+pub(crate) fn live(found: &SteadyFit) -> Live {
+    let (uncertainties, y) = (uncertainties(found), heights(found));
+    let numbers: Vec<f64> = (1..=found.operating_points.len()).map(|number| number as f64).collect();
+    let series = [(0, "u_d", Ink::D), (1, "u_q", Ink::Q)].map(|(axis, name, ink)| {
+        let residuals: Vec<f64> = found.estimate.residuals.iter().map(|residual| 1e3 * residual[axis]).collect();
+        let bars: Vec<f64> = uncertainties.iter().map(|both| 1e3 * BAR * both[axis]).collect();
+        // The same digits for both: those that the shortest bar is worth.
+        let shortest = bars.iter().copied().filter(|bar| *bar > 0.0).fold(f64::INFINITY, f64::min);
+        let column = |values: &[f64]| Column::resolving(values, shortest * OF_BAR);
+        Series::new(name, ink, (1.5, 1.0), column(&residuals)).within(vec![column(&bars)])
+    });
+    Live {
+        x: Along { name: "operating point", unit: "", values: Column::resolving(&numbers, 1.0) },
+        panels: vec![Panel {
+            name: NAME.to_owned(),
+            height: HEIGHT as i32,
+            kind: Kind::Bars,
+            whole: Some([[0.5, end(found)], [y.low, y.high]]),
+            series: series.into(),
+        }],
+        told: Vec::new(),
+    }
 }
 
 fn paint(area: &Area, found: &SteadyFit, size: Size) -> Drawn {
-    // The marks of one axis: where it stands, the residual and its bar, mV.
-    let marks = |axis: usize| {
-        let of_points = found.estimate.residuals.iter().zip(uncertainties(found)).enumerate();
-        let aside = if axis == 0 { -ASIDE } else { ASIDE };
-        of_points
-            .map(move |(w, (residual, uncertainty))| ((w + 1) as f64 + aside, 1e3 * residual[axis], 1e3 * BAR * uncertainty[axis]))
-            .filter(|(_, residual, bar)| residual.is_finite() && bar.is_finite())
-    };
-    let points = found.operating_points.len();
-    let ends = [0, 1].into_iter().flat_map(marks).flat_map(|(_, residual, bar)| [residual - bar, residual + bar]);
-    let y = Axis::around(ends.chain([0.0]), 5);
-    let mut x = Axis::between(0.5, points.max(1) as f64 + 0.5, size.pick(12, 6));
+    let marks = |axis: usize| marks(found, axis);
+    let y = heights(found);
+    let mut x = Axis::between(0.5, end(found), size.pick(12, 6));
     // Between two numbers there is no operating point.
     x.ticks.retain(|tick| tick.fract() == 0.0);
     let y_label = y.clone();
@@ -58,14 +102,14 @@ fn paint(area: &Area, found: &SteadyFit, size: Size) -> Drawn {
         x,
         y,
         x_name: "operating point",
-        y_name: "measured − fitted, mV",
+        y_name: NAME,
         left: 50,
         right: 12,
         x_label: &|x| format!("{x:.0}"),
         y_label: &|value| y_label.label(value),
     };
     let mut chart = plot.on(area)?;
-    chart.series.draw_series([PathElement::new(vec![(0.5, 0.0), (points.max(1) as f64 + 0.5, 0.0)], line(Ink::Axis, 1.0))])?;
+    chart.series.draw_series([PathElement::new(vec![(0.5, 0.0), (end(found), 0.0)], line(Ink::Axis, 1.0))])?;
     for (axis, ink) in [(0, Ink::D), (1, Ink::Q)] {
         for (x, residual, bar) in marks(axis) {
             chart.series.draw_series([PathElement::new(vec![(x, residual - bar), (x, residual + bar)], line(ink, 1.5))])?;

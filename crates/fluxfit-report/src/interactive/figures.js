@@ -1,0 +1,301 @@
+/* Draws every figure that has its numbers beside it with uPlot, in the place of its SVG: zoom by dragging, a double click back, values under the pointer, the
+   keyboard. Whatever fails leaves the SVG. No request is made. */
+(() => {
+  "use strict";
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const FONT = "12.5px system-ui, sans-serif";
+  const MINUS = "\u2212", DASH = "\u2013";
+  const GRID = ["#DFE3E7", "#333A42"], QUIET = ["#565F69", "#A6AFB9"], TEXT = ["#1B2026", "#E6E9EC"];
+  const of = pair => pair[dark.matches ? 1 : 0];
+
+  const element = (name, className, parent) => {
+    const made = document.createElement(name);
+    if (className) made.className = className;
+    if (parent) parent.append(made);
+    return made;
+  };
+
+  /* Text with its subscripts: i_d. */
+  const words = (parent, text) => {
+    parent.replaceChildren();
+    text.split(/\b(?=omega_|[a-zA-Z]_)/).forEach(part => {
+      const symbol = /^(omega|[a-zA-Z])_([a-zA-Z]+)(.*)$/s.exec(part);
+      if (!symbol) return parent.append(part);
+      const letter = symbol[1] === "omega" ? "\u03c9" : symbol[1];
+      if (letter === "F") parent.append(letter); else element("i", "", parent).textContent = letter;
+      element("sub", "", parent).textContent = symbol[2];
+      parent.append(symbol[3]);
+    });
+    return parent;
+  };
+
+  const column = ({ exponent, steps }) => {
+    let sum = 0;
+    const scale = Math.pow(10, Math.abs(exponent));
+    return steps.map(step => step === null ? null : (sum += step, exponent < 0 ? sum / scale : sum * scale));
+  };
+
+  const fixed = (value, decimals) => value.toFixed(Math.min(Math.max(decimals, 0), 12)).replace(/^-(?=.*[1-9])/, MINUS).replace(/^-/, "");
+  const raised = n => String(n).replace(/[-0-9]/g, c => c === "-" ? "\u207b" : "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[c]);
+  const power = logarithm => {
+    const whole = Math.floor(logarithm + 1e-9);
+    return Math.pow(10, logarithm - whole).toFixed(1) + "\u00b710" + raised(whole);
+  };
+  const ROUND = Array.from({ length: 30 }, (_, k) => k - 15).flatMap(e => [1, 2, 5].map(digit => Number(digit + "e" + e)));
+  const WHOLE = ROUND.filter(step => step >= 1), DECADES = [1, 2, 3, 5, 10, 20, 50, 100];
+  const ticks = (u, splits, axis, space, step) => splits.map(v => v === null ? null : fixed(v, Math.ceil(-Math.log10(step) - 1e-9)));
+
+  const stroke = (series, opacity) => () => of(series.ink) + Math.round(255 * opacity).toString(16).padStart(2, "0");
+
+  /* The columns of a panel, and how uPlot draws each: bands take two of their own, below the curves. */
+  const drawn = (panel, x) => {
+    const data = [x], series = [{}], bands = [], shown = [];
+    if (panel.kind === "decades") panel.series.forEach(one => {
+      bands.push({ series: [data.length + 1, data.length], fill: stroke(one, 0.16) });
+      one.about.forEach(edge => { data.push(column(edge)); series.push({ width: 0, points: { show: false } }); });
+    });
+    panel.series.forEach(one => {
+      shown.push(data.length);
+      data.push(column(one.values));
+      const points = panel.kind === "plane";
+      series.push({
+        stroke: stroke(one, one.opacity), width: one.width, dash: one.dash, spanGaps: false,
+        paths: points || panel.kind === "bars" ? () => null : undefined,
+        points: points ? { show: true, size: 9, width: 0, fill: stroke(one, 1) } : { show: false },
+      });
+    });
+    return { data, series, bands, shown };
+  };
+
+  /* The point nearest to the pointer in the plane. */
+  const nearest = u => {
+    let best = null, least = Infinity;
+    u.data[0].forEach((x, k) => {
+      const distance = Math.hypot(u.valToPos(x, "x") - u.cursor.left, u.valToPos(u.data[1][k], "y") - u.cursor.top);
+      if (distance < least) [best, least] = [k, distance];
+    });
+    return best;
+  };
+
+  const line = (u, from, to, color, width) => {
+    /* uPlot remembers what it set. */
+    u.ctx.save();
+    u.ctx.strokeStyle = color; u.ctx.lineWidth = width * devicePixelRatio; u.ctx.setLineDash([]);
+    u.ctx.beginPath(); u.ctx.moveTo(...from); u.ctx.lineTo(...to); u.ctx.stroke();
+    u.ctx.restore();
+  };
+
+  /* The line of zero, below the curves. */
+  const zero = panel => u => {
+    const { left, top, width, height } = u.bbox, y = u.valToPos(0, "y", true);
+    if ((panel.kind === "bars" || panel.name.startsWith("measured")) && y > top && y < top + height) line(u, [left, y], [left + width, y], of(TEXT), 1);
+  };
+
+  /* What uPlot has no series for: bars with their marks, the numbers of points. */
+  const extras = (panel, told) => u => {
+    const { left, top, width, height } = u.bbox, ratio = devicePixelRatio, ctx = u.ctx;
+    const at = (value, scale) => u.valToPos(value, scale, true);
+    ctx.save();
+    ctx.beginPath(); ctx.rect(left, top, width, height); ctx.clip();
+    if (panel.kind === "bars") panel.series.forEach((one, s) => {
+      const color = of(one.ink), bars = column(one.about[0]), r = 4 * ratio;
+      u.data[0].forEach((x, k) => {
+        const value = u.data[s + 1][k], px = at(x + (s ? 0.15 : -0.15), "x");
+        if (value === null || bars[k] === null) return;
+        line(u, [px, at(value - bars[k], "y")], [px, at(value + bars[k], "y")], color, 1.5);
+        ctx.fillStyle = color; ctx.beginPath();
+        if (s) ctx.rect(px - r, at(value, "y") - r, 2 * r, 2 * r); else ctx.arc(px, at(value, "y"), r, 0, 2 * Math.PI);
+        ctx.fill();
+      });
+    });
+    if (panel.kind === "plane") {
+      const placed = [];
+      ctx.fillStyle = of(TEXT); ctx.textAlign = "center"; ctx.textBaseline = "bottom";
+      ctx.font = FONT.replace("12.5", 12.5 * ratio);
+      u.data[0].forEach((x, k) => {
+        const px = at(x, "x"), point = at(u.data[1][k], "y"), above = point - top > 22 * ratio;
+        const py = point + (above ? -6 : 22) * ratio;
+        if (placed.some(([qx, qy]) => Math.abs(qx - px) < 18 * ratio && Math.abs(qy - py) < 14 * ratio)) return;
+        placed.push([px, py]);
+        ctx.fillText(told[k].match(/\d+/)[0], px, py);
+      });
+    }
+    ctx.restore();
+  };
+
+  const range = kind => (u, low, high) => {
+    if (low === null) return [0, 1];
+    if (kind === "decades") return [Math.floor(low), Math.max(Math.ceil(high), Math.floor(low) + 1)];
+    const margin = high > low ? 0.06 * (high - low) : 0.5 * Math.max(Math.abs(high), 1e-3);
+    return [low - margin, high + margin];
+  };
+
+  const draw = figure => {
+    const live = JSON.parse(figure.querySelector("script").textContent);
+    const x = column(live.x.values), svg = figure.querySelector("svg");
+    if (x.length < 2 && live.panels[0].kind !== "plane" && live.panels[0].kind !== "bars" || !x.length) return;
+    const plate = document.createElement("div");
+    plate.className = live.told ? "plot told" : "plot";
+    plate.setAttribute("role", "group");
+    plate.tabIndex = 0;
+    plate.setAttribute("aria-label", svg.getAttribute("aria-label") + ". Left and right arrow: values; plus and minus: zoom; Escape: the whole.");
+    const bar = element("p", "tools", plate);
+    const along = element("output", "", bar);
+    figure.insertBefore(plate, svg);
+    const plots = [];
+    const decimals = one => Math.max(0, -one.values.exponent);
+
+    const zoom = (low, high) => plots.forEach(u => u.setScale("x", { min: low, max: high }));
+    const back = () => plots.forEach(u => u.batch(() => {
+      const [low, high] = u.whole("x");
+      u.setScale("x", { min: low, max: high });
+      const y = u.whole("y");
+      if (y) u.setScale("y", { min: y[0], max: y[1] });
+    }));
+    const closer = factor => {
+      const u = plots[0], { min, max } = u.scales.x, k = u.cursor.idx;
+      const middle = k === null || k === undefined || x[k] < min || x[k] > max ? 0.5 * (min + max) : x[k];
+      const [low, high] = u.whole("x");
+      const [from, to] = [Math.max(low, middle - (middle - min) * factor), Math.min(high, middle + (max - middle) * factor)];
+      if (to > from) zoom(from, to);
+    };
+    /* Drawing needs a pointer, so the keyboard moves one. */
+    const step = by => {
+      const u = plots[0], { min, max } = u.scales.x;
+      const inside = x.map((v, k) => k).filter(k => x[k] >= min && x[k] <= max);
+      if (!inside.length) return;
+      const at = inside.indexOf(u.cursor.idx), many = Math.max(1, Math.round(inside.length / 200));
+      const k = inside[at < 0 ? 0 : Math.min(Math.max(at + by * many, 0), inside.length - 1)];
+      const y = u.data[u.shown[0]][k];
+      u.setCursor({ left: u.valToPos(x[k], "x"), top: u.valToPos(y === null ? 0 : y, "y") });
+    };
+    const tools = element("span", "", bar);
+    [["+", "Zoom in", () => closer(0.5)], [MINUS, "Zoom out", () => closer(2)], ["whole", "Show the whole", back]].forEach(([text, title, act]) => {
+      const button = element("button", "", tools);
+      button.type = "button"; button.textContent = text; button.title = title;
+      button.setAttribute("aria-label", title);
+      button.addEventListener("click", act);
+    });
+    plate.addEventListener("keydown", event => {
+      const act = { ArrowLeft: () => step(-1), ArrowRight: () => step(1), "+": () => closer(0.5), "-": () => closer(2), Escape: back }[event.key];
+      if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      act();
+      along.setAttribute("aria-live", "polite");
+    });
+
+    /* Which of the values along the pointer is at; it is over one panel, and the others may not know yet. */
+    const pointed = () => plots.map(u => u.cursor.left < 0 ? null : u.panel.kind === "plane" ? nearest(u) : u.cursor.idx).find(k => k !== null && k !== undefined);
+    const tell = () => {
+      const k = pointed(), none = k === undefined;
+      words(along, none ? "Drag to zoom, double click to go back"
+        : live.told.length ? live.told[k] : live.x.name + " " + fixed(x[k], decimals(live.x)) + (live.x.unit && " " + live.x.unit));
+      plots.forEach(u => u.values.forEach((value, s) => {
+        const y = none ? null : u.data[u.shown[s]][k], one = u.panel.series[s];
+        value.textContent = y === null || y === undefined ? DASH
+          : u.panel.kind === "decades" ? power(y)
+          : fixed(y, decimals(one)) + (one.about && u.panel.kind === "bars" ? " \u00b1 " + fixed(column(one.about[0])[k] || 0, decimals(one)) : "");
+      }));
+    };
+
+    const key = "fluxfit-" + Array.prototype.indexOf.call(document.querySelectorAll("figure"), figure);
+    live.told = live.told || [];
+    live.panels.forEach((panel, number) => {
+      const head = element("p", "keys", plate), last = number === live.panels.length - 1;
+      words(element("span", "", head), panel.name);
+      const values = panel.kind === "plane" ? [] : panel.series.map(one => {
+        const name = element("span", "key", head), mark = element("i", "", name);
+        mark.style.setProperty("--light", one.ink[0]);
+        mark.style.setProperty("--dark", one.ink[1]);
+        mark.style.borderTopWidth = Math.max(2, one.width) + "px";
+        mark.style.opacity = one.opacity;
+        if (one.dash) mark.style.borderTopStyle = one.dash[0] > 2 ? "dashed" : "dotted";
+        words(element("span", "", name), one.name);
+        const value = element("b", "", name);
+        value.textContent = DASH;
+        return value;
+      });
+      const { data, series, bands, shown } = drawn(panel, x);
+      const plane = panel.kind === "plane";
+      const options = {
+        width: plate.clientWidth || 320, height: heightOf(live.panels, number), padding: [8, 14, 0, 0], series, bands,
+        legend: { show: false },
+        cursor: {
+          sync: { key, scales: ["x", null] }, drag: { x: true, y: plane, uni: plane ? 12 : undefined, setScale: true },
+          y: plane,
+          points: plane ? { size: 17, width: 2, fill: "transparent" } : { size: 8, show: panel.kind !== "bars" },
+          dataIdx: plane ? u => nearest(u) : undefined,
+        },
+        scales: {
+          x: { time: false, range: plane ? (u, low, high) => [low, high] : undefined },
+          y: { range: (u, low, high) => panel.kind === "bars" || plane ? [low, high] : range(panel.kind)(u, low, high) },
+        },
+        axes: [
+          { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: last ? 26 : 6, space: 60, gap: 6,
+            incrs: panel.kind === "bars" || panel.kind === "decades" ? WHOLE : ROUND,
+            values: last ? ticks : () => [] },
+          { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: 52, space: panel.height < 180 ? 22 : 34, gap: 6,
+            incrs: panel.kind === "decades" ? DECADES : ROUND,
+            values: panel.kind === "decades" ? (u, splits) => splits.map(v => "10" + raised(v)) : ticks },
+        ],
+        hooks: {
+          drawAxes: [zero(panel)],
+          draw: [extras(panel, live.told)],
+          setCursor: [tell],
+          /* Panels that lie over each other show the same time. */
+          setScale: [(u, scale) => {
+            if (scale !== "x") return;
+            const { min, max } = u.scales.x;
+            plots.forEach(other => {
+              if (other !== u && (other.scales.x.min !== min || other.scales.x.max !== max)) other.setScale("x", { min, max });
+            });
+          }],
+        },
+      };
+      const u = new uPlot(options, data, element("div", "", plate));
+      Object.assign(u, { panel, shown, values, whole: scale => panel.whole ? panel.whole[scale === "x" ? 0 : 1] : scale === "x" ? [x[0], x[x.length - 1]] : null });
+      plots.push(u);
+      u.over.addEventListener("dblclick", back);
+      touch(u);
+    });
+    words(element("p", "along", plate), live.x.name + (live.x.unit && ", " + live.x.unit));
+    figure.classList.add("live");
+    plots.forEach((u, k) => u.setSize({ width: plate.clientWidth || 320, height: heightOf(live.panels, k) }));
+    back();
+    tell();
+    new ResizeObserver(() => {
+      const width = plate.clientWidth;
+      if (width) plots.forEach((u, k) => u.width !== width && u.setSize({ width, height: heightOf(live.panels, k) }));
+    }).observe(plate);
+    dark.addEventListener("change", () => plots.forEach(u => u.redraw()));
+  };
+
+  /* An upper panel has no numbers below it, and its name stands above it. */
+  const heightOf = (panels, k) => panels[k].height - (k === panels.length - 1 ? 26 : 40);
+
+  /* A finger that moves along does what a pressed mouse does; one that moves up scrolls the page. uPlot takes no mouse that has not moved. */
+  const touch = u => {
+    const pass = (target, name, event) => target.dispatchEvent(new MouseEvent(name, {
+      clientX: event.clientX, clientY: event.clientY, movementX: 1, button: 0, buttons: 1, bubbles: true, view: window }));
+    let pressed = false;
+    u.over.addEventListener("pointerdown", event => {
+      if (event.pointerType !== "touch" || !event.isPrimary) return;
+      pressed = true;
+      pass(u.over, "mouseenter", event); pass(u.over, "mousemove", event); pass(u.over, "mousedown", event);
+    });
+    u.over.addEventListener("pointermove", event => { if (pressed) pass(u.over, "mousemove", event); });
+    const end = event => { if (pressed) { pressed = false; pass(document, "mouseup", event); } };
+    u.over.addEventListener("pointerup", end);
+    u.over.addEventListener("pointercancel", end);
+    /* The mouse that a browser makes of a tap has not moved either. */
+    u.over.addEventListener("click", event => u.setCursor({ left: event.offsetX, top: event.offsetY }));
+  };
+
+  document.querySelectorAll("figure").forEach(figure => {
+    if (!figure.querySelector("script")) return;
+    try { draw(figure); } catch (error) {
+      figure.classList.remove("live");
+      figure.querySelectorAll(".plot").forEach(plot => plot.remove());
+    }
+  });
+})();
