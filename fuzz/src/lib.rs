@@ -15,8 +15,11 @@ use std::{
 /// Bytes of memory that a reader may hold at a time, for each byte of its input,
 const BYTES_PER_BYTE: usize = 20;
 
-/// and besides, whatever the input: names, sentences, tables of a decompressor.
+/// and besides, whatever the input: names, sentences, tables of a decompressor;
 const BYTES_BESIDES: usize = 1 << 20;
+
+/// of a log, which may be packed, the blocks that it is unpacked into.
+const BYTES_OF_BLOCKS: usize = 1 << 24;
 
 /// Bytes that are held, and how many may be.
 static HELD: AtomicUsize = AtomicUsize::new(0);
@@ -47,7 +50,8 @@ unsafe impl GlobalAlloc for Counting {
 /// Holds the reader called `name` to its promises on these bytes.
 pub fn hold(name: &str, bytes: &[u8]) {
     let Some((_, promise)) = READERS.into_iter().find(|(reader, _)| *reader == name) else { return };
-    ALLOWED.store(HELD.load(Relaxed) + BYTES_BESIDES + BYTES_PER_BYTE * bytes.len(), Relaxed);
+    let besides = if name == "log" { BYTES_OF_BLOCKS } else { BYTES_BESIDES };
+    ALLOWED.store(HELD.load(Relaxed) + besides + BYTES_PER_BYTE * bytes.len(), Relaxed);
     promise(bytes);
     ALLOWED.store(usize::MAX, Relaxed);
 }

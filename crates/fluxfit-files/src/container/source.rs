@@ -34,8 +34,9 @@ impl Source {
         Ok(Self { bytes: Place::File(Arc::new(Mutex::new(file))), length })
     }
 
-    pub(crate) fn memory(bytes: Vec<u8>) -> Self {
-        Self { length: bytes.len() as u64, bytes: Place::Memory(bytes.into()) }
+    pub(crate) fn memory(bytes: impl Into<Bytes>) -> Self {
+        let bytes = bytes.into();
+        Self { length: bytes.len() as u64, bytes: Place::Memory(bytes) }
     }
 
     pub(super) fn length(&self) -> u64 {

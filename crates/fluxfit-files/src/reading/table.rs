@@ -6,6 +6,7 @@ use crate::{
     error::FileError,
     input::{Raw, io_problem},
 };
+use bytes::Bytes;
 use std::io::{Cursor, Read, Seek};
 
 pub(crate) use crate::container::Head;
@@ -73,9 +74,10 @@ impl Table {
                     return TextTable::open(Box::new(Cursor::new(start).chain(stream))).map(Self::Text);
                 }
                 stream.read_to_end(&mut start).map_err(failed)?;
-                match Binary::open(Source::memory(start.clone()))? {
+                let bytes = Bytes::from(start);
+                match Binary::open(Source::memory(bytes.clone()))? {
                     Some(binary) => Ok(Self::Binary(binary)),
-                    None => TextTable::open(Box::new(Cursor::new(start))).map(Self::Text),
+                    None => TextTable::open(Box::new(Cursor::new(bytes))).map(Self::Text),
                 }
             }
         }

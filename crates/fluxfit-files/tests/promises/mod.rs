@@ -3,7 +3,7 @@
 //! Two look at it: `tests/regressions.rs` with the files that once broke a promise, and `fuzz/` with files that nobody wrote.
 
 use fluxfit_files::{
-    GivenMotor, LogOptions, MotorFile, ReadLog, ReadScenario, Truth, parse_bounds, parse_fix, parse_log, parse_map, parse_prior,
+    GivenMotor, LogOptions, Mapping, MotorFile, ReadLog, ReadScenario, Truth, parse_bounds, parse_fix, parse_log, parse_map, parse_prior,
     parse_unit, parse_window,
 };
 use std::{fs, path::Path};
@@ -15,9 +15,10 @@ const NAME: &str = "any.file";
 pub(crate) type Promise = fn(&[u8]);
 
 /// The readers. Targets of fuzzing and folders of regressions have these names.
-pub(crate) const READERS: [(&str, Promise); 7] = [
+pub(crate) const READERS: [(&str, Promise); 8] = [
     ("log", log),
     ("motor_file", motor_file),
+    ("mapping", mapping),
     ("scenario_file", scenario_file),
     ("flux_map", flux_map),
     ("truth", truth),
@@ -32,6 +33,7 @@ pub(crate) fn log(bytes: &[u8]) {
     let told = [
         LogOptions::default(),
         LogOptions { pole_pairs: Some(4), units: units("omega=rpm-mech,t=ms,theta=deg"), ..LogOptions::default() },
+        LogOptions { mapping: Mapping { sample_period: Some(1e-3), ..Mapping::default() }, ..LogOptions::default() },
         LogOptions { map: map("t=time,ud=u_d,uq=u_q,id=i_d,iq=i_q,omega=speed,theta=angle"), pole_pairs: Some(3), ..LogOptions::default() },
     ];
     for options in told {
@@ -54,6 +56,14 @@ fn motor_file(bytes: &[u8]) {
         let numbers = [rs, ld, lq, psi_f, rating.current, rating.voltage, rating.speed];
         assert!(numbers.into_iter().flatten().all(|number| number.is_finite() && number > 0.0), "{file:?}");
         assert_ne!(pole_pairs, Some(0));
+    }
+}
+
+/// A mapping file.
+fn mapping(bytes: &[u8]) {
+    if let Some(mapping) = one_line(Mapping::parse(NAME, bytes)) {
+        assert!(mapping.sample_period.is_none_or(|period| period.is_finite() && period > 0.0));
+        assert_ne!(mapping.pole_pairs, Some(0));
     }
 }
 
