@@ -33,7 +33,7 @@ pub(crate) fn log(bytes: &[u8]) {
     let told = [
         LogOptions::default(),
         LogOptions { pole_pairs: Some(4), units: units("omega=rpm-mech,t=ms,theta=deg"), ..LogOptions::default() },
-        LogOptions { mapping: Mapping { sample_period: Some(1e-3), ..Mapping::default() }, ..LogOptions::default() },
+        LogOptions { mapping: Mapping::parse(NAME, b"sample_period = 0.001").unwrap_or_default(), ..LogOptions::default() },
         LogOptions { map: map("t=time,ud=u_d,uq=u_q,id=i_d,iq=i_q,omega=speed,theta=angle"), pole_pairs: Some(3), ..LogOptions::default() },
     ];
     for options in told {
