@@ -46,6 +46,9 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     }
     channels.set(T, instants);
     let kept: Vec<bool> = (0..channels.rows()).map(|row| channels.iter().all(|(_, values)| !values[row].is_nan())).collect();
+    if !kept.contains(&true) {
+        return Err(Problem::Apart { base: base.name() }.into());
+    }
     channels.retain(&kept);
     Ok((!moved.is_empty()).then(|| note(&moved, base)))
 }

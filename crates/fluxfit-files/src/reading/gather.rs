@@ -13,13 +13,13 @@ use crate::{
     error::{FileError, Problem},
     unit::Unit,
 };
-use Channel::{IA, IB, Id, Iq, OmegaE, Run, T, ThetaE};
+use Channel::{IA, IB, Id, Iq, OmegaE, Run, T};
 
 /// Where a run of rows ends and nobody logged the time, it goes on this many periods later: more than a gap.
 const BETWEEN_RUNS: f64 = 10.0;
 
 /// Channels whose means and spreads tell stretches of a log apart.
-const TELLING: [Channel; 6] = [Id, Iq, OmegaE, IA, IB, ThetaE];
+const TELLING: [Channel; 5] = [Id, Iq, OmegaE, IA, IB];
 
 /// What was gathered.
 pub(super) struct Gathered {
@@ -54,7 +54,7 @@ pub(super) fn gather(
         let gathered = one_group(table, &columns, period, told, notes)?;
         all = Some(match all {
             None => gathered,
-            Some(base) => joined(base, gathered, notes),
+            Some(base) => joined(base, gathered, notes)?,
         });
     }
     all.ok_or_else(|| Problem::NoRows.into())
@@ -161,8 +161,8 @@ fn drop_unreadable(channels: &mut Channels, columns: &[Chosen], refused: Vec<Opt
 }
 
 /// Channels of another group on the instants of the first.
-fn joined(mut base: Gathered, other: Gathered, notes: &mut Vec<String>) -> Gathered {
-    let (Some(instants), Some(at)) = (base.channels.get(T).map(<[f64]>::to_vec), other.channels.get(T)) else { return base };
+fn joined(mut base: Gathered, other: Gathered, notes: &mut Vec<String>) -> Result<Gathered, FileError> {
+    let (Some(instants), Some(at)) = (base.channels.get(T).map(<[f64]>::to_vec), other.channels.get(T)) else { return Ok(base) };
     let is_same = at == instants;
     let moved: Vec<&str> = other.channels.iter().map(|(channel, _)| channel).filter(|channel| *channel != T).map(Channel::name).collect();
     for (channel, values) in other.channels.iter().filter(|(channel, _)| *channel != T) {
@@ -172,10 +172,13 @@ fn joined(mut base: Gathered, other: Gathered, notes: &mut Vec<String>) -> Gathe
     base.channels.headers.extend(other.channels.headers.iter().filter(|(channel, _)| *channel != T).cloned());
     if !is_same {
         let kept: Vec<bool> = (0..instants.len()).map(|row| base.channels.iter().all(|(_, values)| !values[row].is_nan())).collect();
-        base.channels.retain(&kept);
         let currents = if base.channels.get(Iq).is_some() { Id } else { IA };
+        if !kept.contains(&true) {
+            return Err(Problem::Apart { base: currents.name() }.into());
+        }
+        base.channels.retain(&kept);
         notes.push(align::note(&moved, currents));
         base.is_moved = true;
     }
-    base
+    Ok(base)
 }

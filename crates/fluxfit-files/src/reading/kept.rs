@@ -45,11 +45,20 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    fn push(&mut self, line: u64) {
-        if self.runs.last().is_none_or(|(row, first)| first + (self.rows - row) as u64 != line) {
-            self.runs.push((self.rows, line));
+    /// Takes lines, which only grow.
+    fn push(&mut self, lines: &[u64]) {
+        let (Some(first), Some(last)) = (lines.first(), lines.last()) else { return };
+        let follows = |lines: &Self, line: u64| lines.runs.last().is_some_and(|(row, first)| first + (lines.rows - row) as u64 == line);
+        if last - first == lines.len() as u64 - 1 && follows(self, *first) {
+            self.rows += lines.len();
+            return;
         }
-        self.rows += 1;
+        for line in lines {
+            if !follows(self, *line) {
+                self.runs.push((self.rows, *line));
+            }
+            self.rows += 1;
+        }
     }
 
     fn extend(&mut self, other: &Self) {
@@ -97,7 +106,7 @@ impl Kept {
             for (values, more) in stretch.values.iter_mut().zip(&block.values) {
                 values.extend_from_slice(&more[from..to]);
             }
-            block.lines[from..to].iter().for_each(|line| stretch.lines.push(*line));
+            stretch.lines.push(&block.lines[from..to]);
             if stretch.lines.rows == STRETCH {
                 stretch.features = self.telling.iter().flat_map(|place| mean_and_deviation(&stretch.values[*place])).collect();
             }
@@ -112,13 +121,12 @@ impl Kept {
             return;
         }
         let scales = self.scales();
-        let distance = |a: &Stretch, b: &Stretch| {
-            a.features.iter().zip(&b.features).zip(&scales).map(|((a, b), scale)| ((a - b) / scale).powi(2)).sum::<f64>()
-        };
+        let scaled = |stretch: &Stretch| stretch.features.iter().zip(&scales).map(|(feature, scale)| feature / scale).collect::<Vec<_>>();
+        let features: Vec<Vec<f64>> = self.stretches.iter().map(scaled).collect();
         let mut nearest = (f64::INFINITY, self.stretches.len() - 1);
-        for later in 1..self.stretches.len() {
-            for earlier in 0..later {
-                let apart = distance(&self.stretches[earlier], &self.stretches[later]);
+        for (later, of_later) in features.iter().enumerate() {
+            for of_earlier in &features[..later] {
+                let apart = of_earlier.iter().zip(of_later).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
                 if apart < nearest.0 {
                     nearest = (apart, later);
                 }
@@ -164,10 +172,16 @@ impl Kept {
 }
 
 fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
-    let told: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    let rows = told.len().max(1) as f64;
-    let mean = told.iter().sum::<f64>() / rows;
-    [mean, (told.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / rows).sqrt()]
+    // Around some value of the column, so that squares do not cancel.
+    let around = values.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
+    let (mut rows, mut sum, mut squares) = (0.0_f64, 0.0, 0.0);
+    for value in values.iter().map(|value| value - around).filter(|value| value.is_finite()) {
+        rows += 1.0;
+        sum += value;
+        squares += value * value;
+    }
+    let mean = sum / rows.max(1.0);
+    [around + mean, (squares / rows.max(1.0) - mean * mean).max(0.0).sqrt()]
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ fn standstill(channels: &mut Channels) -> Option<String> {
 }
 
 fn frozen(channels: &mut Channels) -> Option<String> {
-    let t = channels.get(T)?;
+    let t = channels.get(T).filter(|t| !t.is_empty())?;
     let live: Vec<(Channel, &[f64])> = LIVE.iter().filter_map(|channel| Some((*channel, channels.get(*channel)?))).collect();
     let changes: Vec<Vec<usize>> = live.iter().map(|(_, values)| changes(values)).collect();
     let mut kept = vec![true; t.len()];
