@@ -43,7 +43,7 @@ def drive(programs, folder):
     template = subprocess.run([programs / "fluxfit", "simulate", "--template"], check=True, capture_output=True, text=True).stdout
     (folder / "rig.toml").write_text(scenario(template))
     subprocess.run([programs / "fluxfit", "simulate", folder / "rig.toml", "-o", folder / "rig.csv"], check=True, capture_output=True)
-    return pa.csv.read_csv(folder / "rig.csv").to_pandas().round(DECIMALS)
+    return pa.csv.read_csv(folder / "rig.csv").to_pandas().astype(float).round(DECIMALS)
 
 
 def write(path, log, times):
