@@ -19,10 +19,34 @@ pub(crate) fn name(path: &Path) -> String {
 
 /// What a file's bytes come from.
 pub(crate) enum Raw {
-    /// A file, which can be read at any place.
-    File(fs::File),
+    /// A file, which can be read at any place; who is told how much of it was read, if it is read from its beginning to its end.
+    File(fs::File, Box<dyn Fn(u64)>),
     /// Standard input, a pipe, or bytes in memory.
     Stream(Box<dyn Read>),
+}
+
+impl Raw {
+    /// The same, with somebody who is told how many bytes more of a file were read.
+    pub(crate) fn watched(self, watch: impl Fn(u64) + 'static) -> Self {
+        match self {
+            Self::File(file, _) => Self::File(file, Box::new(watch)),
+            stream @ Self::Stream(_) => stream,
+        }
+    }
+}
+
+/// A file that tells how much of it was read.
+pub(crate) struct Watched {
+    pub(crate) file: fs::File,
+    pub(crate) watch: Box<dyn Fn(u64)>,
+}
+
+impl Read for Watched {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        (self.watch)(count as u64);
+        Ok(count)
+    }
 }
 
 /// The file, to be read from its beginning.
@@ -36,7 +60,7 @@ pub(crate) fn open(path: &Path) -> Result<Raw, FileError> {
         if metadata.is_dir() { Err(io::ErrorKind::IsADirectory.into()) } else { Ok((file, metadata.is_file())) }
     });
     match file {
-        Ok((file, true)) => Ok(Raw::File(file)),
+        Ok((file, true)) => Ok(Raw::File(file, Box::new(|_| ()))),
         Ok((pipe, false)) => Ok(Raw::Stream(Box::new(pipe))),
         Err(error) => Err(FileError::from(io_problem("reading", &error)).in_file(&name(path))),
     }

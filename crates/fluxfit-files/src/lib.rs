@@ -66,7 +66,7 @@ pub use reading::{
     inspect::{Inspection, inspect},
     layout::{LAYOUTS, Layout},
     mapping::{Mapping, read_mapping},
-    parse_log, read_log,
+    parse_log, read_log, read_log_watched,
 };
 pub use recording::write_recording;
 pub use scenario_file::{ReadScenario, paper_scenario, read_scenario};

@@ -12,8 +12,8 @@ use fluxfit::{
     motor::Parameter,
     optimizer::bounds::Bounds,
 };
-use fluxfit_files::{LogOptions, MotorFile, read_log, read_mapping, read_motor};
-use std::path::Path;
+use fluxfit_files::{LogOptions, MotorFile, read_log_watched, read_mapping, read_motor};
+use std::{fs, path::Path};
 
 /// The logs, joined, and the motor file.
 pub(crate) struct Input {

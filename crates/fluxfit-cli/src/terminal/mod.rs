@@ -16,7 +16,7 @@ pub(crate) mod validation;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit_files::FileError;
-pub(crate) use progress::{Progress, counting, unknown, working};
+pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},
     path::Path,

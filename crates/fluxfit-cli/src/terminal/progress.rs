@@ -51,7 +51,6 @@ pub(crate) fn counting(what: &str, steps: usize) -> Progress {
 }
 
 /// The reading of so many bytes.
-#[allow(dead_code, reason = "readers that read by pieces tell how far they are")]
 pub(crate) fn reading(what: &str, bytes: u64) -> Progress {
     let progress = Progress::new(what, BYTES);
     progress.bar.set_length(bytes);
@@ -65,6 +64,12 @@ impl Progress {
             ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(style(template)).with_message(what.to_owned());
         let is_wanted = HAS_PROGRESS.load(Ordering::Relaxed) && std::io::stderr().is_terminal();
         Self { waiting: is_wanted.then(|| show_later(&bar)).flatten(), bar }
+    }
+
+    /// Who may be told that so much more is done.
+    pub(crate) fn teller(&self) -> impl Fn(u64) + 'static {
+        let bar = self.bar.clone();
+        move |more| bar.inc(more)
     }
 
     /// So much more is done.

@@ -112,7 +112,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(ThetaE, "lu_F_G", Unit::Degree),
             column(UDc, "DC", Unit::Volt),
         ],
-        remark: "names with their unit behind @; voltages are those of the phases, so the angle lu_F_G has to be logged too",
+        remark: "names with their unit behind @; voltages are those of the phases; lu_F_G, or the currents in both frames, tell the angle",
         ..LOG
     },
     Layout {
@@ -203,7 +203,7 @@ pub const LAYOUTS: &[Layout] = &[
             "IqReq and WeakenedId are what the drive asked for and not the currents that flowed, and what a motor does is told by its currents; \
              log the measured i_d and i_q too, and name them with --map id=COLUMN,iq=COLUMN",
         ),
-        remark: "refused: current references in place of measured currents",
+        remark: "current references in place of measured currents",
         ..LOG
     },
     Layout {
@@ -211,15 +211,15 @@ pub const LAYOUTS: &[Layout] = &[
         source: "dynamometer tables",
         signature: &["I_d", "I_q", "Psi_d", "Psi_q"],
         refusal: Some(IS_FLUX_MAP),
-        remark: "refused as a log",
+        remark: "a motor to simulate, no log of one",
         ..LOG
     },
     Layout {
         name: "SyR-e flux map",
         source: "github.com/SyR-e/syre_public, motorModel.FluxMap_dq (d and q are swapped there)",
-        signature: &["motorModel.FluxMap_dq.Id(:,1)", "motorModel.FluxMap_dq.Fd(:,1)"],
+        signature: &["motorModel.FluxMap_dq.Id", "motorModel.FluxMap_dq.Fd"],
         refusal: Some(IS_FLUX_MAP),
-        remark: "refused as a log",
+        remark: "a motor to simulate, no log of one",
         ..LOG
     },
 ];
@@ -289,6 +289,21 @@ mod tests {
         assert_eq!(recognized("Time;BusVoltage (V);MotorId (A);MotorIq (A);MotorVd (V);MotorVq (V);MotorVelocity (rpm)"), Some("Tritium"));
         assert_eq!(recognized("I_d;I_q;Psi_d;Psi_q;Trq_msr"), Some("flux map"));
         assert_eq!(recognized("time;speed;torque"), None);
+    }
+
+    /// The rows of the table in docs/log.md.
+    fn table() -> String {
+        let row = |layout: &Layout| {
+            let refused = if layout.is_log() { "" } else { "**refused**: " };
+            format!("| {} | {refused}{} | {} |\n", layout.name, layout.headers(), layout.remark)
+        };
+        LAYOUTS.iter().map(row).collect()
+    }
+
+    #[test]
+    fn the_page_has_the_same_table() {
+        let page = include_str!("../../../../docs/log.md");
+        assert!(page.contains(&table()), "docs/log.md should have these rows:\n{}", table());
     }
 
     #[test]

@@ -92,8 +92,16 @@ struct Channels {
 /// # Errors
 /// If the file cannot be read, or as [`parse_log`].
 pub fn read_log(path: &Path, options: &LogOptions) -> Result<ReadLog, FileError> {
+    read_log_watched(path, options, |_| ())
+}
+
+/// The same, for who waits: of a file of text, `watch` is told how many bytes more were read, several times a second.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_log_watched(path: &Path, options: &LogOptions, watch: impl Fn(u64) + 'static) -> Result<ReadLog, FileError> {
     let told = Told::from(options)?;
-    let read = input::open(path).and_then(Table::open).and_then(|table| read(table, &told));
+    let read = input::open(path).and_then(|raw| Table::open(raw.watched(watch))).and_then(|table| read(table, &told));
     read.map_err(|error| error.in_file(&input::name(path)))
 }
 

@@ -4,7 +4,7 @@ use crate::{
     container::{self, Binary, Source},
     csv::TextTable,
     error::FileError,
-    input::{Raw, io_problem},
+    input::{Raw, Watched, io_problem},
 };
 use bytes::Bytes;
 use std::io::{Cursor, Read, Seek};
@@ -60,11 +60,11 @@ impl Table {
     pub(crate) fn open(raw: Raw) -> Result<Self, FileError> {
         let failed = |error: std::io::Error| FileError::from(io_problem("reading", &error));
         match raw {
-            Raw::File(mut file) => match Binary::open(Source::file(file.try_clone().map_err(failed)?)?)? {
+            Raw::File(mut file, watch) => match Binary::open(Source::file(file.try_clone().map_err(failed)?)?)? {
                 Some(binary) => Ok(Self::Binary(binary)),
                 None => {
                     file.rewind().map_err(failed)?;
-                    TextTable::open(Box::new(file)).map(Self::Text)
+                    TextTable::open(Box::new(Watched { file, watch })).map(Self::Text)
                 }
             },
             Raw::Stream(mut stream) => {
