@@ -41,7 +41,9 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     let options = options(&arguments.columns, motor.pole_pairs)?;
     let (mut logs, mut notes) = (Vec::new(), Vec::new());
     for path in &arguments.logs {
-        let read = terminal::working(format!("reading {}", name(path)), || read_log(path, &options))?;
+        let progress = terminal::reading(&format!("reading {}", name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
+        let read = read_log_watched(path, &options, progress.teller())?;
+        drop(progress);
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
         notes.extend(read.notes.iter().map(|note| format!("{}: {note}", name(path))));
