@@ -184,8 +184,8 @@ pub(crate) struct ColumnArguments {
     /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed
     ///
     /// Canonical are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc; with theta_e the phases ia, ib, ic, ua, ub, uc do.
-    #[arg(long, value_name = "NAME=COLUMN,..", value_delimiter = ',', value_parser = fluxfit_files::parse_map)]
-    pub(crate) map: Vec<(String, String)>,
+    #[arg(long, value_name = "NAME=COLUMN,..", value_parser = parse_columns)]
+    pub(crate) map: Vec<MappedColumns>,
     /// Units of columns, e.g. omega=rpm-mech,t=ms
     ///
     /// Without, the column's name, its layout or SI decides.
@@ -199,6 +199,14 @@ pub(crate) struct ColumnArguments {
     /// fluxfit inspect writes one to start from.
     #[arg(long, value_name = "MAPPING.toml")]
     pub(crate) mapping: Option<PathBuf>,
+}
+
+/// Canonical names and headers of one `--map`.
+#[derive(Debug, Clone)]
+pub(crate) struct MappedColumns(pub(crate) Vec<(String, String)>);
+
+fn parse_columns(text: &str) -> Result<MappedColumns, fluxfit_files::FileError> {
+    fluxfit_files::parse_maps(text).map(MappedColumns)
 }
 
 #[derive(Debug, Args)]

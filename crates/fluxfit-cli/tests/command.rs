@@ -20,6 +20,8 @@ mod identify;
 mod interrupt;
 #[path = "command/pages.rs"]
 mod pages;
+#[path = "command/reading.rs"]
+mod reading;
 #[path = "command/report.rs"]
 mod report;
 #[path = "command/simulate.rs"]

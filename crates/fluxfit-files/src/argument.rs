@@ -20,6 +20,24 @@ pub fn parse_map(text: &str) -> Result<(String, String), FileError> {
     Ok((Channel::from_name(name)?.name().to_owned(), header.to_owned()))
 }
 
+/// Several of them, between commas; a comma in brackets or quotes belongs to a name, as in `t=data(:,1)`.
+///
+/// # Errors
+/// As [`parse_map`].
+pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
+    let (mut depth, mut quoted) = (0_i32, false);
+    let apart = |c: char| {
+        match c {
+            '"' => quoted = !quoted,
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth -= 1,
+            _ => {}
+        }
+        c == ',' && depth <= 0 && !quoted
+    };
+    text.split(apart).map(parse_map).collect()
+}
+
 /// `omega=rpm-mech`: the canonical name of a column of a log, and its unit.
 ///
 /// # Errors
@@ -170,6 +188,14 @@ mod tests {
         assert_eq!(refusal("ud=A"), "\"A\" is no unit of ud; it can be V or mV");
         assert_eq!(refusal("ud"), "\"ud\" is not understood; write COLUMN=UNIT, as in omega=rpm-mech");
         assert_eq!(parse_map("ud=").unwrap_err().to_string(), "\"ud=\" is not understood; write COLUMN=HEADER, as in omega_e=motor_speed");
+    }
+
+    #[test]
+    fn commas_in_brackets_belong_to_a_name() {
+        let pairs = |text| parse_maps(text).unwrap().into_iter().map(|(_, header)| header).collect::<Vec<_>>();
+        assert_eq!(pairs("t=data(:,1),ud=data(:,2)"), ["data(:,1)", "data(:,2)"]);
+        assert_eq!(pairs("id=i [A, peak],iq=q)"), ["i [A, peak]", "q)"]);
+        assert!(parse_maps("t=a,,ud=b").is_err() && parse_maps("").is_err());
     }
 
     #[test]

@@ -116,6 +116,8 @@ pub(crate) enum Problem {
     NotText { wanted: &'static str },
     #[error("the gzip file is cut off or damaged: {reason}; pack it again")]
     Packed { reason: String },
+    #[error("this is {what}; save the table as CSV")]
+    Document { what: &'static str },
     #[error("the file is empty; export it again")]
     Empty,
 

@@ -55,7 +55,7 @@ pub mod truth;
 pub mod unit;
 mod wording;
 
-pub use argument::{parse_bounds, parse_export, parse_fix, parse_frequency, parse_map, parse_prior, parse_unit, parse_window};
+pub use argument::{parse_bounds, parse_export, parse_fix, parse_frequency, parse_map, parse_maps, parse_prior, parse_unit, parse_window};
 pub use error::FileError;
 pub use given_motor::{GivenMotor, read_given_motor};
 pub use motor_file::{MotorFile, Rating, read_motor};

@@ -482,7 +482,7 @@ fn real_logs_without_voltages_are_refused_clearly() {
 fn real_logs_are_read() {
     let Some(path) = shared("emrax228hv_coastdown_dyno.csv") else { return };
     let read = read_log(&path, &LogOptions { pole_pairs: Some(10), ..LogOptions::default() }).unwrap();
-    assert_eq!((read.log.rows(), read.layout.map(|layout| layout.name)), (14_595, Some("Tritium")));
+    assert_eq!((read.log.rows(), read.layout.map(|layout| layout.name)), (14_595, Some("Tritium, names with units")));
     let notes = [
         "omega_e: column 'motor_velocity_rpm' read as mechanical r/min with 10 pole pairs",
         "27 gaps, the longest of 4.19 s at t = 654.604 s: nothing is computed across them",

@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let shown = Report {
         title: &input.name,
         log: &input.log,
-        notes: &input.notes,
+        notes: &input.said(),
         operating_points: &problem.operating_points,
         identification: None,
         held_out: None,

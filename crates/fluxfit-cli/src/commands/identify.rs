@@ -19,7 +19,7 @@ use fluxfit::{
     optimizer::{self, Method, StopReason, tgfpa::Tgfpa},
     validate::{Given, Validation, validate},
 };
-use fluxfit_files::answer;
+use fluxfit_files::{answer, number::significant};
 use fluxfit_report::{Report, figures, html};
 use serde_json::Value;
 
@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let mut settings = settings(arguments)?;
     let nameplate = input::nameplate(&input);
     export::check_pole_pairs(arguments, nameplate.pole_pairs)?;
+    let control_rate = control_rate(arguments, &input.log)?;
     let refuse = |error: Error| {
         // A log without an operating point may be one in the wrong units: its rows still say so.
         conventions::check(&input.log, None, &nameplate)
@@ -54,12 +55,14 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let of_points = identify(&input.log, &Settings { model: Some(Model::Steady), method: None, ..settings.clone() });
     let convention = conventions::check(&input.log, Some((of_points.as_ref().unwrap_or(&found), &settings.known)), &nameplate);
     found.warnings.extend(convention.warning());
-    let current_loop = current_loop(arguments, &input.log, &found)?;
+    let current_loop = arguments.bandwidth.map(|bandwidth| CurrentLoop::of(&found, bandwidth, control_rate)).transpose()?;
     found.warnings.extend(current_loop.as_ref().and_then(CurrentLoop::warning));
     let validation = held_out.as_ref().map(|log| check(log, &found, &settings)).transpose()?.flatten();
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
         let mut document = answer::identification(&input.log, &found, method);
+        document["log"]["columns"] = input.columns.clone().into();
+        document["log"]["notes"] = input.notes.clone().into();
         document["diagnostics"]["convention"] = answer::convention(&convention);
         if let Some(current_loop) = &current_loop {
             document["current_loop"] = answer::current_loop(current_loop);
@@ -93,7 +96,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let shown = Report {
         title: &input.name,
         log: &input.log,
-        notes: &input.notes,
+        notes: &input.said(),
         operating_points: found.operating_points(),
         identification: Some((&found, settings.method)),
         held_out: held_out.as_ref().map(|log| (log, validation.as_ref())),
@@ -104,13 +107,20 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     Ok(if found.is_complete() { exported } else { Status::Incomplete })
 }
 
-/// Gains of the current controllers, if a bandwidth is wanted. Their rate is the log's, unless stated.
-fn current_loop(arguments: &Identify, log: &Log, found: &Identification) -> Result<Option<CurrentLoop>, CommandError> {
-    let Some(bandwidth) = arguments.bandwidth else { return Ok(None) };
-    let period = log.segments().iter().map(|segment| segment.sample_period).fold(f64::INFINITY, f64::min);
-    let of_log = (1.0 / period, Provenance::Assumed);
-    let control_rate = arguments.control_rate.map_or(of_log, |rate| (rate, Provenance::Stated));
-    Ok(Some(CurrentLoop::of(found, bandwidth, control_rate)?))
+/// Rate of the current controllers: the log's, unless stated, if the log comes as fast as a drive controls.
+fn control_rate(arguments: &Identify, log: &Log) -> Result<(f64, Provenance), CommandError> {
+    if let Some(rate) = arguments.control_rate {
+        return Ok((rate, Provenance::Stated));
+    }
+    let rate = 1.0 / log.segments().iter().map(|segment| segment.sample_period).fold(f64::INFINITY, f64::min);
+    if arguments.bandwidth.is_some() && rate < model::SLOWEST_CONTROL {
+        let rate = significant(rate, 3);
+        let why = format!(
+            "--bandwidth needs --control-rate FREQUENCY here: rows at {rate} Hz are a recorder's, not those of the drive's control"
+        );
+        return Err(CommandError::Usage(why));
+    }
+    Ok((rate, Provenance::Assumed))
 }
 
 /// Identifies, and tells how far it is. The swarm can be interrupted, and is the last.

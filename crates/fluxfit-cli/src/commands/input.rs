@@ -23,8 +23,17 @@ pub(crate) struct Input {
     pub(crate) name: String,
     /// What reading them had to infer.
     pub(crate) notes: Vec<String>,
+    /// What was read as what, a line for each log.
+    pub(crate) columns: Vec<String>,
     /// Pole pairs, from whoever tells them.
     pub(crate) pole_pairs: Option<u32>,
+}
+
+impl Input {
+    /// What was read as what, and what was inferred: for a page that stands alone.
+    pub(crate) fn said(&self) -> Vec<String> {
+        self.columns.iter().chain(&self.notes).cloned().collect()
+    }
 }
 
 /// Reads everything that the arguments name; what was inferred is said on standard error.
@@ -39,7 +48,7 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
         return Err(CommandError::Usage("standard input can be read only once; give - once".to_owned()));
     }
     let options = options(&arguments.columns, motor.pole_pairs)?;
-    let (mut logs, mut notes) = (Vec::new(), Vec::new());
+    let (mut logs, mut notes, mut columns) = (Vec::new(), Vec::new(), Vec::new());
     for path in &arguments.logs {
         let progress = terminal::reading(&format!("reading {}", name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
         let read = read_log_watched(path, &options, progress.teller())?;
@@ -47,18 +56,25 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
         notes.extend(read.notes.iter().map(|note| format!("{}: {note}", name(path))));
+        columns.push(format!("{}: {}", name(path), read.columns));
         logs.push(read.log);
     }
     notes.iter().for_each(|note| terminal::note(note));
+    columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
-    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", "), notes, pole_pairs: options.pole_pairs })
+    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", "), notes, columns, pole_pairs: options.pole_pairs })
 }
 
 /// What the reader is told; the motor file's pole pairs count where nothing else tells them.
 pub(crate) fn options(arguments: &ColumnArguments, of_motor: Option<u32>) -> Result<LogOptions, CommandError> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?.unwrap_or_default();
     let pole_pairs = arguments.pole_pairs.or(mapping.pole_pairs).or(of_motor);
-    Ok(LogOptions { map: arguments.map.clone(), units: arguments.unit.clone(), pole_pairs, mapping })
+    Ok(LogOptions {
+        map: arguments.map.iter().flat_map(|pairs| pairs.0.clone()).collect(),
+        units: arguments.unit.clone(),
+        pole_pairs,
+        mapping,
+    })
 }
 
 /// What the motor file says of the motor, for the check of conventions.

@@ -37,7 +37,8 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
         terminal::validation::show(&input.name, &name, &input.log, &found)?;
     }
     let origin = report::origin(arguments.log.seed);
-    let shown = ValidationReport { title: &input.name, motor: &name, log: &input.log, notes: &input.notes, found: &found, origin: &origin };
+    let shown =
+        ValidationReport { title: &input.name, motor: &name, log: &input.log, notes: &input.said(), found: &found, origin: &origin };
     let (page, figures) = (|| validation_html(&shown), || validation_figures(&shown));
     report::write(arguments.log.report.as_deref(), page, arguments.log.figures.as_deref(), figures)?;
     Ok(if found.outcome == Outcome::Agrees { Status::Complete } else { Status::Incomplete })

@@ -34,23 +34,30 @@ fn columns(inspection: &Inspection, log: Option<&Log>) -> String {
             (None, Some(channel)) => format!("{channel}?"),
             (None, None) => "-".to_owned(),
         };
-        let range = column.channel.zip(log).and_then(|(channel, log)| range(log, channel)).unwrap_or_default();
+        let of_log = || column.channel.zip(log).and_then(|(channel, log)| of_channel(log, channel));
+        let range = column.range.or_else(of_log).map(range).unwrap_or_default();
         let unit = column.read_as.map(|(_, prose)| prose.to_owned()).or(column.unit.clone()).unwrap_or_default();
         vec![column.header.chars().take(40).collect(), taken, unit, range]
     });
-    let mut text = table(&["column", "taken for", "in", "range, SI"], 3, rows);
+    let mut text = table(&["column", "taken for", "in", "range in the file"], 3, rows);
+    if inspection.columns.iter().any(|column| column.resembles.is_some()) {
+        text += &format!("  {DIM}?: by its name. --map says that it is, or a mapping file: fluxfit inspect LOG -o MAPPING.toml{DIM:#}\n");
+    }
     if inspection.columns.len() > LISTED {
         text += &format!("  {DIM}and {} more{DIM:#}\n", inspection.columns.len() - LISTED);
     }
     text
 }
 
-/// Least and largest value.
-fn range(log: &Log, channel: &str) -> Option<String> {
+/// Least and largest value of a channel, in SI: of what came through a pipe there is nothing else.
+fn of_channel(log: &Log, channel: &str) -> Option<[f64; 2]> {
     let columns = log.columns();
     let (_, values) = columns.named().into_iter().chain(columns.optional()).find(|(name, _)| *name == channel)?;
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
-    Some(if low == high { significant(low, 4) } else { format!("{} .. {}", significant(low, 4), significant(high, 4)) })
+    Some(values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(*value), high.max(*value)]))
+}
+
+fn range([low, high]: [f64; 2]) -> String {
+    if low == high { significant(low, 4) } else { format!("{} .. {}", significant(low, 4), significant(high, 4)) }
 }
 
 /// Rows, rates and gaps, in a few lines.

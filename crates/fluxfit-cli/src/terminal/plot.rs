@@ -47,10 +47,10 @@ pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
 }
 
 /// Size of one course in characters.
-const COURSE: (u16, u16) = (96, 8);
+const COURSE: (u16, u16) = (79, 7);
 
 /// Points of a course: two, least and largest, for each of the columns of dots that a character has.
-const COLUMNS: usize = 180;
+const COLUMNS: usize = 140;
 
 /// i_d, i_q and the speed of a log over time, one below the other.
 pub(crate) fn courses(log: &Log) -> String {

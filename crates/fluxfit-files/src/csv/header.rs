@@ -113,18 +113,21 @@ fn from_comment(
     Err(FileError::from(problem).at_line(first.line))
 }
 
-/// A title or a timestamp above the header: one cell, or one that begins with a digit, above a line of more cells.
+/// A title, a timestamp or a line of facts above the header: one cell, one that begins with a digit, or at most half as many as the
+/// first row of numbers below has; above a line of more cells.
 fn is_title(text: &str, start: usize, line: &str) -> bool {
     let header = at(text, start, sniff(line));
     let cells = header.names.len();
     let dated =
         header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name, header.separator));
+    let below = || lines(&text[header.body..]).filter(|(_, line)| !line.trim().is_empty());
+    let cells_of = |line: &str| rows::first_record(line, sniff(line)).0;
     if cells > 1 && !dated {
-        return false;
+        let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell, b';')).count() * 2 > cells.len();
+        let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
+        return row.is_some_and(|row| 2 * cells <= row.len());
     }
-    let below = lines(&text[header.body..]).find(|(_, line)| !line.trim().is_empty());
-    let below = below.map(|(_, line)| rows::first_record(line, sniff(line)).0).unwrap_or_default();
-    below.len() > cells
+    below().next().is_some_and(|(_, line)| cells_of(line).len() > cells)
 }
 
 /// `sep=;`, which spreadsheets write and obey.

@@ -24,6 +24,14 @@ const LONGEST_LINE: usize = 1 << 24;
 /// The first bytes of what `gzip` packs (RFC 1952).
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
+/// Documents that are taken for tables, by their first bytes.
+const DOCUMENTS: [(&[u8], &str); 4] = [
+    (b"PK\x03\x04", "an Excel workbook, or another zip archive"),
+    (b"\xd0\xcf\x11\xe0", "an old Excel workbook"),
+    (b"%PDF", "a PDF"),
+    (b"{\\rtf", "a text with formats"),
+];
+
 /// Unpacked, decoded text.
 pub(crate) struct Text {
     /// Its beginning; all of it, if it is short.
@@ -47,6 +55,9 @@ impl Text {
         let raw: Box<dyn Read> = if is_packed { Box::new(MultiGzDecoder::new(raw)) } else { raw };
         let mut decoded = DecodeReaderBytesBuilder::new().utf8_passthru(true).strip_bom(true).build(raw);
         let head = read_up_to(&mut decoded, HEAD, is_packed)?;
+        if let Some((_, what)) = DOCUMENTS.iter().find(|(start, _)| head.starts_with(start)) {
+            return Err(Problem::Document { what }.into());
+        }
         if let Some(at) = head.iter().position(|byte| *byte == 0) {
             return Err(FileError::from(Problem::NotText { wanted: "CSV text" }).at_line(line_at(&head, at)));
         }

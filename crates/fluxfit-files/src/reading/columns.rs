@@ -9,6 +9,7 @@ use super::{
 use crate::{
     channel::Channel,
     error::{FileError, Problem},
+    number::significant,
     quantity::Dimension,
     unit::{Named, Unit, in_header, in_units_row, says_electrical},
     wording::{list, nearest, shorten},
@@ -49,6 +50,15 @@ impl Chosen {
     pub(super) fn wanted(&self) -> Wanted {
         Wanted { index: self.index, header: self.header.clone(), is_time: self.channel == T, dispensable: self.dispensable }
     }
+}
+
+/// What was read as what.
+pub(super) fn described(chosen: &[Chosen]) -> String {
+    let said = |column: &Chosen| {
+        let factor = if column.scale == 1.0 { String::new() } else { format!(", times {}", significant(column.scale, 6)) };
+        format!("{} = '{}' ({}{factor})", column.channel.name(), shorten(&column.header), column.unit.prose())
+    };
+    chosen.iter().map(said).collect::<Vec<_>>().join(", ")
 }
 
 /// What a note says of a dispensable column that cannot be read.
@@ -100,7 +110,8 @@ pub(super) fn choose(
 /// What the columns of a table seem to be, whether that makes a log or not.
 pub(super) struct Survey {
     pub(super) taken: Vec<(Channel, usize, Unit)>,
-    pub(super) resembling: Vec<(Channel, usize)>,
+    /// With the unit that the header names, if it does.
+    pub(super) resembling: Vec<(Channel, usize, Option<Unit>)>,
 }
 
 /// Looks for every channel, and for what resembles those that a log needs and that were not found.
@@ -109,8 +120,14 @@ pub(super) fn survey(heads: &[Head], layout: Option<&'static Layout>, told: &Tol
     let bold = Told { pole_pairs: told.pole_pairs.or(Some(1)), ..told.clone() };
     let finder = Finder { heads, unreadable: &[], layout, told: &bold };
     let mut survey = Survey { taken: Vec::new(), resembling: Vec::new() };
+    let voltages = finder.pair([Ud, Uq]).unwrap_or_default();
     for channel in Channel::all() {
-        if let Ok(Some(index)) = finder.place(channel)
+        let place = match channel {
+            Ud => Ok(voltages[0]),
+            Uq => Ok(voltages[1]),
+            _ => finder.place(channel),
+        };
+        if let Ok(Some(index)) = place
             && survey.taken.iter().all(|(_, taken, _)| *taken != index)
         {
             let unit = finder.unit(channel, &heads[index], &mut Vec::new(), &mut Vec::new());
@@ -122,7 +139,14 @@ pub(super) fn survey(heads: &[Head], layout: Option<&'static Layout>, told: &Tol
     for channel in Channel::NEEDED.into_iter().filter(|channel| survey.taken.iter().all(|(taken, ..)| taken != channel)) {
         if let Some(index) = propose(channel, &free) {
             free[index].clear();
-            survey.resembling.push((channel, index));
+            let head = &heads[index];
+            let in_name = in_header(&head.name, channel.dimension()).1;
+            let in_row = head.unit.as_deref().map(|unit| in_units_row(unit, &head.name, channel.dimension()));
+            let unit = [Some(in_name), in_row].into_iter().flatten().find_map(|named| match named {
+                Named::Unit(unit) => Some(unit),
+                _ => None,
+            });
+            survey.resembling.push((channel, index, told.unit(channel).or(unit)));
         }
     }
     survey
@@ -159,7 +183,7 @@ impl Finder<'_> {
         }
         let mut of_phases = false;
         for (dq, phases) in [([Ud, Uq], [UA, UB, Channel::UC]), ([Id, Iq], [IA, IB, Channel::IC])] {
-            let places = [self.place(dq[0])?, self.place(dq[1])?];
+            let places = self.pair(dq)?;
             let is_there = places.iter().all(Option::is_some);
             let of_phase = if is_there { [None; 3] } else { [self.place(phases[0])?, self.place(phases[1])?, self.place(phases[2])?] };
             if let [Some(_), Some(_), third] = of_phase {
@@ -207,6 +231,23 @@ impl Finder<'_> {
             }
         }
         Ok(found)
+    }
+
+    /// The columns of both axes. Where neither voltage is there, their references, which are what most drives log; never one beside
+    /// a voltage of another kind.
+    fn pair(&self, [d, q]: [Channel; 2]) -> Result<[Option<usize>; 2], FileError> {
+        let places = [self.place(d)?, self.place(q)?];
+        let reference = |channel: Channel| {
+            let wanted = format!("{}_ref", channel.name());
+            self.heads.iter().position(|head| in_header(&head.name, channel.dimension()).0.eq_ignore_ascii_case(&wanted))
+        };
+        match places {
+            [None, None] if d == Ud => Ok(match [reference(d), reference(q)] {
+                both @ [Some(_), Some(_)] => both,
+                _ => places,
+            }),
+            _ => Ok(places),
+        }
     }
 
     /// s between rows that nobody measured.
@@ -301,7 +342,9 @@ impl Finder<'_> {
             (Named::Unit(_), _) | (_, None) => in_name,
             (_, Some(unit)) => in_units_row(unit, name, dimension),
         };
-        let is_canonical = name.eq_ignore_ascii_case(canonical);
+        // Of a structure, the field.
+        let field = name.rsplit_once('.').map_or(name, |(_, field)| field);
+        let is_canonical = field.eq_ignore_ascii_case(canonical);
         let of_layout = self.layout.and_then(|layout| layout.column(channel)).filter(|column| is_called(name, column.header));
         let told = self.told.unit(channel);
         let unit = match (told, of_layout, named) {
@@ -333,7 +376,7 @@ impl Finder<'_> {
             let pole_pairs = self.told.pole_pairs.filter(|_| unit.is_mechanical());
             let with = pole_pairs.map(|n| format!(" with {n} pole pair{}", if n == 1 { "" } else { "s" }));
             notes.push(format!("{column} read as {}{}", unit.prose(), with.unwrap_or_default()));
-        } else if self.told.header(channel).is_none() && of_layout.is_none() && ![stem, name].contains(&canonical) {
+        } else if self.told.header(channel).is_none() && of_layout.is_none() && ![stem, field].contains(&canonical) {
             notes.push(format!("{column} taken"));
         }
         Ok(unit)
@@ -359,7 +402,7 @@ fn mapped(channel: Channel, header: &str, names: &[String]) -> Result<usize, Fil
 }
 
 /// The column with the canonical name; if there is none, in other case; if there is none, with a unit after it; of a structure,
-/// the field of that name; of a voltage, its reference, which is what most drives log.
+/// the field of that name; of the time, the one called so.
 fn automatic(channel: Channel, heads: &[Head]) -> Result<Option<usize>, FileError> {
     let canonical = channel.name();
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();

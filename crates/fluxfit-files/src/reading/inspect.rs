@@ -1,7 +1,16 @@
 //! What was understood of a file: for who wants to know before an answer hangs on it, and a mapping file to start from.
 
-use super::{LogOptions, ReadLog, Told, columns, layout::Layout, read, table::Table};
-use crate::{channel::Channel, error::FileError, input};
+use super::{
+    LogOptions, ReadLog, Told, columns,
+    layout::Layout,
+    read,
+    table::{Table, Wanted},
+};
+use crate::{
+    channel::Channel,
+    error::{FileError, Problem},
+    input::{self, Raw},
+};
 use std::{fmt::Write, path::Path};
 
 /// What was understood of a file.
@@ -28,8 +37,10 @@ pub struct InspectedColumn {
     pub channel: Option<&'static str>,
     /// What it resembles, where it is taken for nothing and that is missing.
     pub resembles: Option<&'static str>,
-    /// The unit in which it is read, as `--unit` names it, and how it is called.
+    /// The unit in which it is read, or would be, as `--unit` names it, and how it is called.
     pub read_as: Option<(&'static str, &'static str)>,
+    /// Least and largest number in it, as the file has them; none where it is no file, or holds no numbers.
+    pub range: Option<[f64; 2]>,
 }
 
 /// Reads a log and what there is to say of it; the path `-` is standard input.
@@ -43,12 +54,19 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
     let names: Vec<String> = table.heads().iter().map(|head| head.name.clone()).collect();
     let layout = Layout::recognize(&names);
     let survey = columns::survey(table.heads(), layout, &told);
+    let read_as = |index: usize| {
+        let taken = survey.taken.iter().find(|(_, place, _)| *place == index).map(|(_, _, unit)| *unit);
+        let unit = taken.or_else(|| survey.resembling.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit))?;
+        Some((unit.name(), unit.prose()))
+    };
+    let ranges = ranges(path);
     let inspected = table.heads().iter().enumerate().map(|(index, head)| InspectedColumn {
         header: head.name.clone(),
         unit: head.unit.clone(),
         channel: survey.taken.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
-        read_as: survey.taken.iter().find(|(_, place, _)| *place == index).map(|(_, _, unit)| (unit.name(), unit.prose())),
-        resembles: survey.resembling.iter().find(|(_, place)| *place == index).map(|(channel, _)| channel.name()),
+        read_as: read_as(index),
+        resembles: survey.resembling.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
+        range: ranges.get(index).copied().flatten(),
     });
     Ok(Inspection {
         kind: table.kind(),
@@ -56,6 +74,40 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         columns: inspected.collect(),
         log: read(table, &told).map_err(|error| error.in_file(&name)),
     })
+}
+
+/// Least and largest number of every column, by a reading of its own.
+fn ranges(path: &Path) -> Vec<Option<[f64; 2]>> {
+    let Ok(mut table) = input::open(path).and_then(|raw| match raw {
+        Raw::File(..) => Table::open(raw),
+        // What comes through a pipe comes once.
+        Raw::Stream(_) => Err(Problem::NoRows.into()),
+    }) else {
+        return Vec::new();
+    };
+    let heads = table.heads().to_vec();
+    let mut ranges = vec![None; heads.len()];
+    let mut groups: Vec<usize> = heads.iter().map(|head| head.group).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    for group in groups {
+        let of_group: Vec<usize> = (0..heads.len()).filter(|index| heads[*index].group == group).collect();
+        let wanted: Vec<Wanted> = of_group
+            .iter()
+            .map(|index| Wanted { index: *index, header: heads[*index].name.clone(), is_time: false, dispensable: true })
+            .collect();
+        // As far as it can be read.
+        let _ = table.read(&wanted, &mut |block| {
+            for (index, values) in of_group.iter().zip(&block.values) {
+                for value in values.iter().filter(|value| value.is_finite()) {
+                    let [low, high] = ranges[*index].get_or_insert([*value; 2]);
+                    (*low, *high) = (low.min(*value), high.max(*value));
+                }
+            }
+            Ok(())
+        });
+    }
+    ranges
 }
 
 impl Inspection {
@@ -81,11 +133,18 @@ impl Inspection {
             }
             let (column, remark) = match (taken, resembling) {
                 (Some(column), _) => (column.header.as_str(), ""),
+                (None, Some(column)) if column.read_as.is_none() => {
+                    (column.header.as_str(), "  # by its name: is it, and in SI? else unit = ..")
+                }
                 (None, Some(column)) => (column.header.as_str(), "  # by its name: is it?"),
                 (None, None) => ("", "  # nothing resembles it"),
             };
-            let unit = taken.and_then(|column| column.read_as).map_or(channel.unit().name(), |(unit, _)| unit);
-            let _ = writeln!(text, "{} = {{ column = {}, unit = \"{unit}\" }}{remark}", channel.name(), quoted(column));
+            // Of a guess, only what its header says.
+            let said = taken.or(resembling).and_then(|column| column.read_as);
+            let unit =
+                if taken.is_some() { Some(said.map_or(channel.unit().name(), |(unit, _)| unit)) } else { said.map(|(unit, _)| unit) };
+            let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default();
+            let _ = writeln!(text, "{} = {{ column = {}{unit} }}{remark}", channel.name(), quoted(column));
         }
         for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
             if let Some(column) = self.columns.iter().find(|column| column.channel == Some(channel.name())) {
@@ -138,13 +197,25 @@ mod tests {
         assert_eq!(second.log.unwrap().log, first.log.unwrap().log, "{mapping}");
     }
 
+    /// Of a guess the header's unit counts, as it does for a column that the user names.
+    #[test]
+    fn a_guess_keeps_the_unit_of_its_header() {
+        let found = inspected("Zeit [ms],Motor.Ud,Motor.Speed_rpm\n1,2,3\n2,2,3\n", &LogOptions::default());
+        let mapping = found.mapping(&LogOptions::default());
+        assert!(
+            mapping.contains("\nomega_e = { column = \"Motor.Speed_rpm\", unit = \"rpm-mech\" }  # by its name: is it?\n"),
+            "{mapping}"
+        );
+    }
+
     #[test]
     fn a_table_that_is_no_log_is_inspected_all_the_same() {
         let found = inspected("u_d,motor_speed,i_d\n1,2,3\n", &LogOptions::default());
         assert!(found.log.is_err());
         assert_eq!(found.columns.iter().map(|column| column.resembles).collect::<Vec<_>>(), [Some("ud"), Some("omega_e"), Some("id")]);
+        assert_eq!(found.columns[1].range, Some([2.0, 2.0]));
         let mapping = found.mapping(&LogOptions::default());
-        assert!(mapping.contains("\nuq = { column = \"\", unit = \"V\" }  # nothing resembles it\n"), "{mapping}");
-        assert!(mapping.contains("\nud = { column = \"u_d\", unit = \"V\" }  # by its name: is it?\n"), "{mapping}");
+        assert!(mapping.contains("\nuq = { column = \"\" }  # nothing resembles it\n"), "{mapping}");
+        assert!(mapping.contains("\nud = { column = \"u_d\" }  # by its name: is it, and in SI? else unit = ..\n"), "{mapping}");
     }
 }

@@ -147,7 +147,7 @@ pub const LAYOUTS: &[Layout] = &[
         ..LOG
     },
     Layout {
-        name: "Tritium",
+        name: "Tritium, names with units",
         source: "Tritium WaveSculptor telemetry as a dynamometer's log holds it",
         signature: &["motor_id_A", "motor_iq_A", "motor_vd_V", "motor_vq_V", "motor_velocity_rpm"],
         columns: &[
@@ -159,7 +159,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(OmegaE, "motor_velocity_rpm", Unit::RpmMechanical),
             column(UDc, "bus_voltage_V", Unit::Volt),
         ],
-        remark: "the same, with units behind the names",
+        remark: "while coasting the voltages are no voltages that act",
         ..LOG
     },
     Layout {

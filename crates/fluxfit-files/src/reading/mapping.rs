@@ -16,7 +16,7 @@ use crate::{
     error::{FileError, Problem},
     input,
     quantity::Dimension,
-    toml_table::{Document, Shape},
+    toml_table::{Document, Entry, Shape},
     unit::Unit,
 };
 use std::path::Path;
@@ -118,8 +118,13 @@ fn parse(text: &str) -> Result<Mapping, FileError> {
 
 fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColumn>, FileError> {
     let Some(entry) = document.table("columns").get(channel.name()) else { return Ok(None) };
-    if let Ok(header) = entry.text() {
-        return Ok(Some(MappedColumn { channel, header: Some(header.trim().to_owned()), unit: None, factor: 1.0 }));
+    let named = |entry: Entry<'_>| match entry.text()?.trim() {
+        "" => Err(entry.refuse(Problem::Value { wanted: "the name of a column: fill it in, or remove the line".to_owned() })),
+        header => Ok(header.to_owned()),
+    };
+    if entry.text().is_ok() {
+        let header = named(entry)?;
+        return Ok(Some(MappedColumn { channel, header: Some(header), unit: None, factor: 1.0 }));
     }
     let table = entry.table(SAID, "a column's name, or a table of what is known of it", EXAMPLE)?;
     let unit = table.get("unit").map(|entry| {
@@ -133,13 +138,8 @@ fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColu
         _ => Err(entry.out_of_range("a number other than zero")),
     });
     let sign = table.get("sign").map(|entry| entry.word(&[("1", 1.0), ("-1", -1.0)])).transpose()?.unwrap_or(1.0);
-    let header = table.get("column").map(|entry| entry.text()).transpose()?;
-    Ok(Some(MappedColumn {
-        channel,
-        header: header.map(|header| header.trim().to_owned()),
-        unit: unit.transpose()?,
-        factor: scale.transpose()?.unwrap_or(1.0) * sign,
-    }))
+    let header = table.get("column").map(named).transpose()?;
+    Ok(Some(MappedColumn { channel, header, unit: unit.transpose()?, factor: scale.transpose()?.unwrap_or(1.0) * sign }))
 }
 
 #[cfg(test)]

@@ -61,6 +61,8 @@ pub struct ReadLog {
     pub log: Log,
     /// The layout that was recognized, if it is one of [`layout::LAYOUTS`].
     pub layout: Option<&'static Layout>,
+    /// What was read as what, in a line: `t = 'time_s' (s), ..`.
+    pub columns: String,
     /// Sentences for the user: units that headers named, columns taken under another name, what was repaired, what looks odd.
     pub notes: Vec<String>,
 }
@@ -136,7 +138,12 @@ fn read(mut table: Table, told: &Told) -> Result<ReadLog, FileError> {
     notes.extend(gaps(&log));
     // Columns that nobody and no layout named have the canonical names.
     let layout = layout.or_else(|| told.headers.is_empty().then(Layout::canonical));
-    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes })
+    Ok(ReadLog {
+        log: if is_interpolated { log.of_different_instants() } else { log },
+        layout,
+        columns: columns::described(&chosen),
+        notes,
+    })
 }
 
 /// The layout that the names tell, if it is a log's.

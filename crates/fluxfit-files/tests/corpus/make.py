@@ -312,7 +312,7 @@ def drives():
     put("tritium_time_s.csv", table(emrax, form=form))
     columns = {**slow, "t": decimals(emrax["time_s"], 3), "u_dc": SLOW["u_dc"]}
     tolerances = {"omega_e": 0.5e-3 / RPM * POLE_PAIRS}
-    read("tritium_time_s.csv", "a Tritium drive in an EMRAX log: units in the names", columns, TRITIUM, tolerances, names=[*NAMES, "u_dc"], told=told)
+    read("tritium_time_s.csv", "a Tritium drive in an EMRAX log: units in the names", columns, TRITIUM + ", names with units", tolerances, names=[*NAMES, "u_dc"], told=told)
     tritium = {"Time (s)": SLOW["t"], "MotorId (A)": SLOW["id"], "MotorIq (AImaginary)": SLOW["iq"], "MotorVd (V)": SLOW["ud"],
                "MotorVq (VImaginary)": SLOW["uq"], "MotorVelocity (rpm)": SLOW["omega_e"] * RPM / POLE_PAIRS, "BusVoltage (V)": SLOW["u_dc"]}
     put("tritium.csv", table(tritium, form={name: plain for name in tritium} | {"MotorVelocity (rpm)": fixed(3)}))

@@ -54,11 +54,21 @@ pub(super) fn explain_no_noise(correlation: f64) -> (String, String) {
     )
 }
 
-fn negative(parameter: Parameter) -> (String, String) {
+/// Why nothing is believed of simulated currents that miss the measured ones.
+pub(super) fn explain_misses(misses: f64) -> (String, String) {
     (
-        format!("{} came out negative, which no motor has, and not by noise", parameter.symbol()),
-        "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of speed and of u_q".to_owned(),
+        format!(
+            "the simulated currents miss the measured ones by {:.0} % of the largest current, and not by noise: no motor makes these currents of these voltages",
+            100.0 * misses
+        ),
+        format!("{SIGNS}; units and pole pairs too"),
     )
+}
+
+const SIGNS: &str = "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of speed and of u_q";
+
+fn negative(parameter: Parameter) -> (String, String) {
+    (format!("{} came out negative, which no motor has, and not by noise", parameter.symbol()), SIGNS.to_owned())
 }
 
 /// Beyond this, longer windows are no remedy.

@@ -34,7 +34,7 @@ impl Model {
 }
 
 /// Slower than this no drive controls a current, Hz: such rows are a recorder's.
-const SLOWEST_CONTROL: f64 = 1000.0;
+pub const SLOWEST_CONTROL: f64 = 1000.0;
 
 /// The model that the settings state, or the one that suits the log; and why.
 pub fn choose(log: &Log, settings: &Settings) -> (Model, String) {

@@ -67,6 +67,8 @@ pub struct OutputFit {
     advice: Advice,
     /// Correlation of neighbours, zero where the residuals are too small to mean anything.
     correlation_beyond_rounding: f64,
+    /// Root mean square of the residuals as a part of the largest current.
+    misses: f64,
 }
 
 /// A number of the drive beside the motor.
@@ -116,6 +118,7 @@ impl OutputFit {
             } else {
                 0.0
             },
+            misses: rms / objective.peak_current(),
             drive,
             voltage_reading: (reading, if settings.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
             terms: tried,
@@ -173,6 +176,7 @@ impl OutputFit {
         let trust = Trust {
             correlation_of_neighbours: self.correlation_beyond_rounding,
             disturbed_without_angle: self.has(Term::ProcessNoise) && !self.angle_known,
+            misses: self.misses,
         };
         let parameters = verdict::judge_currents(&self.drive.motor, &uncertainty, &self.advice, &trust, settings);
         (parameters, self.uncertainty.correlation)

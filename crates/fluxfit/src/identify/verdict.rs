@@ -8,7 +8,7 @@ use super::{
     advice::Advice,
     estimate::Estimate,
     excitation::Excitation,
-    explain::{explain, explain_currents, explain_no_angle, explain_no_noise},
+    explain::{explain, explain_currents, explain_misses, explain_no_angle, explain_no_noise},
     uncertainty::{ParameterUncertainty, Uncertainty},
 };
 use crate::{
@@ -85,7 +85,7 @@ pub(super) fn judge(
     let explained = |parameter: Parameter, raw: f64, uncertainty: &ParameterUncertainty| {
         explain(parameter, points, excitation, raw, uncertainty, advice)
     };
-    judge_motor(&estimate.motor, uncertainty, settings, explained)
+    beside_negative(judge_motor(&estimate.motor, uncertainty, settings, explained), settings)
 }
 
 /// Judges every parameter of the simulated currents' motor.
@@ -111,21 +111,33 @@ pub(super) fn judge_currents(
             (judgement.reason, judgement.remedy) = (Some(reason.clone()), Some(remedy.clone()));
         }
     }
-    // What no motor has is no accident of one parameter: the others come from the same fit.
-    if let Some(negative) =
-        judged.iter().position(|judgement| judgement.raw <= 0.0 && judgement.uncertainty.half_width < WEAK * judgement.raw.abs())
-    {
-        let symbol = judged[negative].parameter.symbol();
-        let remedy = judged[negative].remedy.clone();
-        for (p, judgement) in judged.iter_mut().enumerate() {
-            if p != negative && !matches!(settings.known[p], Known::Fixed(_)) && judgement.raw > 0.0 {
-                judgement.verdict = Verdict::NotIdentifiable;
-                judgement.reason = Some(format!("{symbol} came out negative, so nothing else of this fit is to be trusted"));
-                judgement.remedy = remedy.clone();
-            }
-        }
+    if trust.correlation_of_neighbours > NO_NOISE && trust.misses > MISSES {
+        let (reason, remedy) = explain_misses(trust.misses);
+        distrust(&mut judged, settings, &reason, &remedy);
+    }
+    beside_negative(judged, settings)
+}
+
+/// What no motor has is no accident of one parameter: the others come from the same fit.
+fn beside_negative(mut judged: [Judgement; PARAMETERS], settings: &Settings) -> [Judgement; PARAMETERS] {
+    let negative = judged.iter().find(|judgement| judgement.raw <= 0.0 && judgement.uncertainty.half_width < WEAK * judgement.raw.abs());
+    let told = negative.map(|negative| (negative.parameter, negative.reason.clone(), negative.remedy.clone().unwrap_or_default()));
+    if let Some((parameter, reason, remedy)) = told {
+        let why = format!("{} came out negative, so nothing else of this fit is to be trusted", parameter.symbol());
+        distrust(&mut judged, settings, &why, &remedy);
+        judged[parameter as usize].reason = reason;
     }
     judged
+}
+
+/// Takes back every parameter that was not given.
+fn distrust(judged: &mut [Judgement; PARAMETERS], settings: &Settings, reason: &str, remedy: &str) {
+    for (judgement, known) in judged.iter_mut().zip(&settings.known) {
+        if !matches!(known, Known::Fixed(_)) {
+            judgement.verdict = Verdict::NotIdentifiable;
+            (judgement.reason, judgement.remedy) = (Some(reason.to_owned()), Some(remedy.to_owned()));
+        }
+    }
 }
 
 /// What speaks against a fit of simulated currents, whatever its intervals say.
@@ -134,7 +146,13 @@ pub(super) struct Trust {
     pub(super) correlation_of_neighbours: f64,
     /// An observer follows disturbances that nobody could ask for dead time or faults of the sensors.
     pub(super) disturbed_without_angle: bool,
+    /// What the simulated currents miss, root mean square, as a part of the largest current.
+    pub(super) misses: f64,
 }
+
+/// Simulated currents that miss by more than this part of the largest, and not by noise, are no motor's: voltages and currents do not
+/// belong together. Dead time that takes four times what R_s does leaves 0.005.
+const MISSES: f64 = 0.15;
 
 /// Correlation of neighbouring residuals from which on they are not noise: something is in the log that the model does not have, and
 /// an interval that comes from noise says nothing of it.

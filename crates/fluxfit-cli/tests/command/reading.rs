@@ -1,0 +1,112 @@
+//! Whatever a log came in, the answer is the same; what is understood of it can be looked at.
+
+use super::{fluxfit, fluxfit_with_input, json, root};
+use serde_json::Value;
+use std::{fs, process::Command};
+
+/// A log of 160 rows in the corpus, by independent writers.
+const LOGS: &str = "crates/fluxfit-files/tests/corpus/logs";
+
+/// The same in every container and dialect that loses nothing.
+const SAME: [&str; 15] = [
+    "tab.tsv",
+    "decimal_comma.csv",
+    "shuffled.csv",
+    "utf16_le.csv",
+    "gzip.csv.gz",
+    "none.parquet",
+    "snappy.parquet",
+    "zstd.parquet",
+    "byte_stream_split.parquet",
+    "vectors_v5_compressed.mat",
+    "struct_v5.mat",
+    "simulink_v5.mat",
+    "vectors_v73_deflate.mat",
+    "one_group.mf4",
+    "one_group_compressed.mf4",
+];
+
+/// The answer, without the words about its columns.
+fn answer(file: &str) -> Value {
+    let (_, mut document) = json(&["identify", &format!("{LOGS}/{file}")]);
+    let log = document["log"].as_object_mut().unwrap();
+    assert!(log.remove("columns").is_some_and(|columns| columns[0].as_str().unwrap().contains("ud = ")));
+    assert!(log.remove("notes").is_some());
+    document
+}
+
+#[test]
+fn the_same_log_gives_the_same_bits_of_answer() {
+    let expected = answer("canonical.csv");
+    assert!(expected["parameters"]["rs"]["value"].is_f64());
+    for file in SAME {
+        assert_eq!(answer(file), expected, "{file}");
+    }
+}
+
+#[test]
+fn a_pipe_gives_the_same_answer_as_the_file() {
+    let bytes = fs::read(root().join(LOGS).join("gzip.csv.gz")).unwrap();
+    let run = fluxfit_with_input(&["identify", "-", "--json"], &bytes);
+    let through_pipe: Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(through_pipe["parameters"], answer("canonical.csv")["parameters"]);
+}
+
+#[test]
+fn an_inspection_shows_columns_and_writes_a_mapping_that_identify_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (log, mapping) = (folder.path().join("bench.csv"), folder.path().join("bench.toml"));
+    let canonical = fs::read_to_string(root().join(LOGS).join("slow.csv")).unwrap();
+    fs::write(
+        &log,
+        canonical.replacen("t,ud,uq,id,iq,omega_e", "time [s],Motor.Vd,Motor.Vq,Motor.Id,Motor.Iq,Motor.Speed [rad/s-elec]", 1),
+    )
+    .unwrap();
+    let (log, mapping) = (log.to_str().unwrap(), mapping.to_str().unwrap());
+    let run = fluxfit(&["inspect", log, "-o", mapping]);
+    assert_eq!(run.status, 2, "{}", run.err);
+    assert!(run.out.contains("Motor.Vd") && run.out.contains("ud?"), "{}", run.out);
+    let guessed = fs::read_to_string(mapping).unwrap();
+    assert!(guessed.contains("ud = { column = \"Motor.Vd\" }"), "{guessed}");
+    let run = fluxfit(&["identify", log, "--mapping", mapping]);
+    assert_eq!(run.status, 2, "its unit is unknown: {}", run.err);
+    fs::write(mapping, guessed.replace("column = \"Motor.Speed [rad/s-elec]\"", "column = \"Motor.Speed [rad/s-elec]\", unit = \"rad/s\""))
+        .unwrap();
+    let (_, document) = json(&["identify", log, "--mapping", mapping]);
+    assert_eq!(document["parameters"], answer("slow.csv")["parameters"]);
+}
+
+#[test]
+fn layouts_are_listed() {
+    let run = fluxfit(&["formats"]);
+    assert_eq!(run.status, 0);
+    for name in ["VESC Tool", "phobia", "ST MCSDK", "Tritium", "Paderborn"] {
+        assert!(run.out.contains(name), "{name}");
+    }
+}
+
+/// A million rows and more are read in little memory: a tenth of what their numbers alone would take.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_long_log_is_read_in_bounded_memory() {
+    use std::io::Write;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.csv");
+    let mut file = std::io::BufWriter::new(fs::File::create(&path).unwrap());
+    writeln!(file, "t,ud,uq,id,iq,omega_e").unwrap();
+    for row in 0..3_000_000_u32 {
+        writeln!(file, "{}.{:04},{},80,-1.{},9,400", row / 10_000, row % 10_000, 40 - i64::from(row % 3), row % 7).unwrap();
+    }
+    drop(file);
+    let mut child =
+        Command::new(env!("CARGO_BIN_EXE_fluxfit")).arg("inspect").arg(&path).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let mut most = 0;
+    while child.try_wait().unwrap().is_none() {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let held = text.lines().find_map(|line| line.strip_prefix("VmHWM:")?.split_whitespace().next()?.parse::<u64>().ok());
+        most = most.max(held.unwrap_or(0));
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(most > 0 && most < 100_000, "{most} kB");
+}
