@@ -148,6 +148,10 @@ pub(crate) enum Problem {
         "ud, uq, id, iq and omega_e all have a mean near 0 and a standard deviation near 1: the file is standardized, its values are not in V, A and rad/s; identify from the original"
     )]
     Standardized,
+    #[error(
+        "phase quantities and the angle were sampled at different instants, between which they turn: log them together, or log dq quantities"
+    )]
+    TurningApart,
     #[error("no instant of {base} lies between two near values of every other channel; log the channels together, or over the same time")]
     Apart { base: &'static str },
     #[error("the wanted columns are of different lengths and no times tell how they belong together: {}; give each its time, or equal lengths", list(.lengths))]

@@ -252,19 +252,30 @@ fn check_time(t: &[f64]) -> Result<(), Error> {
     }
 }
 
-fn split(t: &[f64], steps_of_channels: [f64; 5]) -> Vec<Segment> {
-    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    let sample_period = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let mut segments = Vec::new();
+fn split(t: &[f64], steps: [f64; 5]) -> Vec<Segment> {
+    let sample_period = median_step(t);
+    without_gaps(t).into_iter().map(|rows| Segment { rows, log: 0, sample_period, steps }).collect()
+}
+
+/// Rows of these times, s, parted where a step is a gap: more than 2.5 median ones.
+pub fn without_gaps(t: &[f64]) -> Vec<Range<usize>> {
+    let sample_period = median_step(t);
+    let mut stretches = Vec::new();
     let mut start = 0;
     for end in 1..=t.len() {
         if end == t.len() || t[end] - t[end - 1] > GAP_FACTOR * sample_period {
-            segments.push(Segment { rows: start..end, log: 0, sample_period, steps: steps_of_channels });
+            stretches.push(start..end);
             start = end;
         }
     }
-    segments
+    stretches
+}
+
+/// 0 of less than two times.
+fn median_step(t: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
         notes.extend(read.notes.iter().map(|note| format!("{}: {note}", name(path))));
-        columns.push(format!("{}: {}", name(path), read.columns));
+        columns.push(read.columns);
         logs.push(read.log);
     }
     notes.iter().for_each(|note| terminal::note(note));

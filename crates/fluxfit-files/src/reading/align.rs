@@ -34,18 +34,19 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     let t = channels.get(T).map(<[f64]>::to_vec).unwrap_or_default();
     let base = if channels.get(Id).is_some() { Id } else { IA };
     let instants: Vec<f64> = present(&t, channels.get(base).unwrap_or(&[])).map(|(t, _)| t).collect();
-    let mut moved = Vec::new();
+    let mut moved: Vec<Channel> = Vec::new();
     for (channel, _) in counts.iter().filter(|(channel, _)| *channel != T) {
         let Some(values) = channels.get(*channel) else { continue };
         let (at, values): (Vec<f64>, Vec<f64>) = present(&t, values).unzip();
         if at != instants {
-            moved.push(channel.name());
+            moved.push(*channel);
         }
         let on_common = interpolated(&at, &values, &instants);
         channels.set(*channel, on_common);
     }
     channels.set(T, instants);
     let kept: Vec<bool> = (0..channels.rows()).map(|row| channels.iter().all(|(_, values)| !values[row].is_nan())).collect();
+    refuse_turning(channels, &moved)?;
     if !kept.contains(&true) {
         return Err(Problem::Apart { base: base.name() }.into());
     }
@@ -53,11 +54,27 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     Ok((!moved.is_empty()).then(|| note(&moved, base)))
 }
 
+/// Between two of its instants a phase turns with the rotor, and no straight line follows it; an angle jumps from turn to turn. Where
+/// dq is logged nobody needs the angle then.
+pub(super) fn refuse_turning(channels: &mut Channels, moved: &[Channel]) -> Result<(), FileError> {
+    let has_phases = channels.get(Channel::UA).is_some() || channels.get(IA).is_some();
+    let turns = |channel: &Channel| *channel == Channel::ThetaE || Channel::PHASES.contains(channel);
+    if !moved.iter().any(turns) {
+        return Ok(());
+    }
+    if has_phases || channels.get(Channel::OmegaE).is_none() {
+        return Err(Problem::TurningApart.into());
+    }
+    channels.take(Channel::ThetaE);
+    Ok(())
+}
+
 /// What is said of channels that were moved.
-pub(super) fn note(moved: &[&str], base: Channel) -> String {
+pub(super) fn note(moved: &[Channel], base: Channel) -> String {
+    let moved: Vec<&str> = moved.iter().map(|channel| channel.name()).collect();
     format!(
         "{} {} sampled at other instants than {}: interpolated between theirs, and used for steady operating points only",
-        list(moved),
+        list(&moved),
         if moved.len() == 1 { "was" } else { "were" },
         base.name()
     )

@@ -4,7 +4,7 @@ use super::{
     Channels, Told, align,
     clock::Clock,
     columns::{Chosen, left_out},
-    kept::{Kept, Lines},
+    kept::{Features, Kept, Lines, mean_and_deviation},
     layout::Layout,
     table::{Block, Head, Table, Wanted},
 };
@@ -13,13 +13,12 @@ use crate::{
     error::{FileError, Problem},
     unit::Unit,
 };
-use Channel::{IA, IB, Id, Iq, OmegaE, Run, T};
+use Channel::{IA, IB, Id, Iq, OmegaE, Run, T, ThetaE};
+use fluxfit::frames::Abc;
+use std::f64::consts::{PI, TAU};
 
 /// Where a run of rows ends and nobody logged the time, it goes on this many periods later: more than a gap.
 const BETWEEN_RUNS: f64 = 10.0;
-
-/// Channels whose means and spreads tell stretches of a log apart.
-const TELLING: [Channel; 5] = [Id, Iq, OmegaE, IA, IB];
 
 /// What was gathered.
 pub(super) struct Gathered {
@@ -45,13 +44,16 @@ pub(super) fn gather(
     groups.sort_by_key(|group| (*group != base, *group));
     groups.dedup();
     let period = told.sample_period.or(layout.and_then(|layout| layout.sample_period));
+    let several = groups.len() > 1;
     let mut all: Option<Gathered> = None;
     for group_number in groups {
         let columns = of_group(chosen, &heads, group_number).ok_or_else(|| lengths(chosen, &heads))?;
         if period.is_none() && columns.iter().all(|column| column.channel != T) {
             return Err(lengths(chosen, &heads));
         }
-        let gathered = one_group(table, &columns, period, told, notes)?;
+        // Each group would keep rows of its own.
+        let most_rows = if several { usize::MAX } else { told.most_rows };
+        let gathered = one_group(table, &columns, period, most_rows, notes)?;
         all = Some(match all {
             None => gathered,
             Some(base) => joined(base, gathered, notes)?,
@@ -81,14 +83,13 @@ fn one_group(
     table: &mut Table,
     columns: &[Chosen],
     period: Option<f64>,
-    told: &Told,
+    most_rows: usize,
     notes: &mut Vec<String>,
 ) -> Result<Gathered, FileError> {
     let place = |channel: Channel| columns.iter().position(|column| column.channel == channel);
     let wanted: Vec<Wanted> = columns.iter().map(Chosen::wanted).collect();
-    let telling = TELLING.into_iter().filter_map(place).collect();
     let mut counted = period.filter(|_| place(T).is_none()).map(|period| Counted { period, t: -period, run: None });
-    let mut kept = Kept::new(columns.len() + usize::from(counted.is_some()), telling, told.most_rows);
+    let mut kept = Kept::new(columns.len() + usize::from(counted.is_some()), telling(&place), most_rows);
     let mut clock = Clock::default();
     let mut refused: Vec<Option<FileError>> = vec![None; columns.len()];
     notes.extend(table.read(&wanted, &mut |mut block: Block| {
@@ -123,6 +124,23 @@ fn one_group(
     }
     drop_unreadable(&mut channels, columns, refused, &lines, notes);
     Ok(Gathered { channels, lines, is_moved: false })
+}
+
+/// Means and spreads of the currents in dq and of the speed; of a log of phases, of what these would be.
+fn telling(place: &impl Fn(Channel) -> Option<usize>) -> Features {
+    let dq: Vec<usize> = [Id, Iq, OmegaE].into_iter().filter_map(place).collect();
+    let (Some(a), Some(b), Some(theta)) = (place(IA), place(IB), place(ThetaE)) else {
+        return Box::new(move |values| dq.iter().flat_map(|place| mean_and_deviation(&values[*place])).collect());
+    };
+    Box::new(move |values| {
+        let current = |row: usize| {
+            let (a, b) = (values[a][row], values[b][row]);
+            Abc { a, b, c: -a - b }.to_alpha_beta().to_dq(values[theta][row])
+        };
+        let (d, q): (Vec<f64>, Vec<f64>) = (0..values[theta].len()).map(current).map(|current| (current.d, current.q)).unzip();
+        let turns: Vec<f64> = values[theta].windows(2).map(|pair| (pair[1] - pair[0] + PI).rem_euclid(TAU) - PI).collect();
+        [d, q, turns].iter().flat_map(|values| mean_and_deviation(values)).collect()
+    })
 }
 
 /// Times of rows that have none.
@@ -164,7 +182,7 @@ fn drop_unreadable(channels: &mut Channels, columns: &[Chosen], refused: Vec<Opt
 fn joined(mut base: Gathered, other: Gathered, notes: &mut Vec<String>) -> Result<Gathered, FileError> {
     let (Some(instants), Some(at)) = (base.channels.get(T).map(<[f64]>::to_vec), other.channels.get(T)) else { return Ok(base) };
     let is_same = at == instants;
-    let moved: Vec<&str> = other.channels.iter().map(|(channel, _)| channel).filter(|channel| *channel != T).map(Channel::name).collect();
+    let moved: Vec<Channel> = other.channels.iter().map(|(channel, _)| channel).filter(|channel| *channel != T).collect();
     for (channel, values) in other.channels.iter().filter(|(channel, _)| *channel != T) {
         let on_common = if is_same { values.to_vec() } else { align::interpolated(at, values, &instants) };
         base.channels.set(channel, on_common);
@@ -172,6 +190,7 @@ fn joined(mut base: Gathered, other: Gathered, notes: &mut Vec<String>) -> Resul
     base.channels.headers.extend(other.channels.headers.iter().filter(|(channel, _)| *channel != T).cloned());
     if !is_same {
         let kept: Vec<bool> = (0..instants.len()).map(|row| base.channels.iter().all(|(_, values)| !values[row].is_nan())).collect();
+        align::refuse_turning(&mut base.channels, &moved)?;
         let currents = if base.channels.get(Iq).is_some() { Id } else { IA };
         if !kept.contains(&true) {
             return Err(Problem::Apart { base: currents.name() }.into());

@@ -3,6 +3,7 @@
 use super::{
     LogOptions, ReadLog, Told, columns,
     layout::Layout,
+    mapping::Park,
     read,
     table::{Table, Wanted},
 };
@@ -41,6 +42,8 @@ pub struct InspectedColumn {
     pub read_as: Option<(&'static str, &'static str)>,
     /// Least and largest number in it, as the file has them; none where it is no file, or holds no numbers.
     pub range: Option<[f64; 2]>,
+    /// The file says that it is the time of the channels beside it.
+    pub is_time: bool,
 }
 
 /// Reads a log and what there is to say of it; the path `-` is standard input.
@@ -67,6 +70,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         read_as: read_as(index),
         resembles: survey.resembling.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
         range: ranges.get(index).copied().flatten(),
+        is_time: head.is_time,
     });
     Ok(Inspection {
         kind: table.kind(),
@@ -122,12 +126,20 @@ impl Inspection {
             Some(period) => _ = writeln!(text, "sample_period = {period:?}       # s"),
             None => text += "# sample_period = \"0.1 ms\"  # where no column tells the time\n",
         }
+        let told = options.mapping.park;
+        if told != Park::default() {
+            let _ = writeln!(text, "park = \"{}\"", told.name());
+        }
         text += "# park = \"amplitude-invariant\"  # dq values are phase peaks; or \"power-invariant\", \"rms\"\n\n[columns]\n";
         text += "# besides column and unit: scale = 0.01, and sign = -1 for the other way around\n";
         for channel in Channel::NEEDED {
             let found =
                 |of: fn(&InspectedColumn) -> Option<&'static str>| self.columns.iter().find(|column| of(column) == Some(channel.name()));
             let (taken, resembling) = (found(|column| column.channel), found(|column| column.resembles));
+            if taken.is_some_and(|column| column.is_time) {
+                text += "# t: the time that each group of channels has\n";
+                continue;
+            }
             if taken.is_none() && (channel == Channel::T && period.is_some() || self.is_made_of_phases(channel)) {
                 continue;
             }
@@ -143,13 +155,14 @@ impl Inspection {
             let said = taken.or(resembling).and_then(|column| column.read_as);
             let unit =
                 if taken.is_some() { Some(said.map_or(channel.unit().name(), |(unit, _)| unit)) } else { said.map(|(unit, _)| unit) };
-            let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default();
+            let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default() + &factor(channel, options);
             let _ = writeln!(text, "{} = {{ column = {}{unit} }}{remark}", channel.name(), quoted(column));
         }
         for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
             if let Some(column) = self.columns.iter().find(|column| column.channel == Some(channel.name())) {
                 let unit = column.read_as.filter(|(unit, _)| *unit != "1").map(|(unit, _)| format!(", unit = \"{unit}\""));
-                let _ = writeln!(text, "{} = {{ column = {}{} }}", channel.name(), quoted(&column.header), unit.unwrap_or_default());
+                let said = unit.unwrap_or_default() + &factor(channel, options);
+                let _ = writeln!(text, "{} = {{ column = {}{said} }}", channel.name(), quoted(&column.header));
             }
         }
         text
@@ -165,6 +178,13 @@ impl Inspection {
             _ => false,
         }
     }
+}
+
+/// Scale and sign that a mapping file told.
+fn factor(channel: Channel, options: &LogOptions) -> String {
+    let told = options.mapping.columns.iter().find(|column| column.channel == channel).map_or(1.0, |column| column.factor);
+    let scale = if told.abs() == 1.0 { String::new() } else { format!(", scale = {:?}", told.abs()) };
+    scale + if told < 0.0 { ", sign = -1" } else { "" }
 }
 
 /// As TOML quotes a text.
@@ -195,6 +215,17 @@ mod tests {
         let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
         let second = inspected(&text, &again);
         assert_eq!(second.log.unwrap().log, first.log.unwrap().log, "{mapping}");
+    }
+
+    #[test]
+    fn a_mapping_keeps_what_another_one_told() {
+        let rows: String = (0..30).map(|row| format!("{row},3,4,1,2,{}\n", 500 + row)).collect();
+        let told = "park = \"power-invariant\"\n[columns]\nud = { column = \"a\", scale = 0.01, sign = -1 }\nuq = \"b\"\n";
+        let options = LogOptions { mapping: Mapping::parse("m.toml", told.as_bytes()).unwrap(), ..LogOptions::default() };
+        let first = inspected(&format!("t,a,b,id,iq,omega_e\n{rows}"), &options);
+        let mapping = first.mapping(&options);
+        let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
+        assert_eq!(inspected(&format!("t,a,b,id,iq,omega_e\n{rows}"), &again).log.unwrap().log, first.log.unwrap().log, "{mapping}");
     }
 
     /// Of a guess the header's unit counts, as it does for a column that the user names.

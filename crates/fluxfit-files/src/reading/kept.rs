@@ -14,12 +14,13 @@ const STRETCH: usize = 1 << 12;
 /// Rows that are kept: with what a fit of them takes, some 220 MB.
 pub(super) const MOST_ROWS: usize = 1 << 19;
 
+/// Numbers that tell stretches apart, of a stretch's columns.
+pub(super) type Features = Box<dyn Fn(&[Vec<f64>]) -> Vec<f64>>;
+
 /// Rows on their way into a log.
-#[derive(Debug)]
 pub(super) struct Kept {
     most: usize,
-    /// Places of the columns that tell stretches apart.
-    telling: Vec<usize>,
+    telling: Features,
     stretches: Vec<Stretch>,
     columns: usize,
     rows: u64,
@@ -30,7 +31,7 @@ pub(super) struct Kept {
 struct Stretch {
     values: Vec<Vec<f64>>,
     lines: Lines,
-    /// Mean and standard deviation of the telling columns, once it is full.
+    /// What tells it from others, once it is full.
     features: Vec<f64>,
 }
 
@@ -89,7 +90,7 @@ impl Lines {
 }
 
 impl Kept {
-    pub(super) fn new(columns: usize, telling: Vec<usize>, most: usize) -> Self {
+    pub(super) fn new(columns: usize, telling: Features, most: usize) -> Self {
         Self { most, telling, stretches: Vec::new(), columns, rows: 0 }
     }
 
@@ -108,7 +109,7 @@ impl Kept {
             }
             stretch.lines.push(&block.lines[from..to]);
             if stretch.lines.rows == STRETCH {
-                stretch.features = self.telling.iter().flat_map(|place| mean_and_deviation(&stretch.values[*place])).collect();
+                stretch.features = (self.telling)(&stretch.values);
             }
             self.rows += (to - from) as u64;
             from = to;
@@ -137,7 +138,7 @@ impl Kept {
 
     /// What makes features comparable: their range; 1 for those that do not vary.
     fn scales(&self) -> Vec<f64> {
-        let features = 2 * self.telling.len();
+        let features = self.stretches.first().map_or(0, |stretch| stretch.features.len());
         let range = |k: usize| {
             let of = || self.stretches.iter().map(|stretch| stretch.features[k]);
             of().fold(f64::NEG_INFINITY, f64::max) - of().fold(f64::INFINITY, f64::min)
@@ -171,7 +172,8 @@ impl Kept {
     }
 }
 
-fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
+/// Of the numbers among the values.
+pub(super) fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
     // Around some value of the column, so that squares do not cancel.
     let around = values.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
     let (mut rows, mut sum, mut squares) = (0.0_f64, 0.0, 0.0);
@@ -199,7 +201,7 @@ mod tests {
 
     #[test]
     fn everything_is_kept_where_there_is_room() {
-        let mut kept = Kept::new(1, vec![0], 4 * STRETCH);
+        let mut kept = Kept::new(1, Box::new(|values| mean_and_deviation(&values[0]).to_vec()), 4 * STRETCH);
         (0..10).for_each(|k| kept.push(&block(1000 * k, 1000 * (k + 1), 3)));
         let (values, lines, note) = kept.finish();
         assert_eq!((values, note), (block(0, 10_000, 3).values, None));
@@ -209,7 +211,7 @@ mod tests {
     #[test]
     fn stretches_that_differ_stay() {
         // Three kinds of stretches among twenty, room for four.
-        let mut kept = Kept::new(1, vec![0], 4 * STRETCH);
+        let mut kept = Kept::new(1, Box::new(|values| mean_and_deviation(&values[0]).to_vec()), 4 * STRETCH);
         kept.push(&block(0, 20 * STRETCH, 3));
         let (values, lines, note) = kept.finish();
         let kinds = |kind: f64| values[0].iter().filter(|value| **value == kind).count() / STRETCH;

@@ -56,6 +56,15 @@ pub enum Park {
 }
 
 impl Park {
+    /// Name in a mapping file.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Amplitude => "amplitude-invariant",
+            Self::Power => "power-invariant",
+            Self::Rms => "rms",
+        }
+    }
+
     /// What makes a vector as long as the phases' peak value.
     pub(crate) fn factor(self) -> f64 {
         match self {
@@ -103,7 +112,7 @@ impl Mapping {
 fn parse(text: &str) -> Result<Mapping, FileError> {
     let document = Document::parse(text, &SHAPE)?;
     let root = document.root();
-    let parks = [("amplitude-invariant", Park::Amplitude), ("power-invariant", Park::Power), ("rms", Park::Rms)];
+    let parks = [Park::Amplitude, Park::Power, Park::Rms].map(|park| (park.name(), park));
     let sample_period = root.get("sample_period").map(|entry| match entry.quantity(Dimension::Time)? {
         period if period > 0.0 => Ok(period),
         _ => Err(entry.out_of_range("a time above zero")),

@@ -1,7 +1,7 @@
 //! A log from a table, whatever it came in.
 //!
 //! ```text
-//! log = table -> layout -> columns -> rows, in SI -> common instants -> dq, speed -> repairs -> checked
+//! log = table -> layout -> columns -> rows, in SI -> common instants -> repairs -> dq, speed -> checked
 //! ```
 //!
 //! Whatever is done on the way that the file did not ask for is said in a note. What means nothing is refused: a standardized file,
@@ -131,8 +131,8 @@ fn read(mut table: Table, told: &Told) -> Result<ReadLog, FileError> {
     doubt::refuse_standardized(&chosen, &channels)?;
     let is_interpolated = is_moved || aligned.is_some();
     notes.extend(aligned);
-    notes.extend(phases::transform(&mut channels));
     notes.extend(repair::repair(&mut channels));
+    notes.extend(phases::transform(&mut channels));
     notes.extend(doubt::note_references(&channels));
     let log = log(channels, &chosen, &lines, &mut notes)?;
     notes.extend(gaps(&log));

@@ -1,8 +1,8 @@
 //! dq quantities and speed of a log that holds those of the phases and an angle.
 
 use super::Channels;
-use crate::channel::Channel;
-use fluxfit::frames::Abc;
+use crate::{channel::Channel, number::significant};
+use fluxfit::{frames::Abc, log};
 use std::f64::consts::{PI, TAU};
 
 /// Fewest rows on either side of a slope: less is noise.
@@ -24,7 +24,17 @@ pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
         channels.set(Channel::ThetaE, theta);
         notes.push("theta_e is the angle between the current's vector in the phases and in dq".to_owned());
     }
-    let Some(theta) = channels.get(Channel::ThetaE).map(<[f64]>::to_vec) else { return notes };
+    let Some((t, theta)) = channels.get(Channel::T).zip(channels.get(Channel::ThetaE)) else { return notes };
+    let is_needed = channels.get(Channel::OmegaE).is_none() || channels.get(Channel::Ud).is_none() || channels.get(Channel::Id).is_none();
+    if !is_needed {
+        return notes;
+    }
+    let (step, smooth, speed) = smoothed(t, theta);
+    let theta = if step > 0.0 { smooth } else { theta.to_vec() };
+    if step > 0.0 {
+        notes.push(format!("theta_e comes in steps of {} degrees and was smoothed", significant(step.to_degrees(), 3)));
+        channels.set(Channel::ThetaE, theta.clone());
+    }
     let sets = [
         ([Channel::UA, Channel::UB, Channel::UC], [Channel::Ud, Channel::Uq]),
         ([Channel::IA, Channel::IB, Channel::IC], [Channel::Id, Channel::Iq]),
@@ -45,10 +55,7 @@ pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
         channels.set(d, on_d);
         channels.set(q, on_q);
     }
-    if channels.get(Channel::OmegaE).is_none()
-        && let Some(t) = channels.get(Channel::T)
-    {
-        let speed = slope(t, &theta);
+    if channels.get(Channel::OmegaE).is_none() {
         channels.set(Channel::OmegaE, speed);
         notes.push("omega_e is the slope of theta_e".to_owned());
     }
@@ -69,26 +76,31 @@ fn angle_between(channels: &Channels) -> Option<Vec<f64>> {
     is_missing.then(|| (0..id.len()).map(angle).collect())
 }
 
-/// Slope of an angle, rad/s, at each row: by the parabola of least squares around it, over as many rows as the angle's steps need.
-/// N rows that each turn by `w` and are uniformly within a step `q` give `w` a relative error of about `(q/w) N^(-3/2)`.
-fn slope(t: &[f64], theta: &[f64]) -> Vec<f64> {
-    let turned = unwrapped(theta);
-    let rows = turned.len();
+/// The step of an angle, 0 if it has none; the angle without it, and its slope, rad/s, at each row: by the parabola of least squares
+/// around it, over as many rows as the steps need, never across a gap. N rows that each turn by `w` and are uniformly within a step
+/// `q` give `w` a relative error of about `(q/w) N^(-3/2)`.
+fn smoothed(t: &[f64], theta: &[f64]) -> (f64, Vec<f64>, Vec<f64>) {
     let step = coarse_step(theta);
-    let reach = |row: usize| {
-        // How far the rotor turns from row to row hereabouts.
-        let (from, to) = (row.saturating_sub(MOST_ROWS / 8), (row + MOST_ROWS / 8).min(rows - 1));
-        let turn = (turned[to] - turned[from]).abs() / (to - from).max(1) as f64;
-        let needed = if step > 0.0 && turn > 0.0 { (step / (SPEED_ERROR * turn)).powf(2.0 / 3.0) / 2.0 } else { 0.0 };
-        if step > 0.0 && turn == 0.0 { MOST_ROWS } else { (needed as usize).clamp(FEWEST_ROWS, MOST_ROWS) }
-    };
-    (0..rows)
-        .map(|row| {
+    let (mut angles, mut slopes) = (Vec::new(), Vec::new());
+    for rows in log::without_gaps(t) {
+        let (t, turned) = (&t[rows.clone()], unwrapped(&theta[rows]));
+        let last = turned.len() - 1;
+        let reach = |row: usize| {
+            // How far the rotor turns from row to row hereabouts.
+            let (from, to) = (row.saturating_sub(MOST_ROWS / 8), (row + MOST_ROWS / 8).min(last));
+            let turn = (turned[to] - turned[from]).abs() / (to - from).max(1) as f64;
+            let needed = if step > 0.0 && turn > 0.0 { (step / (SPEED_ERROR * turn)).powf(2.0 / 3.0) / 2.0 } else { 0.0 };
+            if step > 0.0 && turn == 0.0 { MOST_ROWS } else { (needed as usize).clamp(FEWEST_ROWS, MOST_ROWS) }
+        };
+        for row in 0..=last {
             let reach = reach(row);
-            let around = row.saturating_sub(reach)..(row + reach + 1).min(rows);
-            tangent(&t[around.clone()], &turned[around], t[row])
-        })
-        .collect()
+            let around = row.saturating_sub(reach)..(row + reach + 1).min(last + 1);
+            let (angle, slope) = tangent(&t[around.clone()], &turned[around], t[row]);
+            angles.push(angle);
+            slopes.push(slope);
+        }
+    }
+    (step, angles, slopes)
 }
 
 /// The step of an angle that comes in coarse ones, rad; 0 of one that does not.
@@ -99,8 +111,8 @@ fn coarse_step(theta: &[f64]) -> f64 {
     if is_grid { smallest } else { 0.0 }
 }
 
-/// Slope at `at` of the parabola of least squares.
-fn tangent(t: &[f64], y: &[f64], at: f64) -> f64 {
+/// Value and slope at `at` of the parabola of least squares.
+fn tangent(t: &[f64], y: &[f64], at: f64) -> (f64, f64) {
     let span = (t[t.len() - 1] - t[0]).max(f64::MIN_POSITIVE);
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     // Normal equations in time over the span, around the row: well scaled, three unknowns.
@@ -122,7 +134,8 @@ fn tangent(t: &[f64], y: &[f64], at: f64) -> f64 {
     };
     let whole = determinant([[s[0], s[1], s[2]], [s[1], s[2], s[3]], [s[2], s[3], s[4]]]);
     let slope = determinant([[s[0], r[0], s[2]], [s[1], r[1], s[3]], [s[2], r[2], s[4]]]);
-    if whole.abs() > f64::MIN_POSITIVE { slope / whole / span } else { 0.0 }
+    let value = determinant([[r[0], s[1], s[2]], [r[1], s[2], s[3]], [r[2], s[3], s[4]]]);
+    if whole.abs() > f64::MIN_POSITIVE { (mean + value / whole, slope / whole / span) } else { (mean, 0.0) }
 }
 
 /// The angle without its jumps from turn to turn.
@@ -177,8 +190,13 @@ mod tests {
         // 250 steps a turn, 20 kHz, 100 Hz.
         let t: Vec<f64> = (0..2000).map(|row| f64::from(row) * 5e-5).collect();
         let theta: Vec<f64> = t.iter().map(|t| (t * 100.0 % 1.0 * 250.0).floor() / 250.0 * TAU).collect();
-        let omega = slope(&t, &theta);
+        let (_, _, omega) = smoothed(&t, &theta);
         let error = omega[500..1500].iter().map(|omega| (omega / (100.0 * TAU) - 1.0).abs()).fold(0.0, f64::max);
         assert!(error < 3.0 * SPEED_ERROR, "{error}");
+        // Nor errors of the frame: but for half a step, by which rounding down is late, the angle is a sixth of a step right.
+        let (step, angle, _) = smoothed(&t, &theta);
+        let late = |row: usize| (t[row] * 100.0 * TAU - angle[row] - step / 2.0 + PI).rem_euclid(TAU) - PI;
+        let error = (500..1500).map(|row| late(row).abs()).fold(0.0, f64::max);
+        assert!(error < step / 6.0, "{error} {step}");
     }
 }

@@ -2,14 +2,14 @@
 
 use super::Channels;
 use crate::{channel::Channel, number::significant};
-use Channel::{Id, Iq, OmegaE, T, Ud, Uq};
+use Channel::{IA, IB, IC, Id, Iq, OmegaE, T, ThetaE, UA, UB, UC, Ud, Uq};
 use std::ops::Range;
 
 /// Channels that are zero while a drive stands still.
-const ALL: [Channel; 5] = [Ud, Uq, Id, Iq, OmegaE];
+const ALL: [Channel; 11] = [Ud, Uq, Id, Iq, OmegaE, UA, UB, UC, IA, IB, IC];
 
-/// Channels that no drive holds to the bit while it runs; its speed, its angle and its DC voltage it may.
-const LIVE: [Channel; 4] = [Ud, Uq, Id, Iq];
+/// Channels that no drive holds to the bit while it runs; its speed and its DC voltage it may.
+const LIVE: [Channel; 11] = [Ud, Uq, Id, Iq, UA, UB, UC, IA, IB, IC, ThetaE];
 
 /// Fewest rows of a standstill that is worth a word.
 const STANDSTILL: usize = 50;
@@ -17,7 +17,7 @@ const STANDSTILL: usize = 50;
 /// A value that stays for at least this many rows,
 const FROZEN: usize = 30;
 
-/// and this many times longer than the channel's values stay nine times in ten, is frozen,
+/// and this many times longer than the values stay in which half of the channel's rows lie, is frozen,
 const LONGER: usize = 20;
 
 /// if another channel changes at least so often meanwhile, of its rows,
@@ -25,6 +25,9 @@ const OTHERS_CHANGE: f64 = 0.5;
 
 /// and by at least this much, peak to peak, of its largest value: more than the last digits of a simulation that has settled.
 const OTHERS_MOVE: f64 = 1e-3;
+
+/// An angle stands still with its rotor: only if the phases go on turning, from peak to peak, is it frozen.
+const PHASES_TURN: f64 = 0.5;
 
 /// Takes rows out; says which.
 pub(super) fn repair(channels: &mut Channels) -> Vec<String> {
@@ -54,7 +57,8 @@ fn frozen(channels: &mut Channels) -> Option<String> {
         let runs: Vec<(usize, usize)> = changes[place].windows(2).map(|pair| (pair[0], pair[1])).collect();
         let mut lengths: Vec<usize> = runs.iter().map(|(from, to)| to - from).collect();
         lengths.sort_unstable();
-        let usual = lengths[(lengths.len() - 1) * 9 / 10];
+        let usual = half_of_rows(&lengths);
+        let least_move = if *channel == ThetaE { PHASES_TURN } else { OTHERS_MOVE };
         for (from, to) in runs {
             let length = to - from;
             if length < FROZEN || length < LONGER * usual {
@@ -62,7 +66,7 @@ fn frozen(channels: &mut Channels) -> Option<String> {
             }
             let goes_on = |other: usize| {
                 let changed = changes[other].partition_point(|row| *row < to) - changes[other].partition_point(|row| *row <= from);
-                changed as f64 >= OTHERS_CHANGE * length as f64 && moves(live[other].1, from..to)
+                changed as f64 >= OTHERS_CHANGE * length as f64 && moves(live[other].1, from..to, least_move)
             };
             if (0..live.len()).any(|other| other != place && goes_on(other)) {
                 kept[from..to].fill(false);
@@ -82,12 +86,23 @@ fn frozen(channels: &mut Channels) -> Option<String> {
     Some(note)
 }
 
-/// Whether a channel moves by more than its last digits.
-fn moves(values: &[f64], rows: Range<usize>) -> bool {
+/// The length of runs, of which at least as long ones hold half of the rows: where values come in coarse steps, a long one.
+fn half_of_rows(sorted: &[usize]) -> usize {
+    let all: usize = sorted.iter().sum();
+    let mut rows = 0;
+    let reached = |length: &&usize| {
+        rows += **length;
+        2 * rows >= all
+    };
+    sorted.iter().find(reached).copied().unwrap_or(0)
+}
+
+/// Whether a channel moves by at least this part of its largest value.
+fn moves(values: &[f64], rows: Range<usize>, least: f64) -> bool {
     let (low, high) =
         values[rows].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
     let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
-    high - low >= OTHERS_MOVE * largest
+    high - low >= least * largest
 }
 
 /// First rows of runs of one value, and behind the last one.
@@ -100,12 +115,14 @@ fn changes(values: &[f64]) -> Vec<usize> {
 mod tests {
     use super::*;
 
+    const DQ: [Channel; 5] = [Ud, Uq, Id, Iq, OmegaE];
+
     /// A log in which everything changes with every row; `change` spoils it.
     fn spoilt(change: impl Fn(&mut Channels)) -> (Vec<String>, usize) {
         let mut channels = Channels::default();
         let wave = |phase: f64| (0..1000).map(|row| 5.0 + (f64::from(row) * 0.7 + phase).sin()).collect::<Vec<_>>();
         channels.set(T, (0..1000).map(|row| f64::from(row) * 1e-3).collect());
-        ALL.iter().zip(1..).for_each(|(channel, phase)| channels.set(*channel, wave(f64::from(phase))));
+        DQ.iter().zip(1..).for_each(|(channel, phase)| channels.set(*channel, wave(f64::from(phase))));
         change(&mut channels);
         let notes = repair(&mut channels);
         (notes, channels.rows())
@@ -122,13 +139,34 @@ mod tests {
         assert_eq!(spoilt(|_| ()), (vec![], 1000));
         // A speed that is held, or logged in coarse steps, is no fault; nor is a pause in which nothing changes.
         assert_eq!(spoilt(|channels| fill(channels, OmegaE, 0..1000, 400.0)).1, 1000);
-        assert_eq!(spoilt(|channels| ALL.iter().for_each(|channel| fill(channels, *channel, 300..500, 1.0))).1, 1000);
+        assert_eq!(spoilt(|channels| DQ.iter().for_each(|channel| fill(channels, *channel, 300..500, 1.0))).1, 1000);
     }
 
     #[test]
     fn a_start_at_standstill_is_left_out() {
-        let (notes, rows) = spoilt(|channels| ALL.iter().for_each(|channel| fill(channels, *channel, 0..200, 0.0)));
+        let (notes, rows) = spoilt(|channels| DQ.iter().for_each(|channel| fill(channels, *channel, 0..200, 0.0)));
         assert_eq!((notes[0].as_str(), rows), ("standstill: the first 200 rows, 0.200 s, are zero in every channel and left out", 800));
+    }
+
+    /// Currents in steps of a tenth stay on one for long, and are none the worse.
+    #[test]
+    fn coarse_values_are_no_frozen_ones() {
+        let coarse = |channels: &mut Channels| {
+            let steps = (0..1000).map(|row| if row < 100 { f64::from(row % 7) } else { 4.0 + f64::from(row / 300) * 0.1 });
+            channels.set(Iq, steps.collect());
+        };
+        assert_eq!(spoilt(coarse), (vec![], 1000));
+    }
+
+    #[test]
+    fn an_angle_that_freezes_under_turning_phases_is_named() {
+        let turning = |channels: &mut Channels| {
+            let wave = |phase: f64| (0..1000).map(|row| 5.0 * (f64::from(row) * 0.1 + phase).sin()).collect::<Vec<_>>();
+            [(UA, 0.3), (UB, 2.0), (IA, 1.0), (IB, 3.0)].into_iter().for_each(|(channel, phase)| channels.set(channel, wave(phase)));
+            channels.set(ThetaE, (0..1000).map(|row| f64::from(if (300..400).contains(&row) { 300 } else { row }) * 0.1).collect());
+        };
+        let (notes, rows) = spoilt(turning);
+        assert!(notes[0].contains("theta_e from 0.300000 s to 0.400000 s") && rows == 900, "{notes:?}");
     }
 
     #[test]

@@ -170,6 +170,8 @@ impl Walk<'_> {
         let place = |number| Place::new(self.reader, object, number, [first, second], reversed);
         match (kind, class) {
             (Type::Number(_), Some("logical" | "cell")) => self.no_numbers(path),
+            // What netCDF packs so is not what it means.
+            (Type::Number(_), _) if object.has_attribute("scale_factor") || object.has_attribute("add_offset") => self.no_numbers(path),
             (Type::Number(number), Some("char")) => {
                 if let Some(owner) = path.strip_suffix(".label") {
                     let letters = Values::open(self.reader, &place(number)?, longest(first, second, reversed))?
