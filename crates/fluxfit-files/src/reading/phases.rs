@@ -32,7 +32,7 @@ pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
     let (step, smooth, speed) = smoothed(t, theta);
     let theta = if step > 0.0 { smooth } else { theta.to_vec() };
     if step > 0.0 {
-        notes.push(format!("theta_e comes in steps of {} degrees and was smoothed", significant(step.to_degrees(), 3)));
+        notes.push(format!("theta_e comes in steps of {} degrees and was smoothed; what is left of them, tenths of a percent of the answer, is in no interval", significant(step.to_degrees(), 3)));
         channels.set(Channel::ThetaE, theta.clone());
     }
     let sets = [
