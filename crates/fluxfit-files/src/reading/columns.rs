@@ -410,17 +410,15 @@ fn automatic(channel: Channel, heads: &[Head]) -> Result<Option<usize>, FileErro
         let (stem, unit) = in_header(name, channel.dimension());
         matches!(unit, Named::Unit(_)) && stem.eq_ignore_ascii_case(canonical)
     };
+    let has_group_times = heads.iter().any(|head| head.is_time);
     let field = |name: &str| name.rsplit_once('.').is_some_and(|(_, field)| field.eq_ignore_ascii_case(canonical));
     let tiers = [
         positions(&names, |name| name == canonical),
         positions(&names, |name| name.eq_ignore_ascii_case(canonical)),
         positions(&names, with_unit),
         positions(&names, field),
-        if matches!(channel, Ud | Uq) {
-            positions(&names, |name| name.eq_ignore_ascii_case(&format!("{canonical}_ref")))
-        } else {
-            Vec::new()
-        },
+        // Of the times of groups, each group takes its own.
+        positions(&names, |name| channel == T && !has_group_times && in_header(name, Dimension::Time).0.eq_ignore_ascii_case("time")),
     ];
     only(channel, &names, tiers)
 }
@@ -501,6 +499,24 @@ mod tests {
             told("t,ud,uq,id,iq,speed_rad_s", &map(&[("omega_e", "speed_rad_s")])),
             ["omega_e: column 'speed_rad_s' read as electrical rad/s; if it is mechanical, say so with --unit"]
         );
+    }
+
+    #[test]
+    fn voltage_references_are_taken_as_a_pair_or_not_at_all() {
+        let both = told("t,ud_ref,uq_ref,id,iq,omega_e", &LogOptions::default()).concat();
+        assert!(both.contains("ud ('ud_ref') in V and uq ('uq_ref') in V"), "{both}");
+        let mixed = told("t,ud,uqq,id,iq,omega_e,uq_ref", &LogOptions::default()).concat();
+        assert!(mixed.contains("the column uq is missing"), "{mixed}");
+        assert_eq!(told("t,ud,uq,id,iq,omega_e,ud_ref,uq_ref", &LogOptions::default()), [""; 0]);
+    }
+
+    #[test]
+    fn the_time_may_be_called_so() {
+        assert_eq!(
+            told("Time,ud,uq,id,iq,omega_e", &LogOptions::default()),
+            ["units that no header names are taken as SI: t ('Time') in s; --unit says otherwise, as in --unit omega=rpm-mech"]
+        );
+        assert_eq!(told("Time (ms),ud,uq,id,iq,omega_e", &LogOptions::default()), ["t: column 'Time (ms)' read as ms"]);
     }
 
     #[test]
