@@ -194,3 +194,28 @@ fn losses_without_an_angle_are_no_confident_number() {
         assert!(judgement.interval().is_none_or(|[low, high]| (low..=high).contains(&truth)), "{judgement:?}");
     }
 }
+
+/// Columns that do not belong together are no noise: exchanged axes, the currents or the voltages the other way around.
+#[test]
+fn what_no_motor_does_is_no_answer() {
+    let spoilt: [(&str, fn(&mut Recording)); 3] = [
+        ("axes", |recording| {
+            let columns = &mut recording.columns;
+            std::mem::swap(&mut columns.ud, &mut columns.uq);
+            std::mem::swap(&mut columns.id, &mut columns.iq);
+        }),
+        ("currents", |recording| [&mut recording.columns.id, &mut recording.columns.iq].into_iter().flatten().for_each(|i| *i = -*i)),
+        ("voltages", |recording| [&mut recording.columns.ud, &mut recording.columns.uq].into_iter().flatten().for_each(|u| *u = -*u)),
+    ];
+    for (what, spoil) in spoilt {
+        let mut recording = rig(|_| ());
+        spoil(&mut recording);
+        for judgement in &found(&recording).parameters {
+            assert_eq!(judgement.value(), None, "{what}: {judgement:?}");
+            assert!(
+                judgement.remedy.as_ref().is_some_and(|remedy| remedy.contains("signs and order of the columns")),
+                "{what}: {judgement:?}"
+            );
+        }
+    }
+}
