@@ -198,7 +198,8 @@ fn losses_without_an_angle_are_no_confident_number() {
 /// Columns that do not belong together are no noise: exchanged axes, the currents or the voltages the other way around.
 #[test]
 fn what_no_motor_does_is_no_answer() {
-    let spoilt: [(&str, fn(&mut Recording)); 3] = [
+    type Spoil = fn(&mut Recording);
+    let spoilt: [(&str, Spoil); 3] = [
         ("axes", |recording| {
             let columns = &mut recording.columns;
             std::mem::swap(&mut columns.ud, &mut columns.uq);
