@@ -14,6 +14,7 @@ mod long_run;
 pub mod misfit;
 pub mod model;
 pub mod output_fit;
+mod pieces;
 pub mod saturation;
 pub mod search_box;
 pub mod steady_fit;
