@@ -22,13 +22,15 @@
 //! Power Electronics 24(11), 2009, DOI 10.1109/TPEL.2009.2029548).
 
 use crate::{
-    error::Error,
-    identify::{
-        Identification, Provenance,
-        verdict::{Judgement, Verdict},
-        warning::Warning,
+    error::{Error, ErrorKind},
+    identification::{
+        explain::{judgement::Judgement, warning::Warning},
+        judge::verdict::Verdict,
+        prepare::model::SLOWEST_CONTROL,
+        request::{Provenance, Request},
     },
-    motor::Parameter,
+    log::Log,
+    motor::{PARAMETERS, Parameter},
 };
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -55,6 +57,18 @@ pub struct CurrentLoop {
     pub ki: Option<Gain>,
 }
 
+/// How often the current controllers run, Hz: as stated, else as often as the log's rows come.
+///
+/// # Errors
+/// If nothing is stated and the rows are too slow for a drive's control.
+pub fn control_rate(log: &Log, request: &Request) -> Result<(f64, Provenance), Error> {
+    if let Some(rate) = request.control_rate {
+        return Ok((rate, Provenance::Stated));
+    }
+    let rate = 1.0 / log.segments().iter().map(|segment| segment.sample_period).fold(f64::INFINITY, f64::min);
+    if rate < SLOWEST_CONTROL { Err(ErrorKind::ControlRate { rate }.into()) } else { Ok((rate, Provenance::Assumed)) }
+}
+
 /// One gain, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gain {
@@ -71,13 +85,13 @@ impl CurrentLoop {
     ///
     /// # Errors
     /// If the bandwidth or the control rate is no positive number.
-    pub fn of(found: &Identification, bandwidth: f64, control_rate: (f64, Provenance)) -> Result<Self, Error> {
+    pub fn of(parameters: &[Judgement; PARAMETERS], bandwidth: f64, control_rate: (f64, Provenance)) -> Result<Self, Error> {
         for (setting, value) in [("the bandwidth", bandwidth), ("the control rate", control_rate.0)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(Error::Setting { setting, value, range: "a positive number of Hz" });
             }
         }
-        let gain = |parameter| Gain::of(found.parameter(parameter), TAU * bandwidth);
+        let gain = |parameter| Gain::of(&parameters[parameter as usize], TAU * bandwidth);
         Ok(Self { bandwidth, control_rate, kp_d: gain(Parameter::Ld), kp_q: gain(Parameter::Lq), ki: gain(Parameter::Rs) })
     }
 
@@ -97,21 +111,14 @@ impl CurrentLoop {
         if self.bandwidth <= self.highest_bandwidth() * (1.0 + 1e-9) {
             return None;
         }
-        let margin = self.phase_margin();
-        let outcome = if margin > 0.0 {
-            format!("leaves a phase margin of {margin:.0} degrees, less than {PHASE_MARGIN:.0}")
-        } else {
-            "makes the loop unstable".to_owned()
-        };
-        let (rate, from) = self.control_rate;
-        let assumed =
-            if from == Provenance::Stated { "" } else { ", taken from the log; give --control-rate if the drive controls faster" };
-        let message = format!(
-            "a bandwidth of {:.0} Hz {outcome}, with {DELAY} periods of delay at {rate:.0} Hz{assumed}; ask for at most {:.0} Hz",
-            self.bandwidth,
-            self.highest_bandwidth().floor(),
-        );
-        Some(Warning { code: "phase-margin", message })
+        let (control_rate, from) = self.control_rate;
+        Some(Warning::PhaseMargin {
+            bandwidth: self.bandwidth,
+            margin: self.phase_margin(),
+            control_rate,
+            rate_assumed: from != Provenance::Stated,
+            highest: self.highest_bandwidth(),
+        })
     }
 }
 

@@ -3,6 +3,9 @@
 //! Each variant carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them
 //! from a file knows their lines ([`Error::row`], [`Error::column`]).
 
+/// Until errors have a kind of their own.
+pub use Error as ErrorKind;
+
 /// What went wrong.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -106,6 +109,15 @@ pub enum Error {
         "the log's channels were sampled at different instants, so no row is one instant of the drive and the output error means nothing; leave --model at auto or steady, or log all channels together"
     )]
     Interpolated,
+    /// Rows are too slow to be those of the drive's control, whose rate is needed.
+    #[error("rows at {rate:.3} Hz are a recorder's, not those of the drive's control; state how often the current controllers run")]
+    ControlRate {
+        /// Hz.
+        rate: f64,
+    },
+    /// A log of one segment, of which a part was to be held out.
+    #[error("holding out needs several logs, or one with a gap in time: this one has a single segment")]
+    NothingToHoldOut,
     /// Every parameter was given.
     #[error("all four parameters are fixed; leave at least one to be identified")]
     NothingToIdentify,
@@ -156,6 +168,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// The error of a log without rows that could be fitted.
+    pub(crate) fn no_rows() -> Self {
+        ErrorKind::TooShort { rows: 0, least: 2 }.into()
+    }
+
     /// The row of the log, from 0, that the error is about.
     pub fn row(&self) -> Option<usize> {
         match self {

@@ -39,10 +39,11 @@
 //!
 //! Results depend on the log, the settings and the seed: not on files, clocks or the number of threads.
 
+mod answer;
 pub mod current_loop;
 pub mod error;
 pub mod frames;
-pub mod identify;
+pub mod identification;
 pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod log;
@@ -54,10 +55,17 @@ mod resolution;
 mod singular_values;
 pub mod steady;
 pub mod study;
-pub mod validate;
+pub mod validation;
+mod words;
 
+pub use answer::{Answer, HeldOut, identify, identify_with_progress, suspect_units};
 pub use error::Error;
-pub use identify::{Identification, identify, verdict::Verdict};
+pub use identification::{
+    explain::{judgement::Judgement, remedy::Remedy, warning::Warning},
+    judge::{reason::Reason, verdict::Verdict},
+    request::{Known, Request, Swarm},
+    solve::Identification,
+};
 pub use log::{Columns, Log};
 pub use motor::{Motor, Parameter};
 pub use optimizer::{Method, Objective, Optimizer};

@@ -3,7 +3,14 @@
 
 use crate::{
     error::Error,
-    identify::{self, Known, excitation::Excitation, search_box},
+    identification::{
+        fit::{
+            excitation::Excitation,
+            steady::{beliefs, operating_points, voltage_timing},
+        },
+        prepare::search_box,
+        request::{Known, Request},
+    },
     least_squares::{Equation, TriangularFactor},
     levenberg_marquardt::{MOTOR, Polished, jacobian, polish},
     log::Log,
@@ -65,11 +72,11 @@ impl Problem {
     ///
     /// # Errors
     /// If there is no steady window.
-    pub fn steady(log: &Log, settings: &identify::Settings, id_zero: IdZero) -> Result<Self, Error> {
-        let whole = identify::operating_points(log, settings)?;
+    pub fn steady(log: &Log, request: &Request, id_zero: IdZero) -> Result<Self, Error> {
+        let whole = operating_points(log, request)?;
         let rows = at_most_paper_rows(&whole.into_iter().map(|point| point.rows).collect::<Vec<_>>());
         let points: Vec<_> = rows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect();
-        let beliefs = identify::beliefs(log, &points, identify::voltage_timing(settings).0, settings);
+        let beliefs = beliefs(log, &points, voltage_timing(request).0, request);
         let windows: Vec<_> = points.iter().zip(beliefs).map(|(point, belief)| (point.rows.clone(), belief.held_vector)).collect();
         let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
         Ok(Self {
@@ -86,7 +93,7 @@ impl Problem {
     /// # Errors
     /// If the log is too short, or no motor that it allows has a finite cost.
     pub fn output_error(log: &Log, stated: Option<VoltageReading>) -> Result<Self, Error> {
-        let steady = Self::steady(log, &identify::Settings::default(), IdZero::Measured).ok();
+        let steady = Self::steady(log, &Request::default(), IdZero::Measured).ok();
         let (mut starts, bounds) = match steady {
             Some(steady) => (vec![steady.fitness.minimum().0], steady.bounds),
             None => (Vec::new(), search_box::from_rows(log)?),

@@ -1,0 +1,203 @@
+//! What to measure next, and what it would bring: computed.
+//!
+//! A stretch held at some currents and speed adds two steady equations, each with the noise of so many rows and the accuracy of the
+//! voltages there; a multimeter adds one for R_s. Each shrinks the covariance of what is known by
+//!
+//! ```text
+//! C - C a a' C / (a' C a + variance)
+//! ```
+//!
+//! (R. E. Kalman, "A new approach to linear filtering and prediction problems", J. Basic Eng. 82 (1960) 35, doi:10.1115/1.3662552).
+//! The first proposal, in the order of how easy they are at the bench, that would make the parameter identified is chosen; else
+//! the best.
+
+use super::super::{
+    fit::finding::Bench,
+    judge::{
+        reason::SAME,
+        verdict::{IDENTIFIED, WEAK},
+    },
+};
+use crate::{frames::Dq, motor::Parameter};
+use nalgebra::{Matrix4, Vector4};
+
+/// Something to measure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Measurement {
+    /// A further stretch of the log.
+    Stretch {
+        /// How long, s.
+        seconds: f64,
+        /// Where.
+        place: Place,
+    },
+    /// R_s at the terminals, given as a prior with this relative standard error.
+    Resistance {
+        /// As a fraction.
+        accuracy: f64,
+    },
+}
+
+/// Where to hold the motor, relative to the operating point of largest current.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Place {
+    /// The same i_q and speed, and this i_d, A.
+    Id(f64),
+    /// Half the load: this i_q, A, at the same speed.
+    HalfLoad {
+        /// A.
+        iq: f64,
+    },
+    /// The same currents at half the speed.
+    HalfSpeed,
+}
+
+/// A measurement, and the interval that it leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Promised {
+    /// What to measure.
+    pub measurement: Measurement,
+    /// For which parameter.
+    pub parameter: Parameter,
+    /// Half of the 95 % interval that it leaves, as a fraction of the value.
+    pub half_width: f64,
+}
+
+/// Share of the current that a step of i_d should have: the paper's -2 A of 10 A.
+pub(super) const STEP: f64 = 0.2;
+
+/// Lengths of a stretch that are quickly measured, s.
+const LENGTHS: [f64; 5] = [0.2, 0.5, 1.0, 2.0, 5.0];
+
+/// Fewest rows of a stretch that is to be found as one.
+const MIN_ROWS: f64 = 50.0;
+
+/// What a good multimeter and a warm winding leave of R_s.
+const MULTIMETER: f64 = 0.01;
+
+/// Half a 95 % interval in standard deviations.
+const HALF_WIDTH: f64 = 1.96;
+
+/// A measurement that is considered, with the currents (A) and speed (electrical rad/s) of a stretch.
+enum Proposal {
+    Hold { i: Dq, omega_e: f64, place: Place },
+    Multimeter,
+}
+
+/// What to measure for a parameter, and what it would bring; nothing, where nothing proposed would help.
+pub(super) fn best(bench: &Bench, parameter: Parameter) -> Option<Promised> {
+    let best = proposals(bench, parameter)
+        .iter()
+        .flat_map(|proposal| outcomes(bench, proposal, parameter))
+        .filter(|promised| promised.half_width.is_finite())
+        .fold(None, |best: Option<Promised>, one| match best {
+            // An easier one that suffices stands; of those that do not, the better.
+            Some(best) if best.half_width <= IDENTIFIED || best.half_width <= one.half_width => Some(best),
+            _ => Some(one),
+        })?;
+    // What leaves more than half of what there is now, or no value at all, is not worth proposing.
+    (best.half_width < (0.5 * width(bench, &bench.covariance, parameter)).min(WEAK)).then_some(best)
+}
+
+/// Relative half-width of a parameter's interval.
+fn width(bench: &Bench, covariance: &Matrix4<f64>, parameter: Parameter) -> f64 {
+    let p = parameter as usize;
+    HALF_WIDTH * covariance[(p, p)].max(0.0).sqrt() / bench.motor.get(parameter).abs()
+}
+
+/// What a proposal makes of a parameter's interval, longer and longer.
+fn outcomes(bench: &Bench, proposal: &Proposal, parameter: Parameter) -> Vec<Promised> {
+    match proposal {
+        Proposal::Multimeter => {
+            let equation = Vector4::new(1.0, 0.0, 0.0, 0.0);
+            let rs = if bench.motor.rs.is_nan() { bench.voltage / bench.current() } else { bench.motor.rs };
+            let after = shrunk(bench.covariance, &equation, (MULTIMETER * rs).powi(2));
+            let measurement = Measurement::Resistance { accuracy: MULTIMETER };
+            vec![Promised { measurement, parameter, half_width: width(bench, &after, parameter) }]
+        }
+        Proposal::Hold { i, omega_e, place } => {
+            let lengths = LENGTHS.into_iter().filter(|length| length / bench.sample_period >= MIN_ROWS);
+            let promised = lengths.map(|seconds| Promised {
+                measurement: Measurement::Stretch { seconds, place: *place },
+                parameter,
+                half_width: width(bench, &after_hold(bench, *i, *omega_e, seconds), parameter),
+            });
+            promised.collect()
+        }
+    }
+}
+
+fn after_hold(bench: &Bench, i: Dq, omega_e: f64, length: f64) -> Matrix4<f64> {
+    let accuracy = bench.voltage_accuracy * bench.voltage;
+    let variance = bench.row_variance * bench.sample_period / length + accuracy * accuracy;
+    let d = Vector4::new(i.d, 0.0, -omega_e * i.q, 0.0);
+    let q = Vector4::new(i.q, omega_e * i.d, 0.0, omega_e);
+    shrunk(shrunk(bench.covariance, &d, variance), &q, variance)
+}
+
+/// What could be measured, the easiest first.
+fn proposals(bench: &Bench, parameter: Parameter) -> Vec<Proposal> {
+    let current = bench.current();
+    let Some((at, omega_e)) = bench.held.iter().copied().max_by(|(one, _), (other, _)| one.magnitude().total_cmp(&other.magnitude()))
+    else {
+        return Vec::new();
+    };
+    let unused = |id: f64| bench.held.iter().all(|(i, _)| (i.d - id).abs() > SAME * current);
+    let steps = [-STEP * current, 0.0, -2.0 * STEP * current].into_iter().filter(|id| unused(*id));
+    let mut proposals: Vec<Proposal> = steps.map(|id| Proposal::Hold { i: Dq { d: id, q: at.q }, omega_e, place: Place::Id(id) }).collect();
+    let half = Dq { d: at.d, q: 0.5 * at.q };
+    proposals.push(Proposal::Hold { i: half, omega_e, place: Place::HalfLoad { iq: half.q } });
+    proposals.push(Proposal::Hold { i: at, omega_e: 0.5 * omega_e, place: Place::HalfSpeed });
+    // The last resort for R_s itself; for what hides behind it the easiest way.
+    if parameter == Parameter::Rs {
+        proposals.push(Proposal::Multimeter);
+    } else {
+        proposals.insert(0, Proposal::Multimeter);
+    }
+    proposals
+}
+
+/// A covariance after one more equation with this variance.
+fn shrunk(covariance: Matrix4<f64>, equation: &Vector4<f64>, variance: f64) -> Matrix4<f64> {
+    let gain = covariance * equation;
+    let total = equation.dot(&gain) + variance;
+    if total > 0.0 { covariance - gain * gain.transpose() / total } else { covariance }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motor::Motor;
+
+    const MOTOR: Motor = Motor { rs: 1.0, ld: 5e-3, lq: 10e-3, psi_f: 0.2 };
+
+    fn bench(covariance: Matrix4<f64>, iq: f64, row_variance: f64, voltage_accuracy: f64) -> Bench {
+        let held = vec![(Dq { d: 0.0, q: iq }, 400.0)];
+        Bench { motor: MOTOR, covariance, held, row_variance, sample_period: 1e-4, voltage: 80.0, voltage_accuracy }
+    }
+
+    /// L_d wholly unknown, the rest exact: one stretch at i_d = -2 A tells it by u_q = .. + omega L_d i_d, so its error is that of u_q
+    /// over omega i_d. By hand: 0.2 s are 2000 rows of 1 V²: 22.4 mV; over 400 rad/s times 2 A: 28 uH; 1.96 times that of 5 mH: 1.1 %.
+    #[test]
+    fn the_promise_is_what_the_equations_say() {
+        let bench = bench(Matrix4::from_diagonal(&Vector4::new(0.0, 1.0, 0.0, 0.0)), 10.0, 1.0, 0.0);
+        let best = best(&bench, Parameter::Ld).unwrap();
+        assert_eq!(best.measurement, Measurement::Stretch { seconds: 0.2, place: Place::Id(-2.0) });
+        assert!((best.half_width - 0.011).abs() < 0.0005, "{best:?}");
+        assert_eq!(best.to_string(), "add 0.2 s at i_d = -2 A, same speed: L_d to about ±1.1 %");
+        // Nothing is to be gained for what is known.
+        assert_eq!(super::best(&bench, Parameter::Lq), None);
+    }
+
+    #[test]
+    fn a_multimeter_tells_the_flux_that_hides_behind_the_resistance() {
+        // One point at i_d = 0: R_s 8 A + 400 rad/s psi_f is known, neither of them is.
+        let direction = Vector4::new(1.0, 0.0, 0.0, -8.0 / 400.0);
+        let best = best(&bench(direction * direction.transpose(), 8.0, 1e-6, 1e-6), Parameter::PsiF).unwrap();
+        assert_eq!(best.measurement, Measurement::Resistance { accuracy: 0.01 });
+        // 1 % of 1 ohm moves psi_f by 8/400 of 10 mohm, 0.2 mWb of 200: 0.1 %, and 1.96 times that.
+        assert!((best.half_width - 0.00196).abs() < 1e-5, "{best:?}");
+    }
+}

@@ -1,0 +1,117 @@
+//! Remedies: what to do about a verdict, as facts. How a face does it (an option, an argument, a button) is the face's matter.
+
+use super::{
+    super::{
+        fit::{finding::Finding, uncertainty::Part},
+        judge::{
+            reason::{Common, Reason},
+            verdict::IDENTIFIED,
+        },
+    },
+    measurement::{self, Promised, STEP},
+};
+use crate::motor::Parameter;
+
+/// What to do for a better verdict.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// A measurement, with what it would bring.
+    Measure(Promised),
+    /// Add a stretch at the same speed with this i_d, A; zero: with i_d = 0.
+    AddStretch {
+        /// i_d, A.
+        id: f64,
+        /// What else would help, or is needed beside it.
+        also: Option<Also>,
+    },
+    /// Hold each operating point longer, or do the other thing.
+    HoldLonger {
+        /// How many times as long.
+        times: f64,
+        /// The alternative.
+        or: Box<Remedy>,
+    },
+    /// Make the operating points differ more, so that they tell this parameter.
+    SpreadPoints {
+        /// Which.
+        parameter: Parameter,
+    },
+    /// State the timing of the voltage columns.
+    StateVoltageTiming,
+    /// Log with the drive's dead-time compensation on, or give R_s as measured.
+    CompensateDeadTime,
+    /// Log without disturbances, or identify from a stretch held still.
+    RemoveDisturbances,
+    /// Calibrate the current sensors.
+    CalibrateSensors,
+    /// Identify from a part of the log at nearly the same currents.
+    NarrowCurrents,
+    /// Identify from three or more windows at nearly the same currents.
+    SimilarWindows,
+    /// Give a sharper prior, or log another operating point.
+    SharperPrior,
+    /// Log the electrical angle too, or hold the drive still.
+    LogAngle,
+    /// Compare with the other model, look at the residuals, and log angle and DC voltage too.
+    InspectResiduals,
+    /// Check signs and order of the columns.
+    CheckSigns {
+        /// Units and pole pairs too.
+        units: bool,
+    },
+}
+
+/// What else helps beside a stretch with another i_d.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Also {
+    /// Or a second speed or load, or R_s given.
+    OrSecondPoint,
+    /// And an operating point at a clearly different speed and load.
+    AndSecondPoint,
+}
+
+/// Beyond this, longer windows are no remedy.
+const MUCH_LONGER: f64 = 100.0;
+
+/// What to do about a reason; nothing about a value that was given.
+pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding) -> Option<Remedy> {
+    let measure = || measurement::best(&finding.bench, parameter).map(Remedy::Measure);
+    let or_stretch = |also: Option<Also>| measure().unwrap_or_else(|| Remedy::AddStretch { id: step(finding), also });
+    Some(match reason {
+        Reason::Given => return None,
+        Reason::IdZero { .. } | Reason::IdConstant => or_stretch(None),
+        Reason::OnePoint => or_stretch(Some(Also::OrSecondPoint)),
+        Reason::TooSimilar { .. } => or_stretch(Some(Also::AndSecondPoint)),
+        Reason::Negative | Reason::OtherNegative { .. } => Remedy::CheckSigns { units: false },
+        Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
+        Reason::CorrelatedResiduals { .. } => Remedy::InspectResiduals,
+        Reason::DisturbedWithoutAngle => Remedy::LogAngle,
+        Reason::Wide { part, half_width } => narrower(*part, *half_width, || measure().unwrap_or(Remedy::SpreadPoints { parameter })),
+    })
+}
+
+/// What makes a wide interval narrower; `measure` is what to measure for it.
+fn narrower(part: Part, half_width: f64, measure: impl Fn() -> Remedy) -> Remedy {
+    match part {
+        Part::Noise => {
+            // A standard error falls with the root of the time.
+            let times = (half_width / IDENTIFIED).powi(2).ceil();
+            if times < MUCH_LONGER { Remedy::HoldLonger { times, or: Box::new(measure()) } } else { measure() }
+        }
+        Part::Accuracy | Part::Excitation => measure(),
+        Part::Timing => Remedy::StateVoltageTiming,
+        Part::DeadTime => Remedy::CompensateDeadTime,
+        Part::ProcessNoise => Remedy::RemoveDisturbances,
+        Part::Sensors => Remedy::CalibrateSensors,
+        Part::Saturation => Remedy::NarrowCurrents,
+        Part::Misfit => Remedy::SimilarWindows,
+        Part::Prior => Remedy::SharperPrior,
+    }
+}
+
+/// The i_d, A, that the log has not: a step down from zero, or zero.
+fn step(finding: &Finding) -> f64 {
+    let current = finding.bench.current();
+    if Common::of(&finding.bench).id_is_zero(current) { -STEP * current } else { 0.0 }
+}

@@ -1,0 +1,230 @@
+//! The estimate: weighted least squares on the operating points' equations, in the directions that are excited.
+//!
+//! ```text
+//! minimize  sum over points  r' W r,   r = b - A x,   W = (N / n + voltage accuracy²)^-1
+//! ```
+//!
+//! `N` holds the long-run noise variances of `r`, pooled over the points, and `n` a point's rows. A point's own covariance has
+//! few degrees of freedom: weighting by it would chase its luck and make the answer look better than it is. The uncertainty is
+//! computed from the points' own covariances all the same, so it holds where the noise differs between them. The noise of
+//! currents and speed counts in `N` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated.
+//! Parameters that are fixed move to the right-hand side; a prior is one more equation.
+
+use super::{
+    super::request::{Known, Request},
+    excitation::Excitation,
+};
+use crate::{
+    least_squares::Equation,
+    motor::{Motor, PARAMETERS},
+    objective::voltage_error::VoltageError,
+    singular_values::Decomposition,
+    steady::OperatingPoint,
+};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
+
+/// Rounds of weighting. Weights move the answer by a fraction of its uncertainty, so the second round already changes nothing visible.
+const ROUNDS: usize = 4;
+
+/// Voltages are never trusted beyond this fraction of the largest, so that noise-free windows have finite weights, those without
+/// voltage too.
+const LEAST_ACCURACY: f64 = 1e-9;
+
+/// A voltage, V, that no drive can tell from none.
+const NO_VOLTAGE: f64 = 1e-30;
+
+/// The solution of the operating points' equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// The motor found. Of directions that are not excited it has nothing.
+    pub motor: Motor,
+    /// The weighted equations as a sum of squares of all four parameters, for a search: flat along directions that are not excited.
+    pub objective: VoltageError,
+    /// Per point, what an error of its two voltages (V) does to the parameters (SI).
+    pub gains: Vec<[[f64; 2]; PARAMETERS]>,
+    /// Per point, the residuals of its two equations, V.
+    pub residuals: Vec<[f64; 2]>,
+    /// Per point, the standard uncertainty of its voltages, V.
+    pub accuracy: Vec<f64>,
+    /// Per prior, what its standard error does to the parameters (SI).
+    pub prior_gains: Vec<[f64; PARAMETERS]>,
+    /// Sum of squares at the motor in units of the points' own covariances and accuracies, priors included.
+    pub chi_squared: f64,
+    /// Equations and priors, less the directions found.
+    pub degrees_of_freedom: usize,
+    /// The same with operating points that repeat each other counted once.
+    pub redundancy: usize,
+}
+
+impl Estimate {
+    /// Solves the points.
+    pub fn solve(points: &[OperatingPoint], excitation: &Excitation, request: &Request) -> Self {
+        Self::solve_with(points, excitation, request, request.voltage_accuracy)
+    }
+
+    /// Solves the points with voltages trusted to another fraction than the request'.
+    pub(crate) fn solve_with(points: &[OperatingPoint], excitation: &Excitation, request: &Request, voltage_accuracy: f64) -> Self {
+        let accuracy = voltage_uncertainty(points, voltage_accuracy);
+        let mut motor = Motor::from(request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
+        let mut system = System::of(points, &motor, &accuracy, request);
+        let mut solved = system.solve(excitation, request);
+        for _ in 1..ROUNDS {
+            motor = solved.0;
+            system = System::of(points, &motor, &accuracy, request);
+            solved = system.solve(excitation, request);
+        }
+        let (motor, gain) = solved;
+        let x = motor.to_array();
+        let of_points = gain.chunks_exact(2).zip(&system.whiteners);
+        let gains = of_points.map(|(gain, whitener)| {
+            std::array::from_fn(|p| [0, 1].map(|axis| gain[0][p] * whitener[(0, axis)] + gain[1][p] * whitener[(1, axis)]))
+        });
+        let chi_squared = chi_squared(points, excitation, &motor, &accuracy, request);
+        let kinds_count = kinds(points).into_iter().enumerate().filter(|(w, kind)| w == kind).count();
+        let prior_gains = gain[2 * points.len()..].to_vec();
+        Self {
+            motor,
+            gains: gains.collect(),
+            residuals: points.iter().map(|point| point.equations().map(|equation| equation.residual(&x))).collect(),
+            accuracy,
+            chi_squared,
+            degrees_of_freedom: (2 * points.len() + prior_gains.len()).saturating_sub(excitation.excited().count()),
+            redundancy: (2 * kinds_count + prior_gains.len()).saturating_sub(excitation.excited().count()),
+            prior_gains,
+            objective: VoltageError::of_equations(system.equations.into_iter().map(|equation| excitation.excited_equation(equation))),
+        }
+    }
+
+    /// How far a motor's cost lies above the lowest that there is.
+    pub fn cost_above_optimum(&self, motor: &Motor) -> f64 {
+        self.objective.cost_above_optimum(motor)
+    }
+}
+
+/// Whitened equations: two per point, then one per prior. Their values' errors have unit variance.
+struct System {
+    equations: Vec<Equation>,
+    whiteners: Vec<Matrix2<f64>>,
+}
+
+impl System {
+    fn of(points: &[OperatingPoint], motor: &Motor, accuracy: &[f64], request: &Request) -> Self {
+        let mut equations = Vec::new();
+        let mut whiteners = Vec::new();
+        let pooled = pooled_noise(points, motor);
+        for (point, accuracy) in points.iter().zip(accuracy) {
+            let whitener = whitener(pooled / point.rows.len() as f64, *accuracy);
+            let [d, q] = point.equations().map(|equation| move_fixed(equation, request));
+            for row in 0..2 {
+                let (a, b) = (whitener[(row, 0)], whitener[(row, 1)]);
+                let (d, q) = (d.weighted(a), q.weighted(b));
+                equations.push(Equation {
+                    coefficients: std::array::from_fn(|p| d.coefficients[p] + q.coefficients[p]),
+                    value: d.value + q.value,
+                });
+            }
+            whiteners.push(whitener);
+        }
+        equations.extend(priors(request));
+        Self { equations, whiteners }
+    }
+
+    /// The motor, and what a unit error of each whitened value does to it.
+    fn solve(&self, excitation: &Excitation, request: &Request) -> (Motor, Vec<[f64; PARAMETERS]>) {
+        let scale = Vector4::from(excitation.scale);
+        let excited: Vec<Vector4<f64>> =
+            excitation.excited().map(|direction| Vector4::from(direction.components).component_mul(&scale)).collect();
+        let mut x = Vector4::from(request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
+        let mut gain = vec![[0.0; PARAMETERS]; self.equations.len()];
+        if !excited.is_empty() {
+            let basis = DMatrix::from_fn(PARAMETERS, excited.len(), |p, direction| excited[direction][p]);
+            let coefficients = DMatrix::from_fn(self.equations.len(), PARAMETERS, |row, p| self.equations[row].coefficients[p]);
+            let values = DVector::from_iterator(self.equations.len(), self.equations.iter().map(|equation| equation.value));
+            // The columns are excited, so the pseudo-inverse needs no cut-off of its own.
+            let inverse = Decomposition::of(coefficients * &basis).pseudo_inverse(0.0);
+            let product = basis * inverse;
+            x += Vector4::from_iterator((&product * values).iter().copied());
+            gain = product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect();
+        }
+        (Motor::from(<[f64; PARAMETERS]>::from(x)), gain)
+    }
+}
+
+/// Long-run variances of the two residuals' noise, V² times rows, as a diagonal matrix: the points' own, weighted by what is
+/// behind them. The covariance between the axes is left out: estimated, it costs more than it brings.
+fn pooled_noise(points: &[OperatingPoint], motor: &Motor) -> Matrix2<f64> {
+    let total: usize = points.iter().map(|point| point.degrees_of_freedom).sum();
+    let share = |point: &OperatingPoint| (point.rows.len() * point.degrees_of_freedom) as f64 / total as f64;
+    let pooled: Matrix2<f64> = points.iter().map(|point| Matrix2::from(point.residual_covariance(motor)) * share(point)).sum();
+    Matrix2::from_diagonal(&pooled.diagonal())
+}
+
+/// What turns two residuals with this noise and accuracy into independent ones of unit variance.
+fn whitener(noise: Matrix2<f64>, accuracy: f64) -> Matrix2<f64> {
+    let covariance = noise + Matrix2::identity() * accuracy.powi(2);
+    // Positive definite by the accuracy; if rounding says otherwise, the diagonal alone will do.
+    let lower = covariance.cholesky().map_or_else(|| Matrix2::from_diagonal(&covariance.diagonal().map(f64::sqrt)), |factor| factor.l());
+    lower.try_inverse().unwrap_or_else(Matrix2::zeros)
+}
+
+/// One whitened equation per prior.
+fn priors(request: &Request) -> impl Iterator<Item = Equation> + '_ {
+    request.known.iter().enumerate().filter_map(|(p, known)| match known {
+        Known::Prior { value, standard_error } => {
+            let coefficients = std::array::from_fn(|q| f64::from(u8::from(p == q)));
+            Some(Equation { coefficients, value: *value }.weighted(1.0 / standard_error))
+        }
+        Known::Nothing | Known::Fixed(_) => None,
+    })
+}
+
+/// What directions that are not excited could do to the residuals is no contradiction: it counts as noise here.
+fn chi_squared(points: &[OperatingPoint], excitation: &Excitation, motor: &Motor, accuracy: &[f64], request: &Request) -> f64 {
+    let x = motor.to_array();
+    let of_points = points.iter().zip(accuracy).map(|(point, accuracy)| {
+        let residual = Vector2::from(point.equations().map(|equation| equation.residual(&x)));
+        let noise = Matrix2::from(point.residual_covariance(motor)) + Matrix2::from(excitation.unexcited_covariance(&point.equations()));
+        (whitener(noise, *accuracy) * residual).norm_squared()
+    });
+    of_points.sum::<f64>() + priors(request).map(|equation| equation.residual(&x).powi(2)).sum::<f64>()
+}
+
+/// An equation with the fixed parameters on its right-hand side.
+fn move_fixed(mut equation: Equation, request: &Request) -> Equation {
+    for (p, known) in request.known.iter().enumerate() {
+        if let Known::Fixed(value) = known {
+            equation.value -= equation.coefficients[p] * value;
+            equation.coefficients[p] = 0.0;
+        }
+    }
+    equation
+}
+
+/// Operating points closer than this, as a fraction of the largest current and speed, are one: a repetition proves repeatability,
+/// not the model.
+const DISTINCT: f64 = 0.02;
+
+/// For each point the number of the first point that it repeats: its own, if it is the first of its kind.
+fn kinds(points: &[OperatingPoint]) -> Vec<usize> {
+    let current = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
+    let speed = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    let same = |one: &OperatingPoint, other: &OperatingPoint| {
+        let (i, j) = (one.current(), other.current());
+        (i.d - j.d).hypot(i.q - j.q) <= DISTINCT * current && (one.omega_e() - other.omega_e()).abs() <= DISTINCT * speed
+    };
+    let mut kinds: Vec<usize> = Vec::new();
+    for (w, point) in points.iter().enumerate() {
+        let first = (0..w).find(|first| kinds[*first] == *first && same(point, &points[*first]));
+        kinds.push(first.unwrap_or(w));
+    }
+    kinds
+}
+
+/// Uncertainty of each point's voltages, V. It is the same error in every repetition of a point, so that no repetition may shrink it.
+fn voltage_uncertainty(points: &[OperatingPoint], fraction: f64) -> Vec<f64> {
+    // At least a fraction of the largest voltage: a window without any has no exact one either.
+    let least = LEAST_ACCURACY * points.iter().map(|point| point.voltage().magnitude()).fold(NO_VOLTAGE, f64::max);
+    let kinds = kinds(points);
+    let repetitions = |kind: usize| kinds.iter().filter(|other| **other == kind).count() as f64;
+    points.iter().zip(&kinds).map(|(point, kind)| (fraction * point.voltage().magnitude()).max(least) * repetitions(*kind).sqrt()).collect()
+}

@@ -1,0 +1,74 @@
+//! A finding: what a fit found, whichever model made it, as judgement and explanation need it.
+
+use super::uncertainty::Uncertainty;
+use crate::{
+    frames::Dq,
+    motor::{Motor, PARAMETERS, Parameter},
+};
+use nalgebra::Matrix4;
+
+/// The motor of a fit, its uncertainty, and what else bears on its verdicts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The motor found.
+    pub motor: Motor,
+    /// Its uncertainty, as if inductances and flux did not depend on the current.
+    pub uncertainty: Uncertainty,
+    /// Per parameter, whether the operating points leave it open.
+    pub open: [bool; PARAMETERS],
+    /// What speaks against the fit as a whole.
+    pub trust: Trust,
+    /// What is known, and at which currents and speeds.
+    pub(crate) bench: Bench,
+}
+
+/// What speaks against a fit of simulated currents, whatever its intervals say. The default is nothing, as for operating points, whose
+/// contradictions are part of the uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Trust {
+    /// Correlation of neighbouring residuals; zero where the residuals are too small to mean anything.
+    pub correlation_of_neighbours: f64,
+    /// Whether an observer follows disturbances which, without the electrical angle, cannot be told from faults of the drive.
+    pub disturbed_without_angle: bool,
+    /// Root mean square of the residuals as a fraction of the largest current.
+    pub misses: f64,
+}
+
+/// What is known from noise, accuracy and excitation, and where the motor was held: what a further measurement would add to.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Bench {
+    /// The motor; what is not known is NaN, and nothing is promised of it.
+    pub(crate) motor: Motor,
+    /// Covariance of its parameters, SI: noise, the voltages' accuracy, and what is not excited.
+    pub(crate) covariance: Matrix4<f64>,
+    /// Currents, A, and speed, electrical rad/s, at which the log was held.
+    pub(crate) held: Vec<(Dq, f64)>,
+    /// Variance that the mean of a stretch's voltage would have if it were one row long, V², noise of the currents included.
+    pub(crate) row_variance: f64,
+    /// s.
+    pub(crate) sample_period: f64,
+    /// Largest voltage of the log, V.
+    pub(crate) voltage: f64,
+    /// Systematic uncertainty of the voltages, as a fraction.
+    pub(crate) voltage_accuracy: f64,
+}
+
+impl Bench {
+    /// The motor, with the other inductance for one that is not known: they seldom differ by more than a few times.
+    pub(crate) fn guess(motor: Motor, is_known: impl Fn(Parameter) -> bool) -> Motor {
+        let value = |parameter| Some(motor.get(parameter)).filter(|value| *value > 0.0 && is_known(parameter));
+        let (ld, lq) = (value(Parameter::Ld), value(Parameter::Lq));
+        let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        Motor { rs: or_nan(value(Parameter::Rs)), ld: or_nan(ld.or(lq)), lq: or_nan(lq.or(ld)), psi_f: or_nan(value(Parameter::PsiF)) }
+    }
+
+    /// Largest current held, A.
+    pub(crate) fn current(&self) -> f64 {
+        self.held.iter().map(|(i, _)| i.magnitude()).fold(0.0, f64::max)
+    }
+}
+
+/// The covariance of standard errors and correlations.
+pub(crate) fn covariance(standard_errors: [f64; PARAMETERS], correlation: &[[f64; PARAMETERS]; PARAMETERS]) -> Matrix4<f64> {
+    Matrix4::from_fn(|p, q| if p == q { standard_errors[p].powi(2) } else { correlation[p][q] * standard_errors[p] * standard_errors[q] })
+}

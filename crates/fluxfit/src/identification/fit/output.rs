@@ -1,0 +1,202 @@
+//! What the output error makes of a log: a motor in an imperfect drive whose simulated currents are nearest the measured ones.
+//!
+//! ```text
+//! start → voltage timing → faults of the drive → disturbances → polish of all rows → errors
+//! ```
+
+use super::{
+    super::{
+        prepare::stretches,
+        progress::{Progress, Step},
+        request::{Provenance, Request},
+    },
+    excitation::Excitation,
+    finding::{Bench, Finding, Trust, covariance},
+    long_run,
+    output_choice::{Chosen, choose},
+    output_errors::{Errors, Nuisance, OutputShifts, sensors, without_observer},
+    output_start,
+    readings::{self, ReadingTrial},
+    steady::SteadyFit,
+    swarm::{self, Search},
+    terms::{self, LEAST_RESIDUAL, Outcome, Term},
+    uncertainty::{Systematic, Uncertainty},
+};
+use crate::{
+    error::Error,
+    frames::Dq,
+    levenberg_marquardt::{Polished, polish_watched},
+    log::Log,
+    motor::Motor,
+    objective::{acting_voltage::VoltageReading, adjustable::Adjustable, output_error::OutputError},
+    optimizer::{Method, bounds::Bounds},
+    steady::OperatingPoint,
+};
+use std::ops::Range;
+
+/// The simulated currents, and the motor that they ask for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputFit {
+    /// The motor, and what was found to stand between it and the log.
+    pub drive: Adjustable,
+    /// How the voltage columns were read, and whether that was stated or found.
+    pub voltage_reading: (VoltageReading, Provenance),
+    /// Every reading that was tried, with the faults that were found, the best first.
+    pub readings: Vec<ReadingTrial>,
+    /// Every fault that was tried, those taken first.
+    pub terms: Vec<terms::Tried>,
+    /// Numbers of the drive beside the motor that were found.
+    pub nuisance: Vec<Nuisance>,
+    /// Stretches of the log whose rows are compared.
+    pub stretches: Vec<Range<usize>>,
+    /// Measured less simulated current, A: `d, q` of each of those rows in turn; with an observer, less the prediction from the row before.
+    pub residuals: Vec<f64>,
+    /// Sum of their squares, A².
+    pub cost: f64,
+    /// Residuals less unknowns.
+    pub redundancy: usize,
+    /// Correlation of neighbouring residuals, the larger of both axes.
+    pub correlation_of_neighbours: f64,
+    /// Whether the electrical angle was in the log and turned with the speed.
+    pub angle_known: bool,
+    /// What it comes to.
+    pub finding: Finding,
+}
+
+/// Steps that a polish of all rows usually takes, each of a simulation and its derivatives: only for the progress display.
+const USUAL_STEPS: usize = 3;
+
+impl OutputFit {
+    /// Fits the rows of the log, or of the windows that are named.
+    ///
+    /// # Errors
+    /// If a window is not in the log, or no stretch is long enough.
+    pub fn of(log: &Log, steady: Option<&SteadyFit>, request: &Request, progress: Progress) -> Result<Self, Error> {
+        let stretches = stretches::fitted(log, &request.windows)?;
+        let whole = stretches::as_points(log, &stretches);
+        let scale = Excitation::of(&whole, &request.known).scale;
+        let start = output_start::start(log, &stretches, steady, request, &scale);
+        let Chosen { reading, drive, unknowns, beliefs, readings, terms, independent, .. } =
+            choose(log, &stretches, &start, request, progress)?;
+        let objective = &OutputError::of_rows(log, &stretches, reading)?;
+        let usual = USUAL_STEPS * (1 + 2 * unknowns.len());
+        let fitting = |simulations| {
+            let _ = progress(Step::Fit { simulations, usual });
+        };
+        let Polished { drive, cost, .. } = polish_watched(objective, &drive, &unknowns, &beliefs, &fitting);
+        let _ = progress(Step::Uncertainty);
+        let residuals = objective.residuals(&drive);
+        let shifts = OutputShifts {
+            timing: readings::doubt(&readings, independent),
+            process_noise: without_observer(objective, &drive, &unknowns, &beliefs),
+            sensors: sensors(&drive),
+        };
+        let errors = Errors::of(objective, &drive, &unknowns, &beliefs, &residuals, request.voltage_accuracy, &scale);
+        let uncertainty = errors.uncertainty(&unknowns, &shifts);
+        let correlation = errors.correlation_of_neighbours;
+        let points = steady.map_or(&whole[..], |fit| &fit.operating_points);
+        let rms = (cost / residuals.len() as f64).sqrt();
+        let finding = Finding {
+            motor: drive.motor,
+            open: [false; 4],
+            trust: Trust {
+                correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
+                disturbed_without_angle: is_taken(&terms, Term::ProcessNoise) && !objective.angle_known(),
+                misses: rms / objective.peak_current(),
+            },
+            bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),
+            uncertainty,
+        };
+        Ok(Self {
+            drive,
+            voltage_reading: (reading, if request.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
+            terms,
+            nuisance: errors.nuisance(&drive, &unknowns),
+            stretches: objective.stretches().collect(),
+            angle_known: objective.angle_known(),
+            redundancy: residuals.len().saturating_sub(unknowns.len()),
+            correlation_of_neighbours: correlation,
+            finding,
+            readings,
+            residuals,
+            cost,
+        })
+    }
+
+    /// Whether a term is part of the answer.
+    pub fn has(&self, term: Term) -> bool {
+        is_taken(&self.terms, term)
+    }
+
+    /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.
+    pub fn leaves_something(&self) -> bool {
+        self.finding.trust.correlation_of_neighbours != 0.0
+    }
+
+    /// Root mean square of the residuals along d and q, A.
+    pub fn residual_rms(&self) -> Dq {
+        let (rows, _) = self.residuals.as_chunks::<2>();
+        let rms = |axis: usize| (rows.iter().map(|row| row[axis].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
+        Dq { d: rms(0), q: rms(1) }
+    }
+
+    /// Autocorrelation, about zero, of the residuals along d and q at lags of 1 to `lags` rows; none reaches across a gap.
+    pub fn autocorrelation(&self, lags: usize) -> [Vec<f64>; 2] {
+        let lengths: Vec<usize> = self.stretches.iter().map(ExactSizeIterator::len).collect();
+        let (rows, _) = self.residuals.as_chunks::<2>();
+        [0, 1].map(|axis| {
+            let series: Vec<f64> = rows.iter().map(|row| row[axis]).collect();
+            (1..=lags).map(|lag| long_run::correlation(&series, lag, &lengths)).collect()
+        })
+    }
+
+    /// The readings of the voltages that are not ruled out, the best first: they fit about as well as it does.
+    pub fn possible_readings(&self) -> impl Iterator<Item = &ReadingTrial> {
+        readings::possible(&self.readings, terms::independent(&self.residuals))
+    }
+
+    /// Lets the swarm minimize the same output error.
+    ///
+    /// # Errors
+    /// If the box or the settings do not suit it.
+    pub(crate) fn search(&self, log: &Log, method: Method, bounds: Bounds, request: &Request, progress: Progress) -> Result<Search, Error> {
+        let stretches = stretches::fitted(log, &request.windows)?;
+        let objective = OutputError::of_rows(log, &stretches, self.voltage_reading.0)?.holding(self.drive.nuisance);
+        let report = swarm::run(&objective, method, &bounds, request, progress)?;
+        let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
+        Ok(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report })
+    }
+}
+
+fn is_taken(trials: &[terms::Tried], term: Term) -> bool {
+    trials.iter().any(|trial| trial.term == term && trial.outcome == Outcome::Taken)
+}
+
+/// What is known from noise, accuracy and excitation: what a further stretch would improve.
+fn bench(
+    motor: &Motor,
+    uncertainty: &Uncertainty,
+    points: &[OperatingPoint],
+    rms: f64,
+    correlation: f64,
+    log: &Log,
+    request: &Request,
+) -> Bench {
+    let standard_errors = uncertainty.parameters.map(|parameter| {
+        let Systematic { accuracy, excitation, .. } = parameter.systematic;
+        parameter.statistical.hypot(accuracy).hypot(excitation)
+    });
+    let fastest = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    // A current's noise as a voltage, and how much longer than white noise correlated noise lasts.
+    let impedance = motor.rs.abs() + fastest * motor.ld.abs().max(motor.lq.abs());
+    let lasting = (1.0 + correlation.clamp(0.0, 0.9)) / (1.0 - correlation.clamp(0.0, 0.9));
+    Bench {
+        motor: Bench::guess(*motor, |parameter| uncertainty.parameters[parameter as usize].systematic.excitation == 0.0),
+        covariance: covariance(standard_errors, &uncertainty.correlation),
+        held: points.iter().map(|point| (point.current(), point.omega_e())).collect(),
+        row_variance: (impedance * rms).powi(2) * lasting,
+        sample_period: log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max),
+        voltage: points.iter().map(|point| point.voltage().magnitude()).fold(0.0, f64::max),
+        voltage_accuracy: request.voltage_accuracy,
+    }
+}

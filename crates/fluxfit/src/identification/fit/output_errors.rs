@@ -1,0 +1,175 @@
+//! Errors of everything that is fitted to simulated currents.
+//!
+//! The statistical uncertainty is that of the scores, the products of derivatives and residuals: `(J'J)^-1 S (J'J)^-1` with their
+//! [long-run covariance](super::long_run) `S`. The [voltages' accuracy](super::voltage_accuracy) comes through the adjoint equations,
+//! which give the effect of a volt at any row on each parameter.
+
+use super::{
+    long_run,
+    terms::inverse_normal,
+    uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
+    voltage_accuracy,
+};
+use crate::{
+    levenberg_marquardt::{Belief, MOTOR, jacobian, polish_unknowns},
+    motor::{Motor, PARAMETERS},
+    objective::{
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
+};
+use nalgebra::DMatrix;
+
+/// A number of the drive beside the motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nuisance {
+    /// Which.
+    pub unknown: Unknown,
+    /// SI.
+    pub value: f64,
+    /// Statistical standard error, SI.
+    pub standard_error: f64,
+}
+
+/// How far each parameter moves with what is not certain, SI.
+pub(super) struct OutputShifts {
+    pub(super) timing: [f64; PARAMETERS],
+    pub(super) process_noise: [f64; PARAMETERS],
+    pub(super) sensors: [f64; PARAMETERS],
+}
+
+/// How far the motor lies from that of a drive without disturbance, if an observer was found: either may be right.
+pub(super) fn without_observer(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> [f64; PARAMETERS] {
+    let gains = [Unknown::GainD, Unknown::GainQ];
+    let rest: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| !gains.contains(unknown)).collect();
+    if rest.len() == unknowns.len() {
+        return [0.0; PARAMETERS];
+    }
+    let start = gains.into_iter().fold(*drive, |drive, gain| drive.with(gain, 0.0));
+    let other = polish_unknowns(objective, &start, &rest, beliefs).drive.motor.to_array();
+    std::array::from_fn(|p| (drive.motor.to_array()[p] - other[p]).abs())
+}
+
+/// Where gains of sensors differ, nobody knows which of them is right: a gain common to all would scale every impedance.
+pub(super) fn sensors(drive: &Adjustable) -> [f64; PARAMETERS] {
+    let imbalance = drive.nuisance.imbalance;
+    let common = imbalance.alpha.hypot(imbalance.beta);
+    let Motor { rs, ld, lq, .. } = drive.motor;
+    [common * rs, common * ld, common * lq, 0.0]
+}
+
+/// Errors of everything that was fitted.
+pub(super) struct Errors {
+    /// Of the unknowns, from noise.
+    covariance: DMatrix<f64>,
+    degrees_of_freedom: f64,
+    /// Of the unknowns, from the voltages' accuracy.
+    accuracy: DMatrix<f64>,
+    /// Of the unknowns, per prior.
+    priors: Vec<Vec<f64>>,
+    /// How far what the rows do not tell at all could move each unknown.
+    open: Vec<f64>,
+    pub(super) correlation_of_neighbours: f64,
+}
+
+impl Errors {
+    pub(super) fn of(
+        objective: &OutputError,
+        drive: &Adjustable,
+        unknowns: &[Unknown],
+        beliefs: &[Belief],
+        residuals: &[f64],
+        voltage_accuracy: f64,
+        scale: &[f64; PARAMETERS],
+    ) -> Self {
+        let slopes = jacobian(objective, drive, unknowns);
+        let mut with_beliefs = slopes.clone();
+        for (column, unknown) in with_beliefs.iter_mut().zip(unknowns) {
+            column.extend(beliefs.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
+        }
+        let inverse = inverse_normal(&with_beliefs);
+        let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
+        let (rows, _) = residuals.as_chunks::<2>();
+        // A score per row: both axes together.
+        let scores = slopes.iter().map(|slope| {
+            let (slope, _) = slope.as_chunks::<2>();
+            slope.iter().zip(rows).map(|(slope, residual)| slope[0] * residual[0] + slope[1] * residual[1]).collect()
+        });
+        let scores: Vec<Vec<f64>> = scores.collect();
+        let long_run = long_run::covariance(&scores, &lengths);
+        let axis = |axis: usize| rows.iter().map(|row| row[axis]).collect::<Vec<_>>();
+        Self {
+            covariance: &inverse * long_run.covariance * &inverse,
+            degrees_of_freedom: long_run.degrees_of_freedom,
+            accuracy: voltage_accuracy::covariance(objective, drive, &inverse, &slopes, voltage_accuracy),
+            priors: beliefs
+                .iter()
+                .map(|belief| {
+                    let column = unknowns.iter().position(|unknown| *unknown == belief.unknown);
+                    let noise = (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt();
+                    // A belief's own error is one standard error, which is the noise of a current over its weight.
+                    column.map_or(vec![0.0; unknowns.len()], |q| {
+                        (0..unknowns.len()).map(|p| inverse[(p, q)] * belief.weight * noise).collect()
+                    })
+                })
+                .collect(),
+            open: open(&with_beliefs, &inverse, unknowns, scale),
+            correlation_of_neighbours: [0, 1].map(|k| long_run::first_correlation(&axis(k), &lengths)).into_iter().fold(f64::MIN, f64::max),
+        }
+    }
+
+    pub(super) fn nuisance(&self, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Nuisance> {
+        let beside = unknowns.iter().enumerate().filter(|(_, unknown)| !matches!(unknown, Unknown::Motor(_)));
+        beside
+            .map(|(k, unknown)| Nuisance {
+                unknown: *unknown,
+                value: drive.get(*unknown),
+                standard_error: (self.covariance[(k, k)].max(0.0) + self.accuracy[(k, k)].max(0.0)).sqrt(),
+            })
+            .collect()
+    }
+
+    pub(super) fn uncertainty(&self, unknowns: &[Unknown], shifts: &OutputShifts) -> Uncertainty {
+        let place: Vec<Option<usize>> = MOTOR.iter().map(|parameter| unknowns.iter().position(|unknown| unknown == parameter)).collect();
+        let parameters = std::array::from_fn(|p| {
+            let Some(k) = place[p] else { return ParameterUncertainty::default() };
+            let systematic = Systematic {
+                accuracy: self.accuracy[(k, k)].max(0.0).sqrt(),
+                prior: self.priors.iter().map(|prior| prior[k].powi(2)).sum::<f64>().sqrt(),
+                timing: shifts.timing[p],
+                process_noise: shifts.process_noise[p],
+                sensors: shifts.sensors[p],
+                excitation: self.open[k],
+                ..Systematic::default()
+            };
+            ParameterUncertainty::of(self.covariance[(k, k)].max(0.0).sqrt(), self.degrees_of_freedom, systematic)
+        });
+        let both = |p: usize, q: usize| match (place[p], place[q]) {
+            (Some(k), Some(l)) => {
+                self.covariance[(k, l)] + self.accuracy[(k, l)] + self.priors.iter().map(|prior| prior[k] * prior[l]).sum::<f64>()
+            }
+            _ => 0.0,
+        };
+        let correlation = std::array::from_fn(|p| {
+            std::array::from_fn(|q| {
+                let scale = (both(p, p) * both(q, q)).sqrt();
+                if scale > 0.0 { both(p, q) / scale } else { 0.0 }
+            })
+        });
+        Uncertainty { parameters, correlation }
+    }
+}
+
+/// A parameter is open if the rows tell less than all but this part of it.
+const OPEN_PART: f64 = 0.01;
+
+/// Per unknown: the range of a parameter that is open, as a standard deviation; zero for others.
+fn open(columns: &[Vec<f64>], inverse: &DMatrix<f64>, unknowns: &[Unknown], scale: &[f64; PARAMETERS]) -> Vec<f64> {
+    let dot = |p: usize, q: usize| columns[p].iter().zip(&columns[q]).map(|(a, b)| a * b).sum::<f64>();
+    let told = |k: usize| (0..columns.len()).map(|l| inverse[(k, l)] * dot(l, k)).sum::<f64>();
+    let range = |(k, unknown): (usize, &Unknown)| match unknown {
+        Unknown::Motor(parameter) if (told(k) - 1.0).abs() > OPEN_PART || told(k).is_nan() => scale[*parameter as usize] / 3.0_f64.sqrt(),
+        _ => 0.0,
+    };
+    unknowns.iter().enumerate().map(range).collect()
+}

@@ -1,0 +1,77 @@
+//! Where the fit of simulated currents starts, and with what knowledge.
+
+use super::{
+    super::request::{Known, Request},
+    steady::SteadyFit,
+};
+use crate::{
+    least_squares::{Equation, TriangularFactor},
+    levenberg_marquardt::{Belief, MOTOR},
+    log::Log,
+    motor::{Motor, PARAMETERS, Parameter},
+    objective::adjustable::{Adjustable, Unknown},
+};
+use std::ops::Range;
+
+/// Parameters that are not fixed.
+pub(super) fn free(request: &Request) -> Vec<Unknown> {
+    let is_free = |(_, known): &(Unknown, &Known)| !matches!(known, Known::Fixed(_));
+    MOTOR.into_iter().zip(&request.known).filter(is_free).map(|(unknown, _)| unknown).collect()
+}
+
+/// Priors as residuals, given the mean square of a current's.
+pub(super) fn beliefs(request: &Request, mean_square: f64) -> Vec<Belief> {
+    let priors = MOTOR.into_iter().zip(request.known).filter_map(|(unknown, known)| match known {
+        Known::Prior { value, standard_error } => Some(Belief { unknown, value, weight: mean_square.sqrt() / standard_error }),
+        Known::Nothing | Known::Fixed(_) => None,
+    });
+    priors.collect()
+}
+
+/// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations.
+pub(super) fn start(
+    log: &Log,
+    stretches: &[Range<usize>],
+    steady: Option<&SteadyFit>,
+    request: &Request,
+    scale: &[f64; PARAMETERS],
+) -> Adjustable {
+    let rows = by_differences(log, stretches).to_array();
+    let mut values: [f64; PARAMETERS] = std::array::from_fn(|p| {
+        let parameter = Parameter::ALL[p];
+        let of_points = steady.filter(|fit| !fit.excitation.is_open(parameter)).map(|fit| fit.estimate.motor.get(parameter));
+        // An arbitrary fallback start: a tenth of what the voltage allows.
+        [of_points, Some(rows[p])].into_iter().flatten().find(|value| *value > 0.0 && value.is_finite()).unwrap_or(0.1 * scale[p])
+    });
+    for (value, known) in values.iter_mut().zip(request.known) {
+        match known {
+            Known::Fixed(known) | Known::Prior { value: known, .. } => *value = known,
+            Known::Nothing => {}
+        }
+    }
+    Adjustable::from(Motor::from(values))
+}
+
+/// Rows over which a difference of currents stands for their slope: enough to calm noise, few enough to follow a transient.
+const DIFFERENCE: usize = 10;
+
+/// The motor of equation (1), with differences of currents over some rows and means of the rest: biased by noise and delay, and
+/// good enough to start from.
+fn by_differences(log: &Log, stretches: &[Range<usize>]) -> Motor {
+    let columns = log.columns();
+    let mut equations = Vec::new();
+    for rows in stretches {
+        for first in rows.clone().step_by(DIFFERENCE).filter(|first| first + DIFFERENCE < rows.end) {
+            let span = first..first + DIFFERENCE;
+            let mean = |value: &dyn Fn(usize) -> f64| span.clone().map(value).sum::<f64>() / DIFFERENCE as f64;
+            let slope = |current: &[f64]| (current[span.end] - current[first]) / (columns.t[span.end] - columns.t[first]);
+            let omega_i = |current: &[f64]| mean(&|row| columns.omega_e[row] * current[row]);
+            let (id, iq) = (mean(&|row| columns.id[row]), mean(&|row| columns.iq[row]));
+            let d = [id, slope(&columns.id), -omega_i(&columns.iq), 0.0];
+            let q = [iq, omega_i(&columns.id), slope(&columns.iq), mean(&|row| columns.omega_e[row])];
+            equations.push(Equation { coefficients: d, value: mean(&|row| columns.ud[row]) });
+            equations.push(Equation { coefficients: q, value: mean(&|row| columns.uq[row]) });
+        }
+    }
+    equations.into_iter().collect::<TriangularFactor>().solve().motor
+}

@@ -1,0 +1,82 @@
+//! Voltage timing: every reading of the voltage columns is tried, and the currents decide.
+//!
+//! A period's delay that is wrong shows wherever the voltage moves. In a log that stands still at one speed it does not show; then the
+//! readings that fit about as well as the best one tell how much it matters.
+
+use super::super::request::Request;
+use crate::{
+    error::Error,
+    levenberg_marquardt::{Belief, Polished, polish_unknowns},
+    log::Log,
+    motor::PARAMETERS,
+    objective::{
+        acting_voltage::VoltageReading,
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
+};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Twice the logarithm of the odds against a reading from which on it is ruled out: e^-5, one in 150. R. E. Kass and A. E. Raftery, "Bayes
+/// factors", J. Am. Stat. Assoc. 90 (1995) 773, call it very strong.
+pub(crate) const VERY_STRONG: f64 = 10.0;
+
+/// A trial of one reading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReadingTrial {
+    /// The reading.
+    pub reading: VoltageReading,
+    /// Where its polish ended.
+    pub polished: Polished,
+    /// Rows that it compares: a delay loses some.
+    pub rows: usize,
+}
+
+impl ReadingTrial {
+    /// Mean square of a residual, A²: what readings are compared by.
+    pub fn mean_square(&self) -> f64 {
+        self.polished.cost / (2 * self.rows) as f64
+    }
+}
+
+/// The fitness under every reading, or under the one that is stated.
+///
+/// # Errors
+/// If no stretch is long enough.
+pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Vec<(VoltageReading, OutputError)>, Error> {
+    let readings = request.voltage_timing.map_or(VoltageReading::ALL.to_vec(), |stated| vec![stated]);
+    readings.into_iter().map(|reading| Ok((reading, OutputError::of_rows(log, stretches, reading)?))).collect()
+}
+
+/// Tries every reading from the same start. The best one first, with its place among the objectives.
+pub(crate) fn readings(
+    objectives: &[(VoltageReading, OutputError)],
+    start: &Adjustable,
+    unknowns: &[Unknown],
+    beliefs: &[Belief],
+) -> Vec<(usize, ReadingTrial)> {
+    let try_one = |(place, (reading, objective)): (usize, &(VoltageReading, OutputError))| {
+        let polished = polish_unknowns(objective, start, unknowns, beliefs);
+        (place, ReadingTrial { reading: *reading, polished, rows: objective.rows() })
+    };
+    let mut tried: Vec<(usize, ReadingTrial)> = objectives.par_iter().enumerate().map(try_one).collect();
+    tried.sort_by(|(_, one), (_, other)| one.mean_square().total_cmp(&other.mean_square()));
+    tried
+}
+
+/// The readings that are not ruled out, given how many independent residuals there are. The best one first.
+pub(crate) fn possible(tried: &[ReadingTrial], independent: f64) -> impl Iterator<Item = &ReadingTrial> {
+    let least = tried.first().map_or(0.0, ReadingTrial::mean_square);
+    // Where the best is perfect, so is every other one that is possible.
+    tried.iter().filter(move |other| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG)
+}
+
+/// How far each parameter moves between them.
+pub(crate) fn doubt(tried: &[ReadingTrial], independent: f64) -> [f64; PARAMETERS] {
+    let Some(best) = tried.first() else { return [0.0; PARAMETERS] };
+    possible(tried, independent).fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
+        let (one, other) = (best.polished.drive.motor.to_array(), other.polished.drive.motor.to_array());
+        std::array::from_fn(|p| most[p].max((one[p] - other[p]).abs()))
+    })
+}

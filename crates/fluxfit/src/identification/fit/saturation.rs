@@ -1,0 +1,193 @@
+//! Saturation: flux that does not grow in proportion to the current, so that there are no constant inductances to be found.
+//!
+//! At a steady operating point the voltage tells the flux, whatever it depends on:
+//!
+//! ```text
+//! psi_d = (u_q - R_s i_q) / omega_e - L_q drift_q / omega_e
+//! psi_q = (R_s i_d - u_d) / omega_e + L_d drift_d / omega_e
+//! ```
+//!
+//! Its *apparent* inductances are `psi_q / i_q` and `(psi_d - psi_f) / i_d`; the incremental ones, `d psi / d i`, are other
+//! numbers, and points that lie far apart do not tell them.
+//!
+//! Whether saturation is why operating points contradict each other is found by [`saturation_equations`](super::saturation_equations).
+
+use super::{
+    super::request::{Known, Request},
+    excitation::Excitation,
+    misfit::Misfit,
+    saturation_equations::{self, peak},
+};
+use crate::{
+    frames::Dq,
+    log::Log,
+    motor::{Motor, PARAMETERS, Parameter},
+    objective::adjustable::Adjustable,
+    steady::OperatingPoint,
+};
+use std::ops::Range;
+
+/// Saturation, and what the flux is instead of an inductance times the current.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Saturation {
+    /// Resistance that the fluxes were computed with, ohm.
+    pub rs: f64,
+    /// Its standard uncertainty, ohm; zero where it was given.
+    pub rs_uncertainty: f64,
+    /// Flux per operating point, in their order; none at a point that stands still.
+    pub fluxes: Vec<Option<Flux>>,
+    /// The apparent L_q at the smallest and the largest i_q that tell one.
+    pub lq: Option<[Apparent; 2]>,
+    /// The constants beside the terms of saturation: the motor at small currents.
+    pub small_currents: Motor,
+    /// How far the simulated currents' terms of saturation move each parameter over the rows' currents, SI; zero where they have none.
+    over_rows: [f64; PARAMETERS],
+}
+
+/// The flux at an operating point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flux {
+    /// Current, A.
+    pub current: Dq,
+    /// Flux linkage, Wb.
+    pub psi: Dq,
+    /// Its standard uncertainty, Wb: noise of the means, accuracy of the voltages, resistance.
+    pub uncertainty: Dq,
+    /// Whether the point itself tells both fluxes, R_s left aside: to half of their size, beyond which a parameter would be no answer.
+    pub is_told: bool,
+    /// `psi_q / i_q`, H; none where i_q is too small for it, or the flux not known to a half of it.
+    pub apparent_lq: Option<f64>,
+    /// `(psi_d - psi_f) / i_d`, H; none where i_d is too small for it, or psi_f is not known beforehand.
+    pub apparent_ld: Option<f64>,
+}
+
+/// An apparent inductance, H, and the current, A, at which it is one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Apparent {
+    /// Along its own axis.
+    pub current: f64,
+    /// `psi / i`.
+    pub inductance: f64,
+}
+
+/// Currents below this fraction of the largest divide no flux: the quotient would be their own error.
+const LEAST_CURRENT: f64 = 0.05;
+
+/// Up to this fraction of the largest current a point's flux says something of the magnet.
+const LIGHT: f64 = 0.5;
+
+/// A flux is told where its 95 % half-width is at most this part of it, as a weak parameter is.
+const TOLD: f64 = 0.5;
+
+/// The normal distribution's two-sided 95 % quantile, rounded down: an interval of that many standard deviations or more covers a spread.
+const QUANTILE: f64 = 1.95;
+
+impl Saturation {
+    /// Looks for it among operating points that contradict each other.
+    pub(crate) fn of_points(
+        points: &[OperatingPoint],
+        excitation: &Excitation,
+        motor: &Motor,
+        misfit: Option<&Misfit>,
+        request: &Request,
+    ) -> Option<Self> {
+        misfit?;
+        let best = saturation_equations::explain(points, excitation, motor, request)?;
+        Some(Self::at(points, best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
+    }
+
+    /// What simulated currents with terms of saturation say of it, over these rows; `of_points` is what the operating points say.
+    pub(crate) fn of_currents(
+        log: &Log,
+        drive: &Adjustable,
+        rs_uncertainty: f64,
+        stretches: &[Range<usize>],
+        (points, of_points): (&[OperatingPoint], Option<Self>),
+        request: &Request,
+    ) -> Self {
+        let (motor, nuisance) = (drive.motor, drive.nuisance);
+        let mut found = of_points.unwrap_or_else(|| Self::at(points, motor, (motor.rs, rs_uncertainty), request));
+        let (mut least, mut most) = (Apparent { current: f64::INFINITY, inductance: 0.0 }, Apparent { current: 0.0, inductance: 0.0 });
+        for row in stretches.iter().cloned().flatten() {
+            let i = Dq { d: log.columns().id[row], q: log.columns().iq[row] };
+            let lost = [
+                0.0,
+                nuisance.saturation.d * i.d.abs(),
+                nuisance.saturation.q * i.q.abs() + 2.0 * nuisance.cross_saturation * i.d,
+                nuisance.cross_saturation * i.q * i.q,
+            ];
+            found.over_rows.iter_mut().zip(lost).for_each(|(most, lost)| *most = most.max(lost.abs()));
+            let apparent = Apparent { current: i.q, inductance: motor.lq + lost[Parameter::Lq as usize] };
+            if i.q.abs() < least.current.abs() {
+                least = apparent;
+            }
+            if i.q.abs() > most.current.abs() {
+                most = apparent;
+            }
+        }
+        found.lq = found.lq.filter(|[least, most]| least.current != most.current).or(Some([least, most]));
+        found
+    }
+
+    /// The fluxes at the operating points.
+    fn at(points: &[OperatingPoint], small_currents: Motor, (rs, rs_uncertainty): (f64, f64), request: &Request) -> Self {
+        let psi_f = match request.known[Parameter::PsiF as usize] {
+            Known::Fixed(value) | Known::Prior { value, .. } => Some(value),
+            Known::Nothing => None,
+        };
+        let least = LEAST_CURRENT * peak(points);
+        let flux = |point: &OperatingPoint| {
+            let (omega_e, u, i) = (point.omega_e(), point.voltage(), point.current());
+            let noise = point.residual_covariance(&small_currents);
+            let accuracy = request.voltage_accuracy * u.magnitude();
+            let own = [0, 1].map(|axis: usize| noise[axis][axis].max(0.0).sqrt().hypot(accuracy) / omega_e.abs());
+            let of_rs = |i: f64| rs_uncertainty * i / omega_e;
+            let psi = Dq {
+                d: (u.q - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
+                q: (rs * i.d + small_currents.ld * point.drift.d - u.d) / omega_e,
+            };
+            let own = Dq { d: own[1], q: own[0] };
+            let flux = Flux {
+                current: i,
+                psi,
+                uncertainty: Dq { d: own.d.hypot(of_rs(i.q)), q: own.q.hypot(of_rs(i.d)) },
+                is_told: 2.0 * own.d <= TOLD * psi.d.abs() && 2.0 * own.q <= TOLD * psi.q.abs(),
+                apparent_lq: (i.q.abs() > least && 2.0 * own.q <= TOLD * psi.q.abs()).then_some(psi.q / i.q),
+                apparent_ld: psi_f.filter(|_| i.d.abs() > least).map(|psi_f| (psi.d - psi_f) / i.d),
+            };
+            [psi.d, psi.q, flux.uncertainty.d, flux.uncertainty.q].iter().all(|value| value.is_finite()).then_some(flux)
+        };
+        let fluxes: Vec<Option<Flux>> = points.iter().map(flux).collect();
+        let told = || fluxes.iter().flatten().filter_map(|flux| Some(Apparent { current: flux.current.q, inductance: flux.apparent_lq? }));
+        let by_current = |one: &Apparent, other: &Apparent| one.current.abs().total_cmp(&other.current.abs());
+        let lq = told().min_by(by_current).zip(told().max_by(by_current)).map(|(least, most)| [least, most]);
+        Self { rs, rs_uncertainty, fluxes, lq, small_currents, over_rows: [0.0; PARAMETERS] }
+    }
+
+    /// Standard uncertainty of an answer with constant parameters: so large that its 95 % intervals hold what every operating point, or
+    /// row, would call the parameter.
+    pub(crate) fn uncertainty(&self, answer: &Motor) -> [f64; PARAMETERS] {
+        let (told, small) = (answer.to_array(), self.small_currents.to_array());
+        let mut spread: [f64; PARAMETERS] = std::array::from_fn(|p| self.over_rows[p].max((told[p] - small[p]).abs()));
+        let mut hold = |parameter: Parameter, distance: f64, uncertainty: f64| {
+            let spread = &mut spread[parameter as usize];
+            *spread = spread.max(distance.abs() + 2.0 * uncertainty.abs());
+        };
+        hold(Parameter::Rs, answer.rs - self.rs, self.rs_uncertainty);
+        let peak = self.fluxes.iter().flatten().map(|flux| flux.current.magnitude()).fold(0.0, f64::max);
+        let least = LEAST_CURRENT * peak;
+        for Flux { current: i, psi, uncertainty, apparent_lq, .. } in self.fluxes.iter().flatten().filter(|flux| flux.is_told) {
+            if let Some(lq) = apparent_lq {
+                hold(Parameter::Lq, lq - answer.lq, uncertainty.q / i.q);
+            }
+            if i.d.abs() > least {
+                hold(Parameter::Ld, (psi.d - answer.psi_f) / i.d - answer.ld, uncertainty.d / i.d);
+            }
+            // The magnet's flux is what is left without current; what load takes from it by cross saturation is no other magnet.
+            if i.magnitude() <= LIGHT * peak {
+                hold(Parameter::PsiF, psi.d - answer.ld * i.d - answer.psi_f, uncertainty.d);
+            }
+        }
+        spread.map(|spread| spread / QUANTILE)
+    }
+}

@@ -1,0 +1,185 @@
+//! What the steady model makes of a log: equation (2) on the means of steady windows, for which weighted least squares is exact.
+
+use super::{
+    super::{
+        progress::Progress,
+        request::{Known, Provenance, Request},
+    },
+    dead_time,
+    estimate::Estimate,
+    excitation::Excitation,
+    finding::{Bench, Finding, Trust, covariance},
+    misfit::{self, Misfit},
+    saturation::Saturation,
+    swarm::{self, Search},
+    uncertainty::{SteadyShifts, Uncertainty},
+};
+use crate::{
+    error::Error,
+    frames::Dq,
+    log::Log,
+    motor::{Motor, PARAMETERS, Parameter},
+    optimizer::{Method, bounds::Bounds},
+    steady::{
+        Belief, OperatingPoint,
+        held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming},
+        windows,
+    },
+};
+
+/// The operating points, and the motor that they ask for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteadyFit {
+    /// The windows that carried it.
+    pub operating_points: Vec<OperatingPoint>,
+    /// Least squares, solved exactly.
+    pub estimate: Estimate,
+    /// What they excite.
+    pub excitation: Excitation,
+    /// How the voltage columns were read, and whether that was stated or assumed.
+    pub voltage_timing: (VoltageTiming, Provenance),
+    /// Contradiction between the operating points, if proven.
+    pub misfit: Option<Misfit>,
+    /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
+    pub voltage_losses: Vec<f64>,
+    /// What it comes to.
+    pub finding: Finding,
+    /// The operating points before any correction.
+    pub(crate) as_measured: Vec<OperatingPoint>,
+}
+
+impl SteadyFit {
+    /// Finds the operating points and solves them.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn of(log: &Log, request: &Request) -> Result<Self, Error> {
+        let as_measured = operating_points(log, request)?;
+        let (points, timing_doubt) = measure(log, &as_measured, request);
+        let excitation = Excitation::of(&points, &request.known);
+        let estimate = Estimate::solve(&points, &excitation, request);
+        let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, request);
+        let losses = dead_time::losses(log, &points, &excitation, &estimate);
+        let shifts = SteadyShifts { timing: timing_doubt, dead_time: dead_time::doubt(log, &points, &estimate, &losses) };
+        let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &shifts);
+        let finding = Finding {
+            motor: estimate.motor,
+            open: Parameter::ALL.map(|parameter| excitation.is_open(parameter)),
+            trust: Trust::default(),
+            bench: bench(&points, &excitation, &estimate, &uncertainty, request),
+            uncertainty,
+        };
+        Ok(Self {
+            operating_points: points,
+            estimate,
+            excitation,
+            voltage_timing: voltage_timing(request),
+            misfit,
+            voltage_losses: losses,
+            finding,
+            as_measured,
+        })
+    }
+
+    /// Saturation, if it explains a contradiction between the operating points.
+    pub(crate) fn saturation(&self, request: &Request) -> Option<Saturation> {
+        Saturation::of_points(&self.operating_points, &self.excitation, &self.estimate.motor, self.misfit.as_ref(), request)
+    }
+
+    /// Lets the swarm minimize the same weighted equations that least squares solved.
+    ///
+    /// # Errors
+    /// If the box or the settings do not suit it.
+    pub(crate) fn search(&self, method: Method, bounds: Bounds, request: &Request, progress: Progress) -> Result<Search, Error> {
+        let objective = &self.estimate.objective;
+        let report = swarm::run(objective, method, &bounds, request, progress)?;
+        // Where the cost is flat a swarm ends anywhere: only what the log excites is its answer.
+        let mut found = self.excitation.excited_motor(&Motor::from(std::array::from_fn(|p| report.best[p]))).to_array();
+        for (p, known) in request.known.iter().enumerate() {
+            if let Known::Fixed(value) = known {
+                found[p] = *value;
+            }
+        }
+        let motor = Motor::from(found);
+        Ok(Search { cost_above_optimum: self.estimate.cost_above_optimum(&motor), motor, bounds, report })
+    }
+}
+
+/// What is known from noise, accuracy and excitation: what more operating points would improve.
+fn bench(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate, uncertainty: &Uncertainty, request: &Request) -> Bench {
+    let standard_errors = uncertainty.parameters.map(|parameter| parameter.statistical.hypot(parameter.systematic.accuracy));
+    let row_variance = points.iter().map(|point| {
+        let noise = point.residual_covariance(&estimate.motor);
+        0.5 * (noise[0][0] + noise[1][1]) * point.rows.len() as f64
+    });
+    let mean_period = points.iter().map(|point| (point.time.1 - point.time.0) / (point.rows.len() - 1).max(1) as f64);
+    Bench {
+        motor: Bench::guess(estimate.motor, |parameter| !excitation.is_open(parameter)),
+        covariance: covariance(standard_errors, &uncertainty.correlation) + excitation.unexcited_parameters(),
+        held: points.iter().map(|point| (point.current(), point.omega_e())).collect(),
+        row_variance: row_variance.sum::<f64>() / points.len() as f64,
+        sample_period: mean_period.fold(0.0, f64::max),
+        voltage: points.iter().map(|point| point.voltage().magnitude()).fold(0.0, f64::max),
+        voltage_accuracy: request.voltage_accuracy,
+    }
+}
+
+/// Centred, unless stated otherwise: what drives that log their realized voltage mostly mean.
+pub fn voltage_timing(request: &Request) -> (VoltageTiming, Provenance) {
+    request.voltage_timing.map_or((VoltageTiming::Centered, Provenance::Assumed), |stated| (stated.into(), Provenance::Stated))
+}
+
+/// The operating points in the windows named, or in those found, as the log has them: before any correction, and with a coarse covariance.
+///
+/// # Errors
+/// If there is none.
+pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoint>, Error> {
+    let mut windows = Vec::new();
+    for times in &request.windows {
+        windows.extend(windows::between(log, *times)?);
+    }
+    if windows.is_empty() {
+        windows = windows::find(log)?;
+    }
+    Ok(windows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect())
+}
+
+/// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
+/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
+fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
+    let with = |timing: VoltageTiming| -> Vec<OperatingPoint> {
+        let beliefs = beliefs(log, rough, timing, request);
+        rough.iter().zip(&beliefs).map(|(point, belief)| OperatingPoint::measure(log, point.rows.clone(), Some(belief))).collect()
+    };
+    let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request).motor;
+    let points = with(voltage_timing(request).0);
+    let doubt = match request.voltage_timing {
+        Some(_) => [0.0; PARAMETERS],
+        None => {
+            let (one, other) = (solve(&points).to_array(), solve(&with(VoltageTiming::Compensated)).to_array());
+            std::array::from_fn(|p| (one[p] - other[p]).abs())
+        }
+    };
+    (points, doubt)
+}
+
+/// What a first look at the operating points tells of each: the motor, and the held-vector correction of its window.
+pub fn beliefs(log: &Log, rough: &[OperatingPoint], timing: VoltageTiming, request: &Request) -> Vec<Belief> {
+    let excitation = Excitation::of(rough, &request.known);
+    let motor = Estimate::solve(rough, &excitation, request).motor;
+    let inductance = excitation.inductances(&motor);
+    let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    rough.iter().map(|point| Belief { motor, held_vector: held_vector(log, point, fastest, timing, motor.rs, inductance) }).collect()
+}
+
+/// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all
+/// windows, so that either all of them are corrected or none; none of the current where so long a period does not shape it.
+fn held_vector(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> HeldVector {
+    match log.segment_of(point.rows.start).map(|segment| segment.sample_period) {
+        Some(sample_period) if fastest * sample_period <= MAX_ANGLE_PER_SAMPLE => {
+            let shapes = |l: f64| if rs > 0.0 && rs * sample_period <= MAX_DECAY_PER_SAMPLE * l { l } else { f64::INFINITY };
+            HeldVector { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }
+        }
+        _ => HeldVector::NONE,
+    }
+}

@@ -1,0 +1,279 @@
+//! How far to trust the estimate: a standard error in two parts, and the interval they make.
+//!
+//! *Statistical* (GUM type A): the noise of each window's means, carried through the estimate's gains; its degrees of freedom by
+//! Welch and Satterthwaite. *Systematic* (type B): what longer logs would not cure; these parts are added in quadrature:
+//!
+//! - the voltages' accuracy, independent between windows and axes;
+//! - priors;
+//! - the timing of the voltage columns, where nobody stated it;
+//! - dead time or device drops, where their [ripple](super::dead_time) shows;
+//! - directions that the log does not excite, a uniform distribution over their reach;
+//! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
+//! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is
+//!   widened to their scatter.
+//!
+//! JCGM 100:2008 (GUM), sections 4 and 5 and G.4.
+
+use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit};
+use crate::{motor::PARAMETERS, steady::OperatingPoint};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Probability that the interval holds.
+const CONFIDENCE: f64 = 0.95;
+
+/// As many degrees of freedom as no end of them: Student's t is the normal distribution to 1e-6.
+const NORMAL: f64 = 1e6;
+
+/// Systematic parts of a standard error, SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Systematic {
+    /// Of the voltages' accuracy.
+    pub accuracy: f64,
+    /// Of the priors.
+    pub prior: f64,
+    /// Of the voltage columns' timing.
+    pub timing: f64,
+    /// Of dead time or device drops.
+    pub dead_time: f64,
+    /// Of unknown voltages that disturb the motor.
+    pub process_noise: f64,
+    /// Of current sensors of which nobody knows which is right.
+    pub sensors: f64,
+    /// Of inductances that depend on the current.
+    pub saturation: f64,
+    /// Of directions that are not excited.
+    pub excitation: f64,
+    /// Of contradiction between the points, where there is any; then in the accuracy's place.
+    pub misfit: f64,
+}
+
+impl Systematic {
+    /// All parts in quadrature.
+    pub fn total(&self) -> f64 {
+        self.parts().iter().map(|(part, _)| part.powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Every part, with its name.
+    pub fn parts(&self) -> [(f64, Part); 9] {
+        [
+            (self.prior, Part::Prior),
+            (self.timing, Part::Timing),
+            (self.dead_time, Part::DeadTime),
+            (self.process_noise, Part::ProcessNoise),
+            (self.sensors, Part::Sensors),
+            (self.saturation, Part::Saturation),
+            (self.excitation, Part::Excitation),
+            (self.misfit, Part::Misfit),
+            (self.accuracy, Part::Accuracy),
+        ]
+    }
+}
+
+/// The uncertainty of one parameter, SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ParameterUncertainty {
+    /// Standard error from noise.
+    pub statistical: f64,
+    /// Standard error from everything else.
+    pub systematic: Systematic,
+    /// Degrees of freedom of both together.
+    pub degrees_of_freedom: f64,
+    /// Half the width of the 95 % interval.
+    pub half_width: f64,
+}
+
+impl ParameterUncertainty {
+    /// Both parts and their interval. Degrees of freedom are those of the statistical part.
+    pub(crate) fn of(statistical: f64, degrees_of_freedom: f64, systematic: Systematic) -> Self {
+        let standard_error = statistical.hypot(systematic.total());
+        // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own
+        // square is 0/0 where there is no noise.
+        let degrees = degrees_of_freedom * (standard_error / statistical).powi(4);
+        let degrees_of_freedom = if degrees.is_nan() { NORMAL } else { degrees.clamp(1.0, NORMAL) };
+        Self { statistical, systematic, degrees_of_freedom, half_width: quantile(degrees_of_freedom) * standard_error }
+    }
+
+    /// The same with so much misfit that the interval is at least as wide as this to either side, SI.
+    pub(crate) fn with_min_half_width(self, half_width: f64) -> Self {
+        let Self { statistical, mut systematic, degrees_of_freedom, .. } = self;
+        // Student's t is never narrower than the normal distribution, so this part alone makes the interval that wide.
+        systematic.misfit = systematic.misfit.hypot(half_width / quantile(NORMAL));
+        Self::of(statistical, degrees_of_freedom, systematic)
+    }
+
+    /// Both parts in quadrature.
+    pub fn standard_error(&self) -> f64 {
+        self.statistical.hypot(self.systematic.total())
+    }
+
+    /// The largest part.
+    pub fn largest_part(&self) -> Part {
+        let rest = self.systematic.parts();
+        rest.into_iter().fold((self.statistical, Part::Noise), |largest, part| if part.0 > largest.0 { part } else { largest }).1
+    }
+}
+
+/// What an uncertainty is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// Noise.
+    Noise,
+    /// Accuracy of the voltages.
+    Accuracy,
+    /// Priors.
+    Prior,
+    /// Timing of the voltage columns.
+    Timing,
+    /// Dead time or device drops.
+    DeadTime,
+    /// Unknown voltages.
+    ProcessNoise,
+    /// Current sensors.
+    Sensors,
+    /// Inductances that depend on the current.
+    Saturation,
+    /// Directions that are not excited.
+    Excitation,
+    /// Contradiction between the points.
+    Misfit,
+}
+
+impl Part {
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Noise => "noise",
+            Self::Accuracy => "accuracy",
+            Self::Prior => "prior",
+            Self::Timing => "timing",
+            Self::DeadTime => "dead_time",
+            Self::ProcessNoise => "process_noise",
+            Self::Sensors => "sensors",
+            Self::Saturation => "saturation",
+            Self::Excitation => "excitation",
+            Self::Misfit => "misfit",
+        }
+    }
+
+    /// Name in a table.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Noise => "noise",
+            Self::Accuracy => "voltage accuracy",
+            Self::Prior => "prior",
+            Self::Timing => "voltage timing",
+            Self::DeadTime => "dead time",
+            Self::ProcessNoise => "disturbances",
+            Self::Sensors => "current sensors",
+            Self::Saturation => "saturation",
+            Self::Excitation => "excitation",
+            Self::Misfit => "misfit",
+        }
+    }
+}
+
+/// How far each parameter moves with what nobody stated, SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SteadyShifts {
+    /// The timing of the voltage columns.
+    pub timing: [f64; PARAMETERS],
+    /// Dead time or device drops.
+    pub dead_time: [f64; PARAMETERS],
+}
+
+/// The uncertainty of an estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uncertainty {
+    /// Of each parameter.
+    pub parameters: [ParameterUncertainty; PARAMETERS],
+    /// Correlation of the parameters' statistical and accuracy parts; zero where there is no variance.
+    pub correlation: [[f64; PARAMETERS]; PARAMETERS],
+}
+
+impl Uncertainty {
+    /// Of an estimate, given what moves it besides noise, and whether its points contradict each other.
+    pub(crate) fn of(
+        points: &[OperatingPoint],
+        excitation: &Excitation,
+        estimate: &Estimate,
+        misfit: Option<&Misfit>,
+        shifts: &SteadyShifts,
+    ) -> Self {
+        let mut parameters = [ParameterUncertainty::default(); PARAMETERS];
+        for (p, parameter) in parameters.iter_mut().enumerate() {
+            let (statistical, degrees_of_freedom, mut systematic) = of_parameter(p, points, estimate, misfit.is_some());
+            systematic.timing = shifts.timing[p];
+            systematic.dead_time = shifts.dead_time[p];
+            // A uniform distribution's standard deviation.
+            systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
+            *parameter = ParameterUncertainty::of(statistical, degrees_of_freedom, systematic);
+        }
+        Self { parameters, correlation: correlation(points, estimate) }
+    }
+
+    /// The same of an answer with constant parameters, where saturation makes them spread with this standard uncertainty, SI.
+    pub(crate) fn with_saturation(mut self, spread: [f64; PARAMETERS]) -> Self {
+        for (parameter, part) in self.parameters.iter_mut().zip(spread) {
+            let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
+            // Degrees of freedom of both parts together, back to those of the statistical one.
+            let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
+            // Saturation is why the points contradict each other: one doubt, told twice. And its spread is about this very answer, so that
+            // what else is doubtful there is within it.
+            let needed = part.max(systematic.misfit);
+            systematic.misfit = 0.0;
+            let rest = statistical.hypot(systematic.total());
+            systematic.saturation = (needed * needed - rest * rest).max(0.0).sqrt();
+            *parameter = ParameterUncertainty::of(statistical, behind, systematic);
+        }
+        self
+    }
+}
+
+/// The parts that come through the gains: statistical, with its degrees of freedom, and systematic.
+fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit: bool) -> (f64, f64, Systematic) {
+    let (mut variance, mut variance_of_variance, mut accuracy) = (0.0, 0.0, 0.0);
+    for (w, point) in points.iter().enumerate() {
+        let gain = estimate.gains[w][p];
+        let noise = point.residual_covariance(&estimate.motor);
+        let part: f64 = (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| gain[a] * noise[a][b] * gain[b]).sum();
+        variance += part;
+        variance_of_variance += part * part / point.degrees_of_freedom as f64;
+        accuracy += (gain[0] * gain[0] + gain[1] * gain[1]) * estimate.accuracy[w].powi(2);
+    }
+    let systematic = Systematic {
+        accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
+        prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
+        misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
+        ..Systematic::default()
+    };
+    (variance.max(0.0).sqrt(), variance * variance / variance_of_variance, systematic)
+}
+
+/// Two-sided quantile of Student's t.
+fn quantile(degrees_of_freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees_of_freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
+}
+
+fn correlation(points: &[OperatingPoint], estimate: &Estimate) -> [[f64; PARAMETERS]; PARAMETERS] {
+    let mut covariance = [[0.0; PARAMETERS]; PARAMETERS];
+    for (w, point) in points.iter().enumerate() {
+        let gain = &estimate.gains[w];
+        let mut noise = point.residual_covariance(&estimate.motor);
+        noise[0][0] += estimate.accuracy[w].powi(2);
+        noise[1][1] += estimate.accuracy[w].powi(2);
+        for (p, row) in covariance.iter_mut().enumerate() {
+            for (q, entry) in row.iter_mut().enumerate() {
+                *entry += (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| gain[p][a] * noise[a][b] * gain[q][b]).sum::<f64>();
+            }
+        }
+    }
+    for gain in &estimate.prior_gains {
+        for (p, row) in covariance.iter_mut().enumerate() {
+            row.iter_mut().zip(gain).for_each(|(entry, other)| *entry += gain[p] * other);
+        }
+    }
+    let deviation: [f64; PARAMETERS] = std::array::from_fn(|p| covariance[p][p].sqrt());
+    std::array::from_fn(|p| {
+        std::array::from_fn(|q| if deviation[p] * deviation[q] > 0.0 { covariance[p][q] / (deviation[p] * deviation[q]) } else { 0.0 })
+    })
+}

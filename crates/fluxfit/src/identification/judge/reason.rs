@@ -1,0 +1,127 @@
+//! Reasons: why a parameter is not identified, as facts. A parameter that the log leaves open gets the reason why it is open; any
+//! other the largest part of its interval.
+
+use super::super::fit::{
+    finding::{Bench, Finding},
+    uncertainty::{ParameterUncertainty, Part},
+};
+use crate::{
+    frames::Dq,
+    motor::{PARAMETERS, Parameter},
+};
+
+/// Why a verdict is not better, or that the value was given.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The value was given, not identified.
+    Given,
+    /// The current i_d stays at zero, so L_d is absent from the equations.
+    IdZero {
+        /// Largest magnitude of i_d, A.
+        largest: f64,
+    },
+    /// There is one speed and one load at i_d = 0, where R_s i_q and omega_e psi_f act alike.
+    OnePoint,
+    /// The current i_d is the same at every operating point, where L_d i_d and psi_f act alike.
+    IdConstant,
+    /// The operating points are too similar for their noise: only combinations of these parameters show in them.
+    TooSimilar {
+        /// The parameters that are open.
+        open: Vec<Parameter>,
+    },
+    /// The value came out negative, and not by noise.
+    Negative,
+    /// Another parameter of the same fit came out negative, and not by noise.
+    OtherNegative {
+        /// Which.
+        parameter: Parameter,
+    },
+    /// The interval is wide.
+    Wide {
+        /// Its largest part.
+        part: Part,
+        /// Half of it, as a fraction of the value.
+        half_width: f64,
+    },
+    /// Unknown voltages disturb the motor, and without the electrical angle they cannot be told from faults of the drive.
+    DisturbedWithoutAngle,
+    /// Neighbouring residuals are correlated: the model lacks something that is in the log.
+    CorrelatedResiduals {
+        /// Correlation of neighbours.
+        correlation: f64,
+    },
+    /// The simulated currents miss the measured ones, and not by noise.
+    CurrentsMissed {
+        /// Root mean square, as a fraction of the largest current.
+        fraction: f64,
+    },
+}
+
+/// Means closer than this, as a fraction of the largest current or speed, are the same for a reason.
+pub(crate) const SAME: f64 = 0.05;
+
+/// Why a number that did not come out as identified is no better.
+pub(super) fn of(parameter: Parameter, finding: &Finding, uncertainty: &ParameterUncertainty, weak: f64) -> Reason {
+    let raw = finding.motor.get(parameter);
+    let half_width = if raw == 0.0 { f64::INFINITY } else { uncertainty.half_width / raw.abs() };
+    if finding.open[parameter as usize] {
+        open(parameter, &finding.bench, &finding.open)
+    } else if raw <= 0.0 && half_width < weak {
+        Reason::Negative
+    } else {
+        Reason::Wide { part: uncertainty.largest_part(), half_width }
+    }
+}
+
+/// Why the log leaves a parameter open: what its operating points have in common.
+fn open(parameter: Parameter, bench: &Bench, open: &[bool; PARAMETERS]) -> Reason {
+    let (current, held) = (bench.current(), Common::of(bench));
+    match parameter {
+        Parameter::Ld if held.id_is_zero(current) => Reason::IdZero { largest: held.id_most },
+        Parameter::Rs | Parameter::PsiF if held.id_is_zero(current) && held.is_one_point(current) => Reason::OnePoint,
+        Parameter::Ld | Parameter::PsiF if held.id_is_constant(current) && !open[Parameter::Rs as usize] => Reason::IdConstant,
+        _ => Reason::TooSimilar { open: Parameter::ALL.into_iter().filter(|other| open[*other as usize]).collect() },
+    }
+}
+
+/// What operating points have in common.
+pub(crate) struct Common {
+    /// Largest magnitude of i_d, A.
+    id_most: f64,
+    /// Range of each current, A, and of the speed, rad/s.
+    id_range: f64,
+    iq_range: f64,
+    omega_range: f64,
+    /// Largest speed, rad/s.
+    speed: f64,
+}
+
+impl Common {
+    pub(crate) fn of(bench: &Bench) -> Self {
+        let range = |value: fn(&(Dq, f64)) -> f64| {
+            let values = || bench.held.iter().map(value);
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        };
+        Self {
+            id_most: bench.held.iter().map(|(i, _)| i.d.abs()).fold(0.0, f64::max),
+            id_range: range(|(i, _)| i.d),
+            iq_range: range(|(i, _)| i.q),
+            omega_range: range(|(_, omega_e)| *omega_e),
+            speed: bench.held.iter().map(|(_, omega_e)| omega_e.abs()).fold(0.0, f64::max),
+        }
+    }
+
+    /// Whether i_d is zero everywhere, given the largest current, A.
+    pub(crate) fn id_is_zero(&self, current: f64) -> bool {
+        self.id_most <= SAME * current
+    }
+
+    fn id_is_constant(&self, current: f64) -> bool {
+        self.id_range <= SAME * current
+    }
+
+    fn is_one_point(&self, current: f64) -> bool {
+        self.id_is_constant(current) && self.iq_range <= SAME * current && self.omega_range <= SAME * self.speed
+    }
+}

@@ -1,0 +1,132 @@
+//! Verdicts: for each parameter one of three words.
+//!
+//! A verdict follows from the interval alone, and from what no motor has: a resistance, inductance or flux that is not positive
+//! is never an answer.
+
+use super::{
+    super::{
+        fit::{
+            finding::{Finding, Trust},
+            saturation::Saturation,
+            uncertainty::ParameterUncertainty,
+        },
+        request::{Known, Request},
+    },
+    reason::{self, Reason},
+};
+use crate::motor::{PARAMETERS, Parameter};
+
+/// Largest half-width of the 95 % interval, as a fraction of the value, of a parameter that is identified.
+pub const IDENTIFIED: f64 = 0.05;
+
+/// The same of one that is weak.
+pub const WEAK: f64 = 0.50;
+
+/// A verdict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Good to 5 %.
+    Identified,
+    /// Good to 50 %.
+    Weak,
+    /// The log cannot tell.
+    NotIdentifiable,
+}
+
+impl Verdict {
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Weak => "weak",
+            Self::NotIdentifiable => "not-identifiable",
+        }
+    }
+}
+
+/// Simulated currents that miss by more than this part of the largest, and not by noise, are no motor's: voltages and currents do not
+/// belong together. Dead time that takes four times what R_s does leaves 0.005.
+const MISSES: f64 = 0.15;
+
+/// Correlation of neighbouring residuals from which on they are not noise: something is in the log that the model does not have, and
+/// an interval that comes from noise says nothing of it.
+const CORRELATED: f64 = 0.3;
+
+/// One parameter with its verdict and the reason for it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Judged {
+    pub(crate) parameter: Parameter,
+    /// The number that came out, SI.
+    pub(crate) raw: f64,
+    pub(crate) uncertainty: ParameterUncertainty,
+    pub(crate) verdict: Verdict,
+    pub(crate) reason: Option<Reason>,
+}
+
+/// Judges every parameter of a finding.
+pub(crate) fn judge(finding: &Finding, saturation: Option<&Saturation>, request: &Request) -> [Judged; PARAMETERS] {
+    let uncertainty = match saturation {
+        Some(saturation) => finding.uncertainty.clone().with_saturation(saturation.uncertainty(&finding.motor)),
+        None => finding.uncertainty.clone(),
+    };
+    let mut judged = Parameter::ALL
+        .map(|parameter| by_interval(parameter, finding, uncertainty.parameters[parameter as usize], request.known[parameter as usize]));
+    distrust_sharp_intervals(&mut judged, &finding.trust);
+    let Trust { correlation_of_neighbours: correlation, misses: fraction, .. } = finding.trust;
+    if correlation > CORRELATED && fraction > MISSES {
+        distrust_all(&mut judged, request, &Reason::CurrentsMissed { fraction });
+    }
+    distrust_if_negative(&mut judged, request);
+    judged
+}
+
+fn by_interval(parameter: Parameter, finding: &Finding, uncertainty: ParameterUncertainty, known: Known) -> Judged {
+    let raw = finding.motor.get(parameter);
+    let verdict = match uncertainty.half_width / raw.abs() {
+        _ if matches!(known, Known::Fixed(_)) => Verdict::Identified,
+        _ if raw <= 0.0 => Verdict::NotIdentifiable,
+        width if width <= IDENTIFIED => Verdict::Identified,
+        width if width <= WEAK => Verdict::Weak,
+        _ => Verdict::NotIdentifiable,
+    };
+    let reason = match (known, verdict) {
+        (Known::Fixed(_), _) => Some(Reason::Given),
+        (_, Verdict::Identified) => None,
+        _ => Some(reason::of(parameter, finding, &uncertainty, WEAK)),
+    };
+    Judged { parameter, raw, uncertainty, verdict, reason }
+}
+
+/// Where the residuals are not noise, an interval that comes from noise would be as sharp as it is wrong.
+fn distrust_sharp_intervals(judged: &mut [Judged], trust: &Trust) {
+    let why = if trust.correlation_of_neighbours > CORRELATED {
+        Reason::CorrelatedResiduals { correlation: trust.correlation_of_neighbours }
+    } else if trust.disturbed_without_angle {
+        Reason::DisturbedWithoutAngle
+    } else {
+        return;
+    };
+    for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
+        one.verdict = Verdict::Weak;
+        one.uncertainty = one.uncertainty.with_min_half_width(IDENTIFIED * one.raw.abs());
+        one.reason = Some(why.clone());
+    }
+}
+
+/// If one parameter came out negative, and not by noise, the others come from the same wrong fit.
+fn distrust_if_negative(judged: &mut [Judged; PARAMETERS], request: &Request) {
+    let negative = judged.iter().find(|one| one.raw <= 0.0 && one.uncertainty.half_width < WEAK * one.raw.abs());
+    if let Some(Judged { parameter, reason, .. }) = negative.cloned() {
+        distrust_all(judged, request, &Reason::OtherNegative { parameter });
+        judged[parameter as usize].reason = reason;
+    }
+}
+
+/// Takes back every parameter that was not given.
+fn distrust_all(judged: &mut [Judged], request: &Request, reason: &Reason) {
+    for (one, known) in judged.iter_mut().zip(&request.known) {
+        if !matches!(known, Known::Fixed(_)) {
+            (one.verdict, one.reason) = (Verdict::NotIdentifiable, Some(reason.clone()));
+        }
+    }
+}

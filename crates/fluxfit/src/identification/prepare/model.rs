@@ -1,0 +1,102 @@
+//! Which model answers.
+//!
+//! The output error uses every row and knows the inverter's own periods, so it wants them: rows that follow each other as fast as the
+//! drive's samples. A decimated or filtered log has lost them; its operating points are what it still tells.
+
+use crate::{log::Log, steady::held_vector::MAX_ANGLE_PER_SAMPLE};
+
+/// A model of the log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// The steady equations at operating points.
+    Steady,
+    /// The currents, simulated row by row.
+    OutputError,
+}
+
+impl Model {
+    /// Name in files and on the command line.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Steady => "steady",
+            Self::OutputError => "output-error",
+        }
+    }
+
+    /// Name in prose.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Steady => "steady operating points",
+            Self::OutputError => "output error",
+        }
+    }
+}
+
+/// Slower than this no drive controls a current, Hz: such rows are a recorder's.
+pub const SLOWEST_CONTROL: f64 = 1000.0;
+
+/// A model, and why it answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModelChoice {
+    /// The model.
+    pub model: Model,
+    /// Why.
+    pub reason: ModelReason,
+}
+
+/// Why a model answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ModelReason {
+    /// The request states it.
+    Stated,
+    /// The channels were sampled at different instants.
+    Interpolated,
+    /// Rows are slower than any drive's own sampling.
+    SlowRows {
+        /// Hz.
+        rate: f64,
+    },
+    /// The rotor turns too far from row to row for the inverter's own periods.
+    TurnsTooFar {
+        /// rad.
+        turn: f64,
+    },
+    /// Rows come as fast as a drive controls.
+    FastRows {
+        /// Hz.
+        rate: f64,
+        /// Largest electrical angle from row to row, rad.
+        turn: f64,
+    },
+}
+
+/// The model that the request states, or the one that suits the log; and why.
+pub fn choose(log: &Log, stated: Option<Model>) -> ModelChoice {
+    if let Some(model) = stated {
+        return ModelChoice { model, reason: ModelReason::Stated };
+    }
+    let slowest = log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max);
+    let turn = largest_turn(log);
+    let (model, reason) = if log.is_interpolated() {
+        (Model::Steady, ModelReason::Interpolated)
+    } else if slowest > 1.0 / SLOWEST_CONTROL {
+        (Model::Steady, ModelReason::SlowRows { rate: 1.0 / slowest })
+    } else if turn > MAX_ANGLE_PER_SAMPLE {
+        (Model::Steady, ModelReason::TurnsTooFar { turn })
+    } else {
+        (Model::OutputError, ModelReason::FastRows { rate: 1.0 / slowest, turn })
+    };
+    ModelChoice { model, reason }
+}
+
+/// Largest electrical angle from row to row, rad; the fastest hundredth of the rows does not count, being noise of the speed.
+fn largest_turn(log: &Log) -> f64 {
+    let mut turns: Vec<f64> = log
+        .segments()
+        .iter()
+        .flat_map(|segment| log.columns().omega_e[segment.rows.clone()].iter().map(|omega_e| omega_e.abs() * segment.sample_period))
+        .collect();
+    let place = (turns.len() * 99 / 100).min(turns.len().saturating_sub(1));
+    *turns.select_nth_unstable_by(place, f64::total_cmp).1
+}

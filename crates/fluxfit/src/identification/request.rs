@@ -1,0 +1,138 @@
+//! What is asked of an identification.
+
+use super::{nameplate::Nameplate, prepare::model::Model};
+use crate::{
+    error::{Error, ErrorKind},
+    motor::PARAMETERS,
+    objective::acting_voltage::VoltageReading,
+    optimizer::{self, Method},
+};
+
+/// Systematic uncertainty of the voltages, as a fraction of their vector, unless stated otherwise: no drive's are known better.
+pub const VOLTAGE_ACCURACY: f64 = 1e-4;
+
+/// What is asked of an identification. The default asks for the four parameters, with everything found from the log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// The model that answers; none: the one that suits the log.
+    pub model: Option<Model>,
+    /// Windows in time, s; none: they are found.
+    pub windows: Vec<(f64, f64)>,
+    /// The timing of the voltage columns; none: the output error finds it; for operating points they count as centred, with the doubt in
+    /// the systematic uncertainty.
+    pub voltage_timing: Option<VoltageReading>,
+    /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
+    pub voltage_accuracy: f64,
+    /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL).
+    pub known: [Known; PARAMETERS],
+    /// Which swarm searches beside the exact answer.
+    pub swarm: Swarm,
+    /// Settings of its search.
+    pub search: optimizer::Settings,
+    /// Lower and upper bound of the search for each parameter, SI; none: from the log and the rating.
+    pub bounds: [Option<(f64, f64)>; PARAMETERS],
+    /// What is known of the motor without the log: compared with the answer, which does not depend on it.
+    pub nameplate: Nameplate,
+    /// Wanted bandwidth of the current controllers, Hz; none: no gains are computed.
+    pub bandwidth: Option<f64>,
+    /// How often the drive's current controllers run, Hz; none: as often as the log's rows come.
+    pub control_rate: Option<f64>,
+    /// Whether the last log, or the last segment, is left out of the identification and then predicted by the answer.
+    pub hold_out: bool,
+}
+
+/// What is known of one parameter before the log is read.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Known {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// Its value, taken as exact.
+    Fixed(f64),
+    /// A value with a standard error.
+    Prior {
+        /// Value, SI.
+        value: f64,
+        /// Standard error, SI.
+        standard_error: f64,
+    },
+}
+
+/// Which swarm searches beside the exact answer.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Swarm {
+    /// tGFPA at operating points, where it takes a millisecond; none on the output error, where it takes seconds.
+    #[default]
+    Auto,
+    /// None.
+    Off,
+    /// This method.
+    Method(Method),
+}
+
+/// Where a choice comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Provenance {
+    /// The request states it.
+    Stated,
+    /// The log shows it.
+    Found,
+    /// It is assumed, and the doubt counted as uncertainty.
+    Assumed,
+}
+
+impl Provenance {
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Stated => "stated",
+            Self::Found => "found",
+            Self::Assumed => "assumed",
+        }
+    }
+}
+
+impl Default for Request {
+    fn default() -> Self {
+        Self {
+            model: None,
+            windows: Vec::new(),
+            voltage_timing: None,
+            voltage_accuracy: VOLTAGE_ACCURACY,
+            known: [Known::Nothing; PARAMETERS],
+            swarm: Swarm::Auto,
+            search: optimizer::Settings::default(),
+            bounds: [None; PARAMETERS],
+            nameplate: Nameplate::default(),
+            bandwidth: None,
+            control_rate: None,
+            hold_out: false,
+        }
+    }
+}
+
+impl Request {
+    /// # Errors
+    /// If a value is out of its range, or nothing is left to be identified.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let accuracy = self.voltage_accuracy;
+        if !(0.0..1.0).contains(&accuracy) {
+            return Err(ErrorKind::Setting { setting: "the voltage accuracy", value: accuracy, range: "a fraction from 0 up to 1" }.into());
+        }
+        for known in self.known {
+            let (value, standard_error) = match known {
+                Known::Nothing => continue,
+                Known::Fixed(value) => (value, 1.0),
+                Known::Prior { value, standard_error } => (value, standard_error),
+            };
+            if !value.is_finite() {
+                return Err(ErrorKind::Setting { setting: "a known parameter", value, range: "a finite number" }.into());
+            }
+            if !(standard_error > 0.0 && standard_error.is_finite()) {
+                let setting = "the standard error of a known parameter";
+                return Err(ErrorKind::Setting { setting, value: standard_error, range: "a positive number" }.into());
+            }
+        }
+        if self.known.iter().all(|known| matches!(known, Known::Fixed(_))) { Err(ErrorKind::NothingToIdentify.into()) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,141 @@
+//! The path of an identification, a step a line: prepare, fit, judge, explain.
+
+use super::{
+    explain::{
+        judgement::{Judgement, explained},
+        warning::{self, Evidence, Warning},
+    },
+    fit::{
+        finding::Finding,
+        output::OutputFit,
+        saturation::Saturation,
+        steady::SteadyFit,
+        swarm::{self, Search},
+        terms::Term,
+    },
+    judge::verdict::{Verdict, judge},
+    prepare::{
+        model::{self, Model, ModelChoice},
+        stretches,
+    },
+    progress::{Progress, Step},
+    request::Request,
+};
+use crate::{
+    error::Error,
+    log::Log,
+    motor::{PARAMETERS, Parameter},
+    optimizer::Method,
+    steady::OperatingPoint,
+};
+
+/// What a log says of its motor.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Identification {
+    /// The parameters, in the order of [`Parameter::ALL`].
+    pub parameters: [Judgement; PARAMETERS],
+    /// The model that answered, and why it did.
+    pub model: ModelChoice,
+    /// What the operating points say; none where there is none.
+    pub steady: Option<SteadyFit>,
+    /// What the simulated currents say; none where the steady model answered.
+    pub output: Option<OutputFit>,
+    /// Flux at the operating points, where inductances depend on the current; none where nothing says so.
+    pub saturation: Option<Saturation>,
+    /// Correlation of the parameters' errors.
+    pub correlation: [[f64; PARAMETERS]; PARAMETERS],
+    /// The swarm that was asked to search, if any.
+    pub method: Option<Method>,
+    /// The swarm's own answer.
+    pub search: Option<Search>,
+    /// What the reader should know.
+    pub warnings: Vec<Warning>,
+}
+
+impl Identification {
+    /// One parameter's judgement.
+    pub fn parameter(&self, parameter: Parameter) -> &Judgement {
+        &self.parameters[parameter as usize]
+    }
+
+    /// The log's operating points; none where it never holds still.
+    pub fn operating_points(&self) -> &[OperatingPoint] {
+        self.steady.as_ref().map_or(&[], |fit| &fit.operating_points)
+    }
+
+    /// Whether everything asked for was identified.
+    pub fn is_complete(&self) -> bool {
+        self.parameters.iter().all(|judgement| judgement.verdict == Verdict::Identified)
+    }
+}
+
+/// Identifies the motor of a log.
+///
+/// # Errors
+/// If a value of the request is out of range, or no steady operating point is found. A log that cannot tell some parameter is no error:
+/// the verdicts say so.
+pub fn solve(log: &Log, request: &Request, progress: Progress) -> Result<Identification, Error> {
+    request.check()?;
+    let _ = progress(Step::OperatingPoints);
+    let steady = SteadyFit::of(log, request);
+    let model = model::choose(log, request.model);
+    let (steady, output) = match model.model {
+        Model::Steady => (Some(steady?), None),
+        Model::OutputError => {
+            let steady = steady.ok();
+            let output = OutputFit::of(log, steady.as_ref(), request, progress)?;
+            (steady, Some(output))
+        }
+    };
+    let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
+    let finding = finding(steady.as_ref(), output.as_ref())?;
+    let parameters = explained(judge(finding, saturation.as_ref(), request), finding);
+    let method = swarm::method(request, model.model);
+    let search = method.map(|method| search(log, steady.as_ref(), output.as_ref(), method, request, progress)).transpose()?;
+    let evidence = Evidence {
+        log,
+        request,
+        parameters: &parameters,
+        steady: steady.as_ref(),
+        output: output.as_ref(),
+        saturation: saturation.as_ref(),
+        search: search.as_ref(),
+    };
+    let warnings = warning::all(&evidence);
+    let correlation = finding.uncertainty.correlation;
+    Ok(Identification { parameters, model, steady, output, saturation, correlation, method, search, warnings })
+}
+
+/// The finding of the model that answers.
+fn finding<'a>(steady: Option<&'a SteadyFit>, output: Option<&'a OutputFit>) -> Result<&'a Finding, Error> {
+    output.map(|fit| &fit.finding).or(steady.map(|fit| &fit.finding)).ok_or_else(Error::no_rows)
+}
+
+/// Saturation: found by the operating points, by the terms of the simulated currents, or by both.
+fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>, request: &Request) -> Option<Saturation> {
+    let of_points = steady.and_then(|fit| fit.saturation(request));
+    let Some(fit) = output.filter(|fit| fit.has(Term::Saturation)) else { return of_points };
+    let rs_uncertainty = fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
+    let points = steady.map_or(&[][..], |fit| &fit.operating_points);
+    Some(Saturation::of_currents(log, &fit.drive, rs_uncertainty, &fit.stretches, (points, of_points), request))
+}
+
+/// The swarm's search of the same cost that the answering model minimized.
+fn search(
+    log: &Log,
+    steady: Option<&SteadyFit>,
+    output: Option<&OutputFit>,
+    method: Method,
+    request: &Request,
+    progress: Progress,
+) -> Result<Search, Error> {
+    let whole = |fit: &OutputFit| stretches::as_points(log, &fit.stretches);
+    let points = steady.map(|fit| fit.as_measured.clone()).or(output.map(whole)).unwrap_or_default();
+    let bounds = swarm::bounds(request, &points)?;
+    match (output, steady) {
+        (Some(fit), _) => fit.search(log, method, bounds, request, progress),
+        (None, Some(fit)) => fit.search(method, bounds, request, progress),
+        (None, None) => Err(Error::no_rows()),
+    }
+}

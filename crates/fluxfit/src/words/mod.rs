@@ -1,0 +1,10 @@
+//! The library's facts in English, once, for every face: [`Display`](std::fmt::Display) of reasons, remedies, warnings, and of what
+//! a validation found. How a face does a remedy (an option, an argument) is the face's own sentence.
+
+mod digits;
+mod model;
+mod nameplate;
+mod reason;
+mod remedy;
+mod validation;
+mod warning;

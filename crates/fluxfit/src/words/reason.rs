@@ -1,0 +1,77 @@
+//! Why a parameter is not identified.
+
+use super::digits::one_digit;
+use crate::{
+    identification::{fit::uncertainty::Part, judge::reason::Reason},
+    motor::Parameter,
+};
+use std::fmt::{Display, Formatter, Result};
+
+impl Display for Reason {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        match self {
+            Self::Given => write!(f, "given, not identified"),
+            Self::IdZero { largest } => write!(
+                f,
+                "i_d stays at zero (at most {} A, no more than its noise and accuracy), so L_d is absent from the equations",
+                one_digit(*largest)
+            ),
+            Self::OnePoint => write!(f, "there is one speed and one load, where R_s i_q and omega_e psi_f act alike"),
+            Self::IdConstant => write!(f, "i_d is the same at every operating point, where L_d i_d and psi_f act alike"),
+            Self::TooSimilar { open } => {
+                let open: Vec<&str> = open.iter().copied().map(Parameter::symbol).collect();
+                let open = open.join(", ");
+                write!(f, "the operating points are too similar for their noise: only combinations of {open} show in them")
+            }
+            Self::Negative => write!(f, "the value came out negative, which no motor has, and not by noise"),
+            Self::OtherNegative { parameter } => {
+                write!(f, "{} came out negative, so nothing else of this fit is to be trusted", parameter.symbol())
+            }
+            Self::Wide { part, half_width } => wide(*part, *half_width, f),
+            Self::DisturbedWithoutAngle => write!(
+                f,
+                "unknown voltages disturb the motor, and without the electrical angle they cannot be told from dead time or unequal \
+                 current sensors, which move every parameter"
+            ),
+            Self::CorrelatedResiduals { correlation } => write!(
+                f,
+                "the residuals of the simulated currents are not noise (neighbouring rows are correlated by {correlation:.2}): \
+                 something is in the log that the model does not have"
+            ),
+            Self::CurrentsMissed { fraction } => write!(
+                f,
+                "the simulated currents miss the measured ones by {:.0} % of the largest current, and not by noise: no motor makes \
+                 these currents of these voltages",
+                100.0 * fraction
+            ),
+        }
+    }
+}
+
+/// The largest part of an interval, and how wide it is.
+fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
+    let leaves =
+        if half_width < 10.0 { format!("leaves ±{:.2} %", 100.0 * half_width) } else { "leaves more than the value itself".to_owned() };
+    match part {
+        Part::Noise => write!(f, "noise {leaves}"),
+        Part::Accuracy => {
+            write!(f, "the voltages' accuracy {leaves}: the operating points are too similar for this parameter")
+        }
+        Part::Timing => write!(f, "the timing of the voltage columns is not known, which {leaves}"),
+        Part::DeadTime => write!(
+            f,
+            "the currents ripple as dead time or device drops make them, and the voltage these take looks like resistance, which {leaves}"
+        ),
+        Part::ProcessNoise => {
+            write!(f, "unknown voltages disturb the motor, and the answers with and without a model of them differ, which {leaves}")
+        }
+        Part::Sensors => write!(f, "the current sensors differ, and it is not known which of them is right, which {leaves}"),
+        Part::Saturation => write!(f, "the inductances depend on the current, and one number for all of the log {leaves}"),
+        Part::Misfit => write!(
+            f,
+            "the operating points contradict each other beyond their noise, which {leaves}: no motor with constant parameters explains them"
+        ),
+        Part::Prior => write!(f, "the prior that was given {leaves}"),
+        Part::Excitation => write!(f, "what the log does not excite could move it, which {leaves}"),
+    }
+}

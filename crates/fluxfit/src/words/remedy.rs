@@ -1,0 +1,97 @@
+//! What to do about a verdict.
+
+use super::digits::{one_digit, percent};
+use crate::{
+    identification::explain::{
+        measurement::{Measurement, Place, Promised},
+        remedy::{Also, Remedy},
+    },
+    motor::Parameter,
+};
+use std::fmt::{Display, Formatter, Result};
+
+impl Display for Remedy {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        match self {
+            Self::Measure(promised) => write!(f, "{promised}"),
+            Self::AddStretch { id, also } => {
+                if *id == 0.0 {
+                    write!(f, "add a stretch at the same speed with i_d = 0")?;
+                } else {
+                    write!(f, "add a stretch at the same speed with i_d near {} A", one_digit(*id))?;
+                }
+                match also {
+                    None => Ok(()),
+                    Some(Also::OrSecondPoint) => write!(f, ", or a second speed or load, or give R_s"),
+                    Some(Also::AndSecondPoint) => write!(f, ", and one at a clearly different speed and load"),
+                }
+            }
+            Self::HoldLonger { times, or } => write!(f, "hold each operating point about {times:.0} times as long, or {or}"),
+            Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
+            Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
+            Self::CompensateDeadTime => {
+                write!(f, "log with the drive's dead-time compensation on, or give R_s as measured at the terminals")
+            }
+            Self::RemoveDisturbances => write!(
+                f,
+                "log with the test bench at rest (no torque ripple, no supply ripple), or add a stretch held still and identify from it \
+                 with the steady model"
+            ),
+            Self::CalibrateSensors => write!(f, "calibrate the current sensors"),
+            Self::NarrowCurrents => write!(f, "identify from a window in time at nearly the same currents"),
+            Self::SimilarWindows => write!(
+                f,
+                "identify from three or more windows in time at nearly the same currents, so that the motor saturates alike in them and a \
+                 contradiction would still show, and only where the drive switches"
+            ),
+            Self::SharperPrior => write!(f, "give a sharper prior, or log another operating point"),
+            Self::LogAngle => {
+                write!(f, "log theta_e too (electrical, as the drive uses it), or hold the drive still and use the steady model")
+            }
+            Self::InspectResiduals => write!(
+                f,
+                "compare with the steady model, look at the residuals in the report, and log theta_e and u_dc too if the drive has them"
+            ),
+            Self::CheckSigns { units } => write!(
+                f,
+                "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of \
+                 speed and of u_q{}",
+                if *units { "; units and pole pairs too" } else { "" }
+            ),
+        }
+    }
+}
+
+/// How to make operating points tell a parameter.
+fn spread(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::Rs => {
+            "add operating points with more current at low speed, or a larger step of i_d, or give R_s to 1 % as a prior, from a multimeter"
+        }
+        Parameter::Ld => "make the step of i_d larger",
+        Parameter::Lq => "add operating points with more i_q",
+        Parameter::PsiF => "add operating points at a higher speed, or at a second speed",
+    }
+}
+
+impl Display for Promised {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        write!(f, "{}: {} to about ±{}", self.measurement, self.parameter.symbol(), percent(self.half_width))
+    }
+}
+
+impl Display for Measurement {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        match self {
+            Self::Resistance { accuracy } => {
+                write!(f, "measure R_s at the terminals to {:.0} % and give it as a prior", 100.0 * accuracy)
+            }
+            Self::Stretch { seconds, place } => match place {
+                Place::Id(0.0) => write!(f, "add {seconds} s at i_d = 0, same speed"),
+                Place::Id(id) => write!(f, "add {seconds} s at i_d = {} A, same speed", one_digit(*id)),
+                Place::HalfLoad { iq } => write!(f, "add {seconds} s at half the load (i_q = {} A), same speed", one_digit(*iq)),
+                Place::HalfSpeed => write!(f, "add {seconds} s at the same currents and half the speed"),
+            },
+        }
+    }
+}

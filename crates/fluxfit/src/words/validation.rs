@@ -1,0 +1,59 @@
+//! The verdict of a validation in sentences: what it is, by how much, which parameters the log would have otherwise.
+
+use super::digits::{digits, list};
+use crate::validation::validate::{Difference, Outcome, Validation};
+
+/// Standard errors from which on a parameter is named as one that differs: as the test's significance, of one parameter alone.
+const NAMED: f64 = 2.58;
+
+impl Validation {
+    /// The verdict in one or two sentences.
+    pub fn verdict(&self) -> String {
+        let vector = if self.own.output.is_some() { "current" } else { "voltage" };
+        let share = digits(100.0 * self.share, 2);
+        let probability = self.test.probability;
+        let verdict = match self.outcome {
+            Outcome::Agrees => {
+                format!(
+                    "Agrees within the noise: a log of exactly this motor would differ as much or more with probability {}.",
+                    digits(probability, 2)
+                )
+            }
+            Outcome::DiffersLittle => format!("Differs, but by little: by {share} % of the {vector}. {}", self.asked_for()),
+            Outcome::Contradicts => format!("Contradicts: the prediction is off by {share} % of the {vector}. {}", self.asked_for()),
+            Outcome::CannotTell => return "Cannot tell: this log tells none of the four parameters.".to_owned(),
+        };
+        let untested: Vec<&str> = self.untested().map(|difference| difference.parameter.symbol()).collect();
+        if untested.is_empty() {
+            return verdict;
+        }
+        let are = if untested.len() == 1 { "it is" } else { "they are" };
+        format!("{verdict} This log cannot tell {}: {are} taken as given.", list(&untested))
+    }
+
+    /// What the log would have instead: the parameters that differ, or the one that differs most.
+    fn asked_for(&self) -> String {
+        let mut differing: Vec<(&Difference, f64)> =
+            self.parameters.iter().filter_map(|difference| Some((difference, difference.standard_errors()?))).collect();
+        differing.sort_by(|one, other| other.1.abs().total_cmp(&one.1.abs()));
+        let named = differing.iter().filter(|(_, errors)| errors.abs() >= NAMED).count().max(1);
+        let asked: Vec<String> = differing.iter().take(named).map(|(difference, errors)| asked(difference, *errors)).collect();
+        format!("The log asks for {}.", asked.join("; "))
+    }
+}
+
+fn asked(difference: &Difference, errors: f64) -> String {
+    let (symbol, errors) = (difference.parameter.symbol(), digits(errors.abs(), 2));
+    let (Some(percent), Some(own)) = (difference.percent(), difference.own) else {
+        return format!("another {symbol}, {errors} standard errors away");
+    };
+    let half_width = 100.0 * own.half_width / difference.given;
+    let direction = if percent < 0.0 { "lower" } else { "higher" };
+    let decimals = decimals(half_width);
+    format!("{symbol} {:.decimals$} ± {half_width:.decimals$} % {direction}, {errors} standard errors", percent.abs())
+}
+
+/// Decimals that show two digits of an uncertainty, no more than four of them.
+fn decimals(uncertainty: f64) -> usize {
+    if uncertainty > 0.0 && uncertainty.is_finite() { (1.0 - uncertainty.log10().floor()).clamp(0.0, 4.0) as usize } else { 2 }
+}

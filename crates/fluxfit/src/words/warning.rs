@@ -1,0 +1,121 @@
+//! What the reader should know of the whole.
+
+use super::digits::three_digits;
+use crate::{
+    current_loop::{DELAY, PHASE_MARGIN},
+    identification::{explain::warning::Warning, fit::saturation::Apparent},
+    motor::Parameter,
+};
+use std::fmt::{Display, Formatter, Result};
+
+/// Stretches that are named in a warning; more would hide what it says.
+const NAMED: usize = 3;
+
+const COASTING: &str = "while a drive coasts, its voltage columns are not voltages that act";
+
+impl Display for Warning {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        match self {
+            Self::NoRedundancy => write!(
+                f,
+                "there are exactly as many equations as unknowns, so a perfect fit proves nothing: saturation, dead time or a wrong \
+                 unit would go unseen; add a third operating point, or give a known value"
+            ),
+            Self::Misfit { ratio, voltage_accuracy } => write!(
+                f,
+                "the operating points contradict each other {ratio:.1} times beyond noise and accuracy, and agree only to {:.2} % of the \
+                 voltage: inductances fall with current (saturation), flux and resistance change with temperature, or these are not the \
+                 voltages at the terminals (dead time, device drops, delay); the intervals are widened to the scatter of the points",
+                100.0 * voltage_accuracy
+            ),
+            Self::DeadTime { voltage } => write!(
+                f,
+                "voltages and currents ripple at six times the electrical frequency, as dead time or device drops make them that take \
+                 about {voltage:.2} V along the current; the model cannot tell that from resistance, and counts it as uncertainty"
+            ),
+            Self::NoCurrent { rows, of } => write!(f, "{rows} of {of} rows carry no current and were not used: {COASTING}"),
+            Self::NoCurrentInWindows { windows } => {
+                write!(f, "{windows} of the windows named carry no current and were used all the same: {COASTING}")
+            }
+            Self::ShortStretches { times } => {
+                let named: Vec<String> = times.iter().take(NAMED).map(|(start, end)| format!("{start:.4}:{end:.4}")).collect();
+                let more = if times.len() > NAMED { " and more" } else { "" };
+                write!(
+                    f,
+                    "steady stretches much shorter than the others were left out, at {} s{more}: if the drive was held there, name all \
+                     windows in time",
+                    named.join(", ")
+                )
+            }
+            Self::CoarseSampling => write!(
+                f,
+                "the rotor turns too far between rows for them to be the inverter's own periods: the log is taken as decimated, and the \
+                 held voltage vector is not corrected"
+            ),
+            Self::ProcessNoise => write!(
+                f,
+                "voltages that the log does not hold disturb the motor: the residuals of the simulated currents depend on those before; \
+                 each row is predicted from the row before instead, and the difference this makes is counted as uncertainty"
+            ),
+            Self::Angle => write!(
+                f,
+                "theta_e does not turn with omega_e, so it was not used, and dead time and faults of the sensors were not looked for: is \
+                 it the shaft's angle instead of the electrical one, or in degrees, or is the speed in another unit?"
+            ),
+            Self::Saturation { lq } => write!(
+                f,
+                "the motor saturates{}; no constant inductances and flux explain the log, and the intervals hold what each operating \
+                 point would call them; the flux of each operating point is reported instead",
+                lq.as_ref().map_or_else(String::new, apparent)
+            ),
+            Self::LowSpeed { omega_e, own, lost } => write!(
+                f,
+                "even at the highest speed, {} rad/s, the motor's own voltage is only {} V, and the inverter takes some {} V of what it \
+                 is told: psi_f and the inductances are no better than that; log at a higher speed",
+                three_digits(*omega_e),
+                three_digits(*own),
+                three_digits(*lost)
+            ),
+            Self::VoltageLimit { rows, of } => write!(
+                f,
+                "{rows} of {of} rows have more voltage than u_dc / sqrt 3, all that the inverter can turn in a circle: what these columns \
+                 ask for did not act (the drive is at its voltage limit), or they are no peak values per phase; leave such stretches out"
+            ),
+            Self::OutsideBox { parameters } => {
+                let symbols: Vec<&str> = parameters.iter().copied().map(Parameter::symbol).collect();
+                write!(f, "least squares lies outside the search box in {}: the swarm cannot reach it", symbols.join(", "))
+            }
+            Self::Convention(convention) => write!(f, "{convention}"),
+            Self::PhaseMargin { bandwidth, margin, control_rate, rate_assumed, highest } => {
+                let outcome = if *margin > 0.0 {
+                    format!("leaves a phase margin of {margin:.0} degrees, less than {PHASE_MARGIN:.0}")
+                } else {
+                    "makes the loop unstable".to_owned()
+                };
+                let assumed = if *rate_assumed { ", taken from the log; state the control rate if the drive controls faster" } else { "" };
+                write!(
+                    f,
+                    "a bandwidth of {bandwidth:.0} Hz {outcome}, with {DELAY} periods of delay at {control_rate:.0} Hz{assumed}; ask for \
+                     at most {:.0} Hz",
+                    highest.floor()
+                )
+            }
+            Self::Interrupted { iterations, limit } => {
+                write!(f, "the swarm made {iterations} of {limit} iterations; the answer beside it is whole")
+            }
+        }
+    }
+}
+
+/// How the apparent L_q depends on the current.
+fn apparent([least, most]: &[Apparent; 2]) -> String {
+    let (scale, unit) = if most.inductance.abs() < 1e-3 { (1e6, "uH") } else { (1e3, "mH") };
+    let verb = if most.inductance < least.inductance { "falls" } else { "moves" };
+    format!(
+        ": apparent L_q {verb} from {} to {} {unit} between i_q = {} and {} A",
+        three_digits(scale * least.inductance),
+        three_digits(scale * most.inductance),
+        three_digits(least.current),
+        three_digits(most.current),
+    )
+}
