@@ -17,7 +17,7 @@ use fluxfit::{
     paper,
     steady::held_vector::HeldVector,
 };
-use fluxfit_files::{LogOptions, read_log};
+use fluxfit_log::{LogOptions, read_log};
 use serde::Serialize;
 use std::{error::Error, ops::Range, path::Path};
 

@@ -3,10 +3,11 @@
 //! libFuzzer itself watches the time. Its limit on memory needs a sanitizer, which stable Rust has not; so an allocator counts, and
 //! gives no more than the input allows. A reader that asks for more ends there, and libFuzzer keeps the input.
 
-#[path = "../../crates/fluxfit-files/tests/promises/mod.rs"]
-mod promises;
+#[path = "../../crates/fluxfit-log/tests/promises/mod.rs"]
+mod promises_of_logs;
+#[path = "../../crates/fluxfit-setup/tests/promises/mod.rs"]
+mod promises_of_setups;
 
-use promises::READERS;
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     sync::atomic::{AtomicUsize, Ordering::Relaxed},
@@ -49,7 +50,8 @@ unsafe impl GlobalAlloc for Counting {
 
 /// Holds the reader called `name` to its promises on these bytes.
 pub fn hold(name: &str, bytes: &[u8]) {
-    let Some((_, promise)) = READERS.into_iter().find(|(reader, _)| *reader == name) else { return };
+    let mut readers = promises_of_logs::READERS.into_iter().chain(promises_of_setups::READERS);
+    let Some((_, promise)) = readers.find(|(reader, _)| *reader == name) else { return };
     let besides = if name == "log" { BYTES_OF_BLOCKS } else { BYTES_BESIDES };
     ALLOWED.store(HELD.load(Relaxed) + besides + BYTES_PER_BYTE * bytes.len(), Relaxed);
     promise(bytes);

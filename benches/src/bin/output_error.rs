@@ -14,7 +14,7 @@ use fluxfit::{
     optimizer::{Method, Optimizer, Settings, bounds::Bounds, tgfpa::Tgfpa},
     paper,
 };
-use fluxfit_files::{LogOptions, read_log};
+use fluxfit_log::{LogOptions, read_log};
 use std::{error::Error, hint::black_box, path::PathBuf, time::Instant};
 
 const LOG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/logs/paper_rig_pwm_noise.csv");

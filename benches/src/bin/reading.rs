@@ -5,7 +5,7 @@
 // The JSON on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
-use fluxfit_files::{LogOptions, read_log};
+use fluxfit_log::{LogOptions, read_log};
 use parquet::{
     column::reader::ColumnReader,
     file::reader::{FileReader, SerializedFileReader},

@@ -1,4 +1,4 @@
-//! The command line, as clap reads it. Texts of values are turned into values by `fluxfit-files`; nothing is decided here.
+//! The command line, as clap reads it. Texts of values are turned into values by `fluxfit-units` and `fluxfit-log`; nothing is decided here.
 
 use anstyle::Style;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, builder::Resettable};
@@ -11,7 +11,11 @@ use fluxfit::{
     },
     optimizer::Method,
 };
-use fluxfit_files::{Unit, export::Target};
+use fluxfit_answer::export::Target;
+use fluxfit_units::{
+    Unit, key_value,
+    wording::{did_you_mean, list, nearest, quote},
+};
 use std::path::PathBuf;
 
 /// Finds the parameters of a permanent magnet synchronous motor from a drive's log
@@ -144,7 +148,7 @@ pub(crate) struct LogArguments {
     /// A steady window in the log's seconds, e.g. 0.48:0.595; repeatable
     ///
     /// Without, windows are found.
-    #[arg(long, value_name = "T0:T1", value_parser = fluxfit_files::parse_window, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T0:T1", value_parser = fluxfit_units::parse_window, allow_hyphen_values = true)]
     pub(crate) window: Vec<(f64, f64)>,
     /// When the voltages ud, uq of a row act
     ///
@@ -159,7 +163,7 @@ pub(crate) struct LogArguments {
     /// Search box of the swarms, e.g. ld=0:50mH
     ///
     /// What is not named comes from the rating or the log.
-    #[arg(long, help_heading = "Search", value_name = "NAME=LOW:HIGH,..", value_delimiter = ',', value_parser = fluxfit_files::parse_bounds, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Search", value_name = "NAME=LOW:HIGH,..", value_delimiter = ',', value_parser = fluxfit_units::parse_bounds, allow_hyphen_values = true)]
     pub(crate) bounds: Vec<(Parameter, f64, f64)>,
     /// Seed of all random numbers
     #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 1)]
@@ -189,7 +193,7 @@ pub(crate) struct ColumnArguments {
     /// Units of columns, e.g. omega=rpm-mech,t=ms
     ///
     /// Without, the column's name, its layout or SI decides.
-    #[arg(long, value_name = "NAME=UNIT,..", value_delimiter = ',', value_parser = fluxfit_files::parse_unit)]
+    #[arg(long, value_name = "NAME=UNIT,..", value_delimiter = ',', value_parser = fluxfit_log::parse_unit)]
     pub(crate) unit: Vec<(String, Unit)>,
     /// Pole pairs, for speeds and angles in mechanical units
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -206,7 +210,15 @@ pub(crate) struct ColumnArguments {
 pub(crate) struct MappedColumns(pub(crate) Vec<(String, String)>);
 
 fn parse_columns(text: &str) -> Result<MappedColumns, fluxfit_files::FileError> {
-    fluxfit_files::parse_maps(text).map(MappedColumns)
+    fluxfit_log::parse_maps(text).map(MappedColumns)
+}
+
+/// `vesc=motor.xml`: a tool, and the file that is written for it.
+fn parse_export(text: &str) -> Result<(Target, PathBuf), String> {
+    let (name, file) = key_value(text, "TARGET=FILE", "vesc=motor.xml").map_err(|error| error.to_string())?;
+    let keys = Target::ALL.map(Target::key);
+    let unknown = || format!("{} is no target of --export; there are {}{}", quote(name), list(&keys), did_you_mean(nearest(name, keys)));
+    Ok((Target::named(name).ok_or_else(unknown)?, PathBuf::from(file)))
 }
 
 #[derive(Debug, Args)]
@@ -250,22 +262,22 @@ pub(crate) struct Identify {
     #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
     /// A parameter that is known exactly, e.g. rs=0.96
-    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_files::parse_fix, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
     pub(crate) fix: Vec<(Parameter, f64)>,
     /// A parameter that is known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
-    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_files::parse_prior, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_units::parse_prior, allow_hyphen_values = true)]
     pub(crate) prior: Vec<(Parameter, f64, f64)>,
     /// Identify from all but the last log or segment, and validate on that
     #[arg(long, help_heading = "Output")]
     pub(crate) hold_out: bool,
     /// Write the answer as the file of another tool: vesc, moteus, mcsdk, matlab; may be repeated
-    #[arg(long, value_name = "TARGET=FILE", value_parser = fluxfit_files::parse_export)]
+    #[arg(long, value_name = "TARGET=FILE", value_parser = parse_export)]
     pub(crate) export: Vec<(Target, PathBuf)>,
     /// Gains of the current controllers for this bandwidth, e.g. 500Hz, with their intervals
-    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_files::parse_frequency)]
+    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency)]
     pub(crate) bandwidth: Option<f64>,
     /// How often the current controllers run, for their phase margin; without, as often as the log samples
-    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_files::parse_frequency, requires = "bandwidth")]
+    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency, requires = "bandwidth")]
     pub(crate) control_rate: Option<f64>,
 }
 

@@ -1,6 +1,6 @@
 //! Bytes and text of a file, or of standard input, which is written `-`.
 
-use crate::error::{FileError, Problem};
+use crate::{error::FileError, problem::Problem};
 use std::{
     fs,
     io::{self, Read},
@@ -8,17 +8,17 @@ use std::{
 };
 
 /// What a path means standard input or output.
-pub(crate) fn is_standard(path: &Path) -> bool {
+pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
 /// The file's name in a message.
-pub(crate) fn name(path: &Path) -> String {
+pub fn name(path: &Path) -> String {
     if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
 /// What a file's bytes come from.
-pub(crate) enum Raw {
+pub enum Raw {
     /// A file, which can be read at any place; who is told how much of it was read, if it is read from its beginning to its end.
     File(fs::File, Box<dyn Fn(u64)>),
     /// Standard input, a pipe, or bytes in memory.
@@ -27,7 +27,7 @@ pub(crate) enum Raw {
 
 impl Raw {
     /// The same, with somebody who is told how many bytes more of a file were read.
-    pub(crate) fn watched(self, watch: impl Fn(u64) + 'static) -> Self {
+    pub fn watched(self, watch: impl Fn(u64) + 'static) -> Self {
         match self {
             Self::File(file, _) => Self::File(file, Box::new(watch)),
             stream @ Self::Stream(_) => stream,
@@ -36,9 +36,11 @@ impl Raw {
 }
 
 /// A file that tells how much of it was read.
-pub(crate) struct Watched {
-    pub(crate) file: fs::File,
-    pub(crate) watch: Box<dyn Fn(u64)>,
+pub struct Watched {
+    /// The file.
+    pub file: fs::File,
+    /// Called with the number of bytes of each read.
+    pub watch: Box<dyn Fn(u64)>,
 }
 
 impl Read for Watched {
@@ -50,7 +52,7 @@ impl Read for Watched {
 }
 
 /// The file, to be read from its beginning.
-pub(crate) fn open(path: &Path) -> Result<Raw, FileError> {
+pub fn open(path: &Path) -> Result<Raw, FileError> {
     if is_standard(path) {
         return Ok(Raw::Stream(Box::new(io::stdin())));
     }
@@ -67,7 +69,7 @@ pub(crate) fn open(path: &Path) -> Result<Raw, FileError> {
 }
 
 /// The whole file.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let bytes = if is_standard(path) {
         let mut bytes = Vec::new();
         io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
@@ -78,7 +80,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
 }
 
 /// The whole text, without a byte order mark. `wanted` names the format that the remedy asks for.
-pub(crate) fn text<'a>(bytes: &'a [u8], wanted: &'static str) -> Result<&'a str, FileError> {
+pub fn text<'a>(bytes: &'a [u8], wanted: &'static str) -> Result<&'a str, FileError> {
     let refuse = |at: usize| FileError::from(Problem::NotText { wanted }).at_line(line_at(bytes, at));
     let text = str::from_utf8(bytes).map_err(|error| refuse(error.valid_up_to()))?;
     if bytes.contains(&0) {
@@ -89,7 +91,7 @@ pub(crate) fn text<'a>(bytes: &'a [u8], wanted: &'static str) -> Result<&'a str,
 }
 
 /// The line, from 1, of the byte at `offset`. Lines end with `\n`, `\r\n` or `\r`.
-pub(crate) fn line_at(bytes: &[u8], offset: usize) -> u64 {
+pub fn line_at(bytes: &[u8], offset: usize) -> u64 {
     let offset = offset.min(bytes.len());
     let ends = (0..offset).filter(|&at| match bytes[at] {
         b'\n' => true,
@@ -99,7 +101,8 @@ pub(crate) fn line_at(bytes: &[u8], offset: usize) -> u64 {
     1 + ends.count() as u64
 }
 
-pub(crate) fn io_problem(action: &'static str, error: &io::Error) -> Problem {
+/// The sentence for a failure of the system.
+pub fn io_problem(action: &'static str, error: &io::Error) -> Problem {
     match error.kind() {
         io::ErrorKind::NotFound => Problem::NotFound,
         io::ErrorKind::PermissionDenied => Problem::NotPermitted,

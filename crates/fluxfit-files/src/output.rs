@@ -1,8 +1,9 @@
 //! Writing: the whole file, or the file as it was.
 
 use crate::{
-    error::{FileError, Problem},
+    error::FileError,
     input::{io_problem, is_standard, name},
+    problem::Problem,
 };
 use std::{
     fs,

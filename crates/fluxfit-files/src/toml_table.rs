@@ -2,12 +2,8 @@
 //!
 //! A document is checked against its [`Shape`] as a whole, in order of its lines; then each reader takes the keys it needs.
 
-use crate::{
-    error::{FileError, Problem},
-    input,
-    quantity::{Dimension, parse_quantity},
-    wording::nearest,
-};
+use crate::{error::FileError, input, problem::Problem};
+use fluxfit_units::{Dimension, parse_quantity, wording::nearest};
 use serde_json::{Map, Value};
 use toml::{
     Spanned,
@@ -15,24 +11,24 @@ use toml::{
 };
 
 /// All that a kind of file can hold.
-pub(crate) struct Shape {
+pub struct Shape {
     /// What the file is called.
-    pub(crate) noun: &'static str,
+    pub noun: &'static str,
     /// Keys above all tables.
-    pub(crate) keys: &'static [&'static str],
+    pub keys: &'static [&'static str],
     /// Tables and their keys.
-    pub(crate) tables: &'static [(&'static str, &'static [&'static str])],
+    pub tables: &'static [(&'static str, &'static [&'static str])],
 }
 
 /// A document whose keys are all known.
-pub(crate) struct Document<'t> {
+pub struct Document<'t> {
     text: &'t str,
     root: Spanned<DeTable<'t>>,
 }
 
 /// Some of its keys; a table that the file leaves out has none.
 #[derive(Clone, Copy)]
-pub(crate) struct Table<'d> {
+pub struct Table<'d> {
     text: &'d str,
     name: &'static str,
     start: Option<usize>,
@@ -41,7 +37,7 @@ pub(crate) struct Table<'d> {
 
 /// A key and its value.
 #[derive(Clone, Copy)]
-pub(crate) struct Entry<'d> {
+pub struct Entry<'d> {
     text: &'d str,
     key: &'d str,
     start: usize,
@@ -53,7 +49,7 @@ impl<'t> Document<'t> {
     ///
     /// # Errors
     /// If it is none, or holds anything that `shape` does not know.
-    pub(crate) fn parse(text: &'t str, shape: &Shape) -> Result<Self, FileError> {
+    pub fn parse(text: &'t str, shape: &Shape) -> Result<Self, FileError> {
         let root = DeTable::parse(text).map_err(|error| {
             let syntax = FileError::from(Problem::Syntax { format: "TOML", message: flat(error.message()) });
             syntax.at_line(input::line_at(text.as_bytes(), error.span().map_or(text.len(), |span| span.start)))
@@ -64,18 +60,18 @@ impl<'t> Document<'t> {
     }
 
     /// The keys above all tables.
-    pub(crate) fn root(&self) -> Table<'_> {
+    pub fn root(&self) -> Table<'_> {
         Table { text: self.text, name: "", start: None, keys: Some(self.root.get_ref()) }
     }
 
     /// A table of the shape.
-    pub(crate) fn table(&self, name: &'static str) -> Table<'_> {
+    pub fn table(&self, name: &'static str) -> Table<'_> {
         let entry = self.root().get(name);
         Table { text: self.text, name, start: entry.map(|entry| entry.start), keys: entry.and_then(|entry| entry.value.as_table()) }
     }
 
     /// The entry that another crate calls `table.key`, or `key` if it stands above all tables.
-    pub(crate) fn find(&self, path: &str) -> Option<Entry<'_>> {
+    pub fn find(&self, path: &str) -> Option<Entry<'_>> {
         match path.split_once('.') {
             Some((table, key)) => self.root().get(table)?.value.as_table().and_then(|keys| entry(self.text, keys, key)),
             None => self.root().get(path),
@@ -83,7 +79,7 @@ impl<'t> Document<'t> {
     }
 
     /// The document as it is written: numbers as numbers, quantities as the texts they are, keys in their order.
-    pub(crate) fn to_json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         json_of_table(self.text, self.root.get_ref())
     }
 }
@@ -124,27 +120,27 @@ impl Shape {
 
 impl<'d> Table<'d> {
     /// The entry of a key, if the file has it.
-    pub(crate) fn get(&self, key: &str) -> Option<Entry<'d>> {
+    pub fn get(&self, key: &str) -> Option<Entry<'d>> {
         entry(self.text, self.keys?, key)
     }
 
     /// Whether the file has the table.
-    pub(crate) fn is_there(&self) -> bool {
+    pub fn is_there(&self) -> bool {
         self.keys.is_some()
     }
 
     /// A quantity, in SI, if the file has it.
-    pub(crate) fn quantity(&self, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
+    pub fn quantity(&self, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
         self.get(key).map(|entry| entry.quantity(dimension)).transpose()
     }
 
     /// A quantity, in SI, that the file must have.
-    pub(crate) fn needed(&self, key: &str, dimension: Dimension) -> Result<f64, FileError> {
+    pub fn needed(&self, key: &str, dimension: Dimension) -> Result<f64, FileError> {
         self.quantity(key, dimension)?.ok_or_else(|| self.missing(key, dimension.example()))
     }
 
     /// The refusal of a file without a key, at the line of the table if there is one.
-    pub(crate) fn missing(&self, key: &str, example: &str) -> FileError {
+    pub fn missing(&self, key: &str, example: &str) -> FileError {
         let place = if self.name.is_empty() { String::new() } else { format!(" below [{}]", self.name) };
         let missing = FileError::from(Problem::MissingKey { key: key.to_owned(), remedy: format!("{key} = {example}{place}") });
         match self.start {
@@ -156,17 +152,17 @@ impl<'d> Table<'d> {
 
 impl<'d> Entry<'d> {
     /// Its line, from 1.
-    pub(crate) fn line(&self) -> u64 {
+    pub fn line(&self) -> u64 {
         input::line_at(self.text.as_bytes(), self.start)
     }
 
     /// The refusal of this entry.
-    pub(crate) fn refuse(&self, problem: impl Into<FileError>) -> FileError {
+    pub fn refuse(&self, problem: impl Into<FileError>) -> FileError {
         problem.into().at_line(self.line()).in_key(self.key)
     }
 
     /// A number or a text as it is written; none of anything else.
-    pub(crate) fn as_written(&self) -> Option<String> {
+    pub fn as_written(&self) -> Option<String> {
         match self.value {
             DeValue::String(text) => Some(text.to_string()),
             DeValue::Float(number) => Some(number.as_str().to_owned()),
@@ -176,18 +172,18 @@ impl<'d> Entry<'d> {
     }
 
     /// The refusal of its number, as it is written.
-    pub(crate) fn out_of_range(&self, range: &'static str) -> FileError {
+    pub fn out_of_range(&self, range: &'static str) -> FileError {
         self.refuse(Problem::Range { text: self.as_written().unwrap_or_default(), range })
     }
 
     /// A quantity, in SI.
-    pub(crate) fn quantity(&self, dimension: Dimension) -> Result<f64, FileError> {
+    pub fn quantity(&self, dimension: Dimension) -> Result<f64, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: "a number, or one with its unit in quotes".to_owned() });
         parse_quantity(&self.as_written().ok_or_else(wanted)?, dimension).map_err(|error| self.refuse(error))
     }
 
     /// A whole number from `least` on.
-    pub(crate) fn whole<T: TryFrom<i64> + PartialOrd>(&self, least: T, range: &'static str) -> Result<T, FileError> {
+    pub fn whole<T: TryFrom<i64> + PartialOrd>(&self, least: T, range: &'static str) -> Result<T, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: format!("a whole number, as in {} = 4", self.key) });
         let DeValue::Integer(number) = self.value else { return Err(wanted()) };
         let found = decimal(number).and_then(|number| T::try_from(number).ok()).filter(|number| *number >= least);
@@ -195,17 +191,17 @@ impl<'d> Entry<'d> {
     }
 
     /// Yes or no.
-    pub(crate) fn truth(&self) -> Result<bool, FileError> {
+    pub fn truth(&self) -> Result<bool, FileError> {
         self.value.as_bool().ok_or_else(|| self.refuse(Problem::Value { wanted: "true or false, without quotes".to_owned() }))
     }
 
     /// A text.
-    pub(crate) fn text(&self) -> Result<&'d str, FileError> {
+    pub fn text(&self) -> Result<&'d str, FileError> {
         self.value.as_str().ok_or_else(|| self.refuse(Problem::Value { wanted: "a text in quotes".to_owned() }))
     }
 
     /// One of a few words, and what it stands for.
-    pub(crate) fn word<T: Copy>(&self, words: &[(&'static str, T)]) -> Result<T, FileError> {
+    pub fn word<T: Copy>(&self, words: &[(&'static str, T)]) -> Result<T, FileError> {
         let known: Vec<&'static str> = words.iter().map(|(word, _)| *word).collect();
         let text = self.as_written().unwrap_or_default();
         let found = words.iter().find(|(word, _)| *word == text).map(|(_, meaning)| *meaning);
@@ -213,13 +209,13 @@ impl<'d> Entry<'d> {
     }
 
     /// The items of a list, in order, under the list's key; none if this is no list.
-    pub(crate) fn items(&self) -> Option<Vec<Entry<'d>>> {
+    pub fn items(&self) -> Option<Vec<Entry<'d>>> {
         let items = self.value.as_array()?;
         Some(items.iter().map(|item| Entry { start: item.span().start, value: item.get_ref(), ..*self }).collect())
     }
 
     /// A table within a line, called `noun`, which can hold these keys.
-    pub(crate) fn table(&self, known: &[&'static str], noun: &str, example: &str) -> Result<Table<'d>, FileError> {
+    pub fn table(&self, known: &[&'static str], noun: &str, example: &str) -> Result<Table<'d>, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: format!("{noun}, as in {example}") });
         let DeValue::Table(keys) = self.value else { return Err(wanted()) };
         if let Some(entry) = in_order(self.text, keys).into_iter().find(|entry| !known.contains(&entry.key)) {

@@ -10,7 +10,7 @@ use fluxfit::identify::{
     uncertainty::Part,
     verdict::{IDENTIFIED, Judgement, Verdict, WEAK},
 };
-use fluxfit_files::number::{Scale, significant};
+use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
 /// The section.

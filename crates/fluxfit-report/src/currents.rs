@@ -10,7 +10,7 @@ use fluxfit::{
     identify::{output_fit::OutputFit, terms::Term},
     log::Log,
 };
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 use maud::{Markup, html};
 
 /// Rows across which residuals are compared with each other.

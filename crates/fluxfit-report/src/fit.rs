@@ -6,7 +6,7 @@ use crate::{
     typography::{decimals, number, prose},
 };
 use fluxfit::{identify::steady_fit::SteadyFit, steady::OperatingPoint};
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 use maud::{Markup, html};
 
 /// Digits of a voltage without uncertainty.

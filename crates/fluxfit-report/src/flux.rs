@@ -5,7 +5,7 @@ use crate::{
     typography::{DASH, decimals, number, prose},
 };
 use fluxfit::identify::saturation::{Flux, Saturation};
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 use maud::{Markup, html};
 
 /// The table, and what it was computed with.

@@ -74,7 +74,7 @@ mod typography;
 mod validation;
 
 use fluxfit::{identify::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy, validate::Validation};
-use fluxfit_files::answer::StudyFacts;
+use fluxfit_answer::answer::StudyFacts;
 
 /// What is shown; what is `None` is left out.
 #[derive(Debug, Clone, Copy)]

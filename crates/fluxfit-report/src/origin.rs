@@ -5,7 +5,7 @@ use crate::{
     typography::{grouped, minus, number, prose, symbol, unit},
 };
 use fluxfit::{identify::output_fit::OutputFit, log::Log, motor::Parameter, steady::OperatingPoint};
-use fluxfit_files::number::{Scale, significant};
+use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
 /// What was read.

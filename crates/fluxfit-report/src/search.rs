@@ -8,7 +8,7 @@ use fluxfit::{
     identify::{Identification, Search},
     optimizer::{Method, StopReason},
 };
-use fluxfit_files::number::Scale;
+use fluxfit_units::Scale;
 use maud::{Markup, html};
 
 /// Digits of a value beyond those of its standard error: the swarm is compared with the exact answer, not with the truth.

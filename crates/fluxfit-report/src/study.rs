@@ -10,7 +10,8 @@ use fluxfit::{
     optimizer::Method,
     study::{MethodStudy, fitness::Fitness},
 };
-use fluxfit_files::{answer::StudyFacts, number::significant};
+use fluxfit_answer::answer::StudyFacts;
+use fluxfit_units::significant;
 use maud::{Markup, html};
 
 /// The section; parameters that are not excited are chance, and left out.

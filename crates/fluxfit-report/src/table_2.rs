@@ -10,10 +10,8 @@ use fluxfit::{
     paper::{self, Column},
     study::{MethodStudy, error_percent, fitness::Fitness},
 };
-use fluxfit_files::{
-    answer::StudyFacts,
-    number::{Scale, significant},
-};
+use fluxfit_answer::answer::StudyFacts;
+use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
 /// Means this close to the exact answer, %, come from searches that have converged: a tenth of what separates the paper's methods.

@@ -10,7 +10,7 @@ use fluxfit::identify::{
     terms::{self, Outcome, Term},
     timing,
 };
-use fluxfit_files::number::{beside_the_motor, significant};
+use fluxfit_units::{beside_the_motor, significant};
 use maud::{Markup, html};
 
 /// Standard errors in half of a 95 % interval.

@@ -1,7 +1,7 @@
 //! Symbols, units and numbers as a page sets them: subscripts, Greek letters, a real minus.
 
 use fluxfit::motor::Parameter;
-use fluxfit_files::number::{Scale, small};
+use fluxfit_units::{Scale, small};
 use maud::{Markup, PreEscaped, html};
 
 /// Symbols as the texts of the program write them: the word, its letter, its subscript.

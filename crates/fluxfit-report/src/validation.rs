@@ -14,7 +14,7 @@ use fluxfit::{
     log::Log,
     validate::{Channel, Difference, LITTLE, Outcome, Prediction, SIGNIFICANCE, Validation},
 };
-use fluxfit_files::number::{Scale, significant};
+use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
 /// A probability below which nobody asks how small it is.

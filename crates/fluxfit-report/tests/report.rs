@@ -14,12 +14,12 @@ use fluxfit::{
     study::{Convergence, MethodStudy, fitness::Problem, run_method},
     validate::{Course as Predicted, Given, Outcome, Prediction, Validation, validate},
 };
+use fluxfit_answer::answer::StudyFacts;
 use fluxfit_drive::{
     Scenario,
     schedule::{Course, Move},
     simulate,
 };
-use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{
     Origin, Report, ValidationReport,
     figure::{self, Size},

@@ -18,8 +18,9 @@ use fluxfit::{
         run_method, settle,
     },
 };
-use fluxfit_files::{answer, read_truth};
+use fluxfit_answer::answer;
 use fluxfit_report::{Report, figures, html};
+use fluxfit_setup::read_truth;
 use std::time::Instant;
 
 /// Runs the verb.

@@ -11,8 +11,8 @@ use fluxfit::{
     paper,
     study::fitness::Problem,
 };
+use fluxfit_answer::answer::StudyFacts;
 use fluxfit_drive::{Scenario, simulate};
-use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{Report, figures, html};
 
 /// What stands where a log's name would.

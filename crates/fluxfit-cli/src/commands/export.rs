@@ -4,11 +4,8 @@
 use super::{Status, input::Input};
 use crate::{arguments::Identify, error::CommandError, terminal};
 use fluxfit::{current_loop::CurrentLoop, identify::Identification};
-use fluxfit_files::{
-    check_writable,
-    export::{Answer, export},
-    write_atomically,
-};
+use fluxfit_answer::export::{Answer, export};
+use fluxfit_files::{check_writable, write_atomically};
 use std::{
     fs,
     path::{Path, PathBuf},

@@ -19,8 +19,9 @@ use fluxfit::{
     optimizer::{self, Method, StopReason, tgfpa::Tgfpa},
     validate::{Given, Validation, validate},
 };
-use fluxfit_files::{answer, number::significant};
+use fluxfit_answer::answer;
 use fluxfit_report::{Report, figures, html};
+use fluxfit_units::significant;
 use serde_json::Value;
 
 /// Code of the warning that a search was cut.

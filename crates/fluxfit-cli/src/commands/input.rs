@@ -12,7 +12,8 @@ use fluxfit::{
     motor::Parameter,
     optimizer::bounds::Bounds,
 };
-use fluxfit_files::{LogOptions, MotorFile, read_log_watched, read_mapping, read_motor};
+use fluxfit_log::{LogOptions, read_log_watched, read_mapping};
+use fluxfit_setup::{MotorFile, read_motor};
 use std::{fs, path::Path};
 
 /// The logs, joined, and the motor file.

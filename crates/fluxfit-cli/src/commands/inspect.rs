@@ -2,7 +2,8 @@
 
 use super::{Status, input};
 use crate::{arguments::Inspect, error::CommandError, terminal};
-use fluxfit_files::{check_writable, inspect, write_atomically};
+use fluxfit_files::{check_writable, write_atomically};
+use fluxfit_log::inspect;
 use std::{fs, path::Path};
 
 /// Runs the verb.

@@ -7,11 +7,10 @@ use crate::{
     interrupt,
     terminal::{self, Progress},
 };
+use fluxfit_answer::answer;
 use fluxfit_drive::{Recording, simulate};
-use fluxfit_files::{
-    Output, ReadScenario, answer, check_writable, is_replaceable, paper_scenario, read_scenario, scenario_file::PAPER_RIG, truth_of,
-    truth_path, write_recording,
-};
+use fluxfit_files::{Output, check_writable, is_replaceable};
+use fluxfit_setup::{ReadScenario, paper_scenario, read_scenario, scenario_file::PAPER_RIG, truth_of, truth_path, write_recording};
 use std::{
     fs,
     io::{self, Write},

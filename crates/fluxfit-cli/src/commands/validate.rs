@@ -6,8 +6,9 @@ use fluxfit::{
     identify::Settings,
     validate::{Outcome, validate},
 };
-use fluxfit_files::{answer, read_given_motor};
+use fluxfit_answer::answer;
 use fluxfit_report::{ValidationReport, validation_figures, validation_html};
+use fluxfit_setup::read_given_motor;
 use std::path::Path;
 
 /// Runs the verb.

@@ -5,7 +5,7 @@ use fluxfit::{
     current_loop::{CurrentLoop, DELAY, Gain},
     identify::Provenance,
 };
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 
 /// Shows the gains.
 pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {

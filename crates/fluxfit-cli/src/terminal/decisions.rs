@@ -2,7 +2,7 @@
 
 use super::detail;
 use fluxfit::identify::{Identification, output_fit::OutputFit};
-use fluxfit_files::number::{significant, small};
+use fluxfit_units::{significant, small};
 
 /// Tells the windows, the model and, of the output error, the readings and faults that were tried.
 pub(crate) fn tell(found: &Identification) {

@@ -1,7 +1,7 @@
 //! The layouts that are known, each with its columns, and the containers they may come in.
 
 use super::{BAD, DIM, HEADING};
-use fluxfit_files::LAYOUTS;
+use fluxfit_log::LAYOUTS;
 
 /// Longest line.
 const WIDTH: usize = 96;

@@ -15,7 +15,7 @@ use fluxfit::{
     motor::Parameter,
     optimizer::Method,
 };
-use fluxfit_files::number::{Scale, beside_the_motor, significant, small};
+use fluxfit_units::{Scale, beside_the_motor, significant, small};
 
 /// Shows an identification; warnings go to standard error.
 pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option<&Method>) -> std::io::Result<()> {

@@ -2,7 +2,8 @@
 
 use super::{BAD, DIM, HEADING, identification::frequency, plot, table};
 use fluxfit::log::Log;
-use fluxfit_files::{Inspection, number::significant};
+use fluxfit_log::Inspection;
+use fluxfit_units::significant;
 
 /// Most columns that are listed.
 const LISTED: usize = 60;

@@ -3,7 +3,7 @@
 
 use anstyle::{AnsiColor, Style};
 use fluxfit::{log::Log, optimizer::Method, study::MethodStudy};
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 use ratatui_core::{buffer::Buffer, layout::Rect, style::Color, symbols::Marker, widgets::Widget};
 use ratatui_widgets::chart::{Axis, Chart, Dataset, GraphType};
 

@@ -2,7 +2,7 @@
 
 use super::{HAS_PROGRESS, detail};
 use crate::interrupt;
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::{
     fmt::Write,

@@ -3,7 +3,7 @@
 use super::HEADING;
 use crate::shell;
 use fluxfit_drive::{Recording, Scenario};
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 use std::{io::Write, path::Path};
 
 /// Shows the files of a simulation.

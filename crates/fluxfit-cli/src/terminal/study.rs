@@ -6,10 +6,8 @@ use fluxfit::{
     optimizer::Method,
     study::{MethodStudy, error_percent, fitness::Fitness},
 };
-use fluxfit_files::{
-    answer::StudyFacts,
-    number::{Scale, significant, small},
-};
+use fluxfit_answer::answer::StudyFacts;
+use fluxfit_units::{Scale, significant, small};
 
 /// Shows a study.
 pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {

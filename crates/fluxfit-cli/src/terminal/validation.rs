@@ -6,7 +6,7 @@ use fluxfit::{
     log::Log,
     validate::{Channel, Difference, Outcome, Validation},
 };
-use fluxfit_files::number::{Scale, significant, small};
+use fluxfit_units::{Scale, significant, small};
 
 /// Shows a validation; warnings go to standard error.
 pub(crate) fn show(name: &str, motor: &str, log: &Log, found: &Validation) -> std::io::Result<()> {

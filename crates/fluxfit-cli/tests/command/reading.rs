@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::{fs, process::Command};
 
 /// A log of 160 rows in the corpus, by independent writers.
-const LOGS: &str = "crates/fluxfit-files/tests/corpus/logs";
+const LOGS: &str = "crates/fluxfit-log/tests/corpus/logs";
 
 /// The same in every container and dialect that loses nothing.
 const SAME: [&str; 15] = [

@@ -1,24 +1,23 @@
 //! Where the header is, and what separates its names.
 
-use super::rows;
-use crate::{
-    error::{FileError, Problem},
-    input,
-    wording::{list, quote},
-};
+use super::record;
+use crate::{error::FileError, input, problem::Problem};
+use fluxfit_units::wording::{list, quote};
 
 /// The names of a table's columns, and where its rows begin.
-pub(super) struct Header {
+pub struct Header {
     /// Without spaces and quotes, and without the empty names of trailing separators.
-    pub(super) names: Vec<String>,
+    pub names: Vec<String>,
     /// What a row below the names says of their units; empty without such a row.
-    pub(super) units: Vec<String>,
+    pub units: Vec<String>,
     /// Line, from 1.
-    pub(super) line: u64,
-    pub(super) separator: u8,
-    /// Offset of the first byte below, and its line.
-    pub(super) body: usize,
-    pub(super) body_line: u64,
+    pub line: u64,
+    /// Byte between the cells.
+    pub separator: u8,
+    /// Offset of the first byte below.
+    pub body: usize,
+    /// Line of that byte.
+    pub body_line: u64,
 }
 
 /// Most lines of titles above a header.
@@ -28,10 +27,10 @@ const TITLES: usize = 20;
 const LONGEST_UNIT: usize = 16;
 
 /// Finds the header: the first line that is neither blank, a comment nor a title; and the row of units below it, if there is one.
-pub(super) fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
+pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     let mut header = names(text, notes)?;
     if let Some((units, end)) = units(text, &header) {
-        notes.push(format!("line {} is a row of units", rows::line_of(text, header.body)));
+        notes.push(format!("line {} is a row of units", record::line_of(text, header.body)));
         header.units = units;
         header.body = end;
     }
@@ -43,7 +42,7 @@ pub(super) fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileEr
 fn units(text: &str, header: &Header) -> Option<(Vec<String>, usize)> {
     let record = |from: usize| {
         let (start, line) = lines(&text[from..]).find(|(_, line)| !line.trim().is_empty())?;
-        Some((rows::first_record(line, header.separator).0, from + start + line.len()))
+        Some((record::first_record(line, header.separator).0, from + start + line.len()))
     };
     let (cells, end) = record(header.body)?;
     let (below, _) = record(end)?;
@@ -87,8 +86,8 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
 }
 
 fn at(text: &str, start: usize, separator: u8) -> Header {
-    let (names, length) = rows::first_record(&text[start..], separator);
-    Header { names, units: Vec::new(), line: rows::line_of(text, start), separator, body: start + length, body_line: 0 }
+    let (names, length) = record::first_record(&text[start..], separator);
+    Header { names, units: Vec::new(), line: record::line_of(text, start), separator, body: start + length, body_line: 0 }
 }
 
 /// Some tools write the header as the last comment above the rows.
@@ -102,9 +101,9 @@ fn from_comment(
     if let Some((start, comment)) = comment {
         let bare = comment.trim_start_matches(['#', '%']);
         let separator = sniff(bare);
-        let (names, _) = rows::first_record(bare, separator);
+        let (names, _) = record::first_record(bare, separator);
         if names.len() == first.names.len() && names.iter().all(|name| !is_number(name, separator)) {
-            let line = rows::line_of(text, start);
+            let line = record::line_of(text, start);
             notes.push(format!("the names of the columns were taken from the comment in line {line}"));
             return Ok(Header { names, units: Vec::new(), line, separator: first.separator, body, body_line: 0 });
         }
@@ -121,7 +120,7 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
     let dated =
         header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name, header.separator));
     let below = || lines(&text[header.body..]).filter(|(_, line)| !line.trim().is_empty());
-    let cells_of = |line: &str| rows::first_record(line, sniff(line)).0;
+    let cells_of = |line: &str| record::first_record(line, sniff(line)).0;
     if cells > 1 && !dated {
         let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell, b';')).count() * 2 > cells.len();
         let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
@@ -155,8 +154,9 @@ fn sniff(line: &str) -> u8 {
     [b'\t', b',', b';'].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
 
-pub(super) fn is_number(cell: &str, separator: u8) -> bool {
-    rows::number(cell.as_bytes(), separator, &mut String::new()).is_some()
+/// Whether a cell holds a number.
+pub fn is_number(cell: &str, separator: u8) -> bool {
+    record::number(cell.as_bytes(), separator, &mut String::new()).is_some()
 }
 
 /// Lines with their offsets; they end with `\n`, `\r\n` or `\r`.

@@ -12,7 +12,7 @@ use fluxfit::{
     motor::{Motor, Parameter},
     study::MethodStudy,
 };
-use fluxfit_files::number::Scale;
+use fluxfit_units::Scale;
 use plotters::{
     element::{Circle, PathElement},
     style::text_anchor::{HPos, VPos},

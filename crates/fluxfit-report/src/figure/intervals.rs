@@ -12,7 +12,7 @@ use fluxfit::identify::{
     Identification,
     verdict::{IDENTIFIED, Judgement, Verdict, WEAK},
 };
-use fluxfit_files::number::significant;
+use fluxfit_units::significant;
 use plotters::{
     element::{Circle, PathElement, Rectangle},
     style::text_anchor::{HPos, VPos},

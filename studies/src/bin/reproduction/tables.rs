@@ -7,7 +7,7 @@ use fluxfit::{
     paper,
     study::{MethodStudy, error_percent},
 };
-use fluxfit_files::number::{significant, small};
+use fluxfit_units::{significant, small};
 use std::error::Error;
 
 /// Iterations at which costs are shown.

@@ -1,0 +1,87 @@
+//! `column=value` arguments: `omega=rpm-mech`, `ud=motor_vd`.
+
+use crate::{channel::Channel, problem::Problem};
+use fluxfit_files::FileError;
+use fluxfit_units::{Unit, key_value};
+
+/// `ud=motor_vd`: the canonical name of a column of a log, and the header that it has in the file. `omega` is `omega_e`.
+///
+/// # Errors
+/// If there is no `=` with text on both sides, or the name on the left is not one of a log.
+pub fn parse_map(text: &str) -> Result<(String, String), FileError> {
+    let (name, header) = key_value(text, "COLUMN=HEADER", "omega_e=motor_speed")?;
+    Ok((Channel::from_name(name)?.name().to_owned(), header.to_owned()))
+}
+
+/// Several of them, between commas; a comma in brackets or quotes belongs to a name, as in `t=data(:,1)`.
+///
+/// # Errors
+/// As [`parse_map`].
+pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
+    let (mut depth, mut quoted) = (0_i32, false);
+    let apart = |c: char| {
+        match c {
+            '"' => quoted = !quoted,
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth -= 1,
+            _ => {}
+        }
+        c == ',' && depth <= 0 && !quoted
+    };
+    text.split(apart).map(parse_map).collect()
+}
+
+/// `omega=rpm-mech`: the canonical name of a column of a log, and its unit.
+///
+/// # Errors
+/// As [`parse_map`], or if the unit is not one of that column.
+pub fn parse_unit(text: &str) -> Result<(String, Unit), FileError> {
+    let (name, unit) = key_value(text, "COLUMN=UNIT", "omega=rpm-mech")?;
+    let channel = Channel::from_name(name)?;
+    let found = Unit::from_name(unit, channel.dimension()).ok_or_else(|| wrong_unit(channel, unit))?;
+    Ok((channel.name().to_owned(), found))
+}
+
+pub(crate) fn wrong_unit(channel: Channel, unit: &str) -> FileError {
+    let allowed = Unit::of(channel.dimension()).map(Unit::name).collect();
+    Problem::Unit { channel: channel.name(), unit: unit.to_owned(), allowed }.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn columns_and_their_units() {
+        assert_eq!(parse_map(" omega = Output Speed "), Ok(("omega_e".into(), "Output Speed".into())));
+        assert_eq!(parse_map("ud=a=b"), Ok(("ud".into(), "a=b".into())));
+        assert_eq!(parse_unit("omega=rpm-mech"), Ok(("omega_e".into(), Unit::RpmMechanical)));
+        assert_eq!(parse_unit("theta=deg"), Ok(("theta_e".into(), Unit::Degree)));
+        let refusal = |text| parse_unit(text).unwrap_err().to_string();
+        assert_eq!(
+            refusal("omega=rpm"),
+            "\"rpm\" is no unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
+        );
+        assert_eq!(refusal("ud=A"), "\"A\" is no unit of ud; it can be V or mV");
+        assert_eq!(refusal("ud"), "\"ud\" is not understood; write COLUMN=UNIT, as in omega=rpm-mech");
+        assert_eq!(parse_map("ud=").unwrap_err().to_string(), "\"ud=\" is not understood; write COLUMN=HEADER, as in omega_e=motor_speed");
+    }
+
+    #[test]
+    fn commas_in_brackets_belong_to_a_name() {
+        let pairs = |text| parse_maps(text).unwrap().into_iter().map(|(_, header)| header).collect::<Vec<_>>();
+        assert_eq!(pairs("t=data(:,1),ud=data(:,2)"), ["data(:,1)", "data(:,2)"]);
+        assert_eq!(pairs("id=i [A, peak],iq=q)"), ["i [A, peak]", "q)"]);
+        assert!(parse_maps("t=a,,ud=b").is_err() && parse_maps("").is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "\\PC*|(rs|ld|omega|t)=[0-9e.+\\-/±%:muH ]{0,14}") {
+            for sentence in [parse_map(&text).err(), parse_unit(&text).err()].into_iter().flatten() {
+                prop_assert_eq!(sentence.to_string().lines().count(), 1);
+            }
+        }
+    }
+}

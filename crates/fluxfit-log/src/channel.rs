@@ -1,0 +1,150 @@
+//! What a log's columns are called: here, and elsewhere.
+
+use crate::problem::Problem;
+use fluxfit_files::FileError;
+use fluxfit_units::{Dimension, unit::Unit, wording::nearest};
+
+/// A column of a log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Channel {
+    T,
+    Ud,
+    Uq,
+    Id,
+    Iq,
+    OmegaE,
+    ThetaE,
+    UDc,
+    IA,
+    IB,
+    IC,
+    UA,
+    UB,
+    UC,
+    /// Number of the run that a row belongs to: where it changes, time does not go on.
+    Run,
+}
+
+impl Channel {
+    /// Those that a log must have, in the order of `fluxfit::log::Columns`.
+    pub(crate) const NEEDED: [Self; 6] = [Self::T, Self::Ud, Self::Uq, Self::Id, Self::Iq, Self::OmegaE];
+
+    /// Those that a log may have besides.
+    pub(crate) const OPTIONAL: [Self; 2] = [Self::ThetaE, Self::UDc];
+
+    /// Those from which dq voltages and currents are made, with the angle.
+    pub(crate) const PHASES: [Self; 6] = [Self::UA, Self::UB, Self::UC, Self::IA, Self::IB, Self::IC];
+
+    /// All that a column can be.
+    pub(crate) fn all() -> impl Iterator<Item = Self> + Clone {
+        Self::NEEDED.into_iter().chain(Self::OPTIONAL).chain(Self::PHASES).chain([Self::Run])
+    }
+
+    /// The canonical name.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::T => "t",
+            Self::Ud => "ud",
+            Self::Uq => "uq",
+            Self::Id => "id",
+            Self::Iq => "iq",
+            Self::OmegaE => "omega_e",
+            Self::ThetaE => "theta_e",
+            Self::UDc => "u_dc",
+            Self::IA => "ia",
+            Self::IB => "ib",
+            Self::IC => "ic",
+            Self::UA => "ua",
+            Self::UB => "ub",
+            Self::UC => "uc",
+            Self::Run => "run",
+        }
+    }
+
+    /// Its SI unit.
+    pub(crate) fn unit(self) -> Unit {
+        match self {
+            Self::T => Unit::Second,
+            Self::Ud | Self::Uq | Self::UDc | Self::UA | Self::UB | Self::UC => Unit::Volt,
+            Self::Id | Self::Iq | Self::IA | Self::IB | Self::IC => Unit::Ampere,
+            Self::Run => Unit::Number,
+            Self::OmegaE => Unit::RadianPerSecond,
+            Self::ThetaE => Unit::Radian,
+        }
+    }
+
+    pub(crate) fn dimension(self) -> Dimension {
+        self.unit().dimension()
+    }
+
+    /// What drives and their tools call it, in lower case without punctuation: only to propose a column, never to take one.
+    pub(crate) fn spellings(self) -> &'static [&'static str] {
+        match self {
+            Self::T => &["t", "time", "timestamp", "mstoday", "seconds"],
+            Self::Ud => &["ud", "vd", "daxisvoltage", "voltaged", "voltagedaxis"],
+            Self::Uq => &["uq", "vq", "qaxisvoltage", "voltageq", "voltageqaxis"],
+            Self::Id => &["id", "daxiscurrent", "currentd", "currentdaxis"],
+            Self::Iq => &["iq", "qaxiscurrent", "currentq", "currentqaxis"],
+            Self::OmegaE => &["omega", "omegae", "omegael", "omegam", "speed", "velocity", "rpm", "erpm"],
+            Self::ThetaE => &["theta", "thetae", "thetael", "thetam", "angle", "electricalangle", "rotorangle"],
+            Self::UDc => &["udc", "vdc", "dcvoltage", "dclinkvoltage", "busvoltage", "vbus", "inputvoltage"],
+            Self::IA => &["ia", "iu", "i1", "currenta", "phaseacurrent"],
+            Self::IB => &["ib", "iv", "i2", "currentb", "phasebcurrent"],
+            Self::IC => &["ic", "iw", "i3", "currentc", "phaseccurrent"],
+            Self::UA => &["ua", "uu", "va", "v1", "u1", "voltagea", "phaseavoltage"],
+            Self::UB => &["ub", "uv", "vb", "v2", "u2", "voltageb", "phasebvoltage"],
+            Self::UC => &["uc", "uw", "vc", "v3", "u3", "voltagec", "phasecvoltage"],
+            Self::Run => &["run", "profileid"],
+        }
+    }
+
+    /// From its canonical name, or `omega` and `theta`.
+    pub(crate) fn from_name(name: &str) -> Result<Self, FileError> {
+        match name {
+            "omega" => return Ok(Self::OmegaE),
+            "theta" => return Ok(Self::ThetaE),
+            _ => {}
+        }
+        let known = Self::all();
+        known.clone().find(|channel| channel.name() == name).ok_or_else(|| {
+            let by_spelling = known.clone().find(|channel| channel.spellings().contains(&name)).map(Self::name);
+            let nearest = by_spelling.or_else(|| nearest(name, known.clone().map(Self::name)));
+            let needed = Self::NEEDED.map(Self::name).to_vec();
+            let optional = known.map(Self::name).filter(|name| !needed.contains(name)).collect();
+            Problem::Channel { name: name.to_owned(), needed, optional, nearest }.into()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_nearest() {
+        assert_eq!(Channel::from_name("omega"), Ok(Channel::OmegaE));
+        assert_eq!(Channel::from_name("theta"), Ok(Channel::ThetaE));
+        assert!(Channel::from_name("vdc").unwrap_err().to_string().ends_with("; did you mean u_dc?"));
+        let refusal = |name| Channel::from_name(name).unwrap_err().to_string();
+        assert_eq!(
+            refusal("speed"),
+            "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+        );
+        assert_eq!(
+            refusal("time"),
+            "\"time\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean t?"
+        );
+        assert_eq!(
+            refusal("flux_density"),
+            "\"flux_density\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run"
+        );
+    }
+
+    #[test]
+    fn the_order_is_that_of_the_library() {
+        let names = fluxfit::log::Columns::default().named().map(|(name, _)| name);
+        assert_eq!(names, Channel::NEEDED.map(Channel::name));
+        let both = fluxfit::log::Columns { theta_e: Some(Vec::new()), u_dc: Some(Vec::new()), ..Default::default() };
+        assert_eq!(both.optional().map(|(name, _)| name).collect::<Vec<_>>(), Channel::OPTIONAL.map(Channel::name));
+    }
+}

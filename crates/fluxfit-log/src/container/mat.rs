@@ -1,0 +1,226 @@
+//! MATLAB's MAT files of versions 4, 5 to 7 and 7.3, and HDF5 files, of which the last are.
+//!
+//! Each version's reader lists the arrays of numbers that it finds, under the paths that MATLAB gives them. What makes columns of
+//! them is the same for all, and here:
+//!
+//! - A vector is a column, and a matrix is one for each index of its shorter side: `name(:,1)`, or `name(1,:)` if it lies.
+//! - Columns of the same length share their instants, unless a structure around one of them has an own time: a field `time` or
+//!   `Time` of that length.
+//! - Simulink's structures with time have their values in `signals(k).values`; the label `signals(k).label` names them.
+//! - Scalars, texts, truth values, complex and sparse arrays, cells and arrays of three dimensions are no columns.
+
+mod hdf5;
+mod v4;
+mod v5;
+
+use super::{BLOCK, MOST_COLUMNS, Source};
+use crate::{block::Head, problem::Problem};
+use fluxfit_files::FileError;
+use std::collections::HashMap;
+
+/// A file of one of the versions.
+pub(crate) struct Mat {
+    file: Version,
+    format: &'static str,
+    heads: Vec<Head>,
+    columns: Vec<Column>,
+    unreadable: Vec<String>,
+}
+
+enum Version {
+    /// Versions 4 and 5.
+    Flat(v5::File),
+    Hdf5(hdf5::File),
+}
+
+/// What a reader found in a file.
+struct Contents<Place> {
+    arrays: Vec<Array<Place>>,
+    /// Texts of fields called `label`, by the structure that they are in.
+    labels: HashMap<String, String>,
+    /// Objects that only MATLAB can read.
+    objects: Vec<Object>,
+    /// Other variables that hold no numbers.
+    unreadable: Vec<String>,
+}
+
+impl<Place> Default for Contents<Place> {
+    fn default() -> Self {
+        Self { arrays: Vec::new(), labels: HashMap::new(), objects: Vec::new(), unreadable: Vec::new() }
+    }
+}
+
+/// An array of two dimensions.
+struct Array<Place> {
+    path: String,
+    unit: Option<String>,
+    rows: u64,
+    columns: u64,
+    place: Place,
+}
+
+struct Object {
+    name: String,
+    class: String,
+}
+
+/// One side's line of an array.
+struct Column {
+    array: usize,
+    line: Line,
+}
+
+/// The elements of an array with one of its two indices fixed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Line {
+    /// `(:,k)`, from 0.
+    Column(u64),
+    /// `(k,:)`, from 0.
+    Row(u64),
+}
+
+/// Longest shorter side of a matrix whose lines are columns: beyond it, it is a picture or a field, and no log.
+const MOST_LINES: u64 = 1024;
+
+impl Mat {
+    /// None if the file is no MAT file and no HDF5 file.
+    pub(super) fn open(start: &[u8], source: Source) -> Result<Option<Self>, FileError> {
+        if let Some(at) = hdf5::signature(start) {
+            let format = if at == 0 { "HDF5" } else { "MAT" };
+            let (file, contents) = hdf5::File::open(source, at, format)?;
+            return Self::new(contents, format, |places| Version::Hdf5(file.with(places))).map(Some);
+        }
+        let contents = if let Some(big_endian) = v5::signature(start) {
+            v5::open(&source, big_endian)?
+        } else if v4::signature(start, source.length()) {
+            v4::open(&source)?
+        } else {
+            return Ok(None);
+        };
+        Self::new(contents, "MAT", |places| Version::Flat(v5::File::new(source, places))).map(Some)
+    }
+
+    fn new<Place>(contents: Contents<Place>, format: &'static str, version: impl FnOnce(Vec<Place>) -> Version) -> Result<Self, FileError> {
+        let times = times(&contents.arrays);
+        let mut groups = HashMap::new();
+        let (mut heads, mut columns) = (Vec::new(), Vec::new());
+        for (at, array) in contents.arrays.iter().enumerate() {
+            let (rows, lines) = (array.rows.max(array.columns), array.rows.min(array.columns));
+            let lying = array.columns > array.rows;
+            if lines > MOST_LINES {
+                continue;
+            }
+            let owner = ancestors(&array.path).find(|owner| times.contains_key(&(*owner, rows))).unwrap_or("");
+            let next = groups.len();
+            let group = *groups.entry((owner, rows)).or_insert(next);
+            let is_time = times.get(&(owner, rows)) == Some(&at);
+            let name = labelled(&array.path, &contents.labels);
+            for k in 0..lines {
+                let line = if lying { Line::Row(k) } else { Line::Column(k) };
+                let name = match line {
+                    _ if lines == 1 => name.clone(),
+                    Line::Column(_) => format!("{name}(:,{})", k + 1),
+                    Line::Row(_) => format!("{name}({},:)", k + 1),
+                };
+                heads.push(Head { name, unit: array.unit.clone(), rows, group, is_time });
+                columns.push(Column { array: at, line });
+            }
+            if heads.len() > MOST_COLUMNS {
+                return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
+            }
+        }
+        if heads.is_empty() {
+            return Err(match contents.objects.into_iter().next() {
+                Some(Object { name, class }) => Problem::MatObject { name, class },
+                None => Problem::NoNumbers { format },
+            }
+            .into());
+        }
+        let mut unreadable = contents.unreadable;
+        unreadable.extend(contents.objects.into_iter().map(|object| object.name));
+        let file = version(contents.arrays.into_iter().map(|array| array.place).collect());
+        Ok(Self { file, format, heads, columns, unreadable })
+    }
+
+    pub(super) fn heads(&self) -> &[Head] {
+        &self.heads
+    }
+
+    pub(super) fn unreadable(&self) -> &[String] {
+        &self.unreadable
+    }
+
+    pub(super) fn read(&self, wanted: &[usize], take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>) -> Result<(), FileError> {
+        match &self.file {
+            Version::Flat(file) => self.blocks(wanted, take, |column| file.line(column.array, column.line), v5::Values::next),
+            Version::Hdf5(file) => self.blocks(wanted, take, |column| file.line(column.array, column.line), hdf5::Values::next),
+        }
+    }
+
+    fn blocks<Values>(
+        &self,
+        wanted: &[usize],
+        take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>,
+        open: impl Fn(&Column) -> Result<Values, FileError>,
+        next: impl Fn(&mut Values, usize) -> Result<Vec<f64>, FileError>,
+    ) -> Result<(), FileError> {
+        let mut left = wanted.first().map_or(0, |&at| self.heads[at].rows);
+        let named = |error: FileError, at: usize| error.in_column(&self.heads[at].name);
+        let opened: Result<Vec<Values>, FileError> =
+            wanted.iter().map(|&at| open(&self.columns[at]).map_err(|error| named(error, at))).collect();
+        let mut columns = opened?;
+        while left > 0 {
+            let count = left.min(BLOCK as u64);
+            let mut block = Vec::with_capacity(columns.len());
+            for (column, &at) in columns.iter_mut().zip(wanted) {
+                let values = next(column, count as usize).map_err(|error| named(error, at))?;
+                if values.len() as u64 != count {
+                    return Err(named(super::damaged(self.format, "it ends too early"), at));
+                }
+                block.push(values);
+            }
+            take(block)?;
+            left -= count;
+        }
+        Ok(())
+    }
+}
+
+/// The array that is the time of a structure, by the structure's path and the number of instants.
+fn times<Place>(arrays: &[Array<Place>]) -> HashMap<(&str, u64), usize> {
+    let mut times = HashMap::new();
+    for (at, array) in arrays.iter().enumerate() {
+        if let Some((owner, "time" | "Time")) = array.path.rsplit_once('.')
+            && array.rows.min(array.columns) == 1
+        {
+            times.entry((owner, array.rows.max(array.columns))).or_insert(at);
+        }
+    }
+    times
+}
+
+/// `a.b.c` is in `a.b` and in `a`.
+fn ancestors(path: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(path.rsplit_once('.'), |(owner, _)| owner.rsplit_once('.')).map(|(owner, _)| owner)
+}
+
+/// `log.signals(2).values` with the label `i_q` is `log.i_q`.
+fn labelled(path: &str, labels: &HashMap<String, String>) -> String {
+    let named = || {
+        let signal = path.strip_suffix(".values")?;
+        let label = labels.get(signal).map(|label| label.trim()).filter(|label| !label.is_empty())?;
+        let (owner, _) = signal.rsplit_once('.')?;
+        Some(format!("{owner}.{label}"))
+    };
+    named().unwrap_or_else(|| path.to_owned())
+}
+
+/// Elements of a structure are numbered if they are several, and nameless only at the top.
+fn join(path: &str, field: &str) -> String {
+    if path.is_empty() { field.to_owned() } else { format!("{path}.{field}") }
+}
+
+/// An array is worth listing if it has two elements.
+fn worthwhile(rows: u64, columns: u64) -> bool {
+    rows.min(columns) >= 1 && rows.max(columns) >= 2
+}

@@ -1,0 +1,395 @@
+//! The numbers of an array: in one piece, or in chunks that are perhaps packed.
+
+use super::{
+    Cursor, NOWHERE, Reader, Source,
+    object::{Object, message},
+};
+use crate::{
+    container::{mat::Line, most_held, number::Number, unread},
+    problem::Problem,
+};
+use flate2::read::ZlibDecoder;
+use fluxfit_files::FileError;
+use std::{collections::HashMap, io::Read};
+
+/// Bytes of an unpacked chunk at most. Writers aim at 16 KiB to 1 MiB.
+const LARGEST_CHUNK: u64 = 32 << 20;
+
+/// Bytes that are read at once of an array in one piece.
+const PIECE: u64 = 1 << 18;
+
+/// Where the numbers of an array are. An array of one dimension has a second one of 1.
+pub(crate) struct Place {
+    number: Number,
+    dimensions: [u64; 2],
+    /// The file's dimensions are MATLAB's columns and rows, and not rows and columns.
+    reversed: bool,
+    layout: Layout,
+}
+
+enum Layout {
+    Here(Source),
+    /// From this address on; none if nothing was written.
+    Piece(Option<u64>, f64),
+    Chunks(Chunks),
+}
+
+struct Chunks {
+    /// The root of the tree of chunks; none if nothing was written.
+    tree: Option<u64>,
+    dimensions: [u64; 2],
+    /// Of the array: one or two.
+    rank: usize,
+    filters: Vec<Filter>,
+    fill: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Filter {
+    Deflate,
+    Shuffle,
+    Checksum,
+}
+
+impl Place {
+    pub(super) fn new(reader: &Reader, object: &Object, number: Number, dimensions: [u64; 2], reversed: bool) -> Result<Self, FileError> {
+        let wrong = || reader.damaged("an array in it has no place");
+        let width = number.width() as u64;
+        let length = dimensions[0].checked_mul(dimensions[1]).and_then(|count| count.checked_mul(width)).ok_or_else(wrong)?;
+        if length > most_held(reader.source.length()) {
+            return Err(reader.damaged("an array in it is larger than the file can hold"));
+        }
+        let fill = object.message(message::FILL_VALUE).and_then(|bytes| fill_value(bytes, number)).unwrap_or(0.0);
+        let mut cursor = Cursor(object.message(message::LAYOUT).ok_or_else(wrong)?);
+        let (version, class) = cursor.u8().zip(cursor.u8()).ok_or_else(wrong)?;
+        let layout = match (version, class) {
+            (3 | 4, 0) => {
+                let stored = cursor.u16().ok_or_else(wrong)?;
+                let bytes = cursor.take(stored.into()).filter(|bytes| bytes.len() as u64 >= length).ok_or_else(wrong)?;
+                Layout::Here(Source::memory(bytes.to_vec()))
+            }
+            (3 | 4, 1) => {
+                let (address, stored) = cursor.u64().zip(cursor.u64()).ok_or_else(wrong)?;
+                if stored < length {
+                    return Err(wrong());
+                }
+                Layout::Piece((address != NOWHERE).then_some(address), fill)
+            }
+            (3, 2) => Layout::Chunks(Chunks::parse(reader, object, cursor, number, fill)?),
+            (4, 2) => return Err(reader.newer("an index of chunks")),
+            _ => return Err(reader.newer("this layout of an array")),
+        };
+        Ok(Self { number, dimensions, reversed, layout })
+    }
+}
+
+impl Chunks {
+    fn parse(reader: &Reader, object: &Object, mut cursor: Cursor<'_>, number: Number, fill: f64) -> Result<Self, FileError> {
+        let wrong = || reader.damaged("the chunks of an array are impossible");
+        // The last dimension is the width of an element.
+        let rank = usize::from(cursor.u8().ok_or_else(wrong)?).checked_sub(1).filter(|rank| (1..=2).contains(rank)).ok_or_else(wrong)?;
+        let tree = cursor.u64().ok_or_else(wrong)?;
+        let mut dimensions = [1; 2];
+        for dimension in &mut dimensions[..rank] {
+            *dimension = cursor.u32().map(u64::from).filter(|dimension| *dimension > 0).ok_or_else(wrong)?;
+        }
+        let width = number.width() as u64;
+        if cursor.u32().map(u64::from) != Some(width) {
+            return Err(wrong());
+        }
+        // Two numbers below 2^32 and a small one may not fit.
+        if dimensions[0].saturating_mul(dimensions[1]).saturating_mul(width) > LARGEST_CHUNK {
+            return Err(Problem::LargeChunks { most: LARGEST_CHUNK >> 20 }.into());
+        }
+        let filters = object.message(message::FILTERS).map_or(Ok(Vec::new()), |bytes| filters(reader, bytes))?;
+        Ok(Self { tree: (tree != NOWHERE).then_some(tree), dimensions, rank, filters, fill })
+    }
+}
+
+/// From a filter pipeline message, in the order in which they were applied.
+fn filters(reader: &Reader, bytes: &[u8]) -> Result<Vec<Filter>, FileError> {
+    let mut cursor = Cursor(bytes);
+    let mut parse = || {
+        let (version, count) = (cursor.u8()?, cursor.u8()?);
+        cursor.take(if version == 1 { 6 } else { 0 })?;
+        let mut identifiers = Vec::new();
+        for _ in 0..count {
+            let identifier = cursor.u16()?;
+            let name = if version == 1 || identifier >= 256 { cursor.u16()?.into() } else { 0 };
+            let (_flags, parameters) = (cursor.u16()?, usize::from(cursor.u16()?));
+            cursor.take(if version == 1 { usize::next_multiple_of(name, 8) } else { name })?;
+            cursor.take(4 * parameters)?;
+            cursor.take(if version == 1 && parameters % 2 == 1 { 4 } else { 0 })?;
+            identifiers.push(identifier);
+        }
+        Some(identifiers)
+    };
+    let identifiers = parse().ok_or_else(|| reader.damaged("the filters of an array are impossible"))?;
+    let known = identifiers.into_iter().map(|identifier| match identifier {
+        1 => Ok(Filter::Deflate),
+        2 => Ok(Filter::Shuffle),
+        3 => Ok(Filter::Checksum),
+        other => Err(Problem::Hdf5Filter { identifier: other }.into()),
+    });
+    known.collect()
+}
+
+/// From a fill value message, if it has one.
+fn fill_value(bytes: &[u8], number: Number) -> Option<f64> {
+    let mut cursor = Cursor(bytes);
+    match cursor.u8()? {
+        1 => drop(cursor.take(3)?),
+        2 => {
+            cursor.take(2)?;
+            (cursor.u8()? == 1).then_some(())?;
+        }
+        _ => (cursor.u8()? & 0x20 != 0).then_some(())?,
+    }
+    let length = cursor.u32()? as usize;
+    let mut values = Vec::new();
+    number.decode(cursor.take(length).filter(|bytes| bytes.len() == number.width())?, &mut values);
+    values.first().copied()
+}
+
+/// The elements of one line, in their order.
+pub(crate) struct Values {
+    number: Number,
+    format: &'static str,
+    from: From,
+    /// The next element, and their number.
+    at: u64,
+    end: u64,
+}
+
+enum From {
+    Piece {
+        source: Source,
+        /// Bytes.
+        first: u64,
+        /// Elements.
+        stride: u64,
+    },
+    Nothing(f64),
+    Chunks {
+        source: Source,
+        /// By their place along the line.
+        stored: HashMap<u64, Stored>,
+        /// Elements of a chunk along the line.
+        along: u64,
+        /// Elements in a chunk from its begin to the line, and from an element of the line to the next.
+        first: u64,
+        stride: u64,
+        /// Bytes of an unpacked chunk.
+        length: u64,
+        filters: Vec<Filter>,
+        fill: f64,
+        /// The unpacked chunk that holds the element before.
+        current: Option<(u64, Vec<u8>)>,
+    },
+}
+
+struct Stored {
+    at: u64,
+    length: u64,
+    /// A bit for each filter that was not applied.
+    unfiltered: u32,
+}
+
+impl Values {
+    pub(super) fn open(reader: &Reader, place: &Place, line: Line) -> Result<Self, FileError> {
+        let (axis, fixed) = match (line, place.reversed) {
+            (Line::Column(k), true) | (Line::Row(k), false) => (1, k),
+            (Line::Column(k), false) | (Line::Row(k), true) => (0, k),
+        };
+        let width = place.number.width() as u64;
+        let line_of = |dimensions: [u64; 2], fixed: u64| if axis == 1 { (fixed * dimensions[1], 1) } else { (fixed, dimensions[1]) };
+        let from = match &place.layout {
+            // The products fit: they are within an array whose length in bytes was found to fit.
+            Layout::Here(source) => {
+                let (first, stride) = line_of(place.dimensions, fixed);
+                From::Piece { source: source.clone(), first: first * width, stride }
+            }
+            Layout::Piece(Some(address), _) => {
+                let (first, stride) = line_of(place.dimensions, fixed);
+                let first = reader.base.checked_add(*address).and_then(|begin| begin.checked_add(first * width));
+                let first = first.ok_or_else(|| reader.damaged("an array in it has no place"))?;
+                From::Piece { source: reader.source.clone(), first, stride }
+            }
+            Layout::Piece(None, fill) => From::Nothing(*fill),
+            Layout::Chunks(chunks) => {
+                let across = chunks.dimensions[1 - axis];
+                let (first, stride) = line_of(chunks.dimensions, fixed % across);
+                let mut stored = HashMap::new();
+                if let Some(tree) = chunks.tree {
+                    let mut wanted = Wanted { reader, chunks, axis, across: fixed - fixed % across, stored: &mut stored };
+                    wanted.node(tree, None)?;
+                }
+                From::Chunks {
+                    source: reader.source.clone(),
+                    stored,
+                    along: chunks.dimensions[axis],
+                    first,
+                    stride,
+                    length: chunks.dimensions[0] * chunks.dimensions[1] * width,
+                    filters: chunks.filters.clone(),
+                    fill: chunks.fill,
+                    current: None,
+                }
+            }
+        };
+        Ok(Self { number: place.number, format: reader.format, from, at: 0, end: place.dimensions[axis] })
+    }
+
+    /// The next `count`, or fewer at the end.
+    pub(crate) fn next(&mut self, count: usize) -> Result<Vec<f64>, FileError> {
+        let end = self.end.min(self.at + count as u64);
+        let mut values = Vec::with_capacity((end - self.at) as usize);
+        let width = self.number.width() as u64;
+        while self.at < end {
+            let left = end - self.at;
+            let taken = match &mut self.from {
+                From::Nothing(fill) => {
+                    values.extend(std::iter::repeat_n(*fill, left as usize));
+                    left
+                }
+                From::Piece { source, first, stride } => {
+                    let taken = left.min((PIECE / (*stride * width)).max(1));
+                    let at = *first + self.at * *stride * width;
+                    let bytes = source.bytes_at(at, ((taken - 1) * *stride + 1) * width).map_err(|error| unread(self.format, &error))?;
+                    strided(self.number, &bytes, *stride, taken, &mut values);
+                    taken
+                }
+                From::Chunks { source, stored, along, first, stride, length, filters, fill, current } => {
+                    let (chunk, within) = (self.at / *along, self.at % *along);
+                    let taken = left.min(*along - within);
+                    match stored.get(&chunk) {
+                        None => values.extend(std::iter::repeat_n(*fill, taken as usize)),
+                        Some(place) => {
+                            if current.as_ref().is_none_or(|(loaded, _)| *loaded != chunk) {
+                                // The old one goes before the new one comes.
+                                *current = None;
+                                *current = Some((chunk, unpack(source, place, filters, *length, width as usize, self.format)?));
+                            }
+                            let bytes = current.as_ref().map_or(&[][..], |(_, bytes)| bytes);
+                            let begin = (*first + within * *stride) * width;
+                            strided(self.number, bytes.get(begin as usize..).unwrap_or_default(), *stride, taken, &mut values);
+                        }
+                    }
+                    taken
+                }
+            };
+            self.at += taken;
+        }
+        Ok(values)
+    }
+}
+
+/// Every `stride`th number, from the first on.
+fn strided(number: Number, bytes: &[u8], stride: u64, count: u64, into: &mut Vec<f64>) {
+    let width = number.width();
+    if stride == 1 {
+        let length = bytes.len().min(count as usize * width);
+        return number.decode(&bytes[..length], into);
+    }
+    for piece in bytes.chunks(stride as usize * width).take(count as usize) {
+        number.decode(piece.get(..width).unwrap_or_default(), into);
+    }
+}
+
+/// The chunks that a line meets.
+struct Wanted<'a> {
+    reader: &'a Reader,
+    chunks: &'a Chunks,
+    axis: usize,
+    /// Where they begin across the line.
+    across: u64,
+    stored: &'a mut HashMap<u64, Stored>,
+}
+
+impl Wanted<'_> {
+    fn node(&mut self, address: u64, level: Option<u8>) -> Result<(), FileError> {
+        let reader = self.reader;
+        let wrong = || reader.damaged("the chunks of an array are damaged");
+        let bytes = reader.bytes(address, 24)?;
+        let mut cursor = Cursor(&bytes);
+        let mut head = || {
+            (cursor.take(4)? == b"TREE" && cursor.u8()? == 1).then_some(())?;
+            Some((cursor.u8()?, cursor.u16()?))
+        };
+        let (found, entries) = head().ok_or_else(wrong)?;
+        // Levels count down to 0: no node is its own descendant.
+        if level.is_some_and(|level| level != found) {
+            return Err(wrong());
+        }
+        // A key of a length, a mask, a place for each dimension and one more; and the child right of it.
+        let entry = 8 + 8 * (self.chunks.rank as u64 + 1) + 8;
+        let bytes = reader.bytes(address.saturating_add(24), u64::from(entries) * entry)?;
+        for entry in bytes.chunks_exact(entry as usize) {
+            let mut cursor = Cursor(entry);
+            let mut parse = || {
+                let (length, unfiltered) = (cursor.u32()?, cursor.u32()?);
+                let mut place = [0; 2];
+                for at in &mut place[..self.chunks.rank] {
+                    *at = cursor.u64()?;
+                }
+                cursor.u64()?;
+                Some((u64::from(length), unfiltered, place, cursor.u64()?))
+            };
+            let (length, unfiltered, place, child) = parse().ok_or_else(wrong)?;
+            match found.checked_sub(1) {
+                Some(below) => self.node(child, Some(below))?,
+                None if place[1 - self.axis] == self.across => {
+                    let at = reader.base.checked_add(child).ok_or_else(wrong)?;
+                    self.stored.insert(place[self.axis] / self.chunks.dimensions[self.axis], Stored { at, length, unfiltered });
+                }
+                None => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+fn unpack(
+    source: &Source,
+    stored: &Stored,
+    filters: &[Filter],
+    length: u64,
+    width: usize,
+    format: &'static str,
+) -> Result<Vec<u8>, FileError> {
+    let wrong = || crate::container::damaged(format, "a chunk of an array is not as long as it says");
+    let mut bytes = source.bytes_at(stored.at, stored.length).map_err(|error| unread(format, &error))?;
+    for (at, filter) in filters.iter().enumerate().rev() {
+        if stored.unfiltered.checked_shr(at as u32).is_some_and(|rest| rest & 1 != 0) {
+            continue;
+        }
+        bytes = match filter {
+            Filter::Checksum => {
+                bytes.truncate(bytes.len().checked_sub(4).ok_or_else(wrong)?);
+                bytes
+            }
+            Filter::Deflate => {
+                let mut unpacked = Vec::new();
+                // A checksum may have been packed too.
+                let most = length.saturating_add(4);
+                ZlibDecoder::new(&bytes[..]).take(most).read_to_end(&mut unpacked).map_err(|error| unread(format, &error))?;
+                unpacked
+            }
+            Filter::Shuffle => unshuffle(&bytes, width),
+        };
+    }
+    if bytes.len() as u64 == length { Ok(bytes) } else { Err(wrong()) }
+}
+
+/// The first bytes of all numbers come first, then their second bytes, and so on.
+fn unshuffle(bytes: &[u8], width: usize) -> Vec<u8> {
+    let count = bytes.len() / width;
+    let mut whole = vec![0; bytes.len()];
+    for (byte, plane) in bytes[..count * width].chunks_exact(count.max(1)).enumerate() {
+        for (number, value) in plane.iter().enumerate() {
+            whole[number * width + byte] = *value;
+        }
+    }
+    whole[count * width..].copy_from_slice(&bytes[count * width..]);
+    whole
+}

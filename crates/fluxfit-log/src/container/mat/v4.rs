@@ -1,0 +1,107 @@
+//! MAT files of version 4: variables one after the other, each with a header of five integers, its name, and its numbers by columns.
+//!
+//! The format: MathWorks, MAT-File Format, chapter 2.
+
+use super::{Array, Contents, Source, v5, worthwhile};
+use crate::{
+    container::{
+        MOST_COLUMNS, damaged,
+        number::{Kind, Number},
+        unread,
+    },
+    problem::Problem,
+};
+use fluxfit_files::FileError;
+
+const HEADER: u64 = 20;
+
+/// Bytes of a variable's name at most, with the zero at its end: MATLAB's own limit is 63 letters.
+const LONGEST_NAME: u64 = 64;
+
+struct Variable {
+    number: Number,
+    /// 0 is a full matrix, 1 a text, 2 a sparse matrix.
+    matrix: u32,
+    rows: u64,
+    columns: u64,
+    complex: bool,
+    name_length: u64,
+}
+
+impl Variable {
+    /// None if no variable starts so.
+    fn parse(header: &[u8]) -> Option<Self> {
+        let words: &[[u8; 4]; 5] = header.as_chunks().0.first_chunk()?;
+        // The type is four decimal digits MOPT, less than 5000, and tells the order of the bytes of all five.
+        let big_endian = u32::from_le_bytes(words[0]) >= 5000;
+        let word = |at: usize| if big_endian { u32::from_be_bytes(words[at]) } else { u32::from_le_bytes(words[at]) };
+        let (machine, zero, precision, matrix) = (word(0) / 1000, word(0) / 100 % 10, word(0) / 10 % 10, word(0) % 10);
+        let kind = match precision {
+            0 => Kind::F64,
+            1 => Kind::F32,
+            2 => Kind::I32,
+            3 => Kind::I16,
+            4 => Kind::U16,
+            5 => Kind::U8,
+            _ => return None,
+        };
+        let known = machine == u32::from(big_endian) && zero == 0 && matrix <= 2 && word(3) <= 1;
+        let name_length = u64::from(word(4));
+        (known && (2..=LONGEST_NAME).contains(&name_length)).then(|| Self {
+            number: Number { kind, big_endian },
+            matrix,
+            rows: word(1).into(),
+            columns: word(2).into(),
+            complex: word(3) == 1,
+            name_length,
+        })
+    }
+
+    /// Bytes of the numbers.
+    fn length(&self) -> u64 {
+        // Three factors below 2^32, 2^32 and 2^5 may not fit.
+        let parts = if self.complex { 2 } else { 1 };
+        self.rows.saturating_mul(self.columns).saturating_mul(parts * self.number.width() as u64)
+    }
+}
+
+/// A version 4 file has no signature: it starts with a variable that has a name and fits into the file.
+pub(super) fn signature(start: &[u8], length: u64) -> bool {
+    let Some(variable) = Variable::parse(start) else { return false };
+    let name = start.get(HEADER as usize..(HEADER + variable.name_length) as usize);
+    let named = name.is_some_and(|name| name.split_last().is_some_and(|(zero, letters)| *zero == 0 && is_identifier(letters)));
+    named && HEADER.saturating_add(variable.name_length).saturating_add(variable.length()) <= length
+}
+
+fn is_identifier(letters: &[u8]) -> bool {
+    letters.first().is_some_and(u8::is_ascii_alphabetic) && letters.iter().all(|letter| letter.is_ascii_alphanumeric() || *letter == b'_')
+}
+
+pub(super) fn open(source: &Source) -> Result<Contents<v5::Place>, FileError> {
+    let mut contents = Contents::default();
+    let mut at = 0;
+    while at < source.length() {
+        let header = source.bytes_at(at, HEADER).map_err(|error| unread("MAT", &error))?;
+        let variable = Variable::parse(&header).ok_or_else(|| damaged("MAT", "a variable has no type"))?;
+        let name = source.bytes_at(at + HEADER, variable.name_length).map_err(|error| unread("MAT", &error))?;
+        let name: String = String::from_utf8_lossy(&name).trim_end_matches('\0').to_owned();
+        let data = at + HEADER + variable.name_length;
+        let end = data.saturating_add(variable.length());
+        if end > source.length() {
+            return Err(damaged("MAT", "it ends too early").in_column(&name));
+        }
+        if variable.matrix == 0 && !variable.complex {
+            if worthwhile(variable.rows, variable.columns) {
+                let place = v5::Place::plain(data, end, variable.number, variable.rows);
+                contents.arrays.push(Array { path: name, unit: None, rows: variable.rows, columns: variable.columns, place });
+            }
+        } else {
+            contents.unreadable.push(name);
+        }
+        if contents.arrays.len() + contents.unreadable.len() > MOST_COLUMNS {
+            return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
+        }
+        at = end;
+    }
+    Ok(contents)
+}

@@ -1,0 +1,449 @@
+//! MAT files of versions 5 to 7: elements with a tag, those at the top perhaps packed by deflate.
+//!
+//! A packed array is unpacked while it is read, from its start, and never kept. The format: MathWorks, MAT-File Format, chapter 1.
+
+use super::{Array, Contents, Line, Object, Source, join, worthwhile};
+use crate::{
+    container::{
+        MOST_COLUMNS, damaged,
+        number::{Kind, Number},
+        source::Range,
+        unread,
+    },
+    problem::Problem,
+};
+use flate2::read::ZlibDecoder;
+use fluxfit_files::FileError;
+use std::io::{self, BufReader, Read};
+
+const FORMAT: &str = "MAT";
+const HEADER: u64 = 128;
+
+/// Structures inside of structures at most.
+const DEEPEST: usize = 16;
+
+/// Bytes of a name, a label or a class at most; longer ones are cut.
+const LONGEST_TEXT: u64 = 256;
+
+/// Bytes that are unpacked at once.
+const PIECE: usize = 1 << 16;
+
+/// Whether the integers are big-endian, if this is a file of these versions.
+pub(super) fn signature(start: &[u8]) -> Option<bool> {
+    match start.get(124..128)? {
+        [0, 1, b'I', b'M'] => Some(false),
+        [1, 0, b'M', b'I'] => Some(true),
+        _ => None,
+    }
+}
+
+/// Where the numbers of an array are, column by column.
+pub(crate) struct Place {
+    /// Of the element at the top that holds them: from, up to.
+    element: (u64, u64),
+    packed: bool,
+    /// Of the first number, in the unpacked element.
+    offset: u64,
+    number: Number,
+    rows: u64,
+}
+
+impl Place {
+    pub(super) fn plain(from: u64, to: u64, number: Number, rows: u64) -> Self {
+        Self { element: (from, to), packed: false, offset: 0, number, rows }
+    }
+}
+
+/// The arrays of a file, to be read.
+pub(crate) struct File {
+    source: Source,
+    places: Vec<Place>,
+}
+
+impl File {
+    pub(super) fn new(source: Source, places: Vec<Place>) -> Self {
+        Self { source, places }
+    }
+
+    pub(super) fn line(&self, array: usize, line: Line) -> Result<Values, FileError> {
+        let place = &self.places[array];
+        let width = place.number.width() as u64;
+        // All of this fits: the array was found to fit into its element.
+        let (first, stride) = match line {
+            Line::Column(k) => (k * place.rows, 1),
+            Line::Row(k) => (k, place.rows),
+        };
+        let mut stream = Stream::new(&self.source, place.element, place.packed);
+        stream.skip(place.offset + first * width).map_err(|error| unread(FORMAT, &error))?;
+        let between = (stride - 1) * width;
+        Ok(Values { stream, number: place.number, between, started: false })
+    }
+}
+
+/// The elements of one line, in their order.
+pub(crate) struct Values {
+    stream: Stream,
+    number: Number,
+    /// Bytes from the end of an element to the next one.
+    between: u64,
+    started: bool,
+}
+
+impl Values {
+    /// The next `count`, or fewer at the end.
+    pub(super) fn next(&mut self, count: usize) -> Result<Vec<f64>, FileError> {
+        let mut values = Vec::with_capacity(count);
+        self.fill(&mut values, count).map_err(|error| unread(FORMAT, &error))?;
+        Ok(values)
+    }
+
+    fn fill(&mut self, values: &mut Vec<f64>, count: usize) -> io::Result<()> {
+        let width = self.number.width();
+        if self.between == 0 {
+            let mut bytes = vec![0; PIECE.min(count * width)];
+            let mut left = count * width;
+            while left > 0 {
+                let piece = left.min(PIECE);
+                self.stream.read_exact(&mut bytes[..piece])?;
+                self.number.decode(&bytes[..piece], values);
+                left -= piece;
+            }
+            return Ok(());
+        }
+        let mut bytes = [0; 8];
+        for _ in 0..count {
+            if std::mem::replace(&mut self.started, true) {
+                self.stream.skip(self.between)?;
+            }
+            self.stream.read_exact(&mut bytes[..width])?;
+            self.number.decode(&bytes[..width], values);
+        }
+        Ok(())
+    }
+}
+
+/// An element at the top, unpacked.
+struct Stream {
+    bytes: Bytes,
+    /// Bytes that were read or skipped.
+    at: u64,
+}
+
+enum Bytes {
+    Plain(BufReader<Range>),
+    Packed(Box<ZlibDecoder<BufReader<Range>>>),
+}
+
+impl Stream {
+    fn new(source: &Source, (from, to): (u64, u64), packed: bool) -> Self {
+        let range = BufReader::new(source.range(from, to));
+        let bytes = if packed { Bytes::Packed(Box::new(ZlibDecoder::new(range))) } else { Bytes::Plain(range) };
+        Self { bytes, at: 0 }
+    }
+
+    fn read_exact(&mut self, buffer: &mut [u8]) -> io::Result<()> {
+        match &mut self.bytes {
+            Bytes::Plain(bytes) => bytes.read_exact(buffer)?,
+            Bytes::Packed(bytes) => bytes.read_exact(buffer)?,
+        }
+        self.at += buffer.len() as u64;
+        Ok(())
+    }
+
+    /// # Errors
+    /// If there are fewer bytes.
+    fn skip(&mut self, count: u64) -> io::Result<()> {
+        let skipped = match &mut self.bytes {
+            Bytes::Plain(bytes) => {
+                let buffered = count.min(bytes.buffer().len() as u64);
+                bytes.consume_buffered(buffered as usize);
+                let rest = count - buffered;
+                let there = rest.min(bytes.get_ref().left());
+                if rest > 0 {
+                    bytes.get_mut().skip(there);
+                }
+                buffered + there
+            }
+            Bytes::Packed(bytes) => io::copy(&mut bytes.by_ref().take(count), &mut io::sink())?,
+        };
+        self.at = self.at.saturating_add(skipped);
+        if skipped == count { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
+    }
+}
+
+/// Only the bytes that are in the buffer anyway.
+trait ConsumeBuffered {
+    fn consume_buffered(&mut self, count: usize);
+}
+
+impl<R: Read> ConsumeBuffered for BufReader<R> {
+    fn consume_buffered(&mut self, count: usize) {
+        use std::io::BufRead;
+        self.consume(count);
+    }
+}
+
+pub(super) fn open(source: &Source, big_endian: bool) -> Result<Contents<Place>, FileError> {
+    let mut contents = Contents::default();
+    let mut at = HEADER;
+    while at < source.length() {
+        let mut stream = Stream::new(source, (at, at.saturating_add(8)), false);
+        let element = Element::read(&mut stream, big_endian).map_err(|error| unread(FORMAT, &error))?;
+        let data = at + 8;
+        let end = data.checked_add(element.length).filter(|end| *end <= source.length());
+        let end = end.ok_or_else(|| damaged(FORMAT, "it ends too early"))?;
+        let packed = element.kind == kind::PACKED;
+        if packed || element.kind == kind::MATRIX {
+            let place = if packed { (data, end) } else { (at, end) };
+            let stream = Stream::new(source, place, packed);
+            Walk { stream, big_endian, element: place, packed, contents: &mut contents }.matrix("", DEEPEST)?;
+        }
+        at = end;
+    }
+    Ok(contents)
+}
+
+/// Types of elements.
+mod kind {
+    pub(super) const MATRIX: u32 = 14;
+    pub(super) const PACKED: u32 = 15;
+}
+
+/// Classes of arrays.
+mod class {
+    pub(super) const STRUCT: u32 = 2;
+    pub(super) const TEXT: u32 = 4;
+    pub(super) const DOUBLE: u32 = 6;
+    pub(super) const UINT64: u32 = 15;
+    pub(super) const OPAQUE: u32 = 17;
+}
+
+/// The tag of an element.
+struct Element {
+    kind: u32,
+    length: u64,
+    /// Its data are in the tag.
+    small: Option<[u8; 4]>,
+}
+
+impl Element {
+    fn read(stream: &mut Stream, big_endian: bool) -> io::Result<Self> {
+        let (first, data) = (word(stream, big_endian)?, four(stream)?);
+        if first >> 16 != 0 {
+            return Ok(Self { kind: first & 0xffff, length: u64::from(first >> 16).min(4), small: Some(data) });
+        }
+        Ok(Self { kind: first, length: integer(data, big_endian).into(), small: None })
+    }
+
+    /// Bytes from the tag's end to the next element, but for those at the top.
+    fn padded(&self) -> u64 {
+        if self.small.is_some() { 0 } else { self.length.next_multiple_of(8) }
+    }
+
+    fn number(&self, big_endian: bool) -> Option<Number> {
+        let kind = match self.kind {
+            1 => Kind::I8,
+            2 => Kind::U8,
+            3 => Kind::I16,
+            4 => Kind::U16,
+            5 => Kind::I32,
+            6 => Kind::U32,
+            7 => Kind::F32,
+            9 => Kind::F64,
+            12 => Kind::I64,
+            13 => Kind::U64,
+            _ => return None,
+        };
+        Some(Number { kind, big_endian })
+    }
+}
+
+fn four(stream: &mut Stream) -> io::Result<[u8; 4]> {
+    let mut bytes = [0; 4];
+    stream.read_exact(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn integer(bytes: [u8; 4], big_endian: bool) -> u32 {
+    if big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
+}
+
+fn word(stream: &mut Stream, big_endian: bool) -> io::Result<u32> {
+    four(stream).map(|bytes| integer(bytes, big_endian))
+}
+
+/// One variable, read from its begin to its end.
+struct Walk<'a> {
+    stream: Stream,
+    big_endian: bool,
+    element: (u64, u64),
+    packed: bool,
+    contents: &'a mut Contents<Place>,
+}
+
+impl Walk<'_> {
+    /// An array, from its tag on. `path` is its name, where it has none of its own: at the top it has one.
+    fn matrix(&mut self, path: &str, depth: usize) -> Result<(), FileError> {
+        let element = self.tag()?;
+        if element.kind != kind::MATRIX || element.small.is_some() {
+            return Err(damaged(FORMAT, "an array is missing"));
+        }
+        if element.length == 0 {
+            return Ok(());
+        }
+        let end = self.stream.at.saturating_add(element.length);
+        let Some(depth) = depth.checked_sub(1) else { return self.skip_to(end) };
+        let flags = self.bytes(8)?;
+        let flags = flags.first_chunk().map_or(0, |bytes| integer(*bytes, self.big_endian));
+        let (class, complex, logical) = (flags & 0xff, flags & 0x800 != 0, flags & 0x200 != 0);
+        if class == class::OPAQUE {
+            self.opaque(end)?;
+            return self.skip_to(end);
+        }
+        // Of the dimensions, two count.
+        let element = self.tag()?;
+        let dimensions = self.data(&element, 8)?;
+        let dimension = |at: usize| dimensions.get(at..).and_then(|rest| rest.first_chunk()).map(|bytes| integer(*bytes, self.big_endian));
+        let (rows, columns) = (dimension(0).unwrap_or(0).into(), dimension(4).unwrap_or(0).into());
+        let flat = element.length == 8;
+        let name = self.bytes(LONGEST_TEXT)?;
+        let name = String::from_utf8_lossy(&name).into_owned();
+        let at_top = path.is_empty();
+        let path = if at_top { name.as_str() } else { path };
+        // What has no name at the top is MATLAB's own: the data of its objects.
+        if path.is_empty() {
+            return Ok(());
+        }
+        match class {
+            class::STRUCT if flat => self.structure(path, rows, columns, depth)?,
+            class::TEXT if path.ends_with(".label") => self.label(path)?,
+            class::DOUBLE..=class::UINT64 if flat && !complex && !logical => self.numbers(path, rows, columns)?,
+            _ => self.contents.unreadable.extend(at_top.then(|| path.to_owned())),
+        }
+        self.count()?;
+        // Nothing follows at the top: the numbers need not be unpacked.
+        if at_top { Ok(()) } else { self.skip_to(end) }
+    }
+
+    fn numbers(&mut self, path: &str, rows: u64, columns: u64) -> Result<(), FileError> {
+        let element = self.tag()?;
+        let number = element.number(self.big_endian).ok_or_else(|| damaged(FORMAT, "an array has no type").in_column(path))?;
+        if !worthwhile(rows, columns) {
+            return Ok(());
+        }
+        let length = rows.checked_mul(columns).and_then(|count| count.checked_mul(number.width() as u64));
+        if length != Some(element.length) {
+            return Err(damaged(FORMAT, "an array is not as long as it says").in_column(path));
+        }
+        let offset = if element.small.is_some() { self.stream.at - 4 } else { self.stream.at };
+        let place = Place { element: self.element, packed: self.packed, offset, number, rows };
+        self.contents.arrays.push(Array { path: path.to_owned(), unit: None, rows, columns, place });
+        Ok(())
+    }
+
+    fn structure(&mut self, path: &str, rows: u64, columns: u64, depth: usize) -> Result<(), FileError> {
+        let length = self.bytes(4)?;
+        let length = length.first_chunk().map_or(0, |bytes| u64::from(integer(*bytes, self.big_endian)));
+        let element = self.tag()?;
+        if length == 0 || element.length % length != 0 || element.length / length > MOST_COLUMNS as u64 || length > LONGEST_TEXT {
+            return Err(damaged(FORMAT, "the names of a structure's fields are impossible").in_column(path));
+        }
+        let names = self.data(&element, element.length)?;
+        let names: Vec<String> = names
+            .chunks(length as usize)
+            .map(|name| String::from_utf8_lossy(name.split(|byte| *byte == 0).next().unwrap_or_default()).into_owned())
+            .collect();
+        if names.is_empty() {
+            return Ok(());
+        }
+        let several = rows.saturating_mul(columns);
+        for at in 0..several {
+            let path = if several == 1 { path.to_owned() } else { format!("{path}({})", at + 1) };
+            for name in &names {
+                self.matrix(&join(&path, name), depth)?;
+                self.count()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The text, for the structure that it labels.
+    fn label(&mut self, path: &str) -> Result<(), FileError> {
+        let element = self.tag()?;
+        let kind = element.kind;
+        let bytes = self.data(&element, LONGEST_TEXT)?;
+        let text = match kind {
+            // UTF-16, or the older two bytes a letter.
+            4 | 17 => {
+                let units = bytes
+                    .as_chunks()
+                    .0
+                    .iter()
+                    .map(|&unit| if self.big_endian { u16::from_be_bytes(unit) } else { u16::from_le_bytes(unit) });
+                char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
+            }
+            _ => String::from_utf8_lossy(&bytes).into_owned(),
+        };
+        let owner = path.strip_suffix(".label").unwrap_or(path);
+        self.contents.labels.insert(owner.to_owned(), text);
+        Ok(())
+    }
+
+    /// An object's name, `MCOS`, and its class.
+    fn opaque(&mut self, end: u64) -> Result<(), FileError> {
+        let mut texts = Vec::new();
+        while texts.len() < 3 && self.stream.at < end {
+            texts.push(String::from_utf8_lossy(&self.bytes(LONGEST_TEXT)?).into_owned());
+        }
+        if let Ok([name, _, class]) = <[String; 3]>::try_from(texts)
+            && !name.is_empty()
+        {
+            self.contents.objects.push(Object { name, class });
+            self.count()?;
+        }
+        Ok(())
+    }
+
+    /// What is found must stay little.
+    fn count(&self) -> Result<(), FileError> {
+        let Contents { arrays, labels, objects, unreadable } = &*self.contents;
+        if arrays.len() + labels.len() + objects.len() + unreadable.len() > MOST_COLUMNS {
+            return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
+        }
+        Ok(())
+    }
+
+    fn tag(&mut self) -> Result<Element, FileError> {
+        Element::read(&mut self.stream, self.big_endian).map_err(|error| unread(FORMAT, &error))
+    }
+
+    /// The data of the next element, of which at most `most` bytes are kept.
+    fn bytes(&mut self, most: u64) -> Result<Vec<u8>, FileError> {
+        let element = self.tag()?;
+        self.data(&element, most)
+    }
+
+    fn data(&mut self, element: &Element, most: u64) -> Result<Vec<u8>, FileError> {
+        let length = element.length.min(most);
+        if let Some(small) = element.small {
+            return Ok(small[..length as usize].to_vec());
+        }
+        let mut bytes = Vec::new();
+        let mut piece = [0; 256];
+        let mut read = || {
+            while (bytes.len() as u64) < length {
+                let count = (length - bytes.len() as u64).min(piece.len() as u64) as usize;
+                self.stream.read_exact(&mut piece[..count])?;
+                bytes.extend_from_slice(&piece[..count]);
+            }
+            self.stream.skip(element.padded() - length)
+        };
+        read().map_err(|error| unread(FORMAT, &error))?;
+        Ok(bytes)
+    }
+
+    fn skip_to(&mut self, end: u64) -> Result<(), FileError> {
+        let Some(count) = end.checked_sub(self.stream.at) else { return Err(damaged(FORMAT, "an array is longer than it says")) };
+        self.stream.skip(count).map_err(|error| unread(FORMAT, &error))
+    }
+}

@@ -1,0 +1,283 @@
+//! Parquet, row group by row group: the memory needed is that of a page of each wanted column and of one block.
+//!
+//! Numbers of every width are taken, decimals, and instants: these count in seconds from the column's first one, subtracted as
+//! integers, because the seconds since 1970 as one number would have steps of 0.24 µs. Texts, truth values and repeated fields
+//! are no columns of numbers.
+
+mod pages;
+
+use super::{BLOCK, MOST_COLUMNS, Source, damaged, guard::guarded, most_held};
+use crate::{block::Head, problem::Problem};
+use fluxfit_files::FileError;
+use parquet::{
+    basic::{LogicalType, TimeUnit, Type},
+    column::reader::{ColumnReader, ColumnReaderImpl},
+    data_type::{DataType, DoubleType, FixedLenByteArrayType, FloatType, Int32Type, Int64Type, Int96Type},
+    errors::ParquetError,
+    file::{reader::FileReader, serialized_reader::SerializedFileReader},
+    schema::types::ColumnDescriptor,
+};
+
+const FORMAT: &str = "Parquet";
+
+pub(crate) struct Parquet {
+    file: SerializedFileReader<Source>,
+    source: Source,
+    heads: Vec<Head>,
+    columns: Vec<Column>,
+    unreadable: Vec<String>,
+}
+
+struct Column {
+    /// Its number in the file.
+    leaf: usize,
+    meaning: Meaning,
+    /// The level at which a value is there; 0 if one is always.
+    present: i16,
+}
+
+/// What a stored number stands for.
+#[derive(Clone, Copy)]
+enum Meaning {
+    Number,
+    Unsigned,
+    /// Divided by this power of ten.
+    Decimal(f64),
+    /// A decimal in bytes, the first of which weighs most.
+    DecimalBytes(f64),
+    /// Counts of which a second has so many.
+    Instant(i64),
+}
+
+impl Parquet {
+    pub(super) fn open(source: Source) -> Result<Self, FileError> {
+        let file = guarded(FORMAT, || SerializedFileReader::new(source.clone()).map_err(fault))?;
+        let metadata = file.metadata();
+        let groups = metadata.row_groups();
+        let schema = metadata.file_metadata().schema_descr_ptr();
+        if schema.num_columns() > MOST_COLUMNS {
+            return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
+        }
+        let rows = groups.iter().try_fold(0u64, |sum, group| sum.checked_add(u64::try_from(group.num_rows()).ok()?));
+        let rows =
+            rows.filter(|rows| *rows <= most_held(source.length())).ok_or_else(|| damaged(FORMAT, "its number of rows is impossible"))?;
+        if groups.iter().any(|group| group.num_columns() != schema.num_columns()) {
+            return Err(damaged(FORMAT, "its parts differ in their columns"));
+        }
+        let (mut heads, mut columns, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
+        for (leaf, column) in schema.columns().iter().enumerate() {
+            let name = column.path().parts().join(".");
+            let Some(meaning) = meaning(column).filter(|_| column.max_rep_level() == 0) else {
+                unreadable.push(name);
+                continue;
+            };
+            let unit = matches!(meaning, Meaning::Instant(_)).then(|| "s".to_owned());
+            heads.push(Head { name, unit, rows, group: 0, is_time: false });
+            columns.push(Column { leaf, meaning, present: column.max_def_level() });
+        }
+        if heads.is_empty() {
+            return Err(Problem::NoNumbers { format: FORMAT }.into());
+        }
+        Ok(Self { file, source, heads, columns, unreadable })
+    }
+
+    pub(super) fn heads(&self) -> &[Head] {
+        &self.heads
+    }
+
+    pub(super) fn unreadable(&self) -> &[String] {
+        &self.unreadable
+    }
+
+    pub(super) fn read(&self, wanted: &[usize], take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>) -> Result<(), FileError> {
+        let mut starts = vec![None; wanted.len()];
+        for group in 0..self.file.num_row_groups() {
+            let reader = guarded(FORMAT, || self.file.get_row_group(group).map_err(fault))?;
+            let mut left =
+                usize::try_from(reader.metadata().num_rows()).map_err(|_| damaged(FORMAT, "its number of rows is impossible"))?;
+            let mut columns = Vec::with_capacity(wanted.len());
+            for (&at, start) in wanted.iter().zip(&mut starts) {
+                let column = &self.columns[at];
+                pages::check(&self.source, reader.metadata().column(column.leaf)).map_err(|error| error.in_column(&self.heads[at].name))?;
+                let chunk = guarded(FORMAT, || reader.get_column_reader(column.leaf).map_err(fault))?;
+                columns.push(Chunk::new(chunk, column, start));
+            }
+            while left > 0 {
+                let count = left.min(BLOCK);
+                let mut block = Vec::with_capacity(wanted.len());
+                for (column, &at) in columns.iter_mut().zip(wanted) {
+                    block.push(guarded(FORMAT, || column.next(count)).map_err(|error| error.in_column(&self.heads[at].name))?);
+                }
+                take(block)?;
+                left -= count;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn meaning(column: &ColumnDescriptor) -> Option<Meaning> {
+    let logical = column.logical_type_ref();
+    let instant = |unit: &TimeUnit| {
+        Meaning::Instant(match unit {
+            TimeUnit::MILLIS => 1_000,
+            TimeUnit::MICROS => 1_000_000,
+            TimeUnit::NANOS => 1_000_000_000,
+        })
+    };
+    let power = |scale: i32| u8::try_from(scale).ok().filter(|scale| *scale <= 38).map(|scale| 10f64.powi(i32::from(scale)));
+    let integer = || match logical {
+        Some(LogicalType::Integer(integer)) if !integer.is_signed => Some(Meaning::Unsigned),
+        Some(LogicalType::Timestamp(timestamp)) => Some(instant(&timestamp.unit)),
+        Some(LogicalType::Time(time)) => Some(instant(&time.unit)),
+        Some(LogicalType::Decimal(decimal)) => power(decimal.scale).map(Meaning::Decimal),
+        // A date has steps of a day: no instant of a log, and no quantity.
+        Some(LogicalType::Date) => None,
+        _ => Some(Meaning::Number),
+    };
+    match column.physical_type() {
+        Type::DOUBLE | Type::FLOAT => Some(Meaning::Number),
+        Type::INT32 | Type::INT64 => integer(),
+        Type::INT96 => Some(Meaning::Instant(1_000_000_000)),
+        Type::FIXED_LEN_BYTE_ARRAY if (1..=16).contains(&column.type_length()) => match logical {
+            Some(LogicalType::Decimal(decimal)) => power(decimal.scale).map(Meaning::DecimalBytes),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The part of a column that lies in one row group.
+struct Chunk<'a> {
+    reader: Typed,
+    meaning: Meaning,
+    present: i16,
+    levels: Vec<i16>,
+    /// The column's first instant.
+    start: &'a mut Option<i64>,
+}
+
+enum Typed {
+    Double(ColumnReaderImpl<DoubleType>),
+    Float(ColumnReaderImpl<FloatType>, Vec<f32>),
+    Int32(ColumnReaderImpl<Int32Type>, Vec<i32>),
+    Int64(ColumnReaderImpl<Int64Type>, Vec<i64>),
+    Int96(ColumnReaderImpl<Int96Type>, Vec<parquet::data_type::Int96>),
+    Bytes(ColumnReaderImpl<FixedLenByteArrayType>, Vec<parquet::data_type::FixedLenByteArray>),
+    /// Never opened: such a column is no head.
+    Other,
+}
+
+impl<'a> Chunk<'a> {
+    fn new(reader: ColumnReader, column: &Column, start: &'a mut Option<i64>) -> Self {
+        let reader = match reader {
+            ColumnReader::DoubleColumnReader(reader) => Typed::Double(reader),
+            ColumnReader::FloatColumnReader(reader) => Typed::Float(reader, Vec::new()),
+            ColumnReader::Int32ColumnReader(reader) => Typed::Int32(reader, Vec::new()),
+            ColumnReader::Int64ColumnReader(reader) => Typed::Int64(reader, Vec::new()),
+            ColumnReader::Int96ColumnReader(reader) => Typed::Int96(reader, Vec::new()),
+            ColumnReader::FixedLenByteArrayColumnReader(reader) => Typed::Bytes(reader, Vec::new()),
+            ColumnReader::BoolColumnReader(_) | ColumnReader::ByteArrayColumnReader(_) => Typed::Other,
+        };
+        Self { reader, meaning: column.meaning, present: column.present, levels: Vec::new(), start }
+    }
+
+    /// The next `count` rows.
+    fn next(&mut self, count: usize) -> Result<Vec<f64>, FileError> {
+        let mut values = Vec::with_capacity(count);
+        self.levels.clear();
+        let (levels, meaning) = (&mut self.levels, self.meaning);
+        match &mut self.reader {
+            Typed::Double(reader) => records(reader, count, levels, &mut values)?,
+            Typed::Float(reader, raw) => {
+                records(reader, count, levels, raw)?;
+                values.extend(raw.drain(..).map(f64::from));
+            }
+            Typed::Int32(reader, raw) => {
+                records(reader, count, levels, raw)?;
+                match meaning {
+                    Meaning::Unsigned => values.extend(raw.iter().map(|&value| f64::from(value.cast_unsigned()))),
+                    Meaning::Decimal(power) => values.extend(raw.iter().map(|&value| f64::from(value) / power)),
+                    Meaning::Instant(second) => seconds(raw.iter().map(|&value| i64::from(value)), second, self.start, &mut values),
+                    Meaning::Number | Meaning::DecimalBytes(_) => values.extend(raw.iter().map(|&value| f64::from(value))),
+                }
+                raw.clear();
+            }
+            Typed::Int64(reader, raw) => {
+                records(reader, count, levels, raw)?;
+                match meaning {
+                    Meaning::Unsigned => values.extend(raw.iter().map(|&value| value.cast_unsigned() as f64)),
+                    Meaning::Decimal(power) => values.extend(raw.iter().map(|&value| value as f64 / power)),
+                    Meaning::Instant(second) => seconds(raw.iter().copied(), second, self.start, &mut values),
+                    Meaning::Number | Meaning::DecimalBytes(_) => values.extend(raw.iter().map(|&value| value as f64)),
+                }
+                raw.clear();
+            }
+            Typed::Int96(reader, raw) => {
+                records(reader, count, levels, raw)?;
+                // Spark's old instants: nanoseconds of a Julian day. Damaged ones may not fit, and wrap.
+                let nanoseconds = raw.iter().map(parquet::data_type::Int96::to_nanos);
+                seconds(nanoseconds, 1_000_000_000, self.start, &mut values);
+                raw.clear();
+            }
+            Typed::Bytes(reader, raw) => {
+                records(reader, count, levels, raw)?;
+                let power = if let Meaning::DecimalBytes(power) = meaning { power } else { 1.0 };
+                values.extend(raw.iter().map(|value| from_big_endian(value.data()) as f64 / power));
+                raw.clear();
+            }
+            Typed::Other => return Err(Problem::NoNumbers { format: FORMAT }.into()),
+        }
+        if self.present > 0 && values.len() < self.levels.len() {
+            values = spread(&values, &self.levels, self.present);
+        }
+        if values.len() == count { Ok(values) } else { Err(damaged(FORMAT, "it has fewer rows than it says")) }
+    }
+}
+
+/// Exactly `count` rows, of which those that are there come into `values`, and their levels into `levels` if there are any.
+fn records<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    count: usize,
+    levels: &mut Vec<i16>,
+    values: &mut Vec<T::T>,
+) -> Result<(), FileError> {
+    let mut done = 0;
+    while done < count {
+        let (read, _, _) = reader.read_records(count - done, Some(levels), None, values).map_err(fault)?;
+        if read == 0 {
+            return Err(damaged(FORMAT, "it has fewer rows than it says"));
+        }
+        done += read;
+    }
+    Ok(())
+}
+
+/// Puts NaN where no value is.
+fn spread(values: &[f64], levels: &[i16], present: i16) -> Vec<f64> {
+    let mut values = values.iter();
+    levels.iter().map(|&level| if level == present { values.next().copied().unwrap_or(f64::NAN) } else { f64::NAN }).collect()
+}
+
+/// Counts since the first one, in seconds.
+fn seconds(counts: impl Iterator<Item = i64>, second: i64, start: &mut Option<i64>, into: &mut Vec<f64>) {
+    into.extend(counts.map(|count| {
+        let since = i128::from(count) - i128::from(*start.get_or_insert(count));
+        since as f64 / second as f64
+    }));
+}
+
+/// Two's complement of at most 16 bytes.
+fn from_big_endian(bytes: &[u8]) -> i128 {
+    let negative = bytes.first().is_some_and(|byte| *byte >= 0x80);
+    bytes.iter().fold(if negative { -1 } else { 0 }, |sum: i128, &byte| (sum << 8) | i128::from(byte))
+}
+
+fn fault(error: ParquetError) -> FileError {
+    let text = match error {
+        ParquetError::General(text) | ParquetError::NYI(text) | ParquetError::EOF(text) => text,
+        other => other.to_string(),
+    };
+    // Some of the crate's texts have several lines; the first says what is wrong.
+    damaged(FORMAT, text.lines().next().unwrap_or("it cannot be read"))
+}

@@ -1,0 +1,117 @@
+//! Channels that were sampled at different instants, on common ones: the currents'.
+
+use super::{Channels, kept::Lines};
+use crate::{channel::Channel, problem::Problem};
+use Channel::{IA, Id, T};
+use fluxfit_files::FileError;
+use fluxfit_units::wording::list;
+
+/// A table whose rows are complete more often than this is a table with holes; one of fewer complete rows was written row by row as
+/// messages came.
+const COMPLETE: f64 = 0.5;
+
+/// Between values further apart than this many of a channel's usual steps nothing is interpolated: there it has a gap, as a log has.
+const GAP: f64 = 2.5;
+
+/// Fewest values of a channel.
+const FEWEST: usize = 2;
+
+/// Fills missing values of a log that came in messages, each at its own instant; a log with holes is refused. What was done.
+pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<String>, FileError> {
+    let rows = channels.rows();
+    let is_missing = |row: usize| channels.iter().any(|(_, values)| values[row].is_nan());
+    let Some(first) = (0..rows).find(|row| is_missing(*row)) else { return Ok(None) };
+    let complete = (first..rows).filter(|row| !is_missing(*row)).count() + first;
+    let counts: Vec<(Channel, usize)> =
+        channels.iter().map(|(channel, values)| (channel, values.iter().filter(|value| !value.is_nan()).count())).collect();
+    let told = counts.iter().all(|(_, count)| *count >= FEWEST) && counts.iter().any(|(channel, count)| *channel == T && *count == rows);
+    if complete as f64 > COMPLETE * rows as f64 || !told {
+        let (channel, _) = channels.iter().find(|(_, values)| values[first].is_nan()).unwrap_or((T, &[]));
+        return Err(channels.refuse(Problem::EmptyCell, channel, lines, first));
+    }
+    let t = channels.get(T).map(<[f64]>::to_vec).unwrap_or_default();
+    let base = if channels.get(Id).is_some() { Id } else { IA };
+    let instants: Vec<f64> = present(&t, channels.get(base).unwrap_or(&[])).map(|(t, _)| t).collect();
+    let mut moved: Vec<Channel> = Vec::new();
+    for (channel, _) in counts.iter().filter(|(channel, _)| *channel != T) {
+        let Some(values) = channels.get(*channel) else { continue };
+        let (at, values): (Vec<f64>, Vec<f64>) = present(&t, values).unzip();
+        if at != instants {
+            moved.push(*channel);
+        }
+        let on_common = interpolated(&at, &values, &instants);
+        channels.set(*channel, on_common);
+    }
+    channels.set(T, instants);
+    let kept: Vec<bool> = (0..channels.rows()).map(|row| channels.iter().all(|(_, values)| !values[row].is_nan())).collect();
+    refuse_turning(channels, &moved)?;
+    if !kept.contains(&true) {
+        return Err(Problem::Apart { base: base.name() }.into());
+    }
+    channels.retain(&kept);
+    Ok((!moved.is_empty()).then(|| note(&moved, base)))
+}
+
+/// Between two of its instants a phase turns with the rotor, and no straight line follows it; an angle jumps from turn to turn. Where
+/// dq is logged nobody needs the angle then.
+pub(super) fn refuse_turning(channels: &mut Channels, moved: &[Channel]) -> Result<(), FileError> {
+    let has_phases = channels.get(Channel::UA).is_some() || channels.get(IA).is_some();
+    let turns = |channel: &Channel| *channel == Channel::ThetaE || Channel::PHASES.contains(channel);
+    if !moved.iter().any(turns) {
+        return Ok(());
+    }
+    if has_phases || channels.get(Channel::OmegaE).is_none() {
+        return Err(Problem::TurningApart.into());
+    }
+    channels.take(Channel::ThetaE);
+    Ok(())
+}
+
+/// What is said of channels that were moved.
+pub(super) fn note(moved: &[Channel], base: Channel) -> String {
+    let moved: Vec<&str> = moved.iter().map(|channel| channel.name()).collect();
+    format!(
+        "{} {} sampled at other instants than {}: interpolated between theirs, and used for steady operating points only",
+        list(&moved),
+        if moved.len() == 1 { "was" } else { "were" },
+        base.name()
+    )
+}
+
+fn present<'a>(t: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+    t.iter().copied().zip(values.iter().copied()).filter(|(_, value)| !value.is_nan())
+}
+
+/// Values at instants between their own, along straight lines; NaN before the first, behind the last, and within gaps.
+pub(super) fn interpolated(at: &[f64], values: &[f64], instants: &[f64]) -> Vec<f64> {
+    let mut steps: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let usual = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let mut after = 0;
+    let value = |instant: &f64| {
+        while after < at.len() && at[after] < *instant {
+            after += 1;
+        }
+        match (at.get(after), after.checked_sub(1)) {
+            (Some(right), _) if right == instant => values[after],
+            (Some(right), Some(before)) if right - at[before] <= GAP * usual => {
+                let part = (instant - at[before]) / (right - at[before]);
+                values[before] + part * (values[after] - values[before])
+            }
+            _ => f64::NAN,
+        }
+    };
+    instants.iter().map(value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_lie_on_straight_lines_between_their_instants() {
+        let found = interpolated(&[0.0, 1.0, 2.0, 8.0, 9.0], &[0.0, 10.0, 10.0, 0.0, 4.0], &[-1.0, 0.0, 0.25, 2.0, 5.0, 8.5, 9.0, 9.5]);
+        let expected = [f64::NAN, 0.0, 2.5, 10.0, f64::NAN, 2.0, 4.0, f64::NAN];
+        assert!(found.iter().zip(expected).all(|(a, b)| *a == b || a.is_nan() && b.is_nan()), "{found:?}");
+    }
+}

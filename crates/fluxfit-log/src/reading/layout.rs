@@ -1,0 +1,322 @@
+//! The layouts of logs that tools write: one table, for the reader, for `fluxfit formats` and for docs/log.md.
+//!
+//! A layout is recognized by names that no other has. What it says of its columns, the file's user need not say; `--map`,
+//! `--unit` and a mapping file say otherwise where they speak.
+
+use crate::channel::Channel;
+use Channel::{IA, IB, IC, Id, Iq, OmegaE, Run, T, ThetaE, UA, UB, UC, UDc, Ud, Uq};
+use fluxfit_units::unit::Unit;
+
+/// A layout that a tool writes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layout {
+    /// Name, for people.
+    pub name: &'static str,
+    /// Where its columns are defined, or were seen.
+    pub source: &'static str,
+    /// Names by which it is recognized: a file with all of them is of this layout.
+    pub(crate) signature: &'static [&'static str],
+    /// What its columns are.
+    pub(crate) columns: &'static [Column],
+    /// s between rows, where no column tells it.
+    pub(crate) sample_period: Option<f64>,
+    /// Why a file of this layout is no log, where it is none.
+    pub(crate) refusal: Option<&'static str>,
+    /// What its users should know.
+    pub remark: &'static str,
+}
+
+/// A column of a layout.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) channel: Channel,
+    pub(crate) header: &'static str,
+    pub(crate) unit: Unit,
+}
+
+const fn column(channel: Channel, header: &'static str, unit: Unit) -> Column {
+    Column { channel, header, unit }
+}
+
+const LOG: Layout = Layout { name: "", source: "", signature: &[], columns: &[], sample_period: None, refusal: None, remark: "" };
+
+const IS_FLUX_MAP: &str = "it maps currents to fluxes and is no log of a drive over time: there are no voltages and no time in it; \
+                           as a motor to simulate it can stand in a scenario (flux_map)";
+
+/// All of them. The first that fits is taken.
+pub const LAYOUTS: &[Layout] = &[
+    Layout {
+        name: "canonical",
+        source: "docs/log.md",
+        signature: &["t", "ud", "uq", "id", "iq", "omega_e"],
+        columns: &[
+            column(T, "t", Unit::Second),
+            column(Ud, "ud", Unit::Volt),
+            column(Uq, "uq", Unit::Volt),
+            column(Id, "id", Unit::Ampere),
+            column(Iq, "iq", Unit::Ampere),
+            column(OmegaE, "omega_e", Unit::RadianPerSecond),
+            column(ThetaE, "theta_e", Unit::Radian),
+            column(UDc, "u_dc", Unit::Volt),
+        ],
+        remark: "what fluxfit simulate writes",
+        ..LOG
+    },
+    Layout {
+        name: "VESC Tool",
+        source: "github.com/vedderb/vesc_tool, the log of real-time data",
+        signature: &["ms_today", "d_axis_current", "q_axis_current", "erpm"],
+        columns: &[
+            column(T, "ms_today", Unit::Millisecond),
+            column(Ud, "d_axis_voltage", Unit::Volt),
+            column(Uq, "q_axis_voltage", Unit::Volt),
+            column(Id, "d_axis_current", Unit::Ampere),
+            column(Iq, "q_axis_current", Unit::Ampere),
+            column(OmegaE, "erpm", Unit::RpmElectrical),
+            column(UDc, "input_voltage", Unit::Volt),
+        ],
+        remark: "filtered values some ten times a second; the clock starts anew at midnight",
+        ..LOG
+    },
+    Layout {
+        name: "VESC sampled data",
+        source: "github.com/vedderb/vesc_tool, pages/pagesampleddata.cpp",
+        signature: &["T", "I1", "I2", "I3", "V1", "V2", "V3", "Phase"],
+        columns: &[
+            column(T, "T", Unit::Second),
+            column(IA, "I1", Unit::Ampere),
+            column(IB, "I2", Unit::Ampere),
+            column(IC, "I3", Unit::Ampere),
+            column(UA, "V1", Unit::Volt),
+            column(UB, "V2", Unit::Volt),
+            column(UC, "V3", Unit::Volt),
+            column(ThetaE, "Phase", Unit::Degree),
+        ],
+        remark: "phase quantities at the drive's own rate; the angle in steps of 1.44 degrees, the speed from it",
+        ..LOG
+    },
+    Layout {
+        name: "phobia",
+        source: "github.com/rombrew/phobia, telemetry and grab",
+        signature: &["time", "lu_ID", "lu_IQ", "lu_WS_RPM"],
+        columns: &[
+            column(T, "time", Unit::Second),
+            column(Id, "lu_ID", Unit::Ampere),
+            column(Iq, "lu_IQ", Unit::Ampere),
+            column(IA, "IA", Unit::Ampere),
+            column(IB, "IB", Unit::Ampere),
+            column(IC, "IC", Unit::Ampere),
+            column(UA, "UA", Unit::Volt),
+            column(UB, "UB", Unit::Volt),
+            column(UC, "UC", Unit::Volt),
+            column(OmegaE, "lu_WS_RPM", Unit::RpmMechanical),
+            column(ThetaE, "lu_F_G", Unit::Degree),
+            column(UDc, "DC", Unit::Volt),
+        ],
+        remark: "names with their unit behind @; voltages are those of the phases; lu_F_G, or the currents in both frames, tell the angle",
+        ..LOG
+    },
+    Layout {
+        name: "ST MCSDK",
+        source: "logs of STM32 Motor Control SDK drives over a serial line",
+        signature: &["stm32_time_ms", "motor_ud_v", "motor_uq_v", "motor_id_a", "motor_iq_a"],
+        columns: &[
+            column(T, "stm32_time_ms", Unit::Millisecond),
+            column(Ud, "motor_ud_v", Unit::Volt),
+            column(Uq, "motor_uq_v", Unit::Volt),
+            column(Id, "motor_id_a", Unit::Ampere),
+            column(Iq, "motor_iq_a", Unit::Ampere),
+            column(OmegaE, "motor_speed_mech_rpm", Unit::RpmMechanical),
+        ],
+        remark: "a recorder's ten rows a second",
+        ..LOG
+    },
+    Layout {
+        name: "Tritium",
+        source: "Tritium WaveSculptor telemetry",
+        signature: &["MotorId", "MotorIq", "MotorVd", "MotorVq", "MotorVelocity"],
+        columns: &[
+            column(T, "Time", Unit::Second),
+            column(Ud, "MotorVd", Unit::Volt),
+            column(Uq, "MotorVq", Unit::Volt),
+            column(Id, "MotorId", Unit::Ampere),
+            column(Iq, "MotorIq", Unit::Ampere),
+            column(OmegaE, "MotorVelocity", Unit::RpmMechanical),
+            column(UDc, "BusVoltage", Unit::Volt),
+        ],
+        remark: "each message at its own instant; while coasting the voltages are no voltages that act",
+        ..LOG
+    },
+    Layout {
+        name: "Tritium, names with units",
+        source: "Tritium WaveSculptor telemetry as a dynamometer's log holds it",
+        signature: &["motor_id_A", "motor_iq_A", "motor_vd_V", "motor_vq_V", "motor_velocity_rpm"],
+        columns: &[
+            column(T, "time_s", Unit::Second),
+            column(Ud, "motor_vd_V", Unit::Volt),
+            column(Uq, "motor_vq_V", Unit::Volt),
+            column(Id, "motor_id_A", Unit::Ampere),
+            column(Iq, "motor_iq_A", Unit::Ampere),
+            column(OmegaE, "motor_velocity_rpm", Unit::RpmMechanical),
+            column(UDc, "bus_voltage_V", Unit::Volt),
+        ],
+        remark: "while coasting the voltages are no voltages that act",
+        ..LOG
+    },
+    Layout {
+        name: "Paderborn",
+        source: "kaggle.com/datasets/wkirgsn/electric-motor-temperature",
+        signature: &["coolant", "stator_winding", "motor_speed", "i_d", "i_q", "profile_id"],
+        columns: &[
+            column(Ud, "u_d", Unit::Volt),
+            column(Uq, "u_q", Unit::Volt),
+            column(Id, "i_d", Unit::Ampere),
+            column(Iq, "i_q", Unit::Ampere),
+            column(OmegaE, "motor_speed", Unit::RpmMechanical),
+            column(Run, "profile_id", Unit::Number),
+        ],
+        sample_period: Some(0.5),
+        remark: "two rows a second, without a time; each profile is a run of its own. An older version is standardized and refused",
+        ..LOG
+    },
+    Layout {
+        name: "phase quantities",
+        source: "published drive data sets with these names",
+        signature: &["timeInS", "i_aInA", "i_bInA", "u_aInV", "u_bInV"],
+        columns: &[
+            column(T, "timeInS", Unit::Second),
+            column(IA, "i_aInA", Unit::Ampere),
+            column(IB, "i_bInA", Unit::Ampere),
+            column(IC, "i_cInA", Unit::Ampere),
+            column(UA, "u_aInV", Unit::Volt),
+            column(UB, "u_bInV", Unit::Volt),
+            column(UC, "u_cInV", Unit::Volt),
+            column(ThetaE, "epsilon_elInRad", Unit::Radian),
+        ],
+        remark: "Clarke and Park transforms are applied, the speed comes from the angle",
+        ..LOG
+    },
+    Layout {
+        name: "dynamometer with references",
+        source: "dynamometer sheets of motor controllers",
+        signature: &["TimeStamp", "VqFiltered", "VdFiltered", "IqReq", "WeakenedId"],
+        refusal: Some(
+            "IqReq and WeakenedId are what the drive asked for and not the currents that flowed, and what a motor does is told by its currents; \
+             log the measured i_d and i_q too, and name them with --map id=COLUMN,iq=COLUMN",
+        ),
+        remark: "current references in place of measured currents",
+        ..LOG
+    },
+    Layout {
+        name: "flux map",
+        source: "dynamometer tables",
+        signature: &["I_d", "I_q", "Psi_d", "Psi_q"],
+        refusal: Some(IS_FLUX_MAP),
+        remark: "a motor to simulate, no log of one",
+        ..LOG
+    },
+    Layout {
+        name: "SyR-e flux map",
+        source: "github.com/SyR-e/syre_public, motorModel.FluxMap_dq (d and q are swapped there)",
+        signature: &["motorModel.FluxMap_dq.Id", "motorModel.FluxMap_dq.Fd"],
+        refusal: Some(IS_FLUX_MAP),
+        remark: "a motor to simulate, no log of one",
+        ..LOG
+    },
+];
+
+impl Layout {
+    /// The layout that a file with columns of these names has, if it is one of the table.
+    pub(crate) fn recognize(names: &[String]) -> Option<&'static Self> {
+        LAYOUTS.iter().find(|layout| layout.signature.iter().all(|header| names.iter().any(|name| is_called(name, header))))
+    }
+
+    /// The column that holds a channel.
+    pub(crate) fn column(&self, channel: Channel) -> Option<&'static Column> {
+        self.columns.iter().find(|column| column.channel == channel)
+    }
+
+    /// Canonical names and headers of its columns, in one line.
+    pub fn headers(&self) -> String {
+        if self.columns.is_empty() {
+            return self.signature.join(", ");
+        }
+        let said = |column: &Column| match (column.channel.name(), column.header) {
+            (canonical, header) if canonical == header => header.to_owned(),
+            (canonical, header) => format!("{canonical} = {header} ({})", column.unit.prose()),
+        };
+        self.columns.iter().map(said).collect::<Vec<_>>().join(", ")
+    }
+
+    /// fluxfit's own.
+    pub(crate) fn canonical() -> &'static Self {
+        &LAYOUTS[0]
+    }
+
+    /// Whether it is fluxfit's own, of which nothing need be said.
+    pub(crate) fn is_canonical(&self) -> bool {
+        self.name == Self::canonical().name
+    }
+
+    /// Whether files of it are read.
+    pub fn is_log(&self) -> bool {
+        self.refusal.is_none()
+    }
+}
+
+/// Whether a file's name is this header, upper and lower case apart, and apart from a unit behind `@` or in brackets.
+pub(crate) fn is_called(name: &str, header: &str) -> bool {
+    let stem = name.split(['@', '[']).next().unwrap_or(name);
+    let stem = if stem.ends_with(')') && !header.contains('(') { stem.rsplit_once('(').map_or(stem, |(stem, _)| stem) } else { stem };
+    name.eq_ignore_ascii_case(header) || stem.trim_end().eq_ignore_ascii_case(header)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recognized(header: &str) -> Option<&'static str> {
+        let names: Vec<String> = header.split(';').map(str::to_owned).collect();
+        Layout::recognize(&names).map(|layout| layout.name)
+    }
+
+    #[test]
+    fn headers_that_tools_write() {
+        assert_eq!(recognized("t;ud;uq;id;iq;omega_e"), Some("canonical"));
+        let vesc = "ms_today;input_voltage;temp_mos_max;current_motor;d_axis_current;q_axis_current;erpm;duty_cycle;d_axis_voltage;q_axis_voltage;ms_today_setup";
+        assert_eq!(recognized(vesc), Some("VESC Tool"));
+        assert_eq!(recognized("T;I1;I2;I3;V1;V2;V3;I_tot;V_zero;Phase"), Some("VESC sampled data"));
+        assert_eq!(recognized("time@s;IA@A;lu_ID@A;lu_IQ@A;lu_WS_RPM@rpm"), Some("phobia"));
+        assert_eq!(recognized("Time;BusVoltage (V);MotorId (A);MotorIq (A);MotorVd (V);MotorVq (V);MotorVelocity (rpm)"), Some("Tritium"));
+        assert_eq!(recognized("I_d;I_q;Psi_d;Psi_q;Trq_msr"), Some("flux map"));
+        assert_eq!(recognized("time;speed;torque"), None);
+    }
+
+    /// The rows of the table in docs/log.md.
+    fn table() -> String {
+        let row = |layout: &Layout| {
+            let refused = if layout.is_log() { "" } else { "**refused**: " };
+            format!("| {} | {refused}{} | {} |\n", layout.name, layout.headers(), layout.remark)
+        };
+        LAYOUTS.iter().map(row).collect()
+    }
+
+    #[test]
+    fn the_page_has_the_same_table() {
+        let page = include_str!("../../../../docs/log.md");
+        assert!(page.contains(&table()), "docs/log.md should have these rows:\n{}", table());
+    }
+
+    #[test]
+    fn a_layout_is_recognized_by_its_own_names_and_names_each_channel_once() {
+        for layout in LAYOUTS {
+            let names: Vec<String> = layout.signature.iter().map(|name| (*name).to_owned()).collect();
+            assert_eq!(Layout::recognize(&names).map(|found| found.name), Some(layout.name));
+            for (place, column) in layout.columns.iter().enumerate() {
+                assert_eq!(column.unit.dimension(), column.channel.dimension(), "{}: {}", layout.name, column.header);
+                assert!(layout.columns[..place].iter().all(|earlier| earlier.channel != column.channel), "{}", layout.name);
+            }
+            assert_eq!(layout.columns.is_empty(), layout.refusal.is_some(), "{}", layout.name);
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! `MAPPING.toml`: what the columns of somebody's logs mean, said once.
+//!
+//! ```toml
+//! pole_pairs = 4
+//! sample_period = "0.1 ms"        # where no column tells the time
+//! park = "amplitude-invariant"    # or "power-invariant", "rms": how long the dq vectors are
+//!
+//! [columns]
+//! t = "time_ms"
+//! # unit as with --unit, without it the header or SI decides; scale: times this; sign = -1: the other way around
+//! ud = { column = "motor_vd", unit = "mV", scale = 2.0, sign = -1 }
+//! ```
+
+use crate::{channel::Channel, problem::Problem};
+use fluxfit_files::{
+    FileError, Problem as FileProblem, input,
+    toml_table::{Document, Entry, Shape},
+};
+use fluxfit_units::{Dimension, unit::Unit};
+use std::path::Path;
+
+/// What a mapping file says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mapping {
+    /// Pole pairs.
+    pub pole_pairs: Option<u32>,
+    /// s between rows.
+    pub sample_period: Option<f64>,
+    /// How long the dq vectors are.
+    pub park: Park,
+    pub(crate) columns: Vec<MappedColumn>,
+}
+
+/// What is said of one column.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MappedColumn {
+    pub(crate) channel: Channel,
+    pub(crate) header: Option<String>,
+    pub(crate) unit: Option<Unit>,
+    /// Times this, its sign included.
+    pub(crate) factor: f64,
+}
+
+/// Scalings of the Clarke and Park transforms.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Park {
+    /// A vector is as long as the phases' peak value: fluxfit's own.
+    #[default]
+    Amplitude,
+    /// sqrt(3/2) of that, so that power is `u_d i_d + u_q i_q`.
+    Power,
+    /// 1/sqrt(2) of that: the phases' root mean square.
+    Rms,
+}
+
+impl Park {
+    /// Name in a mapping file.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Amplitude => "amplitude-invariant",
+            Self::Power => "power-invariant",
+            Self::Rms => "rms",
+        }
+    }
+
+    /// What makes a vector as long as the phases' peak value.
+    pub(crate) fn factor(self) -> f64 {
+        match self {
+            Self::Amplitude => 1.0,
+            Self::Power => (2.0_f64 / 3.0).sqrt(),
+            Self::Rms => std::f64::consts::SQRT_2,
+        }
+    }
+}
+
+/// What can be said of a column.
+const SAID: &[&str] = &["column", "unit", "scale", "sign"];
+
+const EXAMPLE: &str = "ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit = \"mV\" }";
+
+const SHAPE: Shape = Shape {
+    noun: "a mapping file",
+    keys: &["pole_pairs", "sample_period", "park"],
+    tables: &[("columns", &["t", "ud", "uq", "id", "iq", "omega_e", "theta_e", "u_dc", "ua", "ub", "uc", "ia", "ib", "ic", "run"])],
+};
+
+/// Reads a mapping file; the path `-` is standard input.
+///
+/// # Errors
+/// If the file cannot be read, is no TOML, has a key that is not known, or a value that means nothing there.
+pub fn read_mapping(path: &Path) -> Result<Mapping, FileError> {
+    Mapping::parse(&input::name(path), &input::read(path)?)
+}
+
+impl Mapping {
+    /// Reads a mapping file from memory; `name` is the file's name in messages. An empty file says nothing.
+    ///
+    /// # Errors
+    /// As [`read_mapping`].
+    pub fn parse(name: &str, bytes: &[u8]) -> Result<Self, FileError> {
+        let parsed = match input::text(bytes, "TOML") {
+            Ok(text) => parse(text),
+            Err(_) if bytes.trim_ascii().is_empty() => Ok(Self::default()),
+            Err(error) => Err(error),
+        };
+        parsed.map_err(|error| error.in_file(name))
+    }
+}
+
+fn parse(text: &str) -> Result<Mapping, FileError> {
+    let document = Document::parse(text, &SHAPE)?;
+    let root = document.root();
+    let parks = [Park::Amplitude, Park::Power, Park::Rms].map(|park| (park.name(), park));
+    let sample_period = root.get("sample_period").map(|entry| match entry.quantity(Dimension::Time)? {
+        period if period > 0.0 => Ok(period),
+        _ => Err(entry.out_of_range("a time above zero")),
+    });
+    Ok(Mapping {
+        pole_pairs: root.get("pole_pairs").map(|entry| entry.whole(1, "a whole number above zero")).transpose()?,
+        sample_period: sample_period.transpose()?,
+        park: root.get("park").map(|entry| entry.word(&parks)).transpose()?.unwrap_or_default(),
+        columns: Channel::all().filter_map(|channel| column(&document, channel).transpose()).collect::<Result<_, _>>()?,
+    })
+}
+
+fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColumn>, FileError> {
+    let Some(entry) = document.table("columns").get(channel.name()) else { return Ok(None) };
+    let named = |entry: Entry<'_>| match entry.text()?.trim() {
+        "" => Err(entry.refuse(FileProblem::Value { wanted: "the name of a column: fill it in, or remove the line".to_owned() })),
+        header => Ok(header.to_owned()),
+    };
+    if entry.text().is_ok() {
+        let header = named(entry)?;
+        return Ok(Some(MappedColumn { channel, header: Some(header), unit: None, factor: 1.0 }));
+    }
+    let table = entry.table(SAID, "a column's name, or a table of what is known of it", EXAMPLE)?;
+    let unit = table.get("unit").map(|entry| {
+        let text = entry.text()?;
+        let allowed = || Unit::of(channel.dimension()).map(Unit::name).collect();
+        let unknown = || Problem::Unit { channel: channel.name(), unit: text.to_owned(), allowed: allowed() };
+        Unit::from_name(text, channel.dimension()).ok_or_else(|| entry.refuse(unknown()))
+    });
+    let scale = table.get("scale").map(|entry| match entry.quantity(Dimension::Ratio)? {
+        scale if scale != 0.0 => Ok(scale),
+        _ => Err(entry.out_of_range("a number other than zero")),
+    });
+    let sign = table.get("sign").map(|entry| entry.word(&[("1", 1.0), ("-1", -1.0)])).transpose()?.unwrap_or(1.0);
+    let header = table.get("column").map(named).transpose()?;
+    Ok(Some(MappedColumn { channel, header, unit: unit.transpose()?, factor: scale.transpose()?.unwrap_or(1.0) * sign }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn read(text: &str) -> Result<Mapping, String> {
+        Mapping::parse("map.toml", text.as_bytes()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_mapping_says_what_columns_mean() {
+        let text = "pole_pairs = 4\nsample_period = \"0.1 ms\"\npark = \"power-invariant\"\n[columns]\n\
+                    iq = { column = \"Iq [A]\", scale = 0.5, sign = -1 }\nt = { unit = \"ms\" }\nud = \"vd\"\n";
+        let mapping = read(text).unwrap();
+        assert_eq!((mapping.pole_pairs, mapping.sample_period, mapping.park), (Some(4), Some(1e-4), Park::Power));
+        let expected = [
+            MappedColumn { channel: Channel::T, header: None, unit: Some(Unit::Millisecond), factor: 1.0 },
+            MappedColumn { channel: Channel::Ud, header: Some("vd".into()), unit: None, factor: 1.0 },
+            MappedColumn { channel: Channel::Iq, header: Some("Iq [A]".into()), unit: None, factor: -0.5 },
+        ];
+        assert_eq!(mapping.columns, expected);
+        assert_eq!(read(""), Ok(Mapping::default()));
+        // A vector of constant power is sqrt(3/2) as long, one of root mean squares sqrt(1/2).
+        assert!((Park::Power.factor() * 1.5_f64.sqrt() - 1.0).abs() < 1e-15 && (Park::Rms.factor() * 0.5_f64.sqrt() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn refusals_name_line_and_key() {
+        let cases = [
+            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is no unit of ud; it can be V or mV"),
+            ("[columns]\nud = { scale = 0 }", "line 2, key 'scale': \"0\" is out of range; it must be a number other than zero"),
+            ("sample_period = 0", "line 1, key 'sample_period': \"0\" is out of range; it must be a time above zero"),
+            ("park = \"peak\"", "line 1, key 'park': \"peak\" is not known here; it can be amplitude-invariant, power-invariant or rms"),
+            (
+                "[columns]\nid = 3",
+                "line 2, key 'id': this is not a column's name, or a table of what is known of it, \
+                 as in ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit = \"mV\" }; correct it",
+            ),
+            (
+                "[columns]\nid = { name = \"x\" }",
+                "line 2, key 'name': this key is not known; a column's name, or a table of what is known of it can hold column, unit, scale and sign",
+            ),
+        ];
+        for (text, sentence) in cases {
+            assert_eq!(read(text), Err(format!("map.toml, {sentence}")), "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_panic(text in "\\PC*|(\\[columns\\]\nud = |column = |scale=|[0-9.\"'\\[\\]{}= \n]){0,20}") {
+            if let Err(sentence) = read(&text) {
+                prop_assert_eq!(sentence.lines().count(), 1);
+            }
+        }
+    }
+}

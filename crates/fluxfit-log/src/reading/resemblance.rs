@@ -1,0 +1,97 @@
+//! Which column of a file a missing one may be: only ever to propose it.
+
+use crate::channel::Channel;
+use fluxfit_units::Dimension;
+
+/// Least similarity, 0 to 1, of a misspelt time or speed: one wrong letter in four. Voltages and currents must be spelt right,
+/// for d and q differ by one letter.
+const SIMILAR: f64 = 0.75;
+
+/// Names shorter than this must be spelt right.
+const SHORT: usize = 4;
+
+/// Other words in a header make it less likely: by so much, of 1, if they were everything.
+const OTHER_WORDS: f64 = 0.2;
+
+/// A difference of less than one in this many letters is no preference: `Absorber speed` is not likelier than `Test motor speed`.
+const STEPS: f64 = 10.0;
+
+/// Most words of a header that make one name, as in `q-axis current`.
+const WORDS: usize = 3;
+
+/// The header most like `channel`, if any is.
+pub(super) fn propose(channel: Channel, names: &[String]) -> Option<usize> {
+    let scored = names.iter().enumerate().filter_map(|(index, name)| score(channel, name).map(|score| (index, score)));
+    // The first of equals: a second motor or sensor comes later.
+    scored.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(index, _)| index)
+}
+
+/// Similarity of the best run of words to a spelling.
+fn score(channel: Channel, name: &str) -> Option<f64> {
+    let words = words(name);
+    let letters: usize = words.iter().map(|word| word.chars().count()).sum();
+    let runs = (0..words.len()).flat_map(|start| (start + 1..=(start + WORDS).min(words.len())).map(move |end| start..end));
+    let scores = runs.filter_map(|run| {
+        let run = words[run].concat();
+        let length = run.chars().count();
+        let similarity = channel.spellings().iter().map(|spelling| similarity(channel, &run, spelling)).fold(0.0, f64::max);
+        let others = 1.0 - (STEPS * length as f64 / letters as f64).round() / STEPS;
+        (similarity >= SIMILAR).then_some(similarity - OTHER_WORDS * others)
+    });
+    scores.reduce(f64::max)
+}
+
+fn similarity(channel: Channel, run: &str, spelling: &str) -> f64 {
+    let may_be_misspelt = matches!(channel.dimension(), Dimension::Time | Dimension::Speed) && spelling.len() >= SHORT;
+    if run == spelling {
+        1.0
+    } else if may_be_misspelt && run.len() < 2 * spelling.len() {
+        strsim::normalized_damerau_levenshtein(run, spelling)
+    } else {
+        0.0
+    }
+}
+
+/// Words in lower case: parted by punctuation, and where a capital follows a small letter, as in `MotorVd`.
+pub(super) fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut small_before = false;
+    for c in name.chars() {
+        if !c.is_alphanumeric() || (small_before && c.is_uppercase()) {
+            words.push(String::new());
+        }
+        if c.is_alphanumeric()
+            && let Some(word) = words.last_mut()
+        {
+            word.extend(c.to_lowercase());
+        }
+        small_before = c.is_lowercase();
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is proposed for t, ud, uq, id, iq and omega_e.
+    fn proposed(header: &str) -> Vec<&str> {
+        let names: Vec<String> = header.split(';').map(str::to_owned).collect();
+        let find = |channel| propose(channel, &names).map_or("-", |index| header.split(';').nth(index).unwrap());
+        Channel::NEEDED.into_iter().map(find).collect()
+    }
+
+    #[test]
+    fn headers_of_known_tools() {
+        let paderborn = "u_q;coolant;stator_winding;u_d;stator_tooth;motor_speed;i_d;i_q;pm;stator_yoke;ambient;torque;profile_id";
+        assert_eq!(proposed(paderborn), ["-", "u_d", "u_q", "i_d", "i_q", "motor_speed"]);
+        let vesc = "ms_today;input_voltage;current_motor;current_in;d_axis_current;q_axis_current;erpm;duty_cycle;vesc_id;d_axis_voltage;q_axis_voltage;ms_today_setup";
+        assert_eq!(proposed(vesc), ["ms_today", "d_axis_voltage", "q_axis_voltage", "d_axis_current", "q_axis_current", "erpm"]);
+        let tritium = "Time;BusVoltage;MotorId;MotorIq;MotorVd;MotorVq;MotorVelocity";
+        assert_eq!(proposed(tritium), ["Time", "MotorVd", "MotorVq", "MotorId", "MotorIq", "MotorVelocity"]);
+        let dyno = "Input voltage;Test motor q-axis current;Test motor d-axis current;Output Torque;Output Speed;Output Speed set-point;Absorber q-axis current";
+        assert_eq!(proposed(dyno), ["-", "-", "-", "Test motor d-axis current", "Test motor q-axis current", "Output Speed"]);
+        assert_eq!(proposed("tmie;omga;uds"), ["tmie", "-", "-", "-", "-", "omga"]);
+    }
+}

@@ -1,0 +1,171 @@
+//! `MOTOR.toml`: what is known of a motor before anything is identified.
+//!
+//! ```toml
+//! [motor]
+//! rs = "0.958 ohm"      # numbers with units; a bare number is SI; every key may be missing
+//! ld = "5.25 mH"
+//! lq = "12 mH"
+//! psi_f = "0.1827 Wb"
+//! pole_pairs = 4
+//! [rating]
+//! current = "20 A"      # phase peak
+//! voltage = "180 V"     # phase peak
+//! speed = "3000 rpm"    # mechanical
+//! ```
+
+use fluxfit_files::{
+    FileError, input,
+    toml_table::{Document, Shape, Table},
+};
+use fluxfit_units::Dimension;
+use std::path::Path;
+
+/// What is known of a motor; every number above zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MotorFile {
+    /// Stator resistance, ohm.
+    pub rs: Option<f64>,
+    /// Inductance along d, H.
+    pub ld: Option<f64>,
+    /// Inductance along q, H.
+    pub lq: Option<f64>,
+    /// Magnet flux linkage, Wb, peak per phase.
+    pub psi_f: Option<f64>,
+    /// Pole pairs.
+    pub pole_pairs: Option<u32>,
+    /// What the motor is made for.
+    pub rating: Rating,
+}
+
+/// What a motor is made for; every number above zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Rating {
+    /// A, phase peak.
+    pub current: Option<f64>,
+    /// V, phase peak.
+    pub voltage: Option<f64>,
+    /// **Mechanical** rad/s.
+    pub speed: Option<f64>,
+}
+
+const SHAPE: Shape = Shape {
+    noun: "a motor file",
+    keys: &[],
+    tables: &[("motor", &["rs", "ld", "lq", "psi_f", "pole_pairs"]), ("rating", &["current", "voltage", "speed"])],
+};
+
+const ABOVE_ZERO: &str = "a finite number above zero";
+
+/// Reads a motor file; the path `-` is standard input.
+///
+/// # Errors
+/// If the file cannot be read, is no TOML, has a key that is not known, or a value that is no quantity of its dimension or not above zero.
+pub fn read_motor(path: &Path) -> Result<MotorFile, FileError> {
+    MotorFile::parse(&input::name(path), &input::read(path)?)
+}
+
+impl MotorFile {
+    /// Reads a motor file from memory; `name` is the file's name in messages. An empty file is a motor of which nothing is known.
+    ///
+    /// # Errors
+    /// As [`read_motor`].
+    pub fn parse(name: &str, bytes: &[u8]) -> Result<Self, FileError> {
+        let parsed = match input::text(bytes, "TOML") {
+            Ok(text) => parse(text),
+            Err(_) if bytes.trim_ascii().is_empty() => Ok(Self::default()),
+            Err(error) => Err(error),
+        };
+        parsed.map_err(|error| error.in_file(name))
+    }
+}
+
+fn parse(text: &str) -> Result<MotorFile, FileError> {
+    let document = Document::parse(text, &SHAPE)?;
+    let (motor, rating) = (document.table("motor"), document.table("rating"));
+    Ok(MotorFile {
+        rs: above_zero(&motor, "rs", Dimension::Resistance)?,
+        ld: above_zero(&motor, "ld", Dimension::Inductance)?,
+        lq: above_zero(&motor, "lq", Dimension::Inductance)?,
+        psi_f: above_zero(&motor, "psi_f", Dimension::FluxLinkage)?,
+        pole_pairs: motor.get("pole_pairs").map(|entry| entry.whole(1, "a whole number above zero")).transpose()?,
+        rating: Rating {
+            current: above_zero(&rating, "current", Dimension::Current)?,
+            voltage: above_zero(&rating, "voltage", Dimension::Voltage)?,
+            speed: above_zero(&rating, "speed", Dimension::Speed)?,
+        },
+    })
+}
+
+fn above_zero(table: &Table<'_>, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
+    let Some(entry) = table.get(key) else { return Ok(None) };
+    let number = entry.quantity(dimension)?;
+    if number > 0.0 { Ok(Some(number)) } else { Err(entry.out_of_range(ABOVE_ZERO)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    fn read(text: &str) -> Result<MotorFile, String> {
+        MotorFile::parse("motor.toml", text.as_bytes()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_papers_motor() {
+        let text = "[motor]\nrs = \"0.958 ohm\"\nld = \"5.25 mH\"\nlq = 12e-3\npsi_f = \"0.1827 Wb\"\npole_pairs = 4\n\
+                    [rating]\ncurrent = 20\nvoltage = \"180 V\"\nspeed = \"3000 rpm\"\n";
+        let expected = MotorFile {
+            rs: Some(0.958),
+            ld: Some(5.25e-3),
+            lq: Some(12e-3),
+            psi_f: Some(0.1827),
+            pole_pairs: Some(4),
+            rating: Rating { current: Some(20.0), voltage: Some(180.0), speed: Some(3000.0 * (TAU / 60.0)) },
+        };
+        assert_eq!(read(text), Ok(expected));
+        assert_eq!(read(""), Ok(MotorFile::default()));
+        assert_eq!(read("motor.ld = \"5.25mH\"").map(|motor| motor.ld), Ok(Some(5.25e-3)));
+    }
+
+    #[test]
+    fn refusals_name_line_and_key() {
+        let cases = [
+            (
+                "[motor]\n\nl_d = 1",
+                "line 3, key 'l_d': this key is not known; [motor] can hold rs, ld, lq, psi_f and pole_pairs; did you mean ld?",
+            ),
+            ("rs = 1", "line 1, key 'rs': this key stands outside of a table; put it below a line [motor]"),
+            ("[ratings]", "line 1, key 'ratings': this key is not known; a motor file can hold motor and rating; did you mean rating?"),
+            ("motor = 1", "line 1, key 'motor': this is not a table, as in [motor]; correct it"),
+            (
+                "[motor]\nrs = \"1 H\"",
+                "line 2, key 'rs': \"1 H\" is not a resistance; write a number, in ohm or with its unit, as in \"0.958 ohm\"",
+            ),
+            ("[motor]\nrs = 0", "line 2, key 'rs': \"0\" is out of range; it must be a finite number above zero"),
+            ("[motor]\nld = -1e-3", "line 2, key 'ld': \"-1e-3\" is out of range; it must be a finite number above zero"),
+            (
+                "[motor]\nrs = nan",
+                "line 2, key 'rs': \"nan\" is not a resistance; write a number, in ohm or with its unit, as in \"0.958 ohm\"",
+            ),
+            ("[motor]\nrs = [1]", "line 2, key 'rs': this is not a number, or one with its unit in quotes; correct it"),
+            ("[motor]\npole_pairs = 0", "line 2, key 'pole_pairs': \"0\" is out of range; it must be a whole number above zero"),
+            ("[motor]\npole_pairs = 4.0", "line 2, key 'pole_pairs': this is not a whole number, as in pole_pairs = 4; correct it"),
+            ("[motor]\nrs = 1\nrs = 2", "line 3: this is not TOML: duplicate key; correct it"),
+            ("[motor]\nrs = 0.958 ohm", "line 2: this is not TOML: string values must be quoted, expected literal string; correct it"),
+        ];
+        for (text, sentence) in cases {
+            assert_eq!(read(text), Err(format!("motor.toml, {sentence}")), "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_panic(text in "\\PC*|(\\[motor\\]\n|rs = |ld=|[0-9.\"'\\[\\]{}= \n]){0,20}") {
+            if let Err(sentence) = read(&text) {
+                prop_assert_eq!(sentence.lines().count(), 1);
+            }
+        }
+    }
+}

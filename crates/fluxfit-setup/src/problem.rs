@@ -1,0 +1,48 @@
+//! What is wrong with a motor, a scenario, a truth or a flux map.
+
+use fluxfit_files::FileError;
+use fluxfit_units::wording::{columns, list, quote, shorten};
+
+/// The sentences. Texts taken from files are quoted here, never before.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum Problem {
+    #[error("this key excludes {by}; remove one of them")]
+    Excluded { by: &'static str },
+    #[error("{0}")]
+    Drive(fluxfit_drive::Error),
+    #[error("{}", missing_map_columns(.missing, .present))]
+    MapColumns { missing: Vec<&'static str>, present: Vec<String> },
+    #[error("this truth has no constant parameters, because the simulated motor was a flux map; compare without a truth")]
+    NoConstants,
+    #[error("the schema is {} where {wanted} is needed; give a truth file", shorten(.found))]
+    Schema { found: String, wanted: &'static str },
+    #[error("the schema is {}, which holds no motor; give a motor file, the JSON of fluxfit identify or a truth file", quote(.found))]
+    MotorSchema { found: String },
+    #[error("the {} missing; a motor is validated with all four: write {} below [motor]", parameters(.missing, "is", "are"), them(.missing))]
+    MissingParameters { missing: Vec<&'static str> },
+    #[error(
+        "the {} no value, because the log could not tell {them} when the motor was identified; identify again with a log that excites {them}, or with --fix",
+        parameters(.untold, "has", "have"), them = them(.untold)
+    )]
+    UntoldParameters { untold: Vec<&'static str> },
+}
+
+impl From<Problem> for FileError {
+    fn from(problem: Problem) -> Self {
+        Self::new(&problem)
+    }
+}
+
+fn parameters(keys: &[&str], one: &str, several: &str) -> String {
+    if keys.len() == 1 { format!("parameter {} {one}", list(keys)) } else { format!("parameters {} {several}", list(keys)) }
+}
+
+fn them(keys: &[&str]) -> &'static str {
+    if keys.len() == 1 { "it" } else { "them" }
+}
+
+fn missing_map_columns(missing: &[&str], present: &[String]) -> String {
+    let (noun, are) = if missing.len() == 1 { ("column", "is") } else { ("columns", "are") };
+    let what = format!("the {noun} {} {are} missing; the file has {}", list(missing), columns(present));
+    format!("{what}, and a flux map needs id, iq in A, psi_d, psi_q in Wb")
+}

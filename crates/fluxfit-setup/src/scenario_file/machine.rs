@@ -1,0 +1,50 @@
+//! `[motor]` and `[mechanics]`.
+
+use crate::{flux_map::read_flux_map, problem::Problem};
+use fluxfit_drive::{
+    Error,
+    scenario::{Magnetics, Mechanics, SimulatedMotor},
+};
+use fluxfit_files::{FileError, toml_table::Table};
+use fluxfit_units::Dimension;
+use std::path::Path;
+
+pub(super) fn motor(table: &Table<'_>, folder: &Path) -> Result<SimulatedMotor, FileError> {
+    Ok(SimulatedMotor {
+        rs: table.needed("rs", Dimension::Resistance)?,
+        magnetics: magnetics(table, folder)?,
+        pole_pairs: match table.get("pole_pairs") {
+            Some(entry) => entry.whole(1, "a whole number above zero")?,
+            None => return Err(table.missing("pole_pairs", "4")),
+        },
+    })
+}
+
+fn magnetics(table: &Table<'_>, folder: &Path) -> Result<Magnetics, FileError> {
+    let Some(entry) = table.get("flux_map") else {
+        let (ld, lq) = (table.needed("ld", Dimension::Inductance)?, table.needed("lq", Dimension::Inductance)?);
+        return Ok(Magnetics::Constant { ld, lq, psi_f: table.needed("psi_f", Dimension::FluxLinkage)? });
+    };
+    if let Some(constant) = ["ld", "lq", "psi_f"].into_iter().find_map(|key| table.get(key)) {
+        return Err(constant.refuse(Problem::Excluded { by: "flux_map" }));
+    }
+    read_flux_map(&folder.join(entry.text()?)).map(Magnetics::Map)
+}
+
+pub(super) fn mechanics(table: &Table<'_>) -> Result<Mechanics, FileError> {
+    let dyno = table.get("kind").map_or(Ok(false), |kind| kind.word(&[("free", false), ("dyno", true)]))?;
+    if dyno {
+        for key in ["mechanics.inertia", "mechanics.friction"] {
+            if let Some(entry) = key.split_once('.').and_then(|(_, key)| table.get(key)) {
+                let remedy = "a dynamometer holds its speed whatever it drives: leave it out";
+                let together = Error::Together { key, with: "mechanics.kind = \"free\"", remedy };
+                return Err(FileError::from(Problem::Drive(together)).at_line(entry.line()));
+            }
+        }
+        return Ok(Mechanics::Dyno);
+    }
+    Ok(Mechanics::Free {
+        inertia: table.needed("inertia", Dimension::Inertia)?,
+        friction: table.quantity("friction", Dimension::Friction)?.unwrap_or(0.0),
+    })
+}

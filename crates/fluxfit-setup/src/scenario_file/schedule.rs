@@ -1,0 +1,53 @@
+//! `[schedule]` and `[injection]`.
+
+use fluxfit_drive::{
+    scenario::{Axis, Injection, Schedule, Waveform},
+    schedule::{Course, Move},
+};
+use fluxfit_files::{
+    FileError, Problem as FileProblem,
+    toml_table::{Entry, Table},
+};
+use fluxfit_units::Dimension;
+
+/// A move as it is written.
+const MOVE: &str = "{ at = \"0.2 s\", to = .., over = \"10 ms\" }";
+
+pub(super) fn schedule(table: &Table<'_>, injection: &Table<'_>) -> Result<Schedule, FileError> {
+    let course = |key, dimension| table.get(key).map_or(Ok(Course::default()), |entry| course(&entry, dimension));
+    Ok(Schedule {
+        id: course("id", Dimension::Current)?,
+        iq: course("iq", Dimension::Current)?,
+        speed: course("speed", Dimension::Speed)?,
+        load: course("load", Dimension::Torque)?,
+        injection: if injection.is_there() { Some(test_voltage(injection)?) } else { None },
+    })
+}
+
+fn test_voltage(table: &Table<'_>) -> Result<Injection, FileError> {
+    let needed = |key, example| table.get(key).ok_or_else(|| table.missing(key, example));
+    Ok(Injection {
+        axis: needed("axis", "\"d\"")?.word(&[("d", Axis::D), ("q", Axis::Q)])?,
+        waveform: needed("waveform", "\"square\"")?.word(&[("sine", Waveform::Sine), ("square", Waveform::Square)])?,
+        frequency: table.needed("frequency", Dimension::Frequency)?,
+        voltage: course(&needed("voltage", "[{ at = \"0.3 s\", to = \"5 V\" }]")?, Dimension::Voltage)?,
+    })
+}
+
+/// A list of moves, or one value from the start on.
+fn course(entry: &Entry<'_>, dimension: Dimension) -> Result<Course, FileError> {
+    let Some(items) = entry.items() else {
+        let wanted = || entry.refuse(FileProblem::Value { wanted: format!("a quantity, or a list of moves as in [{MOVE}]") });
+        return entry.as_written().ok_or_else(wanted).and_then(|_| entry.quantity(dimension)).map(Course::constant);
+    };
+    items.iter().map(|item| one_move(item, dimension)).collect::<Result<_, _>>().map(Course::new)
+}
+
+fn one_move(item: &Entry<'_>, dimension: Dimension) -> Result<Move, FileError> {
+    let table = item.table(&["at", "to", "over"], "a move", MOVE)?;
+    Ok(Move {
+        at: table.needed("at", Dimension::Time)?,
+        to: table.needed("to", dimension)?,
+        over: table.quantity("over", Dimension::Time)?.unwrap_or(0.0),
+    })
+}
