@@ -1,0 +1,19 @@
+//! Every integration test of this crate, linked once; a file per topic.
+//!
+//! `cargo test -p fluxfit-drive --test all faults -- --nocapture` runs one topic and prints what it found.
+
+mod control;
+mod conventions;
+mod dead_time;
+mod drive;
+mod faults;
+mod independent_simulator;
+mod inverter;
+mod laws;
+mod ode_oracle;
+mod output_error;
+mod refusals;
+mod saturation;
+mod sensors;
+mod study;
+mod validate;

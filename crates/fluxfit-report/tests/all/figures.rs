@@ -1,0 +1,69 @@
+//! Figures without a page: as SVG of their own, and as files on white paper.
+
+// Helpers of tests fail as tests do.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use crate::logs::{Found, TWO, WHOLE, log, origin};
+use fluxfit::identify::{Settings, identify};
+use fluxfit_report::{
+    Report,
+    figure::{self, Size},
+    figures, html,
+};
+use html5ever::{driver::ParseOpts, parse_document, tendril::TendrilSink};
+use markup5ever_rcdom::RcDom;
+use resvg::tiny_skia::Pixmap;
+
+#[test]
+fn figures_stand_alone() {
+    let log = log(&TWO, 0.1);
+    let found = identify(&log, &Settings::default()).unwrap();
+    let Found { log: fast, found: of_fast } = &*WHOLE;
+    for size in [Size::Wide, Size::Narrow] {
+        for svg in [
+            figure::currents(fast, of_fast.output.as_ref().unwrap(), size),
+            figure::intervals(&found, size),
+            figure::residuals(found.steady.as_ref().unwrap(), size),
+            figure::operating_points(found.operating_points(), size),
+        ] {
+            assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && svg.ends_with("</svg>\n"));
+            assert!(svg.contains("prefers-color-scheme:dark") && svg.contains("role=\"img\" aria-label=\""));
+            assert_eq!(svg.matches("://").count(), 1, "the name space alone");
+            let document = parse_document(RcDom::default(), ParseOpts::default()).one(format!("<!DOCTYPE html><title>x</title>{svg}"));
+            assert!(document.errors.borrow().is_empty(), "{:?}", document.errors);
+        }
+    }
+}
+
+#[test]
+fn every_figure_of_the_page_is_a_file_on_white_paper_with_letters_of_its_own() {
+    let Found { log, found } = &*WHOLE;
+    let origin = origin();
+    let shown = Report {
+        title: "x",
+        log,
+        notes: &[],
+        operating_points: found.operating_points(),
+        identification: Some((found, None)),
+        held_out: None,
+        study: None,
+        origin: &origin,
+    };
+    let files = figures(&shown);
+    assert_eq!(html(&shown).matches("<figure>").count(), files.len());
+    assert_eq!(
+        files.iter().map(|file| file.name).take(4).collect::<Vec<_>>(),
+        ["intervals", "currents", "autocorrelation", "joint-region"]
+    );
+    for file in files {
+        assert!(file.svg.contains("fill=\"#FFFFFF\"") && file.svg.contains("font-family=\"Inter, sans-serif\""), "{}", file.name);
+        assert!(!file.svg.contains("prefers-color-scheme") && !file.svg.contains("font-family=\"sans-serif\""));
+        let height: u32 = file.svg.split_once(" height=\"").unwrap().1.split_once('"').unwrap().0.parse().unwrap();
+        let picture = Pixmap::decode_png(&file.png()).unwrap();
+        assert_eq!((picture.width(), picture.height()), (1440, 2 * height));
+        assert!(picture.pixels().iter().all(|pixel| pixel.alpha() == 255));
+        // The names of the axes stand in a strip that nothing else reaches into.
+        let name = (0..28).flat_map(|y| (0..100).map(move |x| (x, y))).filter(|(x, y)| picture.pixel(*x, *y).unwrap().red() < 100);
+        assert!(file.name == "intervals" || name.count() > 20, "{} has no letters", file.name);
+    }
+}

@@ -1,0 +1,220 @@
+//! The page of an identification, and its sections.
+
+// Helpers of tests fail as tests do.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use crate::{
+    logs::{Found, INTERRUPTED, TWO, WHOLE, log, of_currents, origin, recorded},
+    markup::checked,
+};
+use fluxfit::{
+    Log, Verdict,
+    identify::{Identification, Known, Settings, identify, model::Model},
+    motor::Parameter,
+    optimizer::Method,
+    validate::{Given, validate},
+};
+use fluxfit_report::{
+    Report,
+    figure::{self, Size},
+    figures, html,
+};
+
+pub(crate) fn page(title: &str, log: &Log, found: &Identification, method: Option<Method>) -> String {
+    let origin = origin();
+    let notes = ["omega_e: column 'n' read as <mechanical> r/min".to_owned()];
+    let points = found.operating_points();
+    html(&Report {
+        title,
+        log,
+        notes: &notes,
+        operating_points: points,
+        identification: Some((found, method)),
+        held_out: None,
+        study: None,
+        origin: &origin,
+    })
+}
+
+fn identified(currents: &[(f64, f64)], settings: &Settings) -> (Identification, String) {
+    let log = log(currents, 0.1);
+    let found = identify(&log, settings).unwrap();
+    let page = page("drive.csv", &log, &found, settings.method);
+    (found, page)
+}
+
+#[test]
+fn an_identification_has_its_values_verdicts_and_command() {
+    let (found, page) = identified(&TWO, &Settings { model: Some(Model::Steady), method: Some(Method::all()[0]), ..Settings::default() });
+    assert!(found.is_complete());
+    let text = checked(&page);
+    for expected in
+        ["Four of four parameters identified", "Warning: no-redundancy", "tGFPA", "'a log.csv'", "seed 7", "read as <mechanical>"]
+    {
+        assert!(text.contains(expected), "{expected} is not in\n{text}");
+    }
+    assert_eq!(page.matches("class=\"badge identified\"").count(), 4 + 1, "four verdicts and the legend");
+}
+
+#[test]
+fn what_is_not_identifiable_has_no_number_anywhere() {
+    let (found, page) = identified(&[(0.0, 9.0), (0.0, 5.0)], &Settings { model: Some(Model::Steady), ..Settings::default() });
+    let ld = found.parameter(Parameter::Ld);
+    assert_eq!(ld.verdict, Verdict::NotIdentifiable);
+    let text = checked(&page);
+    assert!(text.contains("Three of four parameters identified; not identifiable from this log: Ld."));
+    assert!(text.contains("To do: add 0.2 s at id = −2 A, same speed: Ld to about ±"), "{text}");
+    // A row of the answer, and none of any other table.
+    assert_eq!(page.matches("<th scope=\"row\"><i>L</i><sub>d</sub></th>").count(), 1);
+    assert!(page.contains("<th scope=\"row\"><i>L</i><sub>d</sub></th><td class=\"value\">–</td>"));
+}
+
+#[test]
+fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict() {
+    let (_, page) = identified(&TWO[..1], &Settings::default());
+    assert!(checked(&page).contains("One of four parameters identified"));
+    let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
+    let (_, page) = identified(&TWO, &Settings { model: Some(Model::Steady), known, method: None, ..Settings::default() });
+    let text = checked(&page);
+    assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("The swarm"), "{text}");
+}
+
+#[test]
+fn nothing_identifiable_is_still_a_page() {
+    let log = log(&TWO[..1], 0.1);
+    let mut found = identify(&log, &Settings::default()).unwrap();
+    found.parameters.iter_mut().for_each(|judgement| judgement.verdict = Verdict::NotIdentifiable);
+    let text = checked(&page("x", &log, &found, Settings::default().method));
+    assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
+    assert!(!text.contains("The swarm") && !text.contains("Where the uncertainty"));
+}
+
+#[test]
+fn simulated_currents_have_their_own_sections() {
+    let Found { log, found } = &*WHOLE;
+    let text = checked(&page("x", log, found, None));
+    // Noise of 50 mA a phase is 50 mA times the root of two thirds, 40.8 mA, along each axis; its rms of 1601 rows is right to 0.7 mA.
+    let (_, missed) = text.split_once("Simulated currents miss the measured ones by ").unwrap();
+    for mark in [" mA (d)", " mA (q)"] {
+        let number = missed.split_once(mark).unwrap().0.rsplit(' ').next().unwrap();
+        assert!((number.parse::<f64>().unwrap() - 40.8).abs() < 2.1, "{number}");
+    }
+    for expected in [
+        "Model: output error (as stated)",
+        "Measured against simulated",
+        "White, as noise is:",
+        "Its voltages are read as the mean of the two periods around the row, as the currents ask for. No fault of the drive shows",
+        "Nothing was found between the motor and its log",
+        "explains too little of the residual",
+        "ruled out",
+        "1601, of which 1601 were simulated",
+    ] {
+        assert!(text.contains(expected), "{expected} is not in\n{text}");
+    }
+    assert!(!text.contains("squared standard uncertainty") && !text.contains("Gaps of the log"));
+}
+
+#[test]
+fn correlations_stand_in_a_table_whose_numbers_are_those_of_the_answer() {
+    let Found { log, found } = &*WHOLE;
+    let page = page("x", log, found, None);
+    let (_, table) = page.split_once("<table class=\"heat\">").unwrap();
+    let (table, _) = table.split_once("</table>").unwrap();
+    assert_eq!(table.matches("<td class=\"own\">1</td>").count(), 4);
+    let [rs, psi_f] = [Parameter::Rs, Parameter::PsiF].map(|parameter| parameter as usize);
+    let shown = format!("{:.2}", found.correlation[rs][psi_f]).replace('-', "\u{2212}");
+    assert!(table.matches(&format!(">{shown}</td>")).count() >= 2, "{shown} is not twice in {table}");
+    assert!(page.contains("aria-label=\"Ellipse: joint 95 % region of R_s and psi_f"));
+}
+
+#[test]
+fn there_is_no_ellipse_of_a_given_or_missing_parameter() {
+    let log = recorded(0.08, |_| ());
+    let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
+    let mut found = identify(&log, &Settings { known, ..of_currents() }).unwrap();
+    let text = checked(&page("x", &log, &found, None));
+    assert!(text.contains("There is no joint region: Rs was given."), "{text}");
+    found.parameters[Parameter::PsiF as usize].verdict = Verdict::NotIdentifiable;
+    let text = checked(&page("x", &log, &found, None));
+    assert!(text.contains("There is no joint region: ψf cannot be identified from this log."), "{text}");
+}
+
+#[test]
+fn faults_of_the_drive_are_told_with_their_size() {
+    let log = recorded(0.08, |scenario| scenario.sensors.current_offset = [0.0, 0.3, 0.0]);
+    let found = identify(&log, &of_currents()).unwrap();
+    let page = page("x", &log, &found, None);
+    let text = checked(&page);
+    // A third of the offset of phase b is common to all three and seen by nobody; Clarke makes of it -0.1 A and 0.3 / sqrt 3 = 0.173 A.
+    let shown = |key: &str| {
+        let (_, rest) = page.split_once(&format!("<th scope=\"row\">Current sensor offset, {key}</th><td>")).unwrap();
+        let (value, rest) = rest.split_once(" ± ").unwrap();
+        let (margin, _) = rest.split_once(" mA").unwrap();
+        (value.replace('\u{2212}', "-").parse::<f64>().unwrap(), margin.parse::<f64>().unwrap())
+    };
+    for (key, expected) in [("alpha", -100.0), ("beta", 300.0 / 3.0_f64.sqrt())] {
+        let (value, margin) = shown(key);
+        assert!((value - expected).abs() < 2.0 * margin && margin < 0.2 * expected.abs(), "{key}: {value} ± {margin}");
+    }
+    assert!(text.contains("shown as the faulty sensors found would read it"), "{text}");
+}
+
+#[test]
+fn gaps_are_not_bridged_and_a_log_without_operating_points_is_told_as_such() {
+    let Found { log, mut found } = INTERRUPTED.clone();
+    found.steady = None;
+    let text = checked(&page("x", &log, &found, None));
+    for expected in
+        ["1501, of which 1501 were simulated; the log never holds still", "Gaps of the log are not bridged", "Stretches simulated"]
+    {
+        assert!(text.contains(expected), "{expected} is not in\n{text}");
+    }
+    assert!(!text.contains("Operating points, as a check") && !text.contains("Windows of the operating points"));
+    // Per axis a measured and a simulated piece on either side of the gap, and a residual.
+    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    let long = svg.split("<polyline").skip(1).filter(|line| line.split_once('>').unwrap().0.matches(',').count() > 100);
+    assert_eq!(long.count(), 2 * 3 * 2);
+}
+
+#[test]
+fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
+    let log = recorded(0.08, |_| ());
+    let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };
+    let method = Some(Method::all()[0]);
+    let found = identify(&log, &Settings { method, search, ..of_currents() }).unwrap();
+    let text = checked(&page("x", &log, &found, method));
+    assert!(text.contains("Simulated currents are not linear in the parameters") && !text.contains("solves them exactly"), "{text}");
+}
+
+#[test]
+fn hostile_texts_are_texts() {
+    let log = log(&TWO, 0.1);
+    let found = identify(&log, &Settings::default()).unwrap();
+    let title = "</title><script>alert(1)</script>\"'&<img src=x onerror=y>";
+    assert!(checked(&page(title, &log, &found, None)).contains(title));
+}
+
+#[test]
+fn what_was_held_out_has_its_own_section() {
+    let (log, kept_out) = (recorded(0.08, |_| ()), recorded(0.08, |scenario| scenario.sensors.current_noise = 0.06));
+    let found = identify(&log, &of_currents()).unwrap();
+    let validation = validate(&kept_out, &Given::of(&found).unwrap(), &of_currents()).unwrap();
+    let origin = origin();
+    let shown = Report {
+        title: "x",
+        log: &log,
+        notes: &[],
+        operating_points: found.operating_points(),
+        identification: Some((&found, None)),
+        held_out: Some((&kept_out, Some(&validation))),
+        study: None,
+        origin: &origin,
+    };
+    let (page, files) = (html(&shown), figures(&shown));
+    let text = checked(&page);
+    assert!(text.contains("What was held out") && text.contains("These 1601 rows, 0.160 s, had no part in the answer above"), "{text}");
+    assert!(text.contains("Measured against predicted") && text.contains("agrees"), "{text}");
+    assert!(files.iter().any(|file| file.name == "held-out") && page.matches("<figure>").count() == files.len());
+    let text = checked(&html(&Report { held_out: Some((&kept_out, None)), ..shown }));
+    assert!(text.contains("They are not predicted, because that takes all four parameters."), "{text}");
+}

@@ -1,0 +1,11 @@
+//! What every page keeps: nothing is loaded, what runs asks for nothing, the markup is sound, no number without a meaning is on it.
+//!
+//! All integration tests of this crate, linked once; a file per topic.
+
+mod figures;
+mod identification;
+mod interactive;
+mod logs;
+mod markup;
+mod study;
+mod validation;

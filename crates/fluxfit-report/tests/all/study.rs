@@ -1,0 +1,91 @@
+//! The page of a study.
+
+// Helpers of tests fail as tests do.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use crate::{
+    logs::{TWO, log, origin},
+    markup::checked,
+};
+use fluxfit::{
+    Motor,
+    identify::Settings,
+    objective::voltage_error::IdZero,
+    optimizer::{Method, bounds::Bounds},
+    paper,
+    study::{Convergence, MethodStudy, fitness::Problem, run_method},
+};
+use fluxfit_answer::answer::StudyFacts;
+use fluxfit_report::{Report, html};
+use std::ops::ControlFlow;
+
+/// A study, its page checked; `change` bends what the runs left behind.
+fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)], change: impl Fn(&mut MethodStudy)) -> String {
+    let log = log(currents, 0.1);
+    let problem = Problem::steady(&log, &Settings::default(), IdZero::Measured).unwrap();
+    let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
+    let settings = fluxfit::optimizer::Settings { population: 20, iterations: 12, ..Default::default() };
+    let run = |method: &Method| {
+        let mut study = run_method(*method, 3, settings, &bounds, &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
+        change(&mut study);
+        (study, 1e-3)
+    };
+    let methods: Vec<_> = methods.iter().map(run).collect();
+    let facts = StudyFacts { settings: &settings, runs: 3, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
+    let origin = origin();
+    html(&Report {
+        title: "drive.csv",
+        log: &log,
+        notes: &[],
+        operating_points: &problem.operating_points,
+        identification: None,
+        held_out: None,
+        study: Some((&facts, &methods)),
+        origin: &origin,
+    })
+}
+
+#[test]
+fn a_study_of_the_papers_motor_stands_beside_the_papers_table() {
+    let text = checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, |_| ()));
+    for expected in ["Four methods ran 3 times each", "0.9639", "5.283", "0.01414", "0.051", "cannot be known", "Fig. 4", "Fig. 5"] {
+        assert!(text.contains(expected), "{expected} is not in\n{text}");
+    }
+    let other = Motor { rs: 1.0, ..paper::MOTOR };
+    assert!(!checked(&study_page(&Method::all(), Some(other), &TWO, |_| ())).contains("0.9639"));
+}
+
+#[test]
+fn one_method_no_truth_and_what_is_not_excited() {
+    let text = checked(&study_page(&Method::all()[3..], None, &[(0.0, 9.0), (0.0, 5.0)], |_| ()));
+    assert!(text.contains("APSO ran 3 times;") && text.contains("This log does not excite Ld"), "{text}");
+}
+
+#[test]
+fn costs_of_zero_no_iterations_and_broken_numbers() {
+    let zero = |study: &mut MethodStudy| {
+        study.cost_above_optimum.fill(0.0);
+        study.convergence.quartiles.fill([0.0; 3]);
+    };
+    assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("drawn at that floor"));
+    let empty = |study: &mut MethodStudy| study.convergence = Convergence::default();
+    assert!(!checked(&study_page(&Method::all(), None, &TWO, empty)).contains("Fig. 4"));
+    let start_only = |study: &mut MethodStudy| {
+        study.convergence.quartiles.truncate(1);
+        study.convergence.parameters_median.truncate(1);
+    };
+    checked(&study_page(&Method::all(), None, &TWO, start_only));
+    let broken = |study: &mut MethodStudy| {
+        study.motors.fill(Motor { rs: f64::NAN, ld: f64::INFINITY, lq: 0.0, psi_f: -0.0 });
+        study.cost_above_optimum.fill(f64::INFINITY);
+        study.convergence.quartiles.fill([f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);
+        study.convergence.parameters_median.fill([f64::NAN; 4]);
+    };
+    checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, broken));
+}
+
+#[test]
+fn the_same_input_is_the_same_page() {
+    let pages: [String; 2] = std::array::from_fn(|_| study_page(&Method::all(), None, &TWO, |_| ()));
+    assert_eq!(pages[0], pages[1]);
+}

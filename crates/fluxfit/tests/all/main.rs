@@ -1,0 +1,5 @@
+//! The integration tests of this crate, linked once; a file per topic.
+
+mod current_loop;
+mod identify_laws;
+mod saturation;
