@@ -6,7 +6,7 @@
 //! Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 3.7.
 
 use fluxfit::{
-    identify::{Identification, Settings, identify, model::Model, verdict::Judgement},
+    evidence::Identification, Request, identify, Model, Judgement,
     levenberg_marquardt::{MOTOR, jacobian},
     motor::{Motor, PARAMETERS, Parameter},
     objective::{acting_voltage::VoltageReading, adjustable::Adjustable, output_error::OutputError},
@@ -79,12 +79,12 @@ impl Case {
     /// # Errors
     /// If a log cannot be simulated or identified.
     pub fn tally(&self, voltage_timing: Option<VoltageReading>, draws: usize) -> Result<Tally, Box<dyn Error>> {
-        let settings = Settings {
+        let settings = Request {
             model: Some(Model::OutputError),
             windows: self.window.into_iter().collect(),
             voltage_timing,
             voltage_accuracy: 0.0,
-            ..Settings::default()
+            ..Request::default()
         };
         let draws: Vec<Draw> = (0..draws as u64).into_par_iter().map(|draw| self.draw(draw, &settings)).collect::<Result<_, _>>()?;
         let count = draws.len() as f64;
@@ -104,7 +104,7 @@ impl Case {
         Ok(Tally { draws: draws.len(), with_fault, parameters: std::array::from_fn(figures) })
     }
 
-    fn draw(&self, draw: u64, settings: &Settings) -> Result<Draw, String> {
+    fn draw(&self, draw: u64, settings: &Request) -> Result<Draw, String> {
         let recording = simulate(&self.scenario, draw, || ()).map_err(|error| error.to_string())?;
         let log = recording.log().map_err(|error| error.to_string())?;
         let found = identify(&log, settings).map_err(|error| error.to_string())?;

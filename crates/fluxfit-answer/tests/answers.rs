@@ -6,7 +6,7 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Settings, identify, model::Model},
+    Request, identify, Model,
     log::{Columns, Log},
     motor::Motor,
     optimizer::{self, draws::Draws},
@@ -62,7 +62,7 @@ fn promised_nulls(document: &Value) -> Vec<String> {
 }
 
 /// Checks one log's document; the verdicts it found.
-fn check(log: &Log, settings: &Settings) -> Option<Vec<String>> {
+fn check(log: &Log, settings: &Request) -> Option<Vec<String>> {
     let answer = identify(log, settings).ok()?;
     let document = identification(log, &answer, "tgfpa");
     let text = to_text(&document);
@@ -85,11 +85,11 @@ fn check(log: &Log, settings: &Settings) -> Option<Vec<String>> {
 }
 
 /// A swarm that is done before it begins: the document does not depend on what it finds.
-fn quick() -> Settings {
-    Settings {
+fn quick() -> Request {
+    Request {
         model: Some(Model::Steady),
         search: optimizer::Settings { population: 6, iterations: 2, ..optimizer::Settings::default() },
-        ..Settings::default()
+        ..Request::default()
     }
 }
 
@@ -115,7 +115,7 @@ fn an_answered_document_has_every_number_and_one_without_a_swarm_says_so() {
     let settings = quick();
     let verdicts = check(&log(&[(0.0, 9.0), (-4.0, 8.0), (-2.0, 3.0)]), &settings).unwrap();
     assert!(verdicts.iter().all(|verdict| verdict == "identified"), "{verdicts:?}");
-    assert!(check(&log(&[(0.0, 9.0), (-4.0, 8.0)]), &Settings { method: None, ..settings }).is_some());
+    assert!(check(&log(&[(0.0, 9.0), (-4.0, 8.0)]), &Request { swarm: Swarm::Off, ..settings }).is_some());
 }
 
 #[test]

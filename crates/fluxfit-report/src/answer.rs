@@ -5,11 +5,7 @@ use crate::{
     frame, tried,
     typography::{DASH, capitalized, list, minus, number, prose, symbol, unit},
 };
-use fluxfit::identify::{
-    Identification, Provenance,
-    uncertainty::Part,
-    verdict::{IDENTIFIED, Judgement, Verdict, WEAK},
-};
+use fluxfit::evidence::Identification, evidence::Provenance, evidence::Part, evidence::IDENTIFIED, Judgement, Verdict, evidence::WEAK;
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 

@@ -7,7 +7,7 @@ use crate::{
     typography::{list, minus, number, prose, symbol},
 };
 use fluxfit::{
-    identify::{Identification, verdict::Judgement},
+    evidence::Identification, Judgement,
     motor::Parameter,
 };
 use maud::{Markup, html};

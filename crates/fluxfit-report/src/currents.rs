@@ -7,7 +7,7 @@ use crate::{
     typography::{grouped, number, prose},
 };
 use fluxfit::{
-    identify::{output_fit::OutputFit, terms::Term},
+    evidence::OutputFit, evidence::Term,
     log::Log,
 };
 use fluxfit_units::significant;

@@ -5,7 +5,7 @@ use crate::{
     flux, frame,
     typography::{decimals, number, prose},
 };
-use fluxfit::{identify::steady_fit::SteadyFit, steady::OperatingPoint};
+use fluxfit::{evidence::SteadyFit, steady::OperatingPoint};
 use fluxfit_units::significant;
 use maud::{Markup, html};
 

@@ -5,7 +5,7 @@
 //! the same bytes, times of runs apart.
 //!
 //! ```
-//! use fluxfit::{Columns, Log, identify::{self, identify}};
+//! use fluxfit::{Columns, Log, Request, identify};
 //! use fluxfit_report::{Origin, Report, html};
 //!
 //! # let (n, omega) = (200, 400.0);
@@ -17,7 +17,7 @@
 //! #         .into_iter().zip([k as f64 * 1e-3, u.d, u.q, d, q, omega]) { column.push(value); }
 //! # }
 //! let log = Log::new(columns)?;
-//! let settings = identify::Settings::default();
+//! let settings = evidence::default();
 //! let found = identify(&log, &settings)?;
 //! let origin = Origin { command: "fluxfit identify drive.csv".to_owned(), version: "0.1.0".to_owned(), seed: 1 };
 //! let page = html(&Report {
@@ -73,7 +73,7 @@ mod tried;
 mod typography;
 mod validation;
 
-use fluxfit::{identify::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy, validate::Validation};
+use fluxfit::{evidence::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy, Validation};
 use fluxfit_answer::answer::StudyFacts;
 
 /// What is shown; what is `None` is left out.

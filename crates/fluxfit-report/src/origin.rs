@@ -4,7 +4,7 @@ use crate::{
     Origin, Report, frame,
     typography::{grouped, minus, number, prose, symbol, unit},
 };
-use fluxfit::{identify::output_fit::OutputFit, log::Log, motor::Parameter, steady::OperatingPoint};
+use fluxfit::{evidence::OutputFit, log::Log, motor::Parameter, steady::OperatingPoint};
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 

@@ -7,10 +7,7 @@ use crate::{
     typography::{capitalized, count, grouped, in_words, list, symbol},
     validation,
 };
-use fluxfit::identify::{
-    Identification,
-    verdict::{Judgement, Verdict},
-};
+use fluxfit::evidence::Identification, Judgement, Verdict;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// How everything looks; nothing else is loaded.

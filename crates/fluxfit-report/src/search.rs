@@ -5,7 +5,7 @@ use crate::{
     typography::{grouped, number, power, symbol, unit},
 };
 use fluxfit::{
-    identify::{Identification, Search},
+    evidence::Identification, evidence::Search,
     optimizer::{Method, StopReason},
 };
 use fluxfit_units::Scale;

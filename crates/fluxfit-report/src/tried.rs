@@ -4,12 +4,7 @@ use crate::{
     frame,
     typography::{DASH, capitalized, minus, number, power, prose},
 };
-use fluxfit::identify::{
-    Provenance,
-    output_fit::{Nuisance, OutputFit},
-    terms::{self, Outcome, Term},
-    timing,
-};
+use fluxfit::evidence::Provenance, evidence::Nuisance, evidence::OutputFit, self, evidence::Outcome, evidence::Term, evidence::timing;
 use fluxfit_units::{beside_the_motor, significant};
 use maud::{Markup, html};
 

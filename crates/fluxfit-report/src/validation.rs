@@ -10,9 +10,9 @@ use crate::{
     typography::{DASH, capitalized, decimals, grouped, minus, number, power, prose, symbol, unit},
 };
 use fluxfit::{
-    identify::steady_fit::SteadyFit,
+    evidence::SteadyFit,
     log::Log,
-    validate::{Channel, Difference, LITTLE, Outcome, Prediction, SIGNIFICANCE, Validation},
+    validation::validate::Channel, validation::validate::Difference, validation::validate::LITTLE, validation::validate::Outcome, validation::prediction::Prediction, validation::validate::SIGNIFICANCE, Validation,
 };
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};

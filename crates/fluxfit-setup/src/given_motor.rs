@@ -8,7 +8,7 @@ use crate::{
 };
 use fluxfit::{
     motor::{Motor, PARAMETERS, Parameter},
-    validate::Given,
+    Given,
 };
 use fluxfit_files::{FileError, Problem as FileProblem, input};
 use serde_json::Value;

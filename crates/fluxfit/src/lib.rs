@@ -1,49 +1,45 @@
 //! Finds the electrical parameters of a permanent magnet synchronous motor from a log of its drive: stator resistance, two
-//! inductances, magnet flux; each with an interval, and a plain word when the log cannot tell.
+//! inductances, magnet flux; each with an interval and a verdict, or a reason why the log cannot tell it.
 //!
 //! ```
-//! use fluxfit::{identify::{self, identify}, log::{Columns, Log}, motor::Parameter};
+//! use fluxfit::{Columns, Log, Motor, Request, frames::Dq, identify};
 //!
-//! # let (n, omega) = (200, 400.0);
-//! # let motor = fluxfit::motor::Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
-//! # let mut columns = Columns::default();
-//! # for (k, (d, q)) in (0..n).map(|k| (k, if k < n / 2 { (0.0, 9.0) } else { (-2.0, 8.5) })) {
-//! #     let u = motor.steady_voltage(fluxfit::frames::Dq { d, q }, omega);
-//! #     for (column, value) in [&mut columns.t, &mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq, &mut columns.omega_e]
-//! #         .into_iter().zip([k as f64 * 1e-3, u.d, u.q, d, q, omega]) { column.push(value); }
-//! # }
-//! # let Columns { t, ud, uq, id, iq, omega_e, .. } = columns;
-//! let log = Log::new(Columns { t, ud, uq, id, iq, omega_e, ..Columns::default() })?;
-//! let found = identify(&log, &identify::Settings::default())?;
-//! let rs = found.parameter(Parameter::Rs);
-//! println!("{:?} ohm, 95 % within {:?}: {}", rs.value(), rs.interval(), rs.verdict.key());
-//! # assert!((rs.value().unwrap() - 0.958).abs() < 1e-3);
-//! # Ok::<(), fluxfit::error::Error>(())
+//! // A log of 200 rows at two operating points; yours comes from a drive.
+//! let motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
+//! let mut columns = Columns::default();
+//! for row in 0..200 {
+//!     let i = if row < 100 { Dq { d: 0.0, q: 9.0 } } else { Dq { d: -2.0, q: 8.5 } };
+//!     let u = motor.steady_voltage(i, 400.0);
+//!     columns.t.push(row as f64 * 1e-3);
+//!     (columns.ud.push(u.d), columns.uq.push(u.q), columns.id.push(i.d), columns.iq.push(i.q));
+//!     columns.omega_e.push(400.0);
+//! }
+//! let answer = identify(&Log::new(columns)?, &Request::default())?;
+//! println!("R_s: {:?} ohm, 95 % within {:?}: {}", answer.rs().value(), answer.rs().interval(), answer.rs().verdict.key());
+//! # assert!((answer.rs().value().unwrap() - 0.958).abs() < 1e-3);
+//! # Ok::<(), fluxfit::Error>(())
 //! ```
 //!
-//! | room | what it knows |
+//! | | |
 //! |---|---|
-//! | [`motor`], [`frames`] | the motor's equations; the dq frame and its convention |
-//! | [`log`](mod@log) | what a drive recorded, checked on the way in |
-//! | [`steady`] | operating points: windows, means, their covariance, the inverter's held vector |
-//! | [`least_squares`] | the exact answer to linear fitness functions, merged block by block |
-//! | [`objective`] | what is minimized: the paper's fitness (11); the output error of its Fig. 1 |
-//! | [`levenberg_marquardt`] | the polish: from near a minimum of the output error into it |
-//! | [`optimizer`] | who minimizes: tGFPA, FPA, LPSO, APSO; knows nothing of motors |
-//! | [`identify`](mod@identify) | the main path: from a log to values, intervals, verdicts |
+//! | [`identify`], [`Request`], [`Answer`] | the one call, what is asked, everything that comes back |
+//! | [`validate`](fn@validate), [`Given`], [`Validation`] | given parameters against another log |
+//! | [`Log`], [`Columns`] | what a drive recorded, checked on the way in |
+//! | [`Motor`], [`Parameter`], [`frames`] | the motor's equations; the dq frame and its convention |
+//! | [`Judgement`], [`Verdict`], [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
+//! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
+//! | [`steady`], [`objective`], [`least_squares`], [`levenberg_marquardt`] | the methods, for those who compare them |
+//! | [`optimizer`], [`study`], [`paper`] | swarms, many runs of them, and what the paper states |
 //! | [`current_loop`] | the current controllers' gains for a wanted bandwidth |
-//! | [`validate`](mod@validate) | given parameters held against another log |
-//! | [`study`] | many runs of many methods, as the paper compares them |
-//! | [`paper`] | what the paper states: its motor, its rig, its results |
-//! | [`error`] | the only error |
 //!
-//! Results depend on the log, the settings and the seed: not on files, clocks or the number of threads.
+//! Results depend on the log, the request and the seed: not on files, clocks or the number of threads.
 
 mod answer;
 pub mod current_loop;
 pub mod error;
+pub mod evidence;
 pub mod frames;
-pub mod identification;
+mod identification;
 pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod log;
@@ -59,13 +55,18 @@ pub mod validation;
 mod words;
 
 pub use answer::{Answer, HeldOut, identify, identify_with_progress, suspect_units};
-pub use error::Error;
+pub use error::{Error, ErrorKind};
 pub use identification::{
     explain::{judgement::Judgement, remedy::Remedy, warning::Warning},
     judge::{reason::Reason, verdict::Verdict},
+    nameplate::{Nameplate, Rating},
+    prepare::model::Model,
+    progress::{Progress, Step},
     request::{Known, Request, Swarm},
-    solve::Identification,
 };
 pub use log::{Columns, Log};
 pub use motor::{Motor, Parameter};
-pub use optimizer::{Method, Objective, Optimizer};
+pub use validation::{
+    given::Given,
+    validate::{Validation, validate},
+};

@@ -8,7 +8,7 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Settings, identify, model::Model},
+    Request, identify, Model,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageReading},
@@ -82,13 +82,13 @@ fn outcome(modes: &[(f64, f64, f64)], rho: f64, draws_count: usize, seed: u64) -
     for draw in 0..draws_count {
         let (log, windows) = noisy_log(modes, &noise, &mut Draws::seeded(seed, draw as u64));
         // Known exactly: no systematic part, no doubt of the timing; the swarm adds nothing here.
-        let settings = Settings {
+        let settings = Request {
             model: Some(Model::Steady),
             windows,
             voltage_timing: Some(NEXT),
             voltage_accuracy: 0.0,
-            method: None,
-            ..Settings::default()
+            swarm: Swarm::Off,
+            ..Request::default()
         };
         let found = identify(&log, &settings).unwrap();
         outcome.misfits += usize::from(found.steady.as_ref().unwrap().misfit.is_some());
@@ -170,7 +170,7 @@ fn currents_on_a_coarse_grid_widen_the_intervals() {
             columns.omega_e.push(418.879);
         }
         let settings =
-            Settings { model: Some(Model::Steady), voltage_timing: Some(NEXT), voltage_accuracy: 0.0, method: None, ..Settings::default() };
+            Request { model: Some(Model::Steady), voltage_timing: Some(NEXT), voltage_accuracy: 0.0, swarm: Swarm::Off, ..Request::default() };
         let found = identify(&Log::new(columns).unwrap(), &settings).unwrap();
         for parameter in Parameter::ALL {
             let judgement = found.parameter(parameter);

@@ -9,7 +9,7 @@
 #![allow(clippy::print_stdout)]
 
 use fluxfit::{
-    identify::{Identification, Settings, identify, model::Model, verdict::Verdict},
+    evidence::Identification, Request, identify, Model, Verdict,
     motor::{Motor, Parameter},
 };
 use fluxfit_drive::{
@@ -114,7 +114,7 @@ fn scenario(rated: &Rated) -> Scenario {
 fn find(rated: &Rated, model: Model) -> Result<Identification, String> {
     let recording = simulate(&scenario(rated), 0, || ()).map_err(|error| error.to_string())?;
     let log = recording.log().map_err(|error| error.to_string())?;
-    identify(&log, &Settings { model: Some(model), ..Settings::default() }).map_err(|error| error.to_string())
+    identify(&log, &Request { model: Some(model), ..Request::default() }).map_err(|error| error.to_string())
 }
 
 /// The error of a parameter, and its standard error, as fractions of the truth.

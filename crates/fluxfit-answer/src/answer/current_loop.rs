@@ -2,7 +2,7 @@
 
 use fluxfit::{
     current_loop::{CurrentLoop, DELAY, Gain},
-    identify::Provenance,
+    evidence::Provenance,
 };
 use serde_json::{Value, json};
 

@@ -3,14 +3,7 @@
 use super::by_parameter;
 use fluxfit::{
     frames::Dq,
-    identify::{
-        Identification, Provenance,
-        output_fit::{Nuisance, OutputFit},
-        saturation::Saturation,
-        steady_fit::SteadyFit,
-        terms::Outcome,
-        verdict::Judgement,
-    },
+    evidence::Identification, evidence::Provenance, evidence::Nuisance, evidence::OutputFit, evidence::Saturation, evidence::SteadyFit, evidence::Outcome, Judgement,
     log::Log,
     motor::{Motor, PARAMETERS},
     steady::{OperatingPoint, held_vector::VoltageTiming},

@@ -3,7 +3,7 @@
 use super::by_parameter;
 use fluxfit::{
     log::Log,
-    validate::{Channel, Difference, LITTLE, SIGNIFICANCE, Validation, wald::Test},
+    validation::validate::Channel, validation::validate::Difference, validation::validate::LITTLE, validation::validate::SIGNIFICANCE, Validation, validation::wald::Test,
 };
 use serde_json::{Map, Value, json};
 

@@ -11,7 +11,7 @@ mod vesc;
 
 use fluxfit::{
     current_loop::{CurrentLoop, Gain},
-    identify::{Identification, verdict::Verdict},
+    evidence::Identification, Verdict,
     motor::Parameter,
 };
 use fluxfit_units::{

@@ -7,7 +7,7 @@ use crate::{
     interrupt, terminal,
 };
 use fluxfit::{
-    identify::Settings,
+    Request,
     log::Log,
     motor::Parameter,
     objective::voltage_error::IdZero,

@@ -3,7 +3,7 @@
 use super::{Status, compare, report};
 use crate::{arguments::Demo, error::CommandError, terminal};
 use fluxfit::{
-    identify::{self, identify},
+    Request, identify,
     log::Log,
     motor::PARAMETERS,
     objective::voltage_error::IdZero,
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
 
     let search = optimizer::Settings { seed: arguments.seed, ..optimizer::Settings::default() };
-    let settings = identify::Settings { search, bounds: Some(bounds.clone()), ..identify::Settings::default() };
+    let settings = Request { search, bounds: Some(bounds.clone()), ..evidence::default() };
     let found = identify(&log, &settings)?;
     terminal::identification::show(NAME, &log, &found, settings.method.as_ref())?;
 

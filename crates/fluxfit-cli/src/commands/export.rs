@@ -3,7 +3,7 @@
 
 use super::{Status, input::Input};
 use crate::{arguments::Identify, error::CommandError, terminal};
-use fluxfit::{current_loop::CurrentLoop, identify::Identification};
+use fluxfit::{current_loop::CurrentLoop, evidence::Identification};
 use fluxfit_answer::export::{Answer, export};
 use fluxfit_files::{check_writable, write_atomically};
 use std::{

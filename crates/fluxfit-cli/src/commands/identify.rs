@@ -1,4 +1,4 @@
-//! `fluxfit identify`: arguments to settings, the library's answer to the terminal or to JSON.
+//! `fluxfit identify`: arguments to a request, the library's answer to the terminal, to JSON, to a report and to exports.
 
 use super::{Status, export, input, report};
 use crate::{
@@ -7,183 +7,78 @@ use crate::{
     interrupt, terminal,
 };
 use fluxfit::{
-    current_loop::CurrentLoop,
-    error::Error,
-    identify::{
-        Identification, Known, Provenance, Settings, Step, conventions, identify, identify_watched,
-        model::{self, Model},
-        search_box::from_points,
-    },
-    log::Log,
-    motor::PARAMETERS,
-    optimizer::{self, Method, StopReason, tgfpa::Tgfpa},
-    validate::{Given, Validation, validate},
+    Answer, Known, Request, Step, Swarm, identify_with_progress,
+    motor::{PARAMETERS, Parameter},
+    suspect_units,
 };
 use fluxfit_answer::answer;
 use fluxfit_report::{Report, figures, html};
-use fluxfit_units::significant;
-use serde_json::Value;
-
-/// Code of the warning that a search was cut.
-const INTERRUPTED: &str = "interrupted";
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     report::check(&arguments.log, [])?;
     export::check(arguments)?;
-    let mut input = input::read(&arguments.log)?;
-    let held_out = if arguments.hold_out { Some(hold_out(&mut input)?) } else { None };
-    let mut settings = settings(arguments)?;
-    let nameplate = input::nameplate(&input);
-    export::check_pole_pairs(arguments, nameplate.pole_pairs)?;
-    let control_rate = control_rate(arguments, &input.log)?;
-    let refuse = |error: Error| {
-        // A log without an operating point may be one in the wrong units: its rows still say so.
-        conventions::check(&input.log, None, &nameplate)
-            .warning()
-            .iter()
-            .for_each(|warning| terminal::warn(warning.code, &warning.message));
-        input::of_log(&input.name, error)
-    };
-    settings.method = searcher(arguments, &input.log, &settings);
-    if let Ok(points) = fluxfit::identify::operating_points(&input.log, &settings) {
-        settings.bounds = Some(input::search_box(&arguments.log, &input, &from_points(&points)?)?);
-    }
-    let found = watched(&input.log, &settings);
-    let mut found = found.map_err(refuse)?;
-    terminal::decisions::tell(&found);
-    // Wrong units scale the answer of the operating points alone: the slope of a current knows the time.
-    let of_points = identify(&input.log, &Settings { model: Some(Model::Steady), method: None, ..settings.clone() });
-    let convention = conventions::check(&input.log, Some((of_points.as_ref().unwrap_or(&found), &settings.known)), &nameplate);
-    found.warnings.extend(convention.warning());
-    let current_loop = arguments.bandwidth.map(|bandwidth| CurrentLoop::of(&found, bandwidth, control_rate)).transpose()?;
-    found.warnings.extend(current_loop.as_ref().and_then(CurrentLoop::warning));
-    let validation = held_out.as_ref().map(|log| check(log, &found, &settings)).transpose()?.flatten();
-    let method = settings.method.map_or("least-squares", |method| method.key());
+    let input = input::read(&arguments.log)?;
+    let request = request(arguments, &input)?;
+    export::check_pole_pairs(arguments, input.pole_pairs)?;
+    let answer = identified(&input, &request)?;
+    terminal::decisions::show(&answer.identification);
     if arguments.log.json {
-        let mut document = answer::identification(&input.log, &found, method);
-        document["log"]["columns"] = input.columns.clone().into();
-        document["log"]["notes"] = input.notes.clone().into();
-        document["diagnostics"]["convention"] = answer::convention(&convention);
-        if let Some(current_loop) = &current_loop {
-            document["current_loop"] = answer::current_loop(current_loop);
-        }
-        if let Some(log) = &held_out {
-            document["validation"] = validation.as_ref().map_or(Value::Null, |validation| answer::validation(log, validation));
-        }
-        terminal::print(&answer::to_text(&document))?;
+        terminal::print(&answer::to_text(&answer::answer(&answer)))?;
     } else {
-        terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
-        current_loop.as_ref().map(terminal::current_loop::show).transpose()?;
-        match (&held_out, &validation) {
-            (Some(log), Some(validation)) => {
-                terminal::print("\n")?;
-                terminal::validation::show("what was held out", "This answer", log, validation)?;
-            }
-            (Some(_), None) => terminal::note("what was held out is not predicted: that takes all four parameters"),
-            (None, _) if input.log.segments().len() > 1 => {
-                terminal::note(
-                    "how well this predicts a part of the log that it was not found from: --hold-out; another log: fluxfit validate",
-                );
-            }
-            (None, _) => {}
-        }
+        terminal::identification::show(&input.name, &answer)?;
     }
-    if let Some(search) = found.search.as_ref().filter(|search| search.report.stop_reason == StopReason::Interrupted) {
-        let (done, limit) = (search.report.history.len() - 1, settings.search.iterations);
-        terminal::warn(INTERRUPTED, &format!("the swarm made {done} of {limit} iterations; the answer beside it is whole"));
-    }
-    let exported = export::write(arguments, &input, &found, current_loop.as_ref())?;
-    let shown = Report {
-        title: &input.name,
-        log: &input.log,
-        notes: &input.said(),
-        operating_points: found.operating_points(),
-        identification: Some((&found, settings.method)),
-        held_out: held_out.as_ref().map(|log| (log, validation.as_ref())),
-        study: None,
-        origin: &report::origin(arguments.log.seed),
-    };
+    let exported = export::write(arguments, &input, &answer)?;
+    let shown = Report::of_answer(&input.name, &input.said(), &answer, &report::origin(arguments.log.seed));
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
-    Ok(if found.is_complete() { exported } else { Status::Incomplete })
+    Ok(if answer.is_complete() { exported } else { Status::Incomplete })
 }
 
-/// Rate of the current controllers: the log's, unless stated, if the log comes as fast as a drive controls.
-fn control_rate(arguments: &Identify, log: &Log) -> Result<(f64, Provenance), CommandError> {
-    if let Some(rate) = arguments.control_rate {
-        return Ok((rate, Provenance::Stated));
-    }
-    let rate = 1.0 / log.segments().iter().map(|segment| segment.sample_period).fold(f64::INFINITY, f64::min);
-    if arguments.bandwidth.is_some() && rate < model::SLOWEST_CONTROL {
-        let rate = significant(rate, 3);
-        let why = format!(
-            "--bandwidth needs --control-rate FREQUENCY here: rows at {rate} Hz are a recorder's, not those of the drive's control"
-        );
-        return Err(CommandError::Usage(why));
-    }
-    Ok((rate, Provenance::Assumed))
-}
-
-/// Identifies, and tells how far it is. The swarm can be interrupted, and is the last.
-fn watched(log: &Log, settings: &Settings) -> Result<Identification, Error> {
-    let progress = terminal::unknown(&format!("fitting {} rows", log.rows()));
-    let told = |what: &str| progress.turn_to(what);
-    let watch = |step: Step| {
+/// Identifies, and shows the progress. The swarm's search can be interrupted.
+fn identified(input: &input::Input, request: &Request) -> Result<Answer, CommandError> {
+    let fitting = format!("fitting {} rows", input.log.rows());
+    let progress = terminal::unknown(&fitting);
+    let show = |step: Step| {
         match step {
-            Step::OperatingPoints => told("solving the operating points"),
-            Step::Readings => told("trying the readings of the voltages"),
-            Step::Faults => told("looking for faults of the drive"),
-            Step::Fit { simulations, usual } => progress.count(&format!("fitting {} rows", log.rows()), simulations, usual),
-            Step::Uncertainty => told("telling how uncertain the answer is"),
+            Step::OperatingPoints => progress.turn_to("solving the operating points"),
+            Step::VoltageTiming => progress.turn_to("trying the timings of the voltages"),
+            Step::Faults => progress.turn_to("looking for faults of the drive"),
+            Step::Fit { simulations, usual } => progress.count(&fitting, simulations, usual),
+            Step::Uncertainty => progress.turn_to("computing the uncertainty"),
             Step::Search { iteration: 0, limit } => {
                 interrupt::be_gentle(true);
                 progress.count("searching", 0, limit);
             }
             Step::Search { iteration, limit } => progress.count("searching", iteration, limit),
+            Step::Nameplate => interrupt::be_gentle(false),
+            Step::Validation => progress.turn_to("predicting what was held out"),
+            _ => {}
         }
         interrupt::go_on()
     };
-    let found = identify_watched(log, settings, &watch);
+    let answer = identify_with_progress(&input.log, request, &show);
     interrupt::be_gentle(false);
-    found
-}
-
-/// Takes the last log, or segment, out of what is identified from.
-fn hold_out(input: &mut input::Input) -> Result<Log, CommandError> {
-    let (rest, last) = input.log.part_last().ok_or_else(|| {
-        CommandError::Usage("--hold-out needs several logs, or one with a gap in time: this one has a single segment".to_owned())
-    })?;
-    input.log = rest;
-    Ok(last)
-}
-
-/// Validates the answer on what was held out; nothing, if the answer lacks a parameter.
-fn check(log: &Log, found: &Identification, settings: &Settings) -> Result<Option<Validation>, CommandError> {
-    let Some(given) = Given::of(found) else { return Ok(None) };
-    let validation = validate(log, &given, &Settings { windows: Vec::new(), ..settings.clone() });
-    validation.map(Some).map_err(|error| input::of_log("what was held out", error))
-}
-
-fn settings(arguments: &Identify) -> Result<Settings, CommandError> {
-    Ok(Settings {
-        windows: arguments.log.window.clone(),
-        voltage_timing: arguments.log.voltage_timing.stated(),
-        voltage_accuracy: arguments.voltage_accuracy,
-        known: known(arguments)?,
-        model: arguments.model.stated(),
-        method: None,
-        search: optimizer::Settings { seed: arguments.log.seed, ..optimizer::Settings::default() },
-        bounds: None,
+    answer.map_err(|error| {
+        // A log without an operating point may be one in the wrong units: its rows still say so.
+        suspect_units(&input.log, request).iter().for_each(terminal::warn);
+        input::of_log(&input.name, error)
     })
 }
 
-/// The swarm: by itself only where it takes no time.
-fn searcher(arguments: &Identify, log: &Log, settings: &Settings) -> Option<Method> {
-    match arguments.method {
-        SearchMethod::Auto => (model::choose(log, settings).0 == Model::Steady).then(|| Method::Tgfpa(Tgfpa::default())),
-        SearchMethod::LeastSquares => None,
-        SearchMethod::Swarm(method) => Some(method),
-    }
+fn request(arguments: &Identify, input: &input::Input) -> Result<Request, CommandError> {
+    let mut request = input::request(&arguments.log, input)?;
+    request.model = arguments.model.stated();
+    request.voltage_accuracy = arguments.voltage_accuracy;
+    request.known = known(arguments)?;
+    request.swarm = match arguments.method {
+        SearchMethod::Auto => Swarm::Auto,
+        SearchMethod::LeastSquares => Swarm::Off,
+        SearchMethod::Swarm(method) => Swarm::Method(method),
+    };
+    request.bandwidth = arguments.bandwidth;
+    request.control_rate = arguments.control_rate;
+    request.hold_out = arguments.hold_out;
+    Ok(request)
 }
 
 fn known(arguments: &Identify) -> Result<[Known; PARAMETERS], CommandError> {
@@ -197,7 +92,7 @@ fn known(arguments: &Identify) -> Result<[Known; PARAMETERS], CommandError> {
             (Some(value), None) => Known::Fixed(value),
             (None, Some((value, standard_error))) => Known::Prior { value, standard_error },
             (Some(_), Some(_)) => {
-                let key = fluxfit::motor::Parameter::ALL[p].key();
+                let key = Parameter::ALL[p].key();
                 return Err(CommandError::Usage(format!("{key} is given with --fix and with --prior; give one of them")));
             }
         };

@@ -7,7 +7,7 @@ use crate::{
 };
 use fluxfit::{
     error::Error,
-    identify::{conventions::Nameplate, search_box},
+    Nameplate, evidence::search_box,
     log::Log,
     motor::Parameter,
     optimizer::bounds::Bounds,

@@ -3,8 +3,8 @@
 use super::{Status, input, report};
 use crate::{arguments::Validate, error::CommandError, terminal};
 use fluxfit::{
-    identify::Settings,
-    validate::{Outcome, validate},
+    Request,
+    validation::validate::Outcome, validate,
 };
 use fluxfit_answer::answer;
 use fluxfit_report::{ValidationReport, validation_figures, validation_html};

@@ -3,7 +3,7 @@
 use super::{DIM, HEADING, table};
 use fluxfit::{
     current_loop::{CurrentLoop, DELAY, Gain},
-    identify::Provenance,
+    evidence::Provenance,
 };
 use fluxfit_units::significant;
 

@@ -1,7 +1,7 @@
 //! What an identification decided on the way, for `--verbose`.
 
 use super::detail;
-use fluxfit::identify::{Identification, output_fit::OutputFit};
+use fluxfit::evidence::Identification, evidence::OutputFit;
 use fluxfit_units::{significant, small};
 
 /// Tells the windows, the model and, of the output error, the readings and faults that were tried.

@@ -3,14 +3,7 @@
 
 use super::{BAD, DIM, GOOD, HEADING, WARNING, table};
 use fluxfit::{
-    identify::{
-        Identification, Provenance,
-        output_fit::OutputFit,
-        saturation::{Flux, Saturation},
-        steady_fit::SteadyFit,
-        terms::{Outcome, Term},
-        verdict::{Judgement, Verdict},
-    },
+    evidence::Identification, evidence::Provenance, evidence::OutputFit, evidence::Flux, evidence::Saturation, evidence::SteadyFit, evidence::Outcome, evidence::Term, Judgement, Verdict,
     log::Log,
     motor::Parameter,
     optimizer::Method,

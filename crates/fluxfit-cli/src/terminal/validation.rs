@@ -4,7 +4,7 @@ use super::{BAD, GOOD, HEADING, WARNING, table};
 use anstyle::Style;
 use fluxfit::{
     log::Log,
-    validate::{Channel, Difference, Outcome, Validation},
+    validation::validate::Channel, validation::validate::Difference, validation::validate::Outcome, Validation,
 };
 use fluxfit_units::{Scale, significant, small};
 

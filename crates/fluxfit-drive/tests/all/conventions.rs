@@ -3,12 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
-    identify::{
-        Known, Settings,
-        conventions::{Convention, Nameplate, check},
-        identify,
-        model::Model,
-    },
+    Known, Request, evidence::Convention, Nameplate, evidence::check, identify, Model,
     log::{Columns, Log},
     motor::{PARAMETERS, Parameter},
     paper,
@@ -50,7 +45,7 @@ fn nameplate(factors: [f64; PARAMETERS]) -> Nameplate {
 }
 
 fn checked(log: &Log, nameplate: &Nameplate) -> Convention {
-    let settings = Settings { model: Some(Model::Steady), ..Settings::default() };
+    let settings = Request { model: Some(Model::Steady), ..Request::default() };
     let found = identify(log, &settings).unwrap();
     check(log, Some((&found, &settings.known)), nameplate)
 }
@@ -195,7 +190,7 @@ fn saturation_is_no_convention() {
 #[test]
 fn only_what_the_log_tells_is_compared() {
     let log = log([1.0; 3]);
-    let mut settings = Settings { model: Some(Model::Steady), ..Settings::default() };
+    let mut settings = Request { model: Some(Model::Steady), ..Request::default() };
     settings.known[0] = Known::Fixed(0.958);
     let found = identify(&log, &settings).unwrap();
     let compared = |nameplate: &Nameplate| check(&log, Some((&found, &settings.known)), nameplate);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use fluxfit::{
-    identify::{Identification, Settings, identify, model::Model, verdict::Verdict},
+    evidence::Identification, Request, identify, Model, Verdict,
     motor::Parameter,
     paper,
 };
@@ -20,7 +20,7 @@ fn found(change: impl Fn(&mut Inverter), noise: f64) -> Identification {
     scenario.sensors.current_noise = noise;
     identify(
         &simulate(&scenario, 0, || ()).unwrap().log().unwrap(),
-        &Settings { model: Some(Model::Steady), method: None, ..Settings::default() },
+        &Request { model: Some(Model::Steady), swarm: Swarm::Off, ..Request::default() },
     )
     .unwrap()
 }

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
-    identify::{Identification, Settings, identify, output_fit::OutputFit, terms::Term, verdict::Verdict},
+    evidence::Identification, Request, identify, evidence::OutputFit, evidence::Term, Verdict,
     motor::{Motor, PARAMETERS, Parameter},
     objective::{
         acting_voltage::{VoltageFrame, VoltageReading},
@@ -30,7 +30,7 @@ fn rig(fault: impl FnOnce(&mut Scenario)) -> Recording {
 }
 
 fn found(recording: &Recording) -> Identification {
-    identify(&recording.log().unwrap(), &Settings::default()).unwrap()
+    identify(&recording.log().unwrap(), &Request::default()).unwrap()
 }
 
 /// The motor lies within these limits, in percent of the truth, and within its own 95 % intervals, which are half as wide again as
@@ -131,7 +131,7 @@ fn a_delay_of_no_one_and_two_periods() {
         let mut columns = recording.columns.clone();
         let moved = |column: &[f64]| -> Vec<f64> { (0..rows).map(|k| column[(k + delay).saturating_sub(1).min(rows - 1)]).collect() };
         (columns.ud, columns.uq) = (moved(&recording.ud_ref), moved(&recording.uq_ref));
-        let found = identify(&fluxfit::Log::new(columns).unwrap(), &Settings::default()).unwrap();
+        let found = identify(&fluxfit::Log::new(columns).unwrap(), &Request::default()).unwrap();
         let fit = found.output.as_ref().unwrap();
         // The frame is that of the period in which it acts: two periods' looking ahead, if the column is that late, and so on.
         let frame = VoltageFrame::Middle;

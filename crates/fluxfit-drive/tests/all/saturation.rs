@@ -4,7 +4,7 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Identification, Known, Settings, identify, model::Model},
+    evidence::Identification, Known, Request, identify, Model,
     motor::Parameter,
     objective::acting_voltage::VoltageReading,
 };
@@ -32,7 +32,7 @@ fn map() -> FluxMap {
 }
 
 /// It, at 900 r/min through these currents, each held so long, s.
-fn bench(points: &[(f64, f64)], hold: f64, carrier: f64, settings: &Settings) -> Identification {
+fn bench(points: &[(f64, f64)], hold: f64, carrier: f64, settings: &Request) -> Identification {
     let steps = |axis: fn(&(f64, f64)) -> f64| {
         Course::new(points.iter().enumerate().map(|(k, point)| Move { at: k as f64 * hold, to: axis(point), over: 0.0 }).collect())
     };
@@ -88,8 +88,8 @@ fn flux_is_the_maps(found: &Identification, part: f64) {
     }
 }
 
-fn settings(model: Option<Model>, fix_rs: bool) -> Settings {
-    let mut settings = Settings { model, voltage_timing: Some(VoltageReading::Centered), ..Settings::default() };
+fn settings(model: Option<Model>, fix_rs: bool) -> Request {
+    let mut settings = Request { model, voltage_timing: Some(VoltageReading::Centered), ..Request::default() };
     if fix_rs {
         settings.known[Parameter::Rs as usize] = Known::Fixed(RS);
     }

@@ -5,12 +5,12 @@
 use fluxfit::{
     Columns, Log,
     frames::Dq,
-    identify::{Settings, identify, model::Model},
+    Request, identify, Model,
     motor::{Motor, Parameter},
     objective::acting_voltage::VoltageReading,
     optimizer::draws::Draws,
     paper,
-    validate::{Given, LITTLE, Outcome, Prediction, Validation, validate},
+    Given, validation::validate::LITTLE, validation::validate::Outcome, validation::prediction::Prediction, Validation, validate,
 };
 use fluxfit_drive::{
     Scenario,
@@ -65,8 +65,8 @@ fn log(scenario: &Scenario, draw: u64) -> Log {
 }
 
 /// The voltages of a simulated drive are exact, and what their columns mean is known.
-fn exact() -> Settings {
-    Settings { voltage_accuracy: 0.0, voltage_timing: Some(VoltageReading::Centered), ..Settings::default() }
+fn exact() -> Request {
+    Request { voltage_accuracy: 0.0, voltage_timing: Some(VoltageReading::Centered), ..Request::default() }
 }
 
 fn with(parameter: Parameter, factor: f64) -> Given {
@@ -82,7 +82,7 @@ fn within(count: usize, probability: f64) -> bool {
 }
 
 /// Of each draw, were the motor true.
-fn probabilities(settings: &Settings, scenario: &Scenario, of: impl Fn(&Validation) -> f64) -> Vec<f64> {
+fn probabilities(settings: &Request, scenario: &Scenario, of: impl Fn(&Validation) -> f64) -> Vec<f64> {
     (0..DRAWS).map(|draw| of(&validate(&log(scenario, draw), &paper::MOTOR.into(), settings).unwrap())).collect()
 }
 
@@ -152,7 +152,7 @@ fn operating_points_accept_the_true_motor_as_often_as_is_stated() {
 #[test]
 fn three_percent_of_any_parameter_are_found_out_by_name() {
     for parameter in [Parameter::Ld, Parameter::Lq, Parameter::PsiF] {
-        let found = validate(&log(&transients(), 0), &with(parameter, 1.03), &Settings::default()).unwrap();
+        let found = validate(&log(&transients(), 0), &with(parameter, 1.03), &Request::default()).unwrap();
         assert_ne!(found.outcome, Outcome::Agrees, "{parameter:?}");
         for difference in found.parameters {
             let errors = difference.standard_errors().unwrap();
@@ -170,7 +170,7 @@ fn three_percent_of_any_parameter_are_found_out_by_name() {
 fn the_share_is_what_the_steady_equations_say() {
     let (omega_e, i) = (paper::POLE_PAIRS as f64 * 500.0 * TAU / 60.0, Dq { d: -2.0, q: 9.0 });
     let given = with(Parameter::Lq, 1.03);
-    let found = validate(&log(&levels(&[(i.d, i.q)]), 0), &given, &Settings { model: Some(Model::OutputError), ..exact() }).unwrap();
+    let found = validate(&log(&levels(&[(i.d, i.q)]), 0), &given, &Request { model: Some(Model::OutputError), ..exact() }).unwrap();
     let u = paper::MOTOR.steady_voltage(i, omega_e);
     let Motor { rs, ld, lq, psi_f } = given.motor;
     let determinant = rs * rs + omega_e * omega_e * ld * lq;
@@ -196,7 +196,7 @@ fn a_difference_that_hardly_moves_the_current_is_called_little() {
 /// One load at i_d = 0: nothing of L_d; of R_s and psi_f only the one with the other given.
 #[test]
 fn what_a_log_cannot_tell_is_not_tested_and_the_rest_is() {
-    let settings = Settings { model: Some(Model::Steady), ..exact() };
+    let settings = Request { model: Some(Model::Steady), ..exact() };
     let log = log(&levels(&[(0.0, 9.0)]), 0);
     let told = |found: &Validation| found.parameters.map(|difference| difference.own.is_some());
     let agrees = validate(&log, &paper::MOTOR.into(), &settings).unwrap();
@@ -211,7 +211,7 @@ fn what_a_log_cannot_tell_is_not_tested_and_the_rest_is() {
 /// A resistance far too small has a wide interval by its own measure, and is found out all the same.
 #[test]
 fn a_value_that_is_small_because_it_is_wrong_is_tested() {
-    let found = validate(&log(&transients(), 0), &with(Parameter::Rs, 0.1), &Settings::default()).unwrap();
+    let found = validate(&log(&transients(), 0), &with(Parameter::Rs, 0.1), &Request::default()).unwrap();
     assert_eq!(found.outcome, Outcome::Contradicts);
     assert!(found.parameters[0].standard_errors().unwrap() > 5.0, "{:?}", found.parameters[0]);
 }
@@ -219,7 +219,7 @@ fn a_value_that_is_small_because_it_is_wrong_is_tested() {
 #[test]
 fn what_no_motor_has_is_refused() {
     for (parameter, factor) in [(Parameter::Rs, -1.0), (Parameter::Lq, 0.0), (Parameter::Ld, f64::NAN), (Parameter::PsiF, f64::INFINITY)] {
-        let error = validate(&log(&transients(), 0), &with(parameter, factor), &Settings::default()).unwrap_err().to_string();
+        let error = validate(&log(&transients(), 0), &with(parameter, factor), &Request::default()).unwrap_err().to_string();
         assert!(error.starts_with(&format!("{} is ", parameter.symbol())) && error.contains("must be a finite number"), "{error}");
     }
 }

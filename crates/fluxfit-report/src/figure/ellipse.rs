@@ -7,7 +7,7 @@ use super::{
     palette::Ink,
     plot::Plot,
 };
-use fluxfit::identify::verdict::Judgement;
+use fluxfit::Judgement;
 use plotters::element::{Circle, PathElement, Polygon};
 use std::f64::consts::TAU;
 
@@ -83,7 +83,7 @@ fn paint(area: &Area, pair: &Pair, size: Size) -> Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fluxfit::{Verdict, identify::uncertainty::ParameterUncertainty, motor::Parameter};
+    use fluxfit::{Verdict, evidence::ParameterUncertainty, motor::Parameter};
 
     fn judgement(parameter: Parameter, raw: f64, statistical: f64) -> Judgement {
         let uncertainty = ParameterUncertainty { statistical, ..ParameterUncertainty::default() };

@@ -8,10 +8,7 @@ use super::{
     palette::Ink,
     plot::{Chart, Plot},
 };
-use fluxfit::identify::{
-    Identification,
-    verdict::{IDENTIFIED, Judgement, Verdict, WEAK},
-};
+use fluxfit::evidence::Identification, evidence::IDENTIFIED, Judgement, Verdict, evidence::WEAK;
 use fluxfit_units::significant;
 use plotters::{
     element::{Circle, PathElement, Rectangle},

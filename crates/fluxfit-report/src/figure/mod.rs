@@ -27,12 +27,12 @@ pub(crate) mod residuals;
 
 use crate::measured::Measured;
 use fluxfit::{
-    identify::{Identification, output_fit::OutputFit, steady_fit::SteadyFit},
+    evidence::Identification, evidence::OutputFit, evidence::SteadyFit,
     log::Log,
     motor::{Motor, Parameter},
     steady::OperatingPoint,
     study::{MethodStudy, fitness::Fitness},
-    validate::Course,
+    validation::prediction::PredictedStretch,
 };
 
 /// For which width a figure is drawn. Letters have the same size in both.

@@ -4,7 +4,7 @@
 //! CSS per colour gives its counterpart: see [`dark_rules`]. The methods' colours keep apart for all common kinds of colour
 //! blindness (tested), and each method has its own dashes as well. Contrast on its ground is at least 4.5 for all but the grid.
 
-use fluxfit::{identify::verdict::Verdict, optimizer::Method};
+use fluxfit::{Verdict, optimizer::Method};
 use plotters::style::RGBColor;
 
 /// What is drawn with a colour of its own.

@@ -8,7 +8,7 @@ use super::{
     plot::Plot,
 };
 use crate::interactive::{Along, Column, Kind, Live, Panel, Series};
-use fluxfit::identify::steady_fit::SteadyFit;
+use fluxfit::evidence::SteadyFit;
 use plotters::{
     element::{Circle, PathElement, Polygon},
     style::text_anchor::{HPos, VPos},

@@ -11,7 +11,7 @@ use crate::{
 };
 use fluxfit::{
     log::Log,
-    validate::{Prediction, Validation},
+    validation::prediction::Prediction, Validation,
 };
 use resvg::{
     tiny_skia::{Pixmap, Transform},

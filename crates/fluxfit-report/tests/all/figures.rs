@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::logs::{Found, TWO, WHOLE, log, origin};
-use fluxfit::identify::{Settings, identify};
+use fluxfit::Request, identify;
 use fluxfit_report::{
     Report,
     figure::{self, Size},
@@ -17,7 +17,7 @@ use resvg::tiny_skia::Pixmap;
 #[test]
 fn figures_stand_alone() {
     let log = log(&TWO, 0.1);
-    let found = identify(&log, &Settings::default()).unwrap();
+    let found = identify(&log, &Request::default()).unwrap();
     let Found { log: fast, found: of_fast } = &*WHOLE;
     for size in [Size::Wide, Size::Narrow] {
         for svg in [

@@ -9,10 +9,10 @@ use crate::{
 };
 use fluxfit::{
     Log, Verdict,
-    identify::{Identification, Known, Settings, identify, model::Model},
+    evidence::Identification, Known, Request, identify, Model,
     motor::Parameter,
     optimizer::Method,
-    validate::{Given, validate},
+    Given, validate,
 };
 use fluxfit_report::{
     Report,
@@ -36,7 +36,7 @@ pub(crate) fn page(title: &str, log: &Log, found: &Identification, method: Optio
     })
 }
 
-fn identified(currents: &[(f64, f64)], settings: &Settings) -> (Identification, String) {
+fn identified(currents: &[(f64, f64)], settings: &Request) -> (Identification, String) {
     let log = log(currents, 0.1);
     let found = identify(&log, settings).unwrap();
     let page = page("drive.csv", &log, &found, settings.method);
@@ -45,7 +45,7 @@ fn identified(currents: &[(f64, f64)], settings: &Settings) -> (Identification, 
 
 #[test]
 fn an_identification_has_its_values_verdicts_and_command() {
-    let (found, page) = identified(&TWO, &Settings { model: Some(Model::Steady), method: Some(Method::all()[0]), ..Settings::default() });
+    let (found, page) = identified(&TWO, &Request { model: Some(Model::Steady), method: Some(Method::all()[0]), ..Request::default() });
     assert!(found.is_complete());
     let text = checked(&page);
     for expected in
@@ -58,7 +58,7 @@ fn an_identification_has_its_values_verdicts_and_command() {
 
 #[test]
 fn what_is_not_identifiable_has_no_number_anywhere() {
-    let (found, page) = identified(&[(0.0, 9.0), (0.0, 5.0)], &Settings { model: Some(Model::Steady), ..Settings::default() });
+    let (found, page) = identified(&[(0.0, 9.0), (0.0, 5.0)], &Request { model: Some(Model::Steady), ..Request::default() });
     let ld = found.parameter(Parameter::Ld);
     assert_eq!(ld.verdict, Verdict::NotIdentifiable);
     let text = checked(&page);
@@ -71,10 +71,10 @@ fn what_is_not_identifiable_has_no_number_anywhere() {
 
 #[test]
 fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict() {
-    let (_, page) = identified(&TWO[..1], &Settings::default());
+    let (_, page) = identified(&TWO[..1], &Request::default());
     assert!(checked(&page).contains("One of four parameters identified"));
     let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
-    let (_, page) = identified(&TWO, &Settings { model: Some(Model::Steady), known, method: None, ..Settings::default() });
+    let (_, page) = identified(&TWO, &Request { model: Some(Model::Steady), known, swarm: Swarm::Off, ..Request::default() });
     let text = checked(&page);
     assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("The swarm"), "{text}");
 }
@@ -82,9 +82,9 @@ fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict()
 #[test]
 fn nothing_identifiable_is_still_a_page() {
     let log = log(&TWO[..1], 0.1);
-    let mut found = identify(&log, &Settings::default()).unwrap();
+    let mut found = identify(&log, &Request::default()).unwrap();
     found.parameters.iter_mut().for_each(|judgement| judgement.verdict = Verdict::NotIdentifiable);
-    let text = checked(&page("x", &log, &found, Settings::default().method));
+    let text = checked(&page("x", &log, &found, Request::default().method));
     assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
     assert!(!text.contains("The swarm") && !text.contains("Where the uncertainty"));
 }
@@ -131,7 +131,7 @@ fn correlations_stand_in_a_table_whose_numbers_are_those_of_the_answer() {
 fn there_is_no_ellipse_of_a_given_or_missing_parameter() {
     let log = recorded(0.08, |_| ());
     let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
-    let mut found = identify(&log, &Settings { known, ..of_currents() }).unwrap();
+    let mut found = identify(&log, &Request { known, ..of_currents() }).unwrap();
     let text = checked(&page("x", &log, &found, None));
     assert!(text.contains("There is no joint region: Rs was given."), "{text}");
     found.parameters[Parameter::PsiF as usize].verdict = Verdict::NotIdentifiable;
@@ -181,7 +181,7 @@ fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
     let log = recorded(0.08, |_| ());
     let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };
     let method = Some(Method::all()[0]);
-    let found = identify(&log, &Settings { method, search, ..of_currents() }).unwrap();
+    let found = identify(&log, &Request { method, search, ..of_currents() }).unwrap();
     let text = checked(&page("x", &log, &found, method));
     assert!(text.contains("Simulated currents are not linear in the parameters") && !text.contains("solves them exactly"), "{text}");
 }
@@ -189,7 +189,7 @@ fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
 #[test]
 fn hostile_texts_are_texts() {
     let log = log(&TWO, 0.1);
-    let found = identify(&log, &Settings::default()).unwrap();
+    let found = identify(&log, &Request::default()).unwrap();
     let title = "</title><script>alert(1)</script>\"'&<img src=x onerror=y>";
     assert!(checked(&page(title, &log, &found, None)).contains(title));
 }

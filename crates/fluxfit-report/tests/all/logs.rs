@@ -6,7 +6,7 @@
 use fluxfit::{
     Columns, Log,
     frames::Dq,
-    identify::{Identification, Settings, identify, model::Model},
+    evidence::Identification, Request, identify, Model,
     optimizer::draws::Draws,
     paper,
 };
@@ -56,8 +56,8 @@ pub(crate) fn recorded(resumed: f64, change: impl Fn(&mut Scenario)) -> Log {
     Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e: all.theta_e.as_deref().map(of), ..Columns::default() }).unwrap()
 }
 
-pub(crate) fn of_currents() -> Settings {
-    Settings { model: Some(Model::OutputError), ..Settings::default() }
+pub(crate) fn of_currents() -> Request {
+    Request { model: Some(Model::OutputError), ..Request::default() }
 }
 
 /// A log with its identification by simulated currents, which many tests look at and which takes a while in a debug build.

@@ -9,7 +9,7 @@ use crate::{
 };
 use fluxfit::{
     Motor,
-    identify::Settings,
+    Request,
     objective::voltage_error::IdZero,
     optimizer::{Method, bounds::Bounds},
     paper,
@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 /// A study, its page checked; `change` bends what the runs left behind.
 fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)], change: impl Fn(&mut MethodStudy)) -> String {
     let log = log(currents, 0.1);
-    let problem = Problem::steady(&log, &Settings::default(), IdZero::Measured).unwrap();
+    let problem = Problem::steady(&log, &Request::default(), IdZero::Measured).unwrap();
     let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
     let settings = fluxfit::optimizer::Settings { population: 20, iterations: 12, ..Default::default() };
     let run = |method: &Method| {

@@ -10,16 +10,16 @@ use crate::{
 use fluxfit::{
     Motor,
     frames::Dq,
-    identify::Settings,
+    Request,
     paper,
-    validate::{Course, Outcome, Prediction, Validation, validate},
+    validation::prediction::PredictedStretch, validation::validate::Outcome, validation::prediction::Prediction, Validation, validate,
 };
 use fluxfit_report::{Origin, ValidationReport, validation_html};
 
 /// A validation of a motor on the log of two operating points, changed by `change`, as a page.
 fn validation_page(given: Motor, currents: &[(f64, f64)], change: impl FnOnce(&mut Validation)) -> (Validation, String) {
     let log = log(currents, 0.1);
-    let mut found = validate(&log, &given.into(), &Settings::default()).unwrap();
+    let mut found = validate(&log, &given.into(), &Request::default()).unwrap();
     change(&mut found);
     let notes = ["read as <mechanical> speed".to_owned()];
     let origin = Origin { command: "fluxfit validate 'a log.csv' --motor m.toml".to_owned(), version: "0.1.0".to_owned(), seed: 7 };

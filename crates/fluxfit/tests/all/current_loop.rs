@@ -6,7 +6,7 @@
 use fluxfit::{
     current_loop::{CurrentLoop, Gain},
     frames::Dq,
-    identify::{Identification, Provenance, Settings, identify, model::Model, verdict::Verdict},
+    evidence::Identification, evidence::Provenance, Request, identify, Model, Verdict,
     log::{Columns, Log},
     motor::{Motor, Parameter},
 };
@@ -29,7 +29,7 @@ fn found(points: &[(f64, f64)]) -> Identification {
             }
         }
     }
-    identify(&Log::new(columns).unwrap(), &Settings { model: Some(Model::Steady), ..Settings::default() }).unwrap()
+    identify(&Log::new(columns).unwrap(), &Request { model: Some(Model::Steady), ..Request::default() }).unwrap()
 }
 
 static FOUND: LazyLock<Identification> = LazyLock::new(|| found(&[(0.0, 9.0), (-2.0, 8.5), (-4.0, 5.0)]));

@@ -7,7 +7,7 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Identification, Known, Settings, identify, model::Model, verdict::Verdict},
+    evidence::Identification, Known, Request, identify, Model, Verdict,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageReading},
@@ -70,13 +70,13 @@ fn columns(drive: &Drive, noise: f64, seed: u64) -> Columns {
 }
 
 /// One window per operating point, half a row beyond its ends.
-fn settings(columns: &Columns) -> Settings {
+fn settings(columns: &Columns) -> Request {
     let period = columns.t[1] - columns.t[0];
     let ends = columns.t.chunks(ROWS).map(|t| (t[0] - 0.5 * period, t[t.len() - 1] + 0.5 * period));
-    Settings { model: Some(Model::Steady), windows: ends.collect(), voltage_timing: Some(NEXT), method: None, ..Settings::default() }
+    Request { model: Some(Model::Steady), windows: ends.collect(), voltage_timing: Some(NEXT), swarm: Swarm::Off, ..Request::default() }
 }
 
-fn found_with(columns: Columns, settings: &Settings) -> Identification {
+fn found_with(columns: Columns, settings: &Request) -> Identification {
     identify(&Log::new(columns).unwrap(), settings).unwrap()
 }
 
@@ -279,13 +279,13 @@ proptest! {
     fn whatever_the_log_every_number_shown_is_finite((columns, named) in garbage(), timing in 0..3_usize, exact: bool) {
         let Ok(log) = Log::new(columns) else { return Ok(()) };
         let t = &log.columns().t;
-        let settings = Settings {
+        let settings = Request {
             // Thirty rows to the row.
             windows: if named { vec![(t[0], t[29]), (t[t.len() - 30], t[t.len() - 1])] } else { Vec::new() },
             voltage_timing: [None, Some(VoltageReading::Centered), Some(NEXT)][timing],
             voltage_accuracy: if exact { 0.0 } else { 1e-4 },
-            method: None,
-            ..Settings::default()
+            swarm: Swarm::Off,
+            ..Request::default()
         };
         let Ok(found) = identify(&log, &settings) else { return Ok(()) };
         for judgement in &found.parameters {
@@ -317,7 +317,7 @@ fn a_window_without_voltage_or_speed_is_no_trap() {
     let t = (0..80).map(|k| 20.0 * f64::from(k)).collect();
     let (ud, uq, id, iq) = (halves(0.0, 0.0), halves(0.0, -4.2e-8), halves(2e-2, -1e-2), halves(-4.2e-6, 2.1e-6));
     let log = Log::new(Columns { t, ud, uq, id, iq, omega_e: halves(0.0, -8.2e-5), ..Columns::default() }).unwrap();
-    let found = identify(&log, &Settings { model: Some(Model::Steady), method: None, ..Settings::default() }).unwrap();
+    let found = identify(&log, &Request { model: Some(Model::Steady), swarm: Swarm::Off, ..Request::default() }).unwrap();
     assert!(
         found.steady.as_ref().unwrap().estimate.motor.to_array().iter().all(|value| value.is_finite()),
         "{:?}",

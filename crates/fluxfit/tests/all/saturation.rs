@@ -7,7 +7,7 @@
 
 use fluxfit::{
     frames::Dq,
-    identify::{Identification, Known, Settings, identify, model::Model},
+    evidence::Identification, Known, Request, identify, Model,
     log::{Columns, Log},
     motor::{Motor, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageReading},
@@ -21,9 +21,9 @@ const POINTS: [(f64, f64, f64); 5] = [(0.0, 3.0, 400.0), (0.0, 9.0, 400.0), (-3.
 
 const ROWS: usize = 100;
 
-fn settings() -> Settings {
+fn settings() -> Request {
     let timing = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
-    Settings { model: Some(Model::Steady), voltage_timing: Some(timing), ..Settings::default() }
+    Request { model: Some(Model::Steady), voltage_timing: Some(timing), ..Request::default() }
 }
 
 /// Rows of a drive at these points; `flux` (Wb) at a current and `loss` (V) along it.
@@ -45,7 +45,7 @@ fn columns(points: &[(f64, f64, f64)], flux: impl Fn(Dq) -> Dq, loss: f64, noise
     columns
 }
 
-fn found(columns: Columns, settings: &Settings) -> Identification {
+fn found(columns: Columns, settings: &Request) -> Identification {
     identify(&Log::new(columns).unwrap(), settings).unwrap()
 }
 

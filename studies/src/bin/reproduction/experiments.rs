@@ -63,7 +63,7 @@ impl Data {
             Rig::Noisy => (scenario.sensors.current_noise, scenario.sensors.adc) = (NOISE, Some(ADC)),
         }
         let log = simulate(&scenario, 0, || ())?.log()?;
-        Ok(Self { rig, problem: Problem::steady(&log, &identify::Settings::default(), IdZero::Measured)? })
+        Ok(Self { rig, problem: Problem::steady(&log, &evidence::default(), IdZero::Measured)? })
     }
 
     /// The paper's number of runs of each method.

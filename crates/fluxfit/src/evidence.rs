@@ -1,0 +1,30 @@
+//! What an answer rests on: the fits behind it, their uncertainty, and what was tried.
+
+pub use crate::identification::{
+    explain::{
+        conventions::{Candidate, Convention, Ratio, TOLERANCE, patterns::Pattern},
+        measurement::{Measurement, Place, Promised},
+        remedy::Also,
+    },
+    fit::{
+        estimate::Estimate,
+        excitation::{Direction, Excitation},
+        finding::{Finding, Trust},
+        misfit::Misfit,
+        output::OutputFit,
+        output_errors::Nuisance,
+        readings::ReadingTrial,
+        saturation::{Apparent, Flux, Saturation},
+        steady::{SteadyFit, operating_points},
+        swarm::Search,
+        terms::{Outcome, Term, Tried},
+        uncertainty::{ParameterUncertainty, Part, Systematic, Uncertainty},
+    },
+    judge::verdict::{IDENTIFIED, WEAK},
+    prepare::{
+        model::{ModelChoice, ModelReason, SLOWEST_CONTROL, choose as choose_model},
+        search_box,
+    },
+    request::Provenance,
+    solve::Identification,
+};
