@@ -11,7 +11,7 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{Method, bounds::Bounds, draws::Draws},
     paper,
-    study::{Convergence, MethodStudy, fitness::Problem, run_method},
+    study::{ConvergenceCurves, MethodStudy, fitness::StudyProblem, run_method},
     validate::{Course as Predicted, Given, Outcome, Prediction, Validation, validate},
 };
 use fluxfit_drive::{
@@ -78,7 +78,7 @@ fn identified(currents: &[(f64, f64)], settings: &Settings) -> (Identification, 
 /// A study, its page checked; `change` bends what the runs left behind.
 fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)], change: impl Fn(&mut MethodStudy)) -> String {
     let log = log(currents, 0.1);
-    let problem = Problem::steady(&log, &Settings::default(), IdZero::Measured).unwrap();
+    let problem = StudyProblem::steady(&log, &Settings::default(), IdZero::Measured).unwrap();
     let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
     let settings = fluxfit::optimizer::Settings { population: 20, iterations: 12, ..Default::default() };
     let run = |method: &Method| {
@@ -473,7 +473,7 @@ fn costs_of_zero_no_iterations_and_broken_numbers() {
         study.convergence.quartiles.fill([0.0; 3]);
     };
     assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("drawn at that floor"));
-    let empty = |study: &mut MethodStudy| study.convergence = Convergence::default();
+    let empty = |study: &mut MethodStudy| study.convergence = ConvergenceCurves::default();
     assert!(!checked(&study_page(&Method::all(), None, &TWO, empty)).contains("Fig. 4"));
     let start_only = |study: &mut MethodStudy| {
         study.convergence.quartiles.truncate(1);

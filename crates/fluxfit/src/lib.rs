@@ -25,7 +25,7 @@
 //! |---|---|
 //! | [`motor`], [`frames`] | the motor's equations; the dq frame and its convention |
 //! | [`log`](mod@log) | what a drive recorded, checked on the way in |
-//! | [`steady`] | operating points: windows, means, their covariance, the inverter's held vector |
+//! | [`steady`] | operating points: windows, means, their covariance, the inverter's zero-order hold |
 //! | [`least_squares`] | the exact answer to linear fitness functions, merged block by block |
 //! | [`objective`] | what is minimized: the paper's fitness (11); the output error of its Fig. 1 |
 //! | [`levenberg_marquardt`] | the polish: from near a minimum of the output error into it |
@@ -50,7 +50,7 @@ pub mod motor;
 pub mod objective;
 pub mod optimizer;
 pub mod paper;
-mod resolution;
+mod quantization;
 mod singular_values;
 pub mod steady;
 pub mod study;

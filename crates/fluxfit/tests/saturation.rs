@@ -1,6 +1,6 @@
 //! Saturation is named where the motor saturates, and nowhere else; warnings of low speed and of the voltage's limit.
 //!
-//! The data are the steady equations with a flux that is written down here, sampled so coarsely that no held-vector correction applies.
+//! The data are the steady equations with a flux that is written down here, sampled so coarsely that no zero-order-hold correction applies.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

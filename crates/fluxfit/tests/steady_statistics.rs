@@ -29,7 +29,7 @@ const ID_ZERO: [(f64, f64, f64); 2] = [PAPER[0], (0.0, 2.74, 209.44)];
 /// Rows of a window, as in the logs that come with the paper's rig.
 const ROWS: usize = 1151;
 
-/// One row per millisecond: the rotor turns too far between rows for a held-vector correction, of which these data know nothing.
+/// One row per millisecond: the rotor turns too far between rows for a zero-order-hold correction, of which these data know nothing.
 const SAMPLE_PERIOD: f64 = 1e-3;
 
 /// Noise of a channel: standard deviations of voltages (V) and currents (A), 0.5 % of the vectors, and the correlation from row to row.

@@ -14,8 +14,8 @@ use fluxfit::{
     optimizer::{self, CloseTo, Method, bounds::Bounds},
     study::{
         MethodStudy,
-        fitness::{Fitness, Problem},
-        run_method, settle,
+        fitness::{Fitness, StudyProblem},
+        run_method, use_lowest_minimum,
     },
 };
 use fluxfit_files::{answer, read_truth};
@@ -77,14 +77,14 @@ fn check(arguments: &Compare) -> Result<(), CommandError> {
     }
 }
 
-fn problem(arguments: &Compare, log: &Log) -> Result<Problem, fluxfit::error::Error> {
+fn problem(arguments: &Compare, log: &Log) -> Result<StudyProblem, fluxfit::error::Error> {
     match arguments.model {
         StudyModel::Steady => {
             let windows = arguments.log.window.clone();
             let settings = Settings { windows, voltage_timing: arguments.log.voltage_timing.stated(), ..Settings::default() };
-            Problem::steady(log, &settings, arguments.id_zero)
+            StudyProblem::steady(log, &settings, arguments.id_zero)
         }
-        StudyModel::OutputError => Problem::output_error(log, arguments.log.voltage_timing.stated()),
+        StudyModel::OutputError => StudyProblem::output_error(log, arguments.log.voltage_timing.stated()),
     }
 }
 
@@ -114,7 +114,7 @@ pub(super) fn study(
         }
     }
     progress.turn_to("polishing the lowest end of a swarm");
-    settle(fitness, &mut studies);
+    use_lowest_minimum(fitness, &mut studies);
     Ok(studies.into_iter().zip(seconds).collect())
 }
 

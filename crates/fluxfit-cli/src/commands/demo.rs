@@ -9,7 +9,7 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{self, Method, bounds::Bounds},
     paper,
-    study::fitness::Problem,
+    study::fitness::StudyProblem,
 };
 use fluxfit_drive::{Scenario, simulate};
 use fluxfit_files::answer::StudyFacts;
@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     let found = identify(&log, &settings)?;
     terminal::identification::show(NAME, &log, &found, settings.method.as_ref())?;
 
-    let mut problem = Problem::steady(&log, &settings, IdZero::Measured)?;
+    let mut problem = StudyProblem::steady(&log, &settings, IdZero::Measured)?;
     let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &mut problem.fitness)?;
     let facts = StudyFacts { settings: &search, runs: paper::RUNS, bounds: &bounds, problem: &problem, truth: Some(&paper::MOTOR) };
     terminal::print("\n")?;

@@ -13,7 +13,7 @@ use fluxfit::{
     },
     log::Log,
     motor::{Motor, PARAMETERS},
-    steady::{OperatingPoint, held_vector::VoltageTiming},
+    steady::{OperatingPoint, zero_order_hold::VoltageTiming},
 };
 use serde_json::{Map, Value, json};
 

@@ -13,7 +13,7 @@ use super::Known;
 use crate::{
     least_squares::Equation,
     motor::{Motor, PARAMETERS, Parameter},
-    singular_values::Decomposition,
+    singular_values::SingularValueDecomposition,
     steady::OperatingPoint,
 };
 use nalgebra::{DMatrix, Matrix4, Vector4};
@@ -73,7 +73,7 @@ impl Excitation {
         );
 
         let matrix = DMatrix::from_fn(rows.len(), free.len(), |row, column| rows[row][free[column]]);
-        let Decomposition { values, right, .. } = Decomposition::of(matrix);
+        let SingularValueDecomposition { values, right, .. } = SingularValueDecomposition::of(matrix);
         let directions = values.into_iter().zip(right.column_iter()).map(|(singular, v)| {
             let mut components = [0.0; PARAMETERS];
             free.iter().zip(&v).for_each(|(p, component)| components[*p] = *component);

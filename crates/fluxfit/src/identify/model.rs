@@ -4,7 +4,7 @@
 //! drive's samples. A decimated or filtered log has lost them; its operating points are what it still tells.
 
 use super::Settings;
-use crate::{log::Log, steady::held_vector::MAX_ANGLE_PER_SAMPLE};
+use crate::{log::Log, steady::zero_order_hold::MAX_ANGLE_PER_SAMPLE};
 
 /// A model of the log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -18,9 +18,8 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     steady::{
-        Belief, OperatingPoint,
-        held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming},
-        windows,
+        OperatingPoint, PreliminaryEstimate, windows,
+        zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming, ZeroOrderHold},
     },
 };
 
@@ -159,13 +158,16 @@ fn measure(log: &Log, rough: &[OperatingPoint], settings: &Settings) -> (Vec<Ope
     (points, doubt)
 }
 
-/// What a first look at the operating points tells of each: the motor, and the held-vector correction of its window.
-pub fn beliefs(log: &Log, rough: &[OperatingPoint], timing: VoltageTiming, settings: &Settings) -> Vec<Belief> {
+/// What a first look at the operating points tells of each: the motor, and the zero-order-hold correction of its window.
+pub fn beliefs(log: &Log, rough: &[OperatingPoint], timing: VoltageTiming, settings: &Settings) -> Vec<PreliminaryEstimate> {
     let excitation = Excitation::of(rough, &settings.known);
     let motor = Estimate::solve(rough, &excitation, settings).motor;
     let inductance = inductance(&motor, &excitation);
     let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
-    rough.iter().map(|point| Belief { motor, held_vector: held_vector(log, point, fastest, timing, motor.rs, inductance) }).collect()
+    rough
+        .iter()
+        .map(|point| PreliminaryEstimate { motor, hold: zero_order_hold(log, point, fastest, timing, motor.rs, inductance) })
+        .collect()
 }
 
 /// The inductances for the current's ripple: a rough estimate will do, but not one of noise. What the log does not excite is
@@ -179,12 +181,12 @@ pub(super) fn inductance(motor: &Motor, excitation: &Excitation) -> Dq {
 
 /// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all
 /// windows, so that either all of them are corrected or none; none of the current where so long a period does not shape it.
-fn held_vector(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> HeldVector {
+fn zero_order_hold(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> ZeroOrderHold {
     match log.segment_of(point.rows.start).map(|segment| segment.sample_period) {
         Some(sample_period) if fastest * sample_period <= MAX_ANGLE_PER_SAMPLE => {
             let shapes = |l: f64| if rs > 0.0 && rs * sample_period <= MAX_DECAY_PER_SAMPLE * l { l } else { f64::INFINITY };
-            HeldVector { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }
+            ZeroOrderHold { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }
         }
-        _ => HeldVector::NONE,
+        _ => ZeroOrderHold::NONE,
     }
 }

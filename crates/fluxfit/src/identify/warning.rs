@@ -11,7 +11,7 @@ use super::{
 use crate::{
     log::Log,
     motor::Parameter,
-    steady::{held_vector::MAX_ANGLE_PER_SAMPLE, windows},
+    steady::{windows, zero_order_hold::MAX_ANGLE_PER_SAMPLE},
 };
 
 /// Something that the reader should know.
