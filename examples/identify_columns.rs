@@ -3,7 +3,7 @@
 //! `cargo run --release -p fluxfit --example identify_columns`
 #![allow(clippy::print_stdout)] // An example speaks.
 
-use fluxfit::{Columns, Log, Motor, frames::Dq, identify, Request};
+use fluxfit::{Columns, Log, Motor, Request, frames::Dq, identify};
 
 fn main() -> Result<(), fluxfit::Error> {
     // A drone motor at two operating points, as a log at 1 kHz would have it; a real one brings noise.

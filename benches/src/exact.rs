@@ -6,7 +6,7 @@ use fluxfit::{
     least_squares::TriangularFactor,
     log::Log,
     objective::voltage_error::{IdZero, VoltageError, steady_equations},
-    steady::held_vector::HeldVector,
+    steady::zero_order_hold::ZeroOrderHold,
 };
 use serde::Serialize;
 use std::{hint::black_box, ops::Range};
@@ -23,7 +23,7 @@ pub(crate) struct Figures {
 }
 
 /// Times both.
-pub(crate) fn measure(log: &Log, modes: &[(Range<usize>, HeldVector)]) -> Figures {
+pub(crate) fn measure(log: &Log, modes: &[(Range<usize>, ZeroOrderHold)]) -> Figures {
     let columns = log.columns();
     let equations = modes.iter().flat_map(|(rows, _)| rows.clone()).flat_map(|k| {
         let (u, i) = (Dq { d: columns.ud[k], q: columns.uq[k] }, Dq { d: columns.id[k], q: columns.iq[k] });

@@ -15,7 +15,7 @@ use fluxfit::{
     objective::voltage_error::{IdZero, VoltageError},
     optimizer::{Method, bounds::Bounds},
     paper,
-    steady::held_vector::HeldVector,
+    steady::zero_order_hold::ZeroOrderHold,
 };
 use fluxfit_log::{LogOptions, read_log};
 use serde::Serialize;
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).ok_or("usage: fluxfit-benches LOG.csv")?;
     let log = read_log(Path::new(&path), &LogOptions::default())?.log;
     // As the peers have them: without a correction.
-    let modes = modes(&log)?.map(|rows| (rows, HeldVector::NONE));
+    let modes = modes(&log)?.map(|rows| (rows, ZeroOrderHold::NONE));
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
     let objective = VoltageError::of_samples(&log, &modes, IdZero::Measured);
     let figures = Figures {

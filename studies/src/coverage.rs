@@ -6,7 +6,9 @@
 //! Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 3.7.
 
 use fluxfit::{
-    evidence::Identification, Request, identify, Model, Judgement,
+    Judgement, Model, Request,
+    evidence::Identification,
+    identify,
     levenberg_marquardt::{MOTOR, jacobian},
     motor::{Motor, PARAMETERS, Parameter},
     objective::{acting_voltage::VoltageReading, adjustable::Adjustable, output_error::OutputError},

@@ -5,8 +5,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
+    Model, Request,
     frames::Dq,
-    Request, identify, Model,
+    identify,
     log::{Columns, Log},
     motor::Motor,
     optimizer::{self, draws::Draws},

@@ -5,7 +5,7 @@ use crate::{
     frame, tried,
     typography::{DASH, capitalized, list, minus, number, prose, symbol, unit},
 };
-use fluxfit::evidence::Identification, evidence::Provenance, evidence::Part, evidence::IDENTIFIED, Judgement, Verdict, evidence::WEAK;
+use fluxfit::{Judgement, Verdict, evidence::IDENTIFIED, evidence::Identification, evidence::Part, evidence::Provenance, evidence::WEAK};
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 

@@ -6,10 +6,7 @@ use crate::{
     frame,
     typography::{list, minus, number, prose, symbol},
 };
-use fluxfit::{
-    evidence::Identification, Judgement,
-    motor::Parameter,
-};
+use fluxfit::{Judgement, evidence::Identification, motor::Parameter};
 use maud::{Markup, html};
 
 /// Correlations from which on two parameters are hard to tell apart.

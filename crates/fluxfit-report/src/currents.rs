@@ -6,10 +6,7 @@ use crate::{
     measured::Measured,
     typography::{grouped, number, prose},
 };
-use fluxfit::{
-    evidence::OutputFit, evidence::Term,
-    log::Log,
-};
+use fluxfit::{evidence::OutputFit, evidence::Term, log::Log};
 use fluxfit_units::significant;
 use maud::{Markup, html};
 

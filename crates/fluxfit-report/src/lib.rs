@@ -73,7 +73,7 @@ mod tried;
 mod typography;
 mod validation;
 
-use fluxfit::{evidence::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy, Validation};
+use fluxfit::{Validation, evidence::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy};
 use fluxfit_answer::answer::StudyFacts;
 
 /// What is shown; what is `None` is left out.

@@ -1,6 +1,6 @@
 //! Measured currents and those that a model gives for them: what the figures of currents draw, whichever model it is.
 
-use fluxfit::{frames::Dq, evidence::OutputFit, log::Log, validation::prediction::PredictedStretch};
+use fluxfit::{evidence::OutputFit, frames::Dq, log::Log, validation::prediction::PredictedStretch};
 use std::ops::Range;
 
 /// The log, and the model's currents beside its own.

@@ -7,7 +7,7 @@ use crate::{
     typography::{capitalized, count, grouped, in_words, list, symbol},
     validation,
 };
-use fluxfit::evidence::Identification, Judgement, Verdict;
+use fluxfit::{Judgement, Verdict, evidence::Identification};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// How everything looks; nothing else is loaded.

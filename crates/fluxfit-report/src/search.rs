@@ -5,7 +5,8 @@ use crate::{
     typography::{grouped, number, power, symbol, unit},
 };
 use fluxfit::{
-    evidence::Identification, evidence::Search,
+    evidence::Identification,
+    evidence::Search,
     optimizer::{Method, StopReason},
 };
 use fluxfit_units::Scale;

@@ -17,7 +17,7 @@ use maud::{Markup, html};
 /// The section; parameters that are not excited are chance, and left out.
 pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Markup {
     let fitness = &facts.problem.fitness;
-    let (minimum, index, unexcited) = (fitness.minimum_label(), fitness.minimum_index(), facts.problem.unexcited.as_slice());
+    let (minimum, index, unexcited) = (fitness.minimum_label(), fitness.minimum_subscript(), facts.problem.unexcited.as_slice());
     html! {
         p {
             "Every method minimizes the same sum of squares, " (what(fitness)) ", over " (rows(facts)) " rows: "
@@ -70,7 +70,7 @@ fn what(fitness: &Fitness) -> &'static str {
 
 /// What is known of the minimum.
 fn its_minimum(fitness: &Fitness) -> Markup {
-    let cost = html! { "F" sub { (fitness.minimum_index()) } " = " (power(fitness.minimum().1)) "\u{a0}" (fitness.unit()) };
+    let cost = html! { "F" sub { (fitness.minimum_subscript()) } " = " (power(fitness.minimum().1)) "\u{a0}" (fitness.unit()) };
     match fitness {
         Fitness::VoltageError(_) => html! {
             "This fitness is linear least squares: it has one minimum, " (cost) ", which a factorization finds exactly in microseconds."
@@ -103,7 +103,7 @@ fn ranking(fitness: &Fitness, methods: &[(MethodStudy, f64)]) -> Markup {
                 thead {
                     tr {
                         th scope="col" rowspan="2" { "Method" }
-                        th scope="colgroup" colspan=(milestones.len()) { "Median F\u{a0}−\u{a0}F" sub { (fitness.minimum_index()) } ", " (fitness.unit()) ", at iteration" }
+                        th scope="colgroup" colspan=(milestones.len()) { "Median F\u{a0}−\u{a0}F" sub { (fitness.minimum_subscript()) } ", " (fitness.unit()) ", at iteration" }
                         th scope="col" rowspan="2" { "Worst run" } th scope="col" rowspan="2" { "Evaluations" }
                         th scope="col" rowspan="2" { "ms per run" }
                     }

@@ -4,7 +4,7 @@ use crate::{
     frame,
     typography::{DASH, capitalized, minus, number, power, prose},
 };
-use fluxfit::evidence::Provenance, evidence::Nuisance, evidence::OutputFit, self, evidence::Outcome, evidence::Term, evidence::timing;
+use fluxfit::{self, evidence::Nuisance, evidence::Outcome, evidence::OutputFit, evidence::Provenance, evidence::Term, evidence::timing};
 use fluxfit_units::{beside_the_motor, significant};
 use maud::{Markup, html};
 

@@ -10,9 +10,8 @@ use crate::{
     typography::{DASH, capitalized, decimals, grouped, minus, number, power, prose, symbol, unit},
 };
 use fluxfit::{
-    evidence::SteadyFit,
-    log::Log,
-    validation::validate::Channel, validation::validate::Difference, validation::validate::LITTLE, validation::validate::Outcome, validation::prediction::Prediction, validation::validate::SIGNIFICANCE, Validation,
+    Validation, evidence::SteadyFit, log::Log, validation::prediction::Prediction, validation::validate::Channel,
+    validation::validate::Difference, validation::validate::LITTLE, validation::validate::Outcome, validation::validate::SIGNIFICANCE,
 };
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};

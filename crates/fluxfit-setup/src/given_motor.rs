@@ -7,8 +7,8 @@ use crate::{
     truth::{self, Truth},
 };
 use fluxfit::{
-    motor::{Motor, PARAMETERS, Parameter},
     Given,
+    motor::{Motor, PARAMETERS, Parameter},
 };
 use fluxfit_files::{FileError, Problem as FileProblem, input};
 use serde_json::Value;

@@ -1,18 +1,18 @@
-//! The current controllers' gains for a wanted bandwidth, as sharp as the parameters that they come from.
+//! Gains of the current controllers for a given bandwidth, with intervals from those of the parameters.
 //!
-//! Each axis, its coupling to the other fed forward, is `1 / (L s + R_s)`. A PI controller `K_p + K_i / s` whose zero cancels that
-//! pole leaves an integrator in the loop, and a closed loop of first order with the wanted bandwidth `omega_b`, rad/s:
+//! With the cross coupling fed forward, the plant of each axis is `1 / (L s + R_s)`. A PI controller `K_p + K_i / s` whose zero cancels
+//! this pole makes the loop an integrator, and the closed loop a first-order lag with the bandwidth `omega_b`, rad/s:
 //!
 //! ```text
 //! K_p = omega_b L     V/A, of L_d or L_q       K_i = omega_b R_s     V/(A s), the same on both axes
 //! ```
 //!
 //! (internal model control: Harnefors and Nee, "Model-based current control of AC machines using the internal model control
-//! method", IEEE Transactions on Industry Applications 34(1), 1998, DOI 10.1109/28.658735). Gains are linear in one parameter, so
-//! their 95 % intervals are that parameter's, scaled.
+//! method", IEEE Transactions on Industry Applications 34(1), 1998, DOI 10.1109/28.658735). Each gain is
+//! proportional to one parameter, and so is its 95 % interval.
 //!
-//! What limits the bandwidth is the delay between a sample and the voltage that answers it, `T_d`. An integrator that crosses at
-//! `omega_b` keeps
+//! The bandwidth is limited by the delay `T_d` from a sample to the voltage that is computed from it. A loop that is an integrator with
+//! the crossover frequency `omega_b` has the
 //!
 //! ```text
 //! phase margin = pi/2 - omega_b T_d
@@ -34,26 +34,26 @@ use crate::{
 };
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Control periods from a sample to the middle of the voltage that answers it: one to compute, half of one that the vector is held.
-/// Holmes et al., section II.
-pub const DELAY: f64 = 1.5;
+/// Delay from a sample to the middle of the voltage that is computed from it, control periods: one for the computation, half of one
+/// for the zero-order hold. Holmes et al., section II.
+pub const DELAY_PERIODS: f64 = 1.5;
 
-/// Least phase margin, degrees, that needs no warning. A step then overshoots by 5.7 % (the delay
-/// equation integrated); with [`DELAY`] that is a bandwidth of an eighteenth of the control rate.
-pub const PHASE_MARGIN: f64 = 60.0;
+/// Smallest phase margin, degrees, without a warning. The step response then overshoots by 5.7 % (numerical solution of the delay
+/// equation); with [`DELAY_PERIODS`] that is a bandwidth of an eighteenth of the control rate.
+pub const MIN_PHASE_MARGIN: f64 = 60.0;
 
 /// Gains of both current controllers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurrentLoop {
-    /// Wanted bandwidth of the closed loop (-3 dB, without delay), Hz.
+    /// Bandwidth of the closed loop (-3 dB, without delay), Hz.
     pub bandwidth: f64,
-    /// How often the controllers run, Hz, and where that comes from.
+    /// Control rate: how often the controllers run, Hz, and where that value comes from.
     pub control_rate: (f64, Provenance),
-    /// Proportional gain of the d axis, V/A; none where L_d means nothing.
+    /// Proportional gain of the d axis, V/A; `None` if L_d is not identifiable.
     pub kp_d: Option<Gain>,
-    /// Proportional gain of the q axis, V/A; none where L_q means nothing.
+    /// Proportional gain of the q axis, V/A; `None` if L_q is not identifiable.
     pub kp_q: Option<Gain>,
-    /// Integral gain of both axes, V/(A s); none where R_s means nothing.
+    /// Integral gain of both axes, V/(A s); `None` if R_s is not identifiable.
     pub ki: Option<Gain>,
 }
 
@@ -81,7 +81,7 @@ pub struct Gain {
 }
 
 impl CurrentLoop {
-    /// Gains for a motor that was identified.
+    /// Gains for an identified motor.
     ///
     /// # Errors
     /// If the bandwidth or the control rate is no positive number.
@@ -95,19 +95,19 @@ impl CurrentLoop {
         Ok(Self { bandwidth, control_rate, kp_d: gain(Parameter::Ld), kp_q: gain(Parameter::Lq), ki: gain(Parameter::Rs) })
     }
 
-    /// Phase margin, degrees, with [`DELAY`]; negative where the loop is unstable.
+    /// Phase margin, degrees, with [`DELAY_PERIODS`]; negative if the loop is unstable.
     pub fn phase_margin(&self) -> f64 {
-        (FRAC_PI_2 - TAU * self.bandwidth * DELAY / self.control_rate.0).to_degrees()
+        (FRAC_PI_2 - TAU * self.bandwidth * DELAY_PERIODS / self.control_rate.0).to_degrees()
     }
 
-    /// The bandwidth, Hz, that leaves [`PHASE_MARGIN`].
+    /// The bandwidth, Hz, at which the phase margin is [`MIN_PHASE_MARGIN`].
     pub fn highest_bandwidth(&self) -> f64 {
-        (FRAC_PI_2 - PHASE_MARGIN.to_radians()) * self.control_rate.0 / (TAU * DELAY)
+        (FRAC_PI_2 - MIN_PHASE_MARGIN.to_radians()) * self.control_rate.0 / (TAU * DELAY_PERIODS)
     }
 
-    /// What the reader should know of the delay.
+    /// The warning about the phase margin, if it is small.
     pub fn warning(&self) -> Option<Warning> {
-        // Rounding alone is no reason to warn at the highest bandwidth itself.
+        // No warning at the highest bandwidth itself, which may be exceeded by rounding.
         if self.bandwidth <= self.highest_bandwidth() * (1.0 + 1e-9) {
             return None;
         }

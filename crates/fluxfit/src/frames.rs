@@ -2,8 +2,8 @@
 //!
 //! The convention, stated once: **amplitude-invariant**. A balanced three-phase system of peak value `A` is a vector of
 //! length `A` in [`AlphaBeta`] and in [`Dq`]; power is `3/2 (u_d i_d + u_q i_q)`. The alpha axis lies on phase a; the d axis lies on the
-//! magnet, at the electrical angle `theta_e` from alpha; q leads d by 90 electrical degrees. A zero-sequence part
-//! (the mean of the three phases) has no image in the other two frames and is dropped.
+//! magnet, at the electrical angle `theta_e` from alpha; q leads d by 90 electrical degrees. The zero-sequence component
+//! (the mean of the three phases) is not represented in the other two frames and is dropped.
 
 /// Three phase quantities.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Abc {
     pub c: f64,
 }
 
-/// A vector in the stator's frame.
+/// A vector in the stator frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AlphaBeta {
     /// Component along phase a.
@@ -25,7 +25,7 @@ pub struct AlphaBeta {
     pub beta: f64,
 }
 
-/// A vector in the rotor's frame.
+/// A vector in the rotor frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Dq {
     /// Component along the magnet.
@@ -48,7 +48,7 @@ impl AlphaBeta {
         Abc { a: self.alpha, b: -0.5 * self.alpha + half_beta, c: -0.5 * self.alpha - half_beta }
     }
 
-    /// Park transform: the same vector seen from a rotor at `theta_e` electrical radians.
+    /// Park transform: the same vector in the frame of a rotor at `theta_e` electrical radians.
     pub fn to_dq(self, theta_e: f64) -> Dq {
         let (sin, cos) = theta_e.sin_cos();
         Dq { d: cos * self.alpha + sin * self.beta, q: cos * self.beta - sin * self.alpha }
@@ -62,7 +62,7 @@ impl Dq {
         AlphaBeta { alpha: cos * self.d - sin * self.q, beta: sin * self.d + cos * self.q }
     }
 
-    /// Length of the vector: the phase peak value.
+    /// Length of the vector: the peak value of the phase quantity.
     pub fn magnitude(self) -> f64 {
         self.d.hypot(self.q)
     }
@@ -75,8 +75,8 @@ mod tests {
     use std::f64::consts::TAU;
 
     #[test]
-    fn a_balanced_system_keeps_its_peak_value_and_turns_with_the_rotor() {
-        // Phase a at its peak when the rotor stands on it: all of the vector is d.
+    fn a_balanced_system_is_a_constant_vector_of_its_peak_value() {
+        // Phase a is at its peak when the d axis lies on it: the vector is along d.
         let phases = |angle: f64| Abc { a: 5.0 * angle.cos(), b: 5.0 * (angle - TAU / 3.0).cos(), c: 5.0 * (angle + TAU / 3.0).cos() };
         for degrees in [0.0_f64, 17.0, 90.0, 200.0, 359.0] {
             let angle = degrees.to_radians();
@@ -89,7 +89,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn transforms_undo_each_other(d in -1e3..1e3, q in -1e3..1e3, theta in -10.0..10.0) {
+        fn inverse_transforms_restore_the_vector(d in -1e3..1e3, q in -1e3..1e3, theta in -10.0..10.0) {
             let there = Dq { d, q }.to_alpha_beta(theta).to_abc();
             prop_assert!((there.a + there.b + there.c).abs() < 1e-10);
             let back = there.to_alpha_beta().to_dq(theta);

@@ -1,21 +1,21 @@
-//! The exact answer to any fitness that is a sum of squared linear equations, and the form in which it is merged and evaluated.
+//! Linear least squares for the four parameters: equations as a triangular factor, which can be merged, evaluated and solved.
 //!
-//! Equations `a . x = b` of the four parameters are kept as the triangular factor of their rows: `R = qr([A  -b])`, five by five. Then
+//! The rows of the equations `a . x = b` are kept as their triangular (QR) factor `R = qr([A  -b])`, five by five. Then
 //!
 //! ```text
-//! f(x) = |A x - b|² = |R [x; 1]|²        15 multiply-adds, however many rows there were
-//! qr([R_1; R_2])                         the factor of both blocks: a log of any length is one pass
+//! f(x) = |A x - b|² = |R [x; 1]|²        15 multiply-adds for any number of rows
+//! qr([R_1; R_2])                         the factor of both blocks: one pass over a log of any length
 //! R_4 x = -z                             the least-squares solution, with R = [R_4 z; 0 rho] and f(x_ls) = rho²
 //! f(x) - f(x_ls) = |R_4 (x - x_ls)|²     without cancellation
 //! ```
 //!
-//! The Gram matrix `AᵀA` would do the same at half the digits. G. H. Golub and C. F. Van Loan, Matrix Computations, 4th ed.,
+//! The Gram matrix `AᵀA` would lose half of the digits. G. H. Golub and C. F. Van Loan, Matrix Computations, 4th ed.,
 //! section 5.3; merging factors: J. Demmel et al., "Communication-optimal parallel and sequential QR and LU factorizations",
 //! doi:10.1137/080731992.
 
 use crate::{
     motor::{Motor, PARAMETERS},
-    singular_values::Decomposition,
+    singular_values::SingularValueDecomposition,
 };
 use nalgebra::{DMatrix, SMatrix, SVector};
 
@@ -25,11 +25,12 @@ const COLUMNS: usize = PARAMETERS + 1;
 /// Entries of an upper triangle.
 const ENTRIES: usize = COLUMNS * (COLUMNS + 1) / 2;
 
-/// Rows gathered before they are folded into the factor: long enough to spread the cost of a factorization, short enough for the cache.
+/// Rows that are collected before they are merged into the factor: enough to spread the cost of a factorization, few enough for the
+/// cache.
 const BLOCK: usize = 128;
 
-/// Singular values below this fraction of the largest, columns scaled to equal length, count as zero. It bounds rounding, about
-/// 1e-16 times the number of rows' root; noise is judged elsewhere.
+/// Singular values below this fraction of the largest, with columns scaled to equal length, count as zero. It bounds the rounding
+/// error, about 1e-16 times the square root of the number of rows; the effect of noise is judged elsewhere.
 const RANK_TOLERANCE: f64 = 1e-10;
 
 /// One equation of the parameters, weighted: `coefficients . x = value`.
@@ -42,14 +43,14 @@ pub struct Equation {
 }
 
 impl Equation {
-    /// The equation times `weight`, the root of its weight in a sum of squares.
+    /// The equation times `weight`, the square root of its weight in the sum of squares.
     pub fn weighted(self, weight: f64) -> Self {
         Self { coefficients: self.coefficients.map(|coefficient| weight * coefficient), value: weight * self.value }
     }
 
     /// `value - coefficients . x`.
     pub fn residual(&self, x: &[f64; PARAMETERS]) -> f64 {
-        self.coefficients.iter().zip(x).fold(self.value, |rest, (a, x)| rest - a * x)
+        self.coefficients.iter().zip(x).fold(self.value, |residual, (a, x)| residual - a * x)
     }
 }
 
@@ -58,18 +59,18 @@ impl Equation {
 pub struct TriangularFactor {
     /// Upper triangle, row after row.
     entries: [f64; ENTRIES],
-    /// Equations that went in.
+    /// Number of equations.
     equations: usize,
 }
 
-/// What least squares finds.
+/// The least-squares solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution {
-    /// The minimizer; of several, the one nearest zero with columns scaled to equal length.
+    /// The minimizer; if it is not unique, the one of least norm with columns scaled to equal length.
     pub motor: Motor,
-    /// Sum of squares there.
+    /// Sum of squares at the minimizer.
     pub cost: f64,
-    /// How many independent combinations of the parameters the equations determine, noise aside.
+    /// Rank: number of independent combinations of the parameters that the equations determine, noise apart.
     pub rank: usize,
 }
 
@@ -82,11 +83,11 @@ impl FromIterator<Equation> for TriangularFactor {
             block.push(-equation.value);
             factor.equations += 1;
             if block.len() == BLOCK * COLUMNS {
-                factor.fold(&block);
+                factor.merge_rows(&block);
                 block.clear();
             }
         }
-        factor.fold(&block);
+        factor.merge_rows(&block);
         factor
     }
 }
@@ -95,12 +96,12 @@ impl TriangularFactor {
     /// The factor of both sets of equations.
     pub fn merge(mut self, other: &Self) -> Self {
         let rows: Vec<f64> = other.matrix().transpose().iter().copied().collect();
-        self.fold(&rows);
+        self.merge_rows(&rows);
         self.equations += other.equations;
         self
     }
 
-    /// Number of equations that went in.
+    /// Number of equations.
     pub fn equations(&self) -> usize {
         self.equations
     }
@@ -117,7 +118,7 @@ impl TriangularFactor {
         e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3 + r[14] * r[14]
     }
 
-    /// How much the sum of squares at `x` exceeds that at a minimizer `x_ls`, without cancellation.
+    /// Excess of the sum of squares at `x` over that at a minimizer `x_ls`, without cancellation.
     pub fn excess(&self, x: &[f64; PARAMETERS], x_ls: &[f64; PARAMETERS]) -> f64 {
         let (matrix, _, _) = self.parts();
         (matrix * (SVector::from(*x) - SVector::from(*x_ls))).norm_squared()
@@ -126,10 +127,10 @@ impl TriangularFactor {
     /// The minimizer.
     pub fn solve(&self) -> Solution {
         let (matrix, z, rho) = self.parts();
-        // Columns of equal length: resistances and inductances differ by orders of magnitude.
+        // Columns are scaled to equal length: resistances and inductances differ by orders of magnitude.
         let lengths =
             SVector::<f64, PARAMETERS>::from_fn(|j, _| Some(matrix.column(j).norm()).filter(|length| *length > 0.0).unwrap_or(1.0));
-        let decomposition = Decomposition::of(DMatrix::from_fn(PARAMETERS, PARAMETERS, |i, j| matrix[(i, j)] / lengths[j]));
+        let decomposition = SingularValueDecomposition::of(DMatrix::from_fn(PARAMETERS, PARAMETERS, |i, j| matrix[(i, j)] / lengths[j]));
         let tolerance = RANK_TOLERANCE * decomposition.values[0];
         let y = decomposition.pseudo_inverse(tolerance) * -z;
         let x = SVector::<f64, PARAMETERS>::from_fn(|p, _| y[p] / lengths[p]);
@@ -140,8 +141,8 @@ impl TriangularFactor {
         }
     }
 
-    /// Stacks rows under the factor and factors again.
-    fn fold(&mut self, rows: &[f64]) {
+    /// Merges rows into the factor.
+    fn merge_rows(&mut self, rows: &[f64]) {
         let below = rows.len() / COLUMNS;
         if below == 0 {
             return;
@@ -199,7 +200,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_factor_is_the_sum_of_squares(equations in equations(), x in prop::array::uniform4(-5.0..5.0f64)) {
+        fn the_cost_of_the_factor_is_the_sum_of_squares(equations in equations(), x in prop::array::uniform4(-5.0..5.0f64)) {
             let factor: TriangularFactor = equations.iter().copied().collect();
             let direct: f64 = equations.iter().map(|equation| equation.residual(&x).powi(2)).sum();
             prop_assert!((factor.cost(&x) - direct).abs() <= 1e-12 * direct.max(1.0));
@@ -207,7 +208,7 @@ mod tests {
         }
 
         #[test]
-        fn merging_is_the_same_in_any_order(one in equations(), two in equations(), x in prop::array::uniform4(-5.0..5.0f64)) {
+        fn merging_gives_the_same_cost_in_any_order(one in equations(), two in equations(), x in prop::array::uniform4(-5.0..5.0f64)) {
             let [a, b]: [TriangularFactor; 2] = [&one, &two].map(|equations| equations.iter().copied().collect());
             let whole: TriangularFactor = one.iter().chain(&two).copied().collect();
             let expected = whole.cost(&x);
@@ -218,11 +219,11 @@ mod tests {
         }
 
         #[test]
-        fn nothing_lies_below_the_solution_and_the_excess_is_exact(equations in equations(), x in prop::array::uniform4(-5.0..5.0f64)) {
+        fn the_solution_is_a_minimum_and_the_excess_is_exact(equations in equations(), x in prop::array::uniform4(-5.0..5.0f64)) {
             let factor: TriangularFactor = equations.into_iter().collect();
             let solution = factor.solve();
-            // Nearly singular equations have solutions so far away that rounding along the way there is larger than the bound below:
-            // 1e-16 of 10 times 1e3, times the residual of some 1e3, is 1e-9.
+            // Solutions of nearly singular equations are so large that the rounding error exceeds the bound below: 1e-16 of 10 times
+            // 1e3, times a residual of about 1e3, is 1e-9.
             prop_assume!(solution.motor.to_array().iter().all(|value| value.abs() < 1e3));
             let at_x = factor.cost(&x);
             prop_assert!(solution.cost <= at_x * (1.0 + 1e-12));
@@ -233,7 +234,7 @@ mod tests {
 
     #[test]
     fn exact_equations_are_solved_to_rounding() {
-        // The paper's motor in two modes; the cost at the truth is rounding only.
+        // The paper's motor at two operating points; the cost at the truth is rounding error only.
         let truth = [0.958, 5.25e-3, 12e-3, 0.1827];
         let omega = 418.879;
         let rows = [(0.0, 9.9), (-2.0, 9.3)].into_iter().flat_map(|(id, iq)| [[id, 0.0, -omega * iq, 0.0], [iq, omega * id, 0.0, omega]]);
@@ -248,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_that_no_equation_holds_is_zero_and_costs_rank() {
+    fn a_parameter_without_equations_is_zero_and_reduces_the_rank() {
         let rows = [([1.0, 0.0, 0.0, 2.0], 5.0), ([1.0, 0.0, 0.0, 1.0], 3.0), ([0.0, 0.0, 4.0, 0.0], 2.0)];
         let solution = rows.into_iter().map(|(coefficients, value)| Equation { coefficients, value }).collect::<TriangularFactor>().solve();
         assert_eq!(solution.rank, 3);

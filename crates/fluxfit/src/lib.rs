@@ -47,7 +47,7 @@ pub mod motor;
 pub mod objective;
 pub mod optimizer;
 pub mod paper;
-mod resolution;
+mod quantization;
 mod singular_values;
 pub mod steady;
 pub mod study;

@@ -4,7 +4,7 @@
 //! jump: a jump ends a [segment](Log::segments), and nothing is ever computed across one. Several logs of one motor
 //! [join](Log::join) into one.
 
-use crate::{error::Error, resolution};
+use crate::{error::Error, quantization};
 use std::ops::Range;
 
 /// The columns of a log, row by row in SI units; canonical names. Voltages and currents in the dq frame of [`frames`](crate::frames).
@@ -132,7 +132,7 @@ impl Log {
         if silent([&columns.omega_e; 2]) {
             return Err(Error::AllZero { what: "the speed omega_e is" });
         }
-        let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| resolution::step(column));
+        let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| quantization::step(column));
         let segments = split(&columns.t, steps);
         Ok(Self { columns, segments, interpolated: false })
     }

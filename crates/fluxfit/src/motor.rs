@@ -10,24 +10,24 @@
 //! ```
 //!
 //! Equation numbers are those of Gao, Wang, Jiang and Hu, "Parameters Identification of PMSM Based on Improved Flower
-//! Pollination Algorithm", 2023: the paper this program starts from.
+//! Pollination Algorithm", 2023, the paper that this project starts from.
 
 use crate::frames::Dq;
 use serde::{Deserialize, Serialize};
 
-/// How many parameters a motor has.
+/// Number of parameters of a motor.
 pub const PARAMETERS: usize = 4;
 
-/// What is identified. The order here is the order of every parameter array in this library.
+/// A parameter that is identified. The order here is the order of every parameter array in this library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Parameter {
-    /// Stator resistance as the terminals see it: winding, cable and switches, at the temperature of the log.
+    /// Stator resistance at the inverter: winding, cable and switches, at the temperature during the log.
     Rs,
-    /// Inductance along the magnet.
+    /// Inductance of the d axis, along the magnet.
     Ld,
-    /// Inductance across the magnet.
+    /// Inductance of the q axis, 90 electrical degrees ahead of the magnet.
     Lq,
-    /// Flux linkage of the magnet: peak, per phase.
+    /// Magnet flux linkage: peak value per phase.
     PsiF,
 }
 
@@ -65,16 +65,17 @@ impl Parameter {
     }
 }
 
-/// A permanent magnet synchronous motor, seen from its terminals.
+/// The electrical parameters of a permanent magnet synchronous motor.
 ///
-/// It has no pole pairs: a log in electrical quantities knows nothing of them, and only [`torque`](Self::torque) asks.
+/// The number of pole pairs is not among them: a log in electrical quantities does not depend on it. Only [`torque`](Self::torque)
+/// needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Motor {
     /// Stator resistance, ohm.
     pub rs: f64,
-    /// Inductance along d, H.
+    /// d-axis inductance, H.
     pub ld: f64,
-    /// Inductance along q, H.
+    /// q-axis inductance, H.
     pub lq: f64,
     /// Magnet flux linkage, Wb, peak per phase.
     pub psi_f: f64,
@@ -87,7 +88,7 @@ impl Motor {
         Dq { d: steady.d + self.ld * di_dt.d, q: steady.q + self.lq * di_dt.q }
     }
 
-    /// Equation (2): the terminal voltage, V, while the currents stand still.
+    /// Equation (2): the terminal voltage, V, at constant currents.
     pub fn steady_voltage(&self, i: Dq, omega_e: f64) -> Dq {
         Dq { d: self.rs * i.d - omega_e * self.lq * i.q, q: self.rs * i.q + omega_e * (self.ld * i.d + self.psi_f) }
     }
@@ -123,7 +124,7 @@ mod tests {
     const PAPER: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
     #[test]
-    fn the_papers_rig_draws_the_current_its_load_asks_for() {
+    fn torque_by_hand() {
         // 10 N m at i_d = 0 and four pole pairs: i_q = T / (3/2 p psi_f), by hand 9.122423 A.
         let torque = PAPER.torque(Dq { d: 0.0, q: 9.122_422_915_526_364 }, 4);
         assert!((torque - 10.0).abs() < 1e-12, "{torque}");
@@ -137,9 +138,9 @@ mod tests {
     }
 
     proptest! {
-        /// What goes in is copper loss, magnetic energy and shaft power, at any speed and slope.
+        /// Electrical power is the sum of copper loss, change of magnetic energy and shaft power, at any speed and current slope.
         #[test]
-        fn power_balances(id in -20.0..20.0, iq in -20.0..20.0, slope_d in -1e4..1e4, slope_q in -1e4..1e4, omega_m in -300.0..300.0) {
+        fn power_is_conserved(id in -20.0..20.0, iq in -20.0..20.0, slope_d in -1e4..1e4, slope_q in -1e4..1e4, omega_m in -300.0..300.0) {
             let (i, di_dt) = (Dq { d: id, q: iq }, Dq { d: slope_d, q: slope_q });
             let u = PAPER.voltage(i, di_dt, 4.0 * omega_m);
             let electrical: f64 = 1.5 * (u.d * id + u.q * iq);

@@ -1,8 +1,8 @@
-//! What the paper states: its motor, its rig, its results.
+//! Data of the paper: its motor, its test rig, its results.
 //!
 //! Gao, Wang, Jiang and Hu, "Parameters Identification of PMSM Based on Improved Flower Pollination Algorithm", 2023. The paper
-//! prints the units of L_d and psi_f swapped in its Table 2; here they are right. It states no search box, sample rate, DC voltage or
-//! controller: the box below is ours, the rest stands with the simulated rig.
+//! prints the units of L_d and psi_f swapped in its Table 2; here they are corrected. It does not state the search box, sample rate, DC
+//! voltage or controller. The search box is chosen below, the others in the simulated rig (`fluxfit_drive::Scenario::paper`).
 
 use crate::motor::{Motor, PARAMETERS};
 
@@ -24,14 +24,13 @@ pub const LOAD: f64 = 10.0;
 /// Section 4.1, mechanical r/min.
 pub const SPEED_RPM: f64 = 1000.0;
 
-/// Section 4.1: i_d of the second mode, A. The first has i_d = 0.
+/// Section 4.1: i_d of the second operating point, A. The first has i_d = 0.
 pub const ID: f64 = -2.0;
 
 /// Section 4.1: runs of each method.
 pub const RUNS: usize = 50;
 
-/// Upper corner of the box in which the paper's motor is searched for; the lower one is zero. Ours: four to ten times
-/// the truth.
+/// Upper bounds of the search box; the lower bounds are zero. Not from the paper: four to ten times the true values.
 pub const SEARCH_BOX: [f64; PARAMETERS] = [5.0, 0.05, 0.05, 1.0];
 
 /// One column of Table 2.
@@ -41,7 +40,7 @@ pub struct Column {
     pub method: &'static str,
     /// Mean of the estimates.
     pub mean: Motor,
-    /// Error, %: not that of the mean, so presumably the mean of the runs' errors.
+    /// Error, %. It is not the error of the mean, so presumably it is the mean of the runs' errors.
     pub error_percent: [f64; PARAMETERS],
 }
 

@@ -7,8 +7,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
+    Model, Request,
     frames::Dq,
-    Request, identify, Model,
+    identify,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageReading},
@@ -29,7 +30,7 @@ const ID_ZERO: [(f64, f64, f64); 2] = [PAPER[0], (0.0, 2.74, 209.44)];
 /// Rows of a window, as in the logs that come with the paper's rig.
 const ROWS: usize = 1151;
 
-/// One row per millisecond: the rotor turns too far between rows for a held-vector correction, of which these data know nothing.
+/// One row per millisecond: the rotor turns too far between rows for a zero-order-hold correction, of which these data know nothing.
 const SAMPLE_PERIOD: f64 = 1e-3;
 
 /// Noise of a channel: standard deviations of voltages (V) and currents (A), 0.5 % of the vectors, and the correlation from row to row.
@@ -169,8 +170,13 @@ fn currents_on_a_coarse_grid_widen_the_intervals() {
             columns.iq.push((iq / STEP).round() * STEP);
             columns.omega_e.push(418.879);
         }
-        let settings =
-            Request { model: Some(Model::Steady), voltage_timing: Some(NEXT), voltage_accuracy: 0.0, swarm: Swarm::Off, ..Request::default() };
+        let settings = Request {
+            model: Some(Model::Steady),
+            voltage_timing: Some(NEXT),
+            voltage_accuracy: 0.0,
+            swarm: Swarm::Off,
+            ..Request::default()
+        };
         let found = identify(&Log::new(columns).unwrap(), &settings).unwrap();
         for parameter in Parameter::ALL {
             let judgement = found.parameter(parameter);

@@ -9,7 +9,9 @@
 #![allow(clippy::print_stdout)]
 
 use fluxfit::{
-    evidence::Identification, Request, identify, Model, Verdict,
+    Model, Request, Verdict,
+    evidence::Identification,
+    identify,
     motor::{Motor, Parameter},
 };
 use fluxfit_drive::{

@@ -1,7 +1,7 @@
 //! `current_loop` of `fluxfit.identification/1`: the current controllers' gains.
 
 use fluxfit::{
-    current_loop::{CurrentLoop, DELAY, Gain},
+    current_loop::{CurrentLoop, DELAY_PERIODS, Gain},
     evidence::Provenance,
 };
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ pub fn current_loop(found: &CurrentLoop) -> Value {
         "bandwidth_hz": found.bandwidth,
         "control_rate_hz": found.control_rate.0,
         "control_rate_stated": found.control_rate.1 == Provenance::Stated,
-        "delay_periods": DELAY,
+        "delay_periods": DELAY_PERIODS,
         "phase_margin_deg": found.phase_margin(),
         "highest_bandwidth_hz": found.highest_bandwidth(),
         "d": axis(found.kp_d),

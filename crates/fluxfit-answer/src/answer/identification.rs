@@ -2,11 +2,18 @@
 
 use super::by_parameter;
 use fluxfit::{
+    Judgement,
+    evidence::Identification,
+    evidence::Nuisance,
+    evidence::Outcome,
+    evidence::OutputFit,
+    evidence::Provenance,
+    evidence::Saturation,
+    evidence::SteadyFit,
     frames::Dq,
-    evidence::Identification, evidence::Provenance, evidence::Nuisance, evidence::OutputFit, evidence::Saturation, evidence::SteadyFit, evidence::Outcome, Judgement,
     log::Log,
     motor::{Motor, PARAMETERS},
-    steady::{OperatingPoint, held_vector::VoltageTiming},
+    steady::{OperatingPoint, zero_order_hold::VoltageTiming},
 };
 use serde_json::{Map, Value, json};
 
@@ -22,8 +29,8 @@ pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value
             "sample_period_s": log.segments().first().map(|segment| segment.sample_period),
             "operating_points": answer.operating_points().iter().map(operating_point).collect::<Vec<_>>(),
         },
-        "model": answer.model.0.key(),
-        "model_reason": answer.model.1,
+        "model": answer.model.model.key(),
+        "model_reason": answer.model.reason.to_string(),
         "method": method,
         "parameters": by_parameter(answer.parameters.each_ref().map(parameter)),
         "nuisance": nuisance(answer),
@@ -40,7 +47,7 @@ pub fn identification(log: &Log, answer: &Identification, method: &str) -> Value
             "residual_rms": residual_rms(answer),
             "redundancy": redundancy(answer),
         },
-        "warnings": answer.warnings.iter().map(|warning| json!({ "code": warning.code, "message": warning.message })).collect::<Vec<_>>(),
+        "warnings": answer.warnings.iter().map(|warning| json!({ "code": warning.code(), "message": warning.to_string() })).collect::<Vec<_>>(),
         "diagnostics": diagnostics(answer),
     })
 }
@@ -96,8 +103,8 @@ fn parameter(judgement: &Judgement) -> Value {
         "systematic": answered.then(|| uncertainty.systematic.total()),
         "ci95": judgement.interval(),
         "verdict": judgement.verdict.key(),
-        "reason": judgement.reason,
-        "remedy": judgement.remedy,
+        "reason": judgement.reason.as_ref().map(ToString::to_string),
+        "remedy": judgement.remedy.as_ref().map(ToString::to_string),
     })
 }
 

@@ -5,8 +5,8 @@ use fluxfit::{
     motor::Motor,
     optimizer::{Settings, bounds::Bounds},
     study::{
-        Convergence, MethodStudy,
-        fitness::{Fitness, Problem},
+        ConvergenceCurves, MethodStudy,
+        fitness::{Fitness, StudyProblem},
     },
 };
 use serde_json::{Value, json};
@@ -21,7 +21,7 @@ pub struct StudyFacts<'a> {
     /// Where they searched.
     pub bounds: &'a Bounds,
     /// What they minimized.
-    pub problem: &'a Problem,
+    pub problem: &'a StudyProblem,
     /// The true motor, if known.
     pub truth: Option<&'a Motor>,
 }
@@ -76,11 +76,11 @@ fn method(study: &MethodStudy, seconds_per_run: f64, truth: Option<&Motor>) -> V
     })
 }
 
-fn convergence(course: &Convergence) -> Value {
-    let quartile = |which: usize| course.quartiles.iter().map(|quartiles| quartiles[which]).collect::<Vec<_>>();
-    let parameter = |p: usize| course.parameters_median.iter().map(|median| median[p]).collect::<Vec<_>>();
+fn convergence(curves: &ConvergenceCurves) -> Value {
+    let quartile = |which: usize| curves.quartiles.iter().map(|quartiles| quartiles[which]).collect::<Vec<_>>();
+    let parameter = |p: usize| curves.parameters_median.iter().map(|median| median[p]).collect::<Vec<_>>();
     json!({
-        "iteration": (0..course.quartiles.len()).collect::<Vec<_>>(),
+        "iteration": (0..curves.quartiles.len()).collect::<Vec<_>>(),
         "cost_above_optimum": { "median": quartile(1), "lower_quartile": quartile(0), "upper_quartile": quartile(2) },
         "parameters_median": by_parameter([0, 1, 2, 3].map(parameter)),
     })

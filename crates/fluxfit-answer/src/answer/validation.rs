@@ -2,8 +2,8 @@
 
 use super::by_parameter;
 use fluxfit::{
-    log::Log,
-    validation::validate::Channel, validation::validate::Difference, validation::validate::LITTLE, validation::validate::SIGNIFICANCE, Validation, validation::wald::Test,
+    Validation, log::Log, validation::validate::Channel, validation::validate::Difference, validation::validate::LITTLE,
+    validation::validate::SIGNIFICANCE, validation::wald::Test,
 };
 use serde_json::{Map, Value, json};
 
@@ -19,8 +19,8 @@ pub fn validation(log: &Log, found: &Validation) -> Value {
         },
         "outcome": found.outcome.key(),
         "verdict": found.verdict(),
-        "model": found.own.model.0.key(),
-        "model_reason": found.own.model.1,
+        "model": found.own.model.model.key(),
+        "model_reason": found.own.model.reason.to_string(),
         "voltage_timing": super::identification::voltage_timing(&found.own),
         "test": test(&found.test),
         "share": found.share,
@@ -28,7 +28,7 @@ pub fn validation(log: &Log, found: &Validation) -> Value {
         "limits": { "significance": SIGNIFICANCE, "share": LITTLE },
         "parameters": by_parameter(found.parameters.each_ref().map(|one| difference(one, found))),
         "channels": Value::Object(Map::from_iter(channels)),
-        "warnings": found.own.warnings.iter().map(|warning| json!({ "code": warning.code, "message": warning.message })).collect::<Vec<_>>(),
+        "warnings": found.own.warnings.iter().map(|warning| json!({ "code": warning.code(), "message": warning.to_string() })).collect::<Vec<_>>(),
     })
 }
 

@@ -10,8 +10,9 @@ mod moteus;
 mod vesc;
 
 use fluxfit::{
+    Verdict,
     current_loop::{CurrentLoop, Gain},
-    evidence::Identification, Verdict,
+    evidence::Identification,
     motor::Parameter,
 };
 use fluxfit_units::{
@@ -204,7 +205,7 @@ impl<'a> Exported<'a> {
         let judgements = target.parameters().iter().map(|parameter| found.parameter(*parameter));
         let lacking: Vec<_> = judgements.filter(|judgement| judgement.verdict != Verdict::Identified).collect();
         if let Some(first) = lacking.first() {
-            let remedy = first.remedy.clone().unwrap_or_else(|| format!("fix it with --fix {}=VALUE", first.parameter.key()));
+            let remedy = first.remedy.as_ref().map_or_else(|| "give its value".to_owned(), ToString::to_string);
             return Err(Refusal::NotIdentified {
                 target,
                 symbols: lacking.iter().map(|judgement| judgement.parameter.symbol()).collect(),
@@ -293,11 +294,11 @@ fn comments(target: Target, answer: &Answer, file: &File) -> Vec<String> {
             target.tool(),
             env!("CARGO_PKG_VERSION")
         ),
-        format!("From {}; {}.", list(answer.logs), found.model.0.label()),
+        format!("From {}; {}.", list(answer.logs), found.model.model.label()),
         "Resistance and inductances per phase of a star, at the temperature of the log; flux and voltages as each line says.".to_owned(),
     ];
     if !found.warnings.is_empty() {
-        let codes: Vec<&str> = found.warnings.iter().map(|warning| warning.code).collect();
+        let codes: Vec<&str> = found.warnings.iter().map(|warning| warning.code()).collect();
         lines.push(format!("Warnings of the identification: {}.", list(&codes)));
     }
     lines.extend(file.remarks.iter().cloned());

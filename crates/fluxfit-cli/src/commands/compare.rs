@@ -14,8 +14,8 @@ use fluxfit::{
     optimizer::{self, CloseTo, Method, bounds::Bounds},
     study::{
         MethodStudy,
-        fitness::{Fitness, Problem},
-        run_method, settle,
+        fitness::{Fitness, StudyProblem},
+        run_method, use_lowest_minimum,
     },
 };
 use fluxfit_answer::answer;
@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
     let problem = terminal::working("looking for the minimum".to_owned(), || problem(arguments, &input.log));
     let mut problem = problem.map_err(|error| input::of_log(&input.name, error))?;
-    let bounds = input::search_box(&arguments.log, &input, &problem.bounds)?;
+    let bounds = input::request(&arguments.log, &input)?.search_box(&problem.bounds)?;
     let settings = search_settings(arguments, &problem.fitness)?;
 
     let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &mut problem.fitness)?;
@@ -78,14 +78,14 @@ fn check(arguments: &Compare) -> Result<(), CommandError> {
     }
 }
 
-fn problem(arguments: &Compare, log: &Log) -> Result<Problem, fluxfit::error::Error> {
+fn problem(arguments: &Compare, log: &Log) -> Result<StudyProblem, fluxfit::error::Error> {
     match arguments.model {
         StudyModel::Steady => {
             let windows = arguments.log.window.clone();
-            let settings = Settings { windows, voltage_timing: arguments.log.voltage_timing.stated(), ..Settings::default() };
-            Problem::steady(log, &settings, arguments.id_zero)
+            let request = Request { windows, voltage_timing: arguments.log.voltage_timing.stated(), ..Request::default() };
+            StudyProblem::steady(log, &request, arguments.id_zero)
         }
-        StudyModel::OutputError => Problem::output_error(log, arguments.log.voltage_timing.stated()),
+        StudyModel::OutputError => StudyProblem::output_error(log, arguments.log.voltage_timing.stated()),
     }
 }
 
@@ -115,7 +115,7 @@ pub(super) fn study(
         }
     }
     progress.turn_to("polishing the lowest end of a swarm");
-    settle(fitness, &mut studies);
+    use_lowest_minimum(fitness, &mut studies);
     Ok(studies.into_iter().zip(seconds).collect())
 }
 

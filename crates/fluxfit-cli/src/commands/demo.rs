@@ -9,7 +9,7 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{self, Method, bounds::Bounds},
     paper,
-    study::fitness::Problem,
+    study::fitness::StudyProblem,
 };
 use fluxfit_answer::answer::StudyFacts;
 use fluxfit_drive::{Scenario, simulate};
@@ -27,11 +27,12 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
 
     let search = optimizer::Settings { seed: arguments.seed, ..optimizer::Settings::default() };
-    let settings = Request { search, bounds: Some(bounds.clone()), ..evidence::default() };
-    let found = identify(&log, &settings)?;
-    terminal::identification::show(NAME, &log, &found, settings.method.as_ref())?;
+    let request = Request { search, bounds: paper::SEARCH_BOX.map(|upper| Some((0.0, upper))), ..Request::default() };
+    let answer = identify(&log, &request)?;
+    let found = &answer.identification;
+    terminal::identification::show(NAME, &answer)?;
 
-    let mut problem = Problem::steady(&log, &settings, IdZero::Measured)?;
+    let mut problem = StudyProblem::steady(&log, &request, IdZero::Measured)?;
     let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &mut problem.fitness)?;
     let facts = StudyFacts { settings: &search, runs: paper::RUNS, bounds: &bounds, problem: &problem, truth: Some(&paper::MOTOR) };
     terminal::print("\n")?;
@@ -46,7 +47,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
         log: &log,
         notes: &notes(&scenario, &log),
         operating_points: found.operating_points(),
-        identification: Some((&found, settings.method)),
+        identification: Some((found, found.method)),
         held_out: None,
         study: Some((&facts, &methods)),
         origin: &report::origin(arguments.seed),

@@ -3,8 +3,8 @@
 
 use super::{Status, input::Input};
 use crate::{arguments::Identify, error::CommandError, terminal};
-use fluxfit::{current_loop::CurrentLoop, evidence::Identification};
-use fluxfit_answer::export::{Answer, export};
+use fluxfit::Answer;
+use fluxfit_answer::export::{Answer as Exported, export};
 use fluxfit_files::{check_writable, write_atomically};
 use std::{
     fs,
@@ -41,18 +41,13 @@ pub(super) fn check_pole_pairs(arguments: &Identify, pole_pairs: Option<u32>) ->
 }
 
 /// Writes what the answer carries; what it does not is said, and costs the status.
-pub(super) fn write(
-    arguments: &Identify,
-    input: &Input,
-    found: &Identification,
-    current_loop: Option<&CurrentLoop>,
-) -> Result<Status, CommandError> {
+pub(super) fn write(arguments: &Identify, input: &Input, answer: &Answer) -> Result<Status, CommandError> {
     let logs: Vec<String> = arguments.log.logs.iter().map(|path| file_name(path)).collect();
     let pole_pairs = input.pole_pairs;
-    let answer = Answer { logs: &logs, identification: found, pole_pairs, current_loop };
+    let exported = Exported { logs: &logs, identification: &answer.identification, pole_pairs, current_loop: answer.current_loop.as_ref() };
     let mut status = Status::Complete;
     for (target, path) in &arguments.export {
-        match export(*target, &answer) {
+        match export(*target, &exported) {
             Ok(text) => {
                 write_atomically(path, text.as_bytes())?;
                 terminal::wrote("export", path);

@@ -24,12 +24,33 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let answer = identified(&input, &request)?;
     terminal::decisions::show(&answer.identification);
     if arguments.log.json {
-        terminal::print(&answer::to_text(&answer::answer(&answer)))?;
+        let found = &answer.identification;
+        let mut document = answer::identification(&answer.log, found, found.method.map_or("least-squares", |method| method.key()));
+        document["log"]["columns"] = input.columns.clone().into();
+        document["log"]["notes"] = input.notes.clone().into();
+        document["diagnostics"]["convention"] = answer::convention(&answer.convention);
+        if let Some(current_loop) = &answer.current_loop {
+            document["current_loop"] = answer::current_loop(current_loop);
+        }
+        if let Some(held_out) = &answer.held_out {
+            let validation = held_out.validation.as_ref();
+            document["validation"] = validation.map_or(serde_json::Value::Null, |found| answer::validation(&held_out.log, found));
+        }
+        terminal::print(&answer::to_text(&document))?;
     } else {
         terminal::identification::show(&input.name, &answer)?;
     }
     let exported = export::write(arguments, &input, &answer)?;
-    let shown = Report::of_answer(&input.name, &input.said(), &answer, &report::origin(arguments.log.seed));
+    let shown = Report {
+        title: &input.name,
+        log: &answer.log,
+        notes: &input.said(),
+        operating_points: answer.identification.operating_points(),
+        identification: Some((&answer.identification, answer.identification.method)),
+        held_out: answer.held_out.as_ref().map(|held_out| (&held_out.log, held_out.validation.as_ref())),
+        study: None,
+        origin: &report::origin(arguments.log.seed),
+    };
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
     Ok(if answer.is_complete() { exported } else { Status::Incomplete })
 }

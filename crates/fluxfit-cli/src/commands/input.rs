@@ -5,13 +5,7 @@ use crate::{
     error::CommandError,
     terminal,
 };
-use fluxfit::{
-    error::Error,
-    Nameplate, evidence::search_box,
-    log::Log,
-    motor::Parameter,
-    optimizer::bounds::Bounds,
-};
+use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, optimizer};
 use fluxfit_log::{LogOptions, read_log_watched, read_mapping};
 use fluxfit_setup::{MotorFile, read_motor};
 use std::{fs, path::Path};
@@ -78,33 +72,36 @@ pub(crate) fn options(arguments: &ColumnArguments, of_motor: Option<u32>) -> Res
     })
 }
 
-/// What the motor file says of the motor, for the check of conventions.
-pub(crate) fn nameplate(input: &Input) -> Nameplate {
-    let MotorFile { rs, ld, lq, psi_f, .. } = input.motor;
-    Nameplate { values: [rs, ld, lq, psi_f], pole_pairs: input.pole_pairs }
+/// What the arguments of all verbs ask for.
+pub(crate) fn request(arguments: &LogArguments, input: &Input) -> Result<Request, CommandError> {
+    let bounds: Vec<_> = arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
+    Ok(Request {
+        windows: arguments.window.clone(),
+        voltage_timing: arguments.voltage_timing.stated(),
+        search: optimizer::Settings { seed: arguments.seed, ..optimizer::Settings::default() },
+        bounds: by_parameter(&bounds, "--bounds")?,
+        nameplate: nameplate(input),
+        ..Request::default()
+    })
 }
 
-/// The search box: what `--bounds` names; the rest is what the log allows, or the rating where that is larger.
-pub(crate) fn search_box(arguments: &LogArguments, input: &Input, of_log: &Bounds) -> Result<Bounds, CommandError> {
-    let given: Vec<(Parameter, (f64, f64))> =
-        arguments.bounds.iter().map(|(parameter, lower, upper)| (*parameter, (*lower, *upper))).collect();
-    let given = by_parameter(&given, "--bounds")?;
-    let mut rest: Vec<(f64, f64)> = of_log.iter().collect();
-    let rating = &input.motor.rating;
-    if let (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) = (rating.voltage, rating.current, rating.speed, input.pole_pairs)
-    {
-        let rated = search_box::from_rating(voltage, current, speed * f64::from(pole_pairs))?;
-        rest.iter_mut().zip(rated.iter()).for_each(|(side, rated)| side.1 = side.1.max(rated.1));
-    }
-    let (lower, upper) = given.into_iter().zip(rest).map(|(given, rest)| given.unwrap_or(rest)).unzip();
-    Ok(Bounds::new(lower, upper)?)
+/// What the motor file says of the motor.
+fn nameplate(input: &Input) -> Nameplate {
+    let MotorFile { rs, ld, lq, psi_f, ref rating, .. } = input.motor;
+    let rating = match (rating.voltage, rating.current, rating.speed, input.pole_pairs) {
+        (Some(voltage), Some(current), Some(speed), Some(pole_pairs)) => {
+            Some(Rating { voltage, current, omega_e: speed * f64::from(pole_pairs) })
+        }
+        _ => None,
+    };
+    Nameplate { values: [rs, ld, lq, psi_f], pole_pairs: input.pole_pairs, rating }
 }
 
 /// An error of the library: of the log, if it is about the log.
 pub(crate) fn of_log(name: &str, error: Error) -> CommandError {
-    match error {
-        Error::NoOperatingPoint { .. } | Error::Window { .. } => CommandError::Log { log: name.to_owned(), error },
-        other => CommandError::Library(other),
+    match error.kind() {
+        ErrorKind::NoOperatingPoint { .. } | ErrorKind::Window { .. } => CommandError::Log { log: name.to_owned(), error },
+        _ => CommandError::Library(error),
     }
 }
 

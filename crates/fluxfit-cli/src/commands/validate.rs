@@ -2,10 +2,7 @@
 
 use super::{Status, input, report};
 use crate::{arguments::Validate, error::CommandError, terminal};
-use fluxfit::{
-    Request,
-    validation::validate::Outcome, validate,
-};
+use fluxfit::{Request, validate, validation::validate::Outcome};
 use fluxfit_answer::answer;
 use fluxfit_report::{ValidationReport, validation_figures, validation_html};
 use fluxfit_setup::read_given_motor;
@@ -22,14 +19,12 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     }
     let motor = read_given_motor(path)?;
     let input = input::read_beside(&arguments.log, motor.file)?;
-    let settings = Settings {
+    let request = Request {
         model: arguments.model.stated(),
-        windows: arguments.log.window.clone(),
-        voltage_timing: arguments.log.voltage_timing.stated(),
         voltage_accuracy: arguments.voltage_accuracy,
-        ..Settings::default()
+        ..input::request(&arguments.log, &input)?
     };
-    let found = terminal::working(format!("fitting {} rows", input.log.rows()), || validate(&input.log, &motor.given, &settings));
+    let found = terminal::working(format!("fitting {} rows", input.log.rows()), || validate(&input.log, &motor.given, &request));
     let found = found.map_err(|error| input::of_log(&input.name, error))?;
     let name = path.display().to_string();
     if arguments.log.json {

@@ -2,7 +2,7 @@
 
 use super::{DIM, HEADING, table};
 use fluxfit::{
-    current_loop::{CurrentLoop, DELAY, Gain},
+    current_loop::{CurrentLoop, DELAY_PERIODS, Gain},
     evidence::Provenance,
 };
 use fluxfit_units::significant;
@@ -11,7 +11,7 @@ use fluxfit_units::significant;
 pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {
     let (rate, from) = found.control_rate;
     let heading = format!(
-        "\n{HEADING}Current controllers{HEADING:#} for {} Hz: phase margin {:.0} degrees with {DELAY} periods of delay at {} Hz{}\n",
+        "\n{HEADING}Current controllers{HEADING:#} for {} Hz: phase margin {:.0} degrees with {DELAY_PERIODS} periods of delay at {} Hz{}\n",
         significant(found.bandwidth, 4),
         found.phase_margin(),
         significant(rate, 5),

@@ -1,15 +1,15 @@
 //! What an identification decided on the way, for `--verbose`.
 
 use super::detail;
-use fluxfit::evidence::Identification, evidence::OutputFit;
+use fluxfit::{evidence::Identification, evidence::OutputFit};
 use fluxfit_units::{significant, small};
 
 /// Tells the windows, the model and, of the output error, the readings and faults that were tried.
-pub(crate) fn tell(found: &Identification) {
+pub(crate) fn show(found: &Identification) {
     for point in found.operating_points() {
         detail(|| format!("window {} .. {} s, {} rows", significant(point.time.0, 6), significant(point.time.1, 6), point.rows.len()));
     }
-    detail(|| format!("model {}: {}", found.model.0.label(), found.model.1));
+    detail(|| format!("model {}: {}", found.model.model.label(), found.model.reason));
     if let Some(fit) = &found.output {
         output(fit);
     }

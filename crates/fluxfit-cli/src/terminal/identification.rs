@@ -1,18 +1,18 @@
 //! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and
 //! what the swarm made of it.
 
-use super::{BAD, DIM, GOOD, HEADING, WARNING, table};
+use super::{BAD, DIM, GOOD, HEADING, WARNING, options, table};
 use fluxfit::{
-    evidence::Identification, evidence::Provenance, evidence::OutputFit, evidence::Flux, evidence::Saturation, evidence::SteadyFit, evidence::Outcome, evidence::Term, Judgement, Verdict,
-    log::Log,
-    motor::Parameter,
+    Answer, HeldOut, Judgement, Log, Parameter, Reason, Verdict,
+    evidence::{Flux, Identification, ModelChoice, Outcome, OutputFit, Provenance, Saturation, SteadyFit, Term},
     optimizer::Method,
 };
 use fluxfit_units::{Scale, beside_the_motor, significant, small};
 
 /// Shows an identification; warnings go to standard error.
-pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option<&Method>) -> std::io::Result<()> {
-    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(log, found));
+pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
+    let found = &answer.identification;
+    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(&answer.log, found));
     text += &parameters(found);
     text += &explanations(found);
     text += &format!("\n{}\n", model(found));
@@ -28,12 +28,30 @@ pub(crate) fn show(name: &str, log: &Log, found: &Identification, method: Option
         text += &fluxes(saturation);
     }
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
-    if let Some(method) = method.filter(|_| answered) {
+    if let Some(method) = found.method.as_ref().filter(|_| answered) {
         text += &format!("\n{}\n", search(found, method));
     }
     super::print(&text)?;
-    found.warnings.iter().for_each(|warning| super::warn(warning.code, &warning.message));
-    Ok(())
+    found.warnings.iter().for_each(super::warn);
+    answer.current_loop.as_ref().map(super::current_loop::show).transpose()?;
+    match &answer.held_out {
+        Some(HeldOut { log, validation: Some(validation) }) => {
+            super::print("\n")?;
+            super::validation::show("what was held out", "This answer", log, validation)
+        }
+        Some(HeldOut { validation: None, .. }) => {
+            super::note("what was held out is not predicted: that takes all four parameters");
+            Ok(())
+        }
+        None => {
+            if answer.log.segments().len() > 1 {
+                super::note(
+                    "to test this answer on a part of the log that it was not found from: --hold-out; on another log: fluxfit validate",
+                );
+            }
+            Ok(())
+        }
+    }
 }
 
 /// What was read, in one line.
@@ -99,11 +117,11 @@ fn explanations(found: &Identification) -> String {
     }
     let mut text = String::new();
     for (symbols, judgement) in shared {
-        let (symbols, reason) = (symbols.join(", "), judgement.reason.as_deref().unwrap_or_default());
+        let (symbols, reason) = (symbols.join(", "), judgement.reason.as_ref().map(Reason::to_string).unwrap_or_default());
         let lines = wrapped("", &format!("{symbols}: {reason}."));
         text += &format!("\n{HEADING}{symbols}{HEADING:#}{}", lines.strip_prefix(&symbols).unwrap_or(&lines));
         if let Some(remedy) = &judgement.remedy {
-            text += &wrapped("  ", &format!("To do: {remedy}."));
+            text += &wrapped("  ", &format!("To do: {}.", options::with_option(&remedy.to_string(), options::of_remedy(remedy))));
         }
     }
     text
@@ -130,8 +148,8 @@ fn wrapped(indent: &str, text: &str) -> String {
 
 /// The model that answered, and what it found beside the motor.
 fn model(found: &Identification) -> String {
-    let (model, why) = &found.model;
-    let text = format!("{HEADING}Model{HEADING:#}: {}\n  {DIM}{why}{DIM:#}", model.label());
+    let ModelChoice { model, reason } = &found.model;
+    let text = format!("{HEADING}Model{HEADING:#}: {}\n  {DIM}{reason}{DIM:#}", model.label());
     let Some(fit) = &found.output else { return text };
     let rms = fit.residual_rms();
     let how = if fit.voltage_reading.1 == Provenance::Stated { "as stated" } else { "found" };

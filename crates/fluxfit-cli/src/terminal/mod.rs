@@ -7,6 +7,7 @@ mod excerpt;
 pub(crate) mod formats;
 pub(crate) mod identification;
 pub(crate) mod inspection;
+pub(crate) mod options;
 mod plot;
 mod progress;
 pub(crate) mod simulation;
@@ -15,6 +16,7 @@ pub(crate) mod validation;
 
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
+use fluxfit::Warning;
 use fluxfit_files::FileError;
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
@@ -101,9 +103,10 @@ pub(crate) fn detail(message: impl FnOnce() -> String) {
     }
 }
 
-/// Says what the reader should know.
-pub(crate) fn warn(code: &str, message: &str) {
-    say(&format!("{WARNING}warning{WARNING:#} [{code}]: {message}"));
+/// Prints a warning, and the option that answers it.
+pub(crate) fn warn(warning: &Warning) {
+    let message = options::with_option(&warning.to_string(), options::of_warning(warning));
+    say(&format!("{WARNING}warning{WARNING:#} [{}]: {message}", warning.code()));
 }
 
 /// Says what was inferred.

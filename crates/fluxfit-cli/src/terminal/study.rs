@@ -12,7 +12,7 @@ use fluxfit_units::{Scale, significant, small};
 /// Shows a study.
 pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {
     let fitness = &facts.problem.fitness;
-    let (minimum, index) = (fitness.minimum_label(), fitness.minimum_index());
+    let (minimum, index) = (fitness.minimum_label(), fitness.minimum_subscript());
     let rows: Vec<String> = facts.problem.rows.iter().map(ToString::to_string).collect();
     let reading = fitness.voltage_reading().map(|reading| format!(", voltages read as {reading}")).unwrap_or_default();
     let mut text = format!(

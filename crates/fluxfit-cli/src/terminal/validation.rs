@@ -2,10 +2,7 @@
 
 use super::{BAD, GOOD, HEADING, WARNING, table};
 use anstyle::Style;
-use fluxfit::{
-    log::Log,
-    validation::validate::Channel, validation::validate::Difference, validation::validate::Outcome, Validation,
-};
+use fluxfit::{Validation, log::Log, validation::validate::Channel, validation::validate::Difference, validation::validate::Outcome};
 use fluxfit_units::{Scale, significant, small};
 
 /// Shows a validation; warnings go to standard error.

@@ -3,7 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
-    Known, Request, evidence::Convention, Nameplate, evidence::check, identify, Model,
+    Known, Model, Nameplate, Request,
+    evidence::Convention,
+    evidence::check,
+    identify,
     log::{Columns, Log},
     motor::{PARAMETERS, Parameter},
     paper,

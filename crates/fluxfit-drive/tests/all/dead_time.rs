@@ -2,11 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use fluxfit::{
-    evidence::Identification, Request, identify, Model, Verdict,
-    motor::Parameter,
-    paper,
-};
+use fluxfit::{Model, Request, Verdict, evidence::Identification, identify, motor::Parameter, paper};
 use fluxfit_drive::{
     Scenario,
     scenario::{Inverter, Modulation},

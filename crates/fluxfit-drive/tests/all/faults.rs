@@ -5,7 +5,11 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
-    evidence::Identification, Request, identify, evidence::OutputFit, evidence::Term, Verdict,
+    Request, Verdict,
+    evidence::Identification,
+    evidence::OutputFit,
+    evidence::Term,
+    identify,
     motor::{Motor, PARAMETERS, Parameter},
     objective::{
         acting_voltage::{VoltageFrame, VoltageReading},

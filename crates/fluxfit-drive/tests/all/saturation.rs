@@ -3,10 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
-    frames::Dq,
-    evidence::Identification, Known, Request, identify, Model,
-    motor::Parameter,
-    objective::acting_voltage::VoltageReading,
+    Known, Model, Request, evidence::Identification, frames::Dq, identify, motor::Parameter, objective::acting_voltage::VoltageReading,
 };
 use fluxfit_drive::{
     FluxMap, Scenario,

@@ -11,8 +11,8 @@ use fluxfit::{
     paper,
     study::{
         MethodStudy,
-        fitness::{Fitness, Problem},
-        run_method, settle,
+        fitness::{Fitness, StudyProblem},
+        run_method, use_lowest_minimum,
     },
 };
 use fluxfit_drive::{Scenario, simulate};
@@ -43,18 +43,18 @@ fn bounds() -> Bounds {
     Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec()).unwrap()
 }
 
-fn study(problem: &mut Problem, runs: usize, iterations: usize) -> Vec<MethodStudy> {
+fn study(problem: &mut StudyProblem, runs: usize, iterations: usize) -> Vec<MethodStudy> {
     let settings = Settings { population: 12, iterations, ..Settings::default() };
     let run =
         |method: Method| run_method(method, runs, settings, &bounds(), &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
     let mut studies = Method::all().map(run).to_vec();
-    settle(&mut problem.fitness, &mut studies);
+    use_lowest_minimum(&mut problem.fitness, &mut studies);
     studies
 }
 
 #[test]
 fn the_polish_finds_the_motor_and_the_timing_without_a_steady_window() {
-    let problem = Problem::output_error(&log(), None).unwrap();
+    let problem = StudyProblem::output_error(&log(), None).unwrap();
     let Fitness::OutputError { reading, .. } = problem.fitness else { panic!("not the output error") };
     assert_eq!(reading, VoltageReading::Centered);
     assert!(problem.fitness.has_converged() && problem.unexcited.is_empty());
@@ -75,7 +75,7 @@ fn all_methods_are_finite_above_the_minimum_and_the_same_on_any_number_of_thread
     let log = log();
     let on = |threads: usize| {
         ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| {
-            let mut problem = Problem::output_error(&log, Some(VoltageReading::Centered)).unwrap();
+            let mut problem = StudyProblem::output_error(&log, Some(VoltageReading::Centered)).unwrap();
             (study(&mut problem, 3, 15), problem)
         })
     };
@@ -99,7 +99,7 @@ fn all_methods_are_finite_above_the_minimum_and_the_same_on_any_number_of_thread
 /// A polish that stopped short: the swarm's end lies below it, is polished, and everything counts from there.
 #[test]
 fn a_swarm_that_finds_less_than_the_polish_moves_the_minimum() {
-    let mut problem = Problem::output_error(&log(), Some(VoltageReading::Centered)).unwrap();
+    let mut problem = StudyProblem::output_error(&log(), Some(VoltageReading::Centered)).unwrap();
     let (motor, lowest) = problem.fitness.minimum();
     if let Fitness::OutputError { minimum, .. } = &mut problem.fitness {
         minimum.drive.motor = Motor { rs: 3.0, ..motor };
@@ -115,7 +115,7 @@ fn a_swarm_that_finds_less_than_the_polish_moves_the_minimum() {
 /// The paper's box begins at no resistance, no inductance, no flux: none of its corners may stop a search or win it.
 #[test]
 fn no_corner_of_the_papers_box_beats_the_minimum() {
-    let problem = Problem::output_error(&log(), Some(VoltageReading::Centered)).unwrap();
+    let problem = StudyProblem::output_error(&log(), Some(VoltageReading::Centered)).unwrap();
     let (_, lowest) = problem.fitness.minimum();
     for corner in 0..1 << PARAMETERS {
         for nearly_zero in [0.0, 5e-324, 1e-300, 1e-30, 1e-9] {
@@ -144,7 +144,7 @@ fn a_steady_log_without_d_current_does_not_tell_ld() {
         [t, ud, uq, id, iq, omega_e].into_iter().zip(row).for_each(|(column, value)| column.push(value));
     }
     let reading = VoltageReading::Delayed { delay: 0, frame: VoltageFrame::Middle };
-    let problem = Problem::output_error(&Log::new(columns).unwrap(), Some(reading)).unwrap();
+    let problem = StudyProblem::output_error(&Log::new(columns).unwrap(), Some(reading)).unwrap();
     assert_eq!(problem.rows, [200, 200]);
     assert_eq!(problem.unexcited, [Parameter::Ld], "{:?}", problem.fitness.minimum());
 }

@@ -3,14 +3,16 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
-    Columns, Log,
+    Columns, Given, Log, Model, Request, Validation,
     frames::Dq,
-    Request, identify, Model,
+    identify,
     motor::{Motor, Parameter},
     objective::acting_voltage::VoltageReading,
     optimizer::draws::Draws,
-    paper,
-    Given, validation::validate::LITTLE, validation::validate::Outcome, validation::prediction::Prediction, Validation, validate,
+    paper, validate,
+    validation::prediction::Prediction,
+    validation::validate::LITTLE,
+    validation::validate::Outcome,
 };
 use fluxfit_drive::{
     Scenario,

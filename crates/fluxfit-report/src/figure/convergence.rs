@@ -64,7 +64,7 @@ pub(crate) fn live(fitness: &Fitness, methods: &[(MethodStudy, f64)]) -> Live {
 
 /// Name of the axis of costs.
 fn cost(fitness: &Fitness) -> String {
-    format!("F − F_{}, {}", fitness.minimum_index(), fitness.unit())
+    format!("F − F_{}, {}", fitness.minimum_subscript(), fitness.unit())
 }
 
 /// Whether some value lies below the floor of the drawing.

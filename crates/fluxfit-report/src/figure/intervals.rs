@@ -8,7 +8,7 @@ use super::{
     palette::Ink,
     plot::{Chart, Plot},
 };
-use fluxfit::evidence::Identification, evidence::IDENTIFIED, Judgement, Verdict, evidence::WEAK;
+use fluxfit::{Judgement, Verdict, evidence::IDENTIFIED, evidence::Identification, evidence::WEAK};
 use fluxfit_units::significant;
 use plotters::{
     element::{Circle, PathElement, Rectangle},

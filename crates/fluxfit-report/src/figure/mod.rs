@@ -27,7 +27,9 @@ pub(crate) mod residuals;
 
 use crate::measured::Measured;
 use fluxfit::{
-    evidence::Identification, evidence::OutputFit, evidence::SteadyFit,
+    evidence::Identification,
+    evidence::OutputFit,
+    evidence::SteadyFit,
     log::Log,
     motor::{Motor, Parameter},
     steady::OperatingPoint,

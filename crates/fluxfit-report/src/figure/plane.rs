@@ -12,7 +12,7 @@ use crate::{
     interactive::{Along, Column, Kind, Live, Panel, Series},
     typography::{decimals, number},
 };
-use fluxfit::{frames::Dq, evidence::SteadyFit, steady::OperatingPoint};
+use fluxfit::{evidence::SteadyFit, frames::Dq, steady::OperatingPoint};
 use plotters::{
     element::Circle,
     style::text_anchor::{HPos, VPos},

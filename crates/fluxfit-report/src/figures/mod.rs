@@ -9,10 +9,7 @@ use crate::{
     measured::Measured,
     study, validation,
 };
-use fluxfit::{
-    log::Log,
-    validation::prediction::Prediction, Validation,
-};
+use fluxfit::{Validation, log::Log, validation::prediction::Prediction};
 use resvg::{
     tiny_skia::{Pixmap, Transform},
     usvg::{Options, Tree, fontdb::Database},

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::logs::{Found, TWO, WHOLE, log, origin};
-use fluxfit::Request, identify;
+use fluxfit::{Request, identify};
 use fluxfit_report::{
     Report,
     figure::{self, Size},

@@ -8,11 +8,7 @@ use crate::{
     markup::checked,
 };
 use fluxfit::{
-    Log, Verdict,
-    evidence::Identification, Known, Request, identify, Model,
-    motor::Parameter,
-    optimizer::Method,
-    Given, validate,
+    Given, Known, Log, Model, Request, Verdict, evidence::Identification, identify, motor::Parameter, optimizer::Method, validate,
 };
 use fluxfit_report::{
     Report,

@@ -3,13 +3,7 @@
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use fluxfit::{
-    Columns, Log,
-    frames::Dq,
-    evidence::Identification, Request, identify, Model,
-    optimizer::draws::Draws,
-    paper,
-};
+use fluxfit::{Columns, Log, Model, Request, evidence::Identification, frames::Dq, identify, optimizer::draws::Draws, paper};
 use fluxfit_drive::{
     Scenario,
     schedule::{Course, Move},

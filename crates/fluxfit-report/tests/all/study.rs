@@ -8,12 +8,11 @@ use crate::{
     markup::checked,
 };
 use fluxfit::{
-    Motor,
-    Request,
+    Motor, Request,
     objective::voltage_error::IdZero,
     optimizer::{Method, bounds::Bounds},
     paper,
-    study::{Convergence, MethodStudy, fitness::Problem, run_method},
+    study::{Convergence, MethodStudy, fitness::StudyProblem, run_method},
 };
 use fluxfit_answer::answer::StudyFacts;
 use fluxfit_report::{Report, html};

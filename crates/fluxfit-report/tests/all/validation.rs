@@ -8,11 +8,8 @@ use crate::{
     markup::checked,
 };
 use fluxfit::{
-    Motor,
-    frames::Dq,
-    Request,
-    paper,
-    validation::prediction::PredictedStretch, validation::validate::Outcome, validation::prediction::Prediction, Validation, validate,
+    Motor, Request, Validation, frames::Dq, paper, validate, validation::prediction::PredictedStretch, validation::prediction::Prediction,
+    validation::validate::Outcome,
 };
 use fluxfit_report::{Origin, ValidationReport, validation_html};
 

@@ -10,11 +10,11 @@
 //! Each stage imports only earlier ones; [`solve`](mod@solve) is the path through them. The whole answer, with everything that hangs
 //! on it, is [`identify`](crate::identify).
 
-pub mod explain;
-pub mod fit;
-pub mod judge;
-pub mod nameplate;
-pub mod prepare;
-pub mod progress;
-pub mod request;
-pub mod solve;
+pub(crate) mod explain;
+pub(crate) mod fit;
+pub(crate) mod judge;
+pub(crate) mod nameplate;
+pub(crate) mod prepare;
+pub(crate) mod progress;
+pub(crate) mod request;
+pub(crate) mod solve;

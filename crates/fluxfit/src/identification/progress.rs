@@ -39,6 +39,6 @@ pub enum Step {
 pub type Progress<'a> = &'a dyn Fn(Step) -> ControlFlow<()>;
 
 /// A callback that ignores every step.
-pub fn silent(_: Step) -> ControlFlow<()> {
+pub(crate) fn silent(_: Step) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }

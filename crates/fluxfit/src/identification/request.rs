@@ -1,11 +1,14 @@
 //! What is asked of an identification.
 
-use super::{nameplate::Nameplate, prepare::model::Model};
+use super::{
+    nameplate::Nameplate,
+    prepare::{model::Model, search_box},
+};
 use crate::{
     error::{Error, ErrorKind},
     motor::PARAMETERS,
     objective::acting_voltage::VoltageReading,
-    optimizer::{self, Method},
+    optimizer::{self, Method, bounds::Bounds},
 };
 
 /// Systematic uncertainty of the voltages, as a fraction of their vector, unless stated otherwise: no drive's are known better.
@@ -112,6 +115,20 @@ impl Default for Request {
 }
 
 impl Request {
+    /// The box of a search: what is stated; the rest is what the log allows, or the rating where that is larger.
+    ///
+    /// # Errors
+    /// If a bound is not one that an optimizer takes.
+    pub fn search_box(&self, of_log: &Bounds) -> Result<Bounds, Error> {
+        let mut sides: Vec<(f64, f64)> = of_log.iter().collect();
+        if let Some(rating) = self.nameplate.rating {
+            let rated = search_box::from_rating(rating.voltage, rating.current, rating.omega_e)?;
+            sides.iter_mut().zip(rated.iter()).for_each(|(side, rated)| side.1 = side.1.max(rated.1));
+        }
+        let (lower, upper) = self.bounds.iter().zip(sides).map(|(stated, side)| stated.unwrap_or(side)).unzip();
+        Ok(Bounds::new(lower, upper)?)
+    }
+
     /// # Errors
     /// If a value is out of its range, or nothing is left to be identified.
     pub(crate) fn check(&self) -> Result<(), Error> {

@@ -16,7 +16,7 @@ use super::{
     judge::verdict::{Verdict, judge},
     prepare::{
         model::{self, Model, ModelChoice},
-        stretches,
+        search_box, stretches,
     },
     progress::{Progress, Step},
     request::Request,
@@ -75,7 +75,7 @@ impl Identification {
 /// # Errors
 /// If a value of the request is out of range, or no steady operating point is found. A log that cannot tell some parameter is no error:
 /// the verdicts say so.
-pub fn solve(log: &Log, request: &Request, progress: Progress) -> Result<Identification, Error> {
+pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<Identification, Error> {
     request.check()?;
     let _ = progress(Step::OperatingPoints);
     let steady = SteadyFit::of(log, request);
@@ -132,7 +132,7 @@ fn search(
 ) -> Result<Search, Error> {
     let whole = |fit: &OutputFit| stretches::as_points(log, &fit.stretches);
     let points = steady.map(|fit| fit.as_measured.clone()).or(output.map(whole)).unwrap_or_default();
-    let bounds = swarm::bounds(request, &points)?;
+    let bounds = request.search_box(&search_box::from_points(&points)?)?;
     match (output, steady) {
         (Some(fit), _) => fit.search(log, method, bounds, request, progress),
         (None, Some(fit)) => fit.search(method, bounds, request, progress),

@@ -9,7 +9,7 @@
 //! [`least_squares`](crate::least_squares), and evaluated through the same triangular factor in a few nanoseconds.
 //!
 //! The paper's samples are taken as the voltages that acted. A log's are not quite: each window comes with the
-//! [held-vector](crate::steady::held_vector) correction of its log, without which L_q is 0.02 % off on an exact log.
+//! [zero-order-hold](crate::steady::zero_order_hold) correction of its log, without which L_q is 0.02 % off on an exact log.
 //!
 //! Gao, Wang, Jiang and Hu, 2023, equations (2), (3) and (11).
 
@@ -19,7 +19,7 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
-    steady::held_vector::HeldVector,
+    steady::zero_order_hold::ZeroOrderHold,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -51,9 +51,9 @@ pub struct VoltageError {
 }
 
 impl VoltageError {
-    /// Fitness (11) over every row of the windows, each with its held-vector correction: a triangular factor per window, on all
+    /// Fitness (11) over every row of the windows, each with its zero-order-hold correction: a triangular factor per window, on all
     /// cores, merged in order.
-    pub fn of_samples(log: &Log, windows: &[(Range<usize>, HeldVector)], id_zero: IdZero) -> Self {
+    pub fn of_samples(log: &Log, windows: &[(Range<usize>, ZeroOrderHold)], id_zero: IdZero) -> Self {
         let factors: Vec<TriangularFactor> = windows.par_iter().map(|(rows, held)| factor_of(log, rows, held, id_zero)).collect();
         let empty = TriangularFactor::from_iter([]);
         Self::of_factor(factors.iter().fold(empty, TriangularFactor::merge))
@@ -107,7 +107,7 @@ pub fn steady_equations(u: Dq, mean: Dq, i: Dq, omega_e: f64) -> [Equation; 2] {
 }
 
 /// The factor of one window's samples.
-fn factor_of(log: &Log, window: &Range<usize>, held: &HeldVector, id_zero: IdZero) -> TriangularFactor {
+fn factor_of(log: &Log, window: &Range<usize>, held: &ZeroOrderHold, id_zero: IdZero) -> TriangularFactor {
     let columns = log.columns();
     let zeroed = id_zero == IdZero::AsPaper && is_id_zero(&columns.id[window.clone()], &columns.iq[window.clone()]);
     let equations = window.clone().flat_map(|k| {

@@ -1,39 +1,38 @@
-//! The variance of a mean whose samples are correlated.
+//! Variance of the mean of autocorrelated samples.
 //!
-//! `var(mean) = S(0) / n` with `S(0)` the series' spectral density at zero frequency, which the plain variance misses by a factor
-//! of hundreds on a real log. Here `S(0)` is the average of the squared projections on the first `B` cosines that fit the window
+//! `var(mean) = S(0) / n` with `S(0)` the series' spectral density at zero frequency (the long-run variance), which differs from the
+//! plain variance by a factor of hundreds on a real log. Here `S(0)` is the average of the squared projections on the first `B` cosines that fit the window
 //! (equal-weighted cosine transform). It is positive semidefinite for any number of series at once, linear in them, and its
 //! distribution is known: `mean / sqrt(S/n)` is Student's t with `B` degrees of freedom. E. Lazarus, D. J. Lewis, J. H. Stock and
 //! M. W. Watson, "HAR inference: recommendations for practice", Journal of Business & Economic Statistics 36 (2018) 541,
 //! doi:10.1080/07350015.2018.1506926.
 //!
-//! `B` follows from the first-order autocorrelation `rho`. The spectrum of such a series falls with frequency; averaged over the
-//! first `B` cosines it is too small by `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this under
-//! 5 %, but never less than 3; what a window of few correlation times then loses is made good by the
-//! spectrum's own formula.
+//! `B` follows from the lag-one autocorrelation `rho`. The spectrum of a first-order autoregressive series falls with frequency;
+//! averaged over the first `B` cosines it is too small by `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this
+//! under 5 %, but at least 3; the remaining bias of a window of few correlation times is divided out with the formula of that spectrum.
 
-/// Largest relative bias of the variance accepted from the spectrum's fall: 5 % of the variance are 2.5 % of the standard error.
-const BIAS: f64 = 0.05;
+/// Largest accepted relative bias of the variance from the fall of the spectrum: 5 % of the variance are 2.5 % of the standard error.
+const MAX_BIAS: f64 = 0.05;
 
-/// Most cosines. More would buy narrower intervals by 5 % at best and reach into frequencies where a current controller shapes the noise.
+/// Most cosines. More would narrow the intervals by 5 % at best, and include frequencies at which the current controller shapes the noise.
 const MAX_COSINES: usize = 12;
 
-/// Fewest cosines: with three degrees of freedom an interval is half again as wide as with twelve, but it holds.
+/// Fewest cosines: with three degrees of freedom an interval is 1.5 times as wide as with twelve, and still has its coverage.
 pub const MIN_COSINES: usize = 3;
 
-/// How many cosines suit a first-order autocorrelation.
+/// Number of cosines for a lag-one autocorrelation.
 pub(super) fn cosines_for(rho: f64, rows: usize) -> usize {
     if rho <= 0.0 {
         return MAX_COSINES;
     }
-    let most = rows as f64 * (1.0 - rho) / std::f64::consts::PI * (3.0 * BIAS / rho).sqrt();
-    // A float that is not below the limit saturates.
+    let most = rows as f64 * (1.0 - rho) / std::f64::consts::PI * (3.0 * MAX_BIAS / rho).sqrt();
+    // The conversion saturates.
     (most as usize).clamp(MIN_COSINES, MAX_COSINES)
 }
 
 /// Lag-one autocorrelation, with the first-order correction of its bias, `(1 + 3 rho)/n`: M. G. Kendall, Biometrika 41 (1954) 403,
-/// doi:10.1093/biomet/41.3-4.403. At most `1 - 1/n`: the longest correlation time that a window can show is its own length.
-pub(super) fn first_autocorrelation(series: &[f64]) -> f64 {
+/// doi:10.1093/biomet/41.3-4.403. At most `1 - 1/n`: the longest correlation time that can be seen in a window is its length.
+pub(super) fn lag_one_autocorrelation(series: &[f64]) -> f64 {
     let n = series.len() as f64;
     let mean = series.iter().sum::<f64>() / n;
     let power: f64 = series.iter().map(|x| (x - mean).powi(2)).sum();
@@ -45,8 +44,8 @@ pub(super) fn first_autocorrelation(series: &[f64]) -> f64 {
     (rho + (1.0 + 3.0 * rho) / n).min(1.0 - 1.0 / n)
 }
 
-/// Spectrum of a first-order series, averaged over the first cosines of a window, as a share of that at zero frequency.
-fn spectrum_share(rho: f64, rows: usize, cosines: usize) -> f64 {
+/// Spectrum of a first-order autoregressive series, averaged over the first cosines of a window, as a fraction of that at zero frequency.
+fn spectrum_fraction(rho: f64, rows: usize, cosines: usize) -> f64 {
     if rho <= 0.0 {
         return 1.0;
     }
@@ -57,21 +56,21 @@ fn spectrum_share(rho: f64, rows: usize, cosines: usize) -> f64 {
     (1..=cosines).map(at).sum::<f64>() / cosines as f64
 }
 
-/// Variance of the mean of a few neighbours in a series, far fewer than the series has: `sigma²/m (1 + 2 sum over k of (1 - k/m) rho^k)`.
+/// Variance of the mean of a few consecutive samples of a long series: `sigma²/m (1 + 2 sum over k of (1 - k/m) rho^k)`.
 pub(super) fn variance_of_short_mean(series: &[f64], rows: usize) -> f64 {
     let n = series.len() as f64;
     let mean = series.iter().sum::<f64>() / n;
     let variance = series.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
-    let rho = first_autocorrelation(series).max(0.0);
+    let rho = lag_one_autocorrelation(series).max(0.0);
     let m = rows as f64;
     let neighbours: f64 = (1..rows).map(|k| (1.0 - k as f64 / m) * rho.powi(k as i32)).sum();
     variance / m * (1.0 + 2.0 * neighbours)
 }
 
-/// Projections of `C` series, fed row by row, on the first cosines of their length.
+/// Projections of `C` series, given row by row, on the first cosines of their length.
 pub(super) struct CosineTransform<const C: usize> {
     rows: usize,
-    /// Per cosine `j`: cos(j pi (k + 1/2) / n) of this row and the one before, and 2 cos(j pi / n), by which the next follows.
+    /// For each cosine `j`: cos(j pi (k + 1/2) / n) of this row and the one before, and 2 cos(j pi / n), the factor of the recurrence.
     waves: Vec<[f64; 3]>,
     sums: Vec<[f64; C]>,
 }
@@ -80,13 +79,13 @@ impl<const C: usize> CosineTransform<C> {
     pub(super) fn new(rows: usize, cosines: usize) -> Self {
         let waves = (1..=cosines).map(|j| {
             let step = j as f64 * std::f64::consts::PI / rows as f64;
-            // The row before the first lies half a step on the other side of zero, where the cosine is the same.
+            // The row before the first is half a step on the other side of zero, where the cosine is the same.
             [(0.5 * step).cos(), (0.5 * step).cos(), 2.0 * step.cos()]
         });
         Self { rows, waves: waves.collect(), sums: vec![[0.0; C]; cosines] }
     }
 
-    /// The next row, means taken off.
+    /// Adds the next row, its means subtracted.
     pub(super) fn push(&mut self, row: &[f64; C]) {
         for ([now, before, step], sums) in self.waves.iter_mut().zip(&mut self.sums) {
             for (sum, value) in sums.iter_mut().zip(row) {
@@ -96,11 +95,11 @@ impl<const C: usize> CosineTransform<C> {
         }
     }
 
-    /// Covariance of the `C` means, if the noise has this first-order autocorrelation.
+    /// Covariance of the `C` means, if the noise has this lag-one autocorrelation.
     pub(super) fn covariance_of_mean(&self, rho: f64) -> [[f64; C]; C] {
         let n = self.rows as f64;
         // sqrt(2/n) normalizes each cosine; a second 1/n turns the long-run variance into that of the mean.
-        let scale = 2.0 / n / n / self.sums.len() as f64 / spectrum_share(rho, self.rows, self.sums.len());
+        let scale = 2.0 / n / n / self.sums.len() as f64 / spectrum_fraction(rho, self.rows, self.sums.len());
         let mut covariance = [[0.0; C]; C];
         for sums in &self.sums {
             for (row, one) in covariance.iter_mut().zip(sums) {
@@ -128,7 +127,7 @@ mod tests {
     }
 
     fn variance_of_mean(series: &[f64]) -> f64 {
-        let rho = first_autocorrelation(series);
+        let rho = lag_one_autocorrelation(series);
         let cosines = cosines_for(rho, series.len());
         let mean = series.iter().sum::<f64>() / series.len() as f64;
         let mut transform = CosineTransform::<1>::new(series.len(), cosines);
@@ -137,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_variance_is_that_of_the_process() {
+    fn the_variance_matches_the_process() {
         // AR(1) with unit innovations: n var(mean) -> 1/(1-rho)², so 1, 4 and 400.
         for (rho, tolerance) in [(0.0, 0.05), (0.5, 0.06), (0.95, 0.11)] {
             let mut draws = Draws::seeded(11, 0);
@@ -149,14 +148,14 @@ mod tests {
                 total += variance_of_mean(&series) * n as f64 / f64::from(runs);
             }
             let expected = 1.0 / (1.0 - rho).powi(2);
-            // Bias of up to 5 % by design, and for 0.95 a second one of the same size from the window's ends; the mean over 2000
-            // runs is sharp to 1 %.
+            // The bias is up to 5 % by design, and for 0.95 a second one of the same size comes from the ends of the window; the standard
+            // error of the mean over 2000 runs is 1 %.
             assert!((total / expected - 1.0).abs() < tolerance, "rho {rho}: {total} against {expected}");
         }
     }
 
     #[test]
-    fn the_recurrence_is_the_cosine() {
+    fn the_recurrence_matches_the_cosine() {
         let n = 100_000;
         let mut transform = CosineTransform::<1>::new(n, 12);
         for _ in 0..n - 1 {
@@ -168,8 +167,8 @@ mod tests {
     }
 
     #[test]
-    fn constants_have_no_variance() {
-        assert_eq!(cosines_for(first_autocorrelation(&[3.0; 50]), 50), MAX_COSINES);
+    fn constant_series_have_no_variance() {
+        assert_eq!(cosines_for(lag_one_autocorrelation(&[3.0; 50]), 50), MAX_COSINES);
         assert_eq!(variance_of_mean(&[3.0; 50]), 0.0);
     }
 }

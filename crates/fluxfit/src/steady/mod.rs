@@ -1,43 +1,43 @@
-//! Operating points: stretches of a log in which the drive stands still in the dq frame, as means with a covariance that knows
+//! Operating points: means over the windows of a log in which currents and speed are constant, with a covariance that accounts for
 //! autocorrelation.
 //!
-//! Over a window of `n` rows equation (1) holds for the means, exactly, because it is linear in these seven channels and the
-//! currents' drift:
+//! Equation (1) holds exactly for the means over a window, because it is linear in these seven channels and the currents' drift:
 //!
 //! ```text
 //! mean(u_d) = R_s mean(i_d) + L_d drift_d - L_q mean(omega_e i_q)
 //! mean(u_q) = R_s mean(i_q) + L_q drift_q + L_d mean(omega_e i_d) + psi_f mean(omega_e)
 //! ```
 //!
-//! Means, not samples: a drive's voltage answers the noise of its own current measurement, and sample by sample that biases R_s
-//! by several percent; the mean of a window does not care.
+//! Means are used, and not samples, because feedback correlates the voltage with the current noise: a regression on samples has a
+//! bias of several percent in R_s, the means have none.
 
 pub mod autocorrelation;
-pub mod held_vector;
-mod hold;
-mod repeats;
+mod block;
+mod ripple;
+mod stale;
 pub mod windows;
+pub mod zero_order_hold;
 
-use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor, resolution};
-use autocorrelation::{CosineTransform, MIN_COSINES, cosines_for, first_autocorrelation, variance_of_short_mean};
-use held_vector::HeldVector;
+use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor, quantization};
+use autocorrelation::{CosineTransform, MIN_COSINES, cosines_for, lag_one_autocorrelation, variance_of_short_mean};
 use std::ops::Range;
+use zero_order_hold::ZeroOrderHold;
 
 /// Channels whose means enter the steady equations: u_d, u_q, i_d, i_q, omega_e i_d, omega_e i_q, omega_e.
 pub const CHANNELS: usize = 7;
 
-/// The drift of the currents is read between the means of this many rows at either end of a window: few enough to sit at the
-/// ends, enough to calm noise.
+/// The drift of a current is the difference of its means over this many rows at either end of a window: few enough to be close to
+/// the ends, enough to average noise.
 const DRIFT_ROWS: usize = 8;
 
-/// One steady window, measured.
+/// Means of one steady window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OperatingPoint {
-    /// Its rows in the log.
+    /// Rows in the log.
     pub rows: Range<usize>,
     /// Time of its first and last row, s.
     pub time: (f64, f64),
-    /// Means of the [`CHANNELS`], SI units, after the held-vector correction.
+    /// Means of the [`CHANNELS`], SI units, after the zero-order-hold correction.
     pub means: [f64; CHANNELS],
     /// Slope of the currents, A/s.
     pub drift: Dq,
@@ -45,30 +45,30 @@ pub struct OperatingPoint {
     pub drift_variance: Dq,
     /// Covariance of the means.
     pub covariance: [[f64; CHANNELS]; CHANNELS],
-    /// Degrees of freedom of that covariance.
+    /// Degrees of freedom of the covariance.
     pub degrees_of_freedom: usize,
 }
 
-/// What is already believed of the motor while its windows are measured.
+/// The preliminary estimate with which windows are measured a second time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Belief {
-    /// A first estimate of the motor: tells the noise from the signal.
+pub struct PreliminaryEstimate {
+    /// The motor, whose residuals are the noise of the voltage equations.
     pub motor: Motor,
-    /// What the logged voltage means within its period.
-    pub held_vector: HeldVector,
+    /// The zero-order-hold correction of the window.
+    pub hold: ZeroOrderHold,
 }
 
 impl OperatingPoint {
-    /// Measures a window. Without a belief nothing is corrected and the covariance is a coarse one.
-    pub fn measure(log: &Log, rows: Range<usize>, belief: Option<&Belief>) -> Self {
+    /// Measures a window. Without a preliminary estimate nothing is corrected, and the covariance is a coarse one.
+    pub fn measure(log: &Log, rows: Range<usize>, preliminary: Option<&PreliminaryEstimate>) -> Self {
         let columns = log.columns();
         let n = rows.len();
         let row = |k: usize| {
             let (u, i) = (Dq { d: columns.ud[k], q: columns.uq[k] }, Dq { d: columns.id[k], q: columns.iq[k] });
             let omega_e = columns.omega_e[k];
-            // The resistance sees the mean over a period, the fluxes are those of the sampled currents.
-            let (u, mean) = match belief {
-                Some(belief) => belief.held_vector.correct(u, i, omega_e),
+            // The resistive drop is that of the current's mean over a period, the fluxes are those of the sampled current.
+            let (u, mean) = match preliminary {
+                Some(preliminary) => preliminary.hold.correct(u, i, omega_e),
                 None => (u, i),
             };
             [u.d, u.q, mean.d, mean.q, omega_e * i.d, omega_e * i.q, omega_e]
@@ -79,10 +79,11 @@ impl OperatingPoint {
                 *mean += value / n as f64;
             }
         }
-        // Of the two residuals' correlations the longer counts for both.
-        let rho = belief.map(|belief| {
-            let residuals = residual_weights(&belief.motor).map(|weights| rows.clone().map(|k| dot(&weights, &row(k))).collect::<Vec<_>>());
-            residuals.iter().map(|residual| first_autocorrelation(residual)).fold(0.0, f64::max)
+        // The larger autocorrelation of the two residuals is used for both.
+        let rho = preliminary.map(|preliminary| {
+            let residuals =
+                residual_weights(&preliminary.motor).map(|weights| rows.clone().map(|k| dot(&weights, &row(k))).collect::<Vec<_>>());
+            residuals.iter().map(|residual| lag_one_autocorrelation(residual)).fold(0.0, f64::max)
         });
         let cosines = rho.map_or(MIN_COSINES, |rho| cosines_for(rho, n));
         let mut transform = CosineTransform::<CHANNELS>::new(n, cosines);
@@ -92,7 +93,7 @@ impl OperatingPoint {
             transform.push(&deviation);
         }
         let mut covariance = transform.covariance_of_mean(rho.unwrap_or(0.0));
-        add_resolution(&mut covariance, log, &rows, means[6]);
+        add_quantization(&mut covariance, log, &rows, means[6]);
         let time = (columns.t[rows.start], columns.t[rows.end - 1]);
         let [(drift_d, variance_d), (drift_q, variance_q)] = [&columns.id, &columns.iq].map(|current| drift(&current[rows.clone()], time));
         Self {
@@ -139,7 +140,7 @@ impl OperatingPoint {
         covariance
     }
 
-    /// Variance of each equation's `coefficients . direction` that the noise of currents and speed makes: `[d, q]`.
+    /// Variance of each equation's `coefficients . direction` caused by the noise of currents and speed: `[d, q]`.
     pub fn coefficient_variance(&self, direction: &[f64; 4]) -> [f64; 2] {
         let [rs, ld, lq, psi_f] = *direction;
         let weights = [[0.0, 0.0, rs, 0.0, 0.0, -lq, 0.0], [0.0, 0.0, 0.0, rs, ld, 0.0, psi_f]];
@@ -152,7 +153,7 @@ impl OperatingPoint {
     }
 }
 
-/// The residuals of equations (2), d and q, as weights of the channels.
+/// Weights of the channels in the residuals of equations (2), d and q.
 fn residual_weights(motor: &Motor) -> [[f64; CHANNELS]; 2] {
     let Motor { rs, ld, lq, psi_f } = *motor;
     [[1.0, 0.0, -rs, 0.0, 0.0, lq, 0.0], [0.0, 1.0, 0.0, -rs, -ld, 0.0, -psi_f]]
@@ -162,8 +163,8 @@ fn dot(one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-/// Adds what the digits of the log leave open: an error of a channel is the same in every product that the channel enters.
-fn add_resolution(covariance: &mut [[f64; CHANNELS]; CHANNELS], log: &Log, rows: &Range<usize>, omega_e: f64) {
+/// Adds the uncertainty from quantization: a channel has the same error in every product that it enters.
+fn add_quantization(covariance: &mut [[f64; CHANNELS]; CHANNELS], log: &Log, rows: &Range<usize>, omega_e: f64) {
     let Some(segment) = log.segment_of(rows.start) else { return };
     let columns = log.columns();
     let channels = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e];
@@ -171,7 +172,7 @@ fn add_resolution(covariance: &mut [[f64; CHANNELS]; CHANNELS], log: &Log, rows:
         let values = &channels[c][rows.clone()];
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
-        resolution::uncertainty(segment.steps[c], variance.sqrt())
+        quantization::standard_uncertainty(segment.steps[c], variance.sqrt())
     });
     let [ud, uq, id, iq, omega] = errors;
     for error in [
@@ -187,8 +188,7 @@ fn add_resolution(covariance: &mut [[f64; CHANNELS]; CHANNELS], log: &Log, rows:
     }
 }
 
-/// Slope of a current over its window, A/s, and the variance that noise gives it: what the straight line leaves, with its
-/// correlation from row to row.
+/// Slope of a current over its window, A/s, and its variance, from the deviations from the straight line and their autocorrelation.
 fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let n = current.len();
     let rows = DRIFT_ROWS.min(n / 4).max(1);
@@ -197,6 +197,6 @@ fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let steps = (n - rows) as f64;
     let span = (end - start) * steps / (n - 1).max(1) as f64;
     let change = mean(&current[n - rows..]) - mean(&current[..rows]);
-    let rest: Vec<f64> = current.iter().enumerate().map(|(k, i)| i - change * k as f64 / steps).collect();
-    (change / span, 2.0 * variance_of_short_mean(&rest, rows) / span.powi(2))
+    let deviations: Vec<f64> = current.iter().enumerate().map(|(k, i)| i - change * k as f64 / steps).collect();
+    (change / span, 2.0 * variance_of_short_mean(&deviations, rows) / span.powi(2))
 }

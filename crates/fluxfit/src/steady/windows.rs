@@ -1,89 +1,78 @@
-//! Where the drive stands still: finding steady windows, or taking those that were named.
+//! Steady windows: finding them, or taking those that the user named.
 //!
 //! A segment is cut into short blocks. A block is steady when its two halves agree, in both currents and in speed; steady
-//! neighbours that agree with the mean of the window so far join it. Agreement is a small fraction of the log's largest current
-//! and speed, or what the noise of the means allows. Blocks without current are left out: while a drive coasts, its voltage
-//! columns are not voltages that act.
+//! neighbours that agree with the mean of the window so far join it. Means agree if they differ by no more than a small fraction of
+//! the log's largest current and speed, or than their noise allows. Blocks without current are left out: while a drive coasts, its
+//! inverter is off and the voltage columns are not the terminal voltages.
 
-use super::{hold::mended, repeats::Repeats};
+use super::{
+    block::{BLOCK_ROWS, Block, HALVES_TOLERANCE, MIN_CURRENT, Scale, TOLERANCE, mean_of},
+    ripple::merge_rippling,
+    stale::StaleSamples,
+};
 use crate::{
     error::Error,
     log::{Log, Segment},
 };
 use std::{f64::consts::TAU, ops::Range};
 
-/// Fewest rows of a window: a few autocorrelation times, and rows enough for a covariance.
+/// Fewest rows of a window: a few autocorrelation times, and enough rows for a covariance.
 pub const MIN_ROWS: usize = 30;
 
-/// Rows per block: a five-hundredth of the log within these limits. Short against a steady stretch, long against the noise.
-pub(super) const BLOCK_ROWS: (usize, usize) = (10, 500);
-
-/// A window has at least this many blocks: one could be chance.
+/// Fewest blocks of a window: a single block can look steady by chance.
 const MIN_BLOCKS: usize = 3;
 
-/// A window is at least this fraction of the longest: what is shorter is a pause between transients rather than a point at which
-/// the drive was held.
+/// Length of the shortest window as a fraction of the longest: a shorter stretch is a pause between transients rather than an
+/// intended operating point.
 const MIN_SHARE: f64 = 0.2;
 
-/// Means agree within this fraction of the log's largest value. The equations of the means hold while currents drift; what this
-/// keeps out are transients that sampling and filters distort.
-pub(super) const TOLERANCE: f64 = 0.01;
-
-/// The currents at a window's ends agree with its middle half within this fraction, or they are cut off: a tenth of the above.
+/// Blocks at a window's ends whose currents differ from its middle half by more than this fraction are cut off: a tenth of
+/// [`TOLERANCE`].
 const END_TOLERANCE: f64 = 0.001;
-
-/// The currents of a window's halves agree within this fraction: half of what its blocks may differ.
-pub(super) const HALVES_TOLERANCE: f64 = 0.005;
 
 /// Ripples of dead time and device drops per electrical turn.
 const RIPPLES_PER_TURN: f64 = 6.0;
 
-/// Blocks that average a ripple are taken where they see this many times the rows that short ones do.
+/// Blocks long enough to average a ripple are used where the windows that they give have more than this many times the rows.
 const MUCH_MORE: usize = 2;
 
-/// Means agree within this many standard deviations of their difference.
-const NOISE_FACTOR: f64 = 4.0;
-
-/// Currents below this fraction of the log's largest carry no information, and may belong to a drive that is not switching.
-const MIN_CURRENT: f64 = 0.01;
-
-/// Longest window for the study of the paper's fitness: its sample count.
+/// Longest window for the study of the paper's fitness: the paper's sample count.
 pub const PAPER_ROWS: usize = 4000;
 
-/// Finds the steady windows of a log, in order; of several logs joined, those of each by itself.
+/// Finds the steady windows of a log, in order; those of joined logs separately for each.
 ///
 /// # Errors
-/// If there is none.
+/// If there is no steady window.
 pub fn find(log: &Log) -> Result<Vec<Range<usize>>, Error> {
     let (windows, _) = find_all(log);
     if windows.is_empty() { Err(Error::NoOperatingPoint { least: MIN_ROWS }) } else { Ok(windows) }
 }
 
-/// The steady windows, and the stretches that are steady but too short beside them; without those that are too short beside these,
-/// in which nobody can have meant to hold the drive.
+/// The steady windows, and the steady stretches that are too short to be windows. Stretches that are still shorter by the same factor
+/// are dropped.
 pub(crate) fn find_all(log: &Log) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     let scale = Scale::of(log);
     let (mut windows, mut short) = (Vec::new(), Vec::new());
     for of_one_log in log.segments().chunk_by(|one, other| one.log == other.log) {
-        let repeats = Repeats::of(log, of_one_log);
-        let told = |rows: &Range<usize>| repeats.told(log, rows);
-        let mut stretches = stretches_of_one_log(log, of_one_log, &scale, repeats);
-        // One reading, however often it is repeated, does not show that anything is steady.
-        stretches.retain(|rows| told(rows) > 1 || !repeats.any());
-        let longest = stretches.iter().map(told).max().unwrap_or(0);
-        let (long, rest): (Vec<_>, Vec<_>) = stretches.into_iter().partition(|rows| told(rows) as f64 >= MIN_SHARE * longest as f64);
+        let stale = StaleSamples::of(log, of_one_log);
+        let length = |rows: &Range<usize>| stale.informative_rows(log, rows);
+        let mut stretches = stretches_of_one_log(log, of_one_log, &scale, stale);
+        // A single sample, however often repeated, does not show a steady state.
+        stretches.retain(|rows| length(rows) > 1 || !stale.are_present());
+        let longest = stretches.iter().map(length).max().unwrap_or(0);
+        let (long, rest): (Vec<_>, Vec<_>) = stretches.into_iter().partition(|rows| length(rows) as f64 >= MIN_SHARE * longest as f64);
         windows.extend(long);
-        short.extend(rest.into_iter().filter(|rows| told(rows) as f64 >= MIN_SHARE * MIN_SHARE * longest as f64));
+        short.extend(rest.into_iter().filter(|rows| length(rows) as f64 >= MIN_SHARE * MIN_SHARE * longest as f64));
     }
     (windows, short)
 }
 
-/// The steady stretches of the segments of one log: those of short blocks; or those of blocks that average a ripple, where these
-/// see much more.
-fn stretches_of_one_log(log: &Log, segments: &[Segment], scale: &Scale, repeats: Repeats) -> Vec<Range<usize>> {
+/// The steady stretches of the segments of one log, found with short blocks; or with blocks long enough to average a ripple, where
+/// those find many more rows.
+fn stretches_of_one_log(log: &Log, segments: &[Segment], scale: &Scale, stale: StaleSamples) -> Vec<Range<usize>> {
     let rows: usize = segments.iter().map(|segment| segment.rows.len()).sum();
-    // Long blocks calm noise; a recorder's rows are too far apart for that, and a drive holds few of them.
-    let short = if repeats.any() { BLOCK_ROWS.0 } else { (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1) };
+    // Long blocks average noise. The rows of a recorder are too far apart for that: an operating point has few of them.
+    let short = if stale.are_present() { BLOCK_ROWS.0 } else { (rows / 500).clamp(BLOCK_ROWS.0, BLOCK_ROWS.1) };
     let found = stretches(log, segments, scale, |_, _| short);
     let averaging = stretches(log, segments, scale, |segment, start| {
         let turn = (log.columns().omega_e[start] * segment.sample_period).abs();
@@ -93,7 +82,7 @@ fn stretches_of_one_log(log: &Log, segments: &[Segment], scale: &Scale, repeats:
     if rows_of(&averaging) > MUCH_MORE * rows_of(&found) { averaging } else { found }
 }
 
-/// The steady stretches under blocks of so many rows, which may depend on where a block starts.
+/// The steady stretches found with blocks of `block_rows` rows, which may depend on where the block starts.
 fn stretches(log: &Log, segments: &[Segment], scale: &Scale, block_rows: impl Fn(&Segment, usize) -> usize) -> Vec<Range<usize>> {
     let mut windows = Vec::new();
     let mut shortest = usize::MAX;
@@ -114,7 +103,7 @@ fn stretches(log: &Log, segments: &[Segment], scale: &Scale, block_rows: impl Fn
         }
         windows.extend(open.and_then(|window| window.rows(scale)));
     }
-    let mut windows = mended(log, windows, scale);
+    let mut windows = merge_rippling(log, windows, scale);
     let least = MIN_ROWS.max(MIN_BLOCKS * shortest.min(BLOCK_ROWS.1));
     windows.retain(|rows| rows.len() >= least);
     windows
@@ -123,7 +112,7 @@ fn stretches(log: &Log, segments: &[Segment], scale: &Scale, block_rows: impl Fn
 /// The rows of each segment between two times, s, both included.
 ///
 /// # Errors
-/// If no segment has enough rows between them.
+/// If no segment has at least [`MIN_ROWS`] rows between them.
 pub fn between(log: &Log, (from, to): (f64, f64)) -> Result<Vec<Range<usize>>, Error> {
     let t = &log.columns().t;
     let within = log.segments().iter().map(|segment| {
@@ -139,72 +128,24 @@ pub fn between(log: &Log, (from, to): (f64, f64)) -> Result<Vec<Range<usize>>, E
     Ok(windows)
 }
 
-/// The last [`PAPER_ROWS`] rows of each window: the paper's sample count, farthest from the transient before.
+/// The last [`PAPER_ROWS`] rows of each window: the paper's sample count, as far as possible from the transient before the window.
 pub fn at_most_paper_rows(windows: &[Range<usize>]) -> Vec<Range<usize>> {
     windows.iter().map(|rows| rows.end.saturating_sub(PAPER_ROWS).max(rows.start)..rows.end).collect()
 }
 
-/// Currents below this, A, are too small to tell anything.
+/// Currents below this, A, are too small to carry information.
 pub fn least_current(log: &Log) -> f64 {
     MIN_CURRENT * log.peak_current()
 }
 
-/// Rows of a log whose current is too small to tell anything: a standing or coasting drive.
+/// Number of rows whose current is too small to carry information: a drive at rest or coasting.
 pub fn rows_without_current(log: &Log) -> usize {
     let least = least_current(log);
     let columns = log.columns();
     columns.id.iter().zip(&columns.iq).filter(|(id, iq)| id.hypot(**iq) < least).count()
 }
 
-/// The log's largest current (A) and speed (rad/s): i_d, i_q, omega_e.
-pub(super) struct Scale(pub(super) [f64; 3]);
-
-impl Scale {
-    fn of(log: &Log) -> Self {
-        let speed = log.columns().omega_e.iter().fold(0.0_f64, |most, omega| most.max(omega.abs()));
-        Self([log.peak_current(), log.peak_current(), speed])
-    }
-
-    /// Whether two triples of means agree, given the variance of their differences. Speed may always move by [`TOLERANCE`]: its
-    /// slope is not in the equations.
-    pub(super) fn agree(&self, current_tolerance: f64, one: &[f64; 3], other: &[f64; 3], variance: &[f64; 3]) -> bool {
-        let tolerances = [current_tolerance, current_tolerance, TOLERANCE];
-        (0..3).all(|c| (one[c] - other[c]).abs() <= tolerances[c] * self.0[c] + NOISE_FACTOR * variance[c].sqrt())
-    }
-}
-
-pub(super) struct Block {
-    rows: Range<usize>,
-    /// Means of i_d, i_q, omega_e.
-    pub(super) means: [f64; 3],
-    /// Variances of those means, if their noise is white.
-    variances: [f64; 3],
-}
-
-impl Block {
-    pub(super) fn of(log: &Log, rows: Range<usize>) -> Self {
-        let columns = log.columns();
-        let n = rows.len() as f64;
-        let channels = [&columns.id, &columns.iq, &columns.omega_e].map(|column| &column[rows.clone()]);
-        let means = channels.map(|values| values.iter().sum::<f64>() / n);
-        // From differences of neighbours: a slope in the block does not count as noise.
-        let variances =
-            channels.map(|values| values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() / (2.0 * (n - 1.0)) / n);
-        Self { rows, means, variances }
-    }
-
-    /// The block, if it is steady and carries current.
-    fn steady(log: &Log, rows: Range<usize>, scale: &Scale) -> Option<Self> {
-        let block = Self::of(log, rows);
-        let middle = block.rows.start.midpoint(block.rows.end);
-        let (first, second) = (Self::of(log, block.rows.start..middle), Self::of(log, middle..block.rows.end));
-        let variance: [f64; 3] = std::array::from_fn(|c| first.variances[c] + second.variances[c]);
-        let carries_current = block.means[0].hypot(block.means[1]) >= MIN_CURRENT * scale.0[0];
-        (carries_current && scale.agree(TOLERANCE, &first.means, &second.means, &variance)).then_some(block)
-    }
-}
-
-/// Blocks in a row that agree.
+/// Consecutive blocks that agree.
 struct Window {
     blocks: Vec<Block>,
     means: [f64; 3],
@@ -216,7 +157,7 @@ impl Window {
     }
 
     fn agrees(&self, block: &Block, scale: &Scale) -> bool {
-        // The window's own mean is at least as quiet as the block's.
+        // The variance of the window's mean is at most the block's.
         scale.agree(TOLERANCE, &self.means, &block.means, &block.variances.map(|variance| 2.0 * variance))
     }
 
@@ -226,7 +167,7 @@ impl Window {
         self.blocks.push(block);
     }
 
-    /// The rows, without the tails of the transients at the ends; none if the window drifts as a whole.
+    /// The rows without the tails of the transients at the ends; `None` if the window drifts as a whole.
     fn rows(&self, scale: &Scale) -> Option<Range<usize>> {
         let n = self.blocks.len();
         let middle = mean_of(&self.blocks[n / 4..n - n / 4]);
@@ -239,10 +180,6 @@ impl Window {
     }
 }
 
-fn mean_of(blocks: &[Block]) -> [f64; 3] {
-    std::array::from_fn(|c| blocks.iter().map(|block| block.means[c]).sum::<f64>() / blocks.len() as f64)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -250,7 +187,7 @@ mod tests {
 
     const PERIOD: f64 = 1e-3;
 
-    /// A log of (i_d, i_q, omega_e) per row, one millisecond apart; voltages that nobody reads here.
+    /// A log of (i_d, i_q, omega_e) per row, one millisecond apart; the voltages are not used here.
     fn log(rows: impl IntoIterator<Item = (f64, f64, f64)>) -> Log {
         log_at(rows, |k| k as f64 * PERIOD)
     }
@@ -274,8 +211,8 @@ mod tests {
     }
 
     #[test]
-    fn two_plateaus_between_ramps_are_found_whole() {
-        // Rows 0..300 rise, 300..800 hold, 800..1000 rise, 1000..1600 hold, 1600..1900 fall. Blocks have 10 rows.
+    fn windows_cover_two_plateaus_between_ramps() {
+        // Rows 0..300 rise, 300..800 are constant, 800..1000 rise, 1000..1600 are constant, 1600..1900 fall. Blocks have 10 rows.
         let iq =
             ramp(0.0, 5.0, 300).chain(ramp(5.0, 5.0, 500)).chain(ramp(5.0, 9.0, 200)).chain(ramp(9.0, 9.0, 600)).chain(ramp(9.0, 0.0, 300));
         assert_eq!(find(&log(iq.map(|iq| (-1.0, iq, 400.0)))).unwrap(), [300..800, 1000..1600]);
@@ -287,13 +224,13 @@ mod tests {
         let rows = (0..2000).map(|k| (-1.0, 8.0 - 6.0 * (-f64::from(k) / 50.0).exp(), 400.0));
         let windows = find(&log(rows)).unwrap();
         assert_eq!(windows.len(), 1);
-        // A block counts by its mean, and noise is read from neighbours, so a block or two either way.
+        // Block means are compared, and the noise is estimated from differences of neighbours: one or two blocks of tolerance.
         assert!((290..=350).contains(&windows[0].start) && windows[0].end == 2000, "{windows:?}");
     }
 
     #[test]
-    fn a_coasting_drive_is_left_out_and_counted() {
-        // 0.5 % of the current while the speed holds.
+    fn rows_of_a_coasting_drive_are_left_out_and_counted() {
+        // 0.5 % of the current at constant speed.
         let rows = (0..1200).map(|k| if k < 600 { (0.0, 8.0, 400.0) } else { (0.0, 0.04, 400.0) });
         let log = log(rows);
         assert_eq!(find(&log).unwrap(), vec![0..600; 1]);
@@ -301,10 +238,10 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_stands_still_there_is_no_operating_point() {
+    fn a_log_without_steady_state_has_no_operating_point() {
         let rows = ramp(1.0, 9.0, 1000).map(|iq| (0.0, iq, 400.0));
         assert_eq!(find(&log(rows)), Err(Error::NoOperatingPoint { least: 30 }));
-        // A slow swing of 10 %: steady from block to block, never over a window.
+        // A slow oscillation of 10 %: steady within each block, but not over a window.
         let rows = (0..4000).map(|k| (0.0, 8.0 + 0.8 * (f64::from(k) / 100.0).sin(), 400.0));
         assert!(find(&log(rows)).map_or_else(|_| true, |windows| windows.iter().all(|rows| rows.len() < 100)));
     }
@@ -319,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn named_windows_hold_their_ends_and_a_short_one_says_what_it_has() {
+    fn named_windows_include_their_ends_and_short_ones_are_errors() {
         let log = log((0..1000).map(|_| (-1.0, 8.0, 400.0)));
         assert_eq!(between(&log, (0.1, 0.2)).unwrap(), vec![100..201; 1]);
         let short = between(&log, (0.0995, 0.1285));
@@ -329,7 +266,34 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_rows_are_the_last_ones() {
+    fn at_most_paper_rows_keeps_the_last_rows() {
         assert_eq!(at_most_paper_rows(&[100..5000, 6000..6100, 0..4000, 0..4001]), [1000..5000, 6000..6100, 0..4000, 1..4001]);
+    }
+
+    /// 10 A along q with a ripple of i_d, A, 25 rows long; i_q falls by `drift` A over the log.
+    fn rippling_log(ripple: f64, drift: f64) -> Log {
+        let rows = (0..4000).map(|k| {
+            let k = f64::from(k);
+            (-2.0 + ripple * (TAU * k / 25.0).sin(), 10.0 - drift * k / 4000.0, 418.879)
+        });
+        log_at(rows, |k| k as f64 * 1e-4)
+    }
+
+    /// Blocks may differ by 1 % of the largest current, 10.2 A; a larger ripple divides the window, or leaves nothing of it.
+    #[test]
+    fn a_rippling_operating_point_is_one_window() {
+        for ripple in [0.05, 0.12, 0.15, 0.25, 0.4] {
+            let windows = find(&rippling_log(ripple, 0.0)).unwrap();
+            assert!(windows.len() == 1 && windows[0].len() > 3500, "{ripple} A: {windows:?}");
+        }
+    }
+
+    /// A slow fall of i_q by 6 % makes several operating points, with a ripple or without.
+    #[test]
+    fn a_drifting_current_is_not_one_window() {
+        for ripple in [0.0, 0.12] {
+            let windows = find(&rippling_log(ripple, 0.6)).unwrap_or_default();
+            assert!(windows.iter().all(|window| window.len() < 2000), "{ripple} A: {windows:?}");
+        }
     }
 }

@@ -1,12 +1,12 @@
-//! What a study minimizes on a log, and where its minimum is: that of fitness (11) exactly, that of the output error as the
-//! [polish](crate::levenberg_marquardt) finds it.
+//! The fitness that a study minimizes on a log, and its minimum: exact for fitness (11); for the output error, the local minimum found
+//! by [Levenberg and Marquardt's method](crate::levenberg_marquardt).
 
 use crate::{
     error::Error,
     identification::{
         fit::{
             excitation::Excitation,
-            steady::{beliefs, operating_points, voltage_timing},
+            steady::{operating_points, preliminary_estimates, voltage_timing},
         },
         prepare::search_box,
         request::{Known, Request},
@@ -26,49 +26,49 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// The search from which a polish starts where no steady window gives one: coarse, since the polish comes home from far away.
-const COARSE: Settings = Settings { population: 20, iterations: 30, seed: 1, run: 0, close_to_optimum: None, target_cost: None };
+/// The coarse search that gives a start for the Levenberg-Marquardt method, which converges from far away.
+const COARSE_SEARCH: Settings = Settings { population: 20, iterations: 30, seed: 1, run: 0, close_to_optimum: None, target_cost: None };
 
-/// Half a 95 % interval, in standard errors.
-const INTERVAL: f64 = 1.96;
+/// Half-width of a 95 % interval in standard errors.
+const HALF_WIDTH: f64 = 1.96;
 
-/// A small part of what the log allows a parameter.
-const SMALL_PART: f64 = 0.01;
+/// A value below this fraction of the width of the search box counts as zero.
+const SMALL_FRACTION: f64 = 0.01;
 
-/// A fitness on a log, and what it was made of.
+/// The minimization problem of a study: a fitness on a log, and its search box.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problem {
-    /// What is minimized.
+pub struct StudyProblem {
+    /// The fitness to be minimized.
     pub fitness: Fitness,
-    /// The steady windows that it sums over, before any correction; none of the output error, which takes all rows.
+    /// The steady windows over which the fitness sums, before any correction; empty for the output error, which sums over all rows.
     pub operating_points: Vec<OperatingPoint>,
-    /// Rows that the fitness sums over, per window or per segment.
+    /// Number of rows over which the fitness sums, per window or per segment.
     pub rows: Vec<usize>,
-    /// The box that the log allows.
+    /// The search box, derived from the log.
     pub bounds: Bounds,
-    /// Parameters of which the fitness tells nothing: what a swarm says of them is chance.
+    /// Parameters that the log does not excite: the fitness does not depend on them, and a swarm's values for them are random.
     pub unexcited: Vec<Parameter>,
 }
 
-/// What is minimized.
+/// The fitness of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fitness {
-    /// Fitness (11).
+    /// Fitness (11), the voltage error.
     VoltageError(VoltageError),
     /// The output error.
     OutputError {
-        /// The output error itself.
+        /// The objective.
         objective: OutputError,
-        /// How the voltage columns were read.
+        /// The voltage timing.
         reading: VoltageReading,
-        /// The lowest cost that is known.
+        /// The lowest minimum known.
         minimum: Polished,
     },
 }
 
-impl Problem {
-    /// Fitness (11) on the steady windows of a log: on at most the paper's 4000 samples of each, with the held-vector correction
-    /// that an identification makes.
+impl StudyProblem {
+    /// Fitness (11) on the steady windows of a log: on at most the paper's 4000 samples of each, with the zero-order-hold correction
+    /// of an identification.
     ///
     /// # Errors
     /// If there is no steady window.
@@ -76,8 +76,8 @@ impl Problem {
         let whole = operating_points(log, request)?;
         let rows = at_most_paper_rows(&whole.into_iter().map(|point| point.rows).collect::<Vec<_>>());
         let points: Vec<_> = rows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect();
-        let beliefs = beliefs(log, &points, voltage_timing(request).0, request);
-        let windows: Vec<_> = points.iter().zip(beliefs).map(|(point, belief)| (point.rows.clone(), belief.held_vector)).collect();
+        let preliminary = preliminary_estimates(log, &points, voltage_timing(request).0, request);
+        let windows: Vec<_> = points.iter().zip(preliminary).map(|(point, estimate)| (point.rows.clone(), estimate.hold)).collect();
         let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
         Ok(Self {
             fitness: Fitness::VoltageError(VoltageError::of_samples(log, &windows, id_zero)),
@@ -88,31 +88,33 @@ impl Problem {
         })
     }
 
-    /// The output error on every row of a log, its voltages read as stated, or else as they fit best.
+    /// The output error on every row of a log, with the stated voltage timing, or else with the one that fits best.
     ///
     /// # Errors
-    /// If the log is too short, or no motor that it allows has a finite cost.
+    /// If the log is too short, or no motor in the search box has a finite cost.
     pub fn output_error(log: &Log, stated: Option<VoltageReading>) -> Result<Self, Error> {
         let steady = Self::steady(log, &Request::default(), IdZero::Measured).ok();
         let (mut starts, bounds) = match steady {
             Some(steady) => (vec![steady.fitness.minimum().0], steady.bounds),
             None => (Vec::new(), search_box::from_rows(log)?),
         };
-        let objectives: Vec<(VoltageReading, OutputError)> =
-            readings(stated).into_iter().map(|reading| Ok((reading, OutputError::of(log, reading)?))).collect::<Result<_, Error>>()?;
-        // Least squares may leave an inductance at zero or below, from where no polish starts: the coarse search helps it out.
+        let objectives: Vec<(VoltageReading, OutputError)> = voltage_timings(stated)
+            .into_iter()
+            .map(|reading| Ok((reading, OutputError::of(log, reading)?)))
+            .collect::<Result<_, Error>>()?;
+        // Least squares may give an inductance that is not positive, from which there is no descent; hence a second start.
         if let Some((_, objective)) = objectives.first() {
-            starts.push(coarse(objective, &bounds)?);
+            starts.push(coarse_start(objective, &bounds)?);
         }
         let polished = objectives.into_par_iter().filter_map(|(reading, objective)| {
             let ends = starts.iter().map(|start| polish(&objective, start)).filter(|end| end.cost.is_finite());
             let minimum = ends.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
             Some((reading, objective, minimum))
         });
-        // Per row: a delay costs rows, and a sum over fewer is no better fit.
+        // Costs are compared per row: a delay leaves fewer rows, and a sum over fewer rows is smaller without a better fit.
         let per_row = |(_, objective, minimum): &(VoltageReading, OutputError, Polished)| minimum.cost / objective.rows() as f64;
         let best = polished.collect::<Vec<_>>().into_iter().min_by(|a, b| per_row(a).total_cmp(&per_row(b)));
-        let (reading, objective, minimum) = best.ok_or(Error::NonFiniteStart { population: COARSE.population })?;
+        let (reading, objective, minimum) = best.ok_or(Error::NonFiniteStart { population: COARSE_SEARCH.population })?;
         Ok(Self {
             rows: objective.rows_per_segment(),
             unexcited: unexcited(&objective, &minimum, &bounds),
@@ -124,7 +126,7 @@ impl Problem {
 }
 
 impl Fitness {
-    /// Name in files and on the command line: the model of `--model`.
+    /// Name in files: that of the model.
     pub fn key(&self) -> &'static str {
         match self {
             Self::VoltageError(_) => "steady",
@@ -148,7 +150,7 @@ impl Fitness {
         }
     }
 
-    /// What its minimum is called.
+    /// Name of its minimum.
     pub fn minimum_label(&self) -> &'static str {
         match self {
             Self::VoltageError(_) => "exact minimum",
@@ -156,15 +158,15 @@ impl Fitness {
         }
     }
 
-    /// The index of its minimum, F with it being the cost there.
-    pub fn minimum_index(&self) -> &'static str {
+    /// Subscript of the cost at the minimum, as in F_LS.
+    pub fn minimum_subscript(&self) -> &'static str {
         match self {
             Self::VoltageError(_) => "LS",
             Self::OutputError { .. } => "LM",
         }
     }
 
-    /// What finds its minimum.
+    /// Name of the method that finds its minimum.
     pub fn solver(&self) -> &'static str {
         match self {
             Self::VoltageError(_) => "least squares",
@@ -172,7 +174,7 @@ impl Fitness {
         }
     }
 
-    /// How the voltage columns were read, where the fitness asks.
+    /// The voltage timing, for a fitness that depends on it.
     pub fn voltage_reading(&self) -> Option<String> {
         match self {
             Self::VoltageError(_) => None,
@@ -180,7 +182,7 @@ impl Fitness {
         }
     }
 
-    /// The lowest motor known, and its cost.
+    /// The motor of lowest cost known, and its cost.
     pub fn minimum(&self) -> (Motor, f64) {
         match self {
             Self::VoltageError(objective) => (objective.least_squares().motor, objective.least_squares().cost),
@@ -188,7 +190,7 @@ impl Fitness {
         }
     }
 
-    /// Whether the lowest motor known is a minimum. Of least squares it always is.
+    /// Whether the motor of lowest cost known is a minimum. That of least squares always is.
     pub fn has_converged(&self) -> bool {
         match self {
             Self::VoltageError(_) => true,
@@ -196,8 +198,8 @@ impl Fitness {
         }
     }
 
-    /// How far a motor of this cost lies above the minimum: of fitness (11) without cancellation; of the output error the plain
-    /// difference, negative where a search has found less than the polish.
+    /// Cost of a motor above the minimum: for fitness (11) without cancellation; for the output error the difference of costs, which is
+    /// negative where a search has found a lower cost than the Levenberg-Marquardt method.
     pub fn cost_above_optimum(&self, motor: &Motor, cost: f64) -> f64 {
         match self {
             Self::VoltageError(objective) => objective.cost_above_optimum(motor),
@@ -205,12 +207,12 @@ impl Fitness {
         }
     }
 
-    /// Takes a motor that lies below the minimum known, polished, as the new minimum; returns by how much the minimum fell.
-    pub(super) fn lower_to(&mut self, motor: &Motor) -> f64 {
+    /// Replaces the minimum by the local minimum reached from a motor of lower cost; returns the decrease of the minimum.
+    pub(super) fn improve_minimum(&mut self, motor: &Motor) -> f64 {
         let Self::OutputError { objective, minimum, .. } = self else { return 0.0 };
         let (before, cost) = (minimum.cost, objective.cost(motor));
         let polished = polish(objective, motor);
-        // At a minimum already, the polish cannot gain, and may lose a rounding.
+        // From a minimum the polish cannot descend, and rounding may make its result slightly worse.
         *minimum = if polished.cost <= cost { polished } else { Polished { drive: Adjustable::from(*motor), cost, ..polished } };
         before - minimum.cost
     }
@@ -229,35 +231,36 @@ impl Objective for Fitness {
     }
 }
 
-/// The readings to try: the one stated, or all that drives are known to have.
-fn readings(stated: Option<VoltageReading>) -> Vec<VoltageReading> {
+/// The voltage timings to try: the one stated, or all that drives are known to have.
+fn voltage_timings(stated: Option<VoltageReading>) -> Vec<VoltageReading> {
     stated.map_or_else(|| VoltageReading::ALL.to_vec(), |stated| vec![stated])
 }
 
-/// Where a coarse search ends.
-fn coarse(objective: &OutputError, bounds: &Bounds) -> Result<Motor, Error> {
-    let report = Optimizer::start(Method::Tgfpa(Tgfpa::default()), COARSE, bounds.clone(), objective)?.run(objective);
+/// The best motor of a coarse search.
+fn coarse_start(objective: &OutputError, bounds: &Bounds) -> Result<Motor, Error> {
+    let report = Optimizer::start(Method::Tgfpa(Tgfpa::default()), COARSE_SEARCH, bounds.clone(), objective)?.run(objective);
     Ok(Motor::from(std::array::from_fn(|p| report.best[p])))
 }
 
-/// Parameters that might as well be zero: their 95 % interval at the minimum, were the residuals white, holds it, and is no small
-/// part of what the log allows. (A motor without magnets knows its flux, zero, well.)
+/// Parameters that the log does not excite: their 95 % interval at the minimum, for white residuals, contains zero and is not small
+/// compared with the search box. (The interval of a motor without magnets is narrow about its flux of zero.)
 ///
-/// A standard error is the residuals' standard deviation over what of the parameter's derivative the other three cannot imitate.
+/// The standard error is the residuals' standard deviation divided by the norm of the part of the parameter's derivative that is
+/// orthogonal to the derivatives of the other three.
 fn unexcited(objective: &OutputError, minimum: &Polished, bounds: &Bounds) -> Vec<Parameter> {
     let derivatives = jacobian(objective, &minimum.drive, &MOTOR);
     let freedom = (2 * objective.rows()).saturating_sub(PARAMETERS).max(1);
     let variance = minimum.cost / freedom as f64;
-    let is_open = |(parameter, (lower, upper)): &(Parameter, (f64, f64))| {
+    let is_unexcited = |(parameter, (lower, upper)): &(Parameter, (f64, f64))| {
         let own = *parameter as usize;
         let others = (0..derivatives[own].len()).map(|row| Equation {
             coefficients: std::array::from_fn(|p| if p == own { 0.0 } else { derivatives[p][row] }),
             value: derivatives[own][row],
         });
-        let alone = others.collect::<TriangularFactor>().solve().cost;
-        let told = minimum.drive.motor.get(*parameter).abs().max(SMALL_PART * (upper - lower));
-        let is_told = told * told * alone > INTERVAL * INTERVAL * variance;
-        !is_told
+        let orthogonal = others.collect::<TriangularFactor>().solve().cost;
+        let size = minimum.drive.motor.get(*parameter).abs().max(SMALL_FRACTION * (upper - lower));
+        let is_excited = size * size * orthogonal > HALF_WIDTH * HALF_WIDTH * variance;
+        !is_excited
     };
-    Parameter::ALL.into_iter().zip(bounds.iter()).filter(is_open).map(|(parameter, _)| parameter).collect()
+    Parameter::ALL.into_iter().zip(bounds.iter()).filter(is_unexcited).map(|(parameter, _)| parameter).collect()
 }

@@ -1,9 +1,9 @@
-//! The study: many independent runs of many methods on one fitness, as the paper compares them.
+//! The study: many independent runs of several methods on one fitness, as the paper compares them.
 //!
-//! Run `k` of every method takes stream `k` of the same seed. Runs are spread over all cores; each depends on its own stream
-//! alone and results are collected in order, so any number of threads gives the same bits. Swarms are compared by how far they end
-//! above the minimum, which is known: `F - F_LS` of fitness (11), `F - F_LM` of the output error. On a noisy log their distance from
-//! the truth ranks the noise.
+//! Run `k` of every method uses random stream `k` of the same seed. Runs are distributed over all cores; each depends only on its own
+//! stream and results are collected in order, so any number of threads gives the same bits. Methods are compared by their final cost
+//! above the minimum, which is known: `F - F_LS` for fitness (11), `F - F_LM` for the output error. The distance from the truth cannot
+//! rank them: on a noisy log it is the noise's.
 
 pub mod fitness;
 
@@ -20,34 +20,34 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// Many runs of one method.
+/// The results of many runs of one method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodStudy {
     /// The method.
     pub method: Method,
-    /// Candidates evaluated in each run; fewer where a run stopped early.
+    /// Evaluations of the fitness in each run; a run that stopped early has fewer.
     pub evaluations_per_run: u64,
-    /// Where each finished run ended; at least one did.
+    /// The best motor of each finished run; there is at least one.
     pub motors: Vec<Motor>,
-    /// Cost above the minimum of each run's end.
+    /// Final cost above the minimum of each run.
     pub cost_above_optimum: Vec<f64>,
-    /// The course of the runs, iteration by iteration.
-    pub convergence: Convergence,
+    /// Convergence of the runs, by iteration.
+    pub convergence: ConvergenceCurves,
 }
 
-/// The course of many runs: one entry per iteration, the start included. A run that stopped early keeps its last value.
+/// Convergence of many runs: one entry per iteration, the start included. A run that stopped early keeps its last value.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Convergence {
+pub struct ConvergenceCurves {
     /// Cost above the minimum: lower quartile, median and upper quartile over the runs.
     pub quartiles: Vec<[f64; 3]>,
     /// Median of each parameter over the runs.
     pub parameters_median: Vec<[f64; PARAMETERS]>,
 }
 
-/// Runs one method `runs` times; `go_on` is asked after each iteration, from any thread, whether to. Interrupted, only the runs that
-/// are finished count, each the same as if all were; none, if there is no such run.
+/// Runs one method `runs` times. `go_on` is called after each iteration, from any thread, and can interrupt the study: then only the
+/// finished runs count, with the results of an uninterrupted study; `None` if no run is finished.
 ///
-/// Of the output error costs may lie below the minimum known, until [`settle`] has seen all methods.
+/// For the output error, costs may lie below the minimum known until [`use_lowest_minimum`] has been called with all methods.
 ///
 /// # Errors
 /// If `runs` is zero or a run cannot start.
@@ -64,7 +64,7 @@ pub fn run_method(
     }
     let interrupted = AtomicBool::new(false);
     let run = |run: usize| {
-        // A run that has not begun costs its first population before anybody is asked.
+        // Without this check, each remaining run would evaluate its first population before it calls `go_on`.
         if interrupted.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -75,43 +75,44 @@ pub fn run_method(
             interrupted.fetch_or(next.is_break(), Ordering::Relaxed);
             next
         });
-        Ok((report.stop_reason != StopReason::Interrupted).then(|| Course::of(&report, fitness)))
+        Ok((report.stop_reason != StopReason::Interrupted).then(|| RunHistory::of(&report, fitness)))
     };
-    let courses = (0..runs).into_par_iter().map(run).collect::<Result<Vec<_>, Error>>()?;
-    let courses: Vec<Course> = courses.into_iter().flatten().collect();
-    Ok((!courses.is_empty()).then(|| MethodStudy {
+    let histories = (0..runs).into_par_iter().map(run).collect::<Result<Vec<_>, Error>>()?;
+    let histories: Vec<RunHistory> = histories.into_iter().flatten().collect();
+    Ok((!histories.is_empty()).then(|| MethodStudy {
         method,
-        evaluations_per_run: courses.iter().map(|course| course.evaluations).max().unwrap_or(0),
-        motors: courses.iter().map(|course| course.last().0).collect(),
-        cost_above_optimum: courses.iter().map(|course| course.last().1).collect(),
-        convergence: Convergence::of(&courses),
+        evaluations_per_run: histories.iter().map(|history| history.evaluations).max().unwrap_or(0),
+        motors: histories.iter().map(|history| history.last().0).collect(),
+        cost_above_optimum: histories.iter().map(|history| history.last().1).collect(),
+        convergence: ConvergenceCurves::of(&histories),
     }))
 }
 
-/// Counts every study from the lowest cost that is known: where a swarm has ended below the polish, that of a polish from there.
-pub fn settle(fitness: &mut Fitness, studies: &mut [MethodStudy]) {
+/// Makes the costs of all studies relative to the lowest minimum known. Where a run has ended below the minimum of the fitness, the
+/// minimum is replaced by the local minimum reached from that run's end.
+pub fn use_lowest_minimum(fitness: &mut Fitness, studies: &mut [MethodStudy]) {
     let ends = studies.iter().flat_map(|study| study.cost_above_optimum.iter().zip(&study.motors));
     let lowest = ends.min_by(|a, b| a.0.total_cmp(b.0)).filter(|(above, _)| **above < 0.0).map(|(_, motor)| *motor);
     if let Some(motor) = lowest {
-        let fall = fitness.lower_to(&motor);
-        studies.iter_mut().for_each(|study| study.raise(fall));
+        let decrease = fitness.improve_minimum(&motor);
+        studies.iter_mut().for_each(|study| study.add_to_costs(decrease));
     }
 }
 
 impl MethodStudy {
-    /// Counts from a minimum that is lower by this much. No run lies below it: what is negative now is rounding.
-    fn raise(&mut self, by: f64) {
+    /// Accounts for a minimum that is lower by `decrease`. No cost lies below it: what is negative then is rounding error.
+    fn add_to_costs(&mut self, decrease: f64) {
         let quartiles = self.convergence.quartiles.iter_mut().flatten();
-        self.cost_above_optimum.iter_mut().chain(quartiles).for_each(|above| *above = (*above + by).max(0.0));
+        self.cost_above_optimum.iter_mut().chain(quartiles).for_each(|above| *above = (*above + decrease).max(0.0));
     }
 
-    /// The mean of the runs' motors: what the paper reports.
+    /// The mean of the runs' estimates, as in the paper's Table 2.
     pub fn mean(&self) -> Motor {
         let runs = self.motors.len() as f64;
         Motor::from(std::array::from_fn(|p| self.motors.iter().map(|motor| motor.to_array()[p]).sum::<f64>() / runs))
     }
 
-    /// Mean over the runs of each parameter's distance from the truth, in percent: the paper's error, as its table can best be read.
+    /// Mean over the runs of each parameter's distance from the truth, %: the most plausible definition of the error in the paper's Table 2.
     pub fn mean_error_percent(&self, truth: &Motor) -> [Option<f64>; PARAMETERS] {
         Parameter::ALL.map(|parameter| {
             let errors = self.motors.iter().map(|motor| error_percent(motor, truth, parameter));
@@ -119,30 +120,30 @@ impl MethodStudy {
         })
     }
 
-    /// Median over the runs of the cost above the minimum.
+    /// Median over the runs of the final cost above the minimum.
     pub fn median(&self) -> f64 {
         quartiles(self.cost_above_optimum.clone())[1]
     }
 
-    /// Largest cost above the minimum of a run.
+    /// Largest final cost above the minimum.
     pub fn worst(&self) -> f64 {
         self.cost_above_optimum.iter().copied().fold(0.0, f64::max)
     }
 }
 
-/// Distance of one parameter from the truth, in percent; none where the truth is zero, as the flux of a motor without magnets.
+/// Distance of one parameter from the truth, %; `None` where the truth is zero, as the flux of a motor without magnets.
 pub fn error_percent(motor: &Motor, truth: &Motor, parameter: Parameter) -> Option<f64> {
     let truth = truth.get(parameter);
     (truth != 0.0).then(|| 100.0 * (motor.get(parameter) / truth - 1.0).abs())
 }
 
-/// One run, iteration by iteration: the best motor and its cost above the minimum.
-struct Course {
+/// One run: the best motor after each iteration and its cost above the minimum.
+struct RunHistory {
     evaluations: u64,
     best: Vec<(Motor, f64)>,
 }
 
-impl Course {
+impl RunHistory {
     fn of(report: &Report, fitness: &Fitness) -> Self {
         let best = report.history.iter().map(|record| {
             let motor = Motor::from(std::array::from_fn(|p| record.best[p]));
@@ -160,18 +161,18 @@ impl Course {
     }
 }
 
-impl Convergence {
-    fn of(courses: &[Course]) -> Self {
-        let iterations = courses.iter().map(|course| course.best.len()).max().unwrap_or(0);
-        let mut convergence = Self::default();
+impl ConvergenceCurves {
+    fn of(histories: &[RunHistory]) -> Self {
+        let iterations = histories.iter().map(|history| history.best.len()).max().unwrap_or(0);
+        let mut curves = Self::default();
         for iteration in 0..iterations {
-            let now: Vec<(Motor, f64)> = courses.iter().map(|course| course.at(iteration)).collect();
-            convergence.quartiles.push(quartiles(now.iter().map(|(_, cost)| *cost).collect()));
-            convergence
+            let best: Vec<(Motor, f64)> = histories.iter().map(|history| history.at(iteration)).collect();
+            curves.quartiles.push(quartiles(best.iter().map(|(_, cost)| *cost).collect()));
+            curves
                 .parameters_median
-                .push(std::array::from_fn(|p| quartiles(now.iter().map(|(motor, _)| motor.to_array()[p]).collect())[1]));
+                .push(std::array::from_fn(|p| quartiles(best.iter().map(|(motor, _)| motor.to_array()[p]).collect())[1]));
         }
-        convergence
+        curves
     }
 }
 

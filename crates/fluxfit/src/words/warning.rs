@@ -2,7 +2,7 @@
 
 use super::digits::three_digits;
 use crate::{
-    current_loop::{DELAY, PHASE_MARGIN},
+    current_loop::{DELAY_PERIODS, MIN_PHASE_MARGIN},
     identification::{explain::warning::Warning, fit::saturation::Apparent},
     motor::Parameter,
 };
@@ -88,14 +88,14 @@ impl Display for Warning {
             Self::Convention(convention) => write!(f, "{convention}"),
             Self::PhaseMargin { bandwidth, margin, control_rate, rate_assumed, highest } => {
                 let outcome = if *margin > 0.0 {
-                    format!("leaves a phase margin of {margin:.0} degrees, less than {PHASE_MARGIN:.0}")
+                    format!("leaves a phase margin of {margin:.0} degrees, less than {MIN_PHASE_MARGIN:.0}")
                 } else {
                     "makes the loop unstable".to_owned()
                 };
                 let assumed = if *rate_assumed { ", taken from the log; state the control rate if the drive controls faster" } else { "" };
                 write!(
                     f,
-                    "a bandwidth of {bandwidth:.0} Hz {outcome}, with {DELAY} periods of delay at {control_rate:.0} Hz{assumed}; ask for \
+                    "a bandwidth of {bandwidth:.0} Hz {outcome}, with {DELAY_PERIODS} periods of delay at {control_rate:.0} Hz{assumed}; ask for \
                      at most {:.0} Hz",
                     highest.floor()
                 )

@@ -4,9 +4,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
+    Model, Request, Verdict,
     current_loop::{CurrentLoop, Gain},
+    evidence::Identification,
+    evidence::Provenance,
     frames::Dq,
-    evidence::Identification, evidence::Provenance, Request, identify, Model, Verdict,
+    identify,
     log::{Columns, Log},
     motor::{Motor, Parameter},
 };
@@ -44,7 +47,7 @@ fn gains_by_hand() {
     // 500 Hz are 3141.592653589793 rad/s: times 5.25 mH, 12 mH and 0.958 ohm.
     let by_hand = [16.493_361_431_346_414, 37.699_111_843_077_52, 3_009.645_762_139_022];
     for (gain, expected) in gains(500.0).into_iter().zip(by_hand) {
-        // Free of noise, and too coarse for a correction of the held vector: the motor comes back.
+        // Free of noise, and too coarse for a correction of the zero-order hold: the motor comes back.
         assert!((gain.value / expected - 1.0).abs() < 1e-6, "{gain:?} {expected}");
         assert_eq!(gain.verdict, Verdict::Identified);
     }
@@ -67,7 +70,7 @@ fn the_phase_margin_is_what_the_delay_leaves() {
     // Without phase from a sixth of the rate on.
     assert!(at(1700.0).warning().unwrap().message.starts_with("a bandwidth of 1700 Hz makes the loop unstable, with"));
     let assumed = CurrentLoop::of(&FOUND, 1000.0, (10e3, Provenance::Assumed)).unwrap();
-    assert!(assumed.warning().unwrap().message.contains("taken from the log; give --control-rate"));
+    assert!(assumed.warning().unwrap().message.contains("taken from the log; state the control rate"));
 }
 
 #[test]

@@ -1,13 +1,15 @@
 //! What an identification must not depend on: units, mirrors, the clock, the order of logs; and that it gives the true motor back.
 //!
-//! The data are equation (2) of random motors, sampled so coarsely that no held-vector correction applies.
+//! The data are equation (2) of random motors, sampled so coarsely that no zero-order-hold correction applies.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
+    Known, Model, Request, Verdict,
+    evidence::Identification,
     frames::Dq,
-    evidence::Identification, Known, Request, identify, Model, Verdict,
+    identify,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageReading},

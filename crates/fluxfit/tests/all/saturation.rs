@@ -1,13 +1,15 @@
 //! Saturation is named where the motor saturates, and nowhere else; warnings of low speed and of the voltage's limit.
 //!
-//! The data are the steady equations with a flux that is written down here, sampled so coarsely that no held-vector correction applies.
+//! The data are the steady equations with a flux that is written down here, sampled so coarsely that no zero-order-hold correction applies.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
+    Known, Model, Request,
+    evidence::Identification,
     frames::Dq,
-    evidence::Identification, Known, Request, identify, Model,
+    identify,
     log::{Columns, Log},
     motor::{Motor, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageReading},

@@ -11,7 +11,7 @@ use fluxfit::{
         tgfpa::{Start, Tgfpa},
     },
     paper,
-    study::{MethodStudy, fitness::Problem, run_method},
+    study::{MethodStudy, fitness::StudyProblem, run_method},
 };
 use fluxfit_drive::{
     Scenario,
@@ -38,7 +38,7 @@ pub(crate) enum Rig {
 /// What one of them logged.
 pub(crate) struct Data {
     pub(crate) rig: Rig,
-    pub(crate) problem: Problem,
+    pub(crate) problem: StudyProblem,
 }
 
 impl Rig {

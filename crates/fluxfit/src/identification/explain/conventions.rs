@@ -13,7 +13,7 @@
 //!
 //! Negative speed is valid data: u_q is negative with it. Only where their signs differ does the flux come out negative.
 
-pub mod patterns;
+pub(crate) mod patterns;
 
 use super::{
     super::{nameplate::Nameplate, request::Known},
@@ -107,7 +107,7 @@ pub struct Convention {
 
 /// Compares a log with a nameplate: the parameters identified, except those that the settings knew beforehand, and if the flux is
 /// none of them, the rows' apparent flux. Without an identification (the log may have no operating point) there is only the latter.
-pub fn check(log: &Log, found: Option<(&[Judgement; PARAMETERS], &[Known; PARAMETERS])>, nameplate: &Nameplate) -> Convention {
+pub(crate) fn check(log: &Log, found: Option<(&[Judgement; PARAMETERS], &[Known; PARAMETERS])>, nameplate: &Nameplate) -> Convention {
     let mut ratios: Vec<Ratio> = found.map(|(found, known)| identified(found, known, nameplate)).unwrap_or_default();
     let mut reversed = false;
     if ratios.iter().all(|ratio| ratio.parameter != Parameter::PsiF)

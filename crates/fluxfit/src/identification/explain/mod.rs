@@ -1,8 +1,8 @@
 //! Explanation: what to do about a verdict, what to know of the whole, and whether a nameplate agrees. Facts; the sentences are in
 //! [`words`](crate::words).
 
-pub mod conventions;
-pub mod judgement;
-pub mod measurement;
-pub mod remedy;
-pub mod warning;
+pub(crate) mod conventions;
+pub(crate) mod judgement;
+pub(crate) mod measurement;
+pub(crate) mod remedy;
+pub(crate) mod warning;

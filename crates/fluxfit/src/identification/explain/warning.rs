@@ -18,7 +18,7 @@ use super::{
 use crate::{
     log::Log,
     motor::{PARAMETERS, Parameter},
-    steady::{OperatingPoint, held_vector::MAX_ANGLE_PER_SAMPLE, windows},
+    steady::{OperatingPoint, windows, zero_order_hold::MAX_ANGLE_PER_SAMPLE},
 };
 
 /// Something that the reader should know.

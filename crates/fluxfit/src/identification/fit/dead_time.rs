@@ -37,7 +37,7 @@ const MIN_TURNS: f64 = 5.0;
 const MAX_ANGLE: f64 = 1.0;
 
 /// The voltage, V, that each operating point seems to lose along its current; zero where nothing stands out.
-pub fn losses(log: &Log, points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate) -> Vec<f64> {
+pub(crate) fn losses(log: &Log, points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate) -> Vec<f64> {
     let found = excitation.inductances(&estimate.motor);
     let motor = Motor { ld: found.d, lq: found.q, ..estimate.motor };
     points.iter().map(|point| loss(log, point, &motor).unwrap_or(0.0)).collect()
@@ -45,7 +45,7 @@ pub fn losses(log: &Log, points: &[OperatingPoint], excitation: &Excitation, est
 
 /// How far such losses move each parameter: along the current, and across it by the turn of a row, because it is not known at which instant
 /// of its period a current decides.
-pub fn doubt(log: &Log, points: &[OperatingPoint], estimate: &Estimate, losses: &[f64]) -> [f64; PARAMETERS] {
+pub(crate) fn doubt(log: &Log, points: &[OperatingPoint], estimate: &Estimate, losses: &[f64]) -> [f64; PARAMETERS] {
     std::array::from_fn(|p| {
         let (mut along, mut across) = (0.0, 0.0);
         for ((point, gain), loss) in points.iter().zip(&estimate.gains).zip(losses) {

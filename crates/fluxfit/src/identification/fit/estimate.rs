@@ -18,7 +18,7 @@ use crate::{
     least_squares::Equation,
     motor::{Motor, PARAMETERS},
     objective::voltage_error::VoltageError,
-    singular_values::Decomposition,
+    singular_values::SingularValueDecomposition,
     steady::OperatingPoint,
 };
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
@@ -141,7 +141,7 @@ impl System {
             let coefficients = DMatrix::from_fn(self.equations.len(), PARAMETERS, |row, p| self.equations[row].coefficients[p]);
             let values = DVector::from_iterator(self.equations.len(), self.equations.iter().map(|equation| equation.value));
             // The columns are excited, so the pseudo-inverse needs no cut-off of its own.
-            let inverse = Decomposition::of(coefficients * &basis).pseudo_inverse(0.0);
+            let inverse = SingularValueDecomposition::of(coefficients * &basis).pseudo_inverse(0.0);
             let product = basis * inverse;
             x += Vector4::from_iterator((&product * values).iter().copied());
             gain = product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect();

@@ -14,7 +14,7 @@ use crate::{
     frames::Dq,
     least_squares::Equation,
     motor::{Motor, PARAMETERS, Parameter},
-    singular_values::Decomposition,
+    singular_values::SingularValueDecomposition,
     steady::OperatingPoint,
 };
 use nalgebra::{DMatrix, Matrix4, Vector4};
@@ -74,7 +74,7 @@ impl Excitation {
         );
 
         let matrix = DMatrix::from_fn(rows.len(), free.len(), |row, column| rows[row][free[column]]);
-        let Decomposition { values, right, .. } = Decomposition::of(matrix);
+        let SingularValueDecomposition { values, right, .. } = SingularValueDecomposition::of(matrix);
         let directions = values.into_iter().zip(right.column_iter()).map(|(singular, v)| {
             let mut components = [0.0; PARAMETERS];
             free.iter().zip(&v).for_each(|(p, component)| components[*p] = *component);

@@ -1,20 +1,20 @@
 //! Fits: a motor and its uncertainty, from steady operating points or from simulated currents.
 
-pub mod dead_time;
-pub mod estimate;
-pub mod excitation;
+pub(crate) mod dead_time;
+pub(crate) mod estimate;
+pub(crate) mod excitation;
 pub(crate) mod finding;
 pub(crate) mod long_run;
-pub mod misfit;
-pub mod output;
+pub(crate) mod misfit;
+pub(crate) mod output;
 mod output_choice;
-pub mod output_errors;
+pub(crate) mod output_errors;
 mod output_start;
-pub mod readings;
-pub mod saturation;
+pub(crate) mod readings;
+pub(crate) mod saturation;
 mod saturation_equations;
-pub mod steady;
+pub(crate) mod steady;
 pub(crate) mod swarm;
-pub mod terms;
-pub mod uncertainty;
+pub(crate) mod terms;
+pub(crate) mod uncertainty;
 mod voltage_accuracy;

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     frames::Dq,
     motor::{Motor, PARAMETERS, Parameter},
-    singular_values::Decomposition,
+    singular_values::SingularValueDecomposition,
     steady::OperatingPoint,
 };
 use nalgebra::{DMatrix, DVector};
@@ -174,7 +174,7 @@ impl Equations<'_> {
         let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).map(|norm| if norm > 0.0 { norm } else { 1.0 }).collect();
         matrix.column_iter_mut().zip(&lengths).for_each(|(mut column, length)| column.unscale_mut(*length));
         let values = DVector::from_iterator(rows.len(), rows.iter().map(|row| row[unknowns]));
-        let decomposition = Decomposition::of(matrix.clone());
+        let decomposition = SingularValueDecomposition::of(matrix.clone());
         let inverse = decomposition.pseudo_inverse(RANK_TOLERANCE * decomposition.values.first().copied().unwrap_or(0.0));
         let solution = &inverse * &values;
         let chi_squared = (values - matrix * &solution).norm_squared();

@@ -21,9 +21,8 @@ use crate::{
     motor::{Motor, PARAMETERS, Parameter},
     optimizer::{Method, bounds::Bounds},
     steady::{
-        Belief, OperatingPoint,
-        held_vector::{HeldVector, MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming},
-        windows,
+        OperatingPoint, PreliminaryEstimate, windows,
+        zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming, ZeroOrderHold},
     },
 };
 
@@ -125,7 +124,7 @@ fn bench(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate
 }
 
 /// Centred, unless stated otherwise: what drives that log their realized voltage mostly mean.
-pub fn voltage_timing(request: &Request) -> (VoltageTiming, Provenance) {
+pub(crate) fn voltage_timing(request: &Request) -> (VoltageTiming, Provenance) {
     request.voltage_timing.map_or((VoltageTiming::Centered, Provenance::Assumed), |stated| (stated.into(), Provenance::Stated))
 }
 
@@ -148,8 +147,12 @@ pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoi
 /// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
 fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
     let with = |timing: VoltageTiming| -> Vec<OperatingPoint> {
-        let beliefs = beliefs(log, rough, timing, request);
-        rough.iter().zip(&beliefs).map(|(point, belief)| OperatingPoint::measure(log, point.rows.clone(), Some(belief))).collect()
+        let preliminary = preliminary_estimates(log, rough, timing, request);
+        rough
+            .iter()
+            .zip(&preliminary)
+            .map(|(point, preliminary)| OperatingPoint::measure(log, point.rows.clone(), Some(preliminary)))
+            .collect()
     };
     let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request).motor;
     let points = with(voltage_timing(request).0);
@@ -164,22 +167,30 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
 }
 
 /// What a first look at the operating points tells of each: the motor, and the held-vector correction of its window.
-pub fn beliefs(log: &Log, rough: &[OperatingPoint], timing: VoltageTiming, request: &Request) -> Vec<Belief> {
+pub(crate) fn preliminary_estimates(
+    log: &Log,
+    rough: &[OperatingPoint],
+    timing: VoltageTiming,
+    request: &Request,
+) -> Vec<PreliminaryEstimate> {
     let excitation = Excitation::of(rough, &request.known);
     let motor = Estimate::solve(rough, &excitation, request).motor;
     let inductance = excitation.inductances(&motor);
     let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
-    rough.iter().map(|point| Belief { motor, held_vector: held_vector(log, point, fastest, timing, motor.rs, inductance) }).collect()
+    rough
+        .iter()
+        .map(|point| PreliminaryEstimate { motor, hold: zero_order_hold(log, point, fastest, timing, motor.rs, inductance) })
+        .collect()
 }
 
 /// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all
 /// windows, so that either all of them are corrected or none; none of the current where so long a period does not shape it.
-fn held_vector(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> HeldVector {
+fn zero_order_hold(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> ZeroOrderHold {
     match log.segment_of(point.rows.start).map(|segment| segment.sample_period) {
         Some(sample_period) if fastest * sample_period <= MAX_ANGLE_PER_SAMPLE => {
             let shapes = |l: f64| if rs > 0.0 && rs * sample_period <= MAX_DECAY_PER_SAMPLE * l { l } else { f64::INFINITY };
-            HeldVector { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }
+            ZeroOrderHold { timing, sample_period, inductance: Dq { d: shapes(inductance.d), q: shapes(inductance.q) } }
         }
-        _ => HeldVector::NONE,
+        _ => ZeroOrderHold::NONE,
     }
 }

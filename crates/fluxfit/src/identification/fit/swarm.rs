@@ -1,15 +1,14 @@
 //! The swarm's own search, beside the exact answer.
 
 use super::super::{
-    prepare::{model::Model, search_box},
+    prepare::model::Model,
     progress::{Progress, Step},
     request::{Request, Swarm},
 };
 use crate::{
     error::Error,
-    motor::{Motor, PARAMETERS},
+    motor::Motor,
     optimizer::{Method, Objective, Optimizer, Report, bounds::Bounds, tgfpa::Tgfpa},
-    steady::OperatingPoint,
 };
 
 /// What a swarm found, unpolished.
@@ -32,21 +31,6 @@ pub(crate) fn method(request: &Request, model: Model) -> Option<Method> {
         Swarm::Off => None,
         Swarm::Method(method) => Some(method),
     }
-}
-
-/// The box of the search: what the request states; the rest is what the log allows, or the rating where that is larger. The log's
-/// part comes from its operating points as measured at first, else from what stands for them.
-///
-/// # Errors
-/// If a bound is beyond what an optimizer takes.
-pub(crate) fn bounds(request: &Request, points: &[OperatingPoint]) -> Result<Bounds, Error> {
-    let mut sides: Vec<(f64, f64)> = search_box::from_points(points)?.iter().collect();
-    if let Some(rating) = request.nameplate.rating {
-        let rated = search_box::from_rating(rating.voltage, rating.current, rating.omega_e)?;
-        sides.iter_mut().zip(rated.iter()).for_each(|(side, rated)| side.1 = side.1.max(rated.1));
-    }
-    let (lower, upper) = (0..PARAMETERS).map(|p| request.bounds[p].unwrap_or(sides[p])).unzip();
-    Ok(Bounds::new(lower, upper)?)
 }
 
 /// Runs the method.

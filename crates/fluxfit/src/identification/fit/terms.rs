@@ -26,7 +26,7 @@ use crate::{
         adjustable::{Adjustable, SensorPair, Unknown},
         output_error::OutputError,
     },
-    singular_values::Decomposition,
+    singular_values::SingularValueDecomposition,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -435,7 +435,7 @@ pub(crate) fn inverse_normal(columns: &[Vec<f64>]) -> DMatrix<f64> {
     let lengths: Vec<f64> =
         columns.iter().map(|column| dot(column, column).sqrt()).map(|length| if length > 0.0 { length } else { 1.0 }).collect();
     let normal = DMatrix::from_fn(size, size, |p, q| dot(&columns[p], &columns[q]) / lengths[p] / lengths[q]);
-    let decomposition = Decomposition::of(normal);
+    let decomposition = SingularValueDecomposition::of(normal);
     let inverse = decomposition.pseudo_inverse(RANK_TOLERANCE * decomposition.values.first().copied().unwrap_or(0.0));
     DMatrix::from_fn(size, size, |p, q| inverse[(p, q)] / lengths[p] / lengths[q])
 }

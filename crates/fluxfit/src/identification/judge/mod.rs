@@ -1,4 +1,4 @@
 //! Judgement: for each parameter a verdict, and the reason where it is not `identified`. Knows numbers only.
 
-pub mod reason;
-pub mod verdict;
+pub(crate) mod reason;
+pub(crate) mod verdict;

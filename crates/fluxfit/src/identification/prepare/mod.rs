@@ -1,5 +1,5 @@
 //! What is fitted: which model suits the log, which stretches of it, and the box in which a swarm searches.
 
-pub mod model;
-pub mod search_box;
+pub(crate) mod model;
+pub(crate) mod search_box;
 pub(crate) mod stretches;

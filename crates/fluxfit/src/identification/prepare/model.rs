@@ -3,7 +3,7 @@
 //! The output error uses every row and knows the inverter's own periods, so it wants them: rows that follow each other as fast as the
 //! drive's samples. A decimated or filtered log has lost them; its operating points are what it still tells.
 
-use crate::{log::Log, steady::held_vector::MAX_ANGLE_PER_SAMPLE};
+use crate::{log::Log, steady::zero_order_hold::MAX_ANGLE_PER_SAMPLE};
 
 /// A model of the log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

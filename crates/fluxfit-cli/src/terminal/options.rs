@@ -1,0 +1,45 @@
+//! How this program does what the library proposes: the options behind remedies, warnings and errors.
+
+use fluxfit::{ErrorKind, Remedy, Warning, evidence::Measurement};
+
+/// The option that carries out a remedy.
+pub(super) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
+    match remedy {
+        Remedy::Measure(promised) => matches!(promised.measurement, Measurement::Resistance { .. }).then_some("--prior rs=VALUE±1%"),
+        Remedy::AddStretch { also: Some(_), .. } => Some("--fix rs=VALUE"),
+        Remedy::HoldLonger { or, .. } => of_remedy(or),
+        Remedy::SpreadPoints { parameter: fluxfit::Parameter::Rs } => Some("--prior rs=VALUE±1%"),
+        Remedy::StateVoltageTiming => Some("--voltage-timing"),
+        Remedy::CompensateDeadTime => Some("--fix rs=VALUE"),
+        Remedy::RemoveDisturbances => Some("--window T0:T1 --model steady"),
+        Remedy::NarrowCurrents | Remedy::SimilarWindows => Some("--window T0:T1"),
+        Remedy::SharperPrior => Some("--prior"),
+        Remedy::LogAngle | Remedy::InspectResiduals => Some("--model steady"),
+        _ => None,
+    }
+}
+
+/// The option that answers a warning.
+pub(super) fn of_warning(warning: &Warning) -> Option<&'static str> {
+    match warning {
+        Warning::NoRedundancy => Some("--fix or --prior"),
+        Warning::ShortStretches { .. } | Warning::VoltageLimit { .. } => Some("--window T0:T1"),
+        Warning::PhaseMargin { rate_assumed: true, .. } => Some("--control-rate FREQUENCY"),
+        _ => None,
+    }
+}
+
+/// The option that avoids an error.
+pub(crate) fn of_error(error: &ErrorKind) -> Option<&'static str> {
+    match error {
+        ErrorKind::NoOperatingPoint { .. } => Some("--window T0:T1"),
+        ErrorKind::Interpolated => Some("--model steady"),
+        ErrorKind::ControlRate { .. } => Some("--control-rate FREQUENCY"),
+        _ => None,
+    }
+}
+
+/// A sentence with the option that does what it says.
+pub(super) fn with_option(sentence: &str, option: Option<&str>) -> String {
+    option.map_or_else(|| sentence.to_owned(), |option| format!("{sentence} ({option})"))
+}
