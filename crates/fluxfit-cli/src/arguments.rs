@@ -3,7 +3,7 @@
 use anstyle::Style;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, builder::Resettable};
 use fluxfit::{
-    identify::model,
+    Model,
     motor::Parameter,
     objective::{
         acting_voltage::{VoltageFrame, VoltageReading},
@@ -251,15 +251,15 @@ pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) log: LogArguments,
     /// What is fitted to what
-    #[arg(long, help_heading = "Search", value_enum, default_value_t = Model::Auto)]
-    pub(crate) model: Model,
+    #[arg(long, help_heading = "Search", value_enum, default_value_t = ModelArgument::Auto)]
+    pub(crate) model: ModelArgument,
     /// Who searches beside the exact answer: least-squares (nobody), tgfpa, fpa, lpso, apso
     ///
     /// auto is tgfpa at operating points, and nobody on the output error, where it takes seconds.
     #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method)]
     pub(crate) method: SearchMethod,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
+    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
     /// A parameter that is known exactly, e.g. rs=0.96
     #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
@@ -342,10 +342,10 @@ pub(crate) struct Validate {
     #[command(flatten)]
     pub(crate) log: LogArguments,
     /// What is predicted: currents or steady voltages
-    #[arg(long, help_heading = "Search", value_enum, default_value_t = Model::Auto)]
-    pub(crate) model: Model,
+    #[arg(long, help_heading = "Search", value_enum, default_value_t = ModelArgument::Auto)]
+    pub(crate) model: ModelArgument,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
+    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
 }
 
@@ -353,7 +353,7 @@ const VALIDATED: &str = "The motor that is validated: a motor file with all four
 
 /// Models that `identify` and `validate` know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Model {
+pub(crate) enum ModelArgument {
     /// The one that suits the log
     Auto,
     /// Equation (2) on the means of steady windows
@@ -362,13 +362,13 @@ pub(crate) enum Model {
     OutputError,
 }
 
-impl Model {
+impl ModelArgument {
     /// What is stated; nothing, if it is for the library to choose.
-    pub(crate) fn stated(self) -> Option<model::Model> {
+    pub(crate) fn stated(self) -> Option<Model> {
         match self {
             Self::Auto => None,
-            Self::Steady => Some(model::Model::Steady),
-            Self::OutputError => Some(model::Model::OutputError),
+            Self::Steady => Some(Model::Steady),
+            Self::OutputError => Some(Model::OutputError),
         }
     }
 }

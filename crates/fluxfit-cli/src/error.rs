@@ -1,5 +1,7 @@
 //! What can stop a command: one sentence each, from whoever found it.
 
+use crate::terminal::options;
+
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CommandError {
@@ -37,6 +39,14 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
+    /// The option that avoids it.
+    pub(crate) fn option(&self) -> Option<&'static str> {
+        match self {
+            Self::Library(error) | Self::Log { error, .. } => options::of_error(error.kind()),
+            _ => None,
+        }
+    }
+
     /// What is wrong with a file, if that is it.
     pub(crate) fn in_file(&self) -> Option<&fluxfit_files::FileError> {
         match self {

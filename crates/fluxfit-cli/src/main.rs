@@ -41,7 +41,7 @@ fn main() -> ExitCode {
         // Whoever closed the pipe has seen enough.
         Err(CommandError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(error) => {
-            terminal::complain(&error, error.in_file());
+            terminal::print_error(&error);
             ExitCode::from(2)
         }
     }

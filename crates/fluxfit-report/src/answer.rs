@@ -5,7 +5,10 @@ use crate::{
     frame, tried,
     typography::{DASH, capitalized, list, minus, number, prose, symbol, unit},
 };
-use fluxfit::{Judgement, Verdict, evidence::IDENTIFIED, evidence::Identification, evidence::Part, evidence::Provenance, evidence::WEAK};
+use fluxfit::{
+    Judgement, Verdict, evidence::IDENTIFIED, evidence::Identification, evidence::ModelChoice, evidence::Part, evidence::Provenance,
+    evidence::WEAK,
+};
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
@@ -26,10 +29,10 @@ pub(crate) fn section(found: &Identification) -> Markup {
 
 /// The model, why it was chosen, and what it found beside the motor.
 fn model(found: &Identification) -> Markup {
-    let (model, why) = &found.model;
+    let ModelChoice { model, reason: why } = &found.model;
     html! {
         p {
-            strong { "Model: " (model.label()) } " (" (prose(why)) "). "
+            strong { "Model: " (model.label()) } " (" (prose(&why.to_string())) "). "
             @if let Some(fit) = &found.output {
                 "The motor is the one whose simulated currents are nearest the measured ones, row by row. Its voltages are read as "
                 (fit.voltage_reading.0.label()) @if fit.voltage_reading.1 == Provenance::Found { ", as the currents ask for" } ". "
@@ -125,8 +128,8 @@ fn explanations(found: &Identification) -> Markup {
                 @for (symbols, judgement) in &shared {
                     dt { (list(symbols)) }
                     dd {
-                        p { (prose(&sentence(judgement.reason.as_deref().unwrap_or_default()))) }
-                        @if let Some(remedy) = &judgement.remedy { p { strong { "To do: " } (prose(remedy)) "." } }
+                        p { (prose(&sentence(&judgement.reason.as_ref().map(ToString::to_string).unwrap_or_default()))) }
+                        @if let Some(remedy) = &judgement.remedy { p { strong { "To do: " } (prose(&remedy.to_string())) "." } }
                     }
                 }
             }
@@ -145,7 +148,7 @@ fn warnings(found: &Identification) -> Markup {
         @if !found.warnings.is_empty() {
             div.warnings role="note" aria-label="Warnings" {
                 @for warning in &found.warnings {
-                    p { strong { "Warning: " (warning.code) } br; (prose(&sentence(&warning.message))) }
+                    p { strong { "Warning: " (warning.code()) } br; (prose(&sentence(&warning.to_string()))) }
                 }
             }
         }

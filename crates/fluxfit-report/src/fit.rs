@@ -5,7 +5,10 @@ use crate::{
     flux, frame,
     typography::{decimals, number, prose},
 };
-use fluxfit::{evidence::SteadyFit, steady::OperatingPoint};
+use fluxfit::{
+    evidence::{Saturation, SteadyFit},
+    steady::OperatingPoint,
+};
 use fluxfit_units::significant;
 use maud::{Markup, html};
 
@@ -13,7 +16,7 @@ use maud::{Markup, html};
 const DECIMALS: usize = 3;
 
 /// The section; `answered` where the operating points are the answer, and not only held beside it.
-pub(crate) fn section(found: &SteadyFit, answered: bool) -> Markup {
+pub(crate) fn section(found: &SteadyFit, saturation: Option<&Saturation>, answered: bool) -> Markup {
     let redundancy = found.estimate.redundancy;
     html! {
         @if !answered {
@@ -36,7 +39,7 @@ pub(crate) fn section(found: &SteadyFit, answered: bool) -> Markup {
             }
         }
         (points(found))
-        @if let Some(saturation) = &found.saturation { (flux::table(saturation)) }
+        @if let Some(saturation) = saturation { (flux::table(saturation)) }
         (frame::live_figure(|size| residuals::draw(found, size), &residuals::live(found), &html! {
             "Residuals of both voltage equations with bars of two standard uncertainties, from the noise of the means and "
             @if let Some(misfit) = found.misfit {

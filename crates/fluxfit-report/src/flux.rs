@@ -4,7 +4,7 @@ use crate::{
     frame,
     typography::{DASH, decimals, number, prose},
 };
-use fluxfit::identify::saturation::{Flux, Saturation};
+use fluxfit::evidence::{Flux, Saturation};
 use fluxfit_units::significant;
 use maud::{Markup, html};
 

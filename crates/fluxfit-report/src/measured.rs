@@ -16,7 +16,7 @@ enum Model<'a> {
     /// The motor that was found, driven by the logged voltages.
     Simulated(&'a OutputFit),
     /// A motor that was given.
-    Predicted(&'a [Course]),
+    Predicted(&'a [PredictedStretch]),
 }
 
 /// A row of the log.
@@ -37,7 +37,7 @@ impl<'a> Measured<'a> {
     }
 
     /// Beside those of a motor that was given. Of a sensor's fault, neither has any.
-    pub(crate) fn and_predicted(log: &'a Log, courses: &'a [Course]) -> Self {
+    pub(crate) fn and_predicted(log: &'a Log, courses: &'a [PredictedStretch]) -> Self {
         Self { log, model: Model::Predicted(courses) }
     }
 

@@ -83,7 +83,7 @@ fn sections(report: &Report) -> Vec<Section> {
         if let Some(fit) = &found.steady {
             let answered = found.output.is_none();
             let heading = if answered { "Operating points, measured against fitted" } else { "Operating points, as a check" };
-            sections.push(Section { anchor: "fit", heading, content: fit::section(fit, answered) });
+            sections.push(Section { anchor: "fit", heading, content: fit::section(fit, found.saturation.as_ref(), answered) });
         }
         if let Some(content) = search::section(found, method.as_ref()) {
             sections.push(Section { anchor: "search", heading: "The swarm’s answer", content });

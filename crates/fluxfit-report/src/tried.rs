@@ -4,7 +4,7 @@ use crate::{
     frame,
     typography::{DASH, capitalized, minus, number, power, prose},
 };
-use fluxfit::{self, evidence::Nuisance, evidence::Outcome, evidence::OutputFit, evidence::Provenance, evidence::Term, evidence::timing};
+use fluxfit::evidence::{Nuisance, Outcome, OutputFit, Provenance, ReadingTrial, Term, Tried};
 use fluxfit_units::{beside_the_motor, significant};
 use maud::{Markup, html};
 
@@ -64,7 +64,7 @@ fn faults(fit: &OutputFit) -> Markup {
     }
 }
 
-fn fault(tried: &terms::Tried) -> Markup {
+fn fault(tried: &Tried) -> Markup {
     let judged = !matches!(tried.outcome, Outcome::Covered | Outcome::NeedsAngle);
     html! {
         tr {
@@ -80,7 +80,7 @@ fn gain(gain: f64) -> String {
     if gain.abs() < 10.0 { format!("{gain:.1}") } else { format!("{gain:.0}") }
 }
 
-fn explained(tried: &terms::Tried) -> &'static str {
+fn explained(tried: &Tried) -> &'static str {
     match (tried.term, tried.outcome) {
         // An observer's gain is no fault with a size.
         (Term::ProcessNoise, Outcome::NotPhysical) => "following the measured current makes the prediction no better",
@@ -93,7 +93,7 @@ fn readings(fit: &OutputFit) -> Markup {
     if provenance == Provenance::Stated {
         return html! { p { "It was stated: " (reading.label()) ". No other reading was tried." } };
     }
-    let best = fit.readings.first().map_or(0.0, timing::Tried::mean_square);
+    let best = fit.readings.first().map_or(0.0, ReadingTrial::mean_square);
     let possible: Vec<_> = fit.possible_readings().map(|tried| tried.reading).collect();
     html! {
         p {

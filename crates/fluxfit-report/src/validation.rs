@@ -55,12 +55,12 @@ fn parameters(found: &Validation) -> Markup {
             }
             "By little means by at most " (number(100.0 * LITTLE, |percent| significant(percent, 1)))
             " % of the current or voltage, which is about what current sensors are good to. "
-            @if found.untold().next().is_some() { "A parameter that the log cannot tell is taken as given, and the others are tested with it." }
+            @if found.untested().next().is_some() { "A parameter that the log cannot tell is taken as given, and the others are tested with it." }
         }
         @if !found.own.warnings.is_empty() {
             div.warnings role="note" aria-label="Warnings" {
                 @for warning in &found.own.warnings {
-                    p { strong { "Warning: " (warning.code) } br; (prose(&capitalized(&warning.message))) "." }
+                    p { strong { "Warning: " (warning.code()) } br; (prose(&capitalized(&warning.to_string()))) "." }
                 }
             }
         }
@@ -207,7 +207,7 @@ fn read(report: &ValidationReport) -> Markup {
             dt { "Rate" } dd { (origin::rate(log)) }
             dt { "Duration" } dd { (number(log.duration(), |seconds| significant(seconds, 3))) " s" }
             dt { "Segments between gaps" } dd { (log.segments().len()) }
-            dt { "Model" } dd { (report.found.own.model.0.label()) " (" (report.found.own.model.1) ")" }
+            dt { "Model" } dd { (report.found.own.model.model.label()) " (" (report.found.own.model.reason) ")" }
         }
         @if !report.notes.is_empty() { ul { @for note in report.notes { li { (prose(note)) } } } }
     }

@@ -168,6 +168,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// What went wrong.
+    pub fn kind(&self) -> &ErrorKind {
+        self
+    }
+
     /// The error of a log without rows that could be fitted.
     pub(crate) fn no_rows() -> Self {
         ErrorKind::TooShort { rows: 0, least: 2 }.into()

@@ -21,10 +21,7 @@ pub use crate::identification::{
         uncertainty::{ParameterUncertainty, Part, Systematic, Uncertainty},
     },
     judge::verdict::{IDENTIFIED, WEAK},
-    prepare::{
-        model::{ModelChoice, ModelReason, SLOWEST_CONTROL, choose as choose_model},
-        search_box,
-    },
-    request::Provenance,
+    prepare::model::{ModelChoice, ModelReason, SLOWEST_CONTROL, choose as choose_model},
+    request::{Provenance, VOLTAGE_ACCURACY},
     solve::Identification,
 };

@@ -2,7 +2,7 @@
 
 use super::by_parameter;
 use fluxfit::{
-    identify::conventions::{Candidate, Convention},
+    evidence::{Candidate, Convention},
     motor::Parameter,
 };
 use serde_json::{Value, json};

@@ -14,10 +14,10 @@ pub(crate) mod simulation;
 pub(crate) mod study;
 pub(crate) mod validation;
 
+use crate::error::CommandError;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit::Warning;
-use fluxfit_files::FileError;
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},
@@ -82,10 +82,10 @@ fn detail_level() -> Detail {
     }
 }
 
-/// Says why a command stopped: a sentence, and below it the line of the file that it is about.
-pub(crate) fn complain(error: &dyn std::error::Error, file: Option<&FileError>) {
-    say(&format!("{ERROR}error:{ERROR:#} {error}"));
-    if let Some(excerpt) = file.and_then(excerpt::of) {
+/// Prints why a command stopped: a sentence, and below it the line of the file that it is about.
+pub(crate) fn print_error(error: &CommandError) {
+    say(&format!("{ERROR}error:{ERROR:#} {}", options::with_option(&error.to_string(), error.option())));
+    if let Some(excerpt) = error.in_file().and_then(excerpt::of) {
         let _ = write!(anstream::stderr().lock(), "{DIM}{excerpt}{DIM:#}");
     }
 }
@@ -105,8 +105,11 @@ pub(crate) fn detail(message: impl FnOnce() -> String) {
 
 /// Prints a warning, and the option that answers it.
 pub(crate) fn warn(warning: &Warning) {
-    let message = options::with_option(&warning.to_string(), options::of_warning(warning));
-    say(&format!("{WARNING}warning{WARNING:#} [{}]: {message}", warning.code()));
+    warn_of(warning.code(), &options::with_option(&warning.to_string(), options::of_warning(warning)));
+}
+
+fn warn_of(code: &str, message: &str) {
+    say(&format!("{WARNING}warning{WARNING:#} [{code}]: {message}"));
 }
 
 /// Says what was inferred.

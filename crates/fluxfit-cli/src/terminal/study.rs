@@ -47,7 +47,7 @@ pub(crate) fn interrupted(methods: &[Method], runs: usize, done: &[(MethodStudy,
         format!("{} {finished}", method.label())
     };
     let finished: Vec<String> = methods.iter().map(of).collect();
-    super::warn(
+    super::warn_of(
         "interrupted",
         &format!("of {runs} runs of each method these are finished: {}; a report is not written", finished.join(", ")),
     );

@@ -14,7 +14,7 @@ pub(crate) fn show(name: &str, motor: &str, log: &Log, found: &Validation) -> st
     text += "\n";
     text += &channels(found);
     super::print(&text)?;
-    found.own.warnings.iter().for_each(|warning| super::warn(warning.code, &warning.message));
+    found.own.warnings.iter().for_each(super::warn);
     Ok(())
 }
 

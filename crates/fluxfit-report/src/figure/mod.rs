@@ -97,6 +97,6 @@ pub fn parameter_courses(study: &MethodStudy, truth: Option<&Motor>, unexcited: 
 }
 
 /// Measured and predicted currents over time, A, and the residuals below them.
-pub fn prediction(log: &Log, courses: &[Course], size: Size) -> String {
+pub fn prediction(log: &Log, courses: &[PredictedStretch], size: Size) -> String {
     currents::draw(Measured::and_predicted(log, courses), size).standalone()
 }

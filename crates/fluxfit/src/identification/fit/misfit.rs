@@ -26,7 +26,12 @@ pub struct Misfit {
 }
 
 /// Looks for contradiction; if there is any, solves the points again at the accuracy to which they agree.
-pub(crate) fn admit(points: &[OperatingPoint], excitation: &Excitation, estimate: Estimate, request: &Request) -> (Estimate, Option<Misfit>) {
+pub(crate) fn admit(
+    points: &[OperatingPoint],
+    excitation: &Excitation,
+    estimate: Estimate,
+    request: &Request,
+) -> (Estimate, Option<Misfit>) {
     let Some(ratio) = significant_ratio(points, &estimate) else { return (estimate, None) };
     let solve = |fraction: f64| Estimate::solve_with(points, excitation, request, fraction);
     // At an accuracy of the whole voltage nothing contradicts anything.

@@ -18,7 +18,7 @@ const LARGEST: f64 = 1e60;
 ///
 /// # Errors
 /// If a bound is beyond what an optimizer takes.
-pub fn from_points(points: &[OperatingPoint]) -> Result<Bounds, Error> {
+pub(crate) fn from_points(points: &[OperatingPoint]) -> Result<Bounds, Error> {
     enclosing(points.iter().map(|point| largest(point.voltage().magnitude(), point.current().magnitude(), point.omega_e().abs())))
 }
 
@@ -39,7 +39,7 @@ fn enclosing(boxes: impl IntoIterator<Item = [f64; PARAMETERS]>) -> Result<Bound
 ///
 /// # Errors
 /// If a bound is beyond what an optimizer takes.
-pub fn from_rows(log: &Log) -> Result<Bounds, Error> {
+pub(crate) fn from_rows(log: &Log) -> Result<Bounds, Error> {
     let columns = log.columns();
     let mean_square = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>() / column.len() as f64;
     let voltage = columns.ud.iter().zip(&columns.uq).map(|(d, q)| d.hypot(*q)).fold(0.0, f64::max);
@@ -51,7 +51,7 @@ pub fn from_rows(log: &Log) -> Result<Bounds, Error> {
 ///
 /// # Errors
 /// If one of them is not a positive finite number.
-pub fn from_rating(voltage: f64, current: f64, omega_e: f64) -> Result<Bounds, Error> {
+pub(crate) fn from_rating(voltage: f64, current: f64, omega_e: f64) -> Result<Bounds, Error> {
     Bounds::new(vec![0.0; PARAMETERS], largest(voltage, current, omega_e).to_vec())
 }
 
