@@ -109,7 +109,7 @@ impl Case {
     fn draw(&self, draw: u64, settings: &Request) -> Result<Draw, String> {
         let recording = simulate(&self.scenario, draw, || ()).map_err(|error| error.to_string())?;
         let log = recording.log().map_err(|error| error.to_string())?;
-        let found = identify(&log, settings).map_err(|error| error.to_string())?;
+        let found = identify(&log, settings).map_err(|error| error.to_string())?.identification;
         let fit = found.output.as_ref().ok_or("another model than the output error answered")?;
         let objective = OutputError::of_rows(&log, &fit.stretches, VoltageReading::Centered).map_err(|error| error.to_string())?;
         Ok(Draw {

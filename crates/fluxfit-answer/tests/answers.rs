@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
-    Model, Request,
+    Model, Request, Swarm,
     frames::Dq,
     identify,
     log::{Columns, Log},
@@ -64,7 +64,7 @@ fn promised_nulls(document: &Value) -> Vec<String> {
 
 /// Checks one log's document; the verdicts it found.
 fn check(log: &Log, settings: &Request) -> Option<Vec<String>> {
-    let answer = identify(log, settings).ok()?;
+    let answer = identify(log, settings).ok()?.identification;
     let document = identification(log, &answer, "tgfpa");
     let text = to_text(&document);
     let read: Value = serde_json::from_str(&text).unwrap();

@@ -18,7 +18,7 @@
 //! # }
 //! let log = Log::new(columns)?;
 //! let settings = evidence::default();
-//! let found = identify(&log, &settings)?;
+//! let found = identify(&log, &settings)?.identification;
 //! let origin = Origin { command: "fluxfit identify drive.csv".to_owned(), version: "0.1.0".to_owned(), seed: 1 };
 //! let page = html(&Report {
 //!     title: "drive.csv",

@@ -124,7 +124,7 @@ pub fn identify_with_progress(log: &Log, request: &Request, progress: Progress) 
 
 /// What the rows of a log say of its units, beside a nameplate, where nothing could be identified.
 pub fn suspect_units(log: &Log, request: &Request) -> Option<Warning> {
-    let convention = conventions::check(log, None, &request.nameplate);
+    let convention = conventions::compare_with_nameplate(log, None, &request.nameplate);
     (!convention.agrees()).then(|| Warning::Convention(Box::new(convention)))
 }
 
@@ -133,7 +133,7 @@ pub fn suspect_units(log: &Log, request: &Request) -> Option<Warning> {
 fn compare_with_nameplate(log: &Log, found: &Identification, request: &Request) -> Convention {
     let of_points = found.steady.as_ref().filter(|_| found.output.is_some());
     let of_points = of_points.map(|fit| explained(judge(&fit.finding, fit.saturation(request).as_ref(), request), &fit.finding));
-    conventions::check(log, Some((of_points.as_ref().unwrap_or(&found.parameters), &request.known)), &request.nameplate)
+    conventions::compare_with_nameplate(log, Some((of_points.as_ref().unwrap_or(&found.parameters), &request.known)), &request.nameplate)
 }
 
 fn interrupted(found: &Identification, request: &Request) -> Option<Warning> {

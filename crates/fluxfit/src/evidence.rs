@@ -2,7 +2,7 @@
 
 pub use crate::identification::{
     explain::{
-        conventions::{Candidate, Convention, Ratio, TOLERANCE, patterns::Pattern},
+        conventions::{Candidate, Convention, Ratio, TOLERANCE, compare_with_nameplate, patterns::Pattern},
         measurement::{Measurement, Place, Promised},
         remedy::Also,
     },

@@ -7,7 +7,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
-    Model, Request,
+    Model, Request, Swarm,
     frames::Dq,
     identify,
     log::{Columns, Log},
@@ -91,7 +91,7 @@ fn outcome(modes: &[(f64, f64, f64)], rho: f64, draws_count: usize, seed: u64) -
             swarm: Swarm::Off,
             ..Request::default()
         };
-        let found = identify(&log, &settings).unwrap();
+        let found = identify(&log, &settings).unwrap().identification;
         outcome.misfits += usize::from(found.steady.as_ref().unwrap().misfit.is_some());
         for parameter in Parameter::ALL {
             let (p, judgement) = (parameter as usize, found.parameter(parameter));
@@ -177,7 +177,7 @@ fn currents_on_a_coarse_grid_widen_the_intervals() {
             swarm: Swarm::Off,
             ..Request::default()
         };
-        let found = identify(&Log::new(columns).unwrap(), &settings).unwrap();
+        let found = identify(&Log::new(columns).unwrap(), &settings).unwrap().identification;
         for parameter in Parameter::ALL {
             let judgement = found.parameter(parameter);
             held[parameter as usize] += usize::from((judgement.raw - TRUTH.get(parameter)).abs() <= judgement.uncertainty.half_width);

@@ -116,7 +116,9 @@ fn scenario(rated: &Rated) -> Scenario {
 fn find(rated: &Rated, model: Model) -> Result<Identification, String> {
     let recording = simulate(&scenario(rated), 0, || ()).map_err(|error| error.to_string())?;
     let log = recording.log().map_err(|error| error.to_string())?;
-    identify(&log, &Request { model: Some(model), ..Request::default() }).map_err(|error| error.to_string())
+    identify(&log, &Request { model: Some(model), ..Request::default() })
+        .map(|answer| answer.identification)
+        .map_err(|error| error.to_string())
 }
 
 /// The error of a parameter, and its standard error, as fractions of the truth.

@@ -4,8 +4,7 @@
 
 use fluxfit::{
     Known, Model, Nameplate, Request,
-    evidence::Convention,
-    evidence::check,
+    evidence::{Convention, compare_with_nameplate},
     identify,
     log::{Columns, Log},
     motor::{PARAMETERS, Parameter},
@@ -44,13 +43,13 @@ fn log([u, i, omega]: [f64; 3]) -> Log {
 }
 
 fn nameplate(factors: [f64; PARAMETERS]) -> Nameplate {
-    Nameplate { values: std::array::from_fn(|p| Some(factors[p] * NAMEPLATE[p])), pole_pairs: Some(paper::POLE_PAIRS) }
+    Nameplate { values: std::array::from_fn(|p| Some(factors[p] * NAMEPLATE[p])), pole_pairs: Some(paper::POLE_PAIRS), rating: None }
 }
 
 fn checked(log: &Log, nameplate: &Nameplate) -> Convention {
     let settings = Request { model: Some(Model::Steady), ..Request::default() };
-    let found = identify(log, &settings).unwrap();
-    check(log, Some((&found, &settings.known)), nameplate)
+    let found = identify(log, &settings).unwrap().identification;
+    compare_with_nameplate(log, Some((&found.parameters, &settings.known)), nameplate)
 }
 
 /// Names of all single patterns that explain the log, the best first.
@@ -112,9 +111,10 @@ fn every_confusion_is_named_in_both_directions() {
             assert_eq!(best.explained, Parameter::ALL);
             // The inverse directions have names of their own.
             assert!(power < 0 || named(&convention).contains(&name), "{name}: {:?}", named(&convention));
-            let warning = convention.warning().expect("a warning");
+            assert!(!convention.agrees());
+            let warning = convention.to_string();
             assert_eq!(warning.code, "convention");
-            assert!(warning.message.contains(best.patterns[0].sentence) && warning.message.contains("unproven"), "{}", warning.message);
+            assert!(warning.contains(best.patterns[0].sentence) && warning.contains("unproven"), "{}", warning);
         }
     }
 }
@@ -148,7 +148,7 @@ proptest! {
         nameplate.values.iter_mut().enumerate().for_each(|(p, value)| *value = value.filter(|_| known & (1 << p) != 0));
         let convention = checked(&log([1.0; 3]), &nameplate);
         prop_assert_eq!(convention.ratios.len() as u32, (known as u32).count_ones());
-        prop_assert!(convention.agrees() && convention.warning().is_none() && convention.best.is_none(), "{:?}", convention);
+        prop_assert!(convention.agrees() && convention.best.is_none(), "{:?}", convention);
     }
 }
 
@@ -171,7 +171,7 @@ fn two_at_once() {
 fn a_factor_without_a_name_gets_none() {
     let convention = checked(&log([1.0; 3]), &nameplate([1.0, 1.0, 1.0, 1.0 / 47.0]));
     assert!(convention.best.is_none() && convention.alternatives.is_empty(), "{convention:?}");
-    let message = convention.warning().unwrap().message;
+    let message = convention.to_string();
     assert!(message.contains("psi_f 47") && message.contains("no usual confusion"), "{message}");
 }
 
@@ -179,10 +179,10 @@ fn a_factor_without_a_name_gets_none() {
 #[test]
 fn saturation_is_no_convention() {
     let log = log([1.0; 3]);
-    let inductances = |ld, lq| Nameplate { values: [None, Some(ld), Some(lq), None], pole_pairs: Some(4) };
+    let inductances = |ld, lq| Nameplate { values: [None, Some(ld), Some(lq), None], pole_pairs: Some(4), rating: None };
     let convention = checked(&log, &inductances(5.25e-3 * 2.0, 12e-3 * 1.5));
     assert!(!convention.agrees() && convention.best.is_none(), "{convention:?}");
-    let message = convention.warning().unwrap().message;
+    let message = convention.to_string();
     assert!(message.contains("times the nameplate's; inductances change as much with current"), "{message}");
     assert_eq!(named(&checked(&log, &inductances(12e-3, 5.25e-3)))[0], "swapped-axes");
     // As likely as a log in mV that was converted twice.
@@ -195,12 +195,12 @@ fn only_what_the_log_tells_is_compared() {
     let log = log([1.0; 3]);
     let mut settings = Request { model: Some(Model::Steady), ..Request::default() };
     settings.known[0] = Known::Fixed(0.958);
-    let found = identify(&log, &settings).unwrap();
-    let compared = |nameplate: &Nameplate| check(&log, Some((&found, &settings.known)), nameplate);
+    let found = identify(&log, &settings).unwrap().identification;
+    let compared = |nameplate: &Nameplate| compare_with_nameplate(&log, Some((&found.parameters, &settings.known)), nameplate);
     let told: Vec<Parameter> = compared(&nameplate([3.0, 1.0, 1.0, 1.0])).ratios.iter().map(|ratio| ratio.parameter).collect();
     assert_eq!(told, [Parameter::Ld, Parameter::Lq, Parameter::PsiF]);
     assert_eq!(compared(&Nameplate::default()), Convention::default());
-    let absurd = Nameplate { values: [Some(f64::NAN), Some(-1.0), Some(0.0), Some(f64::INFINITY)], pole_pairs: Some(0) };
+    let absurd = Nameplate { values: [Some(f64::NAN), Some(-1.0), Some(0.0), Some(f64::INFINITY)], pole_pairs: Some(0), rating: None };
     assert_eq!(compared(&absurd), Convention::default());
 }
 
@@ -224,25 +224,26 @@ fn light_load(u: f64, omega: f64) -> Log {
 
 #[test]
 fn rows_tell_the_flux_where_nothing_is_steady() {
-    let nameplate = Nameplate { values: [Some(0.01), Some(20e-6), None, Some(2e-3)], pole_pairs: Some(2) };
-    let right = check(&light_load(1.0, 1.0), None, &nameplate);
+    let nameplate = Nameplate { values: [Some(0.01), Some(20e-6), None, Some(2e-3)], pole_pairs: Some(2), rating: None };
+    let right = compare_with_nameplate(&light_load(1.0, 1.0), None, &nameplate);
     assert!(right.agrees() && right.ratios[0].apparent, "{right:?}");
     assert!((right.ratios[0].ratio - 1.0).abs() < 1e-9, "{right:?}");
-    let line_to_line = check(&light_load(1.732_051, 1.0), None, &nameplate);
+    let line_to_line = compare_with_nameplate(&light_load(1.732_051, 1.0), None, &nameplate);
     assert_eq!(named(&line_to_line)[0], "line-to-line-voltage");
     // Without a nameplate's resistance the rows tell nothing, and neither where it takes most of the voltage.
-    let less = |rs| check(&light_load(1.0, 1.0), None, &Nameplate { values: [rs, Some(20e-6), None, Some(2e-3)], ..nameplate });
+    let less =
+        |rs| compare_with_nameplate(&light_load(1.0, 1.0), None, &Nameplate { values: [rs, Some(20e-6), None, Some(2e-3)], ..nameplate });
     assert!(less(None).ratios.is_empty() && less(Some(0.1)).ratios.is_empty());
 }
 
 #[test]
 fn a_negative_speed_is_valid_and_one_of_the_wrong_sign_is_not() {
-    let nameplate = Nameplate { values: [Some(0.01), Some(20e-6), None, Some(2e-3)], pole_pairs: Some(2) };
+    let nameplate = Nameplate { values: [Some(0.01), Some(20e-6), None, Some(2e-3)], pole_pairs: Some(2), rating: None };
     // Backwards, and braked: u_q and omega change sign together. R i is the only difference.
     let mut columns = light_load(1.0, -1.0).columns().clone();
     columns.uq.iter_mut().chain(&mut columns.iq).for_each(|value| *value = -*value);
-    assert!(check(&Log::new(columns).unwrap(), None, &nameplate).agrees());
-    let wrong = check(&light_load(1.0, -1.0), None, &nameplate);
-    let message = wrong.warning().unwrap().message;
+    assert!(compare_with_nameplate(&Log::new(columns).unwrap(), None, &nameplate).agrees());
+    let wrong = compare_with_nameplate(&light_load(1.0, -1.0), None, &nameplate);
+    let message = wrong.to_string();
     assert!(wrong.reversed && message.starts_with("u_q and the speed have opposite signs"), "{message}");
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use fluxfit::{Model, Request, Verdict, evidence::Identification, identify, motor::Parameter, paper};
+use fluxfit::{Model, Request, Swarm, Verdict, evidence::Identification, identify, motor::Parameter, paper};
 use fluxfit_drive::{
     Scenario,
     scenario::{Inverter, Modulation},
@@ -19,6 +19,7 @@ fn found(change: impl Fn(&mut Inverter), noise: f64) -> Identification {
         &Request { model: Some(Model::Steady), swarm: Swarm::Off, ..Request::default() },
     )
     .unwrap()
+    .identification
 }
 
 /// Where the losses show, no parameter is identified whose interval does not hold the truth.
@@ -41,7 +42,7 @@ fn losses_are_seen_and_no_wrong_number_is_confident() {
         for loss in &found.steady.as_ref().unwrap().voltage_losses {
             assert!((loss / expected - 1.0).abs() < 0.25, "{name}: {loss} V of {expected} V");
         }
-        assert!(found.warnings.iter().any(|warning| warning.code == "dead-time"), "{name}");
+        assert!(found.warnings.iter().any(|warning| warning.code() == "dead-time"), "{name}");
         assert_ne!(found.parameter(Parameter::Rs).verdict, Verdict::Identified, "{name}");
         for judgement in &found.parameters {
             let truth = paper::MOTOR.get(judgement.parameter);

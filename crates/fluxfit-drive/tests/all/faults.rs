@@ -34,7 +34,7 @@ fn rig(fault: impl FnOnce(&mut Scenario)) -> Recording {
 }
 
 fn found(recording: &Recording) -> Identification {
-    identify(&recording.log().unwrap(), &Request::default()).unwrap()
+    identify(&recording.log().unwrap(), &Request::default()).unwrap().identification
 }
 
 /// The motor lies within these limits, in percent of the truth, and within its own 95 % intervals, which are half as wide again as
@@ -135,7 +135,7 @@ fn a_delay_of_no_one_and_two_periods() {
         let mut columns = recording.columns.clone();
         let moved = |column: &[f64]| -> Vec<f64> { (0..rows).map(|k| column[(k + delay).saturating_sub(1).min(rows - 1)]).collect() };
         (columns.ud, columns.uq) = (moved(&recording.ud_ref), moved(&recording.uq_ref));
-        let found = identify(&fluxfit::Log::new(columns).unwrap(), &Request::default()).unwrap();
+        let found = identify(&fluxfit::Log::new(columns).unwrap(), &Request::default()).unwrap().identification;
         let fit = found.output.as_ref().unwrap();
         // The frame is that of the period in which it acts: two periods' looking ahead, if the column is that late, and so on.
         let frame = VoltageFrame::Middle;
@@ -149,7 +149,7 @@ fn a_delay_of_no_one_and_two_periods() {
 fn disturbing_voltages() {
     let found = found(&rig(|scenario| scenario.inverter.voltage_noise = 1.0));
     assert!(found.output.as_ref().unwrap().has(Term::ProcessNoise));
-    assert!(found.warnings.iter().any(|warning| warning.code == "process-noise"));
+    assert!(found.warnings.iter().any(|warning| warning.code() == "process-noise"));
     holds("disturbed", &found, &paper::MOTOR, [2.0; PARAMETERS]);
 }
 
@@ -218,7 +218,7 @@ fn what_no_motor_does_is_no_answer() {
         for judgement in &found(&recording).parameters {
             assert_eq!(judgement.value(), None, "{what}: {judgement:?}");
             assert!(
-                judgement.remedy.as_ref().is_some_and(|remedy| remedy.contains("signs and order of the columns")),
+                judgement.remedy.as_ref().is_some_and(|remedy| remedy.to_string().contains("signs and order of the columns")),
                 "{what}: {judgement:?}"
             );
         }

@@ -48,11 +48,11 @@ fn bench(points: &[(f64, f64)], hold: f64, carrier: f64, settings: &Request) -> 
         ..Scenario::paper()
     };
     scenario.sensors.current_noise = 0.05;
-    identify(&simulate(&scenario, 0, || ()).unwrap().log().unwrap(), settings).unwrap()
+    identify(&simulate(&scenario, 0, || ()).unwrap().log().unwrap(), settings).unwrap().identification
 }
 
 fn warns(found: &Identification, code: &str) -> bool {
-    found.warnings.iter().any(|warning| warning.code == code)
+    found.warnings.iter().any(|warning| warning.code() == code)
 }
 
 /// No parameter is answered whose interval misses what the map says: R_s, the apparent inductances of every point, the flux without
@@ -125,7 +125,7 @@ fn two_operating_points_say_that_they_prove_nothing() {
 fn simulated_currents_of_a_saturating_motor() {
     for fix_rs in [false, true] {
         let found = bench(&POINTS, 0.12, 2e3, &settings(None, fix_rs));
-        assert_eq!(found.model.0, Model::OutputError);
+        assert_eq!(found.model.model, Model::OutputError);
         let verdicts = found.parameters.each_ref().map(|judgement| (judgement.raw, judgement.verdict.key()));
         println!("R_s fixed {fix_rs}: {verdicts:?} {:?}", found.output.as_ref().unwrap().nuisance);
         assert!(warns(&found, "saturation"), "{fix_rs}");
@@ -154,7 +154,7 @@ fn constant_parameters_raise_no_alarm() {
             };
             scenario.sensors.current_noise = 0.05;
             let log = simulate(&scenario, draw, || ()).unwrap().log().unwrap();
-            let found = identify(&log, &settings(model, false)).unwrap();
+            let found = identify(&log, &settings(model, false)).unwrap().identification;
             assert_eq!(found.saturation, None, "{model:?} {draw}");
             for code in ["saturation", "low-speed", "voltage-limit"] {
                 assert!(!warns(&found, code), "{model:?} {draw}: {code}");

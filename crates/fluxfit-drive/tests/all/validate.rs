@@ -115,7 +115,7 @@ fn so_is_each_channel() {
 fn a_motor_that_another_log_told_is_accepted_as_often_as_is_stated() {
     let scenario = transients();
     let probability = |draw| {
-        let given = Given::of(&identify(&log(&scenario, DRAWS + draw), &exact()).unwrap()).unwrap();
+        let given = Given::of(&identify(&log(&scenario, DRAWS + draw), &exact()).unwrap().identification).unwrap();
         validate(&log(&scenario, draw), &given, &exact()).unwrap().test.probability
     };
     assert_uniform("two logs", &(0..DRAWS).map(probability).collect::<Vec<_>>());

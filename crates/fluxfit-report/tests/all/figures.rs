@@ -17,7 +17,7 @@ use resvg::tiny_skia::Pixmap;
 #[test]
 fn figures_stand_alone() {
     let log = log(&TWO, 0.1);
-    let found = identify(&log, &Request::default()).unwrap();
+    let found = identify(&log, &Request::default()).unwrap().identification;
     let Found { log: fast, found: of_fast } = &*WHOLE;
     for size in [Size::Wide, Size::Narrow] {
         for svg in [

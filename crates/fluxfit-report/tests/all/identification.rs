@@ -8,7 +8,7 @@ use crate::{
     markup::checked,
 };
 use fluxfit::{
-    Given, Known, Log, Model, Request, Verdict, evidence::Identification, identify, motor::Parameter, optimizer::Method, validate,
+    Given, Known, Log, Model, Request, Swarm, Verdict, evidence::Identification, identify, motor::Parameter, optimizer::Method, validate,
 };
 use fluxfit_report::{
     Report,
@@ -34,14 +34,15 @@ pub(crate) fn page(title: &str, log: &Log, found: &Identification, method: Optio
 
 fn identified(currents: &[(f64, f64)], settings: &Request) -> (Identification, String) {
     let log = log(currents, 0.1);
-    let found = identify(&log, settings).unwrap();
+    let found = identify(&log, settings).unwrap().identification;
     let page = page("drive.csv", &log, &found, settings.method);
     (found, page)
 }
 
 #[test]
 fn an_identification_has_its_values_verdicts_and_command() {
-    let (found, page) = identified(&TWO, &Request { model: Some(Model::Steady), method: Some(Method::all()[0]), ..Request::default() });
+    let (found, page) =
+        identified(&TWO, &Request { model: Some(Model::Steady), swarm: Swarm::Method(Method::all()[0]), ..Request::default() });
     assert!(found.is_complete());
     let text = checked(&page);
     for expected in
@@ -78,7 +79,7 @@ fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict()
 #[test]
 fn nothing_identifiable_is_still_a_page() {
     let log = log(&TWO[..1], 0.1);
-    let mut found = identify(&log, &Request::default()).unwrap();
+    let mut found = identify(&log, &Request::default()).unwrap().identification;
     found.parameters.iter_mut().for_each(|judgement| judgement.verdict = Verdict::NotIdentifiable);
     let text = checked(&page("x", &log, &found, Request::default().method));
     assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
@@ -127,7 +128,7 @@ fn correlations_stand_in_a_table_whose_numbers_are_those_of_the_answer() {
 fn there_is_no_ellipse_of_a_given_or_missing_parameter() {
     let log = recorded(0.08, |_| ());
     let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
-    let mut found = identify(&log, &Request { known, ..of_currents() }).unwrap();
+    let mut found = identify(&log, &Request { known, ..of_currents() }).unwrap().identification;
     let text = checked(&page("x", &log, &found, None));
     assert!(text.contains("There is no joint region: Rs was given."), "{text}");
     found.parameters[Parameter::PsiF as usize].verdict = Verdict::NotIdentifiable;
@@ -138,7 +139,7 @@ fn there_is_no_ellipse_of_a_given_or_missing_parameter() {
 #[test]
 fn faults_of_the_drive_are_told_with_their_size() {
     let log = recorded(0.08, |scenario| scenario.sensors.current_offset = [0.0, 0.3, 0.0]);
-    let found = identify(&log, &of_currents()).unwrap();
+    let found = identify(&log, &of_currents()).unwrap().identification;
     let page = page("x", &log, &found, None);
     let text = checked(&page);
     // A third of the offset of phase b is common to all three and seen by nobody; Clarke makes of it -0.1 A and 0.3 / sqrt 3 = 0.173 A.
@@ -177,7 +178,7 @@ fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
     let log = recorded(0.08, |_| ());
     let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };
     let method = Some(Method::all()[0]);
-    let found = identify(&log, &Request { method, search, ..of_currents() }).unwrap();
+    let found = identify(&log, &Request { method, search, ..of_currents() }).unwrap().identification;
     let text = checked(&page("x", &log, &found, method));
     assert!(text.contains("Simulated currents are not linear in the parameters") && !text.contains("solves them exactly"), "{text}");
 }
@@ -185,7 +186,7 @@ fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
 #[test]
 fn hostile_texts_are_texts() {
     let log = log(&TWO, 0.1);
-    let found = identify(&log, &Request::default()).unwrap();
+    let found = identify(&log, &Request::default()).unwrap().identification;
     let title = "</title><script>alert(1)</script>\"'&<img src=x onerror=y>";
     assert!(checked(&page(title, &log, &found, None)).contains(title));
 }
@@ -193,7 +194,7 @@ fn hostile_texts_are_texts() {
 #[test]
 fn what_was_held_out_has_its_own_section() {
     let (log, kept_out) = (recorded(0.08, |_| ()), recorded(0.08, |scenario| scenario.sensors.current_noise = 0.06));
-    let found = identify(&log, &of_currents()).unwrap();
+    let found = identify(&log, &of_currents()).unwrap().identification;
     let validation = validate(&kept_out, &Given::of(&found).unwrap(), &of_currents()).unwrap();
     let origin = origin();
     let shown = Report {

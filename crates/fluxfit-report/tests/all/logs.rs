@@ -63,7 +63,7 @@ pub(crate) struct Found {
 
 impl Found {
     fn of(log: Log) -> Self {
-        let found = identify(&log, &of_currents()).unwrap();
+        let found = identify(&log, &of_currents()).unwrap().identification;
         Self { log, found }
     }
 }

@@ -32,7 +32,7 @@ fn found(points: &[(f64, f64)]) -> Identification {
             }
         }
     }
-    identify(&Log::new(columns).unwrap(), &Request { model: Some(Model::Steady), ..Request::default() }).unwrap()
+    identify(&Log::new(columns).unwrap(), &Request { model: Some(Model::Steady), ..Request::default() }).unwrap().identification
 }
 
 static FOUND: LazyLock<Identification> = LazyLock::new(|| found(&[(0.0, 9.0), (-2.0, 8.5), (-4.0, 5.0)]));

@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
-    Known, Model, Request, Verdict,
+    Known, Model, Request, Swarm, Verdict,
     evidence::Identification,
     frames::Dq,
     identify,
@@ -79,7 +79,7 @@ fn settings(columns: &Columns) -> Request {
 }
 
 fn found_with(columns: Columns, settings: &Request) -> Identification {
-    identify(&Log::new(columns).unwrap(), settings).unwrap()
+    identify(&Log::new(columns).unwrap(), settings).unwrap().identification
 }
 
 fn found(columns: Columns) -> Identification {
@@ -172,7 +172,7 @@ proptest! {
         };
         for order in [[0, 1, 2], [2, 0, 1]] {
             let joined = Log::join(order.map(part)).unwrap();
-            same(&one, &identify(&joined, &settings).unwrap(), SAME_UNITS, ROUNDING)?;
+            same(&one, &identify(&joined, &settings).unwrap().identification, SAME_UNITS, ROUNDING)?;
         }
     }
 
@@ -182,8 +182,8 @@ proptest! {
         let columns = columns(&drive, NOISE, seed);
         let settings = settings(&columns);
         let log = Log::new(columns).unwrap();
-        let once = identify(&log, &settings).unwrap();
-        let twice = identify(&Log::join([log.clone(), log]).unwrap(), &settings).unwrap();
+        let once = identify(&log, &settings).unwrap().identification;
+        let twice = identify(&Log::join([log.clone(), log]).unwrap(), &settings).unwrap().identification;
         for p in 0..PARAMETERS {
             prop_assert!((values(&twice)[p] - values(&once)[p]).abs() <= ROUNDING * errors(&once)[p]);
         }
@@ -319,7 +319,7 @@ fn a_window_without_voltage_or_speed_is_no_trap() {
     let t = (0..80).map(|k| 20.0 * f64::from(k)).collect();
     let (ud, uq, id, iq) = (halves(0.0, 0.0), halves(0.0, -4.2e-8), halves(2e-2, -1e-2), halves(-4.2e-6, 2.1e-6));
     let log = Log::new(Columns { t, ud, uq, id, iq, omega_e: halves(0.0, -8.2e-5), ..Columns::default() }).unwrap();
-    let found = identify(&log, &Request { model: Some(Model::Steady), swarm: Swarm::Off, ..Request::default() }).unwrap();
+    let found = identify(&log, &Request { model: Some(Model::Steady), swarm: Swarm::Off, ..Request::default() }).unwrap().identification;
     assert!(
         found.steady.as_ref().unwrap().estimate.motor.to_array().iter().all(|value| value.is_finite()),
         "{:?}",

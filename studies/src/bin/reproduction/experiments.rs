@@ -1,7 +1,7 @@
 //! What is simulated and what is run: the rig three ways, the paper's methods, and the methods with one choice changed.
 
 use fluxfit::{
-    identify,
+    Request,
     motor::PARAMETERS,
     objective::voltage_error::IdZero,
     optimizer::{
@@ -63,7 +63,7 @@ impl Data {
             Rig::Noisy => (scenario.sensors.current_noise, scenario.sensors.adc) = (NOISE, Some(ADC)),
         }
         let log = simulate(&scenario, 0, || ())?.log()?;
-        Ok(Self { rig, problem: Problem::steady(&log, &evidence::default(), IdZero::Measured)? })
+        Ok(Self { rig, problem: StudyProblem::steady(&log, &Request::default(), IdZero::Measured)? })
     }
 
     /// The paper's number of runs of each method.

@@ -107,7 +107,11 @@ pub struct Convention {
 
 /// Compares a log with a nameplate: the parameters identified, except those that the settings knew beforehand, and if the flux is
 /// none of them, the rows' apparent flux. Without an identification (the log may have no operating point) there is only the latter.
-pub(crate) fn check(log: &Log, found: Option<(&[Judgement; PARAMETERS], &[Known; PARAMETERS])>, nameplate: &Nameplate) -> Convention {
+pub fn compare_with_nameplate(
+    log: &Log,
+    found: Option<(&[Judgement; PARAMETERS], &[Known; PARAMETERS])>,
+    nameplate: &Nameplate,
+) -> Convention {
     let mut ratios: Vec<Ratio> = found.map(|(found, known)| identified(found, known, nameplate)).unwrap_or_default();
     let mut reversed = false;
     if ratios.iter().all(|ratio| ratio.parameter != Parameter::PsiF)

@@ -14,7 +14,6 @@ use crate::motor::{PARAMETERS, Parameter};
 
 /// One parameter, judged.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Judgement {
     /// Which.
     pub parameter: Parameter,
