@@ -1,8 +1,8 @@
-"""fluxfit's drive simulator beside motulator 0.5.0, an independent one: the paper's rig with switched PWM. Prints Markdown.
+"""Compares fluxfit's drive simulator with motulator 0.5.0, an independent one, on the paper's rig with switched PWM. Prints Markdown.
 
     drive.py [directory of fluxfit-benches' binaries]      default target/release
 
-fluxfit is measured before and after motulator, in the same run, and the faster of the two counts: other work only slows. Exit status 1 if a promise is not kept.
+fluxfit is measured before and after motulator, in the same run, and the faster of the two counts, because other work only slows a run. Exit status 1 if a limit is exceeded.
 """
 
 import json

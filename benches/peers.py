@@ -1,13 +1,13 @@
-"""fluxfit beside its peers: same log, same fitness, same population and iterations, one machine, one run. Prints Markdown.
+"""Compares fluxfit with other programs: same log, same fitness, same population and iterations, one machine, one run. Prints Markdown.
 
     peers.py [directory of fluxfit and fluxfit-benches]      default target/release
 
-Exit status 1 if a promise is not kept. mealpy is under the GPL: it is measured beside fluxfit and never linked with it.
+Exit status 1 if a limit is exceeded. mealpy is under the GPL: it is run as a separate program and never linked with fluxfit.
 """
 
 import os
 
-for library in ("OMP", "OPENBLAS", "MKL"):  # one thread for everybody
+for library in ("OMP", "OPENBLAS", "MKL"):  # one thread for every program
     os.environ[f"{library}_NUM_THREADS"] = "1"
 
 import json
@@ -27,7 +27,7 @@ from scipy.optimize import differential_evolution
 from problem import LOWER, UPPER, Problem, write_log
 
 POPULATION, ITERATIONS = 50, 300
-RUNS = 5  # of a peer's swarm, after one that is not counted
+RUNS = 5  # of another program's swarm, after a warm-up run
 SOLUTIONS = 201  # of an exact solver
 COMMANDS = 3  # `fluxfit compare`, each time
 
@@ -64,7 +64,7 @@ def measure(who, problem, solve, runs):
 
 
 def peers(problem):
-    """Names, runs and how each is run; the first two are those that the promises are about, the last two are exact."""
+    """Names, runs and how each is run; the limits concern the first two, the last two are exact."""
     samples, factor, many = problem.by_samples, problem.by_factor, problem.by_factor_of_many
     vectorized = {"vectorized": True, "updating": "deferred"}
     return [
@@ -118,29 +118,29 @@ def table(ours, theirs):
     print("| who | ms per run | evaluations | median F - F_LS | times slower than fluxfit tGFPA |")
     print("|---|--:|--:|--:|--:|")
     for who, milliseconds, evaluations, above in rows:
-        # Who evaluates nothing solves exactly.
+        # No evaluations: an exact solver.
         excess = "exact" if evaluations == 0 else f"{above:.1e}"
         print(f"| {who} | {digits(milliseconds)} | {evaluations or ''} | {excess} | {digits(milliseconds / reference)} |")
 
 
 def verdicts(ours, theirs):
-    """Whether each promise is kept."""
+    """Whether all limits are met."""
     run = ours["swarms"][0]["milliseconds_per_run"]
     by_samples, by_factor = (row[1] for row in theirs[:2])
-    # What is promised, the limit, which side of it is good, what was measured.
-    promises = [
+    # Quantity, limit, the good side of it, measured value.
+    limits = [
         ("tGFPA run, ms", RUN_LIMIT_MS, "at most", run),
         ("`fluxfit compare`, 4 x 50 runs, ms", COMPARE_LIMIT_MS, "at most", ours["milliseconds_compare"]),
         ("times faster than mealpy, fitness over the samples", SAMPLES_FACTOR, "at least", by_samples / run),
         ("times faster than mealpy, triangular factor", FACTOR_FACTOR, "at least", by_factor / run),
     ]
-    print("| promise | limit | measured | |\n|---|--:|--:|---|")
-    kept = True
-    for what, limit, side, measured in promises:
+    print("| limit on | limit | measured | |\n|---|--:|--:|---|")
+    met = True
+    for what, limit, side, measured in limits:
         ok = measured <= limit if side == "at most" else measured >= limit
-        kept = kept and ok
+        met = met and ok
         print(f"| {what} | {side} {limit:g} | {digits(measured)} | {'ok' if ok else 'MISSED'} |")
-    return kept
+    return met
 
 
 def main():
@@ -156,7 +156,7 @@ def main():
         theirs = []
         for who, runs, solve in peers(problem):
             theirs.append(measure(who, problem, solve, runs))
-            # Between the peers again and again: what else the machine does slows everybody alike.
+            # Measured again after each peer, so that other work on the machine affects all programs alike.
             ours.append(fluxfit(programs, log))
         ours = middle(ours)
     table(ours, theirs)

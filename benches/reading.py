@@ -1,8 +1,8 @@
-"""How fast fluxfit reads logs, beside pandas' C engine and the parquet crate, in one run. Prints Markdown.
+"""Measures how fast fluxfit reads logs, compared with pandas' C engine and the parquet crate, in one run. Prints Markdown.
 
     reading.py [directory of fluxfit's binaries] [--large]      default target/release; --large: a CSV of 2 GB, identified, with its memory
 
-CPU seconds of the thread that reads: other work on the machine does not count. Exit status 1 if a promise is not kept.
+Times are CPU seconds of the reading thread, so other work on the machine does not count. Exit status 1 if a limit is exceeded.
 """
 
 import json
@@ -18,9 +18,9 @@ import pyarrow.csv
 import pyarrow.parquet
 
 RATE, SHARE, RESIDENT = 150.0, 0.8, 300.0  # MB/s of CSV, of the crate's rate, MB
-SECONDS = 60  # of the drive that is simulated; the files repeat it
+SECONDS = 60  # of the simulated drive; the files repeat it
 TIMES, TIMES_OF_LARGE = 3, 36  # 2 GB
-DECIMALS = 6  # as drives' tools write
+DECIMALS = 6  # as the tools of drives write
 REPEATS = 3
 SPEEDS, LOADS, CURRENTS = [1000, 600, 1200, 300, 900, 1400], [10, 3, 6, 8, 2, 4], [-2, -3, -0.5, 0, -1, -2.5]
 
@@ -46,7 +46,7 @@ def drive(programs, folder):
 
 
 def write(path, log, times):
-    """The log, again and again, with a second between."""
+    """The log, repeated with a pause of one second."""
     writer = None
     for k in range(times):
         table = pa.Table.from_pandas(log.assign(t=(log["t"] + k * (SECONDS + 1)).round(DECIMALS)), preserve_index=False)
@@ -67,7 +67,7 @@ def pandas_seconds(path):
 
 
 def identify(programs, log, answer):
-    """Seconds, the most memory that was resident, MB, and what was printed. Asked of /proc: what wait tells holds this program's own memory."""
+    """Seconds, largest resident memory in MB, and the output. The memory is read from /proc, because the figure of wait includes this program's own memory."""
     start, resident = time.perf_counter(), 0.0
     with open(answer, "w") as output:
         process = subprocess.Popen([programs / "fluxfit", "identify", log], stdout=output, stderr=subprocess.DEVNULL)
@@ -81,8 +81,8 @@ def identify(programs, log, answer):
 def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--large"]
     programs = pathlib.Path(arguments[0] if arguments else "target/release")
-    promises = []
-    print("| what | fluxfit, MB/s | beside it, MB/s | ratio |\n|---|--:|--:|--:|")
+    met = []
+    print("| what | fluxfit, MB/s | for comparison, MB/s | ratio |\n|---|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         log = drive(programs, folder)
@@ -91,20 +91,20 @@ def main():
         write(parquet, log, TIMES)
         text, packed = json.loads(subprocess.run([programs / "reading", csv, parquet], check=True, capture_output=True).stdout)
         size = text["bytes"] / 1e6
-        rate, beside = size / text["seconds"], size / pandas_seconds(csv)
-        print(f"| CSV of ten columns, eight of them read; pandas' C engine | {rate:.0f} | {beside:.0f} | {rate / beside:.2f} |")
-        promises.append(rate >= RATE)
+        rate, other = size / text["seconds"], size / pandas_seconds(csv)
+        print(f"| CSV of ten columns, eight of them read; pandas' C engine | {rate:.0f} | {other:.0f} | {rate / other:.2f} |")
+        met.append(rate >= RATE)
         size = packed["bytes"] / 1e6
-        rate, beside = size / packed["seconds"], size / packed["seconds_of_crate"]
-        print(f"| Parquet (Snappy), the same; the parquet crate alone | {rate:.0f} | {beside:.0f} | {rate / beside:.2f} |")
-        promises.append(rate / beside >= SHARE)
+        rate, other = size / packed["seconds"], size / packed["seconds_of_crate"]
+        print(f"| Parquet (Snappy), the same; the parquet crate alone | {rate:.0f} | {other:.0f} | {rate / other:.2f} |")
+        met.append(rate / other >= SHARE)
         if "--large" in sys.argv:
             large = folder / "large.csv"
             write(large, log, TIMES_OF_LARGE)
             seconds, resident, answer = identify(programs, large, folder / "answer.txt")
             print(f"\n{large.stat().st_size / 1e9:.2f} GB of CSV identified in {seconds:.0f} s with at most {resident:.0f} MB resident.\n\n{answer}")
-            promises.append(resident < RESIDENT)
-    sys.exit(0 if all(promises) else 1)
+            met.append(resident < RESIDENT)
+    sys.exit(0 if all(met) else 1)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Draws docs/terminal.svg, the picture of the README: what two commands print on a terminal, as it is.
+"""Draws docs/terminal.svg, the picture of the README: the output of two commands on a terminal.
 
 python3 docs/terminal.py, in the repository's root, after cargo build --release. Standard library only.
 """

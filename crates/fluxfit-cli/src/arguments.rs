@@ -18,7 +18,7 @@ use fluxfit_units::{
 };
 use std::path::PathBuf;
 
-/// Finds the parameters of a permanent magnet synchronous motor from a drive's log
+/// Identifies a permanent magnet synchronous motor from a log of its drive
 #[derive(Debug, Parser)]
 #[command(name = "fluxfit", version, max_term_width = 110, subcommand_value_name = "VERB", after_help = EXIT_STATUS, arg_required_else_help = true)]
 pub(crate) struct Command {
@@ -31,15 +31,15 @@ pub(crate) struct Command {
 /// How much is told on standard error.
 #[derive(Debug, Args)]
 pub(crate) struct Telling {
-    /// Say no notes and show no progress; warnings and errors stay
+    /// Suppress notes and progress; warnings and errors remain
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
-    /// Say on standard error what is decided on the way, and when
+    /// Print each decision and its time on standard error
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
 }
 
-const EXIT_STATUS: &str = "Exit: 0 all identified, or agrees; 1 not all, or differs; 2 misuse; 130 Ctrl-C";
+const EXIT_STATUS: &str = "Exit status: 0 identified, or agrees; 1 not all, or differs; 2 error; 130 Ctrl-C";
 
 /// The verbs as the first help shows them; a verb that no group names comes last.
 const GROUPS: [(&str, &[&str]); 3] = [
@@ -54,7 +54,7 @@ pub(crate) fn command() -> clap::Command {
     let verbs: Vec<(String, String)> = command
         .get_subcommands()
         .map(|verb| (verb.get_name().to_owned(), verb.get_about().map(ToString::to_string).unwrap_or_default()))
-        .chain([("help".to_owned(), "Help for a verb".to_owned())])
+        .chain([("help".to_owned(), "Print the help of a verb".to_owned())])
         .collect();
     let width = verbs.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let is_in = |names: &[&str], name: &str| names.contains(&name);
@@ -80,35 +80,34 @@ const HEAD: Style = Style::new().bold();
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
-    /// Inspect a log: its columns, units and repairs
+    /// Show how a log is read: columns, units, ranges, repairs
     ///
-    /// Shows what is understood of it, and writes a mapping file to start from.
+    /// Also writes a mapping file to start from, with -o.
     Inspect(Inspect),
-    /// List the layouts of logs that are known
+    /// List the known layouts of logs
     Formats,
-    /// See all of it on the paper's rig, with a report
+    /// Run everything on the paper's rig, and write a report
     ///
-    /// Simulates the paper's motor in its drive, identifies it, compares four methods, and writes a report.
+    /// Simulates the paper's motor in its drive, identifies it, compares four optimizers, and writes a report.
     Demo(Demo),
-    /// Identify a motor: four parameters with interval and verdict
+    /// Identify the parameters, with intervals and verdicts
     Identify(Identify),
-    /// Compare swarm optimizers: many runs of each, beside the minimum
+    /// Compare swarm optimizers: many runs of each, against the minimum
     ///
-    /// They minimize the paper's fitness, or the output error. Interrupted, the runs that are finished are shown.
+    /// They minimize the paper's fitness (11), or the output error. After Ctrl-C, the finished runs are shown.
     Compare(Compare),
-    /// Simulate a motor in a drive: a log, and its truth beside it
+    /// Simulate a motor in a drive; write its log and true parameters
     Simulate(Simulate),
-    /// Validate parameters on a log that they were not found from
+    /// Validate given parameters on another log
     ///
-    /// The log is predicted, compared and tested.
+    /// Predicts the log with the given parameters and tests the prediction.
     Validate(Validate),
-    /// Print the completions of a shell
+    /// Print the completions for a shell
     ///
-    /// For bash: fluxfit completions bash > ~/.local/share/bash-completion/completions/fluxfit. For zsh: into a file _fluxfit of a
-    /// directory in fpath. For fish: fluxfit completions fish > ~/.config/fish/completions/fluxfit.fish. For PowerShell: into the file
-    /// $PROFILE.
+    /// bash: fluxfit completions bash > ~/.local/share/bash-completion/completions/fluxfit. zsh: write to a file _fluxfit in a directory of
+    /// fpath. fish: fluxfit completions fish > ~/.config/fish/completions/fluxfit.fish. PowerShell: append to the file $PROFILE.
     Completions(Completions),
-    /// Write the manual, a page for each verb
+    /// Write the manual pages, one for each verb
     Man(Man),
 }
 
@@ -124,14 +123,14 @@ impl Verb {
 
 #[derive(Debug, Args)]
 pub(crate) struct Completions {
-    /// Which shell
+    /// The shell
     #[arg(value_name = "SHELL", value_enum)]
     pub(crate) shell: clap_complete::Shell,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Man {
-    /// The directory, as ~/.local/share/man/man1
+    /// Directory for the pages, for example ~/.local/share/man/man1
     #[arg(value_name = "DIR")]
     pub(crate) directory: PathBuf,
 }
@@ -140,43 +139,44 @@ pub(crate) struct Man {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Log")]
 pub(crate) struct LogArguments {
-    /// Logs of one motor, as CSV with a header; - is standard input
+    /// Logs of one motor: CSV, Parquet, MATLAB, HDF5 or MDF 4; - is standard input
     #[arg(required = true, value_name = "LOG", help_heading = Resettable::Reset)]
     pub(crate) logs: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) columns: ColumnArguments,
-    /// A steady window in the log's seconds, e.g. 0.48:0.595; repeatable
+    /// Use this time window of the log, in seconds, e.g. 0.48:0.595; repeatable
     ///
-    /// Without, windows are found.
+    /// [default: all rows; the steady model finds its windows]
     #[arg(long, value_name = "T0:T1", value_parser = fluxfit_units::parse_window, allow_hyphen_values = true)]
     pub(crate) window: Vec<(f64, f64)>,
-    /// When the voltages ud, uq of a row act
+    /// When the voltages ud, uq of a row are applied
     ///
-    /// The mean of the two periods around it (centered), or the vector of one period, so many periods later.
+    /// Either they are the mean of the two periods around the row (centered), or the vector of one period that begins 0, 1 or 2 periods
+    /// after the row.
     #[arg(long, value_enum, default_value_t = Timing::Auto)]
     pub(crate) voltage_timing: Timing,
-    /// Motor file: pole pairs, rating, nameplate
+    /// Motor file: pole pairs, nameplate values, rating
     ///
-    /// The rating widens the search box; what identify finds is held against the nameplate.
-    #[arg(long, value_name = "MOTOR.toml", help_heading = "Knowledge")]
+    /// fluxfit identify compares its result with the nameplate values. The rating widens the search box of the swarms.
+    #[arg(long, value_name = "MOTOR.toml", help_heading = "Prior knowledge")]
     pub(crate) motor: Option<PathBuf>,
-    /// Search box of the swarms, e.g. ld=0:50mH
+    /// Search box of the swarms, e.g. rs=0:5,ld=0:50mH; a bare number is SI
     ///
-    /// What is not named comes from the rating or the log.
+    /// [default: from the rating of the motor file or from the log, whichever is larger]
     #[arg(long, help_heading = "Search", value_name = "NAME=LOW:HIGH,..", value_delimiter = ',', value_parser = fluxfit_units::parse_bounds, allow_hyphen_values = true)]
     pub(crate) bounds: Vec<(Parameter, f64, f64)>,
     /// Seed of all random numbers
     #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Print one JSON document and nothing else
+    /// Print the result as one JSON document and nothing else
     #[arg(long, help_heading = "Output")]
     pub(crate) json: bool,
-    /// Write the results as a page for a browser, beside the answer
+    /// Also write the results as an HTML page
     #[arg(long, help_heading = "Output", value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
-    /// Write every figure of that page as SVG and PNG
+    /// Also write every figure of that page as SVG and PNG
     ///
-    /// Into this directory, which is made if it is not there.
+    /// Each figure is NAME.svg and NAME.png in this directory, which is created if it does not exist.
     #[arg(long, help_heading = "Output", value_name = "DIR")]
     pub(crate) figures: Option<PathBuf>,
 }
@@ -185,22 +185,23 @@ pub(crate) struct LogArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Log")]
 pub(crate) struct ColumnArguments {
-    /// Columns that are named otherwise, e.g. ud=motor_vd_V,omega_e=speed
+    /// Columns with other names, e.g. ud=motor_vd_V,omega_e=speed
     ///
-    /// Canonical are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc; with theta_e the phases ia, ib, ic, ua, ub, uc do.
+    /// The standard names are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc. Phase quantities ia, ib, ic, ua, ub, uc with theta_e
+    /// may replace id, iq, ud, uq. [default: the standard names, or a known layout]
     #[arg(long, value_name = "NAME=COLUMN,..", value_parser = parse_columns)]
     pub(crate) map: Vec<MappedColumns>,
     /// Units of columns, e.g. omega=rpm-mech,t=ms
     ///
-    /// Without, the column's name, its layout or SI decides.
+    /// [default: the unit in the column's header, else that of the known layout, else SI]
     #[arg(long, value_name = "NAME=UNIT,..", value_delimiter = ',', value_parser = fluxfit_log::parse_unit)]
     pub(crate) unit: Vec<(String, Unit)>,
-    /// Pole pairs, for speeds and angles in mechanical units
+    /// Number of pole pairs, for speeds and angles in mechanical units
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) pole_pairs: Option<u32>,
     /// Mapping file: names, units, scales and signs of columns
     ///
-    /// fluxfit inspect writes one to start from.
+    /// fluxfit inspect LOG -o MAPPING.toml writes one to start from.
     #[arg(long, value_name = "MAPPING.toml")]
     pub(crate) mapping: Option<PathBuf>,
 }
@@ -223,22 +224,22 @@ fn parse_export(text: &str) -> Result<(Target, PathBuf), String> {
 
 #[derive(Debug, Args)]
 pub(crate) struct Inspect {
-    /// A log; - is standard input
+    /// The log; - is standard input
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
     #[command(flatten)]
     pub(crate) columns: ColumnArguments,
-    /// Write a mapping file that says what was understood, with places for what was not
-    #[arg(short, long, value_name = "MAPPING.toml")]
+    /// Write a mapping file with the columns recognized, to be completed by hand
+    #[arg(short, long, help_heading = "Output", value_name = "MAPPING.toml")]
     pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Demo {
-    /// Where the report goes
+    /// File for the report
     #[arg(long, value_name = "FILE.html", default_value = "fluxfit-demo.html")]
     pub(crate) report: PathBuf,
-    /// Write every figure of the report into a directory, each as NAME.svg and NAME.png
+    /// Also write every figure of the report into this directory, as NAME.svg and NAME.png
     #[arg(long, value_name = "DIR")]
     pub(crate) figures: Option<PathBuf>,
     /// Seed of all random numbers
@@ -250,34 +251,35 @@ pub(crate) struct Demo {
 pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) log: LogArguments,
-    /// What is fitted to what
-    #[arg(long, help_heading = "Search", value_enum, default_value_t = ModelArgument::Auto)]
+    /// Model that is fitted to the log
+    #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
     pub(crate) model: ModelArgument,
-    /// Who searches beside the exact answer: least-squares (nobody), tgfpa, fpa, lpso, apso
+    /// Optimizer that is run for comparison: least-squares (none), tgfpa, fpa, lpso, apso
     ///
-    /// auto is tgfpa at operating points, and nobody on the output error, where it takes seconds.
+    /// The identified parameters do not depend on it. auto is tgfpa with the steady model, and none with the output error, where a run
+    /// takes seconds.
     #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method)]
     pub(crate) method: SearchMethod,
-    /// Systematic uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
+    /// Standard uncertainty of the voltages, as a fraction of the vector
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
-    /// A parameter that is known exactly, e.g. rs=0.96
-    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
+    /// A parameter known exactly, e.g. rs=0.96 or ld=5.25mH; a bare number is SI
+    #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
     pub(crate) fix: Vec<(Parameter, f64)>,
-    /// A parameter that is known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
-    #[arg(long, help_heading = "Knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_units::parse_prior, allow_hyphen_values = true)]
+    /// A parameter known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
+    #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_units::parse_prior, allow_hyphen_values = true)]
     pub(crate) prior: Vec<(Parameter, f64, f64)>,
-    /// Identify from all but the last log or segment, and validate on that
+    /// Identify without the last log (of one log: the last segment), and validate on it
     #[arg(long, help_heading = "Output")]
     pub(crate) hold_out: bool,
-    /// Write the answer as the file of another tool: vesc, moteus, mcsdk, matlab; may be repeated
-    #[arg(long, value_name = "TARGET=FILE", value_parser = parse_export)]
+    /// Write the result as a file for another tool: vesc, moteus, mcsdk, matlab; repeatable
+    #[arg(long, help_heading = "Output", value_name = "TARGET=FILE", value_parser = fluxfit_units::parse_export)]
     pub(crate) export: Vec<(Target, PathBuf)>,
-    /// Gains of the current controllers for this bandwidth, e.g. 500Hz, with their intervals
-    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency)]
+    /// Compute the current controllers' gains for this bandwidth, e.g. 500Hz
+    #[arg(long, help_heading = "Output", value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency)]
     pub(crate) bandwidth: Option<f64>,
-    /// How often the current controllers run, for their phase margin; without, as often as the log samples
-    #[arg(long, value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency, requires = "bandwidth")]
+    /// Rate of the current controllers, for the phase margin, e.g. 10kHz [default: the log's sample rate]
+    #[arg(long, help_heading = "Output", value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency, requires = "bandwidth")]
     pub(crate) control_rate: Option<f64>,
 }
 
@@ -285,80 +287,81 @@ pub(crate) struct Identify {
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) log: LogArguments,
-    /// Methods: tgfpa, fpa, lpso, apso
+    /// Optimizers to compare: tgfpa, fpa, lpso, apso
     #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
     pub(crate) methods: Vec<Method>,
-    /// What is minimized
-    #[arg(long, help_heading = "Search", value_enum, default_value_t = StudyModel::Steady)]
+    /// Fitness that is minimized
+    #[arg(long, help_heading = "Model", value_enum, default_value_t = StudyModel::Steady)]
     pub(crate) model: StudyModel,
-    /// Independent runs of each method
+    /// Number of independent runs of each optimizer
     #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 50)]
     pub(crate) runs: usize,
-    /// Candidates of each run
+    /// Number of candidates in each run
     #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 50)]
     pub(crate) population: usize,
-    /// Iterations of each run
+    /// Number of iterations of each run
     #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 300)]
     pub(crate) iterations: usize,
-    /// Stop a run once its cost is this close to the minimum
+    /// Stop a run when its cost is this close to the minimum (V², or A² with the output error)
     #[arg(long, help_heading = "Search", value_name = "COST")]
     pub(crate) tolerance: Option<f64>,
-    /// Stop a run once its cost is at or below this
+    /// Stop a run when its cost is at or below this value (V², or A² with the output error)
     #[arg(long, help_heading = "Search", value_name = "COST")]
     pub(crate) target_cost: Option<f64>,
-    /// What stands for i_d in the mode i_d = 0: the measured current, or zero as in the paper's equation (3)
+    /// Value of i_d in windows at i_d = 0: measured, or as-paper (zero, the paper's equation (3))
     #[arg(long, help_heading = "Search", value_name = "HOW", default_value = "measured", value_parser = parse_id_zero)]
     pub(crate) id_zero: IdZero,
-    /// True parameters (LOG.truth.json), for the errors of Table 2
-    #[arg(long, help_heading = "Knowledge", value_name = "FILE")]
+    /// File of true parameters (LOG.truth.json), for the errors of the runs
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FILE")]
     pub(crate) truth: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 #[command(override_usage = "fluxfit simulate [SCENARIO.toml] -o <LOG> [OPTIONS]\n       fluxfit simulate --template")]
 pub(crate) struct Simulate {
-    /// What is simulated (docs/drive.md); without, the paper's rig; - is standard input
+    /// The scenario; - is standard input [default: the paper's rig]
     #[arg(value_name = "SCENARIO.toml")]
     pub(crate) scenario: Option<PathBuf>,
-    /// The log, as CSV; its truth is written beside it, rig.truth.json for rig.csv; - is standard output, without a truth
+    /// The log, as CSV; - is standard output. The true parameters are written beside it: rig.truth.json for rig.csv
     #[arg(short, long, value_name = "LOG", required_unless_present = "template")]
     pub(crate) output: Option<PathBuf>,
-    /// Seed of all noise, instead of the scenario's
+    /// Seed of all noise [default: that of the scenario]
     // No larger than TOML can hold: with the truth's scenario the log can be made again.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub(crate) seed: Option<u64>,
-    /// Number of the noise's draw: each is independent of the others
+    /// Number of the noise realization; each is independent of the others
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub(crate) draw: u64,
-    /// Print the paper's rig as a scenario to start from, and simulate nothing
+    /// Print the paper's rig as a scenario to start from; nothing is simulated
     #[arg(long, exclusive = true)]
     pub(crate) template: bool,
 }
 
 #[derive(Debug, Args)]
 #[command(override_usage = "fluxfit validate <LOG>... --motor <MOTOR> [OPTIONS]")]
-#[command(mut_arg("motor", |motor| motor.required(true).value_name("MOTOR").help(VALIDATED)))]
+#[command(mut_arg("motor", |motor| motor.required(true).value_name("MOTOR").help(VALIDATED).long_help(VALIDATED)))]
+#[command(mut_arg("bounds", |bounds| bounds.hide(true)), mut_arg("seed", |seed| seed.hide(true)))]
 pub(crate) struct Validate {
     #[command(flatten)]
     pub(crate) log: LogArguments,
-    /// What is predicted: currents or steady voltages
-    #[arg(long, help_heading = "Search", value_enum, default_value_t = ModelArgument::Auto)]
+    /// Model that predicts the log
+    #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
     pub(crate) model: ModelArgument,
-    /// Systematic uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
+    /// Standard uncertainty of the voltages, as a fraction of the vector
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
     pub(crate) voltage_accuracy: f64,
 }
 
-const VALIDATED: &str = "The motor that is validated: a motor file with all four parameters, the JSON of fluxfit identify with its standard errors, or a truth file";
+const VALIDATED: &str = "The parameters to validate: a motor file with all four, the JSON document of fluxfit identify (with its standard errors), or a file of true parameters";
 
 /// Models that `identify` and `validate` know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModelArgument {
-    /// The one that suits the log
+pub(crate) enum Model {
+    /// Output error if the log has the drive's own sample rate, else steady
     Auto,
-    /// Equation (2) on the means of steady windows
+    /// Voltage equations (2) of the paper, on the means of steady windows
     Steady,
-    /// Currents simulated row by row from the voltages
+    /// Currents simulated from the voltages, compared with all rows
     OutputError,
 }
 
@@ -376,26 +379,26 @@ impl ModelArgument {
 /// Models that `compare` knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum StudyModel {
-    /// Fitness (11) on the samples of steady windows
+    /// Fitness (11) of the paper, on the samples of steady windows
     Steady,
-    /// The simulated currents against the measured ones, on every row: slow, half an hour a core for the whole study
+    /// Simulated minus measured currents, on all rows; slow: half an hour on one core for the default study
     OutputError,
 }
 
 /// Timing of the voltage columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Timing {
-    /// Found by the output error; at operating points centred, the doubt counted as uncertainty
+    /// The output error finds it; the steady model takes centered, and counts the difference as uncertainty
     Auto,
-    /// The mean of the two periods around the row
+    /// Mean of the two periods around the row
     Centered,
-    /// The vector acts over the period that starts at the row
+    /// Vector of the period that begins at the row
     #[value(name = "0")]
     Zero,
-    /// One period later
+    /// Vector of the next period
     #[value(name = "1")]
     One,
-    /// Two periods later
+    /// Vector of the period after the next
     #[value(name = "2")]
     Two,
 }
