@@ -273,7 +273,7 @@ pub(crate) struct Identify {
     #[arg(long, help_heading = "Output")]
     pub(crate) hold_out: bool,
     /// Write the result as a file for another tool: vesc, moteus, mcsdk, matlab; repeatable
-    #[arg(long, help_heading = "Output", value_name = "TARGET=FILE", value_parser = fluxfit_units::parse_export)]
+    #[arg(long, help_heading = "Output", value_name = "TARGET=FILE", value_parser = parse_export)]
     pub(crate) export: Vec<(Target, PathBuf)>,
     /// Compute the current controllers' gains for this bandwidth, e.g. 500Hz
     #[arg(long, help_heading = "Output", value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency)]

@@ -1,0 +1,111 @@
+//! Columns and rows of a log, before they are checked.
+
+use std::ops::Range;
+
+/// Fewest rows of a log: two make a sample period.
+pub(super) const MIN_ROWS: usize = 2;
+
+/// The columns of a log, row by row in SI units; canonical names. Voltages and currents in the dq frame of [`frames`](crate::frames).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Columns {
+    /// Time, s.
+    pub t: Vec<f64>,
+    /// Voltage along d, V.
+    pub ud: Vec<f64>,
+    /// Voltage along q, V.
+    pub uq: Vec<f64>,
+    /// Current along d, A.
+    pub id: Vec<f64>,
+    /// Current along q, A.
+    pub iq: Vec<f64>,
+    /// Speed, electrical rad/s.
+    pub omega_e: Vec<f64>,
+    /// Angle, electrical rad, in any turn; optional.
+    pub theta_e: Option<Vec<f64>>,
+    /// DC voltage, V; optional.
+    pub u_dc: Option<Vec<f64>>,
+}
+
+/// One row of a log, in SI units; the names are those of [`Columns`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Row {
+    /// Time, s.
+    pub t: f64,
+    /// Voltage along d, V.
+    pub ud: f64,
+    /// Voltage along q, V.
+    pub uq: f64,
+    /// Current along d, A.
+    pub id: f64,
+    /// Current along q, A.
+    pub iq: f64,
+    /// Speed, electrical rad/s.
+    pub omega_e: f64,
+    /// Angle, electrical rad, in any turn; optional.
+    pub theta_e: Option<f64>,
+    /// DC voltage, V; optional.
+    pub u_dc: Option<f64>,
+}
+
+impl Columns {
+    /// Canonical names and columns that every log has, `t` first.
+    pub fn named(&self) -> [(&'static str, &Vec<f64>); 6] {
+        [("t", &self.t), ("ud", &self.ud), ("uq", &self.uq), ("id", &self.id), ("iq", &self.iq), ("omega_e", &self.omega_e)]
+    }
+
+    /// The optional columns that are present.
+    pub fn optional(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
+        [("theta_e", &self.theta_e), ("u_dc", &self.u_dc)].into_iter().filter_map(|(name, column)| Some((name, column.as_ref()?)))
+    }
+
+    /// All columns that are present.
+    pub(super) fn all(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
+        self.named().into_iter().chain(self.optional())
+    }
+
+    /// A copy of some rows.
+    pub(super) fn of_rows(&self, rows: Range<usize>) -> Self {
+        let of = |column: &Vec<f64>| column[rows.clone()].to_vec();
+        Self {
+            t: of(&self.t),
+            ud: of(&self.ud),
+            uq: of(&self.uq),
+            id: of(&self.id),
+            iq: of(&self.iq),
+            omega_e: of(&self.omega_e),
+            theta_e: self.theta_e.as_ref().map(of),
+            u_dc: self.u_dc.as_ref().map(of),
+        }
+    }
+
+    /// Appends the rows of other columns. An optional column stays only if both have it.
+    pub(super) fn append(&mut self, other: Self) {
+        self.t.extend(other.t);
+        self.ud.extend(other.ud);
+        self.uq.extend(other.uq);
+        self.id.extend(other.id);
+        self.iq.extend(other.iq);
+        self.omega_e.extend(other.omega_e);
+        for (to, from) in [(&mut self.theta_e, other.theta_e), (&mut self.u_dc, other.u_dc)] {
+            *to = to.take().zip(from).map(|(mut to, from)| {
+                to.extend(from);
+                to
+            });
+        }
+    }
+}
+
+impl From<Row> for Columns {
+    fn from(row: Row) -> Self {
+        Self {
+            t: vec![row.t],
+            ud: vec![row.ud],
+            uq: vec![row.uq],
+            id: vec![row.id],
+            iq: vec![row.iq],
+            omega_e: vec![row.omega_e],
+            theta_e: row.theta_e.map(|value| vec![value]),
+            u_dc: row.u_dc.map(|value| vec![value]),
+        }
+    }
+}

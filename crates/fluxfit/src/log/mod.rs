@@ -1,0 +1,17 @@
+//! The log: what a drive recorded, in SI units, checked on the way in.
+//!
+//! A [`Log`] always has equal columns, finite plausible numbers, increasing time, some current, some voltage and some speed. Time may
+//! jump: a jump ends a [segment](Log::segments), and nothing is ever computed across one. Several logs of one motor
+//! [join](Log::join) into one.
+//!
+//! Whole columns become a log with [`Log::new`]; rows that arrive one by one or block by block with [`LogBuilder`].
+
+mod builder;
+mod checked;
+mod columns;
+mod segment;
+
+pub use builder::{LogBuilder, check_values};
+pub use checked::{Log, Source};
+pub use columns::{Columns, Row};
+pub use segment::{Segment, without_gaps};

@@ -1,0 +1,46 @@
+//! Segments: rows without a gap in time between them.
+
+use std::ops::Range;
+
+/// A time step this many times the median one is a gap: one lost row (2) is not, two (3) are.
+const GAP_FACTOR: f64 = 2.5;
+
+/// Rows without a gap between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    /// Its rows.
+    pub rows: Range<usize>,
+    /// Number of the log that it came from, among those joined.
+    pub log: usize,
+    /// Median time step of that log, s.
+    pub sample_period: f64,
+    /// Quantization steps of that log's channels, in their units: `ud, uq, id, iq, omega_e`; zero for those that are not quantized.
+    pub steps: [f64; 5],
+}
+
+/// The segments of a log with these times, s, and quantization steps.
+pub(super) fn split(t: &[f64], steps: [f64; 5]) -> Vec<Segment> {
+    let sample_period = median_step(t);
+    without_gaps(t).into_iter().map(|rows| Segment { rows, log: 0, sample_period, steps }).collect()
+}
+
+/// Stretches of rows with these times, s, split where a step is a gap: more than 2.5 times the median one.
+pub fn without_gaps(t: &[f64]) -> Vec<Range<usize>> {
+    let sample_period = median_step(t);
+    let mut stretches = Vec::new();
+    let mut start = 0;
+    for end in 1..=t.len() {
+        if end == t.len() || t[end] - t[end - 1] > GAP_FACTOR * sample_period {
+            stretches.push(start..end);
+            start = end;
+        }
+    }
+    stretches
+}
+
+/// The median time step, s; 0 of fewer than two times.
+fn median_step(t: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
