@@ -15,7 +15,7 @@ use fluxfit::{
 };
 use fluxfit_drive::{
     Scenario,
-    scenario::exact::{STEADY, acceleration, small_motor, two_loads, two_modes},
+    scenario::reference_cases::{STEADY, acceleration, small_motor, two_loads, two_modes},
     simulate,
 };
 use nalgebra::Matrix4;

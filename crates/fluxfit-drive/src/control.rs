@@ -1,23 +1,22 @@
-//! Field-oriented control: a current loop, a speed loop around it, and where the voltage runs out, a weaker field.
+//! Field-oriented control: a current loop, a speed loop around it, and field weakening at the voltage limit.
 //!
-//! Current loop: a complex-vector PI controller with two degrees of freedom on the flux error. With `psi(i)` the flux that current
-//! makes, saturation included, `alpha` its bandwidth in rad/s, and complex numbers for dq vectors
+//! Current loop: a complex-vector PI controller with two degrees of freedom on the flux error. With `psi(i)` the flux linkage at a
+//! current, saturation included, `alpha` the bandwidth in rad/s, and complex numbers for dq vectors
 //!
 //! ```text
 //! v = w - alpha psi,     u = alpha (psi* - psi) + v,     dw/dt = (alpha + j omega_e)(u_limited - v)
 //! ```
 //!
-//! `j omega_e` in the integrator cancels the rotation's coupling of the axes: the decoupling. Integrating what was possible
-//! (`u_limited`) and not what was wanted is the anti-windup. Briz, Degner and Lorenz, "Analysis and design of current regulators
+//! `j omega_e` in the integrator decouples the axes. Integrating the limited voltage `u_limited` instead of `u` is the anti-windup. Briz, Degner and Lorenz, "Analysis and design of current regulators
 //! using complex vectors", 2000, doi 10.1109/28.845057. The speed loop is the same controller with real numbers, the inertia in
-//! place of the inductance and the torque in place of the voltage.
+//! place of the inductance, and the torque in place of the voltage.
 //!
-//! A command that is computed at a sample acts over the period after the next sample: its vector is turned by `1.5 omega_e T_s`.
+//! A command that is computed at a sample acts over the period after the next sample: its vector is rotated by `1.5 omega_e T_s`.
 
 use crate::{
     inverter::duties,
     scenario::{Axis, Control, Injection, Mechanics, Scenario, SimulatedMotor, Waveform},
-    sensors::Measured,
+    sensors::Measurement,
 };
 use fluxfit::{
     frames::{Abc, AlphaBeta, Dq},
@@ -25,67 +24,67 @@ use fluxfit::{
 };
 use std::f64::consts::TAU;
 
-/// Periods from the sample to the middle of the period in which its command acts.
-const DELAY: f64 = 1.5;
+/// Sample periods from the sample to the middle of the period in which its command acts.
+const DELAY_PERIODS: f64 = 1.5;
 
-/// Bandwidth of field weakening, rad/s: slower than any current loop, as fast as the usual speed loop.
-const WEAKENING: f64 = TAU * 20.0;
+/// Bandwidth of the field-weakening controller, rad/s: below that of any current loop, equal to that of the usual speed loop.
+const WEAKENING_BANDWIDTH: f64 = TAU * 20.0;
 
-/// Fraction of the voltage limit from which the field is weakened: the rest is left to the current loop.
-const WEAKENING_FROM: f64 = 0.95;
+/// Fraction of the voltage limit above which the field is weakened: the rest is reserved for the current loop.
+const WEAKENING_THRESHOLD: f64 = 0.95;
 
-/// Least torque per ampere for which i_q is computed, as a fraction of what the magnet alone makes.
-const LEAST_TORQUE: f64 = 0.05;
+/// Smallest torque per ampere with which i_q is computed, as a fraction of the magnet's alone.
+const MIN_TORQUE_PER_AMPERE: f64 = 0.05;
 
-/// What the controller asks for, and what it will get.
+/// A voltage command within the inverter's limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Command {
-    /// The voltage that will act, V, in the frame at the middle of its period.
+pub struct VoltageCommand {
+    /// The voltage, V, in the frame at the middle of the period in which it acts.
     pub u: Dq,
-    /// The same in the stator.
+    /// The same in the stator frame, V.
     pub u_stator: AlphaBeta,
-    /// Duties of the legs.
+    /// Duty ratios of the legs.
     pub duties: [f64; 3],
 }
 
-/// What is asked of the controller at a sample.
+/// References of the controller at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Asked {
-    /// A.
+pub struct References {
+    /// i_d, A.
     pub id: f64,
-    /// A; used on a dynamometer.
+    /// i_q, A; used on a dynamometer.
     pub iq: f64,
-    /// Mechanical rad/s.
+    /// Speed, mechanical rad/s; used with a free rotor.
     pub speed: f64,
 }
 
-/// The controller at work.
+/// The controller with its state.
 #[derive(Debug, Clone)]
 pub struct Controller<'a> {
     settings: Control,
-    /// The motor it believes in: the true one.
-    believed: &'a SimulatedMotor,
+    /// The controller's model of the motor: the true one.
+    model: &'a SimulatedMotor,
     /// The same without saturation.
-    motor: Motor,
+    unsaturated: Motor,
     pole_pairs: f64,
     inertia: Option<f64>,
     injection: Option<&'a Injection>,
     sample_period: f64,
-    /// `w` of the current loop, V.
+    /// Integrator state `w` of the current loop, V.
     integral: Dq,
-    /// The same of the speed loop, N m.
+    /// Integrator state of the speed loop, N m.
     speed_integral: f64,
-    /// Current by which the field is weakened, A, at most zero.
-    weakening: f64,
+    /// Field-weakening current, added to the reference of i_d, A; at most zero.
+    weakening_current: f64,
 }
 
 impl<'a> Controller<'a> {
-    /// A controller at rest.
+    /// A controller with zero state.
     pub fn new(scenario: &'a Scenario) -> Self {
         Self {
             settings: scenario.control,
-            believed: &scenario.motor,
-            motor: scenario.motor.unsaturated(),
+            model: &scenario.motor,
+            unsaturated: scenario.motor.unsaturated(),
             pole_pairs: f64::from(scenario.motor.pole_pairs),
             inertia: match scenario.mechanics {
                 Mechanics::Free { inertia, .. } => Some(inertia),
@@ -95,95 +94,96 @@ impl<'a> Controller<'a> {
             sample_period: scenario.inverter.sample_period(),
             integral: Dq::default(),
             speed_integral: 0.0,
-            weakening: 0.0,
+            weakening_current: 0.0,
         }
     }
 
-    /// The command that follows from a sample at time `t`, s.
-    pub fn command(&mut self, measured: &Measured, asked: &Asked, t: f64) -> Command {
+    /// The command computed from a sample at time `t`, s.
+    pub fn command(&mut self, measured: &Measurement, references: &References, t: f64) -> VoltageCommand {
         let i = measured.i.to_dq(measured.theta_e);
-        let reference = self.current_reference(measured, asked, i);
+        let reference = self.current_reference(measured, references, i);
         let alpha = TAU * self.settings.current_bandwidth;
-        let (psi, wanted_psi) = (self.flux(i), self.flux(reference));
+        let (psi, reference_psi) = (self.current_flux(i), self.current_flux(reference));
         let v = Dq { d: self.integral.d - alpha * psi.d, q: self.integral.q - alpha * psi.q };
         let test = self.injection.map_or(Dq::default(), |injection| injection.at(t));
-        let wanted = Dq { d: alpha * (wanted_psi.d - psi.d) + v.d + test.d, q: alpha * (wanted_psi.q - psi.q) + v.q + test.q };
+        let unlimited = Dq { d: alpha * (reference_psi.d - psi.d) + v.d + test.d, q: alpha * (reference_psi.q - psi.q) + v.q + test.q };
         let limit = measured.u_dc / 3.0_f64.sqrt();
-        let shortened = (limit / wanted.magnitude()).min(1.0);
-        let u = Dq { d: shortened * wanted.d, q: shortened * wanted.q };
-        self.weaken(wanted.magnitude(), limit, measured.omega_e);
+        let scale = (limit / unlimited.magnitude()).min(1.0);
+        let u = Dq { d: scale * unlimited.d, q: scale * unlimited.q };
+        self.weaken_field(unlimited.magnitude(), limit, measured.omega_e);
         self.integrate(Dq { d: u.d - test.d - v.d, q: u.q - test.q - v.q }, alpha, measured.omega_e);
 
-        let u_stator = u.to_alpha_beta(measured.theta_e + DELAY * self.sample_period * measured.omega_e);
+        let u_stator = u.to_alpha_beta(measured.theta_e + DELAY_PERIODS * self.sample_period * measured.omega_e);
         let duties = duties(u_stator, measured.u_dc);
         let [a, b, c] = duties.map(|duty| duty * measured.u_dc);
-        Command { u, u_stator: Abc { a, b, c }.to_alpha_beta(), duties }
+        VoltageCommand { u, u_stator: Abc { a, b, c }.to_alpha_beta(), duties }
     }
 
-    /// What current makes of flux, as the controller believes, beyond the magnet's.
-    fn flux(&self, i: Dq) -> Dq {
-        // A measured current may lie beyond the map's edge by its noise.
-        let psi = self.believed.flux(self.believed.within_map(i)).map_or(Dq::default(), |flux| flux.psi);
-        Dq { d: psi.d - self.motor.psi_f, q: psi.q }
+    /// Flux linkage at a current less that of the magnet, Wb, from the controller's model.
+    fn current_flux(&self, i: Dq) -> Dq {
+        // Noise may move a measured current beyond the edge of the map.
+        let psi = self.model.flux(self.model.within_map(i)).map_or(Dq::default(), |flux| flux.psi);
+        Dq { d: psi.d - self.unsaturated.psi_f, q: psi.q }
     }
 
-    /// `w ← w + (1 - e^(-(alpha + j omega_e) T_s)) (u - v)`: the integral over a period, exact, so that it settles however fast the
-    /// rotor turns.
-    fn integrate(&mut self, missed: Dq, alpha: f64, omega_e: f64) {
+    /// `w ← w + (1 - e^(-(alpha + j omega_e) T_s)) (u - v)`: the exact integral over a period, stable at any speed.
+    fn integrate(&mut self, difference: Dq, alpha: f64, omega_e: f64) {
         let decay = (-alpha * self.sample_period).exp();
         let (sin, cos) = (omega_e * self.sample_period).sin_cos();
-        self.integral.d += (1.0 - decay * cos) * missed.d - decay * sin * missed.q;
-        self.integral.q += (1.0 - decay * cos) * missed.q + decay * sin * missed.d;
+        self.integral.d += (1.0 - decay * cos) * difference.d - decay * sin * difference.q;
+        self.integral.q += (1.0 - decay * cos) * difference.q + decay * sin * difference.d;
     }
 
-    /// Currents within the limit; `i_d` first. Where the field is weakened, i_q within what the voltage leaves, `i` being the current now.
-    fn current_reference(&mut self, measured: &Measured, asked: &Asked, i: Dq) -> Dq {
+    /// References of the currents within the current limit, where `i_d` has priority. With field weakening, i_q also stays within the
+    /// voltage limit; `i` is the present current.
+    fn current_reference(&mut self, measured: &Measurement, references: &References, i: Dq) -> Dq {
         let most = self.settings.max_current;
-        let d = (asked.id + self.weakening).clamp(-most, most);
+        let d = (references.id + self.weakening_current).clamp(-most, most);
         let mut most_q = (most * most - d * d).sqrt();
         if self.settings.field_weakening && measured.omega_e != 0.0 {
-            let psi = WEAKENING_FROM * measured.u_dc / 3.0_f64.sqrt() / measured.omega_e.abs();
-            let along = self.motor.psi_f + self.motor.ld * i.d;
-            most_q = most_q.min((psi * psi - along * along).max(0.0).sqrt() / self.motor.lq);
+            let psi = WEAKENING_THRESHOLD * measured.u_dc / 3.0_f64.sqrt() / measured.omega_e.abs();
+            let psi_d = self.unsaturated.psi_f + self.unsaturated.ld * i.d;
+            most_q = most_q.min((psi * psi - psi_d * psi_d).max(0.0).sqrt() / self.unsaturated.lq);
         }
         let q = match self.inertia {
-            None => asked.iq,
+            None => references.iq,
             Some(inertia) => {
-                let per_ampere = 1.5 * self.pole_pairs * self.motor.psi_f;
-                let per_ampere = (per_ampere + 1.5 * self.pole_pairs * (self.motor.ld - self.motor.lq) * d).max(LEAST_TORQUE * per_ampere);
-                self.torque(measured.omega_e / self.pole_pairs, asked.speed, inertia, per_ampere * most_q) / per_ampere
+                let per_ampere = 1.5 * self.pole_pairs * self.unsaturated.psi_f;
+                let per_ampere = (per_ampere + 1.5 * self.pole_pairs * (self.unsaturated.ld - self.unsaturated.lq) * d)
+                    .max(MIN_TORQUE_PER_AMPERE * per_ampere);
+                self.torque_reference(measured.omega_e / self.pole_pairs, references.speed, inertia, per_ampere * most_q) / per_ampere
             }
         };
         Dq { d, q: if q.is_finite() { q.clamp(-most_q, most_q) } else { 0.0 } }
     }
 
-    /// The speed loop: a torque, N m, of at most `most`.
-    fn torque(&mut self, speed: f64, asked: f64, inertia: f64, most: f64) -> f64 {
+    /// The speed loop: the torque reference, N m, limited to `most`.
+    fn torque_reference(&mut self, speed: f64, reference: f64, inertia: f64, most: f64) -> f64 {
         let alpha = TAU * self.settings.speed_bandwidth;
         let v = self.speed_integral - alpha * inertia * speed;
-        let torque = (alpha * inertia * (asked - speed) + v).clamp(-most, most);
+        let torque = (alpha * inertia * (reference - speed) + v).clamp(-most, most);
         self.speed_integral += self.sample_period * alpha * (torque - v);
         torque
     }
 
-    /// Lowers `i_d` while more voltage is wanted than there is, and lets it return.
-    fn weaken(&mut self, wanted: f64, limit: f64, omega_e: f64) {
+    /// Field weakening: lowers `i_d` while the unlimited voltage command exceeds the threshold, and raises it again below.
+    fn weaken_field(&mut self, unlimited: f64, limit: f64, omega_e: f64) {
         if !self.settings.field_weakening {
             return;
         }
-        // Volts per ampere of i_d. At low speed no voltage runs out.
-        let slope = self.motor.ld * omega_e.abs().max(WEAKENING);
-        let change = self.sample_period * WEAKENING * (WEAKENING_FROM * limit - wanted) / slope;
-        // Beyond the current that cancels the magnet, more of it costs voltage.
-        let most = self.settings.max_current.min(self.motor.psi_f / self.motor.ld);
-        self.weakening = (self.weakening + change).clamp(-most, 0.0);
+        // Change of voltage per ampere of i_d, bounded below: at low speed the voltage limit is not reached.
+        let slope = self.unsaturated.ld * omega_e.abs().max(WEAKENING_BANDWIDTH);
+        let change = self.sample_period * WEAKENING_BANDWIDTH * (WEAKENING_THRESHOLD * limit - unlimited) / slope;
+        // Beyond the current that cancels the magnet's flux, the voltage rises again.
+        let most = self.settings.max_current.min(self.unsaturated.psi_f / self.unsaturated.ld);
+        self.weakening_current = (self.weakening_current + change).clamp(-most, 0.0);
     }
 }
 
 impl Injection {
     /// The test voltage at time `t`, s.
     fn at(&self, t: f64) -> Dq {
-        // A sample at a wave's edge belongs to the half that begins there.
+        // A sample at an edge of the square wave belongs to the half period that begins there.
         const ROUNDING: f64 = 1e-9;
         let cycle = (self.frequency * t + ROUNDING).rem_euclid(1.0);
         let shape = match self.waveform {

@@ -1,13 +1,13 @@
-//! The drive: sample, command, let the plant run; period after period.
+//! The drive: in each sample period it samples, computes a command, and integrates the plant.
 
 use crate::{
-    control::{Asked, Command, Controller},
+    control::{Controller, References, VoltageCommand},
     error::Error,
     inverter::{Bridge, duties},
     plant::Plant,
-    recording::{Recording, Row},
+    recording::{RecordedRow, Recording},
     scenario::{Mechanics, Scenario},
-    sensors::{Instruments, Measured},
+    sensors::{Measurement, SensorModel},
 };
 use fluxfit::{
     frames::{AlphaBeta, Dq},
@@ -15,44 +15,45 @@ use fluxfit::{
 };
 use std::f64::consts::TAU;
 
-/// What makes the seed of the disturbance another one than the sensors': the digits of pi in hexadecimal.
-const DISTURBANCE: u64 = 0x243f_6a88_85a3_08d3;
+/// Makes the seed of the disturbance differ from the sensors': hexadecimal digits of pi.
+const DISTURBANCE_SEED: u64 = 0x243f_6a88_85a3_08d3;
 
-/// Simulates a scenario with draw number `draw` of its noise; `done` is called after each row.
+/// Simulates a scenario with noise stream `draw`; `row_done` is called after each row.
 ///
 /// # Errors
-/// If the scenario is refused by [`Scenario::check`], the drive trips, or the current leaves the flux map.
-pub fn simulate(scenario: &Scenario, draw: u64, mut done: impl FnMut()) -> Result<Recording, Error> {
+/// If [`Scenario::check`] refuses the scenario, the drive trips, or the current leaves the flux map.
+pub fn simulate(scenario: &Scenario, draw: u64, mut row_done: impl FnMut()) -> Result<Recording, Error> {
     scenario.check()?;
     let mut drive = Drive::new(scenario, draw);
     let mut recording = Recording::with_capacity(scenario.rows());
     for _ in 0..scenario.rows() {
         recording.push(&drive.step()?);
-        done();
+        row_done();
     }
     Ok(recording)
 }
 
-/// A drive at work.
+/// A drive with its state.
 #[derive(Debug, Clone)]
 pub struct Drive<'a> {
     scenario: &'a Scenario,
     plant: Plant<'a>,
     bridge: Bridge,
-    instruments: Instruments,
+    sensors: SensorModel,
     controller: Controller<'a>,
-    /// The command that acts over the period which begins now; it was computed one sample ago.
-    acting: Command,
-    /// What acted, as far as the drive knows, over the period that ended now.
+    /// The command that acts over the period which begins now; it was computed at the previous sample.
+    acting: VoltageCommand,
+    /// The commanded voltage of the period that ended now.
     acted: AlphaBeta,
-    /// What disturbs the voltage.
+    /// Random numbers of the voltage disturbance.
     disturbance: Draws,
-    /// Number of the sample.
+    /// Index of the sample.
     sample: u64,
 }
 
 impl<'a> Drive<'a> {
-    /// A drive at rest: no current, no voltage; on a dynamometer at its scheduled speed. The scenario should have passed its check.
+    /// A drive without current and voltage, at rest or, on a dynamometer, at its scheduled speed. The scenario should have passed
+    /// [`Scenario::check`].
     pub fn new(scenario: &'a Scenario, draw: u64) -> Self {
         let speed = match scenario.mechanics {
             Mechanics::Free { .. } => 0.0,
@@ -64,25 +65,25 @@ impl<'a> Drive<'a> {
             scenario,
             plant: Plant::new(&scenario.motor, scenario.mechanics, speed),
             bridge: Bridge::new(scenario.inverter),
-            instruments: Instruments::new(scenario.sensors, scenario.seed, draw, pole_pairs, sample_period),
+            sensors: SensorModel::new(scenario.sensors, scenario.seed, draw, pole_pairs, sample_period),
             controller: Controller::new(scenario),
-            acting: Command { u: Dq::default(), u_stator: zero, duties: duties(zero, scenario.inverter.u_dc) },
+            acting: VoltageCommand { u: Dq::default(), u_stator: zero, duties: duties(zero, scenario.inverter.u_dc) },
             acted: zero,
-            // A stream of its own: with or without disturbance the sensors' noise is the same.
-            disturbance: Draws::seeded(scenario.seed ^ DISTURBANCE, draw),
+            // A separate stream: the sensors' noise is the same with and without a disturbance.
+            disturbance: Draws::seeded(scenario.seed ^ DISTURBANCE_SEED, draw),
             sample: 0,
         }
     }
 
-    /// Samples, commands, and lets one period pass. The row is that of the sample.
+    /// Samples, computes a command, and integrates one sample period. Returns the row of the sample.
     ///
     /// # Errors
     /// If the drive trips or the current leaves the flux map.
-    pub fn step(&mut self) -> Result<Row, Error> {
+    pub fn step(&mut self) -> Result<RecordedRow, Error> {
         let t = self.time(self.sample);
-        self.trip(t)?;
-        let measured = self.instruments.measure(&self.plant, &self.bridge, t);
-        let command = self.controller.command(&measured, &self.asked(t), t);
+        self.check_trip(t)?;
+        let measured = self.sensors.measure(&self.plant, &self.bridge, t);
+        let command = self.controller.command(&measured, &self.references(t), t);
         if !command.u.magnitude().is_finite() {
             return Err(Error::Diverged { t });
         }
@@ -99,7 +100,7 @@ impl<'a> Drive<'a> {
         Ok(row)
     }
 
-    /// The plant, for whoever wants to know what really happens.
+    /// The plant, with its true currents, angle and speed.
     pub fn plant(&self) -> &Plant<'a> {
         &self.plant
     }
@@ -108,12 +109,12 @@ impl<'a> Drive<'a> {
         sample as f64 / self.scenario.inverter.sample_rate()
     }
 
-    fn asked(&self, t: f64) -> Asked {
+    fn references(&self, t: f64) -> References {
         let schedule = &self.scenario.schedule;
-        Asked { id: schedule.id.at(t), iq: schedule.iq.at(t), speed: schedule.speed.at(t) }
+        References { id: schedule.id.at(t), iq: schedule.iq.at(t), speed: schedule.speed.at(t) }
     }
 
-    /// The duties that act: those of the command, or of the command with its disturbance.
+    /// The duties of the inverter: those of the command, or of the command with the disturbance.
     fn disturbed_duties(&mut self) -> [f64; 3] {
         let noise = self.scenario.inverter.voltage_noise;
         if noise == 0.0 {
@@ -124,8 +125,8 @@ impl<'a> Drive<'a> {
         duties(u, self.scenario.inverter.u_dc)
     }
 
-    /// Load and imposed speed over the period that begins at `t`: the load is held, the speed moves evenly; a
-    /// step of it comes with its sample.
+    /// Sets the load or the dynamometer's speed over the period that begins at `t`: the load is constant, the speed changes linearly; a
+    /// step of the speed happens at its sample.
     fn set_load(&mut self, t: f64) {
         let schedule = &self.scenario.schedule;
         match self.scenario.mechanics {
@@ -138,21 +139,21 @@ impl<'a> Drive<'a> {
         }
     }
 
-    fn trip(&self, t: f64) -> Result<(), Error> {
+    fn check_trip(&self, t: f64) -> Result<(), Error> {
         let (current, limit) = (self.plant.current().magnitude(), self.scenario.control.trip_current);
         if current <= limit {
             return Ok(());
         }
         let rpm = self.plant.omega_m() * 60.0 / TAU;
-        let used = 100.0 * self.acting.u.magnitude() / self.scenario.inverter.voltage_limit();
-        Err(Error::Trip { t, current, limit, circumstances: format!("at {rpm:.0} r/min, with {used:.0} % of the voltage in use") })
+        let modulation = self.acting.u.magnitude() / self.scenario.inverter.voltage_limit();
+        Err(Error::Trip { t, current, limit, rpm, modulation })
     }
 
-    /// Voltages are what the drive believes: the mean of the periods before and after the sample, as its commands were.
-    fn row(&self, t: f64, measured: &Measured, command: &Command) -> Row {
+    /// Voltages are the commanded ones, as in a real log: the mean of the periods before and after the sample.
+    fn row(&self, t: f64, measured: &Measurement, command: &VoltageCommand) -> RecordedRow {
         let (before, after) = (self.acted, self.acting.u_stator);
         let mean = AlphaBeta { alpha: 0.5 * (before.alpha + after.alpha), beta: 0.5 * (before.beta + after.beta) };
-        Row {
+        RecordedRow {
             t,
             u: mean.to_dq(measured.theta_e),
             i: measured.i.to_dq(measured.theta_e),

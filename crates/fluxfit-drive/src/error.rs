@@ -1,273 +1,303 @@
-//! Why a scenario is refused, or its drive trips.
+//! Errors: why a scenario is refused, or its simulation stops.
 //!
-//! Each variant carries the values; the sentence is written once, here, and says what to do. Keys are those of a scenario file.
+//! Each variant carries the values; its sentence is written once, here, and says what to do. Keys are those of a scenario file.
 
-/// What went wrong.
+/// An error of a scenario, a flux map or a simulation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number out of its range.
+    /// A number is out of its range.
     #[error("{key} is {}; it must be {range}", digits(*.value))]
     Setting {
-        /// As a scenario file names it.
+        /// Key in the scenario file.
         key: &'static str,
         /// The value, SI.
         value: f64,
-        /// What it must be.
+        /// The allowed range.
         range: &'static str,
     },
-    /// A move at no time.
+    /// The start or duration of a ramp is negative or not finite.
     #[error("a move of {key} has the time {} s; times must be finite, and zero or more", digits(*.time))]
-    MoveTime {
-        /// As a scenario file names it.
+    RampTime {
+        /// Key in the scenario file.
         key: &'static str,
-        /// When it begins, or how long it takes, s.
+        /// Start or duration, s.
         time: f64,
     },
-    /// Settings that exclude each other.
-    #[error("{key} goes with {with} only; {remedy}")]
-    Together {
-        /// As a scenario file names it.
+    /// Two settings exclude each other.
+    #[error("{key} is allowed only with {with}; {remedy}")]
+    Incompatible {
+        /// Key in the scenario file.
         key: &'static str,
-        /// What it asks for.
+        /// The setting that it requires.
         with: &'static str,
         /// What to do.
         remedy: &'static str,
     },
-    /// More rows than a log can hold.
+    /// The log would have too many rows.
     #[error("{} s at {} samples a second make {rows:.1e} rows, more than {most:.0e}; shorten duration", digits(*.duration), digits(*.rate))]
     TooLong {
         /// Simulated time, s.
         duration: f64,
         /// Sample rate, Hz.
         rate: f64,
-        /// Rows.
+        /// Number of rows.
         rows: f64,
-        /// Most rows.
+        /// Largest number of rows.
         most: f64,
     },
-    /// A sample period that no current controller survives.
+    /// The sample period is too long for stable current control.
     #[error(
-        "a sample every {} ms is slower than the winding's L/R of {} ms, and no current controller is stable there; raise inverter.carrier to at least {} Hz",
+        "a sample every {} ms is slower than the winding's L/R of {} ms, too slow for stable current control; raise inverter.carrier to at least {} Hz",
         digits(1e3 * .sample_period), rounded(1e3 * .time_constant), digits(*.carrier)
     )]
     SlowSampling {
-        /// s.
+        /// Sample period, s.
         sample_period: f64,
-        /// Shortest `L/R`, s.
+        /// Smallest `L/R`, s.
         time_constant: f64,
-        /// Carrier frequency that is fast enough, Hz.
+        /// Sufficient carrier frequency, Hz.
         carrier: f64,
     },
-    /// A loop that is too fast for its samples, or for the loop inside.
-    #[error("{key} is {} Hz; with {because} it must be at most {} Hz", digits(*.value), rounded_down(*.most))]
+    /// The bandwidth of a control loop is too large.
+    #[error("{key} is {} Hz; with {limit} it must be at most {} Hz", digits(*.value), rounded_down(*.most))]
     Bandwidth {
-        /// As a scenario file names it.
+        /// Key in the scenario file.
         key: &'static str,
-        /// Hz.
+        /// Bandwidth, Hz.
         value: f64,
         /// What limits it.
-        because: String,
-        /// Hz.
+        limit: BandwidthLimit,
+        /// Largest bandwidth, Hz.
         most: f64,
     },
-    /// A point of the schedule that the inverter's voltage does not reach.
+    /// The schedule needs more voltage than the inverter has.
     #[error(
-        "at t = {} s the schedule asks for {} r/min with i_d = {} A and i_q = {} A, which takes {} V of phase voltage; u_dc = {} V makes {} V: raise inverter.u_dc, lower the speed, or {remedy}",
+        "at t = {} s the schedule asks for {} r/min with i_d = {} A and i_q = {} A, which needs {} V of phase voltage; u_dc = {} V gives {} V: raise inverter.u_dc, lower the speed, or {remedy}",
         digits(*.t), digits(*.rpm), rounded(*.id), rounded(*.iq), rounded(*.needed), digits(*.u_dc), rounded(*.available)
     )]
-    Voltage {
-        /// s.
+    VoltageLimit {
+        /// Time, s.
         t: f64,
-        /// Mechanical speed.
+        /// Mechanical speed, r/min.
         rpm: f64,
-        /// A.
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// i_q, A.
         iq: f64,
-        /// V.
+        /// Needed phase voltage, V.
         needed: f64,
-        /// V.
+        /// DC voltage, V.
         u_dc: f64,
-        /// V.
+        /// Available phase voltage, V.
         available: f64,
-        /// What else would help.
+        /// A further remedy.
         remedy: &'static str,
     },
-    /// A point of the schedule that the largest current does not reach.
+    /// Load and friction need a current above the largest one.
     #[error(
-        "at t = {} s load and friction ask for {} N m with i_d = {} A, which takes {} A; control.max_current is {} A: raise it, or lower the load",
+        "at t = {} s load and friction ask for {} N m with i_d = {} A, which needs {} A; control.max_current is {} A: raise it, or lower the load",
         digits(*.t), rounded(*.torque), digits(*.id), rounded(*.needed), digits(*.available)
     )]
-    Current {
-        /// s.
+    TorqueLimit {
+        /// Time, s.
         t: f64,
-        /// N m.
+        /// Torque of load and friction, N m.
         torque: f64,
-        /// A.
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// Needed current, A.
         needed: f64,
-        /// A.
+        /// Largest current, A.
         available: f64,
     },
-    /// A scheduled current above the largest one.
+    /// A scheduled current is above the largest one.
     #[error(
         "at t = {} s the schedule asks for a current of {} A (i_d = {} A, i_q = {} A); control.max_current is {} A: raise it, or ask for less",
         digits(*.t), rounded(*.needed), digits(*.id), digits(*.iq), digits(*.available)
     )]
-    Reference {
-        /// s.
+    CurrentLimit {
+        /// Time, s.
         t: f64,
-        /// A.
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// i_q, A.
         iq: f64,
-        /// A.
+        /// Length of the scheduled current vector, A.
         needed: f64,
-        /// A.
+        /// Largest current, A.
         available: f64,
     },
-    /// A speed at which the rotor turns too far from sample to sample.
+    /// The rotor turns too far in one sample period.
     #[error(
-        "at t = {} s and {} r/min the rotor turns by {} rad from one sample to the next, too far for a controller of sampled currents; raise inverter.carrier to at least {} Hz, or lower the speed",
+        "at t = {} s and {} r/min the rotor turns by {} electrical rad from one sample to the next, too far for sampled current control; raise inverter.carrier to at least {} Hz, or lower the speed",
         digits(*.t), digits(*.rpm), digits(*.turn), digits(*.carrier)
     )]
     FastRotation {
-        /// s.
+        /// Time, s.
         t: f64,
-        /// Mechanical speed.
+        /// Mechanical speed, r/min.
         rpm: f64,
-        /// Electrical rad.
+        /// Angle per sample period, electrical rad.
         turn: f64,
-        /// Carrier frequency that is fast enough, Hz.
+        /// Sufficient carrier frequency, Hz.
         carrier: f64,
     },
-    /// A converter that cannot read the current that is needed.
+    /// The schedule needs a current beyond the range of the A/D converter.
     #[error(
-        "at t = {} s the schedule takes {} A, beyond the converter's sensors.adc_range = {} A; give it a wider range, or ask for less",
+        "at t = {} s the schedule needs {} A, beyond the converter's sensors.adc_range = {} A; give it a wider range, or ask for less",
         digits(*.t), digits(*.needed), digits(*.range)
     )]
     ConverterRange {
-        /// s.
+        /// Time, s.
         t: f64,
-        /// A.
+        /// Needed current, A.
         needed: f64,
-        /// A.
+        /// Range of the converter, A.
         range: f64,
     },
-    /// Samples that are too slow for the encoder's observer.
-    #[error("the observer that makes a speed of encoder steps needs more samples; raise inverter.carrier to at least {} Hz", digits(*.carrier))]
-    SlowForEncoder {
-        /// Carrier frequency that is fast enough, Hz.
+    /// The sample period is too long for the speed observer of the encoder.
+    #[error("the observer that estimates the speed from encoder steps needs a higher sample rate; raise inverter.carrier to at least {} Hz", digits(*.carrier))]
+    SlowObserver {
+        /// Sufficient carrier frequency, Hz.
         carrier: f64,
     },
-    /// A command that is no number any more.
+    /// The control is unstable: a command is not finite.
     #[error("the drive's control diverges at t = {} s; lower the bandwidths, raise inverter.carrier, or give a larger inertia", digits(*.t))]
     Diverged {
-        /// s.
+        /// Time, s.
         t: f64,
     },
-    /// A point of the schedule at which the motor has no torque.
+    /// At this i_d the motor has no torque in the direction of i_q.
     #[error(
-        "at t = {} s and i_d = {} A this motor makes no torque in the direction of i_q; choose another i_d, or mechanics.kind = \"dyno\"",
+        "at t = {} s and i_d = {} A this motor has no torque in the direction of i_q; choose another i_d, or mechanics.kind = \"dyno\"",
         digits(*.t), digits(*.id)
     )]
     NoTorque {
-        /// s.
+        /// Time, s.
         t: f64,
-        /// A.
+        /// i_d, A.
         id: f64,
     },
-    /// A flux map that is no grid.
+    /// A flux map has too few currents.
     #[error("the flux map has {id} values of i_d and {iq} of i_q; it needs at least 3 of each, and every pair of them")]
-    MapGrid {
-        /// Distinct `i_d`.
+    MapTooSmall {
+        /// Number of distinct `i_d`.
         id: usize,
-        /// Distinct `i_q`.
+        /// Number of distinct `i_q`.
         iq: usize,
     },
-    /// A flux map without one of its pairs.
+    /// A flux map lacks a pair of its currents.
     #[error(
-        "the flux map has no point at i_d = {id} A, i_q = {iq} A, although it has others with either; add it, so that every pair is there"
+        "the flux map has no point at i_d = {id} A, i_q = {iq} A, although it has both currents in other points; add it, so that the grid is complete"
     )]
-    MapHole {
-        /// A.
+    MapMissingPoint {
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// i_q, A.
         iq: f64,
     },
-    /// A flux map with a pair twice.
+    /// A flux map has a pair of currents twice.
     #[error("the flux map has the point i_d = {id} A, i_q = {iq} A twice; remove one of them")]
     MapRepeated {
-        /// A.
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// i_q, A.
         iq: f64,
     },
-    /// A flux map with a number that is none.
+    /// A flux map has a value that is not finite.
     #[error("the flux map is not finite at i_d = {id} A, i_q = {iq} A; complete it, or leave that current out")]
     MapNotFinite {
-        /// A.
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// i_q, A.
         iq: f64,
     },
-    /// A flux map whose flux falls where the current rises.
+    /// The flux of a map falls while the current rises.
     #[error(
-        "around i_d = {id} A, i_q = {iq} A the flux of the map falls while the current rises, which no motor does; check for swapped axes or signs, or smooth the map"
+        "around i_d = {id} A, i_q = {iq} A the flux of the map falls while the current rises, which is not physical; check for swapped axes or signs, or smooth the map"
     )]
     MapInductance {
-        /// A.
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// i_q, A.
         iq: f64,
     },
-    /// A current beyond the map: that which is asked for, or the last one that was still inside.
+    /// The current leaves the flux map: the scheduled one, or the last simulated one inside the map.
     #[error(
         "at t = {} s the current leaves the flux map near i_d = {} A, i_q = {} A; the map covers i_d {} .. {} A and i_q {} .. {} A: give a wider map, or ask for less",
         digits(*.t), rounded(*.id), rounded(*.iq), digits(id_range[0]), digits(id_range[1]), digits(iq_range[0]), digits(iq_range[1])
     )]
     OutsideMap {
-        /// s.
+        /// Time, s.
         t: f64,
-        /// A.
+        /// i_d, A.
         id: f64,
-        /// A.
+        /// i_q, A.
         iq: f64,
-        /// A.
+        /// Range of i_d of the map, A.
         id_range: [f64; 2],
-        /// A.
+        /// Range of i_q of the map, A.
         iq_range: [f64; 2],
     },
-    /// The drive switched itself off.
+    /// The overcurrent protection has tripped.
     #[error(
-        "the drive trips at t = {} s: the current vector reaches {} A, beyond control.trip_current = {} A ({circumstances}); ask for less, lower the bandwidths, or raise the limit",
-        digits(*.t), rounded(*.current), digits(*.limit)
+        "the drive trips at t = {} s: the current vector reaches {} A, beyond control.trip_current = {} A (at {rpm:.0} r/min, with {:.0} % of the voltage in use); ask for less, lower the bandwidths, or raise the limit",
+        digits(*.t), rounded(*.current), digits(*.limit), 100.0 * .modulation
     )]
     Trip {
-        /// s.
+        /// Time, s.
         t: f64,
-        /// A.
+        /// Length of the current vector, A.
         current: f64,
-        /// A.
+        /// Trip level, A.
         limit: f64,
-        /// What the drive was at.
-        circumstances: String,
+        /// Mechanical speed, r/min.
+        rpm: f64,
+        /// Commanded voltage as a fraction of the voltage limit.
+        modulation: f64,
     },
 }
 
-/// A number as somebody wrote it: without the last digits, which are rounding's.
+/// What limits the bandwidth of a control loop.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BandwidthLimit {
+    /// The sample rate, Hz, of the current loop.
+    #[error("{0} samples a second")]
+    SampleRate(f64),
+    /// The bandwidth, Hz, of the current loop inside the speed loop.
+    #[error("a current loop of {0} Hz inside")]
+    CurrentLoop(f64),
+    /// The bandwidth, Hz, of the observer that estimates the speed from encoder steps.
+    #[error("an encoder, whose speed comes from an observer of {} Hz,", digits(*.0))]
+    SpeedObserver(f64),
+}
+
+/// Kinds of [`Error`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A setting of the scenario is out of its range, or excludes another one.
+    Setting,
+    /// The schedule needs more current, voltage, torque or flux than there is.
+    Infeasible,
+    /// The flux map is not that of a motor, or not a complete grid.
+    FluxMap,
+    /// The simulation stopped: the drive tripped, or its control is unstable.
+    Stopped,
+}
+
+/// A number as it was given: nine digits, without rounding errors.
 fn digits(value: f64) -> String {
     significant(value, 9)
 }
 
-/// A number that was computed: nobody needs more than four digits of it.
+/// A computed number: four digits.
 fn rounded(value: f64) -> String {
     significant(value, 4)
 }
 
-/// A limit that can be copied and is kept.
+/// A limit, rounded down to three digits, so that the printed value satisfies it.
 fn rounded_down(value: f64) -> String {
     let step = 10.0_f64.powf(value.abs().log10().floor() - 2.0);
     digits((value / step).floor() * step)
@@ -279,11 +309,39 @@ fn significant(value: f64, digits: usize) -> String {
 }
 
 impl Error {
-    /// The key of a scenario file that the error is about, if it is one.
+    /// The kind of the error.
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Setting { .. }
+            | Self::RampTime { .. }
+            | Self::Incompatible { .. }
+            | Self::TooLong { .. }
+            | Self::SlowSampling { .. }
+            | Self::Bandwidth { .. }
+            | Self::SlowObserver { .. } => ErrorKind::Setting,
+            Self::VoltageLimit { .. }
+            | Self::TorqueLimit { .. }
+            | Self::CurrentLimit { .. }
+            | Self::FastRotation { .. }
+            | Self::ConverterRange { .. }
+            | Self::NoTorque { .. }
+            | Self::OutsideMap { .. } => ErrorKind::Infeasible,
+            Self::MapTooSmall { .. }
+            | Self::MapMissingPoint { .. }
+            | Self::MapRepeated { .. }
+            | Self::MapNotFinite { .. }
+            | Self::MapInductance { .. } => ErrorKind::FluxMap,
+            Self::Diverged { .. } | Self::Trip { .. } => ErrorKind::Stopped,
+        }
+    }
+
+    /// The key of the scenario file that the error is about, if it is about a single key.
     pub fn key(&self) -> Option<&'static str> {
         match self {
-            Self::Setting { key, .. } | Self::MoveTime { key, .. } | Self::Together { key, .. } | Self::Bandwidth { key, .. } => Some(key),
-            Self::SlowSampling { .. } | Self::SlowForEncoder { .. } => Some("inverter.carrier"),
+            Self::Setting { key, .. } | Self::RampTime { key, .. } | Self::Incompatible { key, .. } | Self::Bandwidth { key, .. } => {
+                Some(key)
+            }
+            Self::SlowSampling { .. } | Self::SlowObserver { .. } => Some("inverter.carrier"),
             Self::TooLong { .. } => Some("duration"),
             _ => None,
         }
@@ -295,7 +353,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_end_where_rounding_begins() {
+    fn numbers_are_written_without_rounding_errors() {
         assert_eq!(digits(0.1 + 0.2), "0.3");
         assert_eq!(digits(-1e-7), "-1e-7");
         assert_eq!(digits(1e9), "1000000000");

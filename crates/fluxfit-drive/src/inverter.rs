@@ -1,12 +1,11 @@
-//! The two-level inverter: duties to terminal voltages, averaged or switch by switch.
+//! The two-level inverter: duty ratios to terminal voltages, averaged or switch by switch.
 //!
 //! Space vector modulation against a triangular carrier: the common mode `-(max + min)/2` is added to the three phase voltages.
-//! A leg whose duty is `d` is high in the middle `d` of a carrier period; samples are taken at the carrier's extremes.
+//! A leg with the duty ratio `d` is high in the middle `d` of a carrier period; samples are taken at the carrier's extremes.
 //!
-//! Dead time: when a leg is told to change, the switch that conducts opens at once and the other one closes `dead_time` later.
-//! Between the two the current chooses a diode: flowing out of the leg, the lower one; flowing in, the upper one. So of the two
-//! edges one comes late, and which one is decided by the current at the edge's start. Currents that change sign within the dead
-//! time are not clamped at zero.
+//! Dead time: at an edge, the conducting switch opens at once and the other one closes `dead_time` later. In between a diode conducts:
+//! the lower one if the current flows out of the leg, the upper one if it flows in. So one of the two edges of a pulse is delayed; which
+//! one depends on the current at the start of the edge. Currents that change sign within the dead time are not clamped at zero.
 
 use crate::{
     plant::Plant,
@@ -15,39 +14,40 @@ use crate::{
 use fluxfit::frames::{Abc, AlphaBeta};
 use std::f64::consts::TAU;
 
-/// Most edges of a sample period: two halves of a carrier, three legs, each with an edge at its start and one within.
+/// Largest number of edges in a sample period: two halves of the carrier, three legs, each with an edge at the start and one within.
 const MAX_EDGES: usize = 12;
 
-/// The inverter at work.
+/// The three-phase bridge with its state.
 #[derive(Debug, Clone)]
 pub struct Bridge {
     settings: Inverter,
     legs: [Leg; 3],
-    /// Whether the carrier's next half lets legs rise.
+    /// Whether legs switch from low to high in the next half of the carrier.
     rising: bool,
 }
 
 /// One leg.
 #[derive(Debug, Clone, Copy, Default)]
 struct Leg {
-    /// What it was told to be.
-    told: bool,
-    /// What its output is.
+    /// Commanded state: whether high.
+    commanded: bool,
+    /// Actual state of the output: whether high.
     high: bool,
-    /// When the output follows, if it is late, s into the period.
-    late: Option<f64>,
+    /// Time in the period, s, at which the output follows the command, if it is delayed by the dead time.
+    delayed_until: Option<f64>,
 }
 
-/// A leg that is told to change.
+/// A commanded edge of a leg.
 #[derive(Debug, Clone, Copy, Default)]
 struct Edge {
-    /// s into the period.
+    /// Time in the period, s.
     at: f64,
     leg: usize,
-    to: bool,
+    /// State after the edge.
+    high: bool,
 }
 
-/// Duties of the three legs, 0 to 1, that make a voltage vector, V, of a DC voltage, V.
+/// Duty ratios of the three legs, 0 to 1, for a voltage vector, V, at a DC voltage, V: space vector modulation.
 pub fn duties(u: AlphaBeta, u_dc: f64) -> [f64; 3] {
     let Abc { a, b, c } = u.to_abc();
     let middle = 0.5 * (a.max(b).max(c) + a.min(b).min(c));
@@ -55,7 +55,7 @@ pub fn duties(u: AlphaBeta, u_dc: f64) -> [f64; 3] {
 }
 
 impl Bridge {
-    /// An inverter whose legs are low.
+    /// A bridge with all legs low.
     pub fn new(settings: Inverter) -> Self {
         Self { settings, legs: [Leg::default(); 3], rising: true }
     }
@@ -66,7 +66,7 @@ impl Bridge {
         if ripple == 0.0 { u_dc } else { u_dc + ripple * (TAU * ripple_frequency * t).sin() }
     }
 
-    /// Feeds the plant over one sample period that starts at `start`, s. False where its current leaves the flux map.
+    /// Supplies the plant over the sample period that starts at `start`, s. False if the current leaves the flux map.
     #[must_use]
     pub fn run(&mut self, plant: &mut Plant, duties: [f64; 3], start: f64) -> bool {
         plant.begin_period();
@@ -81,10 +81,10 @@ impl Bridge {
         self.advance(plant, start, self.settings.sample_period(), u)
     }
 
-    /// Mean over a period of a leg's output, V, while `i` flows out of it.
+    /// Mean output voltage of a leg over a period, V, with the current `i` flowing out of it.
     fn mean_voltage(&self, duty: f64, i: f64, u_dc: f64) -> f64 {
         let Inverter { carrier, dead_time, switch_drop, diode_drop, .. } = self.settings;
-        // A leg that hardly switches loses no more than it has: the rails are the limit.
+        // The voltage loss of the dead time cannot move the mean output beyond the rails.
         let duty = if duty > 0.0 && duty < 1.0 { (duty - sign(i) * dead_time * carrier).clamp(0.0, 1.0) } else { duty };
         let (high, low) = if i > 0.0 { (switch_drop, diode_drop) } else { (diode_drop, switch_drop) };
         duty * u_dc - sign(i) * (duty * high + (1.0 - duty) * low)
@@ -96,40 +96,42 @@ impl Bridge {
         let mut edges = edges[..count].iter().peekable();
         let mut now = 0.0;
         loop {
-            let told = edges.peek().map_or(f64::INFINITY, |edge| edge.at);
-            let late = self.legs.iter().filter_map(|leg| leg.late).fold(f64::INFINITY, f64::min);
-            let next = told.min(late).min(period);
+            let edge = edges.peek().map_or(f64::INFINITY, |edge| edge.at);
+            let delayed = self.legs.iter().filter_map(|leg| leg.delayed_until).fold(f64::INFINITY, f64::min);
+            let next = edge.min(delayed).min(period);
             let outputs = self.legs.map(|leg| leg.high);
             if !self.advance(plant, start + now, next - now, |i, u_dc| self.outputs(outputs, i, u_dc)) {
                 return false;
             }
             now = next;
-            if now >= period && told >= period && late >= period {
+            if now >= period && edge >= period && delayed >= period {
                 break;
             }
-            if late <= told {
-                self.legs.iter_mut().filter(|leg| leg.late == Some(late)).for_each(|leg| (leg.high, leg.late) = (leg.told, None));
+            if delayed <= edge {
+                let due = self.legs.iter_mut().filter(|leg| leg.delayed_until == Some(delayed));
+                due.for_each(|leg| (leg.high, leg.delayed_until) = (leg.commanded, None));
             } else if let Some(edge) = edges.next() {
-                self.tell(edge, plant);
+                self.apply(edge, plant);
             }
         }
-        // What is late beyond the period is late in the next one.
-        self.legs.iter_mut().for_each(|leg| leg.late = leg.late.map(|late| late - period));
+        // A delay beyond the end of the period continues in the next one.
+        self.legs.iter_mut().for_each(|leg| leg.delayed_until = leg.delayed_until.map(|time| time - period));
         true
     }
 
-    /// A leg gets an edge: both its switches are off for the dead time, and a diode decides whether it follows at once, or late.
-    fn tell(&mut self, edge: &Edge, plant: &Plant) {
+    /// Applies an edge to its leg: both switches are off for the dead time, and the diode that conducts determines whether the output
+    /// changes at once or after the dead time.
+    fn apply(&mut self, edge: &Edge, plant: &Plant) {
         let dead_time = self.settings.dead_time;
         let out = if dead_time > 0.0 { phase_currents(plant)[edge.leg] } else { 0.0 };
         let leg = &mut self.legs[edge.leg];
-        leg.told = edge.to;
-        // While both switches are off, current that flows out holds the output low, and current that flows in holds it high.
-        let held = if dead_time > 0.0 && out != 0.0 { out < 0.0 } else { edge.to };
-        (leg.high, leg.late) = (held, (held != edge.to).then_some(edge.at + dead_time));
+        leg.commanded = edge.high;
+        // While both switches are off, the output is low if the current flows out, and high if it flows in.
+        let high = if dead_time > 0.0 && out != 0.0 { out < 0.0 } else { edge.high };
+        (leg.high, leg.delayed_until) = (high, (high != edge.high).then_some(edge.at + dead_time));
     }
 
-    /// The edges of a sample period, in order; and how many they are.
+    /// The edges of a sample period, in order, and their number.
     fn edges(&mut self, duties: [f64; 3]) -> ([Edge; MAX_EDGES], usize) {
         let half = 0.5 / self.settings.carrier;
         let halves = match self.settings.update {
@@ -137,18 +139,18 @@ impl Bridge {
             Update::Double => 1,
         };
         let (mut edges, mut count) = ([Edge::default(); MAX_EDGES], 0);
-        let mut told = self.legs.map(|leg| leg.told);
+        let mut commanded = self.legs.map(|leg| leg.commanded);
         for part in 0..halves {
             let start = f64::from(part) * half;
             for leg in 0..3 {
-                // Over this half the leg is low up to an instant and high from there on, or the other way round.
+                // In this half the leg is first low and then high, or first high and then low.
                 let (at, first) = if self.rising { ((1.0 - duties[leg]) * half, false) } else { (duties[leg] * half, true) };
-                for (at, to) in [(0.0, first), (at, !first)] {
-                    let lasts = if to == first { duties[leg] != if first { 0.0 } else { 1.0 } } else { at < half };
-                    if lasts && told[leg] != to {
-                        edges[count] = Edge { at: start + at, leg, to };
+                for (at, high) in [(0.0, first), (at, !first)] {
+                    let lasts = if high == first { duties[leg] != if first { 0.0 } else { 1.0 } } else { at < half };
+                    if lasts && commanded[leg] != high {
+                        edges[count] = Edge { at: start + at, leg, high };
                         count += 1;
-                        told[leg] = to;
+                        commanded[leg] = high;
                     }
                 }
             }
@@ -158,7 +160,7 @@ impl Bridge {
         (edges, count)
     }
 
-    /// Outputs of the legs, V, with the drops of whatever conducts.
+    /// Output voltages of the legs, V, with the voltage drops of the conducting devices.
     fn outputs(&self, high: [bool; 3], i: [f64; 3], u_dc: f64) -> [f64; 3] {
         let Inverter { switch_drop, diode_drop, .. } = self.settings;
         std::array::from_fn(|leg| {
@@ -167,7 +169,7 @@ impl Bridge {
         })
     }
 
-    /// Integrates the plant over an interval, s, in steps; currents' signs and DC voltage are held over each.
+    /// Integrates the plant over an interval, s, in steps; the signs of the currents and the DC voltage are constant over each step.
     fn advance(&self, plant: &mut Plant, start: f64, interval: f64, u: impl Fn([f64; 3], f64) -> [f64; 3]) -> bool {
         if interval <= 0.0 {
             return true;

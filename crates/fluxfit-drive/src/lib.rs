@@ -1,4 +1,4 @@
-//! A motor in a drive, simulated: from a scenario to a log whose truth is known.
+//! Simulation of a motor in a drive: from a scenario to a log with known true parameters.
 //!
 //! ```
 //! use fluxfit_drive::{Scenario, simulate};
@@ -11,17 +11,17 @@
 //!
 //! | file | concept |
 //! |---|---|
-//! | [`scenario`] | everything that a simulation depends on; the paper's rig |
-//! | [`schedule`] | what is asked of the drive over time |
-//! | [`mod@drive`] | sample, command, let the plant run |
+//! | [`scenario`] | all settings of a simulation; the paper's rig |
+//! | [`schedule`] | references and loads over time |
+//! | [`mod@drive`] | the simulation loop: sample, command, integrate |
 //! | [`plant`], [`flux_map`] | motor and mechanics in continuous time; measured saturation |
-//! | [`inverter`] | duties to terminal voltages: modulation, dead time, drops |
+//! | [`inverter`] | duty ratios to terminal voltages: modulation, dead time, voltage drops |
 //! | [`control`] | current loop, speed loop, field weakening |
-//! | [`sensors`] | noise, offsets, converters, encoder |
-//! | [`recording`] | the log's columns |
-//! | [`error`] | why a scenario is refused, or its drive trips |
+//! | [`sensors`] | noise, offsets, A/D converters, encoder |
+//! | [`recording`] | the columns of the log |
+//! | [`error`] | why a scenario is refused, or its simulation stops |
 //!
-//! The same scenario and draw give the same bits on any machine thread; draws are independent, so that they may run in parallel.
+//! The same scenario and noise stream give the same bits on any thread; streams are independent and can be simulated in parallel.
 
 pub mod control;
 pub mod drive;
@@ -35,7 +35,7 @@ pub mod schedule;
 pub mod sensors;
 
 pub use drive::{Drive, simulate};
-pub use error::Error;
+pub use error::{Error, ErrorKind};
 pub use flux_map::FluxMap;
 pub use recording::Recording;
 pub use scenario::Scenario;

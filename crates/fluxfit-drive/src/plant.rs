@@ -1,6 +1,6 @@
 //! The plant: motor and mechanics in continuous time, integrated between switching instants.
 //!
-//! State: currents in the rotor's frame, mechanical speed, electrical angle; and a ledger of energies, integrated along with them.
+//! State: currents in the rotor frame, mechanical speed, electrical angle; and the energies, for an energy balance.
 //!
 //! ```text
 //! d psi_d/dt = u_d - R_s i_d + omega_e psi_q,    d psi_q/dt = u_q - R_s i_q - omega_e psi_d        (1)
@@ -8,14 +8,14 @@
 //! J d omega_m/dt = T - T_load - B omega_m,       d theta_e/dt = p omega_m
 //! ```
 //!
-//! The method is the classical one of Runge and Kutta, of fourth order, in steps within which nothing moves by more than
-//! [`MAX_STEP`] of itself: not the winding's decay, the rotor's turn, nor its swing.
+//! The integrator is the classical fourth-order Runge-Kutta method. Its step is at most [`MAX_STEP`] divided by the fastest rate of the
+//! state: the decay of the winding, the rotation and the oscillation of the rotor.
 
 use crate::scenario::{Mechanics, SimulatedMotor};
 use fluxfit::frames::{AlphaBeta, Dq};
 
-/// Longest step, in radians and time constants of the fastest movement. The fourth-order error of energies is then about
-/// 0.017⁴ / 120 = 7e-10 of what flows in a step.
+/// Longest step, in radians or time constants of the fastest rate. The fourth-order error of the energies is then about
+/// 0.017⁴ / 120 = 7e-10 of the energy exchanged in a step.
 pub const MAX_STEP: f64 = 0.017;
 
 /// Number of states.
@@ -26,12 +26,12 @@ const STATES: usize = 7;
 pub struct Plant<'a> {
     motor: &'a SimulatedMotor,
     mechanics: Mechanics,
-    /// Pole pairs, as a factor.
+    /// Number of pole pairs.
     pole_pairs: f64,
     state: [f64; STATES],
-    /// Cosine and sine of the electrical angle, turned along with it: a sine a step would take a sixth of the time.
+    /// Cosine and sine of the electrical angle, updated by rotation: computing them anew in each step would take a sixth of the time.
     direction: (f64, f64),
-    /// The fastest rate at which the state moved when the period began, 1/s.
+    /// The fastest rate of the state at the start of the period, 1/s.
     rate: f64,
     /// Load torque, N m.
     pub load: f64,
@@ -42,16 +42,16 @@ pub struct Plant<'a> {
 /// Energies since the start, J.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {
-    /// Into the terminals.
+    /// Electrical energy at the terminals.
     pub electrical: f64,
-    /// Lost in the winding.
+    /// Copper loss.
     pub copper: f64,
-    /// Torque times speed.
+    /// Mechanical energy: integral of torque times speed.
     pub mechanical: f64,
 }
 
 impl<'a> Plant<'a> {
-    /// A motor without current, at the angle zero.
+    /// A motor without current at the angle zero, at a mechanical speed, rad/s.
     pub fn new(motor: &'a SimulatedMotor, mechanics: Mechanics, speed: f64) -> Self {
         let pole_pairs = f64::from(motor.pole_pairs);
         let state = [0.0, 0.0, speed, 0.0, 0.0, 0.0, 0.0];
@@ -78,7 +78,7 @@ impl<'a> Plant<'a> {
         self.state[2]
     }
 
-    /// Puts the rotor to a speed, mechanical rad/s: a dynamometer's rounding must not add up.
+    /// Sets the speed, mechanical rad/s: that of a dynamometer, so that rounding errors do not accumulate.
     pub fn set_omega_m(&mut self, speed: f64) {
         self.state[2] = speed;
     }
@@ -89,39 +89,40 @@ impl<'a> Plant<'a> {
         Energies { electrical, copper, mechanical }
     }
 
-    /// To be called where a sample period begins: how finely to step, and where the rotor points, without what rounding gathered.
+    /// Must be called at the start of a sample period: determines the step length, and removes the accumulated rounding error of the
+    /// rotor's direction.
     pub fn begin_period(&mut self) {
         let (sin, cos) = self.theta_e().sin_cos();
         (self.direction, self.rate) = ((cos, sin), self.fastest_rate());
     }
 
-    /// Number of steps in which an interval, s, of the period is integrated.
+    /// Number of integration steps for an interval of the period, s.
     pub fn steps(&self, interval: f64) -> usize {
-        // A plant that has gone wild is stopped by the drive's trip, not by endless steps.
+        // Bounds the time for an unstable plant, which the overcurrent protection stops at the next sample.
         const MOST: f64 = 1e4;
         (interval * self.rate / MAX_STEP).ceil().clamp(1.0, MOST) as usize
     }
 
-    /// The fastest rate at which the state moves, 1/s: the winding's decay and the friction's, the rotor's turn, and the swing of a
-    /// light rotor in its field, `p psi sqrt(3/2 / (J L))`.
+    /// The fastest rate of the state, 1/s: decay of winding and friction, rotation, and the oscillation of a light rotor,
+    /// `p psi sqrt(3/2 / (J L))`.
     fn fastest_rate(&self) -> f64 {
         let Some(flux) = self.motor.flux(self.current()) else { return f64::INFINITY };
         let inductance = flux.inductance[0][0].min(flux.inductance[1][1]);
-        let (swing, friction) = match self.mechanics {
+        let (oscillation, friction) = match self.mechanics {
             Mechanics::Free { inertia, friction } => {
                 (self.pole_pairs * flux.psi.magnitude() * (1.5 / (inertia * inductance)).sqrt(), friction / inertia)
             }
             Mechanics::Dyno => (0.0, 0.0),
         };
-        self.motor.rs / inductance + friction + self.omega_e().hypot(swing)
+        self.motor.rs / inductance + friction + self.omega_e().hypot(oscillation)
     }
 
-    /// One step of `h` seconds under a voltage, V, that stands still in the stator. False, and nothing done, where the current
+    /// One integration step of `h` seconds with a voltage, V, that is constant in the stator frame. False, without a step, if the current
     /// leaves the flux map.
     #[must_use]
     pub fn step(&mut self, u: AlphaBeta, h: f64) -> bool {
         let Some(next) = self.runge_kutta(u, h) else { return false };
-        let ((cos, sin), (turn_cos, turn_sin)) = (self.direction, small_turn(next[3] - self.state[3]));
+        let ((cos, sin), (turn_cos, turn_sin)) = (self.direction, cos_sin_of_small(next[3] - self.state[3]));
         self.direction = (cos * turn_cos - sin * turn_sin, sin * turn_cos + cos * turn_sin);
         self.state = next;
         true
@@ -143,7 +144,7 @@ impl<'a> Plant<'a> {
         let [d, q, omega_m, theta_e, ..] = *state;
         let i = Dq { d, q };
         let omega_e = self.pole_pairs * omega_m;
-        let u = turned_back(u_at_start, theta_e - self.theta_e());
+        let u = rotated_back(u_at_start, theta_e - self.theta_e());
         let flux = self.motor.flux(i)?;
         let rs = self.motor.rs;
         let (rise_d, rise_q) = (u.d - rs * d + omega_e * flux.psi.q, u.q - rs * q - omega_e * flux.psi.d);
@@ -166,14 +167,15 @@ impl<'a> Plant<'a> {
     }
 }
 
-/// Below this angle, rad, a turn's series ends in rounding: 0.05⁸/8! is 1e-15 of a vector, [`MAX_STEP`]⁸/8! below 1e-18.
-const SMALL_TURN: f64 = 0.05;
+/// Below this angle, rad, the truncated series of [`cos_sin_of_small`] is exact to rounding: 0.05⁸/8! is 1e-15, [`MAX_STEP`]⁸/8! is
+/// below 1e-18.
+const SMALL_ANGLE: f64 = 0.05;
 
 /// Cosine and sine of a small angle, rad.
 #[inline]
-fn small_turn(angle: f64) -> (f64, f64) {
+fn cos_sin_of_small(angle: f64) -> (f64, f64) {
     let a2 = angle * angle;
-    if angle.abs() < SMALL_TURN {
+    if angle.abs() < SMALL_ANGLE {
         let cos = 1.0 - a2 * 0.5 * (1.0 - a2 * (1.0 / 12.0) * (1.0 - a2 * (1.0 / 30.0)));
         (cos, angle * (1.0 - a2 * (1.0 / 6.0) * (1.0 - a2 * (1.0 / 20.0) * (1.0 - a2 * (1.0 / 42.0)))))
     } else {
@@ -182,9 +184,9 @@ fn small_turn(angle: f64) -> (f64, f64) {
     }
 }
 
-/// A vector as a rotor sees it that has turned by a small angle, rad.
+/// A vector in a frame that is rotated by a small angle, rad.
 #[inline]
-fn turned_back(u: Dq, angle: f64) -> Dq {
-    let (cos, sin) = small_turn(angle);
+fn rotated_back(u: Dq, angle: f64) -> Dq {
+    let (cos, sin) = cos_sin_of_small(angle);
     Dq { d: cos * u.d + sin * u.q, q: cos * u.q - sin * u.d }
 }

@@ -1,4 +1,4 @@
-//! The recording: what a simulated drive logs, in canonical columns.
+//! The recording: the log of a simulated drive, in canonical columns.
 
 use fluxfit::{
     error::Error,
@@ -6,58 +6,59 @@ use fluxfit::{
     log::{Columns, Log},
 };
 
-/// One row.
+/// One row of the log.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
-    /// s.
+pub struct RecordedRow {
+    /// Time, s.
     pub t: f64,
-    /// The voltage that the drive believes in, V, centred: the mean of the two periods around the sample, in the frame at the sample.
+    /// Commanded voltage, V, centred: the mean of the two periods around the sample, in the frame at the sample.
     pub u: Dq,
-    /// A, sampled.
+    /// Sampled current, A.
     pub i: Dq,
-    /// Electrical rad/s.
+    /// Speed, electrical rad/s.
     pub omega_e: f64,
-    /// Electrical rad, between minus and plus pi.
+    /// Angle, electrical rad, from -pi to pi.
     pub theta_e: f64,
-    /// The command computed from this sample, V: acts over the period after the next sample, in the frame at that period's middle.
+    /// The voltage command computed from this sample, V: it acts over the period after the next sample, in the frame at the middle of
+    /// that period.
     pub u_ref: Dq,
-    /// V.
+    /// DC voltage, V.
     pub u_dc: f64,
 }
 
-/// What a simulated drive logs.
+/// The log of a simulated drive.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recording {
-    /// What identification reads, with angle (between minus and plus pi) and DC voltage, as measured.
+    /// The columns for an identification, with measured angle (from -pi to pi) and DC voltage.
     pub columns: Columns,
-    /// Command along d, V.
+    /// Voltage command along d, V.
     pub ud_ref: Vec<f64>,
-    /// Command along q, V.
+    /// Voltage command along q, V.
     pub uq_ref: Vec<f64>,
 }
 
 impl Recording {
-    /// An empty recording with room for `rows`.
+    /// An empty recording with capacity for `rows`.
     pub fn with_capacity(rows: usize) -> Self {
-        let room = || Vec::with_capacity(rows);
+        let column = || Vec::with_capacity(rows);
         Self {
             columns: Columns {
-                t: room(),
-                ud: room(),
-                uq: room(),
-                id: room(),
-                iq: room(),
-                omega_e: room(),
-                theta_e: Some(room()),
-                u_dc: Some(room()),
+                t: column(),
+                ud: column(),
+                uq: column(),
+                id: column(),
+                iq: column(),
+                omega_e: column(),
+                theta_e: Some(column()),
+                u_dc: Some(column()),
             },
-            ud_ref: room(),
-            uq_ref: room(),
+            ud_ref: column(),
+            uq_ref: column(),
         }
     }
 
     /// Appends a row.
-    pub fn push(&mut self, row: &Row) {
+    pub fn push(&mut self, row: &RecordedRow) {
         let columns = &mut self.columns;
         for (column, value) in [
             (&mut columns.t, row.t),
@@ -85,10 +86,10 @@ impl Recording {
         named
     }
 
-    /// The log that an identification reads.
+    /// The log for an identification.
     ///
     /// # Errors
-    /// If the drive never turned or never carried current.
+    /// If the motor never turned or never carried current.
     pub fn log(&self) -> Result<Log, Error> {
         Log::new(self.columns.clone())
     }

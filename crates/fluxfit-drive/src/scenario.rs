@@ -1,20 +1,19 @@
-//! The scenario: everything that a simulation depends on, in SI units. The same scenario and draw give the same bits.
+//! The scenario: all settings of a simulation, in SI units.
 //!
-//! [`Scenario::paper`] is the paper's rig. A number that a drive cannot have is refused by [`Scenario::check`] with the name that a
-//! scenario file gives it.
+//! [`Scenario::paper`] is the paper's rig. [`Scenario::check`] refuses impossible settings; its errors name the keys of a scenario file.
 
 mod check;
-pub mod exact;
-mod reach;
+mod feasibility;
+pub mod reference_cases;
 
 use crate::{
-    flux_map::{Flux, FluxMap},
-    schedule::{Course, Move},
+    flux_map::{FluxLinkage, FluxMap},
+    schedule::{Profile, Ramp},
 };
 use fluxfit::{frames::Dq, motor::Motor, paper};
 use std::f64::consts::TAU;
 
-/// A motor in a drive, and what is asked of it.
+/// A motor in a drive, with its schedule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// Simulated time, s.
@@ -23,160 +22,160 @@ pub struct Scenario {
     pub seed: u64,
     /// The motor.
     pub motor: SimulatedMotor,
-    /// What turns with it.
+    /// Rotor and load, or a dynamometer.
     pub mechanics: Mechanics,
-    /// What feeds it.
+    /// The inverter.
     pub inverter: Inverter,
-    /// What steers it.
+    /// The controllers.
     pub control: Control,
-    /// What is asked of it.
+    /// References and loads over time.
     pub schedule: Schedule,
-    /// What measures it.
+    /// The sensors.
     pub sensors: Sensors,
 }
 
-/// The motor that is simulated: the truth of the log.
+/// The simulated motor, whose parameters are the log's true ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedMotor {
     /// Stator resistance, ohm.
     pub rs: f64,
-    /// What current makes of flux.
+    /// Flux linkage as a function of current.
     pub magnetics: Magnetics,
     /// Pole pairs.
     pub pole_pairs: u32,
 }
 
-/// Flux linkage over current.
+/// Flux linkage as a function of current.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Magnetics {
     /// `psi_d = L_d i_d + psi_f`, `psi_q = L_q i_q`.
     Constant {
-        /// H.
+        /// d-axis inductance, H.
         ld: f64,
-        /// H.
+        /// q-axis inductance, H.
         lq: f64,
-        /// Wb, peak per phase.
+        /// Magnet flux linkage, Wb, peak per phase.
         psi_f: f64,
     },
-    /// A measured map.
+    /// A measured flux map.
     Map(FluxMap),
 }
 
-/// What turns with the motor.
+/// The mechanics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mechanics {
-    /// Its own rotor and a load; the drive controls the speed.
+    /// A free rotor with a load; the drive controls the speed.
     Free {
-        /// kg m².
+        /// Inertia of rotor and load, kg m².
         inertia: f64,
         /// Viscous friction, N m s.
         friction: f64,
     },
-    /// A dynamometer, which holds the scheduled speed whatever the motor does; the drive controls the currents.
+    /// A dynamometer, which imposes the scheduled speed; the drive controls the currents.
     Dyno,
 }
 
 /// The two-level inverter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inverter {
-    /// How closely its switching is simulated.
+    /// Whether the switching is simulated.
     pub modulation: Modulation,
     /// DC voltage, V.
     pub u_dc: f64,
     /// Amplitude of the DC voltage's sinusoidal ripple, V.
     pub ripple: f64,
-    /// Its frequency, Hz.
+    /// Frequency of that ripple, Hz.
     pub ripple_frequency: f64,
     /// Frequency of the carrier, Hz.
     pub carrier: f64,
-    /// How often it gets new duties.
+    /// How often the duty ratios are updated.
     pub update: Update,
-    /// Time for which both switches of a leg stay off, s.
+    /// Dead time: time for which both switches of a leg are off, s.
     pub dead_time: f64,
-    /// Voltage across a conducting switch beyond its resistance, which belongs to `rs`, V.
+    /// Voltage drop of a conducting switch, V, without that of its resistance, which is part of `rs`.
     pub switch_drop: f64,
-    /// The same of a diode, V.
+    /// Voltage drop of a conducting diode, V, likewise.
     pub diode_drop: f64,
-    /// White noise of the vector that acts, on each axis, standard deviation, V: unknown to the drive, new each sample period.
+    /// Standard deviation on each axis of a white voltage disturbance, V, constant over a sample period and unknown to the drive.
     pub voltage_noise: f64,
 }
 
-/// How closely the switching is simulated.
+/// Whether the switching is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Modulation {
-    /// Each period's mean vector, held in the stator.
+    /// Each period's mean vector, constant in the stator frame.
     Averaged,
     /// Every switching instant of space vector modulation.
     Switched,
 }
 
-/// How often the inverter gets new duties.
+/// How often the duty ratios are updated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Update {
-    /// Once a carrier period.
+    /// Once per carrier period.
     Single,
-    /// At both extremes of the carrier.
+    /// Twice per carrier period, at its extremes.
     Double,
 }
 
 /// The field-oriented control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
-    /// Bandwidth of the closed current loop, Hz, where it is well above the winding's own `R/(2 pi L)`.
+    /// Bandwidth of the closed current loop, Hz, if it is well above that of the winding, `R/(2 pi L)`.
     pub current_bandwidth: f64,
-    /// Bandwidth of the closed speed loop, Hz; a dynamometer has none.
+    /// Bandwidth of the closed speed loop, Hz; not used with a dynamometer.
     pub speed_bandwidth: f64,
-    /// Largest current vector that it asks for, A.
+    /// Largest reference of the current vector, A.
     pub max_current: f64,
-    /// Current vector, the true one at a sample, at which the drive trips, A.
+    /// Trip level of the overcurrent protection, A: largest true current vector at a sample.
     pub trip_current: f64,
-    /// Whether `i_d` is lowered where the voltage runs out.
+    /// Field weakening: whether `i_d` is lowered at the voltage limit.
     pub field_weakening: bool,
 }
 
-/// What is asked of the drive, over time.
+/// References and loads over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Schedule {
     /// Reference of `i_d`, A.
-    pub id: Course,
-    /// Reference of `i_q`, A; on a dynamometer alone.
-    pub iq: Course,
-    /// Speed, mechanical rad/s.
-    pub speed: Course,
-    /// Load torque, N m: against positive turning, whichever way the rotor turns.
-    pub load: Course,
-    /// A test voltage added to the command.
+    pub id: Profile,
+    /// Reference of `i_q`, A; only with a dynamometer.
+    pub iq: Profile,
+    /// Speed reference, or speed of the dynamometer, mechanical rad/s.
+    pub speed: Profile,
+    /// Load torque, N m, in the negative direction of rotation at any speed.
+    pub load: Profile,
+    /// A test voltage added to the command, if any.
     pub injection: Option<Injection>,
 }
 
 /// A test voltage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Injection {
-    /// Where it acts.
+    /// The axis on which it acts.
     pub axis: Axis,
-    /// Its shape.
+    /// Waveform.
     pub waveform: Waveform,
-    /// Hz.
+    /// Frequency, Hz.
     pub frequency: f64,
-    /// Its amplitude over time, V.
-    pub voltage: Course,
+    /// Amplitude over time, V.
+    pub voltage: Profile,
 }
 
-/// An axis of the rotor's frame.
+/// An axis of the rotor frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// Along the magnet.
     D,
-    /// Across it.
+    /// 90 electrical degrees ahead of it.
     Q,
 }
 
-/// Shape of a test voltage.
+/// Waveform of a test voltage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Waveform {
-    /// A sine.
+    /// Sine wave.
     Sine,
-    /// Plus and minus the amplitude.
+    /// Square wave.
     Square,
 }
 
@@ -191,29 +190,29 @@ pub struct Sensors {
     pub current_offset: [f64; 3],
     /// Gain of each phase's sensor.
     pub current_gain: [f64; 3],
-    /// The converter behind the current sensors.
+    /// The A/D converter of the currents; `None` for an ideal one.
     pub adc: Option<Adc>,
-    /// What the encoder reads too much, electrical rad.
+    /// Error of the measured angle, electrical rad.
     pub angle_offset: f64,
-    /// Steps of the encoder per mechanical turn, each read as its middle; none: angle and speed are known exactly.
+    /// Steps of the encoder per mechanical revolution; the angle is read as the middle of a step. `None`: angle and speed are exact.
     pub encoder_steps: Option<u32>,
 }
 
 /// How many phases have a current sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CurrentSensors {
-    /// Phases a and b; c is minus their sum.
+    /// Phases a and b; the current of c is minus their sum.
     Two,
-    /// All of them.
+    /// All phases.
     Three,
 }
 
 /// An analog to digital converter of currents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adc {
-    /// Its bits.
+    /// Number of bits.
     pub bits: u32,
-    /// It reads currents from minus to plus this, A.
+    /// Largest current, A; the smallest is its negative.
     pub range: f64,
 }
 
@@ -247,7 +246,7 @@ impl Inverter {
         }
     }
 
-    /// Samples per second, Hz.
+    /// Sample rate, Hz.
     pub fn sample_rate(&self) -> f64 {
         match self.update {
             Update::Single => self.carrier,
@@ -255,37 +254,37 @@ impl Inverter {
         }
     }
 
-    /// Time from one sample to the next, s.
+    /// Sample period, s.
     pub fn sample_period(&self) -> f64 {
         1.0 / self.sample_rate()
     }
 
-    /// Longest voltage vector that its modulation makes without distortion, V.
+    /// Length of the longest voltage vector without overmodulation, V.
     pub fn voltage_limit(&self) -> f64 {
         self.u_dc / 3.0_f64.sqrt()
     }
 }
 
 impl Control {
-    /// Control without field weakening that trips half above its current.
+    /// Control without field weakening, and with a trip level of 1.5 times the largest current.
     pub fn new(current_bandwidth: f64, speed_bandwidth: f64, max_current: f64) -> Self {
         Self { current_bandwidth, speed_bandwidth, max_current, trip_current: 1.5 * max_current, field_weakening: false }
     }
 }
 
 impl SimulatedMotor {
-    /// The flux at a current, A; none outside of a map.
+    /// The flux linkage at a current, A; `None` outside of a flux map.
     #[inline]
-    pub(crate) fn flux(&self, i: Dq) -> Option<Flux> {
+    pub(crate) fn flux(&self, i: Dq) -> Option<FluxLinkage> {
         match &self.magnetics {
             Magnetics::Constant { ld, lq, psi_f } => {
-                Some(Flux { psi: Dq { d: ld * i.d + psi_f, q: lq * i.q }, inductance: [[*ld, 0.0], [0.0, *lq]] })
+                Some(FluxLinkage { psi: Dq { d: ld * i.d + psi_f, q: lq * i.q }, inductance: [[*ld, 0.0], [0.0, *lq]] })
             }
             Magnetics::Map(map) => map.at(i),
         }
     }
 
-    /// The motor with constant parameters that it is at zero current, which a map must hold.
+    /// The motor with the constant parameters of zero current, which a flux map must contain.
     pub fn unsaturated(&self) -> Motor {
         match &self.magnetics {
             Magnetics::Constant { ld, lq, psi_f } => Motor { rs: self.rs, ld: *ld, lq: *lq, psi_f: *psi_f },
@@ -299,7 +298,7 @@ impl SimulatedMotor {
         }
     }
 
-    /// A current, or the nearest one along each axis that a map holds.
+    /// The current clamped to the range of a flux map.
     pub(crate) fn within_map(&self, i: Dq) -> Dq {
         match &self.magnetics {
             Magnetics::Constant { .. } => i,
@@ -310,12 +309,12 @@ impl SimulatedMotor {
         }
     }
 
-    /// The motor, if its parameters are constant: what an identification should find.
-    pub fn constant(&self) -> Option<Motor> {
+    /// The true parameters, if they are constant.
+    pub fn constant_parameters(&self) -> Option<Motor> {
         matches!(self.magnetics, Magnetics::Constant { .. }).then(|| self.unsaturated())
     }
 
-    /// Torque, N m, of flux and current.
+    /// Torque, N m, from flux linkage and current.
     pub(crate) fn torque(&self, psi: Dq, i: Dq) -> f64 {
         1.5 * f64::from(self.pole_pairs) * (psi.d * i.q - psi.q * i.d)
     }
@@ -330,9 +329,8 @@ impl From<Motor> for Magnetics {
 impl Scenario {
     /// The paper's rig (its section 4.1): 1000 r/min against 10 N m with i_d = 0, then with i_d = -2 A; a switched inverter.
     ///
-    /// What the paper leaves open is chosen as the independent logs in `examples/logs` have it: 310 V, a 5 kHz carrier updated at
-    /// both extremes (10 kHz samples), bandwidths of 200 Hz and 20 Hz; up to speed in 0.15 s, loaded at 0.2 s, the second mode from
-    /// 0.6 s.
+    /// Settings that the paper does not state are those of the independent logs in `examples/logs`: 310 V, a 5 kHz carrier with double
+    /// update (10 kHz samples), bandwidths of 200 Hz and 20 Hz; full speed after 0.15 s, load from 0.2 s, i_d = -2 A from 0.6 s.
     pub fn paper() -> Self {
         Self {
             duration: 0.9,
@@ -342,9 +340,9 @@ impl Scenario {
             inverter: Inverter::ideal(310.0, 5e3),
             control: Control::new(200.0, 20.0, 20.0),
             schedule: Schedule {
-                id: Course::new(vec![Move { at: 0.6, to: paper::ID, over: 0.0 }]),
-                speed: Course::new(vec![Move { at: 0.0, to: paper::SPEED_RPM * (TAU / 60.0), over: 0.15 }]),
-                load: Course::new(vec![Move { at: 0.2, to: paper::LOAD, over: 0.0 }]),
+                id: Profile::new(vec![Ramp { at: 0.6, to: paper::ID, over: 0.0 }]),
+                speed: Profile::new(vec![Ramp { at: 0.0, to: paper::SPEED_RPM * (TAU / 60.0), over: 0.15 }]),
+                load: Profile::new(vec![Ramp { at: 0.2, to: paper::LOAD, over: 0.0 }]),
                 ..Schedule::default()
             },
             sensors: Sensors::IDEAL,
@@ -353,7 +351,7 @@ impl Scenario {
 
     /// Number of samples.
     pub fn rows(&self) -> usize {
-        // The sample at the end, which rounding may put just behind it, belongs to the log.
+        // The sample at the end belongs to the log, even if rounding puts it just behind the end.
         const ROUNDING: f64 = 1e-6;
         (self.duration * self.inverter.sample_rate() + ROUNDING) as usize + 1
     }

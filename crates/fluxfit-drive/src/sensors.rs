@@ -1,4 +1,4 @@
-//! What the drive knows: currents through sensors and converter, angle and speed through the encoder.
+//! The sensors: currents through current sensors and A/D converter, angle and speed through the encoder.
 
 use crate::{
     inverter::Bridge,
@@ -11,16 +11,16 @@ use fluxfit::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Bandwidth of the observer that makes a speed of encoder steps, rad/s: five times the usual 20 Hz of a speed loop. On a ramp its
-/// speed lags by twice the acceleration over it.
+/// Bandwidth of the observer that estimates the speed from encoder steps, rad/s: five times the usual 20 Hz of a speed loop. At
+/// constant acceleration its speed lags by twice the acceleration divided by this bandwidth.
 pub(crate) const SPEED_OBSERVER: f64 = TAU * 100.0;
 
-/// One sample of everything.
+/// One sample of all sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
+pub struct Measurement {
     /// Current, A.
     pub i: AlphaBeta,
-    /// Electrical angle, rad, between minus and plus pi.
+    /// Electrical angle, rad, from -pi to pi.
     pub theta_e: f64,
     /// Speed, electrical rad/s.
     pub omega_e: f64,
@@ -28,27 +28,27 @@ pub struct Measured {
     pub u_dc: f64,
 }
 
-/// The sensors at work.
+/// The sensors with their state.
 #[derive(Debug, Clone)]
-pub struct Instruments {
+pub struct SensorModel {
     settings: Sensors,
     draws: Draws,
     pole_pairs: f64,
     sample_period: f64,
-    /// Angle and speed as the observer has them, mechanical.
+    /// Angle and speed of the observer, mechanical; `None` before the first sample.
     observed: Option<(f64, f64)>,
 }
 
-impl Instruments {
-    /// Sensors whose noise is stream `draw` of a seed.
+impl SensorModel {
+    /// Sensors whose noise is stream `draw` of `seed`.
     pub fn new(settings: Sensors, seed: u64, draw: u64, pole_pairs: u32, sample_period: f64) -> Self {
         Self { settings, draws: Draws::seeded(seed, draw), pole_pairs: f64::from(pole_pairs), sample_period, observed: None }
     }
 
     /// Samples the plant at time `t`, s.
-    pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Measured {
+    pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Measurement {
         let (theta_m, omega_m) = self.rotor(plant);
-        Measured {
+        Measurement {
             i: self.currents(plant.current().to_alpha_beta(plant.theta_e())),
             theta_e: wrapped(self.pole_pairs * theta_m + self.settings.angle_offset),
             omega_e: self.pole_pairs * omega_m,
@@ -70,11 +70,11 @@ impl Instruments {
 
     fn current(&mut self, phase: usize, i: f64) -> f64 {
         let noise = if self.settings.current_noise > 0.0 { self.settings.current_noise * self.draws.normal() } else { 0.0 };
-        let read = self.settings.current_gain[phase] * i + self.settings.current_offset[phase] + noise;
-        let Some(adc) = self.settings.adc else { return read };
+        let measured = self.settings.current_gain[phase] * i + self.settings.current_offset[phase] + noise;
+        let Some(adc) = self.settings.adc else { return measured };
         let codes = 2.0_f64.powi(adc.bits as i32 - 1);
         let step = adc.range / codes;
-        (read / step).round().clamp(-codes, codes - 1.0) * step
+        (measured / step).round().clamp(-codes, codes - 1.0) * step
     }
 
     /// Mechanical angle, rad, and speed, rad/s.
@@ -82,9 +82,9 @@ impl Instruments {
         let theta_m = plant.theta_e() / self.pole_pairs;
         let Some(steps) = self.settings.encoder_steps else { return (theta_m, plant.omega_m()) };
         let step = TAU / f64::from(steps);
-        // The middle of the step: what is constant in the error belongs to the offset, which a drive's alignment finds.
+        // The middle of the step: a constant error belongs to the angle offset, which the drive's alignment determines.
         let read = ((theta_m / step).floor() + 0.5) * step;
-        // A drive knows the speed at which it is switched on.
+        // The observer starts at the true speed: a drive is usually switched on at a known one.
         let (angle, speed) = self.observed.unwrap_or((read, plant.omega_m()));
         let error = read - angle;
         let next = (
@@ -96,8 +96,8 @@ impl Instruments {
     }
 }
 
-/// An angle between minus and plus pi.
+/// The angle wrapped to the range from -pi to pi.
 fn wrapped(angle: f64) -> f64 {
-    let turned = angle.rem_euclid(TAU);
-    if turned > PI { turned - TAU } else { turned }
+    let positive = angle.rem_euclid(TAU);
+    if positive > PI { positive - TAU } else { positive }
 }

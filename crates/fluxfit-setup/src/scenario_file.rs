@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use fluxfit_drive::{
         scenario::{Adc, Axis, CurrentSensors, Injection, Mechanics, Modulation, Sensors, Update, Waveform},
-        schedule::{Course, Move},
+        schedule::{Profile, Ramp},
     };
     use proptest::prelude::*;
     use std::f64::consts::{PI, TAU};
@@ -172,7 +172,7 @@ mod tests {
         (expected.inverter.ripple, expected.inverter.ripple_frequency) = (5.0, 300.0);
         (expected.inverter.dead_time, expected.inverter.switch_drop, expected.inverter.diode_drop) = (2e-6, 1.0, 1.0);
         expected.control.field_weakening = true;
-        let voltage = Course::new(vec![Move { at: 0.3, to: 5.0, over: 0.0 }]);
+        let voltage = Profile::new(vec![Ramp { at: 0.3, to: 5.0, over: 0.0 }]);
         expected.schedule.injection = Some(Injection { axis: Axis::D, waveform: Waveform::Square, frequency: 500.0, voltage });
         expected.sensors = Sensors {
             current_sensors: CurrentSensors::Two,
@@ -196,7 +196,7 @@ mod tests {
                     [schedule]\nspeed = \"600 rpm\"\niq = 3\n[[schedule.id]]\nat = 0.5\nto = -1\n";
         let scenario = read(text).unwrap().scenario;
         assert_eq!(scenario.mechanics, Mechanics::Dyno);
-        assert_eq!(scenario.schedule.speed, Course::constant(600.0 * (TAU / 60.0)));
+        assert_eq!(scenario.schedule.speed, Profile::constant(600.0 * (TAU / 60.0)));
         assert_eq!((scenario.schedule.iq.at(0.0), scenario.schedule.id.at(0.6)), (3.0, -1.0));
         assert_eq!(scenario.control.trip_current, 15.0);
     }

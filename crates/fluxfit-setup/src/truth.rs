@@ -51,7 +51,7 @@ pub fn truth_path(log: &Path) -> PathBuf {
 /// flux of a motor that is a flux map are null.
 pub fn truth_of(read: &ReadScenario, draw: u64) -> Value {
     let motor = &read.scenario.motor;
-    let constant = motor.constant();
+    let constant = motor.constant_parameters();
     json!({
         "schema": SCHEMA,
         "rs": motor.rs,

@@ -2,7 +2,8 @@
 //! orthogonal; their lengths are then the singular values.
 //!
 //! Hestenes, "Inversion of matrices by biorthogonalization and related results", 1958, doi 10.1137/0106005. Small singular values
-//! have the same relative accuracy as large ones: Demmel and Veselić, "Jacobi's method is more accurate than QR", 1992, doi 10.1137/0613074.
+//! have the same relative accuracy as large ones: Demmel and Veselić, "Jacobi's method is more accurate than QR", 1992,
+//! doi 10.1137/0613074.
 //!
 //! Rank-deficient matrices are common here, and nalgebra 0.34 decomposes some of them wrongly (dimforge/nalgebra#1172, also in 0.35):
 //! a consistent system of three equations was solved with a residual of 0.002.

@@ -17,7 +17,7 @@ use fluxfit::{
 use fluxfit_drive::{
     Scenario,
     scenario::{Control, Inverter, Mechanics, Schedule, Sensors, SimulatedMotor},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use rayon::prelude::*;
@@ -104,9 +104,9 @@ fn scenario(rated: &Rated) -> Scenario {
         inverter: Inverter::ideal(rated.u_dc, 0.5 * sample_rate),
         control: Control { trip_current: 3.0 * current, ..Control::new(200.0, 10.0, 1.5 * current) },
         schedule: Schedule {
-            id: Course::new(vec![Move { at: SECOND_MODE, to: ID * current, over: 0.0 }]),
-            speed: Course::new(vec![Move { at: 0.0, to: speed, over: RUN_UP }]),
-            load: Course::new(vec![Move { at: 0.0, to: IQ * torque, over: RUN_UP }]),
+            id: Profile::new(vec![Ramp { at: SECOND_MODE, to: ID * current, over: 0.0 }]),
+            speed: Profile::new(vec![Ramp { at: 0.0, to: speed, over: RUN_UP }]),
+            load: Profile::new(vec![Ramp { at: 0.0, to: IQ * torque, over: RUN_UP }]),
             ..Schedule::default()
         },
         sensors: Sensors { current_noise: NOISE * current, ..Sensors::IDEAL },

@@ -17,7 +17,7 @@ pub(crate) fn show(name: &str, scenario: &Scenario, recording: &Recording, log: 
     // What went to a device cannot be read again.
     if let Some(truth) = truth.map(|truth| shell::word(truth.as_os_str())) {
         writeln!(out, "  truth  {truth}\n\nNext: fluxfit identify {log}")?;
-        if scenario.motor.constant().is_some() {
+        if scenario.motor.constant_parameters().is_some() {
             writeln!(out, "      fluxfit compare {log} --truth {truth}")?;
         }
     }

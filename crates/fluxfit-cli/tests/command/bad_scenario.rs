@@ -40,7 +40,7 @@ fn impossible_rigs() {
         ("voltage", "\"1000 rpm\"", "\"5000 rpm\"", &["t = 0.15 s", "5000 r/min", "398.1 V", "179 V", "or allow control.field_weakening"]),
         (
             "voltage in spite of a weaker field",
-            "# field_weakening = true\n\n[schedule]                            # zero before the first move; a move begins at `at` and takes `over`\nspeed = [{ at = \"0 s\", to = \"1000 rpm\"",
+            "# field_weakening = true\n\n[schedule]                            # zero before the first ramp; a ramp begins at `at` and takes `over`\nspeed = [{ at = \"0 s\", to = \"1000 rpm\"",
             "field_weakening = true\n[schedule]\nspeed = [{ at = \"0 s\", to = \"9000 rpm\"",
             &["9000 r/min", "with control.max_current"],
         ),

@@ -1,42 +1,46 @@
-//! What no drive has, and what no drive can do: refused before anything is simulated.
+//! The check of a scenario before it is simulated: ranges of its settings, and what they require of each other.
 
 use super::{Injection, Magnetics, Mechanics, Scenario};
-use crate::{error::Error, sensors::SPEED_OBSERVER};
+use crate::{
+    error::{BandwidthLimit, Error},
+    schedule::Profile,
+    sensors::SPEED_OBSERVER,
+};
 use fluxfit::frames::Dq;
 use std::f64::consts::TAU;
 
-/// Most rows of a log, which is held in memory: 2.4 GB, 50 minutes at 10 kHz.
+/// Largest number of rows of a log, which is held in memory: 2.4 GB, 50 minutes at 10 kHz.
 const MAX_ROWS: f64 = 3e7;
 
-/// No winding that an inverter feeds has more, H: a number above lacks its unit.
+/// Largest inductance, H. The windings of inverter-fed motors have less; a larger number lacks its unit.
 const MAX_INDUCTANCE: f64 = 10.0;
 
-/// Largest bandwidth of the current loop, as an angle per sample, rad. With gains of twice the bandwidth and one and a half periods
-/// of delay the loop's phase margin falls from 76 degrees to zero at 0.43.
+/// Largest bandwidth of the current loop, as an angle per sample, rad. With a gain of twice the bandwidth and a delay of one and a
+/// half periods the phase margin falls from 76 degrees to zero at 0.43.
 const MAX_BANDWIDTH_ANGLE: f64 = 0.25;
 
-/// The speed loop must be this many times slower than the current loop inside it.
-const CASCADE: f64 = 3.0;
+/// Smallest ratio of the bandwidths of the current loop and the speed loop around it.
+const CASCADE_RATIO: f64 = 3.0;
 
-/// The speed loop must be this many times slower than the observer that makes a speed of encoder steps: at 30 Hz the paper's rig is
-/// calm, at 35 Hz it oscillates.
-const OBSERVER_CASCADE: f64 = 4.0;
+/// Smallest ratio of the bandwidths of the speed observer and the speed loop around it: the paper's rig is stable at 30 Hz and
+/// oscillates at 35 Hz.
+const OBSERVER_RATIO: f64 = 4.0;
 
-/// Largest bandwidth of that observer as an angle per sample, rad: its double pole, 1 less this, then settles without swinging.
+/// Largest bandwidth of that observer as an angle per sample, rad: its double pole at 1 less this value is then well damped.
 const MAX_OBSERVER_ANGLE: f64 = 0.5;
 
 impl Scenario {
-    /// Refuses what cannot be simulated, in one sentence that names the key of a scenario file.
+    /// Refuses a scenario that cannot be simulated; the error names the key of the scenario file.
     ///
     /// # Errors
-    /// If a number is out of its range, settings exclude each other, sampling or bandwidths make no stable control, or the schedule
-    /// asks for more current, voltage or flux than there is.
+    /// If a number is out of its range, settings exclude each other, the control would be unstable, or the schedule needs more current,
+    /// voltage or flux than there is.
     pub fn check(&self) -> Result<(), Error> {
         self.check_numbers()?;
         self.check_sensors()?;
-        self.check_together()?;
+        self.check_compatibility()?;
         self.check_sampling()?;
-        self.check_reach()
+        self.check_feasibility()
     }
 
     fn check_numbers(&self) -> Result<(), Error> {
@@ -81,21 +85,21 @@ impl Scenario {
         if self.control.trip_current.is_nan() || self.control.trip_current <= self.control.max_current {
             return Err(setting("control.trip_current", self.control.trip_current, "above control.max_current"));
         }
-        for (key, course) in [
+        for (key, profile) in [
             ("schedule.id", &self.schedule.id),
             ("schedule.iq", &self.schedule.iq),
             ("schedule.speed", &self.schedule.speed),
             ("schedule.load", &self.schedule.load),
         ] {
-            check_moves(key, course)?;
+            check_ramps(key, profile)?;
         }
         if let Some(Injection { frequency, voltage, .. }) = &self.schedule.injection {
             positive("injection.frequency", *frequency)?;
             if *frequency > 0.5 * inverter.sample_rate() {
                 return Err(setting("injection.frequency", *frequency, "at most half the sample rate"));
             }
-            check_moves("injection.voltage", voltage)?;
-            if let Some(most) = voltage.moves().iter().find(|amplitude| amplitude.to.abs() > inverter.voltage_limit()) {
+            check_ramps("injection.voltage", voltage)?;
+            if let Some(most) = voltage.ramps().iter().find(|amplitude| amplitude.to.abs() > inverter.voltage_limit()) {
                 return Err(setting("injection.voltage", most.to, "at most u_dc / sqrt(3)"));
             }
         }
@@ -120,17 +124,17 @@ impl Scenario {
         }
     }
 
-    fn check_together(&self) -> Result<(), Error> {
+    fn check_compatibility(&self) -> Result<(), Error> {
         match self.mechanics {
-            Mechanics::Free { .. } if !self.schedule.iq.is_zero() => Err(Error::Together {
+            Mechanics::Free { .. } if !self.schedule.iq.is_zero() => Err(Error::Incompatible {
                 key: "schedule.iq",
                 with: "mechanics.kind = \"dyno\"",
-                remedy: "with a rotor of its own the speed loop chooses i_q: ask for schedule.load instead",
+                remedy: "with a free rotor the speed loop sets i_q: give schedule.load instead",
             }),
-            Mechanics::Dyno if !self.schedule.load.is_zero() => Err(Error::Together {
+            Mechanics::Dyno if !self.schedule.load.is_zero() => Err(Error::Incompatible {
                 key: "schedule.load",
                 with: "mechanics.kind = \"free\"",
-                remedy: "a dynamometer holds its speed against any torque: ask for schedule.iq instead",
+                remedy: "a dynamometer holds its speed against any torque: give schedule.iq instead",
             }),
             _ => Ok(()),
         }
@@ -154,33 +158,32 @@ impl Scenario {
         let most = MAX_BANDWIDTH_ANGLE / (TAU * sample_period);
         let value = self.control.current_bandwidth;
         if value > most {
-            let because = format!("{} samples a second", self.inverter.sample_rate());
-            return Err(Error::Bandwidth { key: "control.current_bandwidth", value, because, most });
+            let limit = BandwidthLimit::SampleRate(self.inverter.sample_rate());
+            return Err(Error::Bandwidth { key: "control.current_bandwidth", value, limit, most });
         }
         if self.sensors.encoder_steps.is_some() && SPEED_OBSERVER * sample_period > MAX_OBSERVER_ANGLE {
             let least = SPEED_OBSERVER / MAX_OBSERVER_ANGLE * self.inverter.carrier * sample_period;
-            return Err(Error::SlowForEncoder { carrier: least.ceil() });
+            return Err(Error::SlowObserver { carrier: least.ceil() });
         }
         self.check_speed_loop()
     }
 
     fn check_speed_loop(&self) -> Result<(), Error> {
         let value = self.control.speed_bandwidth;
-        let refused = |because: String, most: f64| Err(Error::Bandwidth { key: "control.speed_bandwidth", value, because, most });
-        let most = self.control.current_bandwidth / CASCADE;
+        let refused = |limit: BandwidthLimit, most: f64| Err(Error::Bandwidth { key: "control.speed_bandwidth", value, limit, most });
+        let most = self.control.current_bandwidth / CASCADE_RATIO;
+        let observer = SPEED_OBSERVER / TAU;
         match (self.mechanics, self.sensors.encoder_steps) {
             (Mechanics::Dyno, _) => Ok(()),
-            (Mechanics::Free { .. }, _) if value > most => {
-                refused(format!("a current loop of {} Hz inside", self.control.current_bandwidth), most)
-            }
-            (Mechanics::Free { .. }, Some(_)) if value > SPEED_OBSERVER / (TAU * OBSERVER_CASCADE) => {
-                refused("an encoder, whose speed comes from an observer of 100 Hz,".to_owned(), SPEED_OBSERVER / (TAU * OBSERVER_CASCADE))
+            (Mechanics::Free { .. }, _) if value > most => refused(BandwidthLimit::CurrentLoop(self.control.current_bandwidth), most),
+            (Mechanics::Free { .. }, Some(_)) if value > observer / OBSERVER_RATIO => {
+                refused(BandwidthLimit::SpeedObserver(observer), observer / OBSERVER_RATIO)
             }
             _ => Ok(()),
         }
     }
 
-    /// The error of a current beyond the map.
+    /// The error of a current outside of the flux map.
     pub(crate) fn outside_map(&self, t: f64, i: Dq) -> Error {
         let (id_range, iq_range) = match &self.motor.magnetics {
             Magnetics::Map(map) => (map.id_range(), map.iq_range()),
@@ -206,12 +209,12 @@ fn finite(key: &'static str, value: f64) -> Result<(), Error> {
     if value.is_finite() { Ok(()) } else { Err(setting(key, value, "a finite number")) }
 }
 
-fn check_moves(key: &'static str, course: &crate::schedule::Course) -> Result<(), Error> {
-    for course in course.moves() {
-        finite(key, course.to)?;
-        for time in [course.at, course.over] {
+fn check_ramps(key: &'static str, profile: &Profile) -> Result<(), Error> {
+    for ramp in profile.ramps() {
+        finite(key, ramp.to)?;
+        for time in [ramp.at, ramp.over] {
             if !(time >= 0.0 && time.is_finite()) {
-                return Err(Error::MoveTime { key, time });
+                return Err(Error::RampTime { key, time });
             }
         }
     }

@@ -6,7 +6,7 @@ use fluxfit::{frames::Dq, paper};
 use fluxfit_drive::{
     Drive, FluxMap, Recording, Scenario,
     scenario::{Axis, Control, Injection, Inverter, Magnetics, Mechanics, Modulation, SimulatedMotor, Waveform},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use std::{f64::consts::TAU, path::Path};
@@ -22,8 +22,8 @@ fn farthest(values: &[f64], from: f64) -> f64 {
     values.iter().map(|value| (value - from).abs()).fold(0.0, f64::max)
 }
 
-fn steps(moves: &[(f64, f64)]) -> Course {
-    Course::new(moves.iter().map(|(at, to)| Move { at: *at, to: *to, over: 0.0 }).collect())
+fn steps(moves: &[(f64, f64)]) -> Profile {
+    Profile::new(moves.iter().map(|(at, to)| Ramp { at: *at, to: *to, over: 0.0 }).collect())
 }
 
 /// The paper's motor on a dynamometer at an electrical speed, rad/s, with all the voltage it may want; averaged.
@@ -31,9 +31,9 @@ fn on_a_dyno(duration: f64, omega_e: f64) -> Scenario {
     let mut scenario = Scenario { duration, ..Scenario::paper() };
     scenario.inverter = Inverter { modulation: Modulation::Averaged, u_dc: 2500.0, ..scenario.inverter };
     scenario.mechanics = Mechanics::Dyno;
-    scenario.schedule.load = Course::default();
-    scenario.schedule.id = Course::default();
-    scenario.schedule.speed = Course::constant(omega_e / 4.0);
+    scenario.schedule.load = Profile::default();
+    scenario.schedule.id = Profile::default();
+    scenario.schedule.speed = Profile::constant(omega_e / 4.0);
     scenario
 }
 
@@ -56,8 +56,8 @@ fn a_current_step_rises_with_the_bandwidth_asked_for() {
             scenario.motor.rs = 0.05;
             scenario.control.current_bandwidth = bandwidth;
             match axis {
-                Axis::D => scenario.schedule.id = Course::constant(5.0),
-                Axis::Q => scenario.schedule.iq = Course::constant(5.0),
+                Axis::D => scenario.schedule.id = Profile::constant(5.0),
+                Axis::Q => scenario.schedule.iq = Profile::constant(5.0),
             }
             let recording = simulate(&scenario, 0, || ()).unwrap();
             let (along, across) = match axis {
@@ -108,8 +108,8 @@ fn a_loop_that_was_at_its_limit_recovers_at_any_speed() {
         scenario.motor = SimulatedMotor { rs: 0.2, magnetics: Magnetics::Constant { ld: 0.5e-3, lq: 1e-3, psi_f: 5e-3 }, pole_pairs: 4 };
         scenario.inverter.u_dc = 60.0;
         scenario.control = Control { trip_current: 1e3, ..Control::new(bandwidth, 1.0, 100.0) };
-        scenario.schedule.id = Course::constant(-2.0);
-        scenario.schedule.iq = Course::constant(3.0);
+        scenario.schedule.id = Profile::constant(-2.0);
+        scenario.schedule.iq = Profile::constant(3.0);
         scenario.schedule.injection = Some(Injection {
             axis: Axis::Q,
             waveform: Waveform::Sine,
@@ -160,10 +160,10 @@ fn the_first_command_tells_the_reference_within_its_limits() {
         let mut scenario = Scenario { duration: 0.01, ..Scenario::paper() };
         scenario.inverter.u_dc = 5000.0;
         (scenario.control.max_current, scenario.control.trip_current) = (max_current, 2.0 * max_current);
-        scenario.schedule.speed = Course::constant(speed);
-        scenario.schedule.id = Course::constant(id);
+        scenario.schedule.speed = Profile::constant(speed);
+        scenario.schedule.id = Profile::constant(id);
         let recording = driven(&Scenario {
-            schedule: fluxfit_drive::scenario::Schedule { load: Course::default(), ..scenario.schedule.clone() },
+            schedule: fluxfit_drive::scenario::Schedule { load: Profile::default(), ..scenario.schedule.clone() },
             ..scenario
         });
         Dq { d: recording.ud_ref[0] / (alpha * paper::MOTOR.ld), q: recording.uq_ref[0] / (alpha * paper::MOTOR.lq) }
@@ -194,9 +194,9 @@ fn a_speed_reached_at_the_current_limit_is_not_overshot() {
     for (direction, id) in [(1.0, 0.0), (-1.0, 0.0), (1.0, -3.0)] {
         let mut scenario = Scenario { duration: 0.4, ..Scenario::paper() };
         (scenario.control.max_current, scenario.control.trip_current) = (6.0, 20.0);
-        scenario.schedule.load = Course::default();
-        scenario.schedule.id = Course::constant(id);
-        scenario.schedule.speed = Course::constant(direction * 100.0);
+        scenario.schedule.load = Profile::default();
+        scenario.schedule.id = Profile::constant(id);
+        scenario.schedule.speed = Profile::constant(direction * 100.0);
         let recording = simulate(&scenario, 0, || ()).unwrap();
         let speed: Vec<f64> = recording.columns.omega_e.iter().map(|omega| direction * omega / 4.0).collect();
         // 6 A make 6.6 N m, 2200 rad/s²: 45 ms, while the loop's time constant is 8 ms.
@@ -217,8 +217,8 @@ fn a_weaker_field_reaches_and_holds_a_high_speed_in_both_directions() {
         scenario.inverter = Inverter { u_dc: 120.0, modulation: Modulation::Averaged, ..scenario.inverter };
         scenario.control = Control { field_weakening: true, ..Control::new(200.0, 20.0, 60.0) };
         let speed = 5000.0 * TAU / 60.0;
-        scenario.schedule.id = Course::default();
-        scenario.schedule.speed = Course::new(vec![Move { at: 0.0, to: direction * speed, over: 0.3 }]);
+        scenario.schedule.id = Profile::default();
+        scenario.schedule.speed = Profile::new(vec![Ramp { at: 0.0, to: direction * speed, over: 0.3 }]);
         scenario.schedule.load = steps(&[(1.5, direction * 0.2)]);
         let recording = simulate(&scenario, 0, || ()).unwrap();
         let reached: Vec<f64> = recording.columns.omega_e.iter().map(|omega| direction * omega / 4.0 / speed).collect();
@@ -253,9 +253,9 @@ fn a_saturated_motor_settles_on_its_references() {
         scenario.motor = SimulatedMotor { rs: 0.63, magnetics: Magnetics::Map(map.clone()), pole_pairs: 2 };
         scenario.inverter.u_dc = 540.0;
         scenario.control = Control::new(200.0, 1.0, 24.0);
-        scenario.schedule.speed = Course::constant(40.0);
-        scenario.schedule.id = Course::constant(-5.0);
-        scenario.schedule.iq = Course::new(vec![Move { at: 0.05, to: iq, over: 0.2 }]);
+        scenario.schedule.speed = Profile::constant(40.0);
+        scenario.schedule.id = Profile::constant(-5.0);
+        scenario.schedule.iq = Profile::new(vec![Ramp { at: 0.05, to: iq, over: 0.2 }]);
         let recording = simulate(&scenario, 0, || ()).unwrap();
         assert!(farthest(&recording.columns.id[4000..], -5.0) < 0.05, "{iq}: {}", farthest(&recording.columns.id[4000..], -5.0));
         assert!(farthest(&recording.columns.iq[4000..], iq) < 0.05, "{iq}: {}", farthest(&recording.columns.iq[4000..], iq));

@@ -11,7 +11,7 @@ use fluxfit_drive::{
     inverter::Bridge,
     plant::Plant,
     scenario::{Axis, Injection, Inverter, Magnetics, Mechanics, Modulation, SimulatedMotor, Waveform},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use std::f64::consts::TAU;
@@ -20,17 +20,17 @@ use std::f64::consts::TAU;
 const SAMPLE_PERIOD: f64 = 1e-4;
 
 /// The paper's motor on a dynamometer, averaged, without noise.
-fn on_a_dyno(duration: f64, speed: Course) -> Scenario {
+fn on_a_dyno(duration: f64, speed: Profile) -> Scenario {
     let mut scenario = Scenario { duration, ..Scenario::paper() };
     scenario.inverter.modulation = Modulation::Averaged;
     scenario.mechanics = Mechanics::Dyno;
-    scenario.schedule.load = Course::default();
-    (scenario.schedule.id, scenario.schedule.speed) = (Course::default(), speed);
+    scenario.schedule.load = Profile::default();
+    (scenario.schedule.id, scenario.schedule.speed) = (Profile::default(), speed);
     scenario
 }
 
-fn steps(moves: &[(f64, f64)]) -> Course {
-    Course::new(moves.iter().map(|(at, to)| Move { at: *at, to: *to, over: 0.0 }).collect())
+fn steps(moves: &[(f64, f64)]) -> Profile {
+    Profile::new(moves.iter().map(|(at, to)| Ramp { at: *at, to: *to, over: 0.0 }).collect())
 }
 
 /// What differs of two angles beyond whole turns, rad.
@@ -55,7 +55,7 @@ fn recorded(scenario: &Scenario) -> Recording {
 
 /// A drive whose currents move, at a speed at which the rotor turns by 0.05 rad per sample.
 fn moving() -> Recording {
-    let mut scenario = on_a_dyno(0.05, Course::constant(125.0));
+    let mut scenario = on_a_dyno(0.05, Profile::constant(125.0));
     scenario.schedule.id = steps(&[(0.01, -4.0), (0.03, 2.0)]);
     scenario.schedule.iq = steps(&[(0.02, 6.0), (0.035, -3.0)]);
     recorded(&scenario)
@@ -102,12 +102,12 @@ fn the_logged_command_acts_in_the_period_after_the_next_sample() {
 #[test]
 fn a_dynamometer_turns_as_its_schedule_says() {
     let moves = vec![
-        Move { at: 0.0, to: 20.0, over: 0.0 },
-        Move { at: 0.01, to: 120.0, over: 0.01 },
-        Move { at: 0.03, to: 60.0, over: 0.0 },
-        Move { at: 0.04, to: -40.0, over: 0.005 },
+        Ramp { at: 0.0, to: 20.0, over: 0.0 },
+        Ramp { at: 0.01, to: 120.0, over: 0.01 },
+        Ramp { at: 0.03, to: 60.0, over: 0.0 },
+        Ramp { at: 0.04, to: -40.0, over: 0.005 },
     ];
-    let scenario = on_a_dyno(0.05, Course::new(moves));
+    let scenario = on_a_dyno(0.05, Profile::new(moves));
     let speed = |t: f64| match t {
         t if t < 0.01 => 20.0,
         t if t < 0.02 => 20.0 + 1e4 * (t - 0.01),
@@ -133,8 +133,8 @@ fn a_dynamometer_turns_as_its_schedule_says() {
 /// What an encoder that is off by 0.3 rad makes of the true current.
 #[test]
 fn logged_currents_are_in_the_frame_that_the_drive_believes_in() {
-    let mut scenario = on_a_dyno(0.03, Course::constant(50.0));
-    scenario.schedule.iq = Course::constant(5.0);
+    let mut scenario = on_a_dyno(0.03, Profile::constant(50.0));
+    scenario.schedule.iq = Profile::constant(5.0);
     scenario.sensors.angle_offset = 0.3;
     let mut drive = Drive::new(&scenario, 0);
     for k in 0..scenario.rows() {
@@ -207,9 +207,9 @@ fn a_cross_saturated_map_moves_as_its_fluxes_do() {
 
 /// A motor at rest, and a voltage beside whatever else the controller wants.
 fn injected(waveform: Waveform, axis: Axis, frequency: f64, voltage: f64, duration: f64) -> Recording {
-    let mut scenario = on_a_dyno(duration, Course::default());
+    let mut scenario = on_a_dyno(duration, Profile::default());
     scenario.control.current_bandwidth = 20.0;
-    scenario.schedule.injection = Some(Injection { axis, waveform, frequency, voltage: Course::constant(voltage) });
+    scenario.schedule.injection = Some(Injection { axis, waveform, frequency, voltage: Profile::constant(voltage) });
     recorded(&scenario)
 }
 

@@ -20,7 +20,7 @@ use fluxfit::{
 use fluxfit_drive::{
     Recording, Scenario,
     scenario::{Control, CurrentSensors, Inverter, Mechanics, Schedule, Sensors, SimulatedMotor},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use std::f64::consts::FRAC_PI_3;
@@ -163,9 +163,9 @@ fn dead_time_that_takes_more_than_the_resistance() {
         mechanics: Mechanics::Dyno,
         control: Control::new(200.0, 10.0, 150.0),
         schedule: Schedule {
-            id: Course::new(vec![Move { at: 0.2, to: -30.0, over: 0.0 }]),
-            iq: Course::new(vec![Move { at: 0.02, to: 100.0, over: 0.0 }]),
-            speed: Course::constant(100.0),
+            id: Profile::new(vec![Ramp { at: 0.2, to: -30.0, over: 0.0 }]),
+            iq: Profile::new(vec![Ramp { at: 0.02, to: 100.0, over: 0.0 }]),
+            speed: Profile::constant(100.0),
             ..Schedule::default()
         },
         duration: 0.4,

@@ -8,8 +8,8 @@ use fluxfit_drive::{
     inverter::Bridge,
     plant::Plant,
     scenario::{Adc, Axis, CurrentSensors, Injection, Inverter, Magnetics, Mechanics, Modulation, Sensors, Update, Waveform},
-    schedule::{Course, Move},
-    sensors::Instruments,
+    schedule::{Profile, Ramp},
+    sensors::SensorModel,
     simulate,
 };
 use std::f64::consts::TAU;
@@ -125,7 +125,7 @@ fn sensor_noise_is_white_and_of_the_size_asked_for() {
     let third = (2.0_f64 / 3.0).sqrt();
     for (current_sensors, alpha, beta) in [(CurrentSensors::Three, third, third), (CurrentSensors::Two, 1.0, (5.0_f64 / 3.0).sqrt())] {
         let settings = Sensors { current_sensors, current_noise: 0.1, ..Sensors::IDEAL };
-        let mut instruments = Instruments::new(settings, 7, 0, 4, 1e-4);
+        let mut instruments = SensorModel::new(settings, 7, 0, 4, 1e-4);
         let samples: Vec<_> = (0..20_000).map(|_| instruments.measure(&plant, &bridge, 0.0).i).collect();
         let found = [samples.iter().map(|i| i.alpha).collect::<Vec<_>>(), samples.iter().map(|i| i.beta).collect()];
         for (axis, expected) in found.iter().zip([alpha, beta]) {
@@ -172,11 +172,11 @@ fn a_weaker_field_reaches_the_speed_that_the_voltage_alone_does_not() {
     let mut scenario = Scenario::paper();
     scenario.duration = 1.2;
     scenario.inverter.u_dc = 120.0;
-    scenario.schedule.id = Course::default();
-    scenario.schedule.load = Course::new(vec![Move { at: 0.5, to: 2.0, over: 0.0 }]);
-    scenario.schedule.speed = Course::new(vec![Move { at: 0.0, to: 1000.0 * TAU / 60.0, over: 0.3 }]);
+    scenario.schedule.id = Profile::default();
+    scenario.schedule.load = Profile::new(vec![Ramp { at: 0.5, to: 2.0, over: 0.0 }]);
+    scenario.schedule.speed = Profile::new(vec![Ramp { at: 0.0, to: 1000.0 * TAU / 60.0, over: 0.3 }]);
     let refused = simulate(&scenario, 0, || ()).unwrap_err();
-    assert!(matches!(refused, Error::Voltage { .. }), "{refused}");
+    assert!(matches!(refused, Error::VoltageLimit { .. }), "{refused}");
     scenario.control.field_weakening = true;
     let recording = simulate(&scenario, 0, || ()).unwrap();
     let rows = 10_000..12_000;
@@ -191,15 +191,15 @@ fn a_dynamometer_holds_its_speed_and_currents_follow_their_schedule() {
     let mut scenario = Scenario::paper();
     scenario.duration = 0.5;
     scenario.mechanics = Mechanics::Dyno;
-    scenario.schedule.load = Course::default();
-    scenario.schedule.speed = Course::constant(100.0);
-    scenario.schedule.id = Course::constant(-3.0);
-    scenario.schedule.iq = Course::constant(5.0);
+    scenario.schedule.load = Profile::default();
+    scenario.schedule.speed = Profile::constant(100.0);
+    scenario.schedule.id = Profile::constant(-3.0);
+    scenario.schedule.iq = Profile::constant(5.0);
     scenario.schedule.injection = Some(Injection {
         axis: Axis::D,
         waveform: Waveform::Square,
         frequency: 250.0,
-        voltage: Course::new(vec![Move { at: 0.3, to: 5.0, over: 0.0 }]),
+        voltage: Profile::new(vec![Ramp { at: 0.3, to: 5.0, over: 0.0 }]),
     });
     let recording = simulate(&scenario, 0, || ()).unwrap();
     assert!(recording.columns.omega_e.iter().all(|omega| *omega == 400.0));

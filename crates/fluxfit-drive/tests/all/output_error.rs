@@ -16,7 +16,7 @@ use fluxfit::{
 use fluxfit_drive::{
     scenario::{
         Adc,
-        exact::{acceleration, small_motor},
+        reference_cases::{acceleration, small_motor},
     },
     simulate,
 };

@@ -6,7 +6,7 @@ use fluxfit::frames::Dq;
 use fluxfit_drive::{
     Drive, Error, FluxMap, Scenario,
     scenario::{Adc, Axis, Injection, Magnetics, Mechanics, Update, Waveform},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use std::f64::consts::{PI, TAU};
@@ -34,18 +34,18 @@ fn motor(s: &mut Scenario, ld: f64, lq: f64, psi_f: f64) {
 /// On a dynamometer at a speed, mechanical rad/s, without current.
 fn dyno(s: &mut Scenario, speed: f64) {
     s.mechanics = Mechanics::Dyno;
-    s.schedule.id = Course::default();
-    s.schedule.load = Course::default();
-    s.schedule.speed = Course::constant(speed);
+    s.schedule.id = Profile::default();
+    s.schedule.load = Profile::default();
+    s.schedule.speed = Profile::constant(speed);
 }
 
 fn inject(s: &mut Scenario, frequency: f64, voltage: f64) {
-    let voltage = Course::constant(voltage);
+    let voltage = Profile::constant(voltage);
     s.schedule.injection = Some(Injection { axis: Axis::D, waveform: Waveform::Sine, frequency, voltage });
 }
 
-fn at(at: f64, to: f64, over: f64) -> Course {
-    Course::new(vec![Move { at, to, over }])
+fn at(at: f64, to: f64, over: f64) -> Profile {
+    Profile::new(vec![Ramp { at, to, over }])
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn every_number_out_of_its_range_is_refused_with_its_key() {
         ("control.max_current", &[|s| s.control.max_current = 0.0]),
         ("control.trip_current", &[|s| s.control.trip_current = 20.0, |s| s.control.trip_current = f64::NAN]),
         ("schedule.id", &[|s| s.schedule.id = at(0.1, f64::NAN, 0.0), |s| s.schedule.id = at(-0.1, 0.0, 0.0)]),
-        ("schedule.iq", &[|s| s.schedule.iq = Course::constant(1.0), |s| s.schedule.iq = at(0.1, f64::INFINITY, 0.0)]),
+        ("schedule.iq", &[|s| s.schedule.iq = Profile::constant(1.0), |s| s.schedule.iq = at(0.1, f64::INFINITY, 0.0)]),
         ("schedule.speed", &[|s| s.schedule.speed = at(0.1, 1.0, -0.1), |s| s.schedule.speed = at(f64::NAN, 1.0, 0.0)]),
         ("schedule.load", &[|s| s.schedule.load = at(0.1, 1.0, f64::INFINITY), |s| s.mechanics = Mechanics::Dyno]),
         ("injection.frequency", &[|s| inject(s, 0.0, 1.0), |s| inject(s, 5001.0, 1.0)]),
@@ -149,7 +149,7 @@ fn samples_too_slow_for_the_winding_or_the_encoder_are_refused_with_a_carrier_th
     assert!(matches!(changed(slow).check(), Ok(())));
     let mut scenario = changed(slow);
     scenario.sensors.encoder_steps = Some(4096);
-    assert_eq!(scenario.check(), Err(Error::SlowForEncoder { carrier: 629.0 }));
+    assert_eq!(scenario.check(), Err(Error::SlowObserver { carrier: 629.0 }));
     scenario.inverter.carrier = 629.0;
     assert_eq!(scenario.check(), Ok(()));
 }
@@ -173,7 +173,7 @@ fn the_voltage_within_reach_is_what_ripple_dead_time_and_drops_leave() {
             scenario.check()
         };
         assert_eq!(at_share(0.9999), Ok(()));
-        let Err(Error::Voltage { needed, available: found, .. }) = at_share(1.0001) else { panic!("{:?}", at_share(1.0001)) };
+        let Err(Error::VoltageLimit { needed, available: found, .. }) = at_share(1.0001) else { panic!("{:?}", at_share(1.0001)) };
         assert!((found / available - 1.0).abs() < 1e-12 && (needed / available - 1.0001).abs() < 1e-12, "{found} {available}");
     }
 }
@@ -183,10 +183,10 @@ fn the_voltage_within_reach_is_what_ripple_dead_time_and_drops_leave() {
 fn the_voltage_that_is_needed_is_that_of_current_and_rotation() {
     let error = refused(|s| {
         dyno(s, 50.0);
-        (s.schedule.id, s.schedule.iq, s.inverter.u_dc) = (Course::constant(-3.0), Course::constant(5.0), 50.0);
+        (s.schedule.id, s.schedule.iq, s.inverter.u_dc) = (Profile::constant(-3.0), Profile::constant(5.0), 50.0);
     });
     let (d, q): (f64, f64) = (0.958 * -3.0 - 200.0 * 12e-3 * 5.0, 0.958 * 5.0 + 200.0 * (0.1827 + 5.25e-3 * -3.0));
-    assert!(matches!(error, Error::Voltage { t: 0.0, needed, .. } if (needed - d.hypot(q)).abs() < 1e-9), "{error:?}");
+    assert!(matches!(error, Error::VoltageLimit { t: 0.0, needed, .. } if (needed - d.hypot(q)).abs() < 1e-9), "{error:?}");
     // The remedy names what is not there yet.
     let remedy = |allowed: bool| {
         let mut scenario = Scenario::paper();
@@ -208,35 +208,35 @@ fn the_current_that_is_needed_carries_load_friction_and_reluctance() {
             let mut scenario = Scenario::paper();
             free(&mut scenario, 3e-3, friction);
             scenario.inverter.u_dc = 600.0;
-            (scenario.schedule.id, scenario.schedule.load) = (Course::constant(id), at(0.2, load, 0.0));
+            (scenario.schedule.id, scenario.schedule.load) = (Profile::constant(id), at(0.2, load, 0.0));
             (scenario.control.max_current, scenario.control.trip_current) = (current, 2.0 * current);
             scenario.check()
         };
         assert_eq!(check(8.0, 1.0001 * needed(8.0)), Ok(()), "{id} {friction}");
         let error = check(8.0, 0.9999 * needed(8.0)).unwrap_err();
-        assert!(matches!(error, Error::Current { t: 0.2, torque, .. } if (torque - 8.0 - friction * speed).abs() < 1e-9), "{error:?}");
+        assert!(matches!(error, Error::TorqueLimit { t: 0.2, torque, .. } if (torque - 8.0 - friction * speed).abs() < 1e-9), "{error:?}");
     }
 }
 
 #[test]
 fn currents_out_of_reach_are_refused_wherever_a_move_begins_or_ends() {
     // 15 A and 14 A make 20.5 A; each alone is within 20 A.
-    let scheduled = |id: Course, iq: Course| {
+    let scheduled = |id: Profile, iq: Profile| {
         let mut scenario = Scenario::paper();
         dyno(&mut scenario, 10.0);
         (scenario.schedule.id, scenario.schedule.iq) = (id, iq);
         scenario.check()
     };
-    assert_eq!(scheduled(Course::constant(-14.0), Course::constant(14.0)), Ok(()));
-    assert!(matches!(scheduled(Course::constant(-15.0), at(0.3, 14.0, 0.2)), Err(Error::Reference { needed, .. }) if needed > 20.0));
-    assert!(matches!(scheduled(at(0.3, -21.0, 0.0), Course::default()), Err(Error::Reference { t: 0.3, .. })));
+    assert_eq!(scheduled(Profile::constant(-14.0), Profile::constant(14.0)), Ok(()));
+    assert!(matches!(scheduled(Profile::constant(-15.0), at(0.3, 14.0, 0.2)), Err(Error::CurrentLimit { needed, .. }) if needed > 20.0));
+    assert!(matches!(scheduled(at(0.3, -21.0, 0.0), Profile::default()), Err(Error::CurrentLimit { t: 0.3, .. })));
     // A ramp to 30 A that is cut short at 0.5 s, at its highest 25 A: the step down does not hide it.
-    let cut = Course::new(vec![Move { at: 0.0, to: 30.0, over: 0.6 }, Move { at: 0.5, to: 0.0, over: 0.0 }]);
-    let error = scheduled(Course::default(), cut).unwrap_err();
-    assert!(matches!(error, Error::Reference { t: 0.5, needed, .. } if (needed - 25.0).abs() < 1e-6), "{error:?}");
+    let cut = Profile::new(vec![Ramp { at: 0.0, to: 30.0, over: 0.6 }, Ramp { at: 0.5, to: 0.0, over: 0.0 }]);
+    let error = scheduled(Profile::default(), cut).unwrap_err();
+    assert!(matches!(error, Error::CurrentLimit { t: 0.5, needed, .. } if (needed - 25.0).abs() < 1e-6), "{error:?}");
     // A ramp whose end lies behind the simulation's: what it reaches by then counts.
-    assert_eq!(scheduled(Course::default(), at(0.0, 30.0, 1.8)), Ok(()));
-    assert!(matches!(scheduled(Course::default(), at(0.0, 50.0, 1.8)), Err(Error::Reference { t: 0.9, .. })));
+    assert_eq!(scheduled(Profile::default(), at(0.0, 30.0, 1.8)), Ok(()));
+    assert!(matches!(scheduled(Profile::default(), at(0.0, 50.0, 1.8)), Err(Error::CurrentLimit { t: 0.9, .. })));
 }
 
 #[test]
@@ -246,7 +246,7 @@ fn converter_torque_and_rotation_have_their_own_refusals() {
     assert!(matches!(error, Error::ConverterRange { t: 0.2, needed, range: 9.8 } if (needed - 9.886).abs() < 1e-3), "{error:?}");
     // A magnetless motor without i_d, and one whose reluctance outweighs its magnet: psi_f + (ld - lq) i_d < 0.
     assert!(matches!(refused(|s| motor(s, 20e-3, 5e-3, 0.0)), Error::NoTorque { id: 0.0, .. }));
-    let reversed: Change = |s| (motor(s, 20e-3, 5e-3, 0.1), s.schedule.id = Course::constant(-10.0)).1;
+    let reversed: Change = |s| (motor(s, 20e-3, 5e-3, 0.1), s.schedule.id = Profile::constant(-10.0)).1;
     assert!(matches!(refused(reversed), Error::NoTorque { id: -10.0, .. }));
     // Half a radian per sample of 0.1 ms is 5000 rad/s electrical, 1250 mechanical.
     let fast = |speed: f64| {

@@ -8,7 +8,7 @@ use fluxfit::{
 use fluxfit_drive::{
     FluxMap, Scenario,
     scenario::{Control, Inverter, Magnetics, Mechanics, Modulation, Schedule, SimulatedMotor},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use std::{f64::consts::TAU, path::Path};
@@ -31,7 +31,7 @@ fn map() -> FluxMap {
 /// It, at 900 r/min through these currents, each held so long, s.
 fn bench(points: &[(f64, f64)], hold: f64, carrier: f64, settings: &Request) -> Identification {
     let steps = |axis: fn(&(f64, f64)) -> f64| {
-        Course::new(points.iter().enumerate().map(|(k, point)| Move { at: k as f64 * hold, to: axis(point), over: 0.0 }).collect())
+        Profile::new(points.iter().enumerate().map(|(k, point)| Ramp { at: k as f64 * hold, to: axis(point), over: 0.0 }).collect())
     };
     let mut scenario = Scenario {
         duration: points.len() as f64 * hold,
@@ -42,7 +42,7 @@ fn bench(points: &[(f64, f64)], hold: f64, carrier: f64, settings: &Request) -> 
         schedule: Schedule {
             id: steps(|point| point.0),
             iq: steps(|point| point.1),
-            speed: Course::constant(900.0 * TAU / 60.0),
+            speed: Profile::constant(900.0 * TAU / 60.0),
             ..Schedule::default()
         },
         ..Scenario::paper()
@@ -139,8 +139,9 @@ fn simulated_currents_of_a_saturating_motor() {
 /// The paper's motor on the same bench: constant parameters raise no alarm, in either model.
 #[test]
 fn constant_parameters_raise_no_alarm() {
-    let moves =
-        |values: [f64; 4]| Course::new(values.iter().enumerate().map(|(k, to)| Move { at: 0.15 * k as f64, to: *to, over: 0.0 }).collect());
+    let moves = |values: [f64; 4]| {
+        Profile::new(values.iter().enumerate().map(|(k, to)| Ramp { at: 0.15 * k as f64, to: *to, over: 0.0 }).collect())
+    };
     for (model, draws) in [(Some(Model::Steady), 10), (None, 1)] {
         for draw in 0..draws {
             let mut scenario = Scenario { duration: 0.6, mechanics: Mechanics::Dyno, ..Scenario::paper() };
@@ -149,7 +150,7 @@ fn constant_parameters_raise_no_alarm() {
             scenario.schedule = Schedule {
                 id: moves([0.0, -2.0, -4.0, 0.0]),
                 iq: moves([3.0, 6.0, 9.0, 12.0]),
-                speed: Course::constant(1000.0 * TAU / 60.0),
+                speed: Profile::constant(1000.0 * TAU / 60.0),
                 ..Schedule::default()
             };
             scenario.sensors.current_noise = 0.05;

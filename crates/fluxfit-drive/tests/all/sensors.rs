@@ -7,7 +7,7 @@ use fluxfit_drive::{
     inverter::Bridge,
     plant::Plant,
     scenario::{Adc, CurrentSensors, Inverter, Magnetics, Mechanics, Modulation, Sensors, SimulatedMotor},
-    sensors::{Instruments, Measured},
+    sensors::{Measurement, SensorModel},
 };
 use std::f64::consts::{PI, TAU};
 
@@ -39,8 +39,8 @@ fn phases(plant: &Plant) -> [f64; 3] {
     [a, b, c]
 }
 
-fn measured(settings: Sensors, plant: &Plant) -> Measured {
-    Instruments::new(settings, 1, 0, POLE_PAIRS, SAMPLE_PERIOD).measure(plant, &bridge(), 0.0)
+fn measured(settings: Sensors, plant: &Plant) -> Measurement {
+    SensorModel::new(settings, 1, 0, POLE_PAIRS, SAMPLE_PERIOD).measure(plant, &bridge(), 0.0)
 }
 
 /// Clarke's transform, written out.
@@ -129,7 +129,7 @@ fn the_speed_of_an_encoder_follows_with_the_observers_double_pole() {
     let sample_period = 1e-5;
     let mut bridge = Bridge::new(Inverter { modulation: Modulation::Averaged, ..Inverter::ideal(100.0, 0.5 / sample_period) });
     let settings = Sensors { encoder_steps: Some(1 << 24), ..Sensors::IDEAL };
-    let mut instruments = Instruments::new(settings, 1, 0, POLE_PAIRS, sample_period);
+    let mut instruments = SensorModel::new(settings, 1, 0, POLE_PAIRS, sample_period);
     for k in 0..1000 {
         let found = instruments.measure(&plant, &bridge, 0.0).omega_e / f64::from(POLE_PAIRS);
         if k == 0 {

@@ -17,7 +17,7 @@ use fluxfit::{
 use fluxfit_drive::{
     Scenario,
     scenario::{Mechanics, Modulation},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use std::f64::consts::TAU;
@@ -30,8 +30,8 @@ fn rig() -> Scenario {
     let mut scenario = Scenario::paper();
     scenario.inverter.modulation = Modulation::Averaged;
     scenario.mechanics = Mechanics::Dyno;
-    scenario.schedule.load = Course::default();
-    scenario.schedule.speed = Course::constant(500.0 * TAU / 60.0);
+    scenario.schedule.load = Profile::default();
+    scenario.schedule.speed = Profile::constant(500.0 * TAU / 60.0);
     scenario.sensors.current_noise = 0.1;
     scenario
 }
@@ -41,7 +41,7 @@ fn transients() -> Scenario {
     let mut scenario = rig();
     scenario.duration = 0.1;
     let jumps = |levels: [f64; 2], offset: f64| {
-        Course::new((0..8).map(|k| Move { at: offset + 0.012 * f64::from(k), to: levels[k as usize % 2], over: 0.0 }).collect())
+        Profile::new((0..8).map(|k| Ramp { at: offset + 0.012 * f64::from(k), to: levels[k as usize % 2], over: 0.0 }).collect())
     };
     scenario.schedule.iq = jumps([9.0, 3.0], 0.0);
     scenario.schedule.id = jumps([-4.0, 0.0], 0.006);
@@ -54,8 +54,8 @@ fn levels(currents: &[(f64, f64)]) -> Scenario {
     let mut scenario = rig();
     scenario.duration = HOLD * currents.len() as f64;
     let course = |of: fn(&(f64, f64)) -> f64| {
-        let moves = currents.iter().enumerate().map(|(k, current)| Move { at: HOLD * k as f64, to: of(current), over: 0.0 });
-        Course::new(moves.collect())
+        let moves = currents.iter().enumerate().map(|(k, current)| Ramp { at: HOLD * k as f64, to: of(current), over: 0.0 });
+        Profile::new(moves.collect())
     };
     scenario.schedule.id = course(|current| current.0);
     scenario.schedule.iq = course(|current| current.1);

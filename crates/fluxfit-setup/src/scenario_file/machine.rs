@@ -37,8 +37,8 @@ pub(super) fn mechanics(table: &Table<'_>) -> Result<Mechanics, FileError> {
         for key in ["mechanics.inertia", "mechanics.friction"] {
             if let Some(entry) = key.split_once('.').and_then(|(_, key)| table.get(key)) {
                 let remedy = "a dynamometer holds its speed whatever it drives: leave it out";
-                let together = Error::Together { key, with: "mechanics.kind = \"free\"", remedy };
-                return Err(FileError::from(Problem::Drive(together)).at_line(entry.line()));
+                let incompatible = Error::Incompatible { key, with: "mechanics.kind = \"free\"", remedy };
+                return Err(FileError::from(Problem::Drive(incompatible)).at_line(entry.line()));
             }
         }
         return Ok(Mechanics::Dyno);

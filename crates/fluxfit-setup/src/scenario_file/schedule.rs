@@ -2,7 +2,7 @@
 
 use fluxfit_drive::{
     scenario::{Axis, Injection, Schedule, Waveform},
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
 };
 use fluxfit_files::{
     FileError, Problem as FileProblem,
@@ -11,10 +11,10 @@ use fluxfit_files::{
 use fluxfit_units::Dimension;
 
 /// A move as it is written.
-const MOVE: &str = "{ at = \"0.2 s\", to = .., over = \"10 ms\" }";
+const RAMP: &str = "{ at = \"0.2 s\", to = .., over = \"10 ms\" }";
 
 pub(super) fn schedule(table: &Table<'_>, injection: &Table<'_>) -> Result<Schedule, FileError> {
-    let course = |key, dimension| table.get(key).map_or(Ok(Course::default()), |entry| course(&entry, dimension));
+    let course = |key, dimension| table.get(key).map_or(Ok(Profile::default()), |entry| course(&entry, dimension));
     Ok(Schedule {
         id: course("id", Dimension::Current)?,
         iq: course("iq", Dimension::Current)?,
@@ -34,18 +34,18 @@ fn test_voltage(table: &Table<'_>) -> Result<Injection, FileError> {
     })
 }
 
-/// A list of moves, or one value from the start on.
-fn course(entry: &Entry<'_>, dimension: Dimension) -> Result<Course, FileError> {
+/// A list of ramps, or one value from the start on.
+fn course(entry: &Entry<'_>, dimension: Dimension) -> Result<Profile, FileError> {
     let Some(items) = entry.items() else {
-        let wanted = || entry.refuse(FileProblem::Value { wanted: format!("a quantity, or a list of moves as in [{MOVE}]") });
-        return entry.as_written().ok_or_else(wanted).and_then(|_| entry.quantity(dimension)).map(Course::constant);
+        let wanted = || entry.refuse(FileProblem::Value { wanted: format!("a quantity, or a list of ramps as in [{RAMP}]") });
+        return entry.as_written().ok_or_else(wanted).and_then(|_| entry.quantity(dimension)).map(Profile::constant);
     };
-    items.iter().map(|item| one_move(item, dimension)).collect::<Result<_, _>>().map(Course::new)
+    items.iter().map(|item| one_move(item, dimension)).collect::<Result<_, _>>().map(Profile::new)
 }
 
-fn one_move(item: &Entry<'_>, dimension: Dimension) -> Result<Move, FileError> {
-    let table = item.table(&["at", "to", "over"], "a move", MOVE)?;
-    Ok(Move {
+fn one_move(item: &Entry<'_>, dimension: Dimension) -> Result<Ramp, FileError> {
+    let table = item.table(&["at", "to", "over"], "a move", RAMP)?;
+    Ok(Ramp {
         at: table.needed("at", Dimension::Time)?,
         to: table.needed("to", dimension)?,
         over: table.quantity("over", Dimension::Time)?.unwrap_or(0.0),

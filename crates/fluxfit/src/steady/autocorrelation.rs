@@ -1,11 +1,11 @@
 //! Variance of the mean of autocorrelated samples.
 //!
 //! `var(mean) = S(0) / n` with `S(0)` the series' spectral density at zero frequency (the long-run variance), which differs from the
-//! plain variance by a factor of hundreds on a real log. Here `S(0)` is the average of the squared projections on the first `B` cosines that fit the window
-//! (equal-weighted cosine transform). It is positive semidefinite for any number of series at once, linear in them, and its
-//! distribution is known: `mean / sqrt(S/n)` is Student's t with `B` degrees of freedom. E. Lazarus, D. J. Lewis, J. H. Stock and
-//! M. W. Watson, "HAR inference: recommendations for practice", Journal of Business & Economic Statistics 36 (2018) 541,
-//! doi:10.1080/07350015.2018.1506926.
+//! plain variance by a factor of hundreds on a real log. Here `S(0)` is the average of the squared projections on the first `B`
+//! cosines that fit the window (equal-weighted cosine transform). It is positive semidefinite for any number of series at once, linear
+//! in them, and its distribution is known: `mean / sqrt(S/n)` is Student's t with `B` degrees of freedom. E. Lazarus, D. J. Lewis,
+//! J. H. Stock and M. W. Watson, "HAR inference: recommendations for practice", Journal of Business & Economic Statistics 36 (2018)
+//! 541, doi:10.1080/07350015.2018.1506926.
 //!
 //! `B` follows from the lag-one autocorrelation `rho`. The spectrum of a first-order autoregressive series falls with frequency;
 //! averaged over the first `B` cosines it is too small by `(pi B / (n (1 - rho)))² rho / 3`. `B` is the largest number that keeps this

@@ -112,7 +112,8 @@ impl MethodStudy {
         Motor::from(std::array::from_fn(|p| self.motors.iter().map(|motor| motor.to_array()[p]).sum::<f64>() / runs))
     }
 
-    /// Mean over the runs of each parameter's distance from the truth, %: the most plausible definition of the error in the paper's Table 2.
+    /// Mean over the runs of each parameter's distance from the truth, %: the most plausible definition of the error in the paper's
+    /// Table 2.
     pub fn mean_error_percent(&self, truth: &Motor) -> [Option<f64>; PARAMETERS] {
         Parameter::ALL.map(|parameter| {
             let errors = self.motors.iter().map(|motor| error_percent(motor, truth, parameter));

@@ -1,51 +1,56 @@
-//! Whether the drive can stay at what its schedule asks for: current, torque, voltage, flux, wherever a move begins or ends.
+//! Feasibility of the schedule: current, torque, voltage, flux and speed in the steady state at the ends of all ramps.
 
 use super::{Mechanics, Scenario};
-use crate::{error::Error, schedule::Course};
+use crate::{error::Error, schedule::Profile};
 use fluxfit::frames::Dq;
 use std::f64::consts::{PI, TAU};
 
-/// Steps in which weakening currents are tried.
+/// Number of field-weakening currents that are tried.
 const WEAKENING_STEPS: usize = 200;
 
-/// Largest turn of the rotor from one sample to the next, rad: what a controller of sampled currents still follows.
+/// Largest angle of the rotor per sample period, electrical rad, for sampled current control.
 const MAX_TURN: f64 = 0.5;
 
-/// What the schedule asks for at one time.
-struct Point {
+/// The schedule at one time.
+struct ScheduledPoint {
+    /// Time, s.
     t: f64,
+    /// A.
     id: f64,
+    /// A.
     iq: f64,
     /// Mechanical rad/s.
     speed: f64,
+    /// N m.
     load: f64,
 }
 
 impl Scenario {
-    /// Refuses a schedule that asks for more than there is, at the first such time.
-    pub(super) fn check_reach(&self) -> Result<(), Error> {
+    /// Refuses a schedule that is not feasible, with its first infeasible point.
+    pub(super) fn check_feasibility(&self) -> Result<(), Error> {
         let schedule = &self.schedule;
-        let courses = [&schedule.id, &schedule.iq, &schedule.speed, &schedule.load];
-        let mut times: Vec<f64> = courses.iter().flat_map(|course| course.moves()).flat_map(|m| [m.at, m.at + m.over]).collect();
+        let profiles = [&schedule.id, &schedule.iq, &schedule.speed, &schedule.load];
+        let mut times: Vec<f64> =
+            profiles.iter().flat_map(|profile| profile.ramps()).flat_map(|ramp| [ramp.at, ramp.at + ramp.over]).collect();
         times.extend([0.0, self.duration]);
         times.retain(|t| (0.0..=self.duration).contains(t));
         times.sort_by(f64::total_cmp);
-        // Just before a move begins, a ramp may be at its end.
-        let values = |t: f64, at: fn(&Course, f64) -> f64| Point {
+        // Before and after a step at the same time.
+        let point = |t: f64, at: fn(&Profile, f64) -> f64| ScheduledPoint {
             t,
             id: at(&schedule.id, t),
             iq: at(&schedule.iq, t),
             speed: at(&schedule.speed, t),
             load: at(&schedule.load, t),
         };
-        times.iter().flat_map(|t| [values(*t, Course::before), values(*t, Course::at)]).try_for_each(|point| self.check_point(&point))
+        times.iter().flat_map(|t| [point(*t, Profile::before), point(*t, Profile::at)]).try_for_each(|point| self.check_point(&point))
     }
 
-    fn check_point(&self, point: &Point) -> Result<(), Error> {
-        let Point { t, id, iq, speed, .. } = *point;
+    fn check_point(&self, point: &ScheduledPoint) -> Result<(), Error> {
+        let ScheduledPoint { t, id, iq, speed, .. } = *point;
         let (needed, available) = (id.hypot(iq), self.control.max_current);
         if needed > available {
-            return Err(Error::Reference { t, id, iq, needed, available });
+            return Err(Error::CurrentLimit { t, id, iq, needed, available });
         }
         let turn = (speed * f64::from(self.motor.pole_pairs)).abs() * self.inverter.sample_period();
         if turn > MAX_TURN {
@@ -54,12 +59,12 @@ impl Scenario {
         let first = self.steady_current(point, id)?;
         let Err(error) = self.check_current(point, first) else { return Ok(()) };
         let weakened = |step: usize| id + (-available - id) * step as f64 / WEAKENING_STEPS as f64;
-        let reachable = |id: f64| self.steady_current(point, id).is_ok_and(|i| self.check_current(point, i).is_ok());
-        if self.control.field_weakening && (1..=WEAKENING_STEPS).any(|step| reachable(weakened(step))) { Ok(()) } else { Err(error) }
+        let is_feasible = |id: f64| self.steady_current(point, id).is_ok_and(|i| self.check_current(point, i).is_ok());
+        if self.control.field_weakening && (1..=WEAKENING_STEPS).any(|step| is_feasible(weakened(step))) { Ok(()) } else { Err(error) }
     }
 
-    /// The current at which the schedule's torque is reached with this `i_d`; on a dynamometer the scheduled one.
-    fn steady_current(&self, point: &Point, id: f64) -> Result<Dq, Error> {
+    /// The current that gives the torque of load and friction with this `i_d`; with a dynamometer the scheduled current.
+    fn steady_current(&self, point: &ScheduledPoint, id: f64) -> Result<Dq, Error> {
         let Mechanics::Free { friction, .. } = self.mechanics else { return Ok(Dq { d: id, q: point.iq }) };
         let (t, torque) = (point.t, point.load + friction * point.speed);
         if torque == 0.0 {
@@ -72,7 +77,7 @@ impl Scenario {
             let i = Dq { d: id, q: iq };
             self.motor.flux(i).map(|flux| self.motor.torque(flux.psi, i)).ok_or_else(|| self.outside_map(t, i))
         };
-        // A current a thousandth of the largest one already shows whether the torque points the right way.
+        // The torque at a thousandth of the largest current shows its direction.
         if torque_at(1e-3 * most)? * torque <= 0.0 {
             return Err(Error::NoTorque { t, id });
         }
@@ -81,9 +86,9 @@ impl Scenario {
             if most.abs() < allowed {
                 return Err(self.outside_map(t, Dq { d: id, q: most }));
             }
-            return Err(Error::Current { t, torque, id, needed: id.hypot(most * torque / reached), available });
+            return Err(Error::TorqueLimit { t, torque, id, needed: id.hypot(most * torque / reached), available });
         }
-        // Torque rises with i_q: halve until rounding ends it.
+        // Bisection to the last bits: the torque rises with i_q.
         let (mut low, mut high) = (0.0, most);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -92,33 +97,34 @@ impl Scenario {
         Ok(Dq { d: id, q: high })
     }
 
-    /// Whether flux map, converter and voltage reach as far as a current needs.
-    fn check_current(&self, point: &Point, i: Dq) -> Result<(), Error> {
-        let Point { t, speed, .. } = *point;
+    /// Whether flux map, A/D converter and voltage suffice for a current.
+    fn check_current(&self, point: &ScheduledPoint, i: Dq) -> Result<(), Error> {
+        let ScheduledPoint { t, speed, .. } = *point;
         let omega_e = speed * f64::from(self.motor.pole_pairs);
         let Some(flux) = self.motor.flux(i) else { return Err(self.outside_map(t, i)) };
         if let Some(adc) = self.sensors.adc.filter(|adc| i.magnitude() > adc.range) {
             return Err(Error::ConverterRange { t, needed: i.magnitude(), range: adc.range });
         }
         let u = Dq { d: self.motor.rs * i.d - omega_e * flux.psi.q, q: self.motor.rs * i.q + omega_e * flux.psi.d };
-        let available = self.least_voltage();
+        let available = self.available_voltage();
         if u.magnitude() <= available {
             return Ok(());
         }
         let remedy = if self.control.field_weakening {
-            "allow more current for the field weakening, with control.max_current"
+            "allow more current for field weakening, with control.max_current"
         } else {
             "allow control.field_weakening"
         };
         let u_dc = self.inverter.u_dc;
-        Err(Error::Voltage { t, rpm: rpm(speed), id: i.d, iq: i.q, needed: u.magnitude(), u_dc, available, remedy })
+        Err(Error::VoltageLimit { t, rpm: rpm(speed), id: i.d, iq: i.q, needed: u.magnitude(), u_dc, available, remedy })
     }
 
-    /// What the inverter makes at the ripple's lowest, after dead time and drops, which take `4/pi` of themselves along the current.
-    fn least_voltage(&self) -> f64 {
+    /// Smallest voltage limit, V: at the minimum of the DC ripple, less dead time and voltage drops, whose fundamental along the current
+    /// is `4/pi` times their value.
+    fn available_voltage(&self) -> f64 {
         let inverter = &self.inverter;
-        let lost = inverter.u_dc * inverter.dead_time * inverter.carrier + inverter.switch_drop.max(inverter.diode_drop);
-        inverter.voltage_limit() - inverter.ripple / 3.0_f64.sqrt() - 4.0 / PI * lost
+        let loss = inverter.u_dc * inverter.dead_time * inverter.carrier + inverter.switch_drop.max(inverter.diode_drop);
+        inverter.voltage_limit() - inverter.ripple / 3.0_f64.sqrt() - 4.0 / PI * loss
     }
 }
 
