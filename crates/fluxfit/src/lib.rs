@@ -41,6 +41,7 @@
 
 pub mod current_loop;
 pub mod error;
+pub mod faults;
 pub mod frames;
 pub mod identify;
 pub mod least_squares;

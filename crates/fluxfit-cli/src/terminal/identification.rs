@@ -5,10 +5,10 @@ use super::{BAD, DIM, GOOD, HEADING, WARNING, table};
 use fluxfit::{
     identify::{
         Identification, Provenance,
+        fault_search::Outcome,
         output_fit::OutputFit,
         saturation::{Flux, Saturation},
         steady_fit::SteadyFit,
-        terms::{Outcome, Term},
         verdict::{Judgement, Verdict},
     },
     log::Log,
@@ -197,12 +197,7 @@ fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
         } else {
             !matches!(tried.outcome, Outcome::NeedsAngle | Outcome::Taken | Outcome::Covered)
         };
-        let word = match tried.term {
-            Term::CurrentOffset => "sensor offset",
-            Term::Imbalance | Term::TwoSensors(_) => "sensor imbalance",
-            Term::ProcessNoise => "disturbances",
-            term => term.label(),
-        };
+        let word = tried.fault.family();
         if left_out && !words.contains(&word) {
             words.push(word);
         }

@@ -5,10 +5,10 @@ use fluxfit::{
     frames::Dq,
     identify::{
         Identification, Provenance,
+        fault_search::Outcome,
         output_fit::{Nuisance, OutputFit},
         saturation::Saturation,
         steady_fit::SteadyFit,
-        terms::Outcome,
         verdict::Judgement,
     },
     log::Log,
@@ -208,7 +208,7 @@ fn output_error(fit: &OutputFit) -> Value {
             "raw": by_parameter(tried.polished.drive.motor.to_array()),
         })).collect::<Vec<_>>(),
         "terms": fit.terms.iter().map(|tried| json!({
-            "term": tried.term.key(),
+            "term": tried.fault.key(),
             "gain": tried.gain,
             "taken": tried.outcome == Outcome::Taken,
             "outcome": tried.outcome.label(),

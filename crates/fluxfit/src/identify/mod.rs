@@ -6,22 +6,23 @@
 
 mod advice;
 pub mod conventions;
-pub mod dead_time;
 pub mod estimate;
 pub mod excitation;
 mod explain;
+pub mod fault_search;
 mod long_run;
 pub mod misfit;
 pub mod model;
+mod normal_matrix;
 pub mod output_fit;
 mod pieces;
 pub mod saturation;
 pub mod search_box;
 pub mod steady_fit;
-pub mod terms;
 pub mod timing;
 pub mod uncertainty;
 pub mod verdict;
+mod voltage_accuracy;
 pub mod warning;
 
 use crate::{

@@ -12,20 +12,24 @@ use super::{
     Known, Provenance, Search, Settings, Step, Watch,
     advice::{self, Advice},
     excitation::Excitation,
-    long_run, pieces,
+    fault_search::{FaultSearch, FaultTrial, LEAST_RESIDUAL, Outcome},
+    long_run,
+    normal_matrix::inverse_normal,
+    pieces,
     saturation::Saturation,
     search_box, searched,
     steady_fit::SteadyFit,
-    terms::{self, Candidate, LEAST_RESIDUAL, Outcome, Term, inverse_normal},
     timing,
     uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
     verdict::{self, Judgement, Trust},
+    voltage_accuracy::accuracy,
 };
 use crate::{
     error::Error,
+    faults::{Fault, Faults, disturbance::Disturbance},
     frames::Dq,
     least_squares::{Equation, TriangularFactor},
-    levenberg_marquardt::{Belief, MOTOR, Polished, jacobian, polish_unknowns, polish_watched},
+    levenberg_marquardt::{MOTOR, Polished, PriorResidual, jacobian, polish_unknowns, polish_with_progress},
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::{
@@ -36,7 +40,7 @@ use crate::{
     steady::{OperatingPoint, windows},
 };
 use nalgebra::DMatrix;
-use std::{collections::BTreeMap, ops::Range};
+use std::ops::Range;
 
 /// The simulated currents, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +52,7 @@ pub struct OutputFit {
     /// Every reading that was tried, with the faults that were found, the best first.
     pub readings: Vec<timing::Tried>,
     /// Every fault that was tried, those taken first.
-    pub terms: Vec<terms::Tried>,
+    pub terms: Vec<FaultTrial>,
     /// Numbers of the drive beside the motor that were found.
     pub nuisance: Vec<Nuisance>,
     /// Stretches of the log whose rows are compared.
@@ -99,7 +103,7 @@ impl OutputFit {
         let fitting = |simulations| {
             let _ = watch(Step::Fit { simulations, usual });
         };
-        let Polished { drive, cost, .. } = polish_watched(objective, &chosen.drive, &unknowns, &beliefs, &fitting);
+        let Polished { drive, cost, .. } = polish_with_progress(objective, &chosen.drive, &unknowns, &beliefs, &fitting);
         let _ = watch(Step::Uncertainty);
         let residuals = objective.residuals(&drive);
         let doubt = Doubt {
@@ -134,9 +138,9 @@ impl OutputFit {
         })
     }
 
-    /// Whether a term is part of the answer.
-    pub fn has(&self, term: Term) -> bool {
-        self.terms.iter().any(|tried| tried.term == term && tried.outcome == Outcome::Taken)
+    /// Whether a fault is part of the answer.
+    pub fn has(&self, fault: Fault) -> bool {
+        self.terms.iter().any(|tried| tried.fault == fault && tried.outcome == Outcome::Taken)
     }
 
     /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.
@@ -163,7 +167,7 @@ impl OutputFit {
 
     /// The readings of the voltages that are not ruled out, the best first: they fit about as well as it does.
     pub fn possible_readings(&self) -> impl Iterator<Item = &timing::Tried> {
-        timing::possible(&self.readings, terms::independent(&self.residuals))
+        timing::possible(&self.readings, long_run::effective_sample_size(&self.residuals))
     }
 
     /// The parameters, judged, and the correlation of their errors.
@@ -175,7 +179,7 @@ impl OutputFit {
         let uncertainty = self.uncertainty.clone().with_saturation(saturation, &self.drive.motor);
         let trust = Trust {
             correlation_of_neighbours: self.correlation_beyond_rounding,
-            disturbed_without_angle: self.has(Term::ProcessNoise) && !self.angle_known,
+            disturbed_without_angle: self.has(Fault::Disturbance) && !self.angle_known,
             misses: self.misses,
         };
         let parameters = verdict::judge_currents(&self.drive.motor, &uncertainty, &self.advice, &trust, settings);
@@ -192,7 +196,7 @@ impl OutputFit {
             (None, Some(steady)) => search_box::from_points(&steady.operating_points)?,
             (None, None) => search_box::from_points(&whole(log, &self.stretches))?,
         };
-        let objective = OutputError::of_rows(log, &stretches(log, settings)?, self.voltage_reading.0)?.holding(self.drive.nuisance);
+        let objective = OutputError::of_rows(log, &stretches(log, settings)?, self.voltage_reading.0)?.holding(self.drive.faults);
         let Some(report) = searched(&objective, &bounds, settings, watch)? else { return Ok(None) };
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Some(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report }))
@@ -204,10 +208,10 @@ struct Chosen {
     reading: VoltageReading,
     drive: Adjustable,
     unknowns: Vec<Unknown>,
-    beliefs: Vec<Belief>,
+    beliefs: Vec<PriorResidual>,
     /// Every reading with these unknowns, the best first.
     readings: Vec<timing::Tried>,
-    terms: Vec<terms::Tried>,
+    terms: Vec<FaultTrial>,
     /// Independent residuals of the rows by which it was chosen.
     independent: f64,
     /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
@@ -243,9 +247,16 @@ fn choose(
     let _ = watch(Step::Faults);
     for (place, tried) in tried.into_iter().take(TRIED_READINGS) {
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, settings.voltage_accuracy);
-        let candidate =
-            Candidate { objectives: &objectives, reading: place, beliefs: &beliefs, drive, unknowns: free.clone(), cost, voltage_accuracy };
-        let one = with_faults(candidate, &objectives, &beliefs);
+        let search = FaultSearch {
+            objectives: &objectives,
+            reading: place,
+            priors: &beliefs,
+            drive,
+            unknowns: free.clone(),
+            cost,
+            voltage_accuracy,
+        };
+        let one = with_faults(search, &objectives, &beliefs);
         let explained = one.explained;
         if best.as_ref().is_none_or(|best| one.criterion < best.criterion) {
             best = Some(one);
@@ -261,20 +272,21 @@ fn choose(
 }
 
 /// The faults that a log carries under a reading, and the reading that suits them.
-fn with_faults(mut candidate: Candidate, objectives: &[(VoltageReading, OutputError)], beliefs: &[Belief]) -> Chosen {
-    let terms = candidate.add_terms();
-    let Candidate { drive, unknowns, cost, reading, .. } = candidate;
+fn with_faults(mut search: FaultSearch, objectives: &[(VoltageReading, OutputError)], beliefs: &[PriorResidual]) -> Chosen {
+    let terms = search.run();
+    let FaultSearch { drive, unknowns, cost, reading, .. } = search;
     let (reading, objective) = &objectives[reading];
     let residuals = objective.residuals(&drive);
     let count = residuals.len() as f64;
-    let independent = terms::independent(&residuals);
+    let independent = long_run::effective_sample_size(&residuals);
     Chosen {
         reading: *reading,
         readings: Vec::new(),
         independent,
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
         explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
-            || !unknowns.contains(&Unknown::GainD) && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+            || unknowns.iter().all(|unknown| unknown.fault() != Some(Fault::Disturbance))
+                && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
         drive,
         unknowns,
         beliefs: beliefs.to_vec(),
@@ -306,9 +318,9 @@ fn free(settings: &Settings) -> Vec<Unknown> {
 }
 
 /// Priors as residuals, given the mean square of a current's.
-fn beliefs(settings: &Settings, mean_square: f64) -> Vec<Belief> {
+fn beliefs(settings: &Settings, mean_square: f64) -> Vec<PriorResidual> {
     let priors = MOTOR.into_iter().zip(settings.known).filter_map(|(unknown, known)| match known {
-        Known::Prior { value, standard_error } => Some(Belief { unknown, value, weight: mean_square.sqrt() / standard_error }),
+        Known::Prior { value, standard_error } => Some(PriorResidual { unknown, value, weight: mean_square.sqrt() / standard_error }),
         Known::Nothing | Known::Fixed(_) => None,
     });
     priors.collect()
@@ -393,21 +405,19 @@ struct Doubt {
 }
 
 /// How far the motor lies from that of a drive without disturbance, if an observer was found: either may be right.
-fn without_observer(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> [f64; PARAMETERS] {
-    let gains = [Unknown::GainD, Unknown::GainQ];
-    let rest: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| !gains.contains(unknown)).collect();
+fn without_observer(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], beliefs: &[PriorResidual]) -> [f64; PARAMETERS] {
+    let rest: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| unknown.fault() != Some(Fault::Disturbance)).collect();
     if rest.len() == unknowns.len() {
         return [0.0; PARAMETERS];
     }
-    let start = gains.into_iter().fold(*drive, |drive, gain| drive.with(gain, 0.0));
+    let start = Adjustable { faults: Faults { disturbance: Disturbance::default(), ..drive.faults }, ..*drive };
     let other = polish_unknowns(objective, &start, &rest, beliefs).drive.motor.to_array();
     std::array::from_fn(|p| (drive.motor.to_array()[p] - other[p]).abs())
 }
 
 /// Where gains of sensors differ, nobody knows which of them is right: a gain common to all would scale every impedance.
 fn sensors(drive: &Adjustable) -> [f64; PARAMETERS] {
-    let imbalance = drive.nuisance.imbalance;
-    let common = imbalance.alpha.hypot(imbalance.beta);
+    let common = drive.faults.current_gains.magnitude();
     let Motor { rs, ld, lq, .. } = drive.motor;
     [common * rs, common * ld, common * lq, 0.0]
 }
@@ -431,7 +441,7 @@ impl Errors {
         objective: &OutputError,
         drive: &Adjustable,
         unknowns: &[Unknown],
-        beliefs: &[Belief],
+        beliefs: &[PriorResidual],
         residuals: &[f64],
         settings: &Settings,
         scale: &[f64; PARAMETERS],
@@ -526,62 +536,4 @@ fn open(columns: &[Vec<f64>], inverse: &DMatrix<f64>, unknowns: &[Unknown], scal
         _ => 0.0,
     };
     unknowns.iter().enumerate().map(range).collect()
-}
-
-/// Operating points this far apart, as a fraction of the largest current and speed, are as good as independent in their voltages'
-/// errors: a drive's voltage error is a function of where it runs, smooth on that scale.
-const SMOOTH: f64 = 0.1;
-
-/// Periods are gathered by where they run, in cells of this fraction: a few to that scale.
-const CELL: f64 = 0.04;
-
-/// Covariance of the unknowns from the voltages' accuracy: their error along either axis is a random function of the operating point,
-/// of that fraction of the voltage there, alike at points that lie close.
-pub(super) fn accuracy(
-    objective: &OutputError,
-    drive: &Adjustable,
-    inverse: &DMatrix<f64>,
-    slopes: &[Vec<f64>],
-    fraction: f64,
-) -> DMatrix<f64> {
-    let size = slopes.len();
-    if fraction == 0.0 {
-        return DMatrix::zeros(size, size);
-    }
-    let (mut most_current, mut most_speed) = (f64::MIN_POSITIVE, f64::MIN_POSITIVE);
-    for (_, i, omega_e) in objective.periods() {
-        most_current = most_current.max(i.magnitude());
-        most_speed = most_speed.max(omega_e.abs());
-    }
-    let cell = |i: Dq, omega_e: f64| [i.d / most_current, i.q / most_current, omega_e / most_speed].map(|x| (x / CELL).round() as i32);
-    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents
-    // have the opposite sign.
-    let mut cells: BTreeMap<[i32; 3], Vec<Dq>> = BTreeMap::new();
-    for p in 0..size {
-        let mut weights = vec![0.0; slopes[0].len()];
-        for (q, slope) in slopes.iter().enumerate() {
-            weights.iter_mut().zip(slope).for_each(|(weight, slope)| *weight += inverse[(p, q)] * slope);
-        }
-        let effects = objective.by_voltage(drive, &weights);
-        for ((u, i, omega_e), effect) in objective.periods().zip(effects) {
-            let sums = cells.entry(cell(i, omega_e)).or_insert_with(|| vec![Dq::default(); size]);
-            let volts = fraction * u.magnitude();
-            sums[p].d += volts * effect.d;
-            sums[p].q += volts * effect.q;
-        }
-    }
-    let mut covariance = DMatrix::zeros(size, size);
-    let cells: Vec<_> = cells.into_iter().collect();
-    for (one, effects) in &cells {
-        for (other, others) in &cells {
-            let distance: f64 = one.iter().zip(other).map(|(a, b)| (f64::from(a - b) * CELL / SMOOTH).powi(2)).sum();
-            let alike = (-0.5 * distance).exp();
-            for p in 0..size {
-                for q in 0..size {
-                    covariance[(p, q)] += alike * (effects[p].d * others[q].d + effects[p].q * others[q].q);
-                }
-            }
-        }
-    }
-    covariance
 }

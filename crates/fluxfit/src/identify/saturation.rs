@@ -11,7 +11,7 @@
 //! numbers, and points that lie far apart do not tell them.
 //!
 //! That points contradict each other says [`misfit`](super::misfit); why, the equations themselves: constant parameters are solved
-//! again beside terms of saturation, those of the [adjustable drive](crate::objective::adjustable::Nuisance),
+//! again beside terms of saturation, those of the [simulated currents](crate::faults::saturation),
 //!
 //! ```text
 //! psi_d = L_d i_d + psi_f + s_d i_d |i_d| + c i_q²,     psi_q = L_q i_q + s_q i_q |i_q| + 2 c i_d i_q
@@ -20,8 +20,9 @@
 //! and beside what else follows the current, a voltage of constant size along it (dead time, device drops). Saturation it is if its terms
 //! explain the contradiction best by Schwarz's criterion, and iron takes flux away.
 
-use super::{Known, Settings, excitation::Excitation, misfit::Misfit, output_fit::OutputFit, terms::Term, verdict::WEAK};
+use super::{Known, Settings, excitation::Excitation, misfit::Misfit, output_fit::OutputFit, verdict::WEAK};
 use crate::{
+    faults::Fault,
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
@@ -119,21 +120,16 @@ impl Saturation {
         (points, of_points): (&[OperatingPoint], Option<&Self>),
         settings: &Settings,
     ) -> Option<Self> {
-        if !fit.has(Term::Saturation) {
+        if !fit.has(Fault::Saturation) {
             return of_points.cloned();
         }
-        let (motor, nuisance) = (fit.drive.motor, fit.drive.nuisance);
+        let (motor, terms) = (fit.drive.motor, fit.drive.faults.saturation);
         let rs_uncertainty = fit.uncertainty.parameters[Parameter::Rs as usize].standard_error();
         let mut found = of_points.cloned().unwrap_or_else(|| Self::at(points, motor, (motor.rs, rs_uncertainty), settings));
         let (mut least, mut most) = (Apparent { current: f64::INFINITY, inductance: 0.0 }, Apparent { current: 0.0, inductance: 0.0 });
         for row in fit.stretches.iter().cloned().flatten() {
             let i = Dq { d: log.columns().id[row], q: log.columns().iq[row] };
-            let lost = [
-                0.0,
-                nuisance.saturation.d * i.d.abs(),
-                nuisance.saturation.q * i.q.abs() + 2.0 * nuisance.cross_saturation * i.d,
-                nuisance.cross_saturation * i.q * i.q,
-            ];
+            let lost = terms.apparent_change(i);
             found.over_rows.iter_mut().zip(lost).for_each(|(most, lost)| *most = most.max(lost.abs()));
             let apparent = Apparent { current: i.q, inductance: motor.lq + lost[Parameter::Lq as usize] };
             if i.q.abs() < least.current.abs() {

@@ -3,7 +3,6 @@
 use super::{
     Known, Provenance, Search, Settings, Watch,
     advice::{self, Advice},
-    dead_time,
     estimate::Estimate,
     excitation::Excitation,
     misfit::{self, Misfit},
@@ -14,6 +13,7 @@ use super::{
 };
 use crate::{
     error::Error,
+    faults::dead_time::ripple,
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
@@ -57,8 +57,10 @@ impl SteadyFit {
         let estimate = Estimate::solve(&points, &excitation, settings);
         let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, settings);
         let saturation = Saturation::of_points(&points, &excitation, &estimate.motor, misfit.as_ref(), settings);
-        let losses = dead_time::losses(log, &points, &excitation, &estimate);
-        let doubt = Doubt { timing: timing_doubt, dead_time: dead_time::doubt(log, &points, &estimate, &losses) };
+        let Dq { d: ld, q: lq } = inductance(&estimate.motor, &excitation);
+        let losses = ripple::losses(log, &points, &Motor { ld, lq, ..estimate.motor }, super::VOLTAGE_ACCURACY);
+        let dead_time = ripple::parameter_errors(log, &points, &estimate.gains, &losses);
+        let doubt = Doubt { timing: timing_doubt, dead_time };
         Ok(Self {
             operating_points: points,
             estimate,

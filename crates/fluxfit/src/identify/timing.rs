@@ -6,7 +6,7 @@
 use super::Settings;
 use crate::{
     error::Error,
-    levenberg_marquardt::{Belief, Polished, polish_unknowns},
+    levenberg_marquardt::{Polished, PriorResidual, polish_unknowns},
     log::Log,
     motor::PARAMETERS,
     objective::{
@@ -54,7 +54,7 @@ pub(super) fn readings(
     objectives: &[(VoltageReading, OutputError)],
     start: &Adjustable,
     unknowns: &[Unknown],
-    beliefs: &[Belief],
+    beliefs: &[PriorResidual],
 ) -> Vec<(usize, Tried)> {
     let try_one = |(place, (reading, objective)): (usize, &(VoltageReading, OutputError))| {
         let polished = polish_unknowns(objective, start, unknowns, beliefs);

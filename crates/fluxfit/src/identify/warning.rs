@@ -6,9 +6,9 @@ use super::{
     output_fit::OutputFit,
     saturation::{Apparent, Saturation},
     steady_fit::SteadyFit,
-    terms::Term,
 };
 use crate::{
+    faults::Fault,
     log::Log,
     motor::Parameter,
     steady::{held_vector::MAX_ANGLE_PER_SAMPLE, windows},
@@ -166,7 +166,7 @@ fn saturated(saturation: &Saturation) -> String {
 }
 
 fn process_noise(found: &OutputFit) -> Option<String> {
-    found.has(Term::ProcessNoise).then(|| {
+    found.has(Fault::Disturbance).then(|| {
         "voltages that the log does not hold disturb the motor: what the simulated currents miss depends on what went before; each row is \
          predicted from the row before instead, and the difference this makes is counted as uncertainty"
             .to_owned()

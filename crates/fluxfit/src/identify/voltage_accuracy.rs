@@ -1,0 +1,69 @@
+//! What the limited accuracy of the voltages does to the unknowns of a fit.
+//!
+//! The error of a drive's voltages along either axis is a random function of the operating point, a fraction of the voltage there, and
+//! alike at points that lie close together. The adjoint equations of the output error tell what a volt at any row does to each unknown.
+
+use crate::{
+    frames::Dq,
+    objective::{adjustable::Adjustable, output_error::OutputError},
+};
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+
+/// Distance between operating points, as a fraction of the largest current and speed, beyond which the errors of their voltages are
+/// nearly independent: a drive's voltage error is a function of the operating point, smooth on that scale.
+const SMOOTH: f64 = 0.1;
+
+/// Periods are gathered into cells of this size in the space of operating points, likewise: a few to that scale.
+const CELL: f64 = 0.04;
+
+/// Covariance of the unknowns from the voltages' accuracy, `fraction` of the voltage. `slopes` are the derivatives of the residuals by each
+/// unknown, `inverse` is the inverse of their normal matrix.
+pub(super) fn accuracy(
+    objective: &OutputError,
+    drive: &Adjustable,
+    inverse: &DMatrix<f64>,
+    slopes: &[Vec<f64>],
+    fraction: f64,
+) -> DMatrix<f64> {
+    let size = slopes.len();
+    if fraction == 0.0 {
+        return DMatrix::zeros(size, size);
+    }
+    let (mut most_current, mut most_speed) = (f64::MIN_POSITIVE, f64::MIN_POSITIVE);
+    for (_, i, omega_e) in objective.periods() {
+        most_current = most_current.max(i.magnitude());
+        most_speed = most_speed.max(omega_e.abs());
+    }
+    let cell = |i: Dq, omega_e: f64| [i.d / most_current, i.q / most_current, omega_e / most_speed].map(|x| (x / CELL).round() as i32);
+    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents
+    // have the opposite sign.
+    let mut cells: BTreeMap<[i32; 3], Vec<Dq>> = BTreeMap::new();
+    for p in 0..size {
+        let mut weights = vec![0.0; slopes[0].len()];
+        for (q, slope) in slopes.iter().enumerate() {
+            weights.iter_mut().zip(slope).for_each(|(weight, slope)| *weight += inverse[(p, q)] * slope);
+        }
+        let effects = objective.by_voltage(drive, &weights);
+        for ((u, i, omega_e), effect) in objective.periods().zip(effects) {
+            let sums = cells.entry(cell(i, omega_e)).or_insert_with(|| vec![Dq::default(); size]);
+            let volts = fraction * u.magnitude();
+            sums[p].d += volts * effect.d;
+            sums[p].q += volts * effect.q;
+        }
+    }
+    let mut covariance = DMatrix::zeros(size, size);
+    let cells: Vec<_> = cells.into_iter().collect();
+    for (one, effects) in &cells {
+        for (other, others) in &cells {
+            let distance: f64 = one.iter().zip(other).map(|(a, b)| (f64::from(a - b) * CELL / SMOOTH).powi(2)).sum();
+            let alike = (-0.5 * distance).exp();
+            for p in 0..size {
+                for q in 0..size {
+                    covariance[(p, q)] += alike * (effects[p].d * others[q].d + effects[p].q * others[q].q);
+                }
+            }
+        }
+    }
+    covariance
+}
