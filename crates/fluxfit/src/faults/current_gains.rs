@@ -121,7 +121,7 @@ impl SensorPair {
     }
 }
 
-/// Turn of the currents, rad, per unit of the difference between two sensors: `1 / (2 sqrt 3)`, the part of their matrix that is a rotation.
+/// Turn of the currents, rad, per unit of the difference between two sensors: `1 / (2 sqrt 3)`, the rotation in their matrix.
 fn turn_of_two() -> f64 {
     0.5 / 3.0_f64.sqrt()
 }

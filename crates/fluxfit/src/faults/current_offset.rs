@@ -1,4 +1,5 @@
-//! Current sensor offset: what the current sensors read at zero. A vector that stands still in the stator, so it turns in the rotor's frame.
+//! Current sensor offset: what the current sensors read at zero. It is a constant vector in the stator's frame, so it turns in the
+//! rotor's.
 
 use super::description::{Description, Names, NumberDescription, peak_current, present_state};
 use crate::frames::{AlphaBeta, Dq};
