@@ -6,7 +6,7 @@ use crate::{
     measured::Measured,
     typography::{grouped, number, prose},
 };
-use fluxfit::{evidence::OutputFit, evidence::Term, log::Log};
+use fluxfit::{evidence::OutputFit, faults::Fault, log::Log};
 use fluxfit_units::significant;
 use maud::{Markup, html};
 
@@ -32,7 +32,7 @@ pub(crate) fn section(log: &Log, fit: &OutputFit) -> Markup {
     let peak = peak(log, fit);
     html! {
         p {
-            @if fit.has(Term::ProcessNoise) {
+            @if fit.has(Fault::Disturbance) {
                 "From each measured row the next one was predicted, with the motor found, the logged voltage and speed, because voltages that are "
                 "not in the log disturb this motor. "
             } @else {
@@ -67,15 +67,13 @@ pub(crate) fn amperes(current: f64) -> String {
 }
 
 fn caption(fit: &OutputFit, both: Measured) -> Markup {
-    let sensors = [Term::AngleOffset, Term::CurrentOffset, Term::Imbalance];
-    let pairs = fluxfit::objective::adjustable::SensorPair::ALL.map(Term::TwoSensors);
     html! {
         "Measured currents, grey, and the simulated ones over them; below each, measured less simulated on a scale of its own. Of many rows in "
         "a column of pixels the least and the largest are drawn, so a band is noise or ripple, and a peak that lies outside of it is real. "
         "The bold line is the mean over short spans: it shows what lasts below the noise."
         (currents::thinning(&both))
         @if fit.stretches.len() > 1 { " Gaps of the log are not bridged." }
-        @if sensors.into_iter().chain(pairs).any(|term| fit.has(term)) {
+        @if Fault::ALL.into_iter().any(|fault| fault.alters_measured_current() && fit.has(fault)) {
             " The measured current is the logged one; the simulated one is shown as the faulty sensors found would read it."
         }
     }

@@ -4,7 +4,10 @@ use crate::{
     frame,
     typography::{DASH, capitalized, minus, number, power, prose},
 };
-use fluxfit::evidence::{Nuisance, Outcome, OutputFit, Provenance, ReadingTrial, Term, Tried};
+use fluxfit::{
+    evidence::{FaultTrial, Nuisance, Outcome, OutputFit, Provenance, ReadingTrial},
+    faults::Fault,
+};
 use fluxfit_units::{beside_the_motor, significant};
 use maud::{Markup, html};
 
@@ -64,11 +67,11 @@ fn faults(fit: &OutputFit) -> Markup {
     }
 }
 
-fn fault(tried: &Tried) -> Markup {
+fn fault(tried: &FaultTrial) -> Markup {
     let judged = !matches!(tried.outcome, Outcome::Covered | Outcome::NeedsAngle);
     html! {
         tr {
-            th scope="row" { (capitalized(tried.term.label())) }
+            th scope="row" { (capitalized(tried.fault.label())) }
             td { @if judged { (number(tried.gain, gain)) } @else { (DASH) } }
             td.words { @if tried.outcome == Outcome::Taken { span.badge.identified { "taken" } } @else { (explained(tried)) } }
         }
@@ -80,10 +83,10 @@ fn gain(gain: f64) -> String {
     if gain.abs() < 10.0 { format!("{gain:.1}") } else { format!("{gain:.0}") }
 }
 
-fn explained(tried: &Tried) -> &'static str {
-    match (tried.term, tried.outcome) {
+fn explained(tried: &FaultTrial) -> &'static str {
+    match (tried.fault, tried.outcome) {
         // An observer's gain is no fault with a size.
-        (Term::ProcessNoise, Outcome::NotPhysical) => "following the measured current makes the prediction no better",
+        (Fault::Disturbance, Outcome::NotPhysical) => "following the measured current makes the prediction no better",
         _ => tried.outcome.label(),
     }
 }

@@ -1,7 +1,7 @@
 //! Numbers as engineers read them, on a terminal or a page: with the prefix that fits, and no more digits than are known.
 //! [`quantity`](crate::quantity) reads what people write; this writes what they read.
 
-use fluxfit::{motor::Parameter, objective::adjustable::Unknown};
+use fluxfit::{faults::Fault, motor::Parameter, objective::adjustable::Unknown};
 
 /// Prefixes by power of ten.
 const PREFIXES: [(i32, &str); 5] = [(3, "k"), (0, ""), (-3, "m"), (-6, "u"), (-9, "n")];
@@ -43,8 +43,8 @@ impl Scale {
 /// A number of the drive beside the motor, with what it may be wrong by: value, margin and unit. Angles are in degrees, ratios in
 /// percent, everything else under the prefix that fits.
 pub fn beside_the_motor(unknown: Unknown, value: f64, margin: f64) -> [String; 3] {
-    let (factor, unit) = match (unknown, unknown.unit()) {
-        (Unknown::GainD | Unknown::GainQ, _) => (1.0, String::new()),
+    let (factor, unit) = match (unknown.fault(), unknown.unit()) {
+        (Some(Fault::Disturbance), _) => (1.0, String::new()),
         (_, "rad") => (1.0_f64.to_radians(), "deg".to_owned()),
         (_, "1") => (1e-2, "%".to_owned()),
         (_, unit) => {
@@ -96,15 +96,16 @@ mod tests {
 
     #[test]
     fn numbers_beside_the_motor_get_units_that_people_use() {
-        let show = |unknown, value, margin| beside_the_motor(unknown, value, margin).join(" ");
+        let unknown = |key: &str| Fault::ALL.into_iter().flat_map(Unknown::of_fault).find(|unknown| unknown.key() == key).unwrap();
+        let show = |key: &str, value, margin| beside_the_motor(unknown(key), value, margin).join(" ");
         // 2 us of 100 us at 310 V are 6.2 V; 3 degrees are 0.05236 rad.
-        assert_eq!(show(Unknown::DeadTime, 6.2, 0.012), "6.200 0.012 V");
-        assert_eq!(show(Unknown::AngleOffset, 0.052_36, 1.746e-4), "3.000 0.010 deg");
-        assert_eq!(show(Unknown::OffsetAlpha, -0.0213, 0.0011), "-21.3 1.1 mA");
-        assert_eq!(show(Unknown::ImbalanceBeta, 0.0123, 0.0002), "1.230 0.020 %");
-        assert_eq!(show(Unknown::SaturationD, -2.5e-5, 4e-6), "-25.0 4.0 uH/A");
-        assert_eq!(show(Unknown::GainQ, 0.25, 0.013), "0.250 0.013 ");
-        assert_eq!(show(Unknown::DeadTime, 0.0, 0.0), "0 0 V");
+        assert_eq!(show("dead_time_voltage", 6.2, 0.012), "6.200 0.012 V");
+        assert_eq!(show("angle_offset", 0.052_36, 1.746e-4), "3.000 0.010 deg");
+        assert_eq!(show("current_offset_alpha", -0.0213, 0.0011), "-21.3 1.1 mA");
+        assert_eq!(show("current_imbalance_beta", 0.0123, 0.0002), "1.230 0.020 %");
+        assert_eq!(show("saturation_d", -2.5e-5, 4e-6), "-25.0 4.0 uH/A");
+        assert_eq!(show("observer_gain_q", 0.25, 0.013), "0.250 0.013 ");
+        assert_eq!(show("dead_time_voltage", 0.0, 0.0), "0 0 V");
     }
 
     #[test]

@@ -9,6 +9,7 @@ pub use crate::identification::{
     fit::{
         estimate::Estimate,
         excitation::{Direction, Excitation},
+        fault_search::{FaultTrial, Outcome},
         finding::{Finding, Trust},
         misfit::Misfit,
         output::OutputFit,
@@ -17,7 +18,6 @@ pub use crate::identification::{
         saturation::{Apparent, Flux, Saturation},
         steady::{SteadyFit, operating_points},
         swarm::Search,
-        terms::{Outcome, Term, Tried},
         uncertainty::{ParameterUncertainty, Part, Systematic, Uncertainty},
     },
     judge::verdict::{IDENTIFIED, WEAK},

@@ -66,6 +66,16 @@ impl Dq {
     pub fn magnitude(self) -> f64 {
         self.d.hypot(self.q)
     }
+
+    /// The vector turned forward by an angle, rad; the same bits where that is zero.
+    #[inline]
+    pub(crate) fn turned(self, by: f64) -> Self {
+        if by == 0.0 {
+            return self;
+        }
+        let AlphaBeta { alpha, beta } = self.to_alpha_beta(by);
+        Self { d: alpha, q: beta }
+    }
 }
 
 #[cfg(test)]

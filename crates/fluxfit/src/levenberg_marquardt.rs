@@ -19,22 +19,22 @@ use std::cell::Cell;
 /// Step of the differences, in the unknowns' units: the cube root of rounding, at which the errors of a central difference are least.
 const STEP: f64 = 6e-6;
 
-/// What a motor that cannot be simulated misses the log by, A: more than any that can, and still a number when squared and summed.
+/// Residual of a motor that cannot be simulated, A: larger than of any that can, and still finite when squared and summed.
 const HOPELESS: f64 = 1e100;
 
-/// A step that would lower the cost, or move the unknowns, by less than this fraction is none: a thousandth of what noise makes of a
-/// million rows, and above what differences and rounding leave.
+/// Steps that lower the cost, or move the unknowns, by less than this fraction end the iteration: a thousandth of the relative standard
+/// error that noise causes over a million rows, and above the errors of differences and rounding.
 const NO_STEP: f64 = 1e-9;
 
 /// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
 const PATIENCE: usize = 4;
 
-/// What is known of an unknown beside the log: one more residual, `(value - x) weight`, A.
+/// Prior knowledge of an unknown: one more residual, `(value - x) weight`, A.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Belief {
-    /// Of which.
+pub struct PriorResidual {
+    /// The unknown.
     pub unknown: Unknown,
-    /// SI.
+    /// Its expected value, SI.
     pub value: f64,
     /// A per SI unit: the noise of a current over the standard error of the value.
     pub weight: f64,
@@ -45,7 +45,7 @@ pub struct Belief {
 pub struct Polished {
     /// The drive.
     pub drive: Adjustable,
-    /// Its cost, A², beliefs not counted.
+    /// Its cost, A², prior residuals not counted.
     pub cost: f64,
     /// Whether this is a minimum.
     pub converged: bool,
@@ -61,29 +61,29 @@ pub fn polish(objective: &OutputError, start: &Motor) -> Polished {
 }
 
 /// Polishes these unknowns of a drive and leaves the others where they are.
-pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> Polished {
-    polish_watched(objective, start, unknowns, beliefs, &|_| ())
+pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
+    polish_with_progress(objective, start, unknowns, priors, &|_| ())
 }
 
-/// [`polish_unknowns`], telling after each step how many simulations it has taken so far.
-pub fn polish_watched(
+/// [`polish_unknowns`], which calls `progress` after each step with the number of simulations so far.
+pub fn polish_with_progress(
     objective: &OutputError,
     start: &Adjustable,
     unknowns: &[Unknown],
-    beliefs: &[Belief],
-    done: &dyn Fn(usize),
+    priors: &[PriorResidual],
+    progress: &dyn Fn(usize),
 ) -> Polished {
-    let scale: Vec<f64> = unknowns.iter().map(|unknown| unit(*unknown, start, objective)).collect();
+    let scale: Vec<f64> = unknowns.iter().map(|unknown| start.step_unit(*unknown, objective.peak_current())).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
     let (problem, report) = LevenbergMarquardt::new().with_ftol(NO_STEP).with_xtol(NO_STEP).with_patience(PATIENCE).minimize(Problem {
         objective,
         start,
         unknowns,
-        beliefs,
+        priors,
         scale,
         units,
         simulations: Cell::new(0),
-        done,
+        progress,
     });
     let drive = problem.drive();
     Polished { drive, cost: objective.cost_of(&drive), converged: report.termination.was_successful() }
@@ -92,42 +92,28 @@ pub fn polish_watched(
 /// Derivatives of the residuals by each unknown, A per SI unit: a column each.
 pub fn jacobian(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Vec<f64>> {
     let column = |unknown: &Unknown| {
-        let step = STEP * unit(*unknown, drive, objective);
+        let step = STEP * drive.step_unit(*unknown, objective.peak_current());
         let moved = |by: f64| objective.residuals(&drive.with(*unknown, drive.get(*unknown) + by));
         moved(step).iter().zip(moved(-step)).map(|(above, below)| (above - below) / (2.0 * step)).collect()
     };
     unknowns.par_iter().map(column).collect()
 }
 
-/// The size of an unknown by which steps are counted, SI: its own, or what is usual for it.
-fn unit(unknown: Unknown, drive: &Adjustable, objective: &OutputError) -> f64 {
-    let peak = || objective.peak_current().max(f64::MIN_POSITIVE);
-    let usual = match unknown {
-        Unknown::Motor(parameter) => return Some(drive.motor.get(parameter).abs()).filter(|value| *value > 0.0).unwrap_or(1.0),
-        Unknown::DeadTime => drive.motor.rs.abs() * peak(),
-        Unknown::DeadTimeWidth | Unknown::DeadTimeRipple | Unknown::OffsetAlpha | Unknown::OffsetBeta => peak(),
-        Unknown::SaturationD => drive.motor.ld.abs() / peak(),
-        Unknown::SaturationQ | Unknown::CrossSaturation => drive.motor.lq.abs() / peak(),
-        _ => 1.0,
-    };
-    if usual > 0.0 { usual } else { 1.0 }
-}
-
 struct Problem<'a> {
     objective: &'a OutputError,
     start: &'a Adjustable,
     unknowns: &'a [Unknown],
-    beliefs: &'a [Belief],
+    priors: &'a [PriorResidual],
     scale: Vec<f64>,
     units: DVector<f64>,
     simulations: Cell<usize>,
-    done: &'a dyn Fn(usize),
+    progress: &'a dyn Fn(usize),
 }
 
 impl Problem<'_> {
     fn simulated(&self, times: usize) {
         self.simulations.update(|simulations| simulations + times);
-        (self.done)(self.simulations.get());
+        (self.progress)(self.simulations.get());
     }
 
     fn drive(&self) -> Adjustable {
@@ -153,9 +139,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let drive = self.drive();
         let mut residuals = self.objective.residuals(&drive);
         self.simulated(1);
-        // Not a failure but a bad candidate: the next step is shorter.
+        // A bad candidate is no failure: the next step is shorter.
         residuals.iter_mut().filter(|residual| residual.abs() > HOPELESS || residual.is_nan()).for_each(|residual| *residual = HOPELESS);
-        residuals.extend(self.beliefs.iter().map(|belief| belief.weight * (belief.value - drive.get(belief.unknown))));
+        residuals.extend(self.priors.iter().map(|prior| prior.weight * (prior.value - drive.get(prior.unknown))));
         Some(DVector::from_vec(residuals))
     }
 
@@ -163,13 +149,13 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let columns = jacobian(self.objective, &self.drive(), self.unknowns);
         self.simulated(2 * self.unknowns.len());
         let rows = columns.first().map_or(0, Vec::len);
-        let mut matrix = DMatrix::zeros(rows + self.beliefs.len(), self.unknowns.len());
+        let mut matrix = DMatrix::zeros(rows + self.priors.len(), self.unknowns.len());
         for (k, column) in columns.iter().enumerate() {
             for (row, slope) in column.iter().enumerate() {
                 matrix[(row, k)] = slope * self.scale[k];
             }
-            for (row, belief) in self.beliefs.iter().enumerate().filter(|(_, belief)| belief.unknown == self.unknowns[k]) {
-                matrix[(rows + row, k)] = -belief.weight * self.scale[k];
+            for (row, prior) in self.priors.iter().enumerate().filter(|(_, prior)| prior.unknown == self.unknowns[k]) {
+                matrix[(rows + row, k)] = -prior.weight * self.scale[k];
             }
         }
         matrix.iter().all(|entry| entry.is_finite()).then_some(matrix)

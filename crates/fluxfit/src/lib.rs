@@ -38,6 +38,7 @@ mod answer;
 pub mod current_loop;
 pub mod error;
 pub mod evidence;
+pub mod faults;
 pub mod frames;
 mod identification;
 pub mod least_squares;

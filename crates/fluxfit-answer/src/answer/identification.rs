@@ -208,7 +208,7 @@ fn output_error(fit: &OutputFit) -> Value {
             "raw": by_parameter(tried.polished.drive.motor.to_array()),
         })).collect::<Vec<_>>(),
         "terms": fit.terms.iter().map(|tried| json!({
-            "term": tried.term.key(),
+            "term": tried.fault.key(),
             "gain": tried.gain,
             "taken": tried.outcome == Outcome::Taken,
             "outcome": tried.outcome.label(),

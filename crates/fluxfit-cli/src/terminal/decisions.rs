@@ -25,6 +25,6 @@ fn output(fit: &OutputFit) {
         detail(|| format!("voltages read as {}: misses the currents by {} A rms{converged}", tried.reading.label(), small(rms)));
     }
     for tried in &fit.terms {
-        detail(|| format!("{}: {}", tried.term.label(), tried.outcome.label()));
+        detail(|| format!("{}: {}", tried.fault.label(), tried.outcome.label()));
     }
 }

@@ -4,7 +4,7 @@
 use super::{BAD, DIM, GOOD, HEADING, WARNING, options, table};
 use fluxfit::{
     Answer, HeldOut, Judgement, Log, Parameter, Reason, Verdict,
-    evidence::{Flux, Identification, ModelChoice, Outcome, OutputFit, Provenance, Saturation, SteadyFit, Term},
+    evidence::{Flux, Identification, ModelChoice, Outcome, OutputFit, Provenance, Saturation, SteadyFit},
     optimizer::Method,
 };
 use fluxfit_units::{Scale, beside_the_motor, significant, small};
@@ -208,12 +208,7 @@ fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
         } else {
             !matches!(tried.outcome, Outcome::NeedsAngle | Outcome::Taken | Outcome::Covered)
         };
-        let word = match tried.term {
-            Term::CurrentOffset => "sensor offset",
-            Term::Imbalance | Term::TwoSensors(_) => "sensor imbalance",
-            Term::ProcessNoise => "disturbances",
-            term => term.label(),
-        };
+        let word = tried.fault.family();
         if left_out && !words.contains(&word) {
             words.push(word);
         }

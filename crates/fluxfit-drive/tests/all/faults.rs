@@ -8,13 +8,10 @@ use fluxfit::{
     Request, Verdict,
     evidence::Identification,
     evidence::OutputFit,
-    evidence::Term,
+    faults::Fault,
     identify,
     motor::{Motor, PARAMETERS, Parameter},
-    objective::{
-        acting_voltage::{VoltageFrame, VoltageReading},
-        adjustable::{SensorPair, Unknown},
-    },
+    objective::acting_voltage::{VoltageFrame, VoltageReading},
     paper,
 };
 use fluxfit_drive::{
@@ -61,12 +58,12 @@ fn holds(name: &str, found: &Identification, truth: &Motor, limits: [f64; PARAME
 }
 
 /// The faults found are these, with these values inside three of their own standard errors.
-fn finds(name: &str, fit: &OutputFit, term: Term, values: &[(Unknown, f64)]) {
-    let terms: Vec<&str> = fit.terms.iter().filter(|tried| fit.has(tried.term)).map(|tried| tried.term.key()).collect();
-    assert_eq!(terms, [term.key()], "{name}");
-    for (unknown, expected) in values {
-        let nuisance = fit.nuisance.iter().find(|nuisance| nuisance.unknown == *unknown).unwrap();
-        println!("{name}: {} {:.5} ± {:.5}, truly {expected:.5}", unknown.key(), nuisance.value, 2.0 * nuisance.standard_error);
+fn finds(name: &str, fit: &OutputFit, fault: Fault, values: &[(&str, f64)]) {
+    let faults: Vec<&str> = fit.terms.iter().filter(|tried| fit.has(tried.fault)).map(|tried| tried.fault.key()).collect();
+    assert_eq!(faults, [fault.key()], "{name}");
+    for (key, expected) in values {
+        let nuisance = fit.nuisance.iter().find(|nuisance| nuisance.unknown.key() == *key).unwrap();
+        println!("{name}: {key} {:.5} ± {:.5}, truly {expected:.5}", nuisance.value, 2.0 * nuisance.standard_error);
         assert!((nuisance.value - expected).abs() < 3.0 * nuisance.standard_error, "{name}: {nuisance:?} instead of {expected}");
     }
 }
@@ -77,7 +74,7 @@ const WITHIN_ONE_PERCENT: [f64; PARAMETERS] = [1.0; PARAMETERS];
 fn a_perfect_drive_has_no_faults() {
     let found = found(&rig(|_| ()));
     let fit = found.output.as_ref().unwrap();
-    assert!(fit.terms.iter().all(|tried| !fit.has(tried.term)), "{:?}", fit.terms);
+    assert!(fit.terms.iter().all(|tried| !fit.has(tried.fault)), "{:?}", fit.terms);
     holds("perfect", &found, &paper::MOTOR, [0.2, 0.2, 0.05, 0.05]);
 }
 
@@ -85,7 +82,7 @@ fn a_perfect_drive_has_no_faults() {
 fn an_encoder_that_is_three_degrees_off() {
     let offset = 3.0_f64.to_radians();
     let found = found(&rig(|scenario| scenario.sensors.angle_offset = offset));
-    finds("angle", found.output.as_ref().unwrap(), Term::AngleOffset, &[(Unknown::AngleOffset, offset)]);
+    finds("angle", found.output.as_ref().unwrap(), Fault::AngleOffset, &[("angle_offset", offset)]);
     holds("angle", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
 }
 
@@ -93,8 +90,8 @@ fn an_encoder_that_is_three_degrees_off() {
 #[test]
 fn a_sensor_that_reads_one_percent_at_zero() {
     let found = found(&rig(|scenario| scenario.sensors.current_offset = [0.2, 0.0, 0.0]));
-    let expected = [(Unknown::OffsetAlpha, 0.2 * 2.0 / 3.0), (Unknown::OffsetBeta, 0.0)];
-    finds("offset", found.output.as_ref().unwrap(), Term::CurrentOffset, &expected);
+    let expected = [("current_offset_alpha", 0.2 * 2.0 / 3.0), ("current_offset_beta", 0.0)];
+    finds("offset", found.output.as_ref().unwrap(), Fault::CurrentOffset, &expected);
     holds("offset", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
 }
 
@@ -107,8 +104,8 @@ fn one_of_three_sensors_that_reads_two_percent_too_much() {
     let (sin, cos) = (-2.0 * FRAC_PI_3).sin_cos();
     // Relative to the common gain of 1 + 0.02/3.
     let imbalance = 0.02 / 3.0 / (1.0 + 0.02 / 3.0);
-    let expected = [(Unknown::ImbalanceAlpha, imbalance * cos), (Unknown::ImbalanceBeta, imbalance * sin)];
-    finds("gain of three", found.output.as_ref().unwrap(), Term::Imbalance, &expected);
+    let expected = [("current_imbalance_alpha", imbalance * cos), ("current_imbalance_beta", imbalance * sin)];
+    finds("gain of three", found.output.as_ref().unwrap(), Fault::ThreeSensors, &expected);
     holds("gain of three", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
 }
 
@@ -121,8 +118,8 @@ fn one_of_two_sensors_that_reads_two_percent_too_much() {
     });
     let found = found(&recording);
     // a over b, relative to the common gain of 1.01.
-    let expected = [(Unknown::TwoSensors(SensorPair::Ab), -0.02 / 1.01)];
-    finds("gain of two", found.output.as_ref().unwrap(), Term::TwoSensors(SensorPair::Ab), &expected);
+    let expected = [("current_gain_a_over_b", -0.02 / 1.01)];
+    finds("gain of two", found.output.as_ref().unwrap(), Fault::SensorsAb, &expected);
     holds("gain of two", &found, &paper::MOTOR, [1.1; PARAMETERS]);
 }
 
@@ -148,7 +145,7 @@ fn a_delay_of_no_one_and_two_periods() {
 #[test]
 fn disturbing_voltages() {
     let found = found(&rig(|scenario| scenario.inverter.voltage_noise = 1.0));
-    assert!(found.output.as_ref().unwrap().has(Term::ProcessNoise));
+    assert!(found.output.as_ref().unwrap().has(Fault::Disturbance));
     assert!(found.warnings.iter().any(|warning| warning.code() == "process-noise"));
     holds("disturbed", &found, &paper::MOTOR, [2.0; PARAMETERS]);
 }
@@ -174,13 +171,13 @@ fn dead_time_that_takes_more_than_the_resistance() {
     };
     let with = found(&simulate(&scenario(2e-6), 0, || ()).unwrap());
     let fit = with.output.as_ref().unwrap();
-    assert!(fit.has(Term::DeadTime));
-    let lost = fit.drive.nuisance.dead_time;
+    assert!(fit.has(Fault::DeadTime));
+    let lost = fit.drive.faults.dead_time.voltage;
     assert!((lost / 6.0 - 1.0).abs() < 0.02, "{lost} V");
     holds("dead time", &with, &truth, [10.0, 1.0, 1.0, 1.0]);
 
     let without = found(&simulate(&scenario(0.0), 0, || ()).unwrap());
-    assert!(!without.output.as_ref().unwrap().has(Term::DeadTime));
+    assert!(!without.output.as_ref().unwrap().has(Fault::DeadTime));
     holds("no dead time", &without, &truth, [2.0, 1.0, 1.0, 1.0]);
     assert!(Parameter::ALL.iter().all(|parameter| without.parameter(*parameter).verdict == Verdict::Identified));
 }

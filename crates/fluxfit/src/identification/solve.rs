@@ -11,7 +11,6 @@ use super::{
         saturation::Saturation,
         steady::SteadyFit,
         swarm::{self, Search},
-        terms::Term,
     },
     judge::verdict::{Verdict, judge},
     prepare::{
@@ -23,6 +22,7 @@ use super::{
 };
 use crate::{
     error::Error,
+    faults::Fault,
     log::Log,
     motor::{PARAMETERS, Parameter},
     optimizer::Method,
@@ -115,7 +115,7 @@ fn finding<'a>(steady: Option<&'a SteadyFit>, output: Option<&'a OutputFit>) -> 
 /// Saturation: found by the operating points, by the terms of the simulated currents, or by both.
 fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>, request: &Request) -> Option<Saturation> {
     let of_points = steady.and_then(|fit| fit.saturation(request));
-    let Some(fit) = output.filter(|fit| fit.has(Term::Saturation)) else { return of_points };
+    let Some(fit) = output.filter(|fit| fit.has(Fault::Saturation)) else { return of_points };
     let rs_uncertainty = fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
     let points = steady.map_or(&[][..], |fit| &fit.operating_points);
     Some(Saturation::of_currents(log, &fit.drive, rs_uncertainty, &fit.stretches, (points, of_points), request))

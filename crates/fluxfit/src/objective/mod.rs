@@ -5,6 +5,7 @@
 pub mod acting_voltage;
 pub mod adjustable;
 pub mod output_error;
-mod phase_loss;
+mod simulated_segment;
 pub mod transition;
+mod transition_table;
 pub mod voltage_error;

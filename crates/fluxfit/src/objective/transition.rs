@@ -52,7 +52,7 @@ impl Transition {
         Dq { d: step(self.rows[0]), q: step(self.rows[1]) }
     }
 
-    /// The same for a difference of two courses: without the magnet.
+    /// The same for a difference of two simulations: without the magnet.
     #[inline]
     pub fn difference_after(&self, i: Dq, u: Dq) -> Dq {
         let step = |[fd, fq, gd, gq, _]: [f64; ENTRIES / 2]| fd * i.d + fq * i.q + gd * u.d + gq * u.q;

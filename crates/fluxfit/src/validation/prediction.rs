@@ -6,6 +6,7 @@
 use super::given::Given;
 use crate::{
     error::Error,
+    faults::{Fault, Faults, disturbance::Disturbance},
     frames::Dq,
     identification::{
         fit::{output::OutputFit, steady::SteadyFit},
@@ -120,10 +121,9 @@ fn currents(log: &Log, fit: &OutputFit, own: &Motor, given: &Given, request: &Re
 
 /// A motor in the log's drive: faults as they fit it best, without an observer.
 fn drive(objective: &OutputError, fit: &OutputFit, motor: &Motor) -> Adjustable {
-    let start =
-        [Unknown::GainD, Unknown::GainQ].into_iter().fold(Adjustable { motor: *motor, ..fit.drive }, |drive, gain| drive.with(gain, 0.0));
+    let start = Adjustable { motor: *motor, faults: Faults { disturbance: Disturbance::default(), ..fit.drive.faults } };
     let found = fit.nuisance.iter().map(|nuisance| nuisance.unknown);
-    let faults: Vec<Unknown> = found.filter(|unknown| !matches!(unknown, Unknown::GainD | Unknown::GainQ)).collect();
+    let faults: Vec<Unknown> = found.filter(|unknown| unknown.fault() != Some(Fault::Disturbance)).collect();
     if faults.is_empty() { start } else { polish_unknowns(objective, &start, &faults, &[]).drive }
 }
 

@@ -8,7 +8,6 @@ use super::{
             saturation::{Apparent, Saturation},
             steady::SteadyFit,
             swarm::Search,
-            terms::Term,
         },
         request::Request,
     },
@@ -16,6 +15,7 @@ use super::{
     judgement::Judgement,
 };
 use crate::{
+    faults::Fault,
     log::Log,
     motor::{PARAMETERS, Parameter},
     steady::{OperatingPoint, windows, zero_order_hold::MAX_ANGLE_PER_SAMPLE},
@@ -258,7 +258,7 @@ fn saturated(saturation: &Saturation) -> Warning {
 }
 
 fn process_noise(found: &OutputFit) -> Option<Warning> {
-    found.has(Term::ProcessNoise).then_some(Warning::ProcessNoise)
+    found.has(Fault::Disturbance).then_some(Warning::ProcessNoise)
 }
 
 fn angle(log: &Log, found: &OutputFit) -> Option<Warning> {

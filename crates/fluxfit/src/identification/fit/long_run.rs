@@ -8,6 +8,7 @@
 //! K. D. West, Econometrica 55 (1987) 703, doi:10.2307/1913610; D. W. K. Andrews, Econometrica 59 (1991) 817, doi:10.2307/2938229,
 //! equations (5.1), (6.2) and (6.4). No lag reaches across a gap.
 
+use crate::motor::PARAMETERS;
 use nalgebra::DMatrix;
 
 /// Beyond this correlation of neighbours the series is a trend, and no lag is long enough.
@@ -82,6 +83,18 @@ pub(crate) fn first_correlation(series: &[f64], lengths: &[usize]) -> f64 {
 pub(crate) fn correlation(series: &[f64], shift: usize, lengths: &[usize]) -> f64 {
     let own = products(series, series, 0, lengths);
     if own > 0.0 { products(series, series, shift, lengths) / own } else { 0.0 }
+}
+
+/// How many independent numbers the residuals of both axes are worth, `d, q` of each row in turn: fewer, the more neighbouring rows are
+/// correlated. Of an autoregressive series of first order it is `n (1 - rho) / (1 + rho)`.
+pub(crate) fn effective_sample_size(residuals: &[f64]) -> f64 {
+    let (rows, _) = residuals.as_chunks::<2>();
+    let axis = |axis: usize| {
+        let series: Vec<f64> = rows.iter().map(|row| row[axis]).collect();
+        let rho = first_correlation(&series, &[series.len()]).max(0.0);
+        series.len() as f64 * (1.0 - rho) / (1.0 + rho)
+    };
+    (axis(0) + axis(1)).max(2.0 * PARAMETERS as f64)
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! Fits: a motor and its uncertainty, from steady operating points or from simulated currents.
 
-pub(crate) mod dead_time;
 pub(crate) mod estimate;
 pub(crate) mod excitation;
+pub(crate) mod fault_search;
 pub(crate) mod finding;
 pub(crate) mod long_run;
 pub(crate) mod misfit;
+mod normal_matrix;
 pub(crate) mod output;
 mod output_choice;
 pub(crate) mod output_errors;
@@ -15,6 +16,5 @@ pub(crate) mod saturation;
 mod saturation_equations;
 pub(crate) mod steady;
 pub(crate) mod swarm;
-pub(crate) mod terms;
 pub(crate) mod uncertainty;
 mod voltage_accuracy;

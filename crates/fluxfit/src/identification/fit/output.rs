@@ -11,6 +11,7 @@ use super::{
         request::{Provenance, Request},
     },
     excitation::Excitation,
+    fault_search::{FaultTrial, LEAST_RESIDUAL, Outcome},
     finding::{Bench, Finding, Trust, covariance},
     long_run,
     output_choice::{Chosen, choose},
@@ -19,13 +20,13 @@ use super::{
     readings::{self, ReadingTrial},
     steady::SteadyFit,
     swarm::{self, Search},
-    terms::{self, LEAST_RESIDUAL, Outcome, Term},
     uncertainty::{Systematic, Uncertainty},
 };
 use crate::{
     error::Error,
+    faults::Fault,
     frames::Dq,
-    levenberg_marquardt::{Polished, polish_watched},
+    levenberg_marquardt::{Polished, polish_with_progress},
     log::Log,
     motor::Motor,
     objective::{acting_voltage::VoltageReading, adjustable::Adjustable, output_error::OutputError},
@@ -44,7 +45,7 @@ pub struct OutputFit {
     /// Every reading that was tried, with the faults that were found, the best first.
     pub readings: Vec<ReadingTrial>,
     /// Every fault that was tried, those taken first.
-    pub terms: Vec<terms::Tried>,
+    pub terms: Vec<FaultTrial>,
     /// Numbers of the drive beside the motor that were found.
     pub nuisance: Vec<Nuisance>,
     /// Stretches of the log whose rows are compared.
@@ -76,22 +77,22 @@ impl OutputFit {
         let whole = stretches::as_points(log, &stretches);
         let scale = Excitation::of(&whole, &request.known).scale;
         let start = output_start::start(log, &stretches, steady, request, &scale);
-        let Chosen { reading, drive, unknowns, beliefs, readings, terms, independent, .. } =
+        let Chosen { reading, drive, unknowns, priors, readings, terms, independent, .. } =
             choose(log, &stretches, &start, request, progress)?;
         let objective = &OutputError::of_rows(log, &stretches, reading)?;
         let usual = USUAL_STEPS * (1 + 2 * unknowns.len());
         let fitting = |simulations| {
             let _ = progress(Step::Fit { simulations, usual });
         };
-        let Polished { drive, cost, .. } = polish_watched(objective, &drive, &unknowns, &beliefs, &fitting);
+        let Polished { drive, cost, .. } = polish_with_progress(objective, &drive, &unknowns, &priors, &fitting);
         let _ = progress(Step::Uncertainty);
         let residuals = objective.residuals(&drive);
         let shifts = OutputShifts {
             timing: readings::doubt(&readings, independent),
-            process_noise: without_observer(objective, &drive, &unknowns, &beliefs),
+            process_noise: without_observer(objective, &drive, &unknowns, &priors),
             sensors: sensors(&drive),
         };
-        let errors = Errors::of(objective, &drive, &unknowns, &beliefs, &residuals, request.voltage_accuracy, &scale);
+        let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, request.voltage_accuracy, &scale);
         let uncertainty = errors.uncertainty(&unknowns, &shifts);
         let correlation = errors.correlation_of_neighbours;
         let points = steady.map_or(&whole[..], |fit| &fit.operating_points);
@@ -101,7 +102,7 @@ impl OutputFit {
             open: [false; 4],
             trust: Trust {
                 correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
-                disturbed_without_angle: is_taken(&terms, Term::ProcessNoise) && !objective.angle_known(),
+                disturbed_without_angle: is_taken(&terms, Fault::Disturbance) && !objective.angle_known(),
                 misses: rms / objective.peak_current(),
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),
@@ -123,9 +124,9 @@ impl OutputFit {
         })
     }
 
-    /// Whether a term is part of the answer.
-    pub fn has(&self, term: Term) -> bool {
-        is_taken(&self.terms, term)
+    /// Whether a fault is part of the answer.
+    pub fn has(&self, fault: Fault) -> bool {
+        is_taken(&self.terms, fault)
     }
 
     /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.
@@ -152,7 +153,7 @@ impl OutputFit {
 
     /// The readings of the voltages that are not ruled out, the best first: they fit about as well as it does.
     pub fn possible_readings(&self) -> impl Iterator<Item = &ReadingTrial> {
-        readings::possible(&self.readings, terms::independent(&self.residuals))
+        readings::possible(&self.readings, long_run::effective_sample_size(&self.residuals))
     }
 
     /// Lets the swarm minimize the same output error.
@@ -161,15 +162,15 @@ impl OutputFit {
     /// If the box or the settings do not suit it.
     pub(crate) fn search(&self, log: &Log, method: Method, bounds: Bounds, request: &Request, progress: Progress) -> Result<Search, Error> {
         let stretches = stretches::fitted(log, &request.windows)?;
-        let objective = OutputError::of_rows(log, &stretches, self.voltage_reading.0)?.holding(self.drive.nuisance);
+        let objective = OutputError::of_rows(log, &stretches, self.voltage_reading.0)?.holding(self.drive.faults);
         let report = swarm::run(&objective, method, &bounds, request, progress)?;
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report })
     }
 }
 
-fn is_taken(trials: &[terms::Tried], term: Term) -> bool {
-    trials.iter().any(|trial| trial.term == term && trial.outcome == Outcome::Taken)
+fn is_taken(trials: &[FaultTrial], fault: Fault) -> bool {
+    trials.iter().any(|trial| trial.fault == fault && trial.outcome == Outcome::Taken)
 }
 
 /// What is known from noise, accuracy and excitation: what a further stretch would improve.

@@ -6,13 +6,15 @@ use super::{
         progress::{Progress, Step},
         request::Request,
     },
+    fault_search::{FaultSearch, FaultTrial, LEAST_RESIDUAL},
+    long_run,
     output_start::{self, free},
     readings::{self, ReadingTrial},
-    terms::{self, Candidate, LEAST_RESIDUAL},
 };
 use crate::{
     error::{Error, ErrorKind},
-    levenberg_marquardt::Belief,
+    faults::Fault,
+    levenberg_marquardt::PriorResidual,
     log::Log,
     objective::{
         acting_voltage::VoltageReading,
@@ -27,10 +29,10 @@ pub(super) struct Chosen {
     pub(super) reading: VoltageReading,
     pub(super) drive: Adjustable,
     pub(super) unknowns: Vec<Unknown>,
-    pub(super) beliefs: Vec<Belief>,
+    pub(super) priors: Vec<PriorResidual>,
     /// Every reading with these unknowns, the best first.
     pub(super) readings: Vec<ReadingTrial>,
-    pub(super) terms: Vec<terms::Tried>,
+    pub(super) terms: Vec<FaultTrial>,
     /// Independent residuals of the rows by which it was chosen.
     pub(super) independent: f64,
     /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
@@ -57,15 +59,15 @@ pub(super) fn choose(
     let free = free(request);
     let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
     let rough = readings::readings(&objectives, start, &free, &[]);
-    let beliefs = output_start::beliefs(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
+    let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut best: Option<Chosen> = None;
-    let tried = readings::readings(&objectives, start, &free, &beliefs);
+    let tried = readings::readings(&objectives, start, &free, &priors);
     let _ = progress(Step::Faults);
     for (place, tried) in tried.into_iter().take(TRIED_READINGS) {
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
-        let candidate =
-            Candidate { objectives: &objectives, reading: place, beliefs: &beliefs, drive, unknowns: free.clone(), cost, voltage_accuracy };
-        let one = with_faults(candidate, &objectives, &beliefs);
+        let search =
+            FaultSearch { objectives: &objectives, reading: place, priors: &priors, drive, unknowns: free.clone(), cost, voltage_accuracy };
+        let one = with_faults(search, &objectives, &priors);
         let explained = one.explained;
         if best.as_ref().is_none_or(|best| one.criterion < best.criterion) {
             best = Some(one);
@@ -75,29 +77,30 @@ pub(super) fn choose(
         }
     }
     let mut best = best.ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
-    let readings = readings::readings(&objectives, &best.drive, &best.unknowns, &beliefs);
+    let readings = readings::readings(&objectives, &best.drive, &best.unknowns, &priors);
     best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
     Ok(best)
 }
 
 /// The faults that a log carries under a reading, and the reading that suits them.
-fn with_faults(mut candidate: Candidate, objectives: &[(VoltageReading, OutputError)], beliefs: &[Belief]) -> Chosen {
-    let terms = candidate.add_terms();
-    let Candidate { drive, unknowns, cost, reading, .. } = candidate;
+fn with_faults(mut search: FaultSearch, objectives: &[(VoltageReading, OutputError)], priors: &[PriorResidual]) -> Chosen {
+    let terms = search.run();
+    let FaultSearch { drive, unknowns, cost, reading, .. } = search;
     let (reading, objective) = &objectives[reading];
     let residuals = objective.residuals(&drive);
     let count = residuals.len() as f64;
-    let independent = terms::independent(&residuals);
+    let independent = long_run::effective_sample_size(&residuals);
     Chosen {
         reading: *reading,
         readings: Vec::new(),
         independent,
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
         explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
-            || !unknowns.contains(&Unknown::GainD) && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+            || unknowns.iter().all(|unknown| unknown.fault() != Some(Fault::Disturbance))
+                && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
         drive,
         unknowns,
-        beliefs: beliefs.to_vec(),
+        priors: priors.to_vec(),
         terms,
     }
 }

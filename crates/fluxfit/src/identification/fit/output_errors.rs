@@ -6,12 +6,13 @@
 
 use super::{
     long_run,
-    terms::inverse_normal,
+    normal_matrix::inverse_normal,
     uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
     voltage_accuracy,
 };
 use crate::{
-    levenberg_marquardt::{Belief, MOTOR, jacobian, polish_unknowns},
+    faults::{Fault, Faults, disturbance::Disturbance},
+    levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_unknowns},
     motor::{Motor, PARAMETERS},
     objective::{
         adjustable::{Adjustable, Unknown},
@@ -39,21 +40,24 @@ pub(super) struct OutputShifts {
 }
 
 /// How far the motor lies from that of a drive without disturbance, if an observer was found: either may be right.
-pub(super) fn without_observer(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], beliefs: &[Belief]) -> [f64; PARAMETERS] {
-    let gains = [Unknown::GainD, Unknown::GainQ];
-    let rest: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| !gains.contains(unknown)).collect();
+pub(super) fn without_observer(
+    objective: &OutputError,
+    drive: &Adjustable,
+    unknowns: &[Unknown],
+    priors: &[PriorResidual],
+) -> [f64; PARAMETERS] {
+    let rest: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| unknown.fault() != Some(Fault::Disturbance)).collect();
     if rest.len() == unknowns.len() {
         return [0.0; PARAMETERS];
     }
-    let start = gains.into_iter().fold(*drive, |drive, gain| drive.with(gain, 0.0));
-    let other = polish_unknowns(objective, &start, &rest, beliefs).drive.motor.to_array();
+    let start = Adjustable { faults: Faults { disturbance: Disturbance::default(), ..drive.faults }, ..*drive };
+    let other = polish_unknowns(objective, &start, &rest, priors).drive.motor.to_array();
     std::array::from_fn(|p| (drive.motor.to_array()[p] - other[p]).abs())
 }
 
 /// Where gains of sensors differ, nobody knows which of them is right: a gain common to all would scale every impedance.
 pub(super) fn sensors(drive: &Adjustable) -> [f64; PARAMETERS] {
-    let imbalance = drive.nuisance.imbalance;
-    let common = imbalance.alpha.hypot(imbalance.beta);
+    let common = drive.faults.current_gains.magnitude();
     let Motor { rs, ld, lq, .. } = drive.motor;
     [common * rs, common * ld, common * lq, 0.0]
 }
@@ -77,17 +81,17 @@ impl Errors {
         objective: &OutputError,
         drive: &Adjustable,
         unknowns: &[Unknown],
-        beliefs: &[Belief],
+        priors: &[PriorResidual],
         residuals: &[f64],
         voltage_accuracy: f64,
         scale: &[f64; PARAMETERS],
     ) -> Self {
         let slopes = jacobian(objective, drive, unknowns);
-        let mut with_beliefs = slopes.clone();
-        for (column, unknown) in with_beliefs.iter_mut().zip(unknowns) {
-            column.extend(beliefs.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
+        let mut with_priors = slopes.clone();
+        for (column, unknown) in with_priors.iter_mut().zip(unknowns) {
+            column.extend(priors.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
         }
-        let inverse = inverse_normal(&with_beliefs);
+        let inverse = inverse_normal(&with_priors);
         let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
         let (rows, _) = residuals.as_chunks::<2>();
         // A score per row: both axes together.
@@ -102,7 +106,7 @@ impl Errors {
             covariance: &inverse * long_run.covariance * &inverse,
             degrees_of_freedom: long_run.degrees_of_freedom,
             accuracy: voltage_accuracy::covariance(objective, drive, &inverse, &slopes, voltage_accuracy),
-            priors: beliefs
+            priors: priors
                 .iter()
                 .map(|belief| {
                     let column = unknowns.iter().position(|unknown| *unknown == belief.unknown);
@@ -113,7 +117,7 @@ impl Errors {
                     })
                 })
                 .collect(),
-            open: open(&with_beliefs, &inverse, unknowns, scale),
+            open: open(&with_priors, &inverse, unknowns, scale),
             correlation_of_neighbours: [0, 1].map(|k| long_run::first_correlation(&axis(k), &lengths)).into_iter().fold(f64::MIN, f64::max),
         }
     }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     least_squares::{Equation, TriangularFactor},
-    levenberg_marquardt::{Belief, MOTOR},
+    levenberg_marquardt::{MOTOR, PriorResidual},
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::adjustable::{Adjustable, Unknown},
@@ -20,9 +20,9 @@ pub(super) fn free(request: &Request) -> Vec<Unknown> {
 }
 
 /// Priors as residuals, given the mean square of a current's.
-pub(super) fn beliefs(request: &Request, mean_square: f64) -> Vec<Belief> {
+pub(super) fn priors(request: &Request, mean_square: f64) -> Vec<PriorResidual> {
     let priors = MOTOR.into_iter().zip(request.known).filter_map(|(unknown, known)| match known {
-        Known::Prior { value, standard_error } => Some(Belief { unknown, value, weight: mean_square.sqrt() / standard_error }),
+        Known::Prior { value, standard_error } => Some(PriorResidual { unknown, value, weight: mean_square.sqrt() / standard_error }),
         Known::Nothing | Known::Fixed(_) => None,
     });
     priors.collect()

@@ -6,7 +6,7 @@
 use super::super::request::Request;
 use crate::{
     error::Error,
-    levenberg_marquardt::{Belief, Polished, polish_unknowns},
+    levenberg_marquardt::{Polished, PriorResidual, polish_unknowns},
     log::Log,
     motor::PARAMETERS,
     objective::{
@@ -54,10 +54,10 @@ pub(crate) fn readings(
     objectives: &[(VoltageReading, OutputError)],
     start: &Adjustable,
     unknowns: &[Unknown],
-    beliefs: &[Belief],
+    priors: &[PriorResidual],
 ) -> Vec<(usize, ReadingTrial)> {
     let try_one = |(place, (reading, objective)): (usize, &(VoltageReading, OutputError))| {
-        let polished = polish_unknowns(objective, start, unknowns, beliefs);
+        let polished = polish_unknowns(objective, start, unknowns, priors);
         (place, ReadingTrial { reading: *reading, polished, rows: objective.rows() })
     };
     let mut tried: Vec<(usize, ReadingTrial)> = objectives.par_iter().enumerate().map(try_one).collect();

@@ -105,17 +105,12 @@ impl Saturation {
         (points, of_points): (&[OperatingPoint], Option<Self>),
         request: &Request,
     ) -> Self {
-        let (motor, nuisance) = (drive.motor, drive.nuisance);
+        let (motor, terms) = (drive.motor, drive.faults.saturation);
         let mut found = of_points.unwrap_or_else(|| Self::at(points, motor, (motor.rs, rs_uncertainty), request));
         let (mut least, mut most) = (Apparent { current: f64::INFINITY, inductance: 0.0 }, Apparent { current: 0.0, inductance: 0.0 });
         for row in stretches.iter().cloned().flatten() {
             let i = Dq { d: log.columns().id[row], q: log.columns().iq[row] };
-            let lost = [
-                0.0,
-                nuisance.saturation.d * i.d.abs(),
-                nuisance.saturation.q * i.q.abs() + 2.0 * nuisance.cross_saturation * i.d,
-                nuisance.cross_saturation * i.q * i.q,
-            ];
+            let lost = terms.apparent_change(i);
             found.over_rows.iter_mut().zip(lost).for_each(|(most, lost)| *most = most.max(lost.abs()));
             let apparent = Apparent { current: i.q, inductance: motor.lq + lost[Parameter::Lq as usize] };
             if i.q.abs() < least.current.abs() {

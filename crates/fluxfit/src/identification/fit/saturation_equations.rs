@@ -1,7 +1,7 @@
 //! Whether saturation explains why operating points contradict each other.
 //!
 //! That points contradict each other is found by [`misfit`](super::misfit). To find out why, constant parameters are solved
-//! again beside terms of saturation, those of the [adjustable drive](crate::objective::adjustable::Nuisance),
+//! again beside terms of saturation, those of the [simulated currents](crate::faults::saturation),
 //!
 //! ```text
 //! psi_d = L_d i_d + psi_f + s_d i_d |i_d| + c i_q²,     psi_q = L_q i_q + s_q i_q |i_q| + 2 c i_d i_q

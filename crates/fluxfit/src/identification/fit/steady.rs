@@ -3,9 +3,8 @@
 use super::{
     super::{
         progress::Progress,
-        request::{Known, Provenance, Request},
+        request::{Known, Provenance, Request, VOLTAGE_ACCURACY},
     },
-    dead_time,
     estimate::Estimate,
     excitation::Excitation,
     finding::{Bench, Finding, Trust, covariance},
@@ -16,6 +15,7 @@ use super::{
 };
 use crate::{
     error::Error,
+    faults::dead_time::ripple,
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
@@ -58,8 +58,10 @@ impl SteadyFit {
         let excitation = Excitation::of(&points, &request.known);
         let estimate = Estimate::solve(&points, &excitation, request);
         let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, request);
-        let losses = dead_time::losses(log, &points, &excitation, &estimate);
-        let shifts = SteadyShifts { timing: timing_doubt, dead_time: dead_time::doubt(log, &points, &estimate, &losses) };
+        let Dq { d: ld, q: lq } = excitation.inductances(&estimate.motor);
+        let losses = ripple::losses(log, &points, &Motor { ld, lq, ..estimate.motor }, VOLTAGE_ACCURACY);
+        let dead_time = ripple::parameter_errors(log, &points, &estimate.gains, &losses);
+        let shifts = SteadyShifts { timing: timing_doubt, dead_time };
         let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &shifts);
         let finding = Finding {
             motor: estimate.motor,

@@ -6,7 +6,7 @@
 //! - the voltages' accuracy, independent between windows and axes;
 //! - priors;
 //! - the timing of the voltage columns, where nobody stated it;
-//! - dead time or device drops, where their [ripple](super::dead_time) shows;
+//! - dead time or device drops, where their [ripple](crate::faults::dead_time::ripple) shows;
 //! - directions that the log does not excite, a uniform distribution over their reach;
 //! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
 //! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is

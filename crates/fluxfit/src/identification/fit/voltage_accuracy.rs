@@ -1,4 +1,7 @@
-//! What the voltages' accuracy does to a fit of simulated currents.
+//! What the limited accuracy of the voltages does to the unknowns of a fit.
+//!
+//! The error of a drive's voltages along either axis is a random function of the operating point, a fraction of the voltage there, and
+//! alike at points that lie close together. The adjoint equations of the output error tell what a volt at any row does to each unknown.
 
 use crate::{
     frames::Dq,
@@ -7,15 +10,15 @@ use crate::{
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
-/// Operating points this far apart, as a fraction of the largest current and speed, are as good as independent in their voltages'
-/// errors: a drive's voltage error is a function of where it runs, smooth on that scale.
+/// Distance between operating points, as a fraction of the largest current and speed, beyond which the errors of their voltages are
+/// nearly independent: a drive's voltage error is a function of the operating point, smooth on that scale.
 const SMOOTH: f64 = 0.1;
 
-/// Periods are gathered by where they run, in cells of this fraction: a few to that scale.
+/// Periods are gathered into cells of this size in the space of operating points, likewise: a few to that scale.
 const CELL: f64 = 0.04;
 
-/// Covariance of the unknowns from the voltages' accuracy: their error along either axis is a random function of the operating point,
-/// of that fraction of the voltage there, alike at points that lie close.
+/// Covariance of the unknowns from the voltages' accuracy, `fraction` of the voltage. `slopes` are the derivatives of the residuals by each
+/// unknown, `inverse` is the inverse of their normal matrix.
 pub(crate) fn covariance(
     objective: &OutputError,
     drive: &Adjustable,

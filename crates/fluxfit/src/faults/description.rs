@@ -1,0 +1,63 @@
+//! What each fault's file says of its fault, in one form. `S` is the fault's own state, a small struct whose default is a drive without
+//! the fault; the [table](super) finds that state among the others.
+
+use crate::motor::Motor;
+
+/// A fault of a drive, described.
+pub(super) struct Description<S: 'static> {
+    /// Name in files.
+    pub(super) key: &'static str,
+    /// Name in prose.
+    pub(super) label: &'static str,
+    /// Short name of the fault, which it shares with faults that explain the same: of those at most one is part of an answer.
+    pub(super) family: &'static str,
+    /// Whether it happens in the stator's frame, so that the electrical angle must be known.
+    pub(super) needs_angle: bool,
+    /// Whether it makes the logged currents differ from the motor's.
+    pub(super) alters_measured_current: bool,
+    /// The numbers that a fit may move.
+    pub(super) numbers: &'static [NumberDescription<S>],
+    /// The states from which a fit begins, given the present state and the largest measured current, A. Several where the cost is not
+    /// smooth in one of the numbers.
+    pub(super) starts: fn(&S, f64) -> Vec<S>,
+    /// Whether fitted values are possible in a real drive, given the motor fitted beside them and the largest measured current, A.
+    pub(super) is_physical: fn(&S, &Motor, f64) -> bool,
+}
+
+/// A number of a fault, described.
+pub(super) struct NumberDescription<S> {
+    /// Its names.
+    pub(super) names: Names,
+    /// Its value, SI.
+    pub(super) get: fn(&S) -> f64,
+    /// Sets its value, SI.
+    pub(super) set: fn(&mut S, f64),
+    /// Its usual size, SI, beside this motor and the largest measured current, A: the unit in which the steps of a fit are counted.
+    pub(super) usual_size: fn(&Motor, f64) -> f64,
+}
+
+/// How a number is called.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Names {
+    /// Name in files.
+    pub(super) key: &'static str,
+    /// Name in prose.
+    pub(super) label: &'static str,
+    /// SI unit.
+    pub(super) unit: &'static str,
+}
+
+/// The start of most faults: from where they are.
+pub(super) fn present_state<S: Copy>(state: &S, _: f64) -> Vec<S> {
+    vec![*state]
+}
+
+/// The usual size of an angle or a ratio.
+pub(super) fn one(_: &Motor, _: f64) -> f64 {
+    1.0
+}
+
+/// The usual size of a current: the largest.
+pub(super) fn peak_current(_: &Motor, peak: f64) -> f64 {
+    peak
+}

@@ -1,0 +1,292 @@
+//! The faults of a drive: what stands between a motor and its log. A file per fault; here are the table of them, their common state,
+//! and the order in which their effects are applied.
+//!
+//! Each file holds what its fault is and where that comes from, its state, its unknowns with their names, what it does to voltages or
+//! currents, the starts of a fit, and what is physical. A further fault is a file, a field of [`Faults`], a variant of [`Fault`], a row
+//! of the table, and a call where its effect belongs.
+
+pub mod angle_offset;
+pub mod current_gains;
+pub mod current_offset;
+pub mod dead_time;
+mod description;
+pub mod disturbance;
+pub mod saturation;
+
+use crate::{frames::Dq, motor::Motor};
+use angle_offset::AngleOffset;
+use current_gains::CurrentGains;
+use current_offset::CurrentOffset;
+use dead_time::{DeadTime, PeriodAngles};
+use description::Names;
+use disturbance::Disturbance;
+use saturation::Saturation;
+
+/// The state of all faults. The default is a perfect drive.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Faults {
+    /// Dead time and device drops.
+    pub dead_time: DeadTime,
+    /// Angle that is read too large.
+    pub angle_offset: AngleOffset,
+    /// What the current sensors read at zero.
+    pub current_offset: CurrentOffset,
+    /// Gains of the current sensors that differ.
+    pub current_gains: CurrentGains,
+    /// Inductances that depend on the current.
+    pub saturation: Saturation,
+    /// Unknown voltages.
+    pub disturbance: Disturbance,
+}
+
+/// A fault of the drive, or of the model of its motor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Fault {
+    /// Dead time and device drops.
+    DeadTime,
+    /// Angle that is read too large.
+    AngleOffset,
+    /// What the current sensors read at zero.
+    CurrentOffset,
+    /// Gains of three current sensors that differ.
+    ThreeSensors,
+    /// Gains of two current sensors that differ, in phases a and b.
+    SensorsAb,
+    /// The same in phases b and c.
+    SensorsBc,
+    /// The same in phases c and a.
+    SensorsCa,
+    /// Inductances that depend on the current.
+    Saturation,
+    /// Unknown voltages.
+    Disturbance,
+}
+
+/// A number of a fault, which a fit may move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Number {
+    fault: Fault,
+    /// Its place among the fault's numbers.
+    place: usize,
+}
+
+/// A fault's description, with its state found among those of all faults.
+struct Row {
+    key: &'static str,
+    label: &'static str,
+    family: &'static str,
+    needs_angle: bool,
+    alters_measured_current: bool,
+    numbers: usize,
+    names: fn(usize) -> Names,
+    usual_size: fn(usize, &Motor, f64) -> f64,
+    get: fn(&Faults, usize) -> f64,
+    set: fn(&mut Faults, usize, f64),
+    starts: fn(&Faults, f64) -> Vec<Faults>,
+    is_physical: fn(&Faults, &Motor, f64) -> bool,
+}
+
+/// The row of a description whose state is this field of [`Faults`].
+macro_rules! row {
+    ($description:path, $state:ident) => {
+        Row {
+            key: $description.key,
+            label: $description.label,
+            family: $description.family,
+            needs_angle: $description.needs_angle,
+            alters_measured_current: $description.alters_measured_current,
+            numbers: $description.numbers.len(),
+            names: |place| $description.numbers[place].names,
+            usual_size: |place, motor, peak| ($description.numbers[place].usual_size)(motor, peak),
+            get: |faults, place| ($description.numbers[place].get)(&faults.$state),
+            set: |faults, place, value| ($description.numbers[place].set)(&mut faults.$state, value),
+            starts: |faults, peak| {
+                let states = ($description.starts)(&faults.$state, peak);
+                states.into_iter().map(|$state| Faults { $state, ..*faults }).collect()
+            },
+            is_physical: |faults, motor, peak| ($description.is_physical)(&faults.$state, motor, peak),
+        }
+    };
+}
+
+impl Fault {
+    /// All of them, in the order in which they are tried where they promise alike.
+    pub const ALL: [Self; 9] = [
+        Self::DeadTime,
+        Self::AngleOffset,
+        Self::CurrentOffset,
+        Self::ThreeSensors,
+        Self::SensorsAb,
+        Self::SensorsBc,
+        Self::SensorsCa,
+        Self::Saturation,
+        Self::Disturbance,
+    ];
+
+    /// The table.
+    fn row(self) -> Row {
+        match self {
+            Self::DeadTime => row!(dead_time::FAULT, dead_time),
+            Self::AngleOffset => row!(angle_offset::FAULT, angle_offset),
+            Self::CurrentOffset => row!(current_offset::FAULT, current_offset),
+            Self::ThreeSensors => row!(current_gains::THREE_SENSORS, current_gains),
+            Self::SensorsAb => row!(current_gains::SENSORS_A_B, current_gains),
+            Self::SensorsBc => row!(current_gains::SENSORS_B_C, current_gains),
+            Self::SensorsCa => row!(current_gains::SENSORS_C_A, current_gains),
+            Self::Saturation => row!(saturation::FAULT, saturation),
+            Self::Disturbance => row!(disturbance::FAULT, disturbance),
+        }
+    }
+
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        self.row().key
+    }
+
+    /// Name in prose.
+    pub fn label(self) -> &'static str {
+        self.row().label
+    }
+
+    /// Short name, shared with the faults that explain the same: at most one of them is part of an answer.
+    pub fn family(self) -> &'static str {
+        self.row().family
+    }
+
+    /// Whether it can only be told with the electrical angle, because it happens in the stator's frame.
+    pub fn needs_angle(self) -> bool {
+        self.row().needs_angle
+    }
+
+    /// Whether the logged currents differ from the motor's by it.
+    pub fn alters_measured_current(self) -> bool {
+        self.row().alters_measured_current
+    }
+
+    /// Its numbers.
+    pub fn numbers(self) -> impl Iterator<Item = Number> {
+        (0..self.row().numbers).map(move |place| Number { fault: self, place })
+    }
+
+    /// The states from which a fit begins, given the largest measured current, A.
+    pub(crate) fn starts(self, faults: &Faults, peak: f64) -> Vec<Faults> {
+        (self.row().starts)(faults, peak)
+    }
+
+    /// Whether its values are possible in a real drive with this motor, given the largest measured current, A.
+    pub(crate) fn is_physical(self, faults: &Faults, motor: &Motor, peak: f64) -> bool {
+        (self.row().is_physical)(faults, motor, peak)
+    }
+}
+
+impl Number {
+    /// Whose it is.
+    pub fn fault(self) -> Fault {
+        self.fault
+    }
+
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        self.names().key
+    }
+
+    /// Name in prose.
+    pub fn label(self) -> &'static str {
+        self.names().label
+    }
+
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        self.names().unit
+    }
+
+    fn names(self) -> Names {
+        (self.fault.row().names)(self.place)
+    }
+
+    /// The unit in which a fit counts its steps, SI: its usual size beside this motor and the largest measured current, A.
+    pub(crate) fn usual_size(self, motor: &Motor, peak: f64) -> f64 {
+        (self.fault.row().usual_size)(self.place, motor, peak)
+    }
+}
+
+impl Faults {
+    /// The value of a number, SI.
+    pub fn get(&self, number: Number) -> f64 {
+        (number.fault.row().get)(self, number.place)
+    }
+
+    /// Sets the value of a number, SI.
+    pub fn set(&mut self, number: Number, value: f64) {
+        (number.fault.row().set)(self, number.place, value);
+    }
+
+    /// The current in the motor, A, in the frame of its magnet, where `logged` was measured at the electrical angle `theta_e`: the faults
+    /// of the sensors are undone.
+    #[inline]
+    pub(crate) fn motor_current(&self, logged: Dq, theta_e: f64) -> Dq {
+        if *self == Self::default() {
+            return logged;
+        }
+        let i = self.current_offset.removed(logged, theta_e);
+        let i = self.current_gains.balanced(i, theta_e);
+        i.turned(self.angle_offset.angle - self.current_gains.turn)
+    }
+
+    /// The voltage that acts on the motor over a period, V, in the frame of its magnet, where `logged` was commanded, given the current
+    /// `i`, A, in the motor at its start.
+    #[inline]
+    pub(crate) fn motor_voltage(&self, logged: Dq, i: Dq, angles: &PeriodAngles) -> Dq {
+        let offset = self.angle_offset.angle;
+        let u = if self.dead_time.voltage == 0.0 { logged } else { self.dead_time.reduced(logged, i.turned(-offset), angles) };
+        u.turned(offset)
+    }
+
+    /// Whether flux is `L i + psi_f`.
+    #[inline]
+    pub(crate) fn flux_is_linear(&self) -> bool {
+        self.saturation.is_none()
+    }
+
+    /// Flux, Wb, beyond `L i + psi_f` at current `i`, A.
+    #[inline]
+    pub(crate) fn extra_flux(&self, i: Dq) -> Dq {
+        self.saturation.extra_flux(i)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn a_number_that_is_set_is_got() {
+        for number in Fault::ALL.into_iter().flat_map(Fault::numbers) {
+            let mut faults = Faults::default();
+            assert_eq!(faults.get(number), 0.0, "{}", number.key());
+            faults.set(number, 0.25);
+            assert!((faults.get(number) - 0.25).abs() < 1e-15, "{}", number.key());
+        }
+    }
+
+    /// Files know faults and numbers by their keys.
+    #[test]
+    fn keys_are_unique() {
+        let faults: HashSet<_> = Fault::ALL.into_iter().map(Fault::key).collect();
+        assert_eq!(faults.len(), Fault::ALL.len());
+        let numbers = || Fault::ALL.into_iter().flat_map(Fault::numbers);
+        assert_eq!(numbers().map(Number::key).collect::<HashSet<_>>().len(), numbers().count());
+    }
+
+    /// A fit of each begins with finite steps, and a drive without a fault is changed by no fault.
+    #[test]
+    fn a_perfect_drive_is_left_alone() {
+        let (motor, i) = (Motor { rs: 1.0, ld: 5e-3, lq: 12e-3, psi_f: 0.1 }, Dq { d: -2.0, q: 5.0 });
+        assert!(Fault::ALL.into_iter().flat_map(Fault::numbers).all(|number| number.usual_size(&motor, 10.0) > 0.0));
+        let (faults, angles) = (Faults::default(), PeriodAngles { row: 0, start: 0.1, middle: 0.2, end: 0.3 });
+        assert_eq!(faults.motor_current(i, 1.0), i);
+        assert_eq!(faults.motor_voltage(i, i, &angles), i);
+        assert!(faults.flux_is_linear());
+    }
+}

@@ -1,0 +1,284 @@
+//! The search for faults: which [faults of the drive](crate::faults) a log carries. Each is taken only if the log asks for it.
+//!
+//! A fault is first judged where its numbers are zero, by how much of the residual its derivatives explain beyond the other unknowns' (a
+//! score test); only one that would pay is fitted. It is taken if
+//!
+//! - Schwarz's criterion speaks for it very strongly, `N ln(cost before / cost after) > unknowns ln N + 10`, with `N` independent
+//!   residuals, fewer than there are rows where they are correlated (G. Schwarz, Ann. Stat. 6 (1978) 461, doi:10.1214/aos/1176344136);
+//! - its value is physical;
+//! - it moves a parameter by more than its standard error, or takes a noticeable part of the residual with it, so that intervals become
+//!   sharper.
+//!
+//! The best fault is taken first; then the reading of the voltages is chosen again, because a fault may have passed for a delay, and the
+//! other faults are judged again beside it.
+
+use super::{
+    long_run::effective_sample_size,
+    normal_matrix::{dot, inverse_normal},
+    readings::{VERY_STRONG, readings},
+    voltage_accuracy,
+};
+use crate::{
+    faults::{Fault, Faults, disturbance::Disturbance},
+    levenberg_marquardt::{PriorResidual, jacobian, polish_unknowns},
+    objective::{
+        acting_voltage::VoltageReading,
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
+};
+use nalgebra::DVector;
+
+/// A fault that was tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaultTrial {
+    /// The fault.
+    pub fault: Fault,
+    /// Schwarz's criterion: what it gains, less what its unknowns cost; positive speaks for it. As far as it was pursued.
+    pub gain: f64,
+    /// Taken or not, and why.
+    pub outcome: Outcome,
+}
+
+/// Whether a fault was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is part of the answer.
+    Taken,
+    /// It does not explain enough of the residual.
+    NotNeeded,
+    /// What fits has no physical meaning.
+    NotPhysical,
+    /// It explains something, but nothing that matters to a parameter.
+    NoMatter,
+    /// Another fault explains the same.
+    Covered,
+    /// It needs the electrical angle, which the log does not have.
+    NeedsAngle,
+}
+
+impl Outcome {
+    /// In prose.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Taken => "taken",
+            Self::NotNeeded => "explains too little of the residual",
+            Self::NotPhysical => "what fits has no physical meaning",
+            Self::NoMatter => "moves no parameter by more than its standard error",
+            Self::Covered => "another term explains the same",
+            Self::NeedsAngle => "needs the electrical angle, theta_e",
+        }
+    }
+}
+
+/// Least part of the residual's power that a fault must explain to be taken when no parameter moves, or where the motor is disturbed.
+const NOTICEABLE: f64 = 0.02;
+
+/// Residuals below this fraction of the largest current are rounding and the model's own discretization: nothing to explain.
+pub(crate) const LEAST_RESIDUAL: f64 = 1e-4;
+
+/// The search, and where it stands.
+pub(crate) struct FaultSearch<'a> {
+    /// The output error under each reading of the voltages.
+    pub(crate) objectives: &'a [(VoltageReading, OutputError)],
+    /// The reading that fits best now, by its place among them.
+    pub(crate) reading: usize,
+    pub(crate) priors: &'a [PriorResidual],
+    pub(crate) drive: Adjustable,
+    pub(crate) unknowns: Vec<Unknown>,
+    pub(crate) cost: f64,
+    pub(crate) voltage_accuracy: f64,
+}
+
+impl FaultSearch<'_> {
+    /// The output error under the reading that fits best now.
+    fn objective(&self) -> &OutputError {
+        &self.objectives[self.reading].1
+    }
+
+    /// Adds the faults that the log carries: first the observer of a disturbed motor, if it would help, because beside it residuals are
+    /// white and faults are judged by their true worth; then faults; then the observer goes again, if they have made it useless.
+    /// Everything that was tried is returned, faults that were taken first.
+    pub(crate) fn run(&mut self) -> Vec<FaultTrial> {
+        let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == Outcome::Taken);
+        if observer.is_some() {
+            self.choose_reading();
+        }
+        let faults: Vec<Fault> = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance).collect();
+        let mut taken = Vec::new();
+        let not_taken = loop {
+            let trials = self.take_best(&faults, &taken);
+            match trials.iter().find(|trial| trial.outcome == Outcome::Taken) {
+                Some(best) => taken.push(best.clone()),
+                None => break trials,
+            }
+            self.choose_reading();
+        };
+        let observer = match observer {
+            Some(_) => self.drop_observer(),
+            None => FaultTrial { fault: Fault::Disturbance, gain: 0.0, outcome: Outcome::NotNeeded },
+        };
+        let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(not_taken).collect();
+        all.sort_by_key(|trial| trial.outcome != Outcome::Taken);
+        all
+    }
+
+    /// Chooses the reading of the voltages again: with the faults found, another one may fit better.
+    fn choose_reading(&mut self) {
+        if let Some((place, best)) = readings(self.objectives, &self.drive, &self.unknowns, self.priors).into_iter().next() {
+            (self.reading, self.drive, self.cost) = (place, best.polished.drive, best.polished.cost);
+        }
+    }
+
+    /// Whether the observer is still worth its unknowns; if not, it goes.
+    fn drop_observer(&mut self) -> FaultTrial {
+        let trial = |gain, outcome| FaultTrial { fault: Fault::Disturbance, gain, outcome };
+        let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !is_observer_gain(unknown)).collect();
+        let start = Adjustable { faults: Faults { disturbance: Disturbance::default(), ..self.drive.faults }, ..self.drive };
+        let Some((place, without)) = readings(self.objectives, &start, &unknowns, self.priors).into_iter().next() else {
+            return trial(0.0, Outcome::Taken);
+        };
+        let (rows, peak) = (2.0 * self.objective().rows() as f64, self.objective().peak_current());
+        let gain = schwarz(without.polished.cost, self.cost, self.unknowns.len() - unknowns.len(), rows);
+        let nothing_left = (without.polished.cost / rows).sqrt() <= LEAST_RESIDUAL * peak;
+        let outcome = if gain <= VERY_STRONG || nothing_left {
+            Outcome::NotNeeded
+        } else if Fault::Disturbance.is_physical(&self.drive.faults, &self.drive.motor, peak) {
+            return trial(gain, Outcome::Taken);
+        } else {
+            Outcome::NotPhysical
+        };
+        (self.reading, self.drive, self.cost, self.unknowns) = (place, without.polished.drive, without.polished.cost, unknowns);
+        trial(gain, outcome)
+    }
+
+    /// Judges faults; of those that deserve it the best is taken, and comes first.
+    fn take_best(&mut self, faults: &[Fault], taken: &[FaultTrial]) -> Vec<FaultTrial> {
+        let test = ScoreTest::of(self, faults);
+        let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = faults
+            .iter()
+            .filter(|fault| !taken.iter().any(|taken| taken.fault == **fault))
+            .map(|fault| {
+                let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
+                    Outcome::Covered
+                } else if fault.needs_angle() && !self.objective().angle_known() {
+                    Outcome::NeedsAngle
+                } else {
+                    Outcome::NotNeeded
+                };
+                let (gain, starts) = if outcome == Outcome::NotNeeded { test.expected_gain(self, *fault) } else { (0.0, Vec::new()) };
+                (FaultTrial { fault: *fault, gain, outcome }, starts)
+            })
+            .collect();
+        trials.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
+        for place in 0..trials.len() {
+            let (trial, starts) = &mut trials[place];
+            if trial.gain <= VERY_STRONG {
+                break;
+            }
+            let (outcome, fitted) = test.fit(self, trial.fault, starts);
+            trial.outcome = outcome;
+            if let (Outcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
+                (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
+                trials.swap(0, place);
+                break;
+            }
+        }
+        trials.into_iter().map(|(trial, _)| trial).collect()
+    }
+}
+
+/// Whether an unknown belongs to the observer of a disturbed motor.
+fn is_observer_gain(unknown: &Unknown) -> bool {
+    unknown.fault() == Some(Fault::Disturbance)
+}
+
+/// Starts of a fault that are fitted: the most promising of all.
+const FITTED_STARTS: usize = 2;
+
+/// Schwarz's criterion for so many further unknowns, given how many independent residuals there are.
+fn schwarz(before: f64, after: f64, unknowns: usize, independent: f64) -> f64 {
+    if before <= 0.0 || after >= before || after.is_nan() {
+        return f64::NEG_INFINITY;
+    }
+    if before.is_infinite() {
+        return f64::INFINITY;
+    }
+    // A cost of zero explains everything, once.
+    let after = after.max(f64::EPSILON * before);
+    independent * (before / after).ln() - unknowns as f64 * independent.ln()
+}
+
+/// Residuals and derivatives without the faults that are judged.
+struct ScoreTest {
+    residuals: Vec<f64>,
+    jacobian: Vec<Vec<f64>>,
+    /// Standard errors of the motor's unknowns, roughly.
+    standard_errors: Vec<f64>,
+    /// How many independent residuals there are.
+    independent: f64,
+    peak: f64,
+}
+
+impl ScoreTest {
+    fn of(search: &FaultSearch, faults: &[Fault]) -> Self {
+        let FaultSearch { drive, unknowns, cost, .. } = search;
+        let objective = search.objective();
+        let residuals = objective.residuals(drive);
+        let jacobian = jacobian(objective, drive, unknowns);
+        // An observer takes away the correlation of the residuals: where it is judged, every row counts.
+        let independent = if faults.contains(&Fault::Disturbance) { residuals.len() as f64 } else { effective_sample_size(&residuals) };
+        let inverse = inverse_normal(&jacobian);
+        let accuracy = voltage_accuracy::covariance(objective, drive, &inverse, &jacobian, search.voltage_accuracy);
+        let noise = inverse.diagonal() * (cost / independent);
+        let standard_errors = (noise + accuracy.diagonal()).iter().map(|variance| variance.max(0.0).sqrt()).collect();
+        Self { residuals, jacobian, standard_errors, independent, peak: objective.peak_current() }
+    }
+
+    /// What a fault would gain by Schwarz's criterion if the cost were as quadratic as it looks from here, and where to start its fit.
+    fn expected_gain(&self, search: &FaultSearch, fault: Fault) -> (f64, Vec<Adjustable>) {
+        if (search.cost / self.residuals.len() as f64).sqrt() <= LEAST_RESIDUAL * self.peak {
+            return (0.0, Vec::new());
+        }
+        let unknowns: Vec<Unknown> = Unknown::of_fault(fault).collect();
+        let gain_from = |faults: Faults| {
+            let start = Adjustable { faults, ..search.drive };
+            let columns = jacobian(search.objective(), &start, &unknowns);
+            let all = [self.jacobian.clone(), columns].concat();
+            let right = DVector::from_iterator(all.len(), all.iter().map(|column| dot(column, &self.residuals)));
+            let explained = right.dot(&(inverse_normal(&all) * &right)).min(search.cost);
+            (schwarz(search.cost, search.cost - explained, unknowns.len(), self.independent), start)
+        };
+        let mut gains: Vec<(f64, Adjustable)> = fault.starts(&search.drive.faults, self.peak).into_iter().map(gain_from).collect();
+        gains.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let best = gains.first().map_or(f64::NEG_INFINITY, |best| best.0);
+        (best, gains.into_iter().take(FITTED_STARTS).map(|(_, start)| start).collect())
+    }
+
+    /// Fits a fault from these starts, and decides whether to take it; the drive, its cost and all unknowns if so.
+    fn fit(&self, search: &FaultSearch, fault: Fault, starts: &[Adjustable]) -> (Outcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
+        let own: Vec<Unknown> = Unknown::of_fault(fault).collect();
+        let unknowns = [&search.unknowns[..], &own].concat();
+        let polished = starts
+            .iter()
+            .map(|start| polish_unknowns(search.objective(), start, &unknowns, search.priors))
+            .min_by(|one, other| one.cost.total_cmp(&other.cost));
+        let Some(polished) = polished else { return (Outcome::NotNeeded, None) };
+        if schwarz(search.cost, polished.cost, own.len(), self.independent) <= VERY_STRONG {
+            return (Outcome::NotNeeded, None);
+        }
+        // An observer need not be physical yet: it makes residuals white while faults are looked for.
+        if fault != Fault::Disturbance && !fault.is_physical(&polished.drive.faults, &polished.drive.motor, self.peak) {
+            return (Outcome::NotPhysical, None);
+        }
+        let moved = search.unknowns.iter().zip(&self.standard_errors).any(|(unknown, standard_error)| {
+            matches!(unknown, Unknown::Motor(_)) && (polished.drive.get(*unknown) - search.drive.get(*unknown)).abs() > *standard_error
+        });
+        // Beside an observer the residuals are those of a simple filter of unknown disturbances: small gains prove little.
+        let disturbed = search.unknowns.iter().any(is_observer_gain);
+        if (!moved || disturbed) && polished.cost > (1.0 - NOTICEABLE) * search.cost {
+            return (Outcome::NoMatter, None);
+        }
+        (Outcome::Taken, Some((polished.drive, polished.cost, unknowns)))
+    }
+}
