@@ -356,7 +356,7 @@ const VALIDATED: &str = "The parameters to validate: a motor file with all four,
 
 /// Models that `identify` and `validate` know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Model {
+pub(crate) enum ModelArgument {
     /// Output error if the log has the drive's own sample rate, else steady
     Auto,
     /// Voltage equations (2) of the paper, on the means of steady windows
