@@ -88,7 +88,7 @@ fn check(log: &Log, settings: &Settings) -> Option<Vec<String>> {
 fn quick() -> Settings {
     Settings {
         model: Some(Model::Steady),
-        search: optimizer::Settings { population: 6, iterations: 2, ..optimizer::Settings::default() },
+        search: optimizer::SearchSettings { population: 6, iterations: 2, ..optimizer::SearchSettings::default() },
         ..Settings::default()
     }
 }

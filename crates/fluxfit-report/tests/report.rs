@@ -80,7 +80,7 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
     let log = log(currents, 0.1);
     let problem = Problem::steady(&log, &Settings::default(), IdZero::Measured).unwrap();
     let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
-    let settings = fluxfit::optimizer::Settings { population: 20, iterations: 12, ..Default::default() };
+    let settings = fluxfit::optimizer::SearchSettings { population: 20, iterations: 12, ..Default::default() };
     let run = |method: &Method| {
         let mut study = run_method(*method, 3, settings, &bounds, &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
         change(&mut study);
@@ -435,7 +435,7 @@ fn a_million_rows_make_a_page_of_less_than_a_megabyte_that_shows_a_single_row() 
 #[test]
 fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
     let log = recorded(0.08, |_| ());
-    let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };
+    let search = fluxfit::optimizer::SearchSettings { population: 10, iterations: 5, ..Default::default() };
     let method = Some(Method::all()[0]);
     let found = identify(&log, &Settings { method, search, ..of_currents() }).unwrap();
     let text = checked(&page("x", &log, &found, method));

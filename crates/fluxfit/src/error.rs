@@ -109,50 +109,9 @@ pub enum Error {
     /// Every parameter was given.
     #[error("all four parameters are fixed; leave at least one to be identified")]
     NothingToIdentify,
-    /// Bounds of different lengths, or none.
-    #[error("the search box has {lower} lower and {upper} upper bounds; give as many of each, at least one")]
-    BoundsShape {
-        /// Lower bounds given.
-        lower: usize,
-        /// Upper bounds given.
-        upper: usize,
-    },
-    /// A bound that is no interval.
-    #[error(
-        "the search box of dimension {dimension} runs from {lower} to {upper}; both must be finite numbers up to 1e150, the lower below the upper"
-    )]
-    Bounds {
-        /// Dimension, from 0.
-        dimension: usize,
-        /// Lower bound.
-        lower: f64,
-        /// Upper bound.
-        upper: f64,
-    },
-    /// Box and objective do not match.
-    #[error("the search box has {bounds} dimensions, the objective {objective}; give a box of the objective's dimension")]
-    Dimension {
-        /// Of the box.
-        bounds: usize,
-        /// Of the objective.
-        objective: usize,
-    },
-    /// Too few candidates for the method's moves.
-    #[error("a population of {given} is too small for {method}, which needs at least {least}")]
-    Population {
-        /// The method.
-        method: &'static str,
-        /// Candidates asked for.
-        given: usize,
-        /// Candidates needed.
-        least: usize,
-    },
-    /// A start without any finite cost.
-    #[error("none of the {population} candidates of the start has a finite cost; check the objective or narrow the search box")]
-    NonFiniteStart {
-        /// Candidates tried.
-        population: usize,
-    },
+    /// A search that cannot be made.
+    #[error(transparent)]
+    Search(#[from] fluxfit_optimize::Error),
 }
 
 impl Error {

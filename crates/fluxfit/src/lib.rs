@@ -48,7 +48,6 @@ pub mod levenberg_marquardt;
 pub mod log;
 pub mod motor;
 pub mod objective;
-pub mod optimizer;
 pub mod paper;
 mod resolution;
 mod singular_values;
@@ -57,6 +56,7 @@ pub mod study;
 pub mod validate;
 
 pub use error::Error;
+pub use fluxfit_optimize as optimizer;
 pub use identify::{Identification, identify, verdict::Verdict};
 pub use log::{Columns, Log};
 pub use motor::{Motor, Parameter};

@@ -4,7 +4,13 @@
 //! prints the units of L_d and psi_f swapped in its Table 2; here they are right. It states no search box, sample rate, DC voltage or
 //! controller: the box below is ours, the rest stands with the simulated rig.
 
-use crate::motor::{Motor, PARAMETERS};
+use crate::{
+    motor::{Motor, PARAMETERS},
+    optimizer::{
+        Method,
+        methods::{apso::Apso, fpa::Fpa, lpso::Lpso, tgfpa::Tgfpa},
+    },
+};
 
 /// Table 1.
 pub const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
@@ -29,6 +35,10 @@ pub const ID: f64 = -2.0;
 
 /// Section 4.1: runs of each method.
 pub const RUNS: usize = 50;
+
+/// The methods that it compares, in the order of Table 2; their settings where the paper leaves them open are ours.
+pub const METHODS: [Method; 4] =
+    [Method::Tgfpa(Tgfpa::DEFAULT), Method::Fpa(Fpa::DEFAULT), Method::Lpso(Lpso::DEFAULT), Method::Apso(Apso::DEFAULT)];
 
 /// Upper corner of the box in which the paper's motor is searched for; the lower one is zero. Ours: four to ten times
 /// the truth.

@@ -16,7 +16,7 @@ use fluxfit::{
     },
     log::Log,
     motor::PARAMETERS,
-    optimizer::{self, Method, StopReason, tgfpa::Tgfpa},
+    optimizer::{Method, SearchSettings, StopReason},
     validate::{Given, Validation, validate},
 };
 use fluxfit_files::{answer, number::significant};
@@ -171,7 +171,7 @@ fn settings(arguments: &Identify) -> Result<Settings, CommandError> {
         known: known(arguments)?,
         model: arguments.model.stated(),
         method: None,
-        search: optimizer::Settings { seed: arguments.log.seed, ..optimizer::Settings::default() },
+        search: SearchSettings { seed: arguments.log.seed, ..SearchSettings::default() },
         bounds: None,
     })
 }
@@ -179,7 +179,7 @@ fn settings(arguments: &Identify) -> Result<Settings, CommandError> {
 /// The swarm: by itself only where it takes no time.
 fn searcher(arguments: &Identify, log: &Log, settings: &Settings) -> Option<Method> {
     match arguments.method {
-        SearchMethod::Auto => (model::choose(log, settings).0 == Model::Steady).then(|| Method::Tgfpa(Tgfpa::default())),
+        SearchMethod::Auto => (model::choose(log, settings).0 == Model::Steady).then(Method::default),
         SearchMethod::LeastSquares => None,
         SearchMethod::Swarm(method) => Some(method),
     }

@@ -29,7 +29,7 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::VoltageReading,
-    optimizer::{self, Method, Objective, Optimizer, Report, bounds::Bounds},
+    optimizer::{Bounds, Method, Objective, Optimizer, SearchReport, SearchSettings},
     steady::OperatingPoint,
 };
 use model::Model;
@@ -61,7 +61,7 @@ pub struct Settings {
     /// The swarm that searches beside the exact answer, if any. On the output error it takes some seconds.
     pub method: Option<Method>,
     /// Its settings.
-    pub search: optimizer::Settings,
+    pub search: SearchSettings,
     /// Its box; none: from the log.
     pub bounds: Option<Bounds>,
 }
@@ -92,7 +92,7 @@ impl Default for Settings {
             voltage_accuracy: VOLTAGE_ACCURACY,
             known: [Known::Nothing; PARAMETERS],
             method: None,
-            search: optimizer::Settings::default(),
+            search: SearchSettings::default(),
             bounds: None,
         }
     }
@@ -161,7 +161,7 @@ pub enum Step {
 pub type Watch<'a> = &'a dyn Fn(Step) -> ControlFlow<()>;
 
 /// Runs the swarm that `settings` ask for, if any, watched.
-fn searched(objective: &impl Objective, bounds: &Bounds, settings: &Settings, watch: Watch) -> Result<Option<Report>, Error> {
+fn searched(objective: &impl Objective, bounds: &Bounds, settings: &Settings, watch: Watch) -> Result<Option<SearchReport>, Error> {
     let Some(method) = settings.method else { return Ok(None) };
     let (mut iteration, limit) = (0, settings.search.iterations);
     let _ = watch(Step::Search { iteration, limit });
@@ -182,7 +182,7 @@ pub struct Search {
     /// Where it searched.
     pub bounds: Bounds,
     /// Its course.
-    pub report: Report,
+    pub report: SearchReport,
 }
 
 impl Identification {

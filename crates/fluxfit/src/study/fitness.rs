@@ -14,13 +14,14 @@ use crate::{
         output_error::OutputError,
         voltage_error::{IdZero, VoltageError},
     },
-    optimizer::{Method, Objective, Optimizer, Settings, bounds::Bounds, tgfpa::Tgfpa},
+    optimizer::{self, Bounds, Method, Objective, Optimizer, SearchSettings},
     steady::{OperatingPoint, windows::at_most_paper_rows},
 };
 use rayon::prelude::*;
 
 /// The search from which a polish starts where no steady window gives one: coarse, since the polish comes home from far away.
-const COARSE: Settings = Settings { population: 20, iterations: 30, seed: 1, run: 0, close_to_optimum: None, target_cost: None };
+const COARSE: SearchSettings =
+    SearchSettings { population: 20, iterations: 30, seed: 1, run: 0, close_to_optimum: None, target_cost: None };
 
 /// Half a 95 % interval, in standard errors.
 const INTERVAL: f64 = 1.96;
@@ -105,7 +106,7 @@ impl Problem {
         // Per row: a delay costs rows, and a sum over fewer is no better fit.
         let per_row = |(_, objective, minimum): &(VoltageReading, OutputError, Polished)| minimum.cost / objective.rows() as f64;
         let best = polished.collect::<Vec<_>>().into_iter().min_by(|a, b| per_row(a).total_cmp(&per_row(b)));
-        let (reading, objective, minimum) = best.ok_or(Error::NonFiniteStart { population: COARSE.population })?;
+        let (reading, objective, minimum) = best.ok_or(optimizer::Error::NonFiniteStart { population: COARSE.population })?;
         Ok(Self {
             rows: objective.rows_per_segment(),
             unexcited: unexcited(&objective, &minimum, &bounds),
@@ -229,7 +230,7 @@ fn readings(stated: Option<VoltageReading>) -> Vec<VoltageReading> {
 
 /// Where a coarse search ends.
 fn coarse(objective: &OutputError, bounds: &Bounds) -> Result<Motor, Error> {
-    let report = Optimizer::start(Method::Tgfpa(Tgfpa::default()), COARSE, bounds.clone(), objective)?.run(objective);
+    let report = Optimizer::start(Method::default(), COARSE, bounds.clone(), objective)?.run(objective);
     Ok(Motor::from(std::array::from_fn(|p| report.best[p])))
 }
 

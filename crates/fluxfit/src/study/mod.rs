@@ -10,15 +10,11 @@ pub mod fitness;
 use crate::{
     error::Error,
     motor::{Motor, PARAMETERS, Parameter},
-    optimizer::{Method, Optimizer, Report, Settings, StopReason, bounds::Bounds},
+    optimizer::{Bounds, Method, SearchReport, SearchSettings, run_many},
 };
 use fitness::Fitness;
-use rayon::prelude::*;
 use statrs::statistics::{Data, OrderStatistics};
-use std::{
-    ops::ControlFlow,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::ops::ControlFlow;
 
 /// Many runs of one method.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,31 +50,12 @@ pub struct Convergence {
 pub fn run_method(
     method: Method,
     runs: usize,
-    settings: Settings,
+    settings: SearchSettings,
     bounds: &Bounds,
     fitness: &Fitness,
     go_on: impl Fn() -> ControlFlow<()> + Sync,
 ) -> Result<Option<MethodStudy>, Error> {
-    if runs == 0 {
-        return Err(Error::Setting { setting: "the number of runs", value: 0.0, range: "at least 1" });
-    }
-    let interrupted = AtomicBool::new(false);
-    let run = |run: usize| {
-        // A run that has not begun costs its first population before anybody is asked.
-        if interrupted.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
-        let settings = Settings { run: run as u64, ..settings };
-        let mut optimizer = Optimizer::start(method, settings, bounds.clone(), fitness)?;
-        let report = optimizer.run_while(fitness, || {
-            let next = go_on();
-            interrupted.fetch_or(next.is_break(), Ordering::Relaxed);
-            next
-        });
-        Ok((report.stop_reason != StopReason::Interrupted).then(|| Course::of(&report, fitness)))
-    };
-    let courses = (0..runs).into_par_iter().map(run).collect::<Result<Vec<_>, Error>>()?;
-    let courses: Vec<Course> = courses.into_iter().flatten().collect();
+    let courses = run_many(method, runs, settings, bounds, fitness, |report| Course::of(&report, fitness), go_on)?;
     Ok((!courses.is_empty()).then(|| MethodStudy {
         method,
         evaluations_per_run: courses.iter().map(|course| course.evaluations).max().unwrap_or(0),
@@ -143,7 +120,7 @@ struct Course {
 }
 
 impl Course {
-    fn of(report: &Report, fitness: &Fitness) -> Self {
+    fn of(report: &SearchReport, fitness: &Fitness) -> Self {
         let best = report.history.iter().map(|record| {
             let motor = Motor::from(std::array::from_fn(|p| record.best[p]));
             (motor, fitness.cost_above_optimum(&motor, record.cost))
