@@ -9,7 +9,7 @@ use fluxfit::{
         acting_voltage::{VoltageFrame, VoltageReading},
         voltage_error::IdZero,
     },
-    optimizer::Method,
+    optimizer::{METHODS, Method},
 };
 use fluxfit_files::{Unit, export::Target};
 use std::path::PathBuf;
@@ -241,10 +241,9 @@ pub(crate) struct Identify {
     /// What is fitted to what
     #[arg(long, help_heading = "Search", value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
-    /// Who searches beside the exact answer: least-squares (nobody), tgfpa, fpa, lpso, apso
-    ///
-    /// auto is tgfpa at operating points, and nobody on the output error, where it takes seconds.
-    #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method)]
+    // Its help lists the methods: `help_of_search_method`.
+    #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method,
+          help = help_of_search_method(), long_help = long_help_of_search_method())]
     pub(crate) method: SearchMethod,
     /// Systematic uncertainty of the voltages, as a fraction of the vector
     #[arg(long, help_heading = "Knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::identify::VOLTAGE_ACCURACY)]
@@ -273,8 +272,9 @@ pub(crate) struct Identify {
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) log: LogArguments,
-    /// Methods: tgfpa, fpa, lpso, apso
-    #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
+    // The paper's four, unless others are asked for.
+    #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method,
+          help = format!("Methods: {}", method_keys()))]
     pub(crate) methods: Vec<Method>,
     /// What is minimized
     #[arg(long, help_heading = "Search", value_enum, default_value_t = StudyModel::Steady)]
@@ -410,20 +410,33 @@ pub(crate) enum SearchMethod {
     Swarm(Method),
 }
 
+fn help_of_search_method() -> String {
+    format!("Who searches beside the exact answer: least-squares (nobody), {}", method_keys())
+}
+
+fn long_help_of_search_method() -> String {
+    let auto = "auto is tgfpa at operating points, and nobody on the output error, where it takes seconds.";
+    format!("{}\n\n{auto}", help_of_search_method())
+}
+
 fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
     match text {
         "auto" => Ok(SearchMethod::Auto),
         "least-squares" => Ok(SearchMethod::LeastSquares),
         _ => {
-            parse_method(text).map(SearchMethod::Swarm).map_err(|_| format!("no method '{text}'; there are auto, least-squares, {METHODS}"))
+            let unknown = || format!("no method '{text}'; there are auto, least-squares, {}", method_keys());
+            Method::named(text).map(SearchMethod::Swarm).ok_or_else(unknown)
         }
     }
 }
 
-const METHODS: &str = "tgfpa, fpa, lpso, apso";
+/// The keys of all methods that search.
+fn method_keys() -> String {
+    METHODS.iter().map(|facts| facts.key).collect::<Vec<_>>().join(", ")
+}
 
 fn parse_method(text: &str) -> Result<Method, String> {
-    Method::named(text).ok_or_else(|| format!("no method '{text}'; there are {METHODS}"))
+    Method::named(text).ok_or_else(|| format!("no method '{text}'; there are {}", method_keys()))
 }
 
 fn parse_id_zero(text: &str) -> Result<IdZero, String> {
