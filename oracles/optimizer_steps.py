@@ -3,7 +3,7 @@
 Written from the methods' equations with numpy arrays. Every random number is drawn here and recorded in the order in which the library asks
 for it; the library, fed the same numbers, must walk the same course. The distributions themselves are therefore not checked by these numbers.
 
-    python3 oracles/optimizer_steps.py        rewrites oracles/optimizer_steps.json; needs numpy
+    python3 oracles/optimizer_steps.py        rewrites crates/fluxfit-optimize/tests/optimizer_steps.json; needs numpy
 
 Order of the draws (each array is recorded row after row):
     start     tgfpa logistic: b_1, one per dimension; otherwise positions; swarms then draw velocities, each component from 2 U(0,1) - 1
@@ -21,6 +21,9 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
+
+# Beside the test that reads them.
+NUMBERS = Path(__file__).parent.parent / "crates/fluxfit-optimize/tests/optimizer_steps.json"
 
 POPULATION = 6
 ITERATIONS = 4
@@ -274,7 +277,7 @@ def main():
     # One line per case, so that a difference shows which case it is in.
     cases = ",\n".join(json.dumps(course(*case), **compact) for case in CASES)
     text = f'{{"objective":{json.dumps(OBJECTIVE, **compact)},"cases":[\n{cases}\n]}}\n'
-    Path(__file__).with_suffix(".json").write_text(text)
+    NUMBERS.write_text(text)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 use crate::timing::median_seconds;
 use fluxfit::{
     objective::voltage_error::VoltageError,
-    optimizer::{Objective, bounds::Bounds},
+    optimizer::{Bounds, Objective},
 };
 use std::hint::black_box;
 

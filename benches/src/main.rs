@@ -13,7 +13,7 @@ use fluxfit::{
     log::Log,
     motor::{Motor, PARAMETERS},
     objective::voltage_error::{IdZero, VoltageError},
-    optimizer::{Method, bounds::Bounds},
+    optimizer::Bounds,
     paper,
     steady::zero_order_hold::ZeroOrderHold,
 };
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         motor_least_squares: objective.least_squares().motor,
         nanoseconds_per_evaluation: fitness::nanoseconds_per_evaluation(&objective, &bounds),
         least_squares: exact::measure(&log, &modes),
-        swarms: Method::all().into_iter().map(|method| swarm::measure(method, &bounds, &objective)).collect::<Result<_, _>>()?,
+        swarms: paper::METHODS.into_iter().map(|method| swarm::measure(method, &bounds, &objective)).collect::<Result<_, _>>()?,
     };
     println!("{}", serde_json::to_string_pretty(&figures)?);
     Ok(())

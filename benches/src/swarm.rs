@@ -5,7 +5,7 @@ use fluxfit::{
     error::Error,
     motor::{Motor, PARAMETERS},
     objective::voltage_error::VoltageError,
-    optimizer::{Method, Optimizer, Report, Settings, bounds::Bounds},
+    optimizer::{Bounds, Method, Optimizer, SearchReport, SearchSettings},
 };
 use serde::Serialize;
 
@@ -25,8 +25,8 @@ pub(crate) struct Figures {
 
 /// Times the runs of a method.
 pub(crate) fn measure(method: Method, bounds: &Bounds, objective: &VoltageError) -> Result<Figures, Error> {
-    let run = |run: usize| -> Result<Report, Error> {
-        let settings = Settings { run: run as u64, ..Settings::default() };
+    let run = |run: usize| -> Result<SearchReport, Error> {
+        let settings = SearchSettings { run: run as u64, ..SearchSettings::default() };
         Ok(Optimizer::start(method, settings, bounds.clone(), objective)?.run(objective))
     };
     let reports = (0..RUNS).map(run).collect::<Result<Vec<_>, _>>()?;

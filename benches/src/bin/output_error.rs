@@ -11,7 +11,7 @@ use fluxfit::{
         output_error::OutputError,
         transition::Transition,
     },
-    optimizer::{Method, Optimizer, Settings, bounds::Bounds, tgfpa::Tgfpa},
+    optimizer::{Bounds, Method, Optimizer, SearchSettings},
     paper,
 };
 use fluxfit_log::{LogOptions, read_log};
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
     let start = Instant::now();
-    let report = Optimizer::start(Method::Tgfpa(Tgfpa::default()), Settings::default(), bounds, &objective)?.run(&objective);
+    let report = Optimizer::start(Method::default(), SearchSettings::default(), bounds, &objective)?.run(&objective);
     println!("one run of tGFPA, s        {:.2}", start.elapsed().as_secs_f64());
     println!("evaluations                {}", report.evaluations);
     println!("ends at                    {:?}", Motor::from(<[f64; PARAMETERS]>::try_from(report.best.as_slice())?));

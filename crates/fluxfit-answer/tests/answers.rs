@@ -89,7 +89,7 @@ fn check(log: &Log, settings: &Request) -> Option<Vec<String>> {
 fn quick() -> Request {
     Request {
         model: Some(Model::Steady),
-        search: optimizer::Settings { population: 6, iterations: 2, ..optimizer::Settings::default() },
+        search: optimizer::SearchSettings { population: 6, iterations: 2, ..optimizer::SearchSettings::default() },
         ..Request::default()
     }
 }

@@ -9,7 +9,7 @@ use fluxfit::{
         acting_voltage::{VoltageFrame, VoltageReading},
         voltage_error::IdZero,
     },
-    optimizer::Method,
+    optimizer::{METHODS, Method},
 };
 use fluxfit_answer::export::Target;
 use fluxfit_units::{
@@ -254,11 +254,9 @@ pub(crate) struct Identify {
     /// Model that is fitted to the log
     #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
     pub(crate) model: ModelArgument,
-    /// Optimizer that is run for comparison: least-squares (none), tgfpa, fpa, lpso, apso
-    ///
-    /// The identified parameters do not depend on it. auto is tgfpa with the steady model, and none with the output error, where a run
-    /// takes seconds.
-    #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method)]
+    // Its help lists the methods: `help_of_search_method`.
+    #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method,
+          help = help_of_search_method(), long_help = long_help_of_search_method())]
     pub(crate) method: SearchMethod,
     /// Standard uncertainty of the voltages, as a fraction of the vector
     #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
@@ -287,8 +285,9 @@ pub(crate) struct Identify {
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) log: LogArguments,
-    /// Optimizers to compare: tgfpa, fpa, lpso, apso
-    #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method)]
+    // The paper's four, unless others are asked for.
+    #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method,
+          help = format!("Optimizers to compare: {}", method_keys()))]
     pub(crate) methods: Vec<Method>,
     /// Fitness that is minimized
     #[arg(long, help_heading = "Model", value_enum, default_value_t = StudyModel::Steady)]
@@ -425,20 +424,34 @@ pub(crate) enum SearchMethod {
     Swarm(Method),
 }
 
+fn help_of_search_method() -> String {
+    format!("Optimizer that is run for comparison: least-squares (none), {}", method_keys())
+}
+
+fn long_help_of_search_method() -> String {
+    let auto = "The identified parameters do not depend on it. auto is tgfpa with the steady model, and none with the output error, where a run \
+                takes seconds.";
+    format!("{}\n\n{auto}", help_of_search_method())
+}
+
 fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
     match text {
         "auto" => Ok(SearchMethod::Auto),
         "least-squares" => Ok(SearchMethod::LeastSquares),
         _ => {
-            parse_method(text).map(SearchMethod::Swarm).map_err(|_| format!("no method '{text}'; there are auto, least-squares, {METHODS}"))
+            let unknown = || format!("no method '{text}'; there are auto, least-squares, {}", method_keys());
+            Method::named(text).map(SearchMethod::Swarm).ok_or_else(unknown)
         }
     }
 }
 
-const METHODS: &str = "tgfpa, fpa, lpso, apso";
+/// The keys of all methods that search.
+fn method_keys() -> String {
+    METHODS.iter().map(|facts| facts.key).collect::<Vec<_>>().join(", ")
+}
 
 fn parse_method(text: &str) -> Result<Method, String> {
-    Method::named(text).ok_or_else(|| format!("no method '{text}'; there are {METHODS}"))
+    Method::named(text).ok_or_else(|| format!("no method '{text}'; there are {}", method_keys()))
 }
 
 fn parse_id_zero(text: &str) -> Result<IdZero, String> {

@@ -11,6 +11,9 @@ pub(crate) enum CommandError {
     /// A setting, or a log that holds nothing to work on.
     #[error(transparent)]
     Library(#[from] fluxfit::error::Error),
+    /// A search that cannot be made.
+    #[error(transparent)]
+    Search(#[from] fluxfit::optimizer::Error),
     /// A scenario that cannot be simulated, or whose drive trips.
     #[error(transparent)]
     Drive(#[from] fluxfit_drive::Error),

@@ -88,7 +88,7 @@ impl CurrentLoop {
     pub fn of(parameters: &[Judgement; PARAMETERS], bandwidth: f64, control_rate: (f64, Provenance)) -> Result<Self, Error> {
         for (setting, value) in [("the bandwidth", bandwidth), ("the control rate", control_rate.0)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::Setting { setting, value, range: "a positive number of Hz" });
+                return Err(ErrorKind::Setting { setting, value, range: "a positive number of Hz" }.into());
             }
         }
         let gain = |parameter| Gain::of(&parameters[parameter as usize], TAU * bandwidth);

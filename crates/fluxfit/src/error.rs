@@ -1,15 +1,23 @@
 //! The only error of this library: misuse, or data that cannot be read as a log.
 //!
-//! Each variant carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them
+//! [`ErrorKind`] carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them
 //! from a file knows their lines ([`Error::row`], [`Error::column`]).
 
-/// Until errors have a kind of their own.
-pub use Error as ErrorKind;
+/// What went wrong: its [kind](Error::kind) for programs, its sentence for people.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(transparent)]
+pub struct Error(Box<ErrorKind>);
 
-/// What went wrong.
+impl<K: Into<ErrorKind>> From<K> for Error {
+    fn from(kind: K) -> Self {
+        Self(Box::new(kind.into()))
+    }
+}
+
+/// What went wrong, with its values in SI units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Error {
+pub enum ErrorKind {
     /// Columns of a log differ in length.
     #[error("column {column} has {rows} rows where t has {expected}; give every column the same length")]
     ColumnLength {
@@ -70,7 +78,7 @@ pub enum Error {
     },
     /// No steady operating point.
     #[error(
-        "no steady stretch of at least {least} rows was found while the motor carried current; hold speed and current constant for a while, or name a stretch with --window T0:T1"
+        "no steady stretch of at least {least} rows was found while the motor carried current; hold speed and current constant for a while, or name a window in time"
     )]
     NoOperatingPoint {
         /// Rows that a window needs.
@@ -106,7 +114,7 @@ pub enum Error {
     },
     /// Rows that were interpolated, where the output error needs those of one instant.
     #[error(
-        "the log's channels were sampled at different instants, so no row is one instant of the drive and the output error means nothing; leave --model at auto or steady, or log all channels together"
+        "the log's channels were sampled at different instants, so no row is one instant of the drive and the output error means nothing; use the steady model, or log all channels together"
     )]
     Interpolated,
     /// Rows are too slow to be those of the drive's control, whose rate is needed.
@@ -121,56 +129,15 @@ pub enum Error {
     /// Every parameter was given.
     #[error("all four parameters are fixed; leave at least one to be identified")]
     NothingToIdentify,
-    /// Bounds of different lengths, or none.
-    #[error("the search box has {lower} lower and {upper} upper bounds; give as many of each, at least one")]
-    BoundsShape {
-        /// Lower bounds given.
-        lower: usize,
-        /// Upper bounds given.
-        upper: usize,
-    },
-    /// A bound that is no interval.
-    #[error(
-        "the search box of dimension {dimension} runs from {lower} to {upper}; both must be finite numbers up to 1e150, the lower below the upper"
-    )]
-    Bounds {
-        /// Dimension, from 0.
-        dimension: usize,
-        /// Lower bound.
-        lower: f64,
-        /// Upper bound.
-        upper: f64,
-    },
-    /// Box and objective do not match.
-    #[error("the search box has {bounds} dimensions, the objective {objective}; give a box of the objective's dimension")]
-    Dimension {
-        /// Of the box.
-        bounds: usize,
-        /// Of the objective.
-        objective: usize,
-    },
-    /// Too few candidates for the method's moves.
-    #[error("a population of {given} is too small for {method}, which needs at least {least}")]
-    Population {
-        /// The method.
-        method: &'static str,
-        /// Candidates asked for.
-        given: usize,
-        /// Candidates needed.
-        least: usize,
-    },
-    /// A start without any finite cost.
-    #[error("none of the {population} candidates of the start has a finite cost; check the objective or narrow the search box")]
-    NonFiniteStart {
-        /// Candidates tried.
-        population: usize,
-    },
+    /// A search that cannot be made.
+    #[error(transparent)]
+    Search(#[from] fluxfit_optimize::Error),
 }
 
 impl Error {
     /// What went wrong.
     pub fn kind(&self) -> &ErrorKind {
-        self
+        &self.0
     }
 
     /// The error of a log without rows that could be fitted.
@@ -180,17 +147,19 @@ impl Error {
 
     /// The row of the log, from 0, that the error is about.
     pub fn row(&self) -> Option<usize> {
-        match self {
-            Self::NotFinite { row, .. } | Self::Implausible { row, .. } | Self::TimeOrder { row, .. } => Some(*row),
+        match self.kind() {
+            ErrorKind::NotFinite { row, .. } | ErrorKind::Implausible { row, .. } | ErrorKind::TimeOrder { row, .. } => Some(*row),
             _ => None,
         }
     }
 
     /// The canonical name of the column that the error is about.
     pub fn column(&self) -> Option<&'static str> {
-        match self {
-            Self::NotFinite { column, .. } | Self::Implausible { column, .. } | Self::ColumnLength { column, .. } => Some(column),
-            Self::TimeOrder { .. } => Some("t"),
+        match self.kind() {
+            ErrorKind::NotFinite { column, .. } | ErrorKind::Implausible { column, .. } | ErrorKind::ColumnLength { column, .. } => {
+                Some(column)
+            }
+            ErrorKind::TimeOrder { .. } => Some("t"),
             _ => None,
         }
     }

@@ -46,7 +46,6 @@ pub mod levenberg_marquardt;
 pub mod log;
 pub mod motor;
 pub mod objective;
-pub mod optimizer;
 pub mod paper;
 mod quantization;
 mod singular_values;
@@ -57,6 +56,7 @@ mod words;
 
 pub use answer::{Answer, HeldOut, identify, identify_with_progress, suspect_units};
 pub use error::{Error, ErrorKind};
+pub use fluxfit_optimize as optimizer;
 pub use identification::{
     explain::{judgement::Judgement, remedy::Remedy, warning::Warning},
     judge::{reason::Reason, verdict::Verdict},

@@ -4,7 +4,13 @@
 //! prints the units of L_d and psi_f swapped in its Table 2; here they are corrected. It does not state the search box, sample rate, DC
 //! voltage or controller. The search box is chosen below, the others in the simulated rig (`fluxfit_drive::Scenario::paper`).
 
-use crate::motor::{Motor, PARAMETERS};
+use crate::{
+    motor::{Motor, PARAMETERS},
+    optimizer::{
+        Method,
+        methods::{apso::Apso, fpa::Fpa, lpso::Lpso, tgfpa::Tgfpa},
+    },
+};
 
 /// Table 1.
 pub const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
@@ -29,6 +35,10 @@ pub const ID: f64 = -2.0;
 
 /// Section 4.1: runs of each method.
 pub const RUNS: usize = 50;
+
+/// The methods that it compares, in the order of Table 2; their settings where the paper leaves them open are ours.
+pub const METHODS: [Method; 4] =
+    [Method::Tgfpa(Tgfpa::DEFAULT), Method::Fpa(Fpa::DEFAULT), Method::Lpso(Lpso::DEFAULT), Method::Apso(Apso::DEFAULT)];
 
 /// Upper bounds of the search box; the lower bounds are zero. Not from the paper: four to ten times the true values.
 pub const SEARCH_BOX: [f64; PARAMETERS] = [5.0, 0.05, 0.05, 1.0];

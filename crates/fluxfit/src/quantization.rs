@@ -49,7 +49,7 @@ pub(crate) fn standard_uncertainty(step: f64, deviation: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimizer::draws::Draws;
+    use crate::optimizer::Draws;
 
     #[test]
     fn only_quantized_channels_have_a_step() {

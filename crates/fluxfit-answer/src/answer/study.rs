@@ -3,7 +3,7 @@
 use super::{by_parameter, motor_with_cost};
 use fluxfit::{
     motor::Motor,
-    optimizer::{Settings, bounds::Bounds},
+    optimizer::{Bounds, SearchSettings},
     study::{
         ConvergenceCurves, MethodStudy,
         fitness::{Fitness, StudyProblem},
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 #[derive(Debug, Clone, Copy)]
 pub struct StudyFacts<'a> {
     /// Settings of every run.
-    pub settings: &'a Settings,
+    pub settings: &'a SearchSettings,
     /// Runs of each method.
     pub runs: usize,
     /// Where they searched.

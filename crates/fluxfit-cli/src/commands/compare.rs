@@ -11,7 +11,7 @@ use fluxfit::{
     log::Log,
     motor::Parameter,
     objective::voltage_error::IdZero,
-    optimizer::{self, CloseTo, Method, bounds::Bounds},
+    optimizer::{Bounds, CloseTo, Method, SearchSettings},
     study::{
         MethodStudy,
         fitness::{Fitness, StudyProblem},
@@ -93,11 +93,11 @@ fn problem(arguments: &Compare, log: &Log) -> Result<StudyProblem, fluxfit::erro
 pub(super) fn study(
     methods: &[Method],
     runs: usize,
-    settings: optimizer::Settings,
+    settings: SearchSettings,
     bounds: &Bounds,
     fitness: &mut Fitness,
 ) -> Result<Vec<(MethodStudy, f64)>, CommandError> {
-    let progress = terminal::counting("comparing", runs * methods.len() * settings.iterations);
+    let progress = terminal::counting("comparing", runs.saturating_mul(methods.len()).saturating_mul(settings.iterations));
     let (mut studies, mut seconds) = (Vec::new(), Vec::new());
     for method in methods {
         terminal::detail(|| format!("{}: {runs} runs begin", method.label()));
@@ -119,13 +119,13 @@ pub(super) fn study(
     Ok(studies.into_iter().zip(seconds).collect())
 }
 
-fn search_settings(arguments: &Compare, fitness: &Fitness) -> Result<optimizer::Settings, CommandError> {
+fn search_settings(arguments: &Compare, fitness: &Fitness) -> Result<SearchSettings, CommandError> {
     for (option, value) in [("--tolerance", arguments.tolerance), ("--target-cost", arguments.target_cost)] {
         if value.is_some_and(|value| !(value >= 0.0 && value.is_finite())) {
             return Err(CommandError::Usage(format!("{option} must be a finite number, zero or more")));
         }
     }
-    Ok(optimizer::Settings {
+    Ok(SearchSettings {
         population: arguments.population,
         iterations: arguments.iterations,
         seed: arguments.log.seed,

@@ -7,7 +7,7 @@ use fluxfit::{
     log::Log,
     motor::PARAMETERS,
     objective::voltage_error::IdZero,
-    optimizer::{self, Method, bounds::Bounds},
+    optimizer::{Bounds, SearchSettings},
     paper,
     study::fitness::StudyProblem,
 };
@@ -26,19 +26,19 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     let log = terminal::working("simulating".to_owned(), || simulate(&scenario, 0, || ()))?.log()?;
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
 
-    let search = optimizer::Settings { seed: arguments.seed, ..optimizer::Settings::default() };
+    let search = SearchSettings { seed: arguments.seed, ..SearchSettings::default() };
     let request = Request { search, bounds: paper::SEARCH_BOX.map(|upper| Some((0.0, upper))), ..Request::default() };
     let answer = identify(&log, &request)?;
     let found = &answer.identification;
     terminal::identification::show(NAME, &answer)?;
 
     let mut problem = StudyProblem::steady(&log, &request, IdZero::Measured)?;
-    let methods = compare::study(&Method::all(), paper::RUNS, search, &bounds, &mut problem.fitness)?;
+    let methods = compare::study(&paper::METHODS, paper::RUNS, search, &bounds, &mut problem.fitness)?;
     let facts = StudyFacts { settings: &search, runs: paper::RUNS, bounds: &bounds, problem: &problem, truth: Some(&paper::MOTOR) };
     terminal::print("\n")?;
     terminal::study::show(NAME, &facts, &methods)?;
-    if !facts.is_whole(&methods, Method::all().len()) {
-        terminal::study::interrupted(&Method::all(), paper::RUNS, &methods);
+    if !facts.is_whole(&methods, paper::METHODS.len()) {
+        terminal::study::interrupted(&paper::METHODS, paper::RUNS, &methods);
         return Ok(Status::Incomplete);
     }
 

@@ -78,7 +78,7 @@ pub(crate) fn request(arguments: &LogArguments, input: &Input) -> Result<Request
     Ok(Request {
         windows: arguments.window.clone(),
         voltage_timing: arguments.voltage_timing.stated(),
-        search: optimizer::Settings { seed: arguments.seed, ..optimizer::Settings::default() },
+        search: optimizer::SearchSettings { seed: arguments.seed, ..optimizer::SearchSettings::default() },
         bounds: by_parameter(&bounds, "--bounds")?,
         nameplate: nameplate(input),
         ..Request::default()

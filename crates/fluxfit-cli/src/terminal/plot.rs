@@ -1,8 +1,8 @@
 //! Curves in characters: convergence, logarithmic cost against iteration, one letter per method, so that they can be told apart
 //! without colour; and the courses of a log's currents and speed.
 
-use anstyle::{AnsiColor, Style};
-use fluxfit::{log::Log, optimizer::Method, study::MethodStudy};
+use anstyle::{Ansi256Color, AnsiColor};
+use fluxfit::{log::Log, study::MethodStudy};
 use fluxfit_units::significant;
 use ratatui_core::{buffer::Buffer, layout::Rect, style::Color, symbols::Marker, widgets::Widget};
 use ratatui_widgets::chart::{Axis, Chart, Dataset, GraphType};
@@ -14,13 +14,11 @@ const SIZE: (u16, u16) = (96, 20);
 const FLOOR: f64 = 1e-12;
 
 /// A method's letter and colour, in the chart's terms and in the terminal's.
-fn pen(study: &MethodStudy) -> (char, Color, AnsiColor) {
-    match study.method {
-        Method::Tgfpa(_) => ('t', Color::Green, AnsiColor::Green),
-        Method::Fpa(_) => ('F', Color::Yellow, AnsiColor::Yellow),
-        Method::Lpso(_) => ('L', Color::Blue, AnsiColor::Blue),
-        Method::Apso(_) => ('A', Color::Magenta, AnsiColor::Magenta),
-    }
+fn pen(study: &MethodStudy) -> (char, Color, anstyle::Color) {
+    let look = study.method.facts().look;
+    let ansi = Ansi256Color(look.terminal);
+    // The first sixteen have names, which every terminal knows.
+    (look.letter, Color::Indexed(look.terminal), ansi.into_ansi().map_or(ansi.into(), Into::into))
 }
 
 /// The medians of the cost above the minimum, drawn.
@@ -79,7 +77,7 @@ fn course(name: &str, t: &[f64], values: &[f64], color: Color) -> String {
         Color::Green => AnsiColor::Green,
         _ => AnsiColor::Yellow,
     };
-    format!("{name}\n{}", text(&buffer, &[(color, pen)]))
+    format!("{name}\n{}", text(&buffer, &[(color, pen.into())]))
 }
 
 /// Least and largest value of each of [`COLUMNS`] spans of time.
@@ -107,7 +105,7 @@ fn curve(study: &MethodStudy) -> Vec<(f64, f64)> {
 }
 
 /// The buffer's cells, with their colours.
-fn text(buffer: &Buffer, pens: &[(Color, AnsiColor)]) -> String {
+fn text(buffer: &Buffer, pens: &[(Color, anstyle::Color)]) -> String {
     let mut text = String::new();
     for y in 0..buffer.area.height {
         let mut line = String::new();
@@ -130,7 +128,7 @@ fn text(buffer: &Buffer, pens: &[(Color, AnsiColor)]) -> String {
 fn legend(methods: &[(MethodStudy, f64)]) -> String {
     let entries = methods.iter().map(|(study, _)| {
         let (letter, _, color) = pen(study);
-        let style: Style = color.on_default();
+        let style = color.on_default();
         format!("{style}{letter}{style:#} {}", study.method.label())
     });
     format!("{:>12}{}{:>16}", "", entries.collect::<Vec<_>>().join("   "), "x: iteration")

@@ -10,7 +10,7 @@ use fluxfit::{
         acting_voltage::{VoltageFrame, VoltageReading},
         output_error::OutputError,
     },
-    optimizer::{Method, Optimizer, Settings, bounds::Bounds},
+    optimizer::{Bounds, Method, Optimizer, SearchSettings},
     paper,
 };
 use fluxfit_drive::{
@@ -112,7 +112,7 @@ fn the_papers_swarm_ends_where_the_polish_does() {
     let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
     let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
     let bounds = Bounds::new(vec![0.05, 5e-4, 5e-4, 0.01], paper::SEARCH_BOX.to_vec()).unwrap();
-    let settings = Settings { population: 40, iterations: 250, ..Settings::default() };
+    let settings = SearchSettings { population: 40, iterations: 250, ..SearchSettings::default() };
     let report = Optimizer::start(Method::all()[0], settings, bounds, &objective).unwrap().run(&objective);
     let found = polish(&objective, &START);
     let swarm = Motor::from([report.best[0], report.best[1], report.best[2], report.best[3]]);

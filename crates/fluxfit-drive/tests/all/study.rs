@@ -7,7 +7,7 @@ use fluxfit::{
     frames::Dq,
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageReading},
-    optimizer::{Method, Objective, Settings, bounds::Bounds, draws::Draws},
+    optimizer::{Bounds, Draws, Method, Objective, SearchSettings},
     paper,
     study::{
         MethodStudy,
@@ -44,7 +44,7 @@ fn bounds() -> Bounds {
 }
 
 fn study(problem: &mut StudyProblem, runs: usize, iterations: usize) -> Vec<MethodStudy> {
-    let settings = Settings { population: 12, iterations, ..Settings::default() };
+    let settings = SearchSettings { population: 12, iterations, ..SearchSettings::default() };
     let run =
         |method: Method| run_method(method, runs, settings, &bounds(), &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
     let mut studies = Method::all().map(run).to_vec();

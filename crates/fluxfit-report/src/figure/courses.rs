@@ -64,7 +64,7 @@ fn paint(area: &Area, study: &MethodStudy, truth: Option<&Motor>, parameter: Par
     if let Some(truth) = truth {
         chart.series.draw_series([PathElement::new(vec![(0.0, truth), (last, truth)], line(Ink::Truth, 1.5))])?;
     }
-    let ink = Ink::Tgfpa;
+    let ink = Ink::of_method(&study.method);
     let points: Vec<(f64, f64)> = course.iter().enumerate().map(|(k, value)| (k as f64, *value)).collect();
     match points.as_slice() {
         [] => {}

@@ -4,7 +4,10 @@
 //! CSS per colour gives its counterpart: see [`dark_rules`]. The methods' colours keep apart for all common kinds of colour
 //! blindness (tested), and each method has its own dashes as well. Contrast on its ground is at least 4.5 for all but the grid.
 
-use fluxfit::{Verdict, optimizer::Method};
+use fluxfit::{
+    Verdict,
+    optimizer::{Look, METHODS, Method},
+};
 use plotters::style::RGBColor;
 
 /// What is drawn with a colour of its own.
@@ -22,14 +25,8 @@ pub(crate) enum Ink {
     D,
     /// The equation along q.
     Q,
-    /// tGFPA.
-    Tgfpa,
-    /// FPA.
-    Fpa,
-    /// LPSO.
-    Lpso,
-    /// APSO.
-    Apso,
+    /// The curve of a method, as the table of methods has it.
+    Curve(Look),
     /// Good to 5 %.
     Identified,
     /// Good to 50 %.
@@ -39,30 +36,21 @@ pub(crate) enum Ink {
 }
 
 impl Ink {
-    const ALL: [Self; 13] = [
-        Self::Text,
-        Self::Axis,
-        Self::Grid,
-        Self::Truth,
-        Self::D,
-        Self::Q,
-        Self::Tgfpa,
-        Self::Fpa,
-        Self::Lpso,
-        Self::Apso,
-        Self::Identified,
-        Self::Weak,
-        Self::NotIdentifiable,
-    ];
+    /// All of them, those of all methods included.
+    fn all() -> impl Iterator<Item = Self> {
+        let drawing = [Self::Text, Self::Axis, Self::Grid, Self::Truth, Self::D, Self::Q];
+        let verdicts = [Self::Identified, Self::Weak, Self::NotIdentifiable];
+        drawing.into_iter().chain(Self::curves()).chain(verdicts)
+    }
+
+    /// Those of the methods' curves.
+    fn curves() -> impl Iterator<Item = Self> {
+        METHODS.iter().map(|facts| Self::Curve(facts.look))
+    }
 
     /// The ink of a method's curve.
     pub(crate) fn of_method(method: &Method) -> Self {
-        match method {
-            Method::Tgfpa(_) => Self::Tgfpa,
-            Method::Fpa(_) => Self::Fpa,
-            Method::Lpso(_) => Self::Lpso,
-            Method::Apso(_) => Self::Apso,
-        }
+        Self::Curve(method.facts().look)
     }
 
     /// The ink of a verdict.
@@ -83,10 +71,7 @@ impl Ink {
             Self::Truth => ([0x6b, 0x52, 0x1d], [0xe3, 0xc9, 0x7f]),
             Self::D => ([0x00, 0x5a, 0x9c], [0x7c, 0xbd, 0xff]),
             Self::Q => ([0xa8, 0x3c, 0x10], [0xff, 0xa0, 0x7a]),
-            Self::Tgfpa => ([0x00, 0x5f, 0xe0], [0x6d, 0x9b, 0xff]),
-            Self::Fpa => ([0x8f, 0x5a, 0x00], [0xff, 0x9a, 0x3d]),
-            Self::Lpso => ([0x14, 0x4a, 0x38], [0x4d, 0xf0, 0xbb]),
-            Self::Apso => ([0xb5, 0x12, 0x8f], [0xb7, 0x8f, 0xc0]),
+            Self::Curve(look) => (look.light, look.dark),
             Self::Identified => ([0x17, 0x6f, 0x38], [0x5f, 0xd0, 0x83]),
             Self::Weak => ([0x8a, 0x5a, 0x00], [0xe8, 0xb8, 0x4a]),
             Self::NotIdentifiable => ([0xb3, 0x26, 0x1e], [0xff, 0x8f, 0x85]),
@@ -107,22 +92,15 @@ impl Ink {
 
     /// Dashes and gaps, pixels; none: a solid line.
     pub(crate) fn dashes_in_pixels(self) -> Vec<f64> {
-        self.dashes()
-            .into_iter()
-            .flat_map(str::split_whitespace)
-            .filter_map(|tenths| tenths.parse::<f64>().ok())
-            .map(|tenths| tenths / 10.0)
-            .collect()
+        self.dashes().iter().map(|tenths| f64::from(*tenths) / 10.0).collect()
     }
 
     /// Dashes and gaps, in tenths of a pixel; none: a solid line.
-    fn dashes(self) -> Option<&'static str> {
+    fn dashes(self) -> &'static [u16] {
         match self {
-            Self::Fpa => Some("75 40"),
-            Self::Lpso => Some("20 30"),
-            Self::Apso => Some("100 35 20 35"),
-            Self::Truth => Some("40 30"),
-            _ => None,
+            Self::Curve(look) => look.dashes,
+            Self::Truth => &[40, 30],
+            _ => &[],
         }
     }
 }
@@ -133,20 +111,20 @@ fn hex([r, g, b]: [u8; 3]) -> String {
 
 /// Rules that give every colour its counterpart on a dark ground. They outrank the attributes that they select.
 pub(crate) fn dark_rules() -> String {
-    let rules = Ink::ALL.map(|ink| {
-        let (light, dark) = ink.colors();
-        let (light, dark) = (hex(light), hex(dark));
+    let rule = |ink: Ink| {
+        let [light, dark] = ink.on_both_grounds();
         format!("svg [fill=\"{light}\"]{{fill:{dark}}}svg [stroke=\"{light}\"]{{stroke:{dark}}}\n")
-    });
-    rules.concat()
+    };
+    Ink::all().map(rule).collect()
 }
 
 /// Gives the strokes of a drawing their dashes; the drawing library has none.
 pub(super) fn dashed(mut svg: String) -> String {
-    for ink in Ink::ALL {
-        if let Some(dashes) = ink.dashes() {
+    for ink in Ink::all() {
+        let dashes: Vec<String> = ink.dashes().iter().map(u16::to_string).collect();
+        if !dashes.is_empty() {
             let stroke = format!("stroke=\"{}\"", hex(ink.colors().0));
-            svg = svg.replace(&stroke, &format!("{stroke} stroke-dasharray=\"{dashes}\""));
+            svg = svg.replace(&stroke, &format!("{stroke} stroke-dasharray=\"{}\"", dashes.join(" ")));
         }
     }
     svg
@@ -174,7 +152,7 @@ mod tests {
 
     #[test]
     fn every_ink_but_the_grid_can_be_read_on_both_grounds() {
-        for ink in Ink::ALL.into_iter().filter(|ink| *ink != Ink::Grid) {
+        for ink in Ink::all().filter(|ink| *ink != Ink::Grid) {
             let (light, dark) = ink.colors();
             // The page's grounds, and what GitHub puts behind a picture.
             for ground in [[0xff, 0xff, 0xff], [0xf6, 0xf8, 0xfa]] {
@@ -208,7 +186,7 @@ mod tests {
 
     #[test]
     fn curves_keep_apart_for_every_eye() {
-        let methods = [Ink::Tgfpa, Ink::Fpa, Ink::Lpso, Ink::Apso];
+        let methods: Vec<Ink> = Ink::curves().collect();
         for (eye, (k, one)) in EYES.iter().flat_map(|eye| methods.iter().enumerate().map(move |one| (eye, one))) {
             for other in &methods[..k] {
                 for ground in [|ink: &Ink| ink.colors().0, |ink: &Ink| ink.colors().1] {
@@ -222,8 +200,9 @@ mod tests {
 
     #[test]
     fn no_two_inks_share_a_colour() {
-        for (k, one) in Ink::ALL.iter().enumerate() {
-            assert!(Ink::ALL[..k].iter().all(|other| other.colors().0 != one.colors().0), "{one:?}");
+        let inks: Vec<Ink> = Ink::all().collect();
+        for (k, one) in inks.iter().enumerate() {
+            assert!(inks[..k].iter().all(|other| other.colors().0 != one.colors().0), "{one:?}");
         }
     }
 }

@@ -35,7 +35,7 @@ pub(crate) fn page(title: &str, log: &Log, found: &Identification, method: Optio
 fn identified(currents: &[(f64, f64)], settings: &Request) -> (Identification, String) {
     let log = log(currents, 0.1);
     let found = identify(&log, settings).unwrap().identification;
-    let page = page("drive.csv", &log, &found, settings.method);
+    let page = page("drive.csv", &log, &found, found.method);
     (found, page)
 }
 
@@ -81,7 +81,7 @@ fn nothing_identifiable_is_still_a_page() {
     let log = log(&TWO[..1], 0.1);
     let mut found = identify(&log, &Request::default()).unwrap().identification;
     found.parameters.iter_mut().for_each(|judgement| judgement.verdict = Verdict::NotIdentifiable);
-    let text = checked(&page("x", &log, &found, Request::default().method));
+    let text = checked(&page("x", &log, &found, None));
     assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
     assert!(!text.contains("The swarm") && !text.contains("Where the uncertainty"));
 }
@@ -176,10 +176,9 @@ fn gaps_are_not_bridged_and_a_log_without_operating_points_is_told_as_such() {
 #[test]
 fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
     let log = recorded(0.08, |_| ());
-    let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };
-    let method = Some(Method::all()[0]);
-    let found = identify(&log, &Request { method, search, ..of_currents() }).unwrap().identification;
-    let text = checked(&page("x", &log, &found, method));
+    let search = fluxfit::optimizer::SearchSettings { population: 10, iterations: 5, ..Default::default() };
+    let found = identify(&log, &Request { swarm: Swarm::Method(Method::all()[0]), search, ..of_currents() }).unwrap().identification;
+    let text = checked(&page("x", &log, &found, found.method));
     assert!(text.contains("Simulated currents are not linear in the parameters") && !text.contains("solves them exactly"), "{text}");
 }
 

@@ -6,7 +6,7 @@
 use fluxfit::{Columns, Log, Model, Request, evidence::Identification, frames::Dq, identify, optimizer::draws::Draws, paper};
 use fluxfit_drive::{
     Scenario,
-    schedule::{Course, Move},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use fluxfit_report::Origin;
@@ -38,8 +38,8 @@ pub(crate) fn origin() -> Origin {
 /// After 0.08 s it is only recorded again from `resumed` s on.
 pub(crate) fn recorded(resumed: f64, change: impl Fn(&mut Scenario)) -> Log {
     let mut scenario = Scenario { duration: 0.16, ..Scenario::paper() };
-    let step = |at, to| Course::new(vec![Move { at, to, over: 0.0 }]);
-    scenario.schedule.speed = Course::new(vec![Move { at: 0.0, to: 100.0, over: 0.1 }]);
+    let step = |at, to| Profile::new(vec![Ramp { at, to, over: 0.0 }]);
+    scenario.schedule.speed = Profile::new(vec![Ramp { at: 0.0, to: 100.0, over: 0.1 }]);
     (scenario.schedule.load, scenario.schedule.id) = (step(0.05, 5.0), step(0.04, -2.0));
     scenario.sensors.current_noise = 0.05;
     change(&mut scenario);

@@ -10,9 +10,9 @@ use crate::{
 use fluxfit::{
     Motor, Request,
     objective::voltage_error::IdZero,
-    optimizer::{Method, bounds::Bounds},
+    optimizer::{Bounds, Method},
     paper,
-    study::{Convergence, MethodStudy, fitness::StudyProblem, run_method},
+    study::{ConvergenceCurves, MethodStudy, fitness::StudyProblem, run_method},
 };
 use fluxfit_answer::answer::StudyFacts;
 use fluxfit_report::{Report, html};
@@ -21,9 +21,9 @@ use std::ops::ControlFlow;
 /// A study, its page checked; `change` bends what the runs left behind.
 fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)], change: impl Fn(&mut MethodStudy)) -> String {
     let log = log(currents, 0.1);
-    let problem = Problem::steady(&log, &Request::default(), IdZero::Measured).unwrap();
+    let problem = StudyProblem::steady(&log, &Request::default(), IdZero::Measured).unwrap();
     let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
-    let settings = fluxfit::optimizer::Settings { population: 20, iterations: 12, ..Default::default() };
+    let settings = fluxfit::optimizer::SearchSettings { population: 20, iterations: 12, ..Default::default() };
     let run = |method: &Method| {
         let mut study = run_method(*method, 3, settings, &bounds, &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
         change(&mut study);
@@ -67,7 +67,7 @@ fn costs_of_zero_no_iterations_and_broken_numbers() {
         study.convergence.quartiles.fill([0.0; 3]);
     };
     assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("drawn at that floor"));
-    let empty = |study: &mut MethodStudy| study.convergence = Convergence::default();
+    let empty = |study: &mut MethodStudy| study.convergence = ConvergenceCurves::default();
     assert!(!checked(&study_page(&Method::all(), None, &TWO, empty)).contains("Fig. 4"));
     let start_only = |study: &mut MethodStudy| {
         study.convergence.quartiles.truncate(1);

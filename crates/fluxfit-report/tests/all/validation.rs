@@ -33,7 +33,7 @@ fn validation_page(given: Motor, currents: &[(f64, f64)], change: impl FnOnce(&m
 
 /// Currents as they might come: two stretches, one of them a single row.
 fn courses(value: f64) -> Prediction {
-    let course = |rows: std::ops::Range<usize>| Course {
+    let course = |rows: std::ops::Range<usize>| PredictedStretch {
         measured: rows.clone().map(|row| Dq { d: (row as f64).sin(), q: 9.0 }).collect(),
         predicted: rows.clone().map(|_| Dq { d: 0.0, q: value }).collect(),
         rows,

@@ -8,7 +8,7 @@ use crate::{
     error::{Error, ErrorKind},
     motor::PARAMETERS,
     objective::acting_voltage::VoltageReading,
-    optimizer::{self, Method, bounds::Bounds},
+    optimizer::{Bounds, Method, SearchSettings},
 };
 
 /// Systematic uncertainty of the voltages, as a fraction of their vector, unless stated otherwise: no drive's are known better.
@@ -31,7 +31,7 @@ pub struct Request {
     /// Which swarm searches beside the exact answer.
     pub swarm: Swarm,
     /// Settings of its search.
-    pub search: optimizer::Settings,
+    pub search: SearchSettings,
     /// Lower and upper bound of the search for each parameter, SI; none: from the log and the rating.
     pub bounds: [Option<(f64, f64)>; PARAMETERS],
     /// What is known of the motor without the log: compared with the answer, which does not depend on it.
@@ -104,7 +104,7 @@ impl Default for Request {
             voltage_accuracy: VOLTAGE_ACCURACY,
             known: [Known::Nothing; PARAMETERS],
             swarm: Swarm::Auto,
-            search: optimizer::Settings::default(),
+            search: SearchSettings::default(),
             bounds: [None; PARAMETERS],
             nameplate: Nameplate::default(),
             bandwidth: None,

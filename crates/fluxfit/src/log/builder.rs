@@ -5,7 +5,10 @@ use super::{
     columns::{Columns, MIN_ROWS, Row},
     segment,
 };
-use crate::{error::Error, quantization};
+use crate::{
+    error::{Error, ErrorKind},
+    quantization,
+};
 
 /// Largest magnitude of any value. No drive has a gigavolt; squares and sums of such numbers stay far from overflow.
 const MAX_MAGNITUDE: f64 = 1e9;
@@ -112,17 +115,17 @@ impl LogBuilder {
     pub fn finish(self) -> Result<Log, Error> {
         let columns = self.columns;
         if columns.t.len() < MIN_ROWS {
-            return Err(Error::TooShort { rows: columns.t.len(), least: MIN_ROWS });
+            return Err(ErrorKind::TooShort { rows: columns.t.len(), least: MIN_ROWS }.into());
         }
         let all_zero = |columns: [&Vec<f64>; 2]| columns.iter().all(|column| column.iter().all(|value| *value == 0.0));
         if all_zero([&columns.id, &columns.iq]) {
-            return Err(Error::AllZero { what: "the currents id and iq are" });
+            return Err(ErrorKind::AllZero { what: "the currents id and iq are" }.into());
         }
         if all_zero([&columns.ud, &columns.uq]) {
-            return Err(Error::AllZero { what: "the voltages ud and uq are" });
+            return Err(ErrorKind::AllZero { what: "the voltages ud and uq are" }.into());
         }
         if all_zero([&columns.omega_e; 2]) {
-            return Err(Error::AllZero { what: "the speed omega_e is" });
+            return Err(ErrorKind::AllZero { what: "the speed omega_e is" }.into());
         }
         let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| quantization::step(column));
         let segments = segment::split(&columns.t, steps);
@@ -166,7 +169,7 @@ impl Log {
     pub fn new(columns: Columns) -> Result<Self, Error> {
         check_lengths(&columns)?;
         if columns.t.len() < MIN_ROWS {
-            return Err(Error::TooShort { rows: columns.t.len(), least: MIN_ROWS });
+            return Err(ErrorKind::TooShort { rows: columns.t.len(), least: MIN_ROWS }.into());
         }
         let mut builder = LogBuilder::new();
         builder.take(columns)?;
@@ -185,10 +188,10 @@ pub fn check_values(column: &'static str, values: &[f64]) -> Result<(), Error> {
 #[inline]
 fn check_value(column: &'static str, row: usize, value: f64) -> Result<(), Error> {
     if !value.is_finite() {
-        return Err(Error::NotFinite { column, row, value });
+        return Err(ErrorKind::NotFinite { column, row, value }.into());
     }
     if value.abs() > MAX_MAGNITUDE && column != "t" || value.abs() > MAX_MAGNITUDE * TIME_FACTOR {
-        return Err(Error::Implausible { column, row, value, limit: MAX_MAGNITUDE });
+        return Err(ErrorKind::Implausible { column, row, value, limit: MAX_MAGNITUDE }.into());
     }
     Ok(())
 }
@@ -206,18 +209,18 @@ fn check_rows(columns: &Columns, first: usize) -> Result<(), Error> {
 fn check_lengths(columns: &Columns) -> Result<(), Error> {
     let expected = columns.t.len();
     let wrong = columns.all().find(|(_, values)| values.len() != expected);
-    wrong.map_or(Ok(()), |(column, values)| Err(Error::ColumnLength { column, rows: values.len(), expected }))
+    wrong.map_or(Ok(()), |(column, values)| Err(ErrorKind::ColumnLength { column, rows: values.len(), expected }.into()))
 }
 
 /// An optional column must be in all rows or in none.
 fn check_presence(column: &'static str, held: bool, given: bool, rows: usize, more: usize) -> Result<(), Error> {
     let with = if held { rows } else { more };
-    if held == given { Ok(()) } else { Err(Error::ColumnLength { column, rows: with, expected: rows + more }) }
+    if held == given { Ok(()) } else { Err(ErrorKind::ColumnLength { column, rows: with, expected: rows + more }.into()) }
 }
 
 #[inline]
 fn check_order(before: f64, after: f64, row: usize) -> Result<(), Error> {
-    if after <= before { Err(Error::TimeOrder { row, before, after }) } else { Ok(()) }
+    if after <= before { Err(ErrorKind::TimeOrder { row, before, after }.into()) } else { Ok(()) }
 }
 
 #[cfg(test)]
@@ -260,14 +263,14 @@ mod tests {
     fn refused_rows_are_named_and_not_added() {
         let mut builder = LogBuilder::new();
         builder.extend(&columns(&[0.0, 0.1])).unwrap();
-        assert_eq!(builder.push(row(0.1)), Err(Error::TimeOrder { row: 2, before: 0.1, after: 0.1 }));
-        assert_eq!(builder.extend(&columns(&[0.05, 0.3])), Err(Error::TimeOrder { row: 2, before: 0.1, after: 0.05 }));
-        assert_eq!(builder.extend(&columns(&[0.2, 0.3, 0.3])), Err(Error::TimeOrder { row: 4, before: 0.3, after: 0.3 }));
+        assert_eq!(builder.push(row(0.1)), Err(ErrorKind::TimeOrder { row: 2, before: 0.1, after: 0.1 }.into()));
+        assert_eq!(builder.extend(&columns(&[0.05, 0.3])), Err(ErrorKind::TimeOrder { row: 2, before: 0.1, after: 0.05 }.into()));
+        assert_eq!(builder.extend(&columns(&[0.2, 0.3, 0.3])), Err(ErrorKind::TimeOrder { row: 4, before: 0.3, after: 0.3 }.into()));
         let infinite = Row { iq: f64::INFINITY, ..row(0.2) };
-        assert_eq!(builder.push(infinite), Err(Error::NotFinite { column: "iq", row: 2, value: f64::INFINITY }));
+        assert_eq!(builder.push(infinite), Err(ErrorKind::NotFinite { column: "iq", row: 2, value: f64::INFINITY }.into()));
         let mut block = columns(&[0.2, 0.3]);
         block.uq[1] = 1e300;
-        assert_eq!(builder.extend(&block), Err(Error::Implausible { column: "uq", row: 3, value: 1e300, limit: MAX_MAGNITUDE }));
+        assert_eq!(builder.extend(&block), Err(ErrorKind::Implausible { column: "uq", row: 3, value: 1e300, limit: MAX_MAGNITUDE }.into()));
         assert_eq!(builder.rows(), 2);
         assert_eq!(builder.finish().unwrap().columns().t, [0.0, 0.1]);
     }
@@ -276,13 +279,13 @@ mod tests {
     fn an_optional_column_is_in_every_row_or_in_none() {
         let mut builder = LogBuilder::new();
         builder.push(Row { theta_e: Some(1.0), ..row(0.0) }).unwrap();
-        assert_eq!(builder.push(row(0.1)), Err(Error::ColumnLength { column: "theta_e", rows: 1, expected: 2 }));
+        assert_eq!(builder.push(row(0.1)), Err(ErrorKind::ColumnLength { column: "theta_e", rows: 1, expected: 2 }.into()));
         let both = Columns { theta_e: Some(vec![1.0; 2]), u_dc: Some(vec![310.0; 2]), ..columns(&[0.1, 0.2]) };
-        assert_eq!(builder.extend(&both), Err(Error::ColumnLength { column: "u_dc", rows: 2, expected: 3 }));
+        assert_eq!(builder.extend(&both), Err(ErrorKind::ColumnLength { column: "u_dc", rows: 2, expected: 3 }.into()));
         builder.push(Row { theta_e: Some(2.0), ..row(0.1) }).unwrap();
         assert_eq!(builder.finish().unwrap().columns().theta_e, Some(vec![1.0, 2.0]));
         let short = Columns { u_dc: Some(vec![1.0]), ..columns(&[0.0, 0.1]) };
-        assert_eq!(Log::new(short), Err(Error::ColumnLength { column: "u_dc", rows: 1, expected: 2 }));
+        assert_eq!(Log::new(short), Err(ErrorKind::ColumnLength { column: "u_dc", rows: 1, expected: 2 }.into()));
     }
 
     #[test]
@@ -292,12 +295,15 @@ mod tests {
             change(&mut columns);
             Log::new(columns).unwrap_err()
         };
-        assert_eq!(broken(|c| c.uq[1] = f64::INFINITY), Error::NotFinite { column: "uq", row: 1, value: f64::INFINITY });
-        assert_eq!(broken(|c| c.id[2] = -1e300), Error::Implausible { column: "id", row: 2, value: -1e300, limit: MAX_MAGNITUDE });
-        assert_eq!(broken(|c| c.t[2] = 0.1), Error::TimeOrder { row: 2, before: 0.1, after: 0.1 });
-        assert_eq!(broken(|c| c.iq.truncate(2)), Error::ColumnLength { column: "iq", rows: 2, expected: 3 });
-        assert!(matches!(broken(|c| (c.id.fill(0.0), c.iq.fill(0.0)).1), Error::AllZero { .. }));
-        assert!(matches!(Log::new(columns(&[0.0])), Err(Error::TooShort { rows: 1, .. })));
-        assert!(matches!(LogBuilder::new().finish(), Err(Error::TooShort { rows: 0, .. })));
+        assert_eq!(*broken(|c| c.uq[1] = f64::INFINITY).kind(), ErrorKind::NotFinite { column: "uq", row: 1, value: f64::INFINITY });
+        assert_eq!(
+            *broken(|c| c.id[2] = -1e300).kind(),
+            ErrorKind::Implausible { column: "id", row: 2, value: -1e300, limit: MAX_MAGNITUDE }
+        );
+        assert_eq!(*broken(|c| c.t[2] = 0.1).kind(), ErrorKind::TimeOrder { row: 2, before: 0.1, after: 0.1 });
+        assert_eq!(*broken(|c| c.iq.truncate(2)).kind(), ErrorKind::ColumnLength { column: "iq", rows: 2, expected: 3 });
+        assert!(matches!(broken(|c| (c.id.fill(0.0), c.iq.fill(0.0)).1).kind(), ErrorKind::AllZero { .. }));
+        assert!(matches!(Log::new(columns(&[0.0])).unwrap_err().kind(), ErrorKind::TooShort { rows: 1, .. }));
+        assert!(matches!(LogBuilder::new().finish().unwrap_err().kind(), ErrorKind::TooShort { rows: 0, .. }));
     }
 }

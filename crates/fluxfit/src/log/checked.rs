@@ -4,7 +4,7 @@ use super::{
     columns::{Columns, MIN_ROWS},
     segment::Segment,
 };
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 
 /// A checked log. Two logs are equal if their rows and segments are, wherever they come from.
 #[derive(Debug, Clone)]
@@ -42,7 +42,7 @@ impl Log {
     /// If there is no log.
     pub fn join(logs: impl IntoIterator<Item = Self>) -> Result<Self, Error> {
         let mut logs = logs.into_iter();
-        let mut joined = logs.next().ok_or(Error::TooShort { rows: 0, least: MIN_ROWS })?;
+        let mut joined = logs.next().ok_or(ErrorKind::TooShort { rows: 0, least: MIN_ROWS })?;
         for (number, log) in (1..).zip(logs) {
             let offset = joined.rows();
             joined.segments.extend(log.segments.into_iter().map(|segment| Segment {

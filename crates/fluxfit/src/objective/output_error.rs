@@ -18,7 +18,7 @@
 
 use super::{acting_voltage::VoltageReading, adjustable::Adjustable, simulated_segment::SimulatedSegment};
 use crate::{
-    error::Error,
+    error::{Error, ErrorKind},
     faults::Faults,
     frames::Dq,
     log::Log,
@@ -58,14 +58,14 @@ impl OutputError {
     /// If none is, or if the log's channels were sampled at different instants.
     pub fn of_rows(log: &Log, stretches: &[Range<usize>], reading: VoltageReading) -> Result<Self, Error> {
         if log.is_interpolated() {
-            return Err(Error::Interpolated);
+            return Err(ErrorKind::Interpolated.into());
         }
         let least = MIN_ROWS + reading.lost_rows();
         let long_enough = stretches.iter().filter(|rows| rows.len() >= least);
         let segments: Vec<SimulatedSegment> = long_enough.map(|rows| SimulatedSegment::of(log, rows, reading)).collect();
         let rows = segments.iter().map(|segment| segment.measured.len()).sum();
         if rows == 0 {
-            return Err(Error::TooShort { rows: log.rows(), least });
+            return Err(ErrorKind::TooShort { rows: log.rows(), least }.into());
         }
         let peak_current = segments.iter().flat_map(|segment| &segment.measured).map(|i| i.magnitude()).fold(0.0, f64::max);
         Ok(Self { segments, rows, peak_current, held: Faults::default() })

@@ -115,7 +115,7 @@ impl<const C: usize> CosineTransform<C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimizer::draws::Draws;
+    use crate::optimizer::Draws;
 
     fn ar1(rho: f64, n: usize, draws: &mut Draws) -> Vec<f64> {
         let mut x = draws.normal() / (1.0 - rho * rho).sqrt();

@@ -11,7 +11,7 @@ use super::{
     stale::StaleSamples,
 };
 use crate::{
-    error::Error,
+    error::{Error, ErrorKind},
     log::{Log, Segment},
 };
 use std::{f64::consts::TAU, ops::Range};
@@ -45,7 +45,7 @@ pub const PAPER_ROWS: usize = 4000;
 /// If there is no steady window.
 pub fn find(log: &Log) -> Result<Vec<Range<usize>>, Error> {
     let (windows, _) = find_all(log);
-    if windows.is_empty() { Err(Error::NoOperatingPoint { least: MIN_ROWS }) } else { Ok(windows) }
+    if windows.is_empty() { Err(ErrorKind::NoOperatingPoint { least: MIN_ROWS }.into()) } else { Ok(windows) }
 }
 
 /// The steady windows, and the steady stretches that are too short to be windows. Stretches that are still shorter by the same factor
@@ -123,7 +123,7 @@ pub fn between(log: &Log, (from, to): (f64, f64)) -> Result<Vec<Range<usize>>, E
     if windows.is_empty() {
         let rows = short.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
         let (start, end) = t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(*t), high.max(*t)));
-        return Err(Error::Window { from, to, rows, least: MIN_ROWS, start, end });
+        return Err(ErrorKind::Window { from, to, rows, least: MIN_ROWS, start, end }.into());
     }
     Ok(windows)
 }
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn a_log_without_steady_state_has_no_operating_point() {
         let rows = ramp(1.0, 9.0, 1000).map(|iq| (0.0, iq, 400.0));
-        assert_eq!(find(&log(rows)), Err(Error::NoOperatingPoint { least: 30 }));
+        assert_eq!(find(&log(rows)), Err(ErrorKind::NoOperatingPoint { least: 30 }.into()));
         // A slow oscillation of 10 %: steady within each block, but not over a window.
         let rows = (0..4000).map(|k| (0.0, 8.0 + 0.8 * (f64::from(k) / 100.0).sin(), 400.0));
         assert!(find(&log(rows)).map_or_else(|_| true, |windows| windows.iter().all(|rows| rows.len() < 100)));
@@ -260,9 +260,9 @@ mod tests {
         let log = log((0..1000).map(|_| (-1.0, 8.0, 400.0)));
         assert_eq!(between(&log, (0.1, 0.2)).unwrap(), vec![100..201; 1]);
         let short = between(&log, (0.0995, 0.1285));
-        assert_eq!(short, Err(Error::Window { from: 0.0995, to: 0.1285, rows: 29, least: 30, start: 0.0, end: 0.999 }));
+        assert_eq!(short, Err(ErrorKind::Window { from: 0.0995, to: 0.1285, rows: 29, least: 30, start: 0.0, end: 0.999 }.into()));
         let outside = between(&log, (5.0, 6.0));
-        assert_eq!(outside, Err(Error::Window { from: 5.0, to: 6.0, rows: 0, least: 30, start: 0.0, end: 0.999 }));
+        assert_eq!(outside, Err(ErrorKind::Window { from: 5.0, to: 6.0, rows: 0, least: 30, start: 0.0, end: 0.999 }.into()));
     }
 
     #[test]

@@ -21,13 +21,14 @@ use crate::{
         output_error::OutputError,
         voltage_error::{IdZero, VoltageError},
     },
-    optimizer::{Method, Objective, Optimizer, Settings, bounds::Bounds, tgfpa::Tgfpa},
+    optimizer::{self, Bounds, Method, Objective, Optimizer, SearchSettings},
     steady::{OperatingPoint, windows::at_most_paper_rows},
 };
 use rayon::prelude::*;
 
 /// The coarse search that gives a start for the Levenberg-Marquardt method, which converges from far away.
-const COARSE_SEARCH: Settings = Settings { population: 20, iterations: 30, seed: 1, run: 0, close_to_optimum: None, target_cost: None };
+const COARSE_SEARCH: SearchSettings =
+    SearchSettings { population: 20, iterations: 30, seed: 1, run: 0, close_to_optimum: None, target_cost: None };
 
 /// Half-width of a 95 % interval in standard errors.
 const HALF_WIDTH: f64 = 1.96;
@@ -114,7 +115,7 @@ impl StudyProblem {
         // Costs are compared per row: a delay leaves fewer rows, and a sum over fewer rows is smaller without a better fit.
         let per_row = |(_, objective, minimum): &(VoltageReading, OutputError, Polished)| minimum.cost / objective.rows() as f64;
         let best = polished.collect::<Vec<_>>().into_iter().min_by(|a, b| per_row(a).total_cmp(&per_row(b)));
-        let (reading, objective, minimum) = best.ok_or(Error::NonFiniteStart { population: COARSE_SEARCH.population })?;
+        let (reading, objective, minimum) = best.ok_or(optimizer::Error::NonFiniteStart { population: COARSE_SEARCH.population })?;
         Ok(Self {
             rows: objective.rows_per_segment(),
             unexcited: unexcited(&objective, &minimum, &bounds),
@@ -238,7 +239,7 @@ fn voltage_timings(stated: Option<VoltageReading>) -> Vec<VoltageReading> {
 
 /// The best motor of a coarse search.
 fn coarse_start(objective: &OutputError, bounds: &Bounds) -> Result<Motor, Error> {
-    let report = Optimizer::start(Method::Tgfpa(Tgfpa::default()), COARSE_SEARCH, bounds.clone(), objective)?.run(objective);
+    let report = Optimizer::start(Method::default(), COARSE_SEARCH, bounds.clone(), objective)?.run(objective);
     Ok(Motor::from(std::array::from_fn(|p| report.best[p])))
 }
 

@@ -10,15 +10,11 @@ pub mod fitness;
 use crate::{
     error::Error,
     motor::{Motor, PARAMETERS, Parameter},
-    optimizer::{Method, Optimizer, Report, Settings, StopReason, bounds::Bounds},
+    optimizer::{Bounds, Method, SearchReport, SearchSettings, run_many},
 };
 use fitness::Fitness;
-use rayon::prelude::*;
 use statrs::statistics::{Data, OrderStatistics};
-use std::{
-    ops::ControlFlow,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::ops::ControlFlow;
 
 /// The results of many runs of one method.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,31 +50,12 @@ pub struct ConvergenceCurves {
 pub fn run_method(
     method: Method,
     runs: usize,
-    settings: Settings,
+    settings: SearchSettings,
     bounds: &Bounds,
     fitness: &Fitness,
     go_on: impl Fn() -> ControlFlow<()> + Sync,
 ) -> Result<Option<MethodStudy>, Error> {
-    if runs == 0 {
-        return Err(Error::Setting { setting: "the number of runs", value: 0.0, range: "at least 1" });
-    }
-    let interrupted = AtomicBool::new(false);
-    let run = |run: usize| {
-        // Without this check, each remaining run would evaluate its first population before it calls `go_on`.
-        if interrupted.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
-        let settings = Settings { run: run as u64, ..settings };
-        let mut optimizer = Optimizer::start(method, settings, bounds.clone(), fitness)?;
-        let report = optimizer.run_while(fitness, || {
-            let next = go_on();
-            interrupted.fetch_or(next.is_break(), Ordering::Relaxed);
-            next
-        });
-        Ok((report.stop_reason != StopReason::Interrupted).then(|| RunHistory::of(&report, fitness)))
-    };
-    let histories = (0..runs).into_par_iter().map(run).collect::<Result<Vec<_>, Error>>()?;
-    let histories: Vec<RunHistory> = histories.into_iter().flatten().collect();
+    let histories = run_many(method, runs, settings, bounds, fitness, |report| RunHistory::of(&report, fitness), go_on)?;
     Ok((!histories.is_empty()).then(|| MethodStudy {
         method,
         evaluations_per_run: histories.iter().map(|history| history.evaluations).max().unwrap_or(0),
@@ -145,7 +122,7 @@ struct RunHistory {
 }
 
 impl RunHistory {
-    fn of(report: &Report, fitness: &Fitness) -> Self {
+    fn of(report: &SearchReport, fitness: &Fitness) -> Self {
         let best = report.history.iter().map(|record| {
             let motor = Motor::from(std::array::from_fn(|p| record.best[p]));
             (motor, fitness.cost_above_optimum(&motor, record.cost))

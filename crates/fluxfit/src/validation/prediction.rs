@@ -5,7 +5,7 @@
 
 use super::given::Given;
 use crate::{
-    error::Error,
+    error::{Error, ErrorKind},
     faults::{Fault, Faults, disturbance::Disturbance},
     frames::Dq,
     identification::{
@@ -71,7 +71,7 @@ impl Predicted {
         match (&own.output, &own.steady) {
             (Some(fit), _) => currents(log, fit, &motor, given, request),
             (None, Some(fit)) => Ok(voltages(fit, given)),
-            (None, None) => Err(Error::TooShort { rows: log.rows(), least: 2 }),
+            (None, None) => Err(ErrorKind::TooShort { rows: log.rows(), least: 2 }.into()),
         }
     }
 

@@ -14,7 +14,7 @@ use super::{
     wald::{Covariance, Test},
 };
 use crate::{
-    error::Error,
+    error::{Error, ErrorKind},
     identification::{
         judge::verdict::WEAK,
         progress::{Progress, silent},
@@ -221,10 +221,12 @@ fn check(given: &Given) -> Result<(), Error> {
         let least = if parameter == Parameter::PsiF { 0.0 } else { f64::MIN_POSITIVE };
         if !(value >= least && value.is_finite()) {
             let range = if parameter == Parameter::PsiF { "a finite number, zero or more" } else { "a finite number above zero" };
-            return Err(Error::Setting { setting: parameter.symbol(), value, range });
+            return Err(ErrorKind::Setting { setting: parameter.symbol(), value, range }.into());
         }
         if !standard_error.is_finite() {
-            return Err(Error::Setting { setting: "the standard error of a given parameter", value: standard_error, range: "finite" });
+            return Err(
+                ErrorKind::Setting { setting: "the standard error of a given parameter", value: standard_error, range: "finite" }.into()
+            );
         }
     }
     Ok(())

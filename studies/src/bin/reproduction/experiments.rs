@@ -5,10 +5,11 @@ use fluxfit::{
     motor::PARAMETERS,
     objective::voltage_error::IdZero,
     optimizer::{
-        Method, Settings,
-        bounds::Bounds,
-        fpa::{Fpa, LocalBase},
-        tgfpa::{Start, Tgfpa},
+        Bounds, Method, SearchSettings,
+        methods::{
+            fpa::{Fpa, LocalBase},
+            tgfpa::{Start, Tgfpa},
+        },
     },
     paper,
     study::{MethodStudy, fitness::StudyProblem, run_method},
@@ -68,19 +69,14 @@ impl Data {
 
     /// The paper's number of runs of each method.
     pub(crate) fn study(&self, methods: &[Method]) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
-        self.study_with(methods, paper::RUNS, Settings::default())
+        self.study_with(methods, paper::RUNS, SearchSettings::default())
     }
 
-    pub(crate) fn study_with(&self, methods: &[Method], runs: usize, settings: Settings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
+    pub(crate) fn study_with(&self, methods: &[Method], runs: usize, settings: SearchSettings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
         let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
         let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.problem.fitness, || ControlFlow::Continue(()));
         Ok(methods.iter().filter_map(|method| run(method).transpose()).collect::<Result<_, _>>()?)
     }
-}
-
-/// The paper's four, in its order.
-pub(crate) fn paper_methods() -> [Method; 4] {
-    Method::all()
 }
 
 /// Methods with one choice changed.

@@ -9,9 +9,9 @@ mod experiments;
 mod page;
 mod tables;
 
-use experiments::{Data, Rig, ablation, paper_methods};
+use experiments::{Data, Rig, ablation};
 use fluxfit::{
-    optimizer::{Method, Settings},
+    optimizer::{Method, SearchSettings},
     paper,
 };
 use fluxfit_report::figure::{Size, convergence, parameter_courses};
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
 
     let data = Rig::ALL.map(Data::simulate).into_iter().collect::<Result<Vec<_>, _>>()?;
-    let studies = data.iter().map(|data| data.study(&paper_methods())).collect::<Result<Vec<_>, _>>()?;
+    let studies = data.iter().map(|data| data.study(&paper::METHODS)).collect::<Result<Vec<_>, _>>()?;
     // The paper's rig as the paper has it: switched, without noise.
     let (rig, study) = (&data[Rig::Switched as usize], &studies[Rig::Switched as usize]);
 
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     page.put("table 2", &tables::table_2(study, rig))?;
     page.put("errors", &tables::errors(&data, &studies))?;
     page.put("ranking", &tables::ranking(study.iter().map(|study| (study.method.label().to_owned(), study))))?;
-    page.put("many runs", &tables::many_runs(&rig.study_with(&paper_methods(), MANY_RUNS, Settings::default())?))?;
+    page.put("many runs", &tables::many_runs(&rig.study_with(&paper::METHODS, MANY_RUNS, SearchSettings::default())?))?;
     page.put("unconverged", &tables::unconverged(rig)?)?;
     let ablated = ablation().into_iter().map(|(name, method)| Ok((name, rig.study(&[method])?.remove(0))));
     let ablated = ablated.collect::<Result<Vec<_>, Box<dyn Error>>>()?;

@@ -1,9 +1,9 @@
 //! Tables in Markdown.
 
-use crate::experiments::{Data, paper_methods};
+use crate::experiments::Data;
 use fluxfit::{
     motor::{Motor, Parameter},
-    optimizer::Settings,
+    optimizer::SearchSettings,
     paper,
     study::{MethodStudy, error_percent},
 };
@@ -121,11 +121,11 @@ pub(crate) fn unconverged(data: &Data) -> Result<String, Box<dyn Error>> {
     let mut heading = vec!["mean error, %".to_owned(), String::new()];
     heading.extend(CUT_SHORT.map(|iterations| format!("{iterations} iterations")));
     heading.push("in the paper".to_owned());
-    let studies =
-        CUT_SHORT.map(|iterations| data.study_with(&paper_methods(), paper::RUNS, Settings { iterations, ..Settings::default() }));
+    let studies = CUT_SHORT
+        .map(|iterations| data.study_with(&paper::METHODS, paper::RUNS, SearchSettings { iterations, ..SearchSettings::default() }));
     let studies = studies.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut rows = Vec::new();
-    for (index, method) in paper_methods().iter().enumerate() {
+    for (index, method) in paper::METHODS.iter().enumerate() {
         for parameter in Parameter::ALL {
             let mut row = vec![method.label().to_owned(), parameter.symbol().to_owned()];
             row.extend(studies.iter().map(|study| percent(study[index].mean_error_percent(&paper::MOTOR)[parameter as usize])));

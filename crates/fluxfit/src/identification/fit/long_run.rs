@@ -100,7 +100,7 @@ pub(crate) fn effective_sample_size(residuals: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimizer::draws::Draws;
+    use crate::optimizer::Draws;
 
     /// AR(1) with unit innovations: the variance of the sum goes to n / (1 - rho)².
     #[test]

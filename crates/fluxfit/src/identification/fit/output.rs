@@ -30,7 +30,7 @@ use crate::{
     log::Log,
     motor::Motor,
     objective::{acting_voltage::VoltageReading, adjustable::Adjustable, output_error::OutputError},
-    optimizer::{Method, bounds::Bounds},
+    optimizer::{Bounds, Method},
     steady::OperatingPoint,
 };
 use std::ops::Range;

@@ -19,7 +19,7 @@ use crate::{
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
-    optimizer::{Method, bounds::Bounds},
+    optimizer::{Bounds, Method},
     steady::{
         OperatingPoint, PreliminaryEstimate, windows,
         zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming, ZeroOrderHold},

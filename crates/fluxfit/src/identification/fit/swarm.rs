@@ -8,7 +8,7 @@ use super::super::{
 use crate::{
     error::Error,
     motor::Motor,
-    optimizer::{Method, Objective, Optimizer, Report, bounds::Bounds, tgfpa::Tgfpa},
+    optimizer::{Bounds, Method, Objective, Optimizer, SearchReport},
 };
 
 /// What a swarm found, unpolished.
@@ -21,13 +21,13 @@ pub struct Search {
     /// Where it searched.
     pub bounds: Bounds,
     /// How the search went.
-    pub report: Report,
+    pub report: SearchReport,
 }
 
 /// The method that searches beside this model's answer, if any.
 pub(crate) fn method(request: &Request, model: Model) -> Option<Method> {
     match request.swarm {
-        Swarm::Auto => (model == Model::Steady).then(|| Method::Tgfpa(Tgfpa::default())),
+        Swarm::Auto => (model == Model::Steady).then(|| Method::default()),
         Swarm::Off => None,
         Swarm::Method(method) => Some(method),
     }
@@ -43,7 +43,7 @@ pub(crate) fn run(
     bounds: &Bounds,
     request: &Request,
     progress: Progress,
-) -> Result<Report, Error> {
+) -> Result<SearchReport, Error> {
     let (mut iteration, limit) = (0, request.search.iterations);
     let _ = progress(Step::Search { iteration, limit });
     let mut optimizer = Optimizer::start(method, request.search, bounds.clone(), objective)?;

@@ -6,7 +6,7 @@
 //!
 //! Where the points have no current, voltage or speed at all, a parameter is in no equation, and the swarm may look for it anywhere.
 
-use crate::{error::Error, log::Log, motor::PARAMETERS, optimizer::bounds::Bounds, steady::OperatingPoint};
+use crate::{error::Error, log::Log, motor::PARAMETERS, optimizer::Bounds, steady::OperatingPoint};
 
 /// Side of the box, SI, along parameters that are in no equation.
 const ANYWHERE: f64 = 1.0;
@@ -31,7 +31,7 @@ fn enclosing(boxes: impl IntoIterator<Item = [f64; PARAMETERS]>) -> Result<Bound
         }
     }
     upper.iter_mut().filter(|upper| **upper == 0.0).for_each(|upper| *upper = ANYWHERE);
-    Bounds::new(vec![0.0; PARAMETERS], upper.to_vec())
+    Ok(Bounds::new(vec![0.0; PARAMETERS], upper.to_vec())?)
 }
 
 /// The box of a log without operating points: its largest voltage against the root mean square of its currents and speeds, as if
@@ -52,7 +52,7 @@ pub(crate) fn from_rows(log: &Log) -> Result<Bounds, Error> {
 /// # Errors
 /// If one of them is not a positive finite number.
 pub(crate) fn from_rating(voltage: f64, current: f64, omega_e: f64) -> Result<Bounds, Error> {
-    Bounds::new(vec![0.0; PARAMETERS], largest(voltage, current, omega_e).to_vec())
+    Ok(Bounds::new(vec![0.0; PARAMETERS], largest(voltage, current, omega_e).to_vec())?)
 }
 
 fn largest(voltage: f64, current: f64, omega_e: f64) -> [f64; PARAMETERS] {

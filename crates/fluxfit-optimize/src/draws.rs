@@ -1,4 +1,4 @@
-//! Where every random number of an optimizer comes from.
+//! Where every random number comes from.
 //!
 //! One named, portable generator (ChaCha with 8 rounds) with one stream per run: a run's numbers depend on its seed and its
 //! stream alone, never on which thread it ran or what ran before. A recorded list can take the generator's place, so that an
@@ -7,14 +7,17 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// A source of random numbers.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Draws(Source);
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 // One Draws per optimizer: the size of the generator does not matter, an indirection at every draw would.
 #[allow(clippy::large_enum_variant)]
 enum Source {
@@ -31,7 +34,7 @@ impl Draws {
     }
 
     /// Numbers written down beforehand, each returned as it stands whatever distribution is asked for (a partner as its index),
-    /// from the front again after the last.
+    /// from the front again after the last: an independent program, fed the same numbers, can check every step.
     pub fn replay(numbers: Vec<f64>) -> Self {
         Self(Source::Recorded(numbers.into()))
     }
@@ -51,12 +54,13 @@ impl Draws {
         self.draw(|generator| StudentT::new(degrees as f64).map_or(0.0, |t| t.sample(generator)))
     }
 
-    /// `K` indices below `population`, different from each other and from `i`. `population` must exceed `K`.
-    pub fn partners<const K: usize>(&mut self, i: usize, population: usize) -> [usize; K] {
+    /// `K` indices below `population`, different from each other and from `i`, as far as there are so many: in a population of `K` or
+    /// fewer, which no method starts, some repeat.
+    pub(crate) fn partners<const K: usize>(&mut self, i: usize, population: usize) -> [usize; K] {
         let mut partners = [0; K];
         for chosen in 0..K {
-            let left = population - 1 - chosen;
-            partners[chosen] = match &mut self.0 {
+            let left = population.saturating_sub(1 + chosen).max(1);
+            let index = match &mut self.0 {
                 Source::Recorded(_) => self.uniform() as usize,
                 Source::Generator(generator) => {
                     // An index among those left, moved past each taken one that lies below or at it, smallest first.
@@ -71,6 +75,7 @@ impl Draws {
                     index
                 }
             };
+            partners[chosen] = index.min(population.saturating_sub(1));
         }
         partners
     }
@@ -116,6 +121,15 @@ mod tests {
         let first = |stream| Draws::seeded(1, stream).uniform();
         assert_eq!(first(0), first(0));
         assert_ne!(first(0), first(1));
+    }
+
+    #[test]
+    fn partners_exist_in_a_population_that_is_too_small() {
+        for population in 0..4 {
+            for mut draws in [Draws::seeded(1, 0), Draws::replay(vec![7.0])] {
+                assert!(draws.partners::<3>(0, population).iter().all(|j| *j < population.max(1)));
+            }
+        }
     }
 
     proptest! {

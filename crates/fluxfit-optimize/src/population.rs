@@ -1,13 +1,15 @@
 //! Candidates, their costs and the best seen: the state that every method steps.
 
-use super::{Objective, bounds::Bounds};
+use crate::{bounds::Bounds, error::Error, objective::Objective};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Stands for a cost that is not finite: no finite cost is worse, and files can hold it.
 pub const WORST_COST: f64 = f64::MAX;
 
 /// Candidates in rows, with the trials of the step at hand beside them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Population {
     dimension: usize,
     positions: Vec<f64>,
@@ -20,8 +22,11 @@ pub struct Population {
 }
 
 impl Population {
-    /// Evaluates the start.
-    pub(super) fn new(positions: Vec<f64>, objective: &impl Objective) -> Self {
+    /// Evaluates the candidates at these positions, row after row.
+    ///
+    /// # Errors
+    /// If none of them has a finite cost.
+    pub(crate) fn evaluated(positions: Vec<f64>, objective: &dyn Objective) -> Result<Self, Error> {
         let dimension = objective.dimension();
         let population = positions.len() / dimension;
         let mut new = Self {
@@ -36,7 +41,7 @@ impl Population {
         };
         new.evaluate(objective);
         new.accept_all();
-        new
+        if new.best_cost == WORST_COST { Err(Error::NonFiniteStart { population }) } else { Ok(new) }
     }
 
     /// How many candidates.
@@ -75,24 +80,24 @@ impl Population {
     }
 
     /// One candidate.
-    pub(super) fn position(&self, i: usize) -> &[f64] {
+    pub(crate) fn position(&self, i: usize) -> &[f64] {
         &self.positions[i * self.dimension..(i + 1) * self.dimension]
     }
 
     /// Adds `factor (x_to - x_from)` to a trial.
-    pub(super) fn add_difference(&self, trial: &mut [f64], factor: f64, to: usize, from: usize) {
+    pub(crate) fn add_difference(&self, trial: &mut [f64], factor: f64, to: usize, from: usize) {
         for ((x, to), from) in trial.iter_mut().zip(self.position(to)).zip(self.position(from)) {
             *x += factor * (to - from);
         }
     }
 
-    /// Puts a trial to its candidate's place.
-    pub(super) fn stand_at(&self, i: usize, trial: &mut [f64]) {
+    /// Sets a trial to its candidate's position.
+    pub(crate) fn copy_position(&self, i: usize, trial: &mut [f64]) {
         trial.copy_from_slice(self.position(i));
     }
 
     /// Lets `propose` move each candidate's trial, which stands where its last one was, then keeps it in the box.
-    pub(super) fn propose_each(&mut self, bounds: &Bounds, mut propose: impl FnMut(usize, &Self, &mut [f64])) {
+    pub(crate) fn propose_each(&mut self, bounds: &Bounds, mut propose: impl FnMut(usize, &Self, &mut [f64])) {
         let mut trials = std::mem::take(&mut self.trials);
         for (i, trial) in trials.chunks_exact_mut(self.dimension).enumerate() {
             propose(i, self, trial);
@@ -102,7 +107,7 @@ impl Population {
     }
 
     /// Evaluates the trials as one batch.
-    pub(super) fn evaluate(&mut self, objective: &impl Objective) {
+    pub(crate) fn evaluate(&mut self, objective: &dyn Objective) {
         objective.evaluate(&self.trials, &mut self.trial_costs);
         for cost in &mut self.trial_costs {
             if !cost.is_finite() {
@@ -113,12 +118,12 @@ impl Population {
     }
 
     /// Takes the trials that are better than their candidates.
-    pub(super) fn accept_better(&mut self) {
+    pub(crate) fn accept_better(&mut self) {
         self.accept(|trial, held| trial < held);
     }
 
     /// Takes every trial.
-    pub(super) fn accept_all(&mut self) {
+    pub(crate) fn accept_all(&mut self) {
         self.accept(|_, _| true);
     }
 
@@ -135,5 +140,16 @@ impl Population {
                 self.best.copy_from_slice(&self.trials[i * d..(i + 1) * d]);
             }
         }
+    }
+    /// Whether all parts have the sizes that this box asks for: what is read back may have been damaged.
+    #[cfg(feature = "serde")]
+    pub(crate) fn fits(&self, bounds: &Bounds) -> bool {
+        let (rows, numbers) = (self.costs.len(), self.positions.len());
+        self.dimension == bounds.dimension()
+            && rows > 0
+            && rows.checked_mul(self.dimension) == Some(numbers)
+            && self.trials.len() == numbers
+            && self.trial_costs.len() == rows
+            && self.best.len() == self.dimension
     }
 }

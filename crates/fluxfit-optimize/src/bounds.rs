@@ -1,14 +1,15 @@
 //! The search box.
 
-use super::draws::Draws;
 use crate::error::Error;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Largest magnitude of a bound: steps and their squares stay finite.
 const MAX_BOUND: f64 = 1e150;
 
 /// A box of finite, non-empty intervals, one per dimension.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(try_from = "Unchecked"))]
 pub struct Bounds {
     lower: Vec<f64>,
     upper: Vec<f64>,
@@ -39,11 +40,6 @@ impl Bounds {
         self.lower.iter().copied().zip(self.upper.iter().copied())
     }
 
-    /// Positions uniform in the box, row after row.
-    pub(super) fn uniform_start(&self, population: usize, draws: &mut Draws) -> Vec<f64> {
-        (0..population).flat_map(|_| self.iter()).map(|(lower, upper)| lower + draws.uniform() * (upper - lower)).collect()
-    }
-
     /// Moves each coordinate outside the box to the nearest face; one that is not a number, to the lower face.
     pub fn clamp(&self, position: &mut [f64]) {
         for (x, (lower, upper)) in position.iter_mut().zip(self.iter()) {
@@ -54,5 +50,22 @@ impl Bounds {
     /// Whether a position lies in the box, faces included.
     pub fn contains(&self, position: &[f64]) -> bool {
         position.iter().zip(self.iter()).all(|(x, (lower, upper))| (lower..=upper).contains(x))
+    }
+}
+
+/// Bounds as they are read back, before they are checked.
+#[cfg(feature = "serde")]
+#[derive(Deserialize)]
+struct Unchecked {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Bounds {
+    type Error = Error;
+
+    fn try_from(Unchecked { lower, upper }: Unchecked) -> Result<Self, Error> {
+        Self::new(lower, upper)
     }
 }

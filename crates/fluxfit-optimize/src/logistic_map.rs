@@ -3,10 +3,10 @@
 //! `b_{i+1} = mu b_i (1 - b_i)`, `x_i = L + b_i (U - L)`, one independent chain per dimension. `mu = 4` is the fully chaotic map;
 //! its density is the arcsine law, denser at the box's faces than in its middle.
 
-use super::{bounds::Bounds, draws::Draws};
+use crate::{bounds::Bounds, draws::Draws};
 
 /// The map's control parameter: fully chaotic.
-pub const MU: f64 = 4.0;
+const MU: f64 = 4.0;
 
 /// Starts that end in a fixed point of the map, and are avoided: 0 and 3/4 are fixed points, the others lead there.
 const TRAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -16,7 +16,7 @@ const TRAPS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 const CLEARANCE: f64 = 1e-3;
 
 /// Positions of `population` candidates, row after row. Draws one start per dimension.
-pub fn logistic_start(population: usize, bounds: &Bounds, draws: &mut Draws) -> Vec<f64> {
+pub(crate) fn logistic_start(population: usize, bounds: &Bounds, draws: &mut Draws) -> Vec<f64> {
     let mut chain: Vec<f64> = (0..bounds.dimension()).map(|_| start(draws)).collect();
     let mut positions = Vec::with_capacity(population * chain.len());
     for _ in 0..population {
@@ -50,6 +50,16 @@ mod tests {
         for (got, expected) in x.iter().zip([11.0, 13.6, 19.216, 12.890_137_6]) {
             assert!((got - expected).abs() < 1e-13, "{got} {expected}");
         }
+    }
+
+    /// The map's peak is 1, and `lower + (upper - lower)` may be rounded to above `upper`.
+    #[test]
+    fn positions_stay_in_the_box_at_the_maps_peak() {
+        let bounds = Bounds::new(vec![-0.3], vec![0.47]).unwrap();
+        // sin²(pi/8): the map goes on to 1/2 and 1.
+        let peak = logistic_start(4, &bounds, &mut Draws::replay(vec![0.146_446_609_406_726_24]))[2];
+        assert!((peak - 0.47).abs() < 1e-12, "{peak}");
+        assert!(bounds.contains(&[peak]), "{peak}");
     }
 
     #[test]

@@ -13,13 +13,22 @@
 //!
 //! When to use it: the strongest of the paper's baselines on smooth, single-valleyed fitness functions.
 
-use super::{particles::Flight, population::WORST_COST};
+use super::particles::{Flight, Particles};
+use crate::{
+    error::Error,
+    iteration::{Iteration, Setup},
+    population::{Population, WORST_COST},
+    setting::check_factor,
+};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Settings of APSO.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Apso {
     /// The flight underneath.
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub flight: Flight,
     /// Inertia weight of the best particle. 0.4.
     pub inertia_min: f64,
@@ -29,13 +38,36 @@ pub struct Apso {
 
 impl Default for Apso {
     fn default() -> Self {
-        Self { flight: Flight::default(), inertia_min: 0.4, inertia_max: 0.9 }
+        Self::DEFAULT
     }
 }
 
 impl Apso {
+    /// The settings where none are given.
+    pub const DEFAULT: Self = Self { flight: Flight::DEFAULT, inertia_min: 0.4, inertia_max: 0.9 };
+
+    /// Refuses settings out of range.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        self.flight.check()?;
+        check_factor("inertia_min", self.inertia_min)?;
+        check_factor("inertia_max", self.inertia_max)
+    }
+
+    /// Particles uniform in the box, with their velocities.
+    pub(crate) fn start(&self, setup: &mut Setup) -> Result<(Population, Particles), Error> {
+        self.check()?;
+        Particles::start(&self.flight, setup)
+    }
+
+    /// One flight per particle.
+    pub(crate) fn step(&self, particles: &mut Particles, iteration: &mut Iteration) {
+        let costs = iteration.population.costs().to_vec();
+        let inertia = self.inertia(&costs);
+        particles.fly(&self.flight, |i| inertia(costs[i]), iteration);
+    }
+
     /// The inertia weight that follows from a particle's cost, given the current costs of the swarm.
-    pub(super) fn inertia(&self, costs: &[f64]) -> impl Fn(f64) -> f64 + use<> {
+    fn inertia(&self, costs: &[f64]) -> impl Fn(f64) -> f64 + use<> {
         let finite = || costs.iter().copied().filter(|cost| *cost < WORST_COST);
         let lowest = finite().fold(f64::INFINITY, f64::min);
         let count = finite().count() as f64;

@@ -10,13 +10,22 @@
 //!
 //! When to use it: as the paper's second baseline.
 
-use super::particles::Flight;
+use super::particles::{Flight, Particles};
+use crate::{
+    error::Error,
+    iteration::{Iteration, Setup},
+    population::Population,
+    setting::check_factor,
+};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Settings of LPSO.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Lpso {
     /// The flight underneath.
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub flight: Flight,
     /// Inertia weight of the first iteration. 0.9.
     pub inertia_start: f64,
@@ -26,13 +35,35 @@ pub struct Lpso {
 
 impl Default for Lpso {
     fn default() -> Self {
-        Self { flight: Flight::default(), inertia_start: 0.9, inertia_end: 0.4 }
+        Self::DEFAULT
     }
 }
 
 impl Lpso {
+    /// The settings where none are given.
+    pub const DEFAULT: Self = Self { flight: Flight::DEFAULT, inertia_start: 0.9, inertia_end: 0.4 };
+
+    /// Refuses settings out of range.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        self.flight.check()?;
+        check_factor("inertia_start", self.inertia_start)?;
+        check_factor("inertia_end", self.inertia_end)
+    }
+
+    /// Particles uniform in the box, with their velocities.
+    pub(crate) fn start(&self, setup: &mut Setup) -> Result<(Population, Particles), Error> {
+        self.check()?;
+        Particles::start(&self.flight, setup)
+    }
+
+    /// One flight per particle.
+    pub(crate) fn step(&self, particles: &mut Particles, iteration: &mut Iteration) {
+        let inertia = self.inertia(iteration.number, iteration.limit);
+        particles.fly(&self.flight, |_| inertia, iteration);
+    }
+
     /// The inertia weight of iteration `iteration` (from 1) out of `iterations`; past the last one it stays.
-    pub(super) fn inertia(&self, iteration: usize, iterations: usize) -> f64 {
+    fn inertia(&self, iteration: usize, iterations: usize) -> f64 {
         let fraction = (iteration.saturating_sub(1) as f64 / iterations.saturating_sub(1).max(1) as f64).min(1.0);
         self.inertia_start + (self.inertia_end - self.inertia_start) * fraction
     }

@@ -15,13 +15,22 @@
 //!
 //! When to use it: as the baseline of [`tgfpa`](super::tgfpa).
 
-use super::{bounds::Bounds, draws::Draws, levy::levy, population::Population};
+use crate::{
+    draws::Draws,
+    error::Error,
+    iteration::{Iteration, Setup},
+    levy::levy,
+    population::Population,
+    setting::{check_factor, check_probability},
+};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Settings of FPA.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Fpa {
-    /// `p`: a move is local with this probability. 0.8; measured, 0.2 ends ten thousand times worse on fitness (11).
+    /// `p`: a move is local with this probability. 0.8; measured, 0.2 ends ten thousand times worse on the paper's fitness (11).
     pub switch_probability: f64,
     /// `gamma`: scale of the Lévy steps. 0.1; Yang's program has 0.01, which ends twenty times worse.
     pub gamma: f64,
@@ -30,56 +39,72 @@ pub struct Fpa {
 }
 
 /// Where a local move starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LocalBase {
     /// At the flower, as equation (6) has it.
     Accepted,
-    /// At the flower's last trial, accepted or not, as in Yang's program: ends ten thousand times worse on fitness (11).
+    /// At the flower's last trial, accepted or not, as in Yang's program: ends ten thousand times worse on the paper's fitness (11).
     LastTrial,
 }
 
 impl Default for Fpa {
     fn default() -> Self {
-        Self { switch_probability: 0.8, gamma: 0.1, local_base: LocalBase::Accepted }
+        Self::DEFAULT
     }
 }
 
 impl Fpa {
+    /// The settings where none are given.
+    pub const DEFAULT: Self = Self { switch_probability: 0.8, gamma: 0.1, local_base: LocalBase::Accepted };
+
     /// Smallest population: a flower and its two partners.
-    pub const MIN_POPULATION: usize = 3;
+    pub const SMALLEST_POPULATION: usize = 3;
+
+    /// Refuses settings out of range.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        check_probability("switch_probability", self.switch_probability)?;
+        check_factor("gamma", self.gamma)
+    }
+
+    /// Flowers uniform in the box.
+    pub(crate) fn start(&self, setup: &mut Setup) -> Result<Population, Error> {
+        self.check()?;
+        setup.uniform()
+    }
 
     /// One trial per flower. Draws per flower: `rand`; then the Lévy steps, or `epsilon` and the partners.
-    pub(super) fn propose(&self, flowers: &mut Population, bounds: &Bounds, draws: &mut Draws) {
-        flowers.propose_each(bounds, |i, flowers, trial| {
+    pub(crate) fn step(&self, iteration: &mut Iteration) {
+        iteration.try_each(|i, flowers, trial, draws| {
             if draws.uniform() > self.switch_probability {
                 self.global(i, flowers, trial, draws);
             } else {
                 self.local(i, flowers, trial, draws);
             }
         });
+        iteration.population.accept_better();
     }
 
     /// Equation (4).
-    pub(super) fn global(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
-        flowers.stand_at(i, trial);
+    pub(crate) fn global(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
+        flowers.copy_position(i, trial);
         for (x, best) in trial.iter_mut().zip(flowers.best()) {
             *x += self.gamma * levy(draws) * (*x - best);
         }
     }
 
     /// Equation (6).
-    pub(super) fn local(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
+    pub(crate) fn local(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
         self.stand_at_base(i, flowers, trial);
         let epsilon = draws.uniform();
         let [j, k] = draws.partners(i, flowers.len());
         flowers.add_difference(trial, epsilon, j, k);
     }
 
-    /// Puts a trial to where its local move starts.
-    pub(super) fn stand_at_base(&self, i: usize, flowers: &Population, trial: &mut [f64]) {
+    /// Sets a trial to where its local move starts.
+    pub(crate) fn stand_at_base(&self, i: usize, flowers: &Population, trial: &mut [f64]) {
         match self.local_base {
-            LocalBase::Accepted => flowers.stand_at(i, trial),
+            LocalBase::Accepted => flowers.copy_position(i, trial),
             LocalBase::LastTrial => {}
         }
     }

@@ -1,15 +1,15 @@
-//! The optimizers know nothing of motors: tGFPA on Rosenbrock's valley, saved half way and resumed.
+//! tGFPA on Rosenbrock's valley, saved half way and resumed.
 //!
-//! `cargo run --release -p fluxfit --example minimize_any_function`
-#![allow(clippy::print_stdout)] // An example speaks.
+//! `cargo run --release -p fluxfit-optimize --example minimize_any_function`
+#![allow(clippy::print_stdout)] // Printing is what an example is for.
 
-use fluxfit::optimizer::{Method, Optimizer, Settings, bounds::Bounds, objective_from, tgfpa::Tgfpa};
+use fluxfit_optimize::{Bounds, Method, Optimizer, SearchSettings, methods::tgfpa::Tgfpa, objective_from};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // H. H. Rosenbrock, The Computer Journal 3 (1960) 175: a curved valley with its floor at (1, 1).
     let rosenbrock = objective_from(2, |x| 100.0 * (x[1] - x[0] * x[0]).powi(2) + (1.0 - x[0]).powi(2));
     let bounds = Bounds::new(vec![-2.0, -1.0], vec![2.0, 3.0])?;
-    let settings = Settings { iterations: 400, target_cost: Some(1e-12), ..Settings::default() };
+    let settings = SearchSettings { iterations: 400, target_cost: Some(1e-12), ..SearchSettings::default() };
 
     let mut search = Optimizer::start(Method::Tgfpa(Tgfpa::default()), settings, bounds, &rosenbrock)?;
     for _ in 0..100 {
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!("after 100 iterations: {:?} costs {:.1e}", search.population().best(), search.population().best_cost());
 
-    // All of its state is data: what is restored goes on to the same bits.
+    // All of its state is data: a restored search goes on to the same bits.
     let saved = serde_json::to_string(&search)?;
     let mut restored: Optimizer = serde_json::from_str(&saved)?;
     let (report, other) = (search.run(&rosenbrock), restored.run(&rosenbrock));

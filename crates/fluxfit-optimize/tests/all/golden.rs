@@ -1,14 +1,6 @@
-//! The steps of the four methods against an independent program fed the same random numbers: `oracles/optimizer_steps.py`.
-#![allow(clippy::panic, clippy::unwrap_used)]
+//! The steps of the methods against an independent program fed the same random numbers: `oracles/optimizer_steps.py`.
 
-use fluxfit::optimizer::apso::Apso;
-use fluxfit::optimizer::bounds::Bounds;
-use fluxfit::optimizer::draws::Draws;
-use fluxfit::optimizer::fpa::Fpa;
-use fluxfit::optimizer::lpso::Lpso;
-use fluxfit::optimizer::particles::Flight;
-use fluxfit::optimizer::tgfpa::{Start, Tgfpa};
-use fluxfit::optimizer::{Method, Objective, Optimizer, Settings, objective_from};
+use fluxfit_optimize::{Bounds, Draws, Method, Objective, Optimizer, SearchSettings, objective_from};
 use serde::Deserialize;
 
 /// Fraction of the box's width that a coordinate may differ by, and of the start's largest cost that a cost may.
@@ -34,8 +26,9 @@ struct Quartic {
 #[derive(Deserialize)]
 struct Case {
     name: String,
-    method: String,
-    settings: serde_json::Value,
+    /// Its key and its settings.
+    #[serde(flatten)]
+    method: Method,
     dimension: usize,
     lower: Vec<f64>,
     upper: Vec<f64>,
@@ -63,32 +56,10 @@ impl Quartic {
 }
 
 impl Case {
-    fn method(&self) -> Method {
-        let number = |name: &str| self.settings[name].as_f64().unwrap();
-        let flight = || Flight { cognitive: number("cognitive"), social: number("social"), velocity_limit: number("velocity_limit") };
-        let pollination = || Fpa {
-            switch_probability: number("switch_probability"),
-            gamma: number("gamma"),
-            local_base: serde_json::from_value(self.settings["local_base"].clone()).unwrap(),
-        };
-        match self.method.as_str() {
-            "tgfpa" => Method::Tgfpa(Tgfpa {
-                pollination: pollination(),
-                plain_global: number("plain_global"),
-                plain_local: number("plain_local"),
-                start: if self.settings["start"] == "logistic" { Start::Logistic } else { Start::Uniform },
-            }),
-            "fpa" => Method::Fpa(pollination()),
-            "lpso" => Method::Lpso(Lpso { flight: flight(), inertia_start: number("inertia_start"), inertia_end: number("inertia_end") }),
-            "apso" => Method::Apso(Apso { flight: flight(), inertia_min: number("inertia_min"), inertia_max: number("inertia_max") }),
-            other => panic!("no method {other}"),
-        }
-    }
-
     fn start(&self, objective: &impl Objective) -> Optimizer {
-        let settings = Settings { population: self.population, iterations: self.iterations, ..Settings::default() };
+        let settings = SearchSettings { population: self.population, iterations: self.iterations, ..SearchSettings::default() };
         let bounds = Bounds::new(self.lower.clone(), self.upper.clone()).unwrap();
-        Optimizer::start_from(self.method(), settings, bounds, Draws::replay(self.draws.clone()), objective).unwrap()
+        Optimizer::start_from(self.method, settings, bounds, Draws::replay(self.draws.clone()), objective).unwrap()
     }
 
     fn compare(&self, iteration: usize, optimizer: &Optimizer) {
@@ -117,14 +88,13 @@ impl Case {
 }
 
 fn oracle() -> Oracle {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracles/optimizer_steps.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/optimizer_steps.json");
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
 #[test]
 fn every_step_is_the_oracles() {
     let oracle = oracle();
-    assert_eq!(oracle.cases.len(), 9);
     for case in &oracle.cases {
         let objective = objective_from(case.dimension, |x| oracle.objective.cost(case, x));
         let mut optimizer = case.start(&objective);
@@ -142,10 +112,13 @@ fn every_step_is_the_oracles() {
 }
 
 #[test]
-fn the_default_settings_are_the_oracles() {
+fn every_method_has_its_cases_and_the_oracles_default_settings() {
     let oracle = oracle();
+    let case = |name: &str| oracle.cases.iter().find(|case| case.name == name);
     for method in Method::all() {
-        let case = oracle.cases.iter().find(|case| case.name == format!("{} defaults", method.key())).unwrap();
-        assert_eq!(case.method(), method);
+        let [defaults, altered] = ["defaults", "altered"].map(|which| case(&format!("{} {which}", method.key())));
+        assert_eq!(defaults.unwrap().method, method);
+        assert_eq!(altered.unwrap().method.key(), method.key());
     }
+    assert!(case("tgfpa from the last trial").is_some());
 }

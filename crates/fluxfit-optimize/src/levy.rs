@@ -6,19 +6,17 @@
 //! R. N. Mantegna, "Fast, accurate algorithm for numerical simulation of Lévy stable stochastic processes", Physical Review E
 //! 49 (1994) 4677, doi:10.1103/PhysRevE.49.4677.
 
-use super::draws::Draws;
+use crate::draws::Draws;
 
-/// Exponent of the tail: the paper's and Yang's usual value.
-pub const LAMBDA: f64 = 1.5;
-
-/// Mantegna's scale for [`LAMBDA`]: `(Gamma(1+l) sin(pi l/2) / (Gamma((1+l)/2) l 2^((l-1)/2)))^(1/l)`.
-pub const SIGMA_U: f64 = 0.696_574_502_557_697;
+/// Mantegna's scale for the tail's exponent `l = lambda = 1.5`, the paper's and Yang's usual value:
+/// `(Gamma(1+l) sin(pi l/2) / (Gamma((1+l)/2) l 2^((l-1)/2)))^(1/l)`.
+const SIGMA_U: f64 = 0.696_574_502_557_697;
 
 /// One step. Draws `u`, then `v`.
-pub fn levy(draws: &mut Draws) -> f64 {
+pub(crate) fn levy(draws: &mut Draws) -> f64 {
     let u = draws.normal();
     let v = draws.normal();
-    // |v|^(1/1.5) = cbrt(v^2).
+    // |v|^(1/lambda) = cbrt(v^2).
     SIGMA_U * u / (v * v).cbrt()
 }
 
@@ -29,7 +27,7 @@ mod tests {
     #[test]
     fn the_scale_is_mantegnas_formula() {
         use statrs::function::gamma::gamma;
-        let l = LAMBDA;
+        let l = 1.5;
         let sine = (std::f64::consts::FRAC_PI_2 * l).sin();
         let formula = (gamma(1.0 + l) * sine / (gamma((1.0 + l) / 2.0) * l * 2.0_f64.powf((l - 1.0) / 2.0))).powf(1.0 / l);
         assert!((SIGMA_U - formula).abs() < 1e-14, "{formula}");

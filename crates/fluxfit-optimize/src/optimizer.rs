@@ -1,0 +1,167 @@
+//! A search under way: one optimizer for all methods.
+//!
+//! An [`Optimizer`] is data and a [`step`](Optimizer::step): its method proposes a trial per candidate, evaluates all of them as one
+//! batch, then accepts. From that one piece come running, stopping, saving (with serde), resuming and history.
+//! A step depends on nothing but the state and the objective: running `N` times one iteration is running `N` iterations, and a
+//! restored optimizer goes on to the same bits.
+
+use crate::{
+    bounds::Bounds,
+    draws::Draws,
+    error::Error,
+    iteration::{Iteration, Setup},
+    methods::{Method, State},
+    objective::Objective,
+    population::Population,
+    report::{Record, SearchReport, StopReason},
+    setting::{LARGEST_POPULATION, SearchSettings},
+};
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// A search under way.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(try_from = "Saved"))]
+pub struct Optimizer {
+    settings: SearchSettings,
+    bounds: Bounds,
+    draws: Draws,
+    population: Population,
+    state: State,
+    iteration: usize,
+    history: Vec<Record>,
+}
+
+impl Optimizer {
+    /// Lays out and evaluates the first population.
+    ///
+    /// # Errors
+    /// If the population is too small for the method or larger than a million, a setting of the method is out of range, the box has
+    /// another dimension than the objective, or no candidate of the start has a finite cost.
+    pub fn start(method: Method, settings: SearchSettings, bounds: Bounds, objective: &impl Objective) -> Result<Self, Error> {
+        let draws = Draws::seeded(settings.seed, settings.run);
+        Self::start_from(method, settings, bounds, draws, objective)
+    }
+
+    /// [`start`](Self::start) with random numbers of the caller's.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    pub fn start_from(
+        method: Method,
+        settings: SearchSettings,
+        bounds: Bounds,
+        mut draws: Draws,
+        objective: &impl Objective,
+    ) -> Result<Self, Error> {
+        let (size, facts) = (settings.population, method.facts());
+        if size < facts.smallest_population {
+            return Err(Error::Population { method: facts.label, given: size, least: facts.smallest_population });
+        }
+        if size > LARGEST_POPULATION {
+            return Err(Error::Setting { setting: "the population", value: size as f64, range: "at most a million" });
+        }
+        if bounds.dimension() != objective.dimension() {
+            return Err(Error::Dimension { bounds: bounds.dimension(), objective: objective.dimension() });
+        }
+        let (population, state) = method.start(&mut Setup { size, bounds: &bounds, draws: &mut draws, objective })?;
+        let mut new = Self { settings, bounds, draws, population, state, iteration: 0, history: Vec::new() };
+        new.record();
+        Ok(new)
+    }
+
+    /// One iteration: propose, evaluate as one batch, accept.
+    pub fn step(&mut self, objective: &impl Objective) {
+        self.iteration += 1;
+        let Self { settings, bounds, draws, population, state, iteration, .. } = self;
+        state.step(&mut Iteration { number: *iteration, limit: settings.iterations, bounds, draws, population, objective });
+        self.record();
+    }
+
+    /// Steps until a criterion stops it.
+    pub fn run(&mut self, objective: &impl Objective) -> SearchReport {
+        self.run_while(objective, || ControlFlow::Continue(()))
+    }
+
+    /// Steps until a criterion stops it, or `go_on`, asked after each iteration, does. What was interrupted can be run on.
+    pub fn run_while(&mut self, objective: &impl Objective, mut go_on: impl FnMut() -> ControlFlow<()>) -> SearchReport {
+        let stop_reason = loop {
+            if let Some(reason) = self.stop_reason() {
+                break reason;
+            }
+            self.step(objective);
+            if go_on().is_break() {
+                break self.stop_reason().unwrap_or(StopReason::Interrupted);
+            }
+        };
+        SearchReport {
+            best: self.population.best().to_vec(),
+            cost: self.population.best_cost(),
+            evaluations: self.population.evaluations(),
+            stop_reason,
+            history: self.history.clone(),
+        }
+    }
+
+    /// The criterion that holds now, if any.
+    pub fn stop_reason(&self) -> Option<StopReason> {
+        let cost = self.population.best_cost();
+        if self.settings.target_cost.is_some_and(|target| cost <= target) {
+            Some(StopReason::TargetCost)
+        } else if self.settings.close_to_optimum.is_some_and(|close| cost - close.optimum <= close.tolerance) {
+            Some(StopReason::CloseToOptimum)
+        } else if self.iteration >= self.settings.iterations {
+            Some(StopReason::IterationLimit)
+        } else {
+            None
+        }
+    }
+
+    /// The candidates and the best of them.
+    pub fn population(&self) -> &Population {
+        &self.population
+    }
+
+    /// The best after each iteration so far.
+    pub fn history(&self) -> &[Record] {
+        &self.history
+    }
+
+    fn record(&mut self) {
+        self.history.push(Record {
+            iteration: self.iteration,
+            evaluations: self.population.evaluations(),
+            cost: self.population.best_cost(),
+            best: self.population.best().to_vec(),
+        });
+    }
+}
+
+/// A search as it is read back, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(Deserialize)]
+struct Saved {
+    settings: SearchSettings,
+    bounds: Bounds,
+    draws: Draws,
+    population: Population,
+    state: State,
+    iteration: usize,
+    history: Vec<Record>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Saved> for Optimizer {
+    type Error = Error;
+
+    /// Refuses parts that do not belong together, so that no step can fail.
+    fn try_from(saved: Saved) -> Result<Self, Error> {
+        let Saved { settings, bounds, draws, population, state, iteration, history } = saved;
+        if !population.fits(&bounds) {
+            return Err(Error::SavedSearch);
+        }
+        state.check(&population)?;
+        Ok(Self { settings, bounds, draws, population, state, iteration, history })
+    }
+}

@@ -1,0 +1,79 @@
+//! A damaged save is refused; it never makes a step fail. That an undamaged one goes on to the same bits is a law.
+
+use crate::{bowl, bowl_box};
+use fluxfit_optimize::{Bounds, Method, Optimizer, SearchSettings};
+use serde_json::{Value, json};
+
+/// A search with each method, some iterations on, as it is saved.
+fn saves() -> impl Iterator<Item = Value> {
+    Method::all().into_iter().map(|method| {
+        let mut optimizer = Optimizer::start(method, SearchSettings::default(), bowl_box(), &bowl()).unwrap();
+        optimizer.step(&bowl());
+        serde_json::to_value(&optimizer).unwrap()
+    })
+}
+
+/// Every array of numbers in a save, by its path.
+fn arrays(path: &str, value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::Array(items) if items.first().is_some_and(Value::is_number) => found.push(path.to_owned()),
+        Value::Array(items) => items.iter().enumerate().for_each(|(k, item)| arrays(&format!("{path}/{k}"), item, found)),
+        Value::Object(fields) => fields.iter().for_each(|(name, field)| arrays(&format!("{path}/{name}"), field, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn parts_of_other_sizes_are_refused() {
+    for saved in saves() {
+        assert!(serde_json::from_value::<Optimizer>(saved.clone()).is_ok());
+        let mut paths = Vec::new();
+        ["population", "state", "bounds"].iter().for_each(|part| arrays(&format!("/{part}"), &saved[part], &mut paths));
+        assert!(paths.len() >= 7, "{paths:?}");
+        for path in paths {
+            let mut damaged = saved.clone();
+            damaged.pointer_mut(&path).unwrap().as_array_mut().unwrap().pop();
+            assert!(serde_json::from_value::<Optimizer>(damaged).is_err(), "{path}");
+        }
+        let mut damaged = saved;
+        damaged["population"]["dimension"] = json!(3);
+        assert!(serde_json::from_value::<Optimizer>(damaged).is_err());
+    }
+}
+
+#[test]
+fn settings_out_of_range_are_refused() {
+    for saved in saves() {
+        let text = saved.to_string();
+        let damaged = text.replace("\"velocity_limit\":0.1", "\"velocity_limit\":-1.0").replace("\"gamma\":0.1", "\"gamma\":1e300");
+        assert_ne!(damaged, text);
+        assert!(serde_json::from_str::<Optimizer>(&damaged).is_err());
+    }
+}
+
+/// A population that is smaller than its method starts with is stepped without failing: its moves have fewer partners.
+#[test]
+fn a_smaller_population_is_stepped() {
+    for mut saved in saves() {
+        for (part, numbers) in [("positions", 2), ("trials", 2), ("costs", 1), ("trial_costs", 1)] {
+            saved["population"][part].as_array_mut().unwrap().truncate(numbers);
+        }
+        for (name, numbers) in [("velocities", 2), ("own_best", 2), ("own_best_costs", 1)] {
+            for memory in ["/state/lpso/1/", "/state/apso/1/"] {
+                if let Some(Value::Array(array)) = saved.pointer_mut(&format!("{memory}{name}")) {
+                    array.truncate(numbers);
+                }
+            }
+        }
+        serde_json::from_value::<Optimizer>(saved).unwrap().run(&bowl());
+    }
+}
+
+#[test]
+fn bounds_are_checked_when_they_are_read() {
+    let read = |lower: Value, upper: Value| serde_json::from_value::<Bounds>(json!({ "lower": lower, "upper": upper }));
+    assert_eq!(read(json!([0.0, -1.0]), json!([1.0, 1.0])).unwrap(), Bounds::new(vec![0.0, -1.0], vec![1.0, 1.0]).unwrap());
+    assert!(read(json!([0.0]), json!([1.0, 1.0])).is_err());
+    assert!(read(json!([0.0]), json!([0.0])).is_err());
+    assert!(read(json!([]), json!([])).is_err());
+}
