@@ -1,7 +1,7 @@
 //! Current sensor imbalance: gains of the current sensors that differ.
 //!
 //! A current is then read as `i + s conj(i)` in the stator, with `s = alpha + j beta`. A gain that all sensors share is no part of it: it
-//! cannot be told from a smaller impedance. Three sensors have any `s`. Where only two phases have a sensor and the third current is
+//! acts like a smaller impedance. Three sensors have any `s`. Where only two phases have a sensor and the third current is
 //! their negative sum, one number is all that there is, the gain of one over that of the other; it turns the current too.
 
 use super::description::{Description, Names, NumberDescription, one, present_state};

@@ -153,7 +153,7 @@ impl Fault {
         self.row().family
     }
 
-    /// Whether it can only be told with the electrical angle, because it happens in the stator's frame.
+    /// Whether it can only be found with the electrical angle, because it acts in the stator's frame.
     pub fn needs_angle(self) -> bool {
         self.row().needs_angle
     }

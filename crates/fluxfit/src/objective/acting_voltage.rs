@@ -1,8 +1,8 @@
-//! Which voltage acted when: a log's voltage columns, turned into one vector per sample period.
+//! Voltage timing: the voltage that acted over each sample period, from a log's voltage columns.
 //!
-//! Columns are the commands of a drive, `delay` periods before they act, or *centred*: the mean of the two periods around the row,
-//! in the frame at the row. A centred column is undone in the stator's frame, `V_k = 2 U_k - V_(k-1)`; its first vector is not in
-//! the log, and an error of it alternates in sign from period to period.
+//! The columns hold either the commands of a drive, `delay` periods before they act, or *centred* voltages: the mean of the two periods
+//! around the row, in the frame at the row. Centred voltages are converted in the stator's frame, `V_k = 2 U_k - V_(k-1)`; the first
+//! vector is not in the log, and its error alternates in sign from period to period.
 
 use crate::{
     frames::{AlphaBeta, Dq},
@@ -34,7 +34,7 @@ pub enum VoltageFrame {
 }
 
 impl VoltageReading {
-    /// All readings that drives are known to have.
+    /// All readings that are known from drives.
     pub const ALL: [Self; 7] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
@@ -102,8 +102,8 @@ pub(super) struct Angles {
     pub(super) logged: Vec<f64>,
     /// As the rotor most likely was: without the steps of an encoder.
     pub(super) rotor: Vec<f64>,
-    /// Whether the log has it. Without, both are the speed, summed up from the first row on: a frame that stands still in the stator all
-    /// the same, but nobody knows where.
+    /// Whether the log has it. Without, both are the speed, integrated from the first row on: still a frame that is fixed to the rotor, but
+    /// at an unknown angle to the magnet's.
     pub(super) known: bool,
 }
 
@@ -114,7 +114,8 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
     let first = rows.start + reading.lost_rows();
     let frame = |row: usize| angles.logged[row - rows.start];
     let logged = |row: usize| Dq { d: columns.ud[row], q: columns.uq[row] };
-    // Of a centred column: what acted over the period before, in the stator. At the start nothing better is known than the row itself.
+    // For centred columns: the voltage that acted over the period before, in the stator's frame. The first one is not in the log; the
+    // mean at the first row stands in for it.
     let mut before = logged(rows.start).to_alpha_beta(frame(rows.start));
     (first..rows.end.saturating_sub(1))
         .map(|row| {
@@ -127,7 +128,7 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                     before
                 }
                 VoltageReading::Delayed { delay, frame: VoltageFrame::Middle } => {
-                    // The drive looked ahead with the speed that it had.
+                    // The drive advanced the angle by its speed times the delay.
                     let ahead = columns.omega_e[row - delay] * (delay as f64 + 0.5) * length;
                     logged(row - delay).to_alpha_beta(frame(row - delay) + ahead)
                 }
@@ -139,21 +140,21 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
         .collect()
 }
 
-/// The logged angle may differ by this much per row, rad, from what the logged speed makes of it: an encoder's steps and a filtered
-/// speed do; an angle of the shaft instead of the field, or of the other sense, differs by more over a turn.
+/// Largest difference per row, rad, between the logged angle and the one expected from the logged speed: the steps of an encoder and the
+/// filter of a speed stay below; a mechanical angle, or one of the other sense, differs by more within a turn.
 const ANGLE_MISFIT: f64 = 0.1;
 
-/// Share of the rows that may miss it, as where an index pulse sets the angle right.
+/// Share of the rows that may differ by more, as where an index pulse corrects the angle.
 const MISFITS: f64 = 0.01;
 
-/// Part of the whole turn by which a logged speed may miss it: a filtered one lags at both ends.
+/// Fraction of the whole turn by which the integrated speed may differ from it: a filtered speed lags at both ends.
 const WHOLE_MISFIT: f64 = 0.02;
 
-/// Rows to either side over which the steps of an encoder are averaged: what is left of uniform steps is a tenth or less, and the
-/// speed, which fills in between, need be right over so many rows only.
+/// Rows to either side over which the steps of an encoder are averaged: a tenth or less of uniform steps remains, and the speed, which
+/// interpolates between them, need be right over so many rows only.
 const SMOOTHED: usize = 25;
 
-/// The angles at these rows of one segment. A logged angle that does not turn with the speed is none.
+/// The angles at these rows of one segment. A logged angle that does not turn with the speed is not used.
 pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
     let columns = log.columns();
     let turn = |row: usize| 0.5 * (columns.omega_e[row - 1] + columns.omega_e[row]) * (columns.t[row] - columns.t[row - 1]);
@@ -172,7 +173,7 @@ pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
             misfits += usize::from((angle - expected).abs() > ANGLE_MISFIT);
             angles.push(angle);
         }
-        // Of the shaft instead of the field, or of the other sense, it turns too little or backward on the whole.
+        // A mechanical angle turns too little on the whole, and one of the other sense turns backward.
         let (whole, expected) = (angles[angles.len() - 1] - angles[0], summed[summed.len() - 1]);
         let turns = (whole - expected).abs() <= WHOLE_MISFIT * expected.abs() + TAU;
         if turns && misfits as f64 <= MISFITS * rows.len() as f64 {
@@ -182,11 +183,12 @@ pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
     Angles { rotor: summed.clone(), logged: summed, known: false }
 }
 
-/// The summed speed, brought to the mean of the logged angle around each row; twice, so that the slope is calm too.
+/// The integrated speed, corrected by the mean difference of the logged angle around each row; averaged twice, so that the slope is
+/// smooth too.
 fn smoothed(logged: &[f64], summed: &[f64]) -> Vec<f64> {
-    let apart: Vec<f64> = logged.iter().zip(summed).map(|(one, other)| one - other).collect();
-    let calm = moving_mean(&moving_mean(&apart));
-    summed.iter().zip(calm).map(|(summed, apart)| summed + apart).collect()
+    let differences: Vec<f64> = logged.iter().zip(summed).map(|(one, other)| one - other).collect();
+    let smooth = moving_mean(&moving_mean(&differences));
+    summed.iter().zip(smooth).map(|(summed, difference)| summed + difference).collect()
 }
 
 /// Mean of as many rows on one side as on the other, so that a trend is not shifted: fewer near the ends.

@@ -2,7 +2,7 @@
 //! may move.
 
 use crate::{
-    faults::{Fault, Faults, Number},
+    faults::{Fault, Faults, Number, disturbance::Disturbance},
     motor::{Motor, Parameter},
 };
 
@@ -61,6 +61,11 @@ impl Unknown {
             Self::Fault(number) => Some(number.fault()),
         }
     }
+
+    /// Whether it is a gain of the observer of a disturbed motor.
+    pub fn is_observer_gain(self) -> bool {
+        self.fault() == Some(Fault::Disturbance)
+    }
 }
 
 impl From<Motor> for Adjustable {
@@ -89,6 +94,11 @@ impl Adjustable {
             Unknown::Fault(number) => self.faults.set(number, value),
         }
         self
+    }
+
+    /// The same without the observer of a disturbed motor.
+    pub fn without_observer(self) -> Self {
+        Self { faults: Faults { disturbance: Disturbance::default(), ..self.faults }, ..self }
     }
 
     /// The size of an unknown by which the steps of a fit are counted, SI, given the largest measured current, A: a parameter's own size,

@@ -91,7 +91,8 @@ impl OutputError {
         self.segments.iter().map(|segment| segment.rows.clone())
     }
 
-    /// Whether every stretch has its angle from the log: only then can effects in the stator's frame be told from those in the rotor's.
+    /// Whether every stretch has its angle from the log: only then can effects in the stator's frame be distinguished from those in
+    /// the rotor's.
     pub fn angle_known(&self) -> bool {
         self.segments.iter().all(|segment| segment.angle_known)
     }

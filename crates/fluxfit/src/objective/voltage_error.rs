@@ -8,8 +8,8 @@
 //! points the same sum over all of them. It is linear in `x`: one valley, solved exactly by
 //! [`least_squares`](crate::least_squares), and evaluated through the same triangular factor in a few nanoseconds.
 //!
-//! The paper's samples are taken as the voltages that acted. A log's are not quite: each window comes with the
-//! [zero-order-hold](crate::steady::zero_order_hold) correction of its log, without which L_q is 0.02 % off on an exact log.
+//! The paper takes its samples as the voltages that acted. Those of a log differ slightly from them: each window comes with the
+//! [zero-order-hold](crate::steady::zero_order_hold) correction, without which L_q is 0.02 % off on an exact log.
 //!
 //! Gao, Wang, Jiang and Hu, 2023, equations (2), (3) and (11).
 

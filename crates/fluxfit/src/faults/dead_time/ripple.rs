@@ -2,8 +2,8 @@
 //!
 //! Both take a voltage of constant size from each phase, against its current: a square wave, whose fundamental of amplitude `V_1`
 //! looks like resistance and whose fifth and seventh harmonics, `V_1 / 5` and `V_1 / 7`, turn in the rotor's frame at six times its
-//! speed, backward and forward. The means of a window cannot tell the fundamental from resistance, but its rows show the harmonics. So
-//! `V_1` is estimated from the backward one and counted as a systematic error along the current.
+//! speed, backward and forward. The means of a window do not distinguish the fundamental from resistance, but its rows show the
+//! harmonics. So `V_1` is estimated from the backward one and counted as a systematic error along the current.
 //!
 //! The backward harmonic is looked for in the residual of equation (1) at every row; the power at frequencies between the harmonics is
 //! the noise that it is compared with.
@@ -37,9 +37,9 @@ const MIN_TURNS: f64 = 5.0;
 /// Most rad per row at the harmonic: beyond, the difference of neighbouring rows is no derivative.
 const MAX_ANGLE: f64 = 1.0;
 
-/// The voltage, V, that each operating point loses along its current, as its ripple tells; zero where no ripple stands out of the noise, or
-/// where it is below `voltage_accuracy`, a fraction of the voltage. Equation (1) takes the parameters of `motor`; those that the points
-/// do not tell are to be guessed, or infinite: then none is found.
+/// The voltage, V, that each operating point loses along its current, estimated from its ripple; zero where no ripple stands out of the
+/// noise, or where it is below `voltage_accuracy`, a fraction of the voltage. Equation (1) takes the parameters of `motor`; an inductance
+/// that the points do not determine may be a guess, or infinite: then no loss is found.
 pub fn losses(log: &Log, points: &[OperatingPoint], motor: &Motor, voltage_accuracy: f64) -> Vec<f64> {
     points.iter().map(|point| loss(log, point, motor, voltage_accuracy).unwrap_or(0.0)).collect()
 }

@@ -1,16 +1,16 @@
-//! The search for faults: which [faults of the drive](crate::faults) a log carries. Each is taken only if the log asks for it.
+//! The search for faults: which [faults of the drive](crate::faults) explain what the simulated currents miss.
 //!
 //! A fault is first judged where its numbers are zero, by how much of the residual its derivatives explain beyond the other unknowns' (a
-//! score test); only one that would pay is fitted. It is taken if
+//! score test); it is fitted only if that promises enough. It becomes part of the answer if
 //!
-//! - Schwarz's criterion speaks for it very strongly, `N ln(cost before / cost after) > unknowns ln N + 10`, with `N` independent
+//! - Schwarz's criterion is very strong evidence for it, `N ln(cost before / cost after) > unknowns ln N + 10`, with `N` independent
 //!   residuals, fewer than there are rows where they are correlated (G. Schwarz, Ann. Stat. 6 (1978) 461, doi:10.1214/aos/1176344136);
 //! - its value is physical;
-//! - it moves a parameter by more than its standard error, or takes a noticeable part of the residual with it, so that intervals become
-//!   sharper.
+//! - it moves a parameter by more than its standard error, or takes away a noticeable part of the residual, so that intervals become
+//!   narrower.
 //!
-//! The best fault is taken first; then the reading of the voltages is chosen again, because a fault may have passed for a delay, and the
-//! other faults are judged again beside it.
+//! The best fault is taken first; then the reading of the voltages is chosen again, because a fault can look like a delay, and the other
+//! faults are judged again beside it.
 
 use super::{
     long_run::effective_sample_size,
@@ -19,7 +19,7 @@ use super::{
     voltage_accuracy,
 };
 use crate::{
-    faults::{Fault, Faults, disturbance::Disturbance},
+    faults::{Fault, Faults},
     levenberg_marquardt::{PriorResidual, jacobian, polish_unknowns},
     objective::{
         acting_voltage::VoltageReading,
@@ -34,7 +34,8 @@ use nalgebra::DVector;
 pub struct FaultTrial {
     /// The fault.
     pub fault: Fault,
-    /// Schwarz's criterion: what it gains, less what its unknowns cost; positive speaks for it. As far as it was pursued.
+    /// Schwarz's criterion: what it gains, less what its unknowns cost; positive is evidence for it. As the score test expects it; for
+    /// an observer that was fitted, the fit's own.
     pub gain: f64,
     /// Taken or not, and why.
     pub outcome: Outcome,
@@ -133,9 +134,9 @@ impl FaultSearch<'_> {
     /// Whether the observer is still worth its unknowns; if not, it goes.
     fn drop_observer(&mut self) -> FaultTrial {
         let trial = |gain, outcome| FaultTrial { fault: Fault::Disturbance, gain, outcome };
-        let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !is_observer_gain(unknown)).collect();
-        let start = Adjustable { faults: Faults { disturbance: Disturbance::default(), ..self.drive.faults }, ..self.drive };
-        let Some((place, without)) = readings(self.objectives, &start, &unknowns, self.priors).into_iter().next() else {
+        let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect();
+        let Some((place, without)) = readings(self.objectives, &self.drive.without_observer(), &unknowns, self.priors).into_iter().next()
+        else {
             return trial(0.0, Outcome::Taken);
         };
         let (rows, peak) = (2.0 * self.objective().rows() as f64, self.objective().peak_current());
@@ -186,11 +187,6 @@ impl FaultSearch<'_> {
         }
         trials.into_iter().map(|(trial, _)| trial).collect()
     }
-}
-
-/// Whether an unknown belongs to the observer of a disturbed motor.
-fn is_observer_gain(unknown: &Unknown) -> bool {
-    unknown.fault() == Some(Fault::Disturbance)
 }
 
 /// Starts of a fault that are fitted: the most promising of all.
@@ -275,10 +271,26 @@ impl ScoreTest {
             matches!(unknown, Unknown::Motor(_)) && (polished.drive.get(*unknown) - search.drive.get(*unknown)).abs() > *standard_error
         });
         // Beside an observer the residuals are those of a simple filter of unknown disturbances: small gains prove little.
-        let disturbed = search.unknowns.iter().any(is_observer_gain);
+        let disturbed = search.unknowns.iter().any(|unknown| unknown.is_observer_gain());
         if (!moved || disturbed) && polished.cost > (1.0 - NOTICEABLE) * search.cost {
             return (Outcome::NoMatter, None);
         }
         (Outcome::Taken, Some((polished.drive, polished.cost, unknowns)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schwarz_weighs_cost_against_unknowns() {
+        // Half the cost over 100 residuals is worth 100 ln 2; two unknowns cost 2 ln 100.
+        assert!((schwarz(2.0, 1.0, 2, 100.0) - (100.0 * 2.0_f64.ln() - 2.0 * 100.0_f64.ln())).abs() < 1e-12);
+        assert_eq!(schwarz(1.0, 1.0, 1, 100.0), f64::NEG_INFINITY);
+        assert_eq!(schwarz(1.0, f64::NAN, 1, 100.0), f64::NEG_INFINITY);
+        assert_eq!(schwarz(0.0, 0.0, 1, 100.0), f64::NEG_INFINITY);
+        assert_eq!(schwarz(f64::INFINITY, 1.0, 1, 100.0), f64::INFINITY);
+        assert!(schwarz(1.0, 0.0, 1, 100.0).is_finite());
     }
 }

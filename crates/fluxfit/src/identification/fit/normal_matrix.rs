@@ -23,3 +23,27 @@ pub(crate) fn inverse_normal(columns: &[Vec<f64>]) -> DMatrix<f64> {
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn independent_columns_have_the_inverse() {
+        // Of sizes as different as those of derivatives by henries and by ohms; without the sizes the normal matrix is [2 1; 1 2].
+        let sizes = [1e6, 1e-3];
+        let inverse = inverse_normal(&[vec![sizes[0], 0.0, sizes[0]], vec![0.0, sizes[1], sizes[1]]]);
+        for (p, q, expected) in [(0, 0, 2.0 / 3.0), (0, 1, -1.0 / 3.0), (1, 0, -1.0 / 3.0), (1, 1, 2.0 / 3.0)] {
+            assert!((inverse[(p, q)] * sizes[p] * sizes[q] - expected).abs() < 1e-12, "{inverse}");
+        }
+    }
+
+    /// A column that repeats another one adds a direction of which nothing is known: it is left out.
+    #[test]
+    fn dependent_columns_have_the_pseudo_inverse() {
+        let column = vec![3.0, 4.0];
+        let inverse = inverse_normal(&[column.clone(), column]);
+        assert!(inverse.iter().all(|entry| (entry - 0.01).abs() < 1e-12), "{inverse}");
+        assert!(inverse_normal(&[vec![0.0, 0.0]])[(0, 0)].abs() < f64::EPSILON);
+    }
+}

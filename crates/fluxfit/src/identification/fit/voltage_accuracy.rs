@@ -1,7 +1,7 @@
 //! What the limited accuracy of the voltages does to the unknowns of a fit.
 //!
 //! The error of a drive's voltages along either axis is a random function of the operating point, a fraction of the voltage there, and
-//! alike at points that lie close together. The adjoint equations of the output error tell what a volt at any row does to each unknown.
+//! alike at points that lie close together. The adjoint equations of the output error give the effect of a volt at any row on each unknown.
 
 use crate::{
     frames::Dq,
