@@ -289,7 +289,8 @@ proptest! {
             swarm: Swarm::Off,
             ..Request::default()
         };
-        let Ok(found) = identify(&log, &settings) else { return Ok(()) };
+        let Ok(answer) = identify(&log, &settings) else { return Ok(()) };
+        let found = answer.identification;
         for judgement in &found.parameters {
             let Some(value) = judgement.value() else { continue };
             let uncertainty = judgement.uncertainty;

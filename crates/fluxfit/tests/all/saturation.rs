@@ -70,7 +70,7 @@ fn a_saturating_motor_is_named_with_its_range_and_its_flux() {
     settings.known[Parameter::Rs as usize] = Known::Fixed(MOTOR.rs);
     let found = found(columns(&POINTS, saturated, 0.0, 0.1, 1), &settings);
     let saturation = found.saturation.as_ref().expect("a quarter of L_q is lost");
-    let message = &found.warnings.iter().find(|warning| warning.code() == "saturation").unwrap().message;
+    let message = &found.warnings.iter().find(|warning| warning.code() == "saturation").unwrap().to_string();
     assert!(message.contains("apparent L_q falls from 10.9 to 8.57 mH between i_q = 3.00 and"), "{message}");
     let points = saturation.fluxes.iter().flatten().zip(POINTS);
     assert_eq!(points.clone().count(), POINTS.len());

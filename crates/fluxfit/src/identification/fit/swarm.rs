@@ -27,7 +27,7 @@ pub struct Search {
 /// The method that searches beside this model's answer, if any.
 pub(crate) fn method(request: &Request, model: Model) -> Option<Method> {
     match request.swarm {
-        Swarm::Auto => (model == Model::Steady).then(|| Method::default()),
+        Swarm::Auto => (model == Model::Steady).then(Method::default),
         Swarm::Off => None,
         Swarm::Method(method) => Some(method),
     }
