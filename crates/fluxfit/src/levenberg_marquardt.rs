@@ -10,10 +10,10 @@ use crate::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
+    parallel,
 };
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
-use rayon::prelude::*;
 use std::cell::Cell;
 
 /// Step of the differences, in the unknowns' units: the cube root of rounding, at which the errors of a central difference are least.
@@ -96,7 +96,7 @@ pub fn jacobian(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown
         let moved = |by: f64| objective.residuals(&drive.with(*unknown, drive.get(*unknown) + by));
         moved(step).iter().zip(moved(-step)).map(|(above, below)| (above - below) / (2.0 * step)).collect()
     };
-    unknowns.par_iter().map(column).collect()
+    parallel::map(unknowns, column)
 }
 
 struct Problem<'a> {

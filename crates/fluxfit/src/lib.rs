@@ -47,6 +47,7 @@ pub mod log;
 pub mod motor;
 pub mod objective;
 pub mod paper;
+mod parallel;
 mod quantization;
 mod singular_values;
 pub mod steady;

@@ -24,8 +24,8 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
+    parallel,
 };
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Fewest rows that a segment must have left.
@@ -161,7 +161,6 @@ impl Objective for OutputError {
 
     fn evaluate(&self, candidates: &[f64], costs: &mut [f64]) {
         let (candidates, _) = candidates.as_chunks::<PARAMETERS>();
-        // Each cost depends on its own candidate alone: any number of threads gives the same bits.
-        costs.par_iter_mut().zip(candidates).for_each(|(cost, candidate)| *cost = self.cost(&Motor::from(*candidate)));
+        parallel::fill(costs, candidates, |candidate| self.cost(&Motor::from(*candidate)));
     }
 }

@@ -19,9 +19,9 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
+    parallel,
     steady::zero_order_hold::ZeroOrderHold,
 };
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -54,7 +54,7 @@ impl VoltageError {
     /// Fitness (11) over every row of the windows, each with its zero-order-hold correction: a triangular factor per window, on all
     /// cores, merged in order.
     pub fn of_samples(log: &Log, windows: &[(Range<usize>, ZeroOrderHold)], id_zero: IdZero) -> Self {
-        let factors: Vec<TriangularFactor> = windows.par_iter().map(|(rows, held)| factor_of(log, rows, held, id_zero)).collect();
+        let factors = parallel::map(windows, |(rows, held)| factor_of(log, rows, held, id_zero));
         let empty = TriangularFactor::from_iter([]);
         Self::of_factor(factors.iter().fold(empty, TriangularFactor::merge))
     }

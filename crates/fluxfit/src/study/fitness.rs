@@ -22,9 +22,9 @@ use crate::{
         voltage_error::{IdZero, VoltageError},
     },
     optimizer::{self, Bounds, Method, Objective, Optimizer, SearchSettings},
+    parallel,
     steady::{OperatingPoint, windows::at_most_paper_rows},
 };
-use rayon::prelude::*;
 
 /// The coarse search that gives a start for the Levenberg-Marquardt method, which converges from far away.
 const COARSE_SEARCH: SearchSettings =
@@ -107,14 +107,16 @@ impl StudyProblem {
         if let Some((_, objective)) = objectives.first() {
             starts.push(coarse_start(objective, &bounds)?);
         }
-        let polished = objectives.into_par_iter().filter_map(|(reading, objective)| {
-            let ends = starts.iter().map(|start| polish(&objective, start)).filter(|end| end.cost.is_finite());
-            let minimum = ends.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-            Some((reading, objective, minimum))
-        });
+        let lowest = |(_, objective): &(VoltageReading, OutputError)| {
+            let ends = starts.iter().map(|start| polish(objective, start)).filter(|end| end.cost.is_finite());
+            ends.min_by(|a, b| a.cost.total_cmp(&b.cost))
+        };
+        let minima = parallel::map(&objectives, lowest);
+        let polished =
+            objectives.into_iter().zip(minima).filter_map(|((reading, objective), minimum)| Some((reading, objective, minimum?)));
         // Costs are compared per row: a delay leaves fewer rows, and a sum over fewer rows is smaller without a better fit.
         let per_row = |(_, objective, minimum): &(VoltageReading, OutputError, Polished)| minimum.cost / objective.rows() as f64;
-        let best = polished.collect::<Vec<_>>().into_iter().min_by(|a, b| per_row(a).total_cmp(&per_row(b)));
+        let best = polished.min_by(|a, b| per_row(a).total_cmp(&per_row(b)));
         let (reading, objective, minimum) = best.ok_or(optimizer::Error::NonFiniteStart { population: COARSE_SEARCH.population })?;
         Ok(Self {
             rows: objective.rows_per_segment(),

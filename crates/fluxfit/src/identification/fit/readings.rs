@@ -14,8 +14,8 @@ use crate::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
+    parallel,
 };
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Twice the logarithm of the odds against a reading from which on it is ruled out: e^-5, one in 150. R. E. Kass and A. E. Raftery, "Bayes
@@ -56,11 +56,11 @@ pub(crate) fn readings(
     unknowns: &[Unknown],
     priors: &[PriorResidual],
 ) -> Vec<(usize, ReadingTrial)> {
-    let try_one = |(place, (reading, objective)): (usize, &(VoltageReading, OutputError))| {
+    let try_one = |(reading, objective): &(VoltageReading, OutputError)| {
         let polished = polish_unknowns(objective, start, unknowns, priors);
-        (place, ReadingTrial { reading: *reading, polished, rows: objective.rows() })
+        ReadingTrial { reading: *reading, polished, rows: objective.rows() }
     };
-    let mut tried: Vec<(usize, ReadingTrial)> = objectives.par_iter().enumerate().map(try_one).collect();
+    let mut tried: Vec<(usize, ReadingTrial)> = parallel::map(objectives, try_one).into_iter().enumerate().collect();
     tried.sort_by(|(_, one), (_, other)| one.mean_square().total_cmp(&other.mean_square()));
     tried
 }

@@ -1,0 +1,22 @@
+//! Independent pieces of work on all cores, where the feature `rayon` is on. Each result depends on its own item alone, and results are
+//! in the order of the items, so the bits are the same with and without it, on any number of threads.
+
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
+/// The results of all items.
+pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    #[cfg(feature = "rayon")]
+    let results = items.par_iter().map(work).collect();
+    #[cfg(not(feature = "rayon"))]
+    let results = items.iter().map(work).collect();
+    results
+}
+
+/// Writes the result of each item into its place.
+pub(crate) fn fill<T: Sync>(results: &mut [f64], items: &[T], work: impl Fn(&T) -> f64 + Sync + Send) {
+    #[cfg(feature = "rayon")]
+    results.par_iter_mut().zip(items).for_each(|(result, item)| *result = work(item));
+    #[cfg(not(feature = "rayon"))]
+    results.iter_mut().zip(items).for_each(|(result, item)| *result = work(item));
+}
