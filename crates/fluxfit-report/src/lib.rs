@@ -73,8 +73,8 @@ mod tried;
 mod typography;
 mod validation;
 
+use fluxfit::study::comparison::Comparison;
 use fluxfit::{Validation, evidence::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy};
-use fluxfit_answer::answer::StudyFacts;
 
 /// What is shown; what is `None` is left out.
 #[derive(Debug, Clone, Copy)]
@@ -92,7 +92,7 @@ pub struct Report<'a> {
     /// What was held out of the identification, and how well the answer predicts it; `None` beside it, if it lacks a parameter.
     pub held_out: Option<(&'a Log, Option<&'a Validation>)>,
     /// What the methods have in common, and each method with the seconds that one of its runs took.
-    pub study: Option<(&'a StudyFacts<'a>, &'a [(MethodStudy, f64)])>,
+    pub study: Option<(&'a Comparison, &'a [(MethodStudy, f64)])>,
     /// Where the page comes from.
     pub origin: &'a Origin,
 }

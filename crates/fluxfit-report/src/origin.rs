@@ -12,7 +12,7 @@ use maud::{Markup, html};
 pub(crate) fn read(report: &Report) -> Markup {
     let log = report.log;
     let of_search = report.identification.and_then(|(found, _)| found.search.as_ref()).map(|search| &search.bounds);
-    let bounds = of_search.or(report.study.map(|(facts, _)| facts.bounds));
+    let bounds = of_search.or(report.study.map(|(facts, _)| &facts.bounds));
     html! {
         dl.facts {
             dt { "Rows" } dd { (grouped(log.rows() as u64)) (used(report)) }

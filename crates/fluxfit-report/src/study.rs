@@ -8,14 +8,13 @@ use crate::{
 use fluxfit::{
     motor::Parameter,
     optimizer::Method,
-    study::{MethodStudy, fitness::Fitness},
+    study::{MethodStudy, comparison::Comparison, fitness::Fitness},
 };
-use fluxfit_answer::answer::StudyFacts;
 use fluxfit_units::significant;
 use maud::{Markup, html};
 
 /// The section; parameters that are not excited are chance, and left out.
-pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Markup {
+pub(crate) fn section(facts: &Comparison, methods: &[(MethodStudy, f64)]) -> Markup {
     let fitness = &facts.problem.fitness;
     let (minimum, index, unexcited) = (fitness.minimum_label(), fitness.minimum_subscript(), facts.problem.unexcited.as_slice());
     html! {
@@ -49,7 +48,7 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Mar
 }
 
 /// What came out, for the heading.
-pub(crate) fn in_a_line(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> Markup {
+pub(crate) fn in_a_line(facts: &Comparison, methods: &[(MethodStudy, f64)]) -> Markup {
     html! {
         @if let [(only, _)] = methods { (only.method.label()) " ran " } @else { (capitalized(&count(methods.len(), "method"))) " ran " }
         @if facts.runs == 1 { "once" } @else { (facts.runs) " times" } @if methods.len() != 1 { " each" } "; median cost above the " (facts.problem.fitness.minimum_label()) ": "
@@ -86,7 +85,7 @@ fn its_minimum(fitness: &Fitness) -> Markup {
     }
 }
 
-fn rows(facts: &StudyFacts) -> String {
+fn rows(facts: &Comparison) -> String {
     facts.problem.rows.iter().map(|rows| grouped(*rows as u64)).collect::<Vec<_>>().join(" + ")
 }
 
@@ -146,10 +145,10 @@ pub(crate) fn shown<'a>(methods: &'a [(MethodStudy, f64)], unexcited: &[Paramete
 }
 
 /// Fig. 5.
-fn courses(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
+fn courses(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
     let Some(study) = shown(methods, unexcited) else { return html! {} };
     html! {
-        (frame::figure(|size| courses::draw(study, facts.truth, unexcited, size), &html! {
+        (frame::figure(|size| courses::draw(study, facts.truth.as_ref(), unexcited, size), &html! {
             "Fig. 5 of the paper: the parameters under " (study.method.label()) " against iteration, medians over the runs."
             @if facts.truth.is_some() { " Dashed: the true value." }
         }))

@@ -4,13 +4,13 @@ use crate::{
     frame,
     typography::{DASH, capitalized, minus, number, symbol, unit},
 };
+use fluxfit::study::comparison::Comparison;
 use fluxfit::{
     motor::{Motor, Parameter},
     optimizer::Method,
     paper::{self, Column},
     study::{MethodStudy, error_percent, fitness::Fitness},
 };
-use fluxfit_answer::answer::StudyFacts;
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
@@ -21,8 +21,8 @@ const CONVERGED: f64 = 0.03;
 const PRECISION: f64 = 2e-4;
 
 /// The table, and what may be concluded from it.
-pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
-    let beside_paper = facts.truth.is_some_and(is_papers);
+pub(crate) fn section(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
+    let beside_paper = facts.truth.as_ref().is_some_and(is_papers);
     html! {
         (table(facts, methods, unexcited, beside_paper))
         (words(facts, methods, unexcited, beside_paper))
@@ -30,7 +30,7 @@ pub(crate) fn section(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexci
 }
 
 /// The answer that the swarms approach.
-fn answer(facts: &StudyFacts) -> &'static str {
+fn answer(facts: &Comparison) -> &'static str {
     match facts.problem.fitness {
         Fitness::VoltageError(_) => "exact least squares",
         Fitness::OutputError { .. } => "the polish",
@@ -47,7 +47,7 @@ fn papers_column(method: &Method) -> Option<&'static Column> {
     paper::TABLE_2.iter().find(|column| column.method == method.key())
 }
 
-fn table(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter], beside_paper: bool) -> Markup {
+fn table(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited: &[Parameter], beside_paper: bool) -> Markup {
     let papers = |study: &MethodStudy| papers_column(&study.method).filter(|_| beside_paper);
     html! {
         (frame::scrolling("Mean of the estimates", &html! {
@@ -69,7 +69,7 @@ fn table(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
                 tbody { @for parameter in Parameter::ALL {
                     @let known = !unexcited.contains(&parameter);
                     (estimates(facts, methods, parameter, known, &papers))
-                    @if let Some(truth) = facts.truth { (errors(facts, methods, parameter, truth, known, &papers)) }
+                    @if let Some(truth) = &facts.truth { (errors(facts, methods, parameter, truth, known, &papers)) }
                 } }
             }
         }))
@@ -79,15 +79,15 @@ fn table(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
 type Papers<'a> = dyn Fn(&MethodStudy) -> Option<&'static Column> + 'a;
 
 /// A row of means.
-fn estimates(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Parameter, known: bool, papers: &Papers) -> Markup {
+fn estimates(facts: &Comparison, methods: &[(MethodStudy, f64)], parameter: Parameter, known: bool, papers: &Papers) -> Markup {
     let (exact, _) = facts.problem.fitness.minimum();
-    let scale = Scale::for_value(parameter, facts.truth.unwrap_or(&exact).get(parameter));
+    let scale = Scale::for_value(parameter, facts.truth.as_ref().unwrap_or(&exact).get(parameter));
     let show = |motor: &Motor| number(motor.get(parameter), |value| scale.format(value, value.abs() * PRECISION));
     let ours = |motor: &Motor| if known { show(motor) } else { DASH.to_owned() };
     html! {
         tr.mean {
             th scope="row" { (symbol(parameter)) ", " (unit(parameter, &scale)) }
-            @if let Some(truth) = facts.truth { td { (show(truth)) } }
+            @if let Some(truth) = &facts.truth { td { (show(truth)) } }
             @for (study, _) in methods {
                 td { (ours(&study.mean())) }
                 // The paper's own digits.
@@ -114,7 +114,7 @@ fn papers_error(column: &Column, parameter: Parameter) -> String {
 }
 
 /// A row of errors, %.
-fn errors(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Parameter, truth: &Motor, known: bool, papers: &Papers) -> Markup {
+fn errors(facts: &Comparison, methods: &[(MethodStudy, f64)], parameter: Parameter, truth: &Motor, known: bool, papers: &Papers) -> Markup {
     let (exact, _) = facts.problem.fitness.minimum();
     let show = |error: Option<f64>| match error {
         Some(error) if known => number(error, |error| significant(error, 3)),
@@ -134,7 +134,7 @@ fn errors(facts: &StudyFacts, methods: &[(MethodStudy, f64)], parameter: Paramet
 }
 
 /// Careful words: what the table shows, and what it cannot.
-fn words(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter], beside_paper: bool) -> Markup {
+fn words(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited: &[Parameter], beside_paper: bool) -> Markup {
     let answer = answer(facts);
     let distance = distance_from_exact(facts, methods, unexcited);
     let distance_text = number(distance, |percent| significant(percent, 2));
@@ -167,7 +167,7 @@ fn words(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parame
 }
 
 /// Largest distance of a method's mean from the exact answer, %.
-fn distance_from_exact(facts: &StudyFacts, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> f64 {
+fn distance_from_exact(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> f64 {
     let (exact, _) = facts.problem.fitness.minimum();
     let known = || Parameter::ALL.into_iter().filter(|parameter| !unexcited.contains(parameter));
     let distances =

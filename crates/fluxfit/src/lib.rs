@@ -27,6 +27,7 @@
 //! | [`Log`], [`Columns`] | what a drive recorded, checked on the way in |
 //! | [`Motor`], [`Parameter`], [`frames`] | the motor's equations; the dq frame and its convention |
 //! | [`Judgement`], [`Verdict`], [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
+//! | `document` | the JSON documents of all that, where the feature `serde` is on |
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
 //! | [`steady`], [`objective`], [`least_squares`], [`levenberg_marquardt`] | the methods, for those who compare them |
 //! | [`optimizer`], [`study`], [`paper`] | swarms, many runs of them, and what the paper states |
@@ -36,6 +37,8 @@
 
 mod answer;
 pub mod current_loop;
+#[cfg(feature = "serde")]
+pub mod document;
 pub mod error;
 pub mod evidence;
 pub mod faults;

@@ -13,13 +13,15 @@
 //! Pollination Algorithm", 2023, the paper that this project starts from.
 
 use crate::frames::Dq;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Number of parameters of a motor.
 pub const PARAMETERS: usize = 4;
 
 /// A parameter that is identified. The order here is the order of every parameter array in this library.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub enum Parameter {
     /// Stator resistance at the inverter: winding, cable and switches, at the temperature during the log.
     Rs,
@@ -69,7 +71,8 @@ impl Parameter {
 ///
 /// The number of pole pairs is not among them: a log in electrical quantities does not depend on it. Only [`torque`](Self::torque)
 /// needs it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Motor {
     /// Stator resistance, ohm.
     pub rs: f64,

@@ -1,136 +1,133 @@
-//! `fluxfit compare`: many runs of many methods on one fitness, as the paper compares them.
+//! `fluxfit compare`: arguments to a request, the library's comparison to the terminal, to JSON and to a report.
 
 use super::{Status, input, report};
 use crate::{
     arguments::{Compare, StudyModel},
     error::CommandError,
-    interrupt, terminal,
+    interrupt, json, terminal,
 };
 use fluxfit::{
-    Request,
-    log::Log,
-    motor::Parameter,
+    Error, Log, Model, Parameter, Request,
+    document::StudyDocument,
     objective::voltage_error::IdZero,
-    optimizer::{Bounds, CloseTo, Method, SearchSettings},
+    optimizer::SearchSettings,
     study::{
         MethodStudy,
-        fitness::{Fitness, StudyProblem},
-        run_method, use_lowest_minimum,
+        comparison::{Comparison, ComparisonRequest, ComparisonStep, compare},
     },
 };
-use fluxfit_answer::answer;
 use fluxfit_report::{Report, figures, html};
 use fluxfit_setup::read_truth;
-use std::time::Instant;
+use std::{ops::ControlFlow, sync::Mutex, time::Instant};
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     report::check(&arguments.log, arguments.truth.as_deref())?;
     check(arguments)?;
     let input = input::read(&arguments.log)?;
-    let truth = arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor);
-    let problem = terminal::working("looking for the minimum".to_owned(), || problem(arguments, &input.log));
-    let mut problem = problem.map_err(|error| input::of_log(&input.name, error))?;
-    let bounds = input::request(&arguments.log, &input)?.search_box(&problem.bounds)?;
-    let settings = search_settings(arguments, &problem.fitness)?;
-
-    let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &mut problem.fitness)?;
-    let facts = answer::StudyFacts { settings: &settings, runs: arguments.runs, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
-    let is_whole = facts.is_whole(&methods, arguments.methods.len());
+    let asked = request(arguments, &input)?;
+    let (comparison, methods) = compared(&input.log, &asked).map_err(|error| input::of_log(&input.name, error))?;
+    let is_whole = comparison.is_whole();
     if arguments.log.json {
-        let mut document = answer::study(&facts, &methods);
-        document["interrupted"] = (!is_whole).into();
-        terminal::print(&answer::to_text(&document))?;
+        terminal::print(&json::text(&StudyDocument::of(&comparison, &methods, !is_whole))?)?;
     } else {
-        terminal::study::show(&input.name, &facts, &methods)?;
+        terminal::study::show(&input.name, &comparison, &methods)?;
     }
     if !is_whole {
-        terminal::study::interrupted(&arguments.methods, arguments.runs, &methods);
+        terminal::study::interrupted(&comparison);
         return Ok(Status::Incomplete);
     }
     let shown = Report {
         title: &input.name,
         log: &input.log,
         notes: &input.said(),
-        operating_points: &problem.operating_points,
+        operating_points: &comparison.problem.operating_points,
         identification: None,
         held_out: None,
-        study: Some((&facts, &methods)),
+        study: Some((&comparison, &methods)),
         origin: &report::origin(arguments.log.seed),
     };
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
-    if problem.unexcited.is_empty() {
+    let unexcited = &comparison.problem.unexcited;
+    if unexcited.is_empty() {
         return Ok(Status::Complete);
     }
-    let open: Vec<&str> = problem.unexcited.iter().copied().map(Parameter::symbol).collect();
-    terminal::note(&format!("this log does not excite {}: what the methods say of it is chance; see fluxfit identify", open.join(", ")));
+    let open: Vec<&str> = unexcited.iter().copied().map(Parameter::symbol).collect();
+    terminal::note(&format!("this log does not excite {}: the methods' values of it are arbitrary; see fluxfit identify", open.join(", ")));
     Ok(Status::Incomplete)
 }
 
-/// Refuses what the output error has no use for.
+/// Refuses options that the output error does not use, and limits that are no numbers.
 fn check(arguments: &Compare) -> Result<(), CommandError> {
     let stated = [("--window", !arguments.log.window.is_empty()), ("--id-zero", arguments.id_zero != IdZero::Measured)];
-    match stated.into_iter().find(|(_, stated)| *stated && arguments.model == StudyModel::OutputError) {
-        Some((option, _)) => {
-            Err(CommandError::Usage(format!("{option} is for --model steady; the output error takes every row as measured")))
-        }
-        None => Ok(()),
+    if let Some((option, _)) = stated.into_iter().find(|(_, stated)| *stated && arguments.model == StudyModel::OutputError) {
+        return Err(CommandError::Usage(format!("{option} is for --model steady; the output error takes every row as measured")));
     }
-}
-
-fn problem(arguments: &Compare, log: &Log) -> Result<StudyProblem, fluxfit::error::Error> {
-    match arguments.model {
-        StudyModel::Steady => {
-            let windows = arguments.log.window.clone();
-            let request = Request { windows, voltage_timing: arguments.log.voltage_timing.stated(), ..Request::default() };
-            StudyProblem::steady(log, &request, arguments.id_zero)
-        }
-        StudyModel::OutputError => StudyProblem::output_error(log, arguments.log.voltage_timing.stated()),
-    }
-}
-
-/// Every method in turn, with the seconds of wall time that one of its runs took; interrupted, those that have a finished run.
-pub(super) fn study(
-    methods: &[Method],
-    runs: usize,
-    settings: SearchSettings,
-    bounds: &Bounds,
-    fitness: &mut Fitness,
-) -> Result<Vec<(MethodStudy, f64)>, CommandError> {
-    let progress = terminal::counting("comparing", runs.saturating_mul(methods.len()).saturating_mul(settings.iterations));
-    let (mut studies, mut seconds) = (Vec::new(), Vec::new());
-    for method in methods {
-        terminal::detail(|| format!("{}: {runs} runs begin", method.label()));
-        let start = Instant::now();
-        let iterated = || {
-            progress.add(1);
-            interrupt::go_on()
-        };
-        if let Some(study) = interrupt::gently(|| run_method(*method, runs, settings, bounds, fitness, iterated))? {
-            seconds.push(start.elapsed().as_secs_f64() / study.motors.len() as f64);
-            studies.push(study);
-        }
-        if interrupt::go_on().is_break() {
-            break;
-        }
-    }
-    progress.turn_to("polishing the lowest end of a swarm");
-    use_lowest_minimum(fitness, &mut studies);
-    Ok(studies.into_iter().zip(seconds).collect())
-}
-
-fn search_settings(arguments: &Compare, fitness: &Fitness) -> Result<SearchSettings, CommandError> {
     for (option, value) in [("--tolerance", arguments.tolerance), ("--target-cost", arguments.target_cost)] {
         if value.is_some_and(|value| !(value >= 0.0 && value.is_finite())) {
             return Err(CommandError::Usage(format!("{option} must be a finite number, zero or more")));
         }
     }
-    Ok(SearchSettings {
+    Ok(())
+}
+
+fn request(arguments: &Compare, input: &input::Input) -> Result<ComparisonRequest, CommandError> {
+    let search = SearchSettings {
         population: arguments.population,
         iterations: arguments.iterations,
         seed: arguments.log.seed,
-        run: 0,
-        close_to_optimum: arguments.tolerance.map(|tolerance| CloseTo { optimum: fitness.minimum().1, tolerance }),
         target_cost: arguments.target_cost,
+        ..SearchSettings::default()
+    };
+    Ok(ComparisonRequest {
+        request: Request { search, ..input::request(&arguments.log, input)? },
+        model: match arguments.model {
+            StudyModel::Steady => Model::Steady,
+            StudyModel::OutputError => Model::OutputError,
+        },
+        methods: arguments.methods.clone(),
+        runs: arguments.runs,
+        id_zero: arguments.id_zero,
+        tolerance: arguments.tolerance,
+        truth: arguments.truth.as_deref().map(read_truth).transpose()?.map(|truth| truth.motor),
     })
+}
+
+/// Compares with a progress display; each method with the seconds of wall time that one of its runs took. The runs can be interrupted.
+pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparison, Vec<(MethodStudy, f64)>), Error> {
+    let iterations = asked.runs.saturating_mul(asked.methods.len()).saturating_mul(asked.request.search.iterations);
+    let progress = terminal::counting("looking for the minimum", iterations);
+    let starts = Mutex::new(Vec::new());
+    let begun = || starts.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let show = |step: ComparisonStep| match step {
+        ComparisonStep::Minimum => ControlFlow::Continue(()),
+        ComparisonStep::Method(method) => {
+            progress.turn_to("comparing");
+            terminal::detail(|| format!("{}: {} runs begin", method.label(), asked.runs));
+            interrupt::be_gentle(true);
+            begun().push((Some(method), Instant::now()));
+            interrupt::go_on()
+        }
+        ComparisonStep::Iteration => {
+            progress.add(1);
+            interrupt::go_on()
+        }
+        ComparisonStep::LowestMinimum => {
+            begun().push((None, Instant::now()));
+            interrupt::be_gentle(false);
+            progress.turn_to("polishing the lowest end of a swarm");
+            ControlFlow::Continue(())
+        }
+    };
+    let comparison = compare(log, asked, &show);
+    interrupt::be_gentle(false);
+    let comparison = comparison?;
+    let starts = starts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let seconds = |study: &MethodStudy| {
+        let place = starts.iter().position(|(method, _)| *method == Some(study.method));
+        let ends = place.and_then(|place| Some((starts.get(place)?.1, starts.get(place + 1)?.1)));
+        ends.map_or(f64::NAN, |(start, end)| end.duration_since(start).as_secs_f64() / study.motors.len() as f64)
+    };
+    let methods = comparison.studies.iter().map(|study| (study.clone(), seconds(study))).collect();
+    Ok((comparison, methods))
 }

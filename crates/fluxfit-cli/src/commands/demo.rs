@@ -2,16 +2,7 @@
 
 use super::{Status, compare, report};
 use crate::{arguments::Demo, error::CommandError, terminal};
-use fluxfit::{
-    Request, identify,
-    log::Log,
-    motor::PARAMETERS,
-    objective::voltage_error::IdZero,
-    optimizer::{Bounds, SearchSettings},
-    paper,
-    study::fitness::StudyProblem,
-};
-use fluxfit_answer::answer::StudyFacts;
+use fluxfit::{Log, Request, identify, optimizer::SearchSettings, paper, study::comparison::ComparisonRequest};
 use fluxfit_drive::{Scenario, simulate};
 use fluxfit_report::{Report, figures, html};
 
@@ -24,21 +15,18 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     report::check_directory(arguments.figures.as_deref())?;
     let scenario = Scenario::paper();
     let log = terminal::working("simulating".to_owned(), || simulate(&scenario, 0, || ()))?.log()?;
-    let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
-
     let search = SearchSettings { seed: arguments.seed, ..SearchSettings::default() };
     let request = Request { search, bounds: paper::SEARCH_BOX.map(|upper| Some((0.0, upper))), ..Request::default() };
     let answer = identify(&log, &request)?;
     let found = &answer.identification;
     terminal::identification::show(NAME, &answer)?;
 
-    let mut problem = StudyProblem::steady(&log, &request, IdZero::Measured)?;
-    let methods = compare::study(&paper::METHODS, paper::RUNS, search, &bounds, &mut problem.fitness)?;
-    let facts = StudyFacts { settings: &search, runs: paper::RUNS, bounds: &bounds, problem: &problem, truth: Some(&paper::MOTOR) };
+    let asked = ComparisonRequest { request, truth: Some(paper::MOTOR), ..ComparisonRequest::default() };
+    let (comparison, methods) = compare::compared(&log, &asked)?;
     terminal::print("\n")?;
-    terminal::study::show(NAME, &facts, &methods)?;
-    if !facts.is_whole(&methods, paper::METHODS.len()) {
-        terminal::study::interrupted(&paper::METHODS, paper::RUNS, &methods);
+    terminal::study::show(NAME, &comparison, &methods)?;
+    if !comparison.is_whole() {
+        terminal::study::interrupted(&comparison);
         return Ok(Status::Incomplete);
     }
 
@@ -49,7 +37,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
         operating_points: found.operating_points(),
         identification: Some((found, found.method)),
         held_out: None,
-        study: Some((&facts, &methods)),
+        study: Some((&comparison, &methods)),
         origin: &report::origin(arguments.seed),
     };
     report::write(Some(&arguments.report), || html(&shown), arguments.figures.as_deref(), || figures(&shown))?;

@@ -4,14 +4,13 @@ use super::{Status, export, input, report};
 use crate::{
     arguments::{Identify, SearchMethod, by_parameter},
     error::CommandError,
-    interrupt, terminal,
+    interrupt, json, terminal,
 };
 use fluxfit::{
     Answer, Known, Request, Step, Swarm, identify_with_progress,
     motor::{PARAMETERS, Parameter},
     suspect_units,
 };
-use fluxfit_answer::answer;
 use fluxfit_report::{Report, figures, html};
 
 /// Runs the verb.
@@ -24,19 +23,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let answer = identified(&input, &request)?;
     terminal::decisions::show(&answer.identification);
     if arguments.log.json {
-        let found = &answer.identification;
-        let mut document = answer::identification(&answer.log, found, found.method.map_or("least-squares", |method| method.key()));
-        document["log"]["columns"] = input.columns.clone().into();
-        document["log"]["notes"] = input.notes.clone().into();
-        document["diagnostics"]["convention"] = answer::convention(&answer.convention);
-        if let Some(current_loop) = &answer.current_loop {
-            document["current_loop"] = answer::current_loop(current_loop);
-        }
-        if let Some(held_out) = &answer.held_out {
-            let validation = held_out.validation.as_ref();
-            document["validation"] = validation.map_or(serde_json::Value::Null, |found| answer::validation(&held_out.log, found));
-        }
-        terminal::print(&answer::to_text(&document))?;
+        terminal::print(&json::text(&answer)?)?;
     } else {
         terminal::identification::show(&input.name, &answer)?;
     }

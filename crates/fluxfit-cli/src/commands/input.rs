@@ -5,7 +5,7 @@ use crate::{
     error::CommandError,
     terminal,
 };
-use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, optimizer};
+use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, log::Source, optimizer};
 use fluxfit_log::{LogOptions, read_log_watched, read_mapping};
 use fluxfit_setup::{MotorFile, read_motor};
 use std::{fs, path::Path};
@@ -57,7 +57,8 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     notes.iter().for_each(|note| terminal::note(note));
     columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
-    Ok(Input { log: Log::join(logs)?, motor, name: names.join(", "), notes, columns, pole_pairs: options.pole_pairs })
+    let log = Log::join(logs)?.with_source(Source { columns: columns.clone(), notes: notes.clone() });
+    Ok(Input { log, motor, name: names.join(", "), notes, columns, pole_pairs: options.pole_pairs })
 }
 
 /// What the reader is told; the motor file's pole pairs count where nothing else tells them.

@@ -1,9 +1,8 @@
 //! `fluxfit validate`: a motor held against a log that it was not found from.
 
 use super::{Status, input, report};
-use crate::{arguments::Validate, error::CommandError, terminal};
-use fluxfit::{Request, validate, validation::validate::Outcome};
-use fluxfit_answer::answer;
+use crate::{arguments::Validate, error::CommandError, json, terminal};
+use fluxfit::{Request, document::ValidationDocument, validate, validation::validate::Outcome};
 use fluxfit_report::{ValidationReport, validation_figures, validation_html};
 use fluxfit_setup::read_given_motor;
 use std::path::Path;
@@ -28,7 +27,7 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     let found = found.map_err(|error| input::of_log(&input.name, error))?;
     let name = path.display().to_string();
     if arguments.log.json {
-        terminal::print(&answer::to_text(&answer::validation(&input.log, &found)))?;
+        terminal::print(&json::text(&ValidationDocument::of(&input.log, &found))?)?;
     } else {
         terminal::validation::show(&input.name, &name, &input.log, &found)?;
     }

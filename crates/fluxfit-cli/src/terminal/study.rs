@@ -1,16 +1,16 @@
 //! A study: the paper's Table 2, the ranking by cost above the minimum, and its Fig. 4 in characters.
 
 use super::{DIM, HEADING, plot, table};
+use fluxfit::study::comparison::Comparison;
 use fluxfit::{
     motor::{Motor, Parameter},
     optimizer::Method,
     study::{MethodStudy, error_percent, fitness::Fitness},
 };
-use fluxfit_answer::answer::StudyFacts;
 use fluxfit_units::{Scale, significant, small};
 
 /// Shows a study.
-pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {
+pub(crate) fn show(name: &str, facts: &Comparison, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {
     let fitness = &facts.problem.fitness;
     let (minimum, index) = (fitness.minimum_label(), fitness.minimum_subscript());
     let rows: Vec<String> = facts.problem.rows.iter().map(ToString::to_string).collect();
@@ -40,16 +40,16 @@ pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)
     super::print(&text)
 }
 
-/// Says how far an interrupted study has come.
-pub(crate) fn interrupted(methods: &[Method], runs: usize, done: &[(MethodStudy, f64)]) {
+/// Prints how many runs an interrupted study has finished.
+pub(crate) fn interrupted(comparison: &Comparison) {
     let of = |method: &Method| {
-        let finished = done.iter().find(|(study, _)| study.method == *method).map_or(0, |(study, _)| study.motors.len());
+        let finished = comparison.studies.iter().find(|study| study.method == *method).map_or(0, |study| study.motors.len());
         format!("{} {finished}", method.label())
     };
-    let finished: Vec<String> = methods.iter().map(of).collect();
+    let finished: Vec<String> = comparison.asked.iter().map(of).collect();
     super::warn_of(
         "interrupted",
-        &format!("of {runs} runs of each method these are finished: {}; a report is not written", finished.join(", ")),
+        &format!("of {} runs of each method these are finished: {}; a report is not written", comparison.runs, finished.join(", ")),
     );
 }
 
@@ -68,7 +68,7 @@ fn remark(fitness: &Fitness) -> &'static str {
     }
 }
 
-fn search_box(facts: &StudyFacts) -> String {
+fn search_box(facts: &Comparison) -> String {
     let intervals = Parameter::ALL.into_iter().zip(facts.bounds.iter()).map(|(parameter, (lower, upper))| {
         let scale = Scale::for_value(parameter, upper);
         let short = |value: f64| significant_or_zero(value, &scale);
@@ -82,11 +82,11 @@ fn significant_or_zero(value: f64, scale: &Scale) -> String {
 }
 
 /// Rows as the paper has them: a parameter's estimates, then their errors where the truth is known.
-fn table_2(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> String {
+fn table_2(facts: &Comparison, methods: &[(MethodStudy, f64)]) -> String {
     let (lowest, _) = facts.problem.fitness.minimum();
     let mut rows = Vec::new();
     for parameter in Parameter::ALL {
-        let scale = Scale::for_value(parameter, facts.truth.unwrap_or(&lowest).get(parameter));
+        let scale = Scale::for_value(parameter, facts.truth.as_ref().unwrap_or(&lowest).get(parameter));
         let estimate = |motor: &Motor| {
             let value = motor.get(parameter);
             scale.format(value, value.abs() * 2e-5)
@@ -95,7 +95,7 @@ fn table_2(facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> String {
         row.extend(methods.iter().map(|(study, _)| estimate(&study.mean())));
         row.push(estimate(&lowest));
         rows.push(row);
-        if let Some(truth) = facts.truth {
+        if let Some(truth) = &facts.truth {
             let mut row = vec!["error %".to_owned()];
             row.extend(methods.iter().map(|(study, _)| percent(study.mean_error_percent(truth)[parameter as usize])));
             row.push(percent(error_percent(&lowest, truth, parameter)));

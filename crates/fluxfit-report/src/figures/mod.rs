@@ -85,7 +85,7 @@ pub fn figures(report: &Report) -> Vec<FigureFile> {
             add("convergence", convergence::draw(&facts.problem.fitness, methods, Size::Wide));
         }
         if let Some(shown) = study::shown(methods, &facts.problem.unexcited) {
-            add("parameters", courses::draw(shown, facts.truth, &facts.problem.unexcited, Size::Wide));
+            add("parameters", courses::draw(shown, facts.truth.as_ref(), &facts.problem.unexcited, Size::Wide));
         }
     }
     files

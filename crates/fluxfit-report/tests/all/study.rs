@@ -9,37 +9,35 @@ use crate::{
 };
 use fluxfit::{
     Motor, Request,
-    objective::voltage_error::IdZero,
-    optimizer::{Bounds, Method},
+    optimizer::Method,
     paper,
-    study::{ConvergenceCurves, MethodStudy, fitness::StudyProblem, run_method},
+    study::{
+        ConvergenceCurves, MethodStudy,
+        comparison::{ComparisonRequest, compare},
+    },
 };
-use fluxfit_answer::answer::StudyFacts;
 use fluxfit_report::{Report, html};
 use std::ops::ControlFlow;
 
 /// A study, its page checked; `change` bends what the runs left behind.
 fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)], change: impl Fn(&mut MethodStudy)) -> String {
     let log = log(currents, 0.1);
-    let problem = StudyProblem::steady(&log, &Request::default(), IdZero::Measured).unwrap();
-    let bounds = Bounds::new(vec![0.0; 4], vec![5.0, 0.05, 0.05, 1.0]).unwrap();
-    let settings = fluxfit::optimizer::SearchSettings { population: 20, iterations: 12, ..Default::default() };
-    let run = |method: &Method| {
-        let mut study = run_method(*method, 3, settings, &bounds, &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
-        change(&mut study);
-        (study, 1e-3)
-    };
-    let methods: Vec<_> = methods.iter().map(run).collect();
-    let facts = StudyFacts { settings: &settings, runs: 3, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
+    let search = fluxfit::optimizer::SearchSettings { population: 20, iterations: 12, ..Default::default() };
+    let bounds = [5.0, 0.05, 0.05, 1.0].map(|upper| Some((0.0, upper)));
+    let request = Request { search, bounds, ..Request::default() };
+    let asked = ComparisonRequest { request, methods: methods.to_vec(), runs: 3, truth, ..ComparisonRequest::default() };
+    let mut comparison = compare(&log, &asked, &|_| ControlFlow::Continue(())).unwrap();
+    comparison.studies.iter_mut().for_each(&change);
+    let methods: Vec<_> = comparison.studies.iter().map(|study| (study.clone(), 1e-3)).collect();
     let origin = origin();
     html(&Report {
         title: "drive.csv",
         log: &log,
         notes: &[],
-        operating_points: &problem.operating_points,
+        operating_points: &comparison.problem.operating_points,
         identification: None,
         held_out: None,
-        study: Some((&facts, &methods)),
+        study: Some((&comparison, &methods)),
         origin: &origin,
     })
 }

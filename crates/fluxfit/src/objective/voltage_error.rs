@@ -22,6 +22,7 @@ use crate::{
     parallel,
     steady::zero_order_hold::ZeroOrderHold,
 };
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -29,8 +30,9 @@ use std::ops::Range;
 const WEIGHT: f64 = 0.25;
 
 /// What stands for `i_d` in the mode `i_d = 0`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum IdZero {
     /// The current that was measured. Equation (3)'s zero moves R_s by 0.1 % and L_d by 0.2 % on a noisy log.
     #[default]

@@ -5,6 +5,7 @@
 //! above the minimum, which is known: `F - F_LS` for fitness (11), `F - F_LM` for the output error. The distance from the truth cannot
 //! rank them: on a noisy log it is the noise's.
 
+pub mod comparison;
 pub mod fitness;
 
 use crate::{
