@@ -6,6 +6,7 @@
 
 use fluxfit::{
     Model, Request, Swarm,
+    document::IdentificationDocument,
     frames::Dq,
     identify,
     log::{Columns, Log},
@@ -71,6 +72,7 @@ fn assert_finite(document: &IdentificationDocument) {
 /// Checks one log's document; the verdicts it found.
 fn check(log: &Log, settings: &Request) -> Option<Vec<String>> {
     let answer = identify(log, settings).ok()?;
+    assert_finite(&IdentificationDocument::of(&answer));
     let text = serde_json::to_string(&answer).unwrap();
     let read: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(read, serde_json::to_value(&answer).unwrap());
