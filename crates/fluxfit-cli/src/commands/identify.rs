@@ -62,8 +62,8 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
         let mut document = answer::identification(&input.log, &found, method);
-        document["log"]["columns"] = input.columns.clone().into();
-        document["log"]["notes"] = input.notes.clone().into();
+        document["log"]["columns"] = input.log.source().columns.clone().into();
+        document["log"]["notes"] = input.log.source().notes.clone().into();
         document["diagnostics"]["convention"] = answer::convention(&convention);
         if let Some(current_loop) = &current_loop {
             document["current_loop"] = answer::current_loop(current_loop);
