@@ -6,7 +6,7 @@ use crate::terminal::options;
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CommandError {
     /// A file or an argument.
-    #[error(transparent)]
+    #[error("{}", crate::terminal::advice::with_options(&.0.to_string(), .0.advice()))]
     File(#[from] fluxfit_files::FileError),
     /// A setting, or a log that holds nothing to work on.
     #[error(transparent)]

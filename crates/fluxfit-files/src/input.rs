@@ -1,4 +1,4 @@
-//! Bytes and text of a file, or of standard input, which is written `-`.
+//! Bytes and text of a file, or of standard input, whose path is `-`.
 
 use crate::{error::FileError, problem::Problem};
 use std::{
@@ -7,54 +7,59 @@ use std::{
     path::Path,
 };
 
-/// What a path means standard input or output.
+/// Whether a path means standard input or output.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// The file's name in a message.
+/// The name of a file in messages.
 pub fn name(path: &Path) -> String {
     if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
-/// What a file's bytes come from.
-pub enum Raw {
-    /// A file, which can be read at any place; who is told how much of it was read, if it is read from its beginning to its end.
+/// Where the bytes of a file come from.
+pub enum Bytes {
+    /// A file, which can be read at any offset. Where it is read from its beginning to its end, the function is called with the
+    /// number of bytes of each read.
     File(fs::File, Box<dyn Fn(u64)>),
     /// Standard input, a pipe, or bytes in memory.
     Stream(Box<dyn Read>),
 }
 
-impl Raw {
-    /// The same, with somebody who is told how many bytes more of a file were read.
-    pub fn watched(self, watch: impl Fn(u64) + 'static) -> Self {
+impl Bytes {
+    /// The same bytes; of a file, `progress` is called with the number of bytes of each read.
+    #[must_use]
+    pub fn with_progress(self, progress: impl Fn(u64) + 'static) -> Self {
         match self {
-            Self::File(file, _) => Self::File(file, Box::new(watch)),
+            Self::File(file, _) => Self::File(file, Box::new(progress)),
             stream @ Self::Stream(_) => stream,
         }
     }
 }
 
-/// A file that tells how much of it was read.
-pub struct Watched {
+/// A file that reports how much of it was read.
+pub struct Reporting {
     /// The file.
     pub file: fs::File,
     /// Called with the number of bytes of each read.
-    pub watch: Box<dyn Fn(u64)>,
+    pub progress: Box<dyn Fn(u64)>,
 }
 
-impl Read for Watched {
+impl Read for Reporting {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
-        (self.watch)(count as u64);
+        (self.progress)(count as u64);
         Ok(count)
     }
 }
 
-/// The file, to be read from its beginning.
-pub fn open(path: &Path) -> Result<Raw, FileError> {
+/// Opens a file, or standard input.
+///
+/// # Errors
+/// If it cannot be opened, or is a directory.
+pub fn open(path: &Path) -> Result<Bytes, FileError> {
     if is_standard(path) {
-        return Ok(Raw::Stream(Box::new(io::stdin())));
+        return Ok(Bytes::Stream(Box::new(io::stdin())));
     }
     let file = fs::File::open(path).and_then(|file| {
         let metadata = file.metadata()?;
@@ -62,13 +67,16 @@ pub fn open(path: &Path) -> Result<Raw, FileError> {
         if metadata.is_dir() { Err(io::ErrorKind::IsADirectory.into()) } else { Ok((file, metadata.is_file())) }
     });
     match file {
-        Ok((file, true)) => Ok(Raw::File(file, Box::new(|_| ()))),
-        Ok((pipe, false)) => Ok(Raw::Stream(Box::new(pipe))),
+        Ok((file, true)) => Ok(Bytes::File(file, Box::new(|_| ()))),
+        Ok((pipe, false)) => Ok(Bytes::Stream(Box::new(pipe))),
         Err(error) => Err(FileError::from(io_problem("reading", &error)).in_file(&name(path))),
     }
 }
 
-/// The whole file.
+/// Reads a whole file, or standard input.
+///
+/// # Errors
+/// If it cannot be read.
 pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let bytes = if is_standard(path) {
         let mut bytes = Vec::new();
@@ -79,7 +87,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     bytes.map_err(|error| FileError::from(io_problem("reading", &error)).in_file(&name(path)))
 }
 
-/// The whole text, without a byte order mark. `wanted` names the format that the remedy asks for.
+/// The whole text, without a byte order mark. `wanted` names the expected format in the message.
+///
+/// # Errors
+/// If the bytes are not UTF-8, contain a zero, or are blank.
 pub fn text<'a>(bytes: &'a [u8], wanted: &'static str) -> Result<&'a str, FileError> {
     let refuse = |at: usize| FileError::from(Problem::NotText { wanted }).at_line(line_at(bytes, at));
     let text = str::from_utf8(bytes).map_err(|error| refuse(error.valid_up_to()))?;
@@ -101,7 +112,7 @@ pub fn line_at(bytes: &[u8], offset: usize) -> u64 {
     1 + ends.count() as u64
 }
 
-/// The sentence for a failure of the system.
+/// The problem behind an error of the operating system.
 pub fn io_problem(action: &'static str, error: &io::Error) -> Problem {
     match error.kind() {
         io::ErrorKind::NotFound => Problem::NotFound,
@@ -124,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_told_apart() {
+    fn reasons_why_a_file_cannot_be_read_are_distinguished() {
         let refusal = |path: &str| read(Path::new(path)).unwrap_err().to_string();
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().to_str().unwrap();
@@ -137,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn only_text_passes() {
+    fn only_text_is_accepted() {
         assert_eq!(text("\u{feff}a".as_bytes(), "CSV"), Ok("a"));
         assert_eq!(text(b" \n", "CSV").unwrap_err().to_string(), "the file is empty; export it again");
         let refusal = "line 2: this is not text in UTF-8; export it as CSV in UTF-8";

@@ -1,4 +1,4 @@
-//! Writing: the whole file, or the file as it was.
+//! Atomic writing: a file is replaced as a whole or left as it was.
 
 use crate::{
     error::FileError,
@@ -16,8 +16,8 @@ use tempfile::NamedTempFile;
 /// Bytes that are written at once.
 const BUFFER: usize = 1 << 16;
 
-/// Writes a file so that nobody ever sees half of it: into a new file beside it, which then takes its name. What was there keeps
-/// its permissions; a link keeps pointing to where it did. The path `-` is standard output; that and devices are written
+/// Writes a file atomically: into a new file in the same directory, which is then renamed. A file that is replaced keeps its
+/// permissions; a link still points to the same target. The path `-` is standard output; standard output and devices are written
 /// directly.
 ///
 /// # Errors
@@ -28,8 +28,8 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     output.commit()
 }
 
-/// A file that is being written and has not taken its name yet: several can be filled before the first one does. Dropped, it was
-/// never there.
+/// A file that is being written under a temporary name; several can be written before the first is committed. Dropping it without
+/// [`commit`](Self::commit) removes it.
 #[derive(Debug)]
 pub struct Output {
     name: String,
@@ -50,7 +50,7 @@ enum Sink {
 }
 
 impl Output {
-    /// Opens a file for [`write_atomically`] by parts.
+    /// Creates the temporary file.
     ///
     /// # Errors
     /// If the directory does not exist or no file can be made there.
@@ -60,10 +60,10 @@ impl Output {
         sink.map_err(|error| error.in_file(&name)).map(|sink| Self { name, sink })
     }
 
-    /// Writes into it, through a buffer.
+    /// Writes into the file, through a buffer.
     ///
     /// # Errors
-    /// Those of writing.
+    /// If writing fails.
     pub fn fill(&mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
         let sink: &mut dyn Write = match &mut self.sink {
             Sink::Standard(output) => output,
@@ -74,17 +74,17 @@ impl Output {
         write(&mut buffer).and_then(|()| buffer.flush()).map_err(|error| FileError::from(problem(&error)).in_file(&self.name))
     }
 
-    /// Gives the file its name.
+    /// Renames the file to its final name.
     ///
     /// # Errors
-    /// Those of writing to the disk and of renaming.
+    /// If writing to the disk or renaming fails.
     pub fn commit(self) -> Result<(), FileError> {
         let Sink::File { file, listed: _listed, target, permissions } = self.sink else { return Ok(()) };
         let replace = || {
             if let Some(permissions) = permissions {
                 file.as_file().set_permissions(permissions)?;
             }
-            // Else a crash may keep the name and lose the bytes.
+            // Without it a crash may keep the name and lose the content.
             file.as_file().sync_all()?;
             file.persist(&target).map(|_| ()).map_err(|error| error.error)
         };
@@ -92,15 +92,15 @@ impl Output {
     }
 }
 
-/// Files that have no name of their own yet. A process that a signal ends drops nothing, so it must know them.
+/// Temporary files that are not committed. A process that ends on a signal runs no destructors, so it needs this list to remove them.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of names is whole at any time.
+    // The list is valid even if a thread panicked while holding the lock.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A name in [`UNFINISHED`], as long as this lives.
+/// An entry of [`UNFINISHED`] that is removed on drop.
 #[derive(Debug)]
 struct Listed(PathBuf);
 
@@ -110,26 +110,26 @@ impl Drop for Listed {
     }
 }
 
-/// Removes every file of an [`Output`] that has not taken its name yet. For a process that ends at once: no other one can be begun
-/// afterwards, and none of these committed.
+/// Removes the temporary files of every [`Output`] that is not committed. For a process that is about to end: afterwards no output
+/// can be opened or committed.
 pub fn discard_unfinished() {
     let unfinished = unfinished();
     unfinished.iter().for_each(|path| drop(fs::remove_file(path)));
-    // Locked for good: who waits for it ends with the process.
+    // The lock is never released, so no thread can start another file before the process ends.
     std::mem::forget(unfinished);
 }
 
-/// Whether something can be put in place of this path: it is neither standard output nor a device or a pipe.
+/// Whether a file with this path can be replaced: it is not standard output, a device or a pipe.
 pub fn is_replaceable(path: &Path) -> bool {
     !is_standard(path) && fs::metadata(path).map_or(true, |metadata| metadata.is_file() || metadata.is_dir())
 }
 
-/// Tells beforehand what [`Output::open`] would, and leaves everything as it is.
+/// Checks whether [`Output::open`] would succeed, without changing anything.
 ///
 /// # Errors
 /// As [`Output::open`].
 pub fn check_writable(path: &Path) -> Result<(), FileError> {
-    // Whoever reads a pipe takes its closing for the end.
+    // Opening and closing a pipe would end it for its reader.
     if is_replaceable(path) { Output::open(path).map(drop) } else { Ok(()) }
 }
 
@@ -147,13 +147,13 @@ fn open(path: &Path) -> Result<Sink, FileError> {
     if !directory.is_dir() {
         return Err(Problem::NoDirectory { directory: directory.display().to_string() }.into());
     }
-    let (file, listed) = beside(directory).map_err(|error| problem(&error))?;
+    let (file, listed) = temporary(directory).map_err(|error| problem(&error))?;
     let permissions = existing.map(|metadata| metadata.permissions());
     Ok(Sink::File { file, listed, target, permissions })
 }
 
-/// A new file, readable by whom the user's mask allows rather than by the user alone.
-fn beside(directory: &Path) -> io::Result<(NamedTempFile, Listed)> {
+/// A temporary file with the permissions that the user's mask allows, instead of those of the user alone.
+fn temporary(directory: &Path) -> io::Result<(NamedTempFile, Listed)> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".fluxfit-").suffix(".tmp");
     #[cfg(unix)]
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_made_and_replaced_and_nothing_is_left_beside_it() {
+    fn a_file_is_created_and_replaced_and_no_temporary_file_remains() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("answer.json");
         for text in ["first", "second, longer", "3"] {
@@ -189,7 +189,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn permissions_links_and_devices_survive() {
+    fn permissions_links_and_devices_are_kept() {
         use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
         let directory = tempfile::tempdir().unwrap();
         let (path, link) = (directory.path().join("a"), directory.path().join("link"));
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_committed_was_never_there() {
+    fn an_output_that_is_not_committed_leaves_nothing() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("log.csv");
         check_writable(&path).unwrap();

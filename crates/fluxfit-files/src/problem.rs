@@ -1,12 +1,9 @@
-//! What is wrong with a file of text, a table, or a value in it: sentences that several readers share.
+//! What can be wrong with a file of text, a table or a value in it: the problems that several readers share.
 
-use crate::error::FileError;
-use fluxfit_units::{
-    ValueError,
-    wording::{choice, did_you_mean, list, quote},
-};
+use crate::error::{FileError, FileErrorKind};
+use fluxfit_units::wording::{choice, did_you_mean, list, quote};
 
-/// The sentences. Texts taken from files are quoted here, never before.
+/// The problems and their sentences. Texts taken from files are quoted and shortened here and nowhere else.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the sentence of each says what it is")]
 pub enum Problem {
@@ -24,11 +21,11 @@ pub enum Problem {
     NotText { wanted: &'static str },
     #[error("the file is empty; export it again")]
     Empty,
-    #[error("there are only comments; a header line with the names of the columns and rows of numbers are needed")]
+    #[error("the file has only comments; a header line with the names of the columns and rows of numbers are needed")]
     NoHeader,
-    #[error("{} are numbers where the header should be; put a line with the names of the columns above them", quote(.text))]
+    #[error("{} are numbers in place of a header; put a line with the names of the columns above them", quote(.text))]
     NumbersForHeader { text: String },
-    #[error("{} is only one column; separate the names, and the values, by comma, semicolon or tab", quote(.text))]
+    #[error("{} is a single column; separate names and values by comma, semicolon or tab", quote(.text))]
     OneColumn { text: String },
     #[error("the row has {} where the header has {expected}; {}", cells(*.found), row_remedy(*.found > *.expected, *.multiline))]
     RowLength { found: usize, expected: usize, multiline: bool },
@@ -38,15 +35,15 @@ pub enum Problem {
     Syntax { format: &'static str, message: String },
     #[error("this key is not known; {table} can hold {}{}", list(.known), did_you_mean(*.nearest))]
     Key { table: String, known: Vec<&'static str>, nearest: Option<&'static str> },
-    #[error("this key stands outside of a table; put it below a line [{table}]")]
+    #[error("this key is outside of its table; put it below a line [{table}]")]
     OutsideTable { table: &'static str },
     #[error("this key belongs to [{table}]; move it there")]
     OtherTable { table: &'static str },
-    #[error("this key stands above all tables; move it to the top of the file")]
+    #[error("this key belongs above all tables; move it to the top of the file")]
     InsideTable,
     #[error("this is not {wanted}; correct it")]
     Value { wanted: String },
-    #[error("{} is not known here; it can be {}{}", quote(.text), choice(.known), did_you_mean(*.nearest))]
+    #[error("{} is not one of the values; it can be {}{}", quote(.text), choice(.known), did_you_mean(*.nearest))]
     Word { text: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("the key {key} is missing; write {remedy}")]
     MissingKey { key: String, remedy: String },
@@ -54,15 +51,25 @@ pub enum Problem {
     Range { text: String, range: &'static str },
 }
 
-impl From<Problem> for FileError {
-    fn from(problem: Problem) -> Self {
-        Self::new(&problem)
+impl Problem {
+    fn kind(&self) -> FileErrorKind {
+        match self {
+            Self::Directory | Self::NotFound | Self::NotPermitted | Self::Io { .. } | Self::NoDirectory { .. } => FileErrorKind::Access,
+            Self::NotText { .. } | Self::Empty | Self::Syntax { .. } | Self::NoHeader | Self::NumbersForHeader { .. } => {
+                FileErrorKind::Format
+            }
+            Self::OneColumn { .. } | Self::RowLength { .. } => FileErrorKind::Format,
+            Self::NotANumber { .. } | Self::Value { .. } | Self::Word { .. } | Self::Range { .. } => FileErrorKind::Value,
+            Self::Key { .. } | Self::OutsideTable { .. } | Self::OtherTable { .. } | Self::InsideTable | Self::MissingKey { .. } => {
+                FileErrorKind::Key
+            }
+        }
     }
 }
 
-impl From<ValueError> for FileError {
-    fn from(error: ValueError) -> Self {
-        Self::new(&error)
+impl From<Problem> for FileError {
+    fn from(problem: Problem) -> Self {
+        Self::new(problem.kind(), problem)
     }
 }
 
@@ -72,8 +79,8 @@ fn cells(count: usize) -> String {
 
 fn row_remedy(too_many: bool, multiline: bool) -> &'static str {
     match (multiline, too_many) {
-        (true, _) => "a quotation mark in this line opens a cell that runs over several lines: close it",
-        (false, true) => "remove the cells that are too many, or the row",
+        (true, _) => "a quotation mark in this line opens a cell that continues over several lines: close it",
+        (false, true) => "remove the extra cells or the row",
         (false, false) => "complete the row or remove it",
     }
 }

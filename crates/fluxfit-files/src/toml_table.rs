@@ -1,6 +1,6 @@
-//! TOML that people write: tables of keys that are all known, read one by one; whatever is wrong is told with its line and key.
+//! TOML files whose keys are all known. Every error names its line and key.
 //!
-//! A document is checked against its [`Shape`] as a whole, in order of its lines; then each reader takes the keys it needs.
+//! A document is first checked against its [`Shape`], in the order of its lines; then each reader takes the keys that it needs.
 
 use crate::{error::FileError, input, problem::Problem};
 use fluxfit_units::{Dimension, parse_quantity, wording::nearest};
@@ -10,9 +10,9 @@ use toml::{
     de::{DeInteger, DeTable, DeValue},
 };
 
-/// All that a kind of file can hold.
+/// The keys and tables that a kind of file can have.
 pub struct Shape {
-    /// What the file is called.
+    /// The kind of file, in a sentence.
     pub noun: &'static str,
     /// Keys above all tables.
     pub keys: &'static [&'static str],
@@ -26,7 +26,7 @@ pub struct Document<'t> {
     root: Spanned<DeTable<'t>>,
 }
 
-/// Some of its keys; a table that the file leaves out has none.
+/// A table of a document; without keys if the file does not have it.
 #[derive(Clone, Copy)]
 pub struct Table<'d> {
     text: &'d str,
@@ -48,7 +48,7 @@ impl<'t> Document<'t> {
     /// Reads TOML.
     ///
     /// # Errors
-    /// If it is none, or holds anything that `shape` does not know.
+    /// If the text is not TOML, or has a key that `shape` does not have.
     pub fn parse(text: &'t str, shape: &Shape) -> Result<Self, FileError> {
         let root = DeTable::parse(text).map_err(|error| {
             let syntax = FileError::from(Problem::Syntax { format: "TOML", message: flat(error.message()) });
@@ -64,13 +64,13 @@ impl<'t> Document<'t> {
         Table { text: self.text, name: "", start: None, keys: Some(self.root.get_ref()) }
     }
 
-    /// A table of the shape.
+    /// A table of the shape, whether the file has it or not.
     pub fn table(&self, name: &'static str) -> Table<'_> {
         let entry = self.root().get(name);
         Table { text: self.text, name, start: entry.map(|entry| entry.start), keys: entry.and_then(|entry| entry.value.as_table()) }
     }
 
-    /// The entry that another crate calls `table.key`, or `key` if it stands above all tables.
+    /// The entry with the path `table.key`, or `key` if it is above all tables.
     pub fn find(&self, path: &str) -> Option<Entry<'_>> {
         match path.split_once('.') {
             Some((table, key)) => self.root().get(table)?.value.as_table().and_then(|keys| entry(self.text, keys, key)),
@@ -78,7 +78,7 @@ impl<'t> Document<'t> {
         }
     }
 
-    /// The document as it is written: numbers as numbers, quantities as the texts they are, keys in their order.
+    /// The document as JSON: numbers as numbers, quantities with units as text, keys in their order.
     pub fn to_json(&self) -> Value {
         json_of_table(self.text, self.root.get_ref())
     }
@@ -97,7 +97,7 @@ impl Shape {
                 return Err(entry.refuse(Problem::Value { wanted: format!("a table, as in [{name}]") }));
             };
             if let Some(entry) = in_order(document.text, keys).into_iter().find(|entry| !known.contains(&entry.key)) {
-                return Err(entry.refuse(match self.home(entry.key) {
+                return Err(entry.refuse(match self.table_of(entry.key) {
                     Some(table) => Problem::OtherTable { table },
                     None if self.keys.contains(&entry.key) => Problem::InsideTable,
                     None => unknown(&format!("[{name}]"), entry.key, known),
@@ -109,37 +109,43 @@ impl Shape {
 
     fn misplaced(&self, key: &str) -> Problem {
         let all: Vec<&'static str> = self.keys.iter().copied().chain(self.tables.iter().map(|(name, _)| *name)).collect();
-        self.home(key).map_or_else(|| unknown(self.noun, key, &all), |table| Problem::OutsideTable { table })
+        self.table_of(key).map_or_else(|| unknown(self.noun, key, &all), |table| Problem::OutsideTable { table })
     }
 
     /// The table to which a key belongs.
-    fn home(&self, key: &str) -> Option<&'static str> {
+    fn table_of(&self, key: &str) -> Option<&'static str> {
         self.tables.iter().find(|(_, keys)| keys.contains(&key)).map(|(table, _)| *table)
     }
 }
 
 impl<'d> Table<'d> {
-    /// The entry of a key, if the file has it.
+    /// The entry with this key, if the file has it.
     pub fn get(&self, key: &str) -> Option<Entry<'d>> {
         entry(self.text, self.keys?, key)
     }
 
     /// Whether the file has the table.
-    pub fn is_there(&self) -> bool {
+    pub fn is_present(&self) -> bool {
         self.keys.is_some()
     }
 
-    /// A quantity, in SI, if the file has it.
+    /// A quantity in SI units, if the file has it.
+    ///
+    /// # Errors
+    /// If the value is not a quantity of this dimension.
     pub fn quantity(&self, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
         self.get(key).map(|entry| entry.quantity(dimension)).transpose()
     }
 
-    /// A quantity, in SI, that the file must have.
+    /// A quantity in SI units that the file must have.
+    ///
+    /// # Errors
+    /// If the key is missing, or the value is not a quantity of this dimension.
     pub fn needed(&self, key: &str, dimension: Dimension) -> Result<f64, FileError> {
         self.quantity(key, dimension)?.ok_or_else(|| self.missing(key, dimension.example()))
     }
 
-    /// The refusal of a file without a key, at the line of the table if there is one.
+    /// The error for a missing key, at the line of the table if there is one.
     pub fn missing(&self, key: &str, example: &str) -> FileError {
         let place = if self.name.is_empty() { String::new() } else { format!(" below [{}]", self.name) };
         let missing = FileError::from(Problem::MissingKey { key: key.to_owned(), remedy: format!("{key} = {example}{place}") });
@@ -156,12 +162,12 @@ impl<'d> Entry<'d> {
         input::line_at(self.text.as_bytes(), self.start)
     }
 
-    /// The refusal of this entry.
+    /// An error at this entry.
     pub fn refuse(&self, problem: impl Into<FileError>) -> FileError {
         problem.into().at_line(self.line()).in_key(self.key)
     }
 
-    /// A number or a text as it is written; none of anything else.
+    /// A number or a text as it is written; none for other values.
     pub fn as_written(&self) -> Option<String> {
         match self.value {
             DeValue::String(text) => Some(text.to_string()),
@@ -171,18 +177,24 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// The refusal of its number, as it is written.
+    /// The error for a number out of range.
     pub fn out_of_range(&self, range: &'static str) -> FileError {
         self.refuse(Problem::Range { text: self.as_written().unwrap_or_default(), range })
     }
 
-    /// A quantity, in SI.
+    /// A quantity in SI units.
+    ///
+    /// # Errors
+    /// If the value is not a quantity of this dimension.
     pub fn quantity(&self, dimension: Dimension) -> Result<f64, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: "a number, or one with its unit in quotes".to_owned() });
         parse_quantity(&self.as_written().ok_or_else(wanted)?, dimension).map_err(|error| self.refuse(error))
     }
 
-    /// A whole number from `least` on.
+    /// A whole number of at least `least`.
+    ///
+    /// # Errors
+    /// If the value is not such a number.
     pub fn whole<T: TryFrom<i64> + PartialOrd>(&self, least: T, range: &'static str) -> Result<T, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: format!("a whole number, as in {} = 4", self.key) });
         let DeValue::Integer(number) = self.value else { return Err(wanted()) };
@@ -190,17 +202,26 @@ impl<'d> Entry<'d> {
         found.ok_or_else(|| self.refuse(Problem::Range { text: number.to_string(), range }))
     }
 
-    /// Yes or no.
-    pub fn truth(&self) -> Result<bool, FileError> {
+    /// True or false.
+    ///
+    /// # Errors
+    /// If the value is neither.
+    pub fn boolean(&self) -> Result<bool, FileError> {
         self.value.as_bool().ok_or_else(|| self.refuse(Problem::Value { wanted: "true or false, without quotes".to_owned() }))
     }
 
     /// A text.
+    ///
+    /// # Errors
+    /// If the value is not a text.
     pub fn text(&self) -> Result<&'d str, FileError> {
         self.value.as_str().ok_or_else(|| self.refuse(Problem::Value { wanted: "a text in quotes".to_owned() }))
     }
 
-    /// One of a few words, and what it stands for.
+    /// The meaning of one of these words.
+    ///
+    /// # Errors
+    /// If the value is none of them.
     pub fn word<T: Copy>(&self, words: &[(&'static str, T)]) -> Result<T, FileError> {
         let known: Vec<&'static str> = words.iter().map(|(word, _)| *word).collect();
         let text = self.as_written().unwrap_or_default();
@@ -208,13 +229,16 @@ impl<'d> Entry<'d> {
         found.ok_or_else(|| self.refuse(Problem::Word { nearest: nearest(&text, known.iter().copied()), text, known }))
     }
 
-    /// The items of a list, in order, under the list's key; none if this is no list.
+    /// The items of a list, in order, with the key of the list; none if the value is not a list.
     pub fn items(&self) -> Option<Vec<Entry<'d>>> {
         let items = self.value.as_array()?;
         Some(items.iter().map(|item| Entry { start: item.span().start, value: item.get_ref(), ..*self }).collect())
     }
 
-    /// A table within a line, called `noun`, which can hold these keys.
+    /// An inline table with these keys; `noun` names it in messages.
+    ///
+    /// # Errors
+    /// If the value is not a table, or has another key.
     pub fn table(&self, known: &[&'static str], noun: &str, example: &str) -> Result<Table<'d>, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: format!("{noun}, as in {example}") });
         let DeValue::Table(keys) = self.value else { return Err(wanted()) };
@@ -234,7 +258,7 @@ fn entry<'d>(text: &'d str, keys: &'d DeTable<'_>, key: &str) -> Option<Entry<'d
     Some(Entry { text, key: key.get_ref(), start: key.span().start, value: value.get_ref() })
 }
 
-/// Entries by their place in the file, so that the first fault is the one told.
+/// Entries in the order of the file, so that the first error is the one reported.
 fn in_order<'d>(text: &'d str, keys: &'d DeTable<'_>) -> Vec<Entry<'d>> {
     let entry = |(key, value): (&'d Spanned<_>, &'d Spanned<DeValue<'d>>)| Entry {
         text,
@@ -268,7 +292,7 @@ fn decimal(number: &DeInteger<'_>) -> Option<i64> {
     i64::from_str_radix(number.as_str(), number.radix()).ok()
 }
 
-/// A message of several lines as one.
+/// A message of several lines on one line.
 fn flat(message: &str) -> String {
     message.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(", ")
 }

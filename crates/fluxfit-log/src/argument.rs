@@ -1,25 +1,25 @@
-//! `column=value` arguments: `omega=rpm-mech`, `ud=motor_vd`.
+//! Arguments of the form `channel=value`: `omega=rpm-mech`, `ud=motor_vd`.
 
 use crate::{channel::Channel, problem::Problem};
 use fluxfit_files::FileError;
 use fluxfit_units::{Unit, key_value};
 
-/// `ud=motor_vd`: the canonical name of a column of a log, and the header that it has in the file. `omega` is `omega_e`.
+/// `ud=motor_vd`: the canonical name of a channel, and the header of its column in the file. `omega` is `omega_e`.
 ///
 /// # Errors
-/// If there is no `=` with text on both sides, or the name on the left is not one of a log.
+/// If there is no `=` with text on both sides, or the name on the left is not a channel.
 pub fn parse_map(text: &str) -> Result<(String, String), FileError> {
     let (name, header) = key_value(text, "COLUMN=HEADER", "omega_e=motor_speed")?;
     Ok((Channel::from_name(name)?.name().to_owned(), header.to_owned()))
 }
 
-/// Several of them, between commas; a comma in brackets or quotes belongs to a name, as in `t=data(:,1)`.
+/// Several of them, separated by commas; a comma in brackets or quotes belongs to a name, as in `t=data(:,1)`.
 ///
 /// # Errors
 /// As [`parse_map`].
 pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
     let (mut depth, mut quoted) = (0_i32, false);
-    let apart = |c: char| {
+    let is_separator = |c: char| {
         match c {
             '"' => quoted = !quoted,
             '(' | '[' => depth += 1,
@@ -28,13 +28,13 @@ pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
         }
         c == ',' && depth <= 0 && !quoted
     };
-    text.split(apart).map(parse_map).collect()
+    text.split(is_separator).map(parse_map).collect()
 }
 
-/// `omega=rpm-mech`: the canonical name of a column of a log, and its unit.
+/// `omega=rpm-mech`: the canonical name of a channel, and its unit.
 ///
 /// # Errors
-/// As [`parse_map`], or if the unit is not one of that column.
+/// As [`parse_map`], or if the unit is not one of that channel.
 pub fn parse_unit(text: &str) -> Result<(String, Unit), FileError> {
     let (name, unit) = key_value(text, "COLUMN=UNIT", "omega=rpm-mech")?;
     let channel = Channel::from_name(name)?;
@@ -42,6 +42,7 @@ pub fn parse_unit(text: &str) -> Result<(String, Unit), FileError> {
     Ok((channel.name().to_owned(), found))
 }
 
+/// The error for a unit that does not fit its channel.
 pub(crate) fn wrong_unit(channel: Channel, unit: &str) -> FileError {
     let allowed = Unit::of(channel.dimension()).map(Unit::name).collect();
     Problem::Unit { channel: channel.name(), unit: unit.to_owned(), allowed }.into()
@@ -53,7 +54,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn columns_and_their_units() {
+    fn channels_and_their_units() {
         assert_eq!(parse_map(" omega = Output Speed "), Ok(("omega_e".into(), "Output Speed".into())));
         assert_eq!(parse_map("ud=a=b"), Ok(("ud".into(), "a=b".into())));
         assert_eq!(parse_unit("omega=rpm-mech"), Ok(("omega_e".into(), Unit::RpmMechanical)));
@@ -61,15 +62,15 @@ mod tests {
         let refusal = |text| parse_unit(text).unwrap_err().to_string();
         assert_eq!(
             refusal("omega=rpm"),
-            "\"rpm\" is no unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
+            "\"rpm\" is not a unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
         );
-        assert_eq!(refusal("ud=A"), "\"A\" is no unit of ud; it can be V or mV");
+        assert_eq!(refusal("ud=A"), "\"A\" is not a unit of ud; it can be V or mV");
         assert_eq!(refusal("ud"), "\"ud\" is not understood; write COLUMN=UNIT, as in omega=rpm-mech");
         assert_eq!(parse_map("ud=").unwrap_err().to_string(), "\"ud=\" is not understood; write COLUMN=HEADER, as in omega_e=motor_speed");
     }
 
     #[test]
-    fn commas_in_brackets_belong_to_a_name() {
+    fn commas_in_brackets_are_part_of_a_name() {
         let pairs = |text| parse_maps(text).unwrap().into_iter().map(|(_, header)| header).collect::<Vec<_>>();
         assert_eq!(pairs("t=data(:,1),ud=data(:,2)"), ["data(:,1)", "data(:,2)"]);
         assert_eq!(pairs("id=i [A, peak],iq=q)"), ["i [A, peak]", "q)"]);

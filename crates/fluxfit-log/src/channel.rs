@@ -1,10 +1,10 @@
-//! What a log's columns are called: here, and elsewhere.
+//! The channels of a log: their canonical names, and what drives and tools call them.
 
 use crate::problem::Problem;
 use fluxfit_files::FileError;
 use fluxfit_units::{Dimension, unit::Unit, wording::nearest};
 
-/// A column of a log.
+/// A quantity that a column of a log can hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Channel {
     T,
@@ -21,21 +21,21 @@ pub(crate) enum Channel {
     UA,
     UB,
     UC,
-    /// Number of the run that a row belongs to: where it changes, time does not go on.
+    /// Number of the run that a row belongs to; time is not continuous where it changes.
     Run,
 }
 
 impl Channel {
-    /// Those that a log must have, in the order of `fluxfit::log::Columns`.
+    /// The channels that a log must have, in the order of [`fluxfit::log::Columns`].
     pub(crate) const NEEDED: [Self; 6] = [Self::T, Self::Ud, Self::Uq, Self::Id, Self::Iq, Self::OmegaE];
 
-    /// Those that a log may have besides.
+    /// The optional channels.
     pub(crate) const OPTIONAL: [Self; 2] = [Self::ThetaE, Self::UDc];
 
-    /// Those from which dq voltages and currents are made, with the angle.
+    /// Phase quantities, from which dq quantities are computed with the angle.
     pub(crate) const PHASES: [Self; 6] = [Self::UA, Self::UB, Self::UC, Self::IA, Self::IB, Self::IC];
 
-    /// All that a column can be.
+    /// All channels.
     pub(crate) fn all() -> impl Iterator<Item = Self> + Clone {
         Self::NEEDED.into_iter().chain(Self::OPTIONAL).chain(Self::PHASES).chain([Self::Run])
     }
@@ -77,7 +77,7 @@ impl Channel {
         self.unit().dimension()
     }
 
-    /// What drives and their tools call it, in lower case without punctuation: only to propose a column, never to take one.
+    /// What drives and tools call it, in lower case without punctuation: to propose a column, never to choose one.
     pub(crate) fn spellings(self) -> &'static [&'static str] {
         match self {
             Self::T => &["t", "time", "timestamp", "mstoday", "seconds"],
@@ -121,27 +121,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_unknown_name_is_answered_with_the_nearest() {
+    fn an_unknown_name_gets_a_proposal() {
         assert_eq!(Channel::from_name("omega"), Ok(Channel::OmegaE));
         assert_eq!(Channel::from_name("theta"), Ok(Channel::ThetaE));
         assert!(Channel::from_name("vdc").unwrap_err().to_string().ends_with("; did you mean u_dc?"));
-        let refusal = |name| Channel::from_name(name).unwrap_err().to_string();
+        let message = |name| Channel::from_name(name).unwrap_err().to_string();
         assert_eq!(
-            refusal("speed"),
-            "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+            message("speed"),
+            "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
         );
         assert_eq!(
-            refusal("time"),
-            "\"time\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean t?"
+            message("time"),
+            "\"time\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean t?"
         );
         assert_eq!(
-            refusal("flux_density"),
-            "\"flux_density\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run"
+            message("flux_density"),
+            "\"flux_density\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run"
         );
     }
 
     #[test]
-    fn the_order_is_that_of_the_library() {
+    fn the_order_is_that_of_the_log() {
         let names = fluxfit::log::Columns::default().named().map(|(name, _)| name);
         assert_eq!(names, Channel::NEEDED.map(Channel::name));
         let both = fluxfit::log::Columns { theta_e: Some(Vec::new()), u_dc: Some(Vec::new()), ..Default::default() };

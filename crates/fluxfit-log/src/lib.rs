@@ -1,8 +1,8 @@
-//! Logs of drives, read.
+//! Reading the logs of drives: text of any dialect, Parquet, MATLAB, HDF5 and MDF 4.
 //!
-//! The promise: whatever is read is either understood, in SI units, or refused in one sentence on one line that names the file,
-//! the line and the column where there is one, and the remedy. What had to be inferred on the way is said in notes. No input
-//! makes a function of this crate panic.
+//! A log is either understood, in SI units, or refused in one sentence on one line that names the file, the line and the column where
+//! there is one, and what to do. Everything that was inferred or repaired is reported in a [`Note`]. No input makes a function of this
+//! crate panic.
 //!
 //! ```
 //! use fluxfit_log::{LogOptions, parse_log, parse_map};
@@ -12,33 +12,34 @@
 //! let options = LogOptions { map, pole_pairs: Some(4), ..LogOptions::default() };
 //! let read = parse_log("drive.csv", csv, &options)?;
 //! assert_eq!(read.log.columns().t, [0.0, 0.001]);
-//! assert_eq!(read.notes[1], "omega_e: column 'speed_rpm' read as mechanical r/min with 4 pole pairs");
+//! assert_eq!(read.log.source().notes[1], "omega_e: column 'speed_rpm' read as mechanical r/min with 4 pole pairs");
 //! # Ok::<(), fluxfit_files::FileError>(())
 //! ```
 //!
 //! | file | concept |
 //! |---|---|
-//! | [`reading`] | a log from a table: its layout, its columns, its repairs |
-//! | [`argument`] | `column=value` arguments |
-//! | `csv` | a table of text, whatever its dialect |
-//! | `container` | tables that are not text |
+//! | `reading` | from a table to a log: layout, columns, units, repairs |
+//! | `csv` | tables of text |
+//! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
-//! | `channel` | what a log's columns are called |
-//! | `problem` | what is wrong with a log |
+//! | `channel` | the channels of a log and their names |
+//! | `header_unit` | units in the headers of columns |
+//! | `argument` | arguments of the form `channel=value` |
+//! | `note`, `problem` | what is reported: notes and errors |
 
-pub mod argument;
+mod argument;
 mod block;
 mod channel;
 mod container;
 mod csv;
+mod header_unit;
+mod note;
 mod problem;
-pub mod reading;
+mod reading;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
+pub use note::Note;
 pub use reading::{
-    LogOptions, ReadLog,
-    inspect::{Inspection, inspect},
-    layout::{LAYOUTS, Layout},
-    mapping::{Mapping, read_mapping},
-    parse_log, read_log, read_log_watched,
+    InspectedColumn, Inspection, LAYOUTS, Layout, LogOptions, Mapping, Park, ReadLog, inspect, parse_log, read_log, read_log_from,
+    read_log_with_progress, read_mapping,
 };

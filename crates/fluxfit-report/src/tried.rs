@@ -8,7 +8,7 @@ use fluxfit::{
     evidence::{FaultTrial, Nuisance, Outcome, OutputFit, Provenance, ReadingTrial},
     faults::Fault,
 };
-use fluxfit_units::{beside_the_motor, significant};
+use fluxfit_units::{format_unknown, significant};
 use maud::{Markup, html};
 
 /// Standard errors in half of a 95 % interval.
@@ -27,7 +27,7 @@ pub(crate) fn section(fit: &OutputFit) -> Markup {
 
 /// A number beside the motor with its 95 %: what, how much, of what unit.
 pub(crate) fn found(nuisance: &Nuisance) -> Markup {
-    let [value, margin, unit] = beside_the_motor(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
+    let [value, margin, unit] = format_unknown(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
     let unit = unit.replace("deg", "°").strip_prefix('u').map_or_else(|| unit.replace("deg", "°"), |rest| format!("µ{rest}"));
     html! { (minus(value)) " ± " (margin) " " (unit) }
 }

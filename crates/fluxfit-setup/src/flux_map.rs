@@ -1,6 +1,6 @@
-//! A flux map from a table of text: a row for each current, in any order; other columns are left alone.
+//! A flux map from a table of text: one row per current, in any order; other columns are ignored.
 //!
-//! Columns: `id`, `iq` in A, `psi_d`, `psi_q` in Wb, as they stand or with their unit behind (`id_A`, `psi_d_Wb`).
+//! Columns: `id`, `iq` in A, `psi_d`, `psi_q` in Wb, also with their unit in the name (`id_A`, `psi_d_Wb`).
 
 use crate::problem::Problem;
 use ::csv::ByteRecord;
@@ -19,7 +19,7 @@ const COLUMNS: [(&str, &str); 4] = [("id", "id_A"), ("iq", "iq_A"), ("psi_d", "p
 /// Reads a flux map.
 ///
 /// # Errors
-/// If the file cannot be read, is no table with these columns, or [`FluxMap::new`] refuses its points.
+/// If the file cannot be read, is not a table with these columns, or [`FluxMap::new`] refuses its points.
 pub(crate) fn read_flux_map(path: &Path) -> Result<FluxMap, FileError> {
     let parse = |bytes: Vec<u8>| input::text(&bytes, "CSV text").and_then(parse);
     input::read(path).and_then(parse).map_err(|error| error.in_file(&input::name(path)))
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn refusals_name_line_and_column() {
+    fn errors_name_line_and_column() {
         let names = "id,iq,psi_d,psi_q";
         let at = |k: usize, other: &'static str| table(names, move |row, text| if row == k { other.to_owned() } else { text });
         let cases = [

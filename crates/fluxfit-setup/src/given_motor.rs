@@ -1,5 +1,5 @@
-//! A motor of which everything is known: what a log is validated against. A motor file with all four parameters, the document of an
-//! identification, or a truth.
+//! A motor with all four parameters known, against which a log is validated: from a motor file, the document of an identification, or
+//! a truth file.
 
 use crate::{
     motor_file::MotorFile,
@@ -15,25 +15,25 @@ use fluxfit_files::{FileError, Problem as FileProblem, input};
 use serde_json::Value;
 use std::path::Path;
 
-/// A motor that is validated.
+/// A motor with all four parameters known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GivenMotor {
-    /// Its parameters, with standard errors where the file tells.
+    /// Its parameters, with standard errors if the file has them.
     pub given: Given,
-    /// The same as a motor file: pole pairs, rating.
+    /// The same as a motor file, with pole pairs and rating.
     pub file: MotorFile,
 }
 
-/// Reads a motor of which everything is known; the path `-` is standard input.
+/// Reads a motor with all four parameters known; the path `-` is standard input.
 ///
 /// # Errors
-/// If the file cannot be read, is none of the three, or lacks a parameter: all that it lacks are named.
+/// If the file cannot be read, is none of the three kinds, or lacks parameters, which are named.
 pub fn read_given_motor(path: &Path) -> Result<GivenMotor, FileError> {
     GivenMotor::parse(&input::name(path), &input::read(path)?)
 }
 
 impl GivenMotor {
-    /// Reads one from memory; `name` is the file's name in messages. What begins with a brace is JSON, which no TOML does.
+    /// Reads one from memory; `name` is the file's name in messages. A file that begins with a brace is JSON, otherwise it is TOML.
     ///
     /// # Errors
     /// As [`read_given_motor`].
@@ -68,13 +68,13 @@ fn of_identification(document: &Value) -> Result<GivenMotor, FileError> {
         values[parameter as usize] = of(parameter, "value")?;
         errors[parameter as usize] = of(parameter, "standard_error")?.unwrap_or(0.0);
     }
-    let motor = complete(values).map_err(|untold| Problem::UntoldParameters { untold })?;
+    let motor = complete(values).map_err(|undetermined| Problem::UndeterminedParameters { undetermined })?;
     let correlation = |p: usize, q: usize| document["diagnostics"]["correlation"][p][q].as_f64().unwrap_or(0.0).clamp(-1.0, 1.0);
     let correlation = std::array::from_fn(|p| std::array::from_fn(|q| correlation(p, q)));
     Ok(GivenMotor { given: Given::with_errors(motor, errors, &correlation), file: file(&motor, None) })
 }
 
-/// A number, zero or more; null, or nothing, is none.
+/// A number, zero or more; none if it is null or missing.
 fn number(value: &Value, parameter: Parameter) -> Result<Option<f64>, FileError> {
     if value.is_null() {
         return Ok(None);
@@ -131,21 +131,21 @@ mod tests {
     }
 
     #[test]
-    fn refusals_name_all_that_is_missing() {
+    fn errors_name_all_missing_parameters() {
         let cases = [
             (
                 "[motor]\nrs = 1\nlq = 1e-3\n".to_owned(),
-                "m: the parameters ld and psi_f are missing; a motor is validated with all four: write them below [motor]",
+                "m: the parameters ld and psi_f are missing; validation needs all four: write them below [motor]",
             ),
             (
                 FOUND.replace("0.00525", "null"),
-                "m: the parameter ld has no value, because the log could not tell it when the motor was identified; identify again with a log that excites it, or with --fix",
+                "m: the parameter ld has no value, because the log could not determine it when the motor was identified; identify again with a log that excites it, or give it as known",
             ),
             (FOUND.replace("0.00525", "-1"), "m, key 'ld': \"-1\" is out of range; it must be zero or more"),
             (FOUND.replace("0.00525", "\"x\""), "m, key 'ld': this is not a number or null; correct it"),
             (
                 FOUND.replace("identification/1", "study/1"),
-                "m, key 'schema': the schema is \"fluxfit.study/1\", which holds no motor; give a motor file, the JSON of fluxfit identify or a truth file",
+                "m, key 'schema': the schema is \"fluxfit.study/1\", which contains no motor; give a motor file, the JSON of an identification or a truth file",
             ),
             ("{}".to_owned(), "m: the key rs is missing; write it in ohm"),
             ("{".to_owned(), "m, line 1: this is not JSON: EOF while parsing an object; correct it"),

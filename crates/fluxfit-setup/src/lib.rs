@@ -1,14 +1,14 @@
-//! What an experiment is set up with: motors and scenarios in, simulated logs and their truths out.
+//! The files around an experiment: motors, scenarios and truths in; simulated logs and their truths out.
 //!
 //! | file | concept |
 //! |---|---|
 //! | [`motor_file`] | `MOTOR.toml` |
-//! | [`given_motor`] | a motor of which everything is known |
+//! | [`given_motor`] | a motor with all four parameters known |
 //! | [`scenario_file`] | `SCENARIO.toml` |
 //! | `flux_map` | a flux map from a table of text |
 //! | [`recording`] | a simulated log as CSV |
 //! | [`truth`] | the true parameters of a simulated log |
-//! | `problem` | what is wrong with one of them |
+//! | `problem` | what can be wrong with one of them |
 
 mod flux_map;
 pub mod given_motor;

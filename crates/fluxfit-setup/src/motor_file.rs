@@ -1,8 +1,8 @@
-//! `MOTOR.toml`: what is known of a motor before anything is identified.
+//! `MOTOR.toml`: what is known about a motor before identification.
 //!
 //! ```toml
 //! [motor]
-//! rs = "0.958 ohm"      # numbers with units; a bare number is SI; every key may be missing
+//! rs = "0.958 ohm"      # numbers with units; a bare number is SI; every key is optional
 //! ld = "5.25 mH"
 //! lq = "12 mH"
 //! psi_f = "0.1827 Wb"
@@ -20,7 +20,7 @@ use fluxfit_files::{
 use fluxfit_units::Dimension;
 use std::path::Path;
 
-/// What is known of a motor; every number above zero.
+/// What is known about a motor; every number is above zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MotorFile {
     /// Stator resistance, ohm.
@@ -31,20 +31,20 @@ pub struct MotorFile {
     pub lq: Option<f64>,
     /// Magnet flux linkage, Wb, peak per phase.
     pub psi_f: Option<f64>,
-    /// Pole pairs.
+    /// Number of pole pairs.
     pub pole_pairs: Option<u32>,
-    /// What the motor is made for.
+    /// Rated values.
     pub rating: Rating,
 }
 
-/// What a motor is made for; every number above zero.
+/// Rated values of a motor; every number is above zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Rating {
-    /// A, phase peak.
+    /// Current, A, phase peak.
     pub current: Option<f64>,
-    /// V, phase peak.
+    /// Voltage, V, phase peak.
     pub voltage: Option<f64>,
-    /// **Mechanical** rad/s.
+    /// Speed, **mechanical** rad/s.
     pub speed: Option<f64>,
 }
 
@@ -59,13 +59,13 @@ const ABOVE_ZERO: &str = "a finite number above zero";
 /// Reads a motor file; the path `-` is standard input.
 ///
 /// # Errors
-/// If the file cannot be read, is no TOML, has a key that is not known, or a value that is no quantity of its dimension or not above zero.
+/// If the file cannot be read, is not TOML, has an unknown key, or a value that is not a quantity of its dimension or not above zero.
 pub fn read_motor(path: &Path) -> Result<MotorFile, FileError> {
     MotorFile::parse(&input::name(path), &input::read(path)?)
 }
 
 impl MotorFile {
-    /// Reads a motor file from memory; `name` is the file's name in messages. An empty file is a motor of which nothing is known.
+    /// Reads a motor file from memory; `name` is the file's name in messages. An empty file is a motor about which nothing is known.
     ///
     /// # Errors
     /// As [`read_motor`].
@@ -130,13 +130,13 @@ mod tests {
     }
 
     #[test]
-    fn refusals_name_line_and_key() {
+    fn errors_name_line_and_key() {
         let cases = [
             (
                 "[motor]\n\nl_d = 1",
                 "line 3, key 'l_d': this key is not known; [motor] can hold rs, ld, lq, psi_f and pole_pairs; did you mean ld?",
             ),
-            ("rs = 1", "line 1, key 'rs': this key stands outside of a table; put it below a line [motor]"),
+            ("rs = 1", "line 1, key 'rs': this key is outside of its table; put it below a line [motor]"),
             ("[ratings]", "line 1, key 'ratings': this key is not known; a motor file can hold motor and rating; did you mean rating?"),
             ("motor = 1", "line 1, key 'motor': this is not a table, as in [motor]; correct it"),
             (

@@ -1,4 +1,4 @@
-//! A simulated log as CSV: canonical columns, every number in the fewest digits that read back to the same bits.
+//! A simulated log as CSV: canonical columns, every number with the fewest digits that read back to the same bits.
 
 use fluxfit_drive::Recording;
 use std::io::{self, Write};
@@ -6,7 +6,7 @@ use std::io::{self, Write};
 /// Writes a recording.
 ///
 /// # Errors
-/// Those of `writer`, which should have a buffer.
+/// If `writer` fails. It should be buffered.
 pub fn write_recording(writer: &mut dyn Write, recording: &Recording) -> io::Result<()> {
     let columns = recording.named();
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
@@ -26,7 +26,7 @@ pub fn write_recording(writer: &mut dyn Write, recording: &Recording) -> io::Res
     Ok(())
 }
 
-/// Below this, zeros behind the point take more room than an exponent.
+/// Smaller numbers are shorter with an exponent.
 const PLAIN: f64 = 1e-5;
 
 fn write_number(line: &mut Vec<u8>, value: f64) -> io::Result<()> {

@@ -1,8 +1,8 @@
-//! `SCENARIO.toml`: a motor in a drive, and what is asked of it. `docs/drive.md` lists the keys; `paper_rig.toml` beside this file
-//! shows them.
+//! `SCENARIO.toml`: a motor in a drive, and its schedule. `docs/drive.md` lists the keys; `scenario_file/paper_rig.toml` is an example
+//! with all of them.
 //!
-//! This file and its folder know how a scenario is written; what a drive cannot be is known by [`Scenario::check`] alone, whose
-//! refusals are told here with their line.
+//! This file and its folder read the format. Whether the values make a valid drive is decided by [`Scenario::check`] alone; its errors
+//! get their line here.
 
 mod machine;
 mod schedule;
@@ -19,21 +19,21 @@ use fluxfit_units::Dimension;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// A scenario as it is simulated and as it was written.
+/// A scenario as it is simulated, and as it was written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadScenario {
     /// In SI units, checked.
     pub scenario: Scenario,
-    /// The TOML as it was written, as JSON.
+    /// The content of the file, as JSON.
     pub document: Value,
-    /// The flux map that was read.
+    /// The path of the flux map, if there is one.
     pub flux_map: Option<PathBuf>,
 }
 
-/// The paper's rig, with a comment for every key: what to start from.
+/// The paper's rig with a comment for every key: a template.
 pub const PAPER_RIG: &str = include_str!("scenario_file/paper_rig.toml");
 
-/// Seed of a scenario that names none.
+/// Seed of a scenario without one.
 const SEED: u64 = 1;
 
 const SHAPE: Shape = Shape {
@@ -76,11 +76,11 @@ const SHAPE: Shape = Shape {
     ],
 };
 
-/// Reads a scenario; the path `-` is standard input. A flux map is looked for beside the scenario.
+/// Reads a scenario; the path `-` is standard input. The path of a flux map is relative to the folder of the scenario.
 ///
 /// # Errors
-/// If a file cannot be read or is no TOML, a key is unknown, missing or holds no value of its kind, the flux map is none, or
-/// [`Scenario::check`] refuses the scenario.
+/// If a file cannot be read or is not TOML, a key is unknown or missing or has a value of the wrong kind, the flux map cannot be read,
+/// or [`Scenario::check`] refuses the scenario.
 pub fn read_scenario(path: &Path) -> Result<ReadScenario, FileError> {
     let folder = if input::is_standard(path) { None } else { path.parent() };
     ReadScenario::parse(&input::name(path), &input::read(path)?, folder.unwrap_or(Path::new("")))
@@ -95,7 +95,7 @@ pub fn paper_scenario() -> Result<ReadScenario, FileError> {
 }
 
 impl ReadScenario {
-    /// Reads a scenario from memory; `name` is the file's name in messages, `folder` where its flux map is.
+    /// Reads a scenario from memory; `name` is the file's name in messages, `folder` the folder of its flux map.
     ///
     /// # Errors
     /// As [`read_scenario`].
@@ -126,12 +126,12 @@ fn parse(text: &str, folder: &Path) -> Result<ReadScenario, FileError> {
     Ok(ReadScenario { scenario, document: document.to_json(), flux_map })
 }
 
-/// The drive's refusal at its key, in the words of the file where it is about a number that stands there.
+/// The error of the drive at its key; an error about a number quotes the number as it is written.
 fn located(error: Error, document: &Document<'_>) -> FileError {
     let Some(entry) = error.key().and_then(|key| document.find(key)) else { return Problem::Drive(error).into() };
     match error {
         Error::Setting { range, .. } if entry.as_written().is_some() => entry.out_of_range(range),
-        // The sentence names the key.
+        // The sentence names the key already.
         error => FileError::from(Problem::Drive(error)).at_line(entry.line()),
     }
 }
@@ -159,9 +159,9 @@ mod tests {
         assert_eq!(read.document.as_object().unwrap().keys().next().unwrap(), "duration");
     }
 
-    /// What the template has behind a `#` is understood as well.
+    /// The keys that are comments in the template are valid too.
     #[test]
-    fn every_key_is_understood() {
+    fn every_key_is_read() {
         let keys = ["# modulation", "# ripple", "# update", "# dead_time", "# switch_drop", "# diode_drop", "# trip_current"];
         let keys = keys.iter().chain(&["# field_weakening", "# current_", "# adc_", "# angle_", "# encoder_", "# [injection]"]);
         let keys = keys.chain(&["# axis", "# waveform", "# frequency", "# voltage"]);
@@ -201,9 +201,9 @@ mod tests {
         assert_eq!(scenario.control.trip_current, 15.0);
     }
 
-    /// Refusals of the reader; those of the drive come through the command's tests.
+    /// Errors of the reader; those of the drive are in the tests of the command.
     #[test]
-    fn refusals_name_line_and_key() {
+    fn errors_name_line_and_key() {
         let cases = [
             (
                 "u_dc = \"310 V\"",
@@ -215,7 +215,7 @@ mod tests {
             (
                 "[sensors]",
                 "[sensors]\nduration = 1",
-                "line 50, key 'duration': this key stands above all tables; move it to the top of the file",
+                "line 50, key 'duration': this key belongs above all tables; move it to the top of the file",
             ),
             ("at = \"0.2 s\", ", "", "line 40: the key at is missing; write at = \"0.5 s\""),
             ("to = \"10 N m\"", "too = 10", "line 40, key 'too': this key is not known; a move can hold at, to and over; did you mean to?"),
@@ -228,9 +228,13 @@ mod tests {
             (
                 "# kind = \"dyno\"",
                 "kind = \"dyna\"#",
-                "line 16, key 'kind': \"dyna\" is not known here; it can be free or dyno; did you mean dyno?",
+                "line 16, key 'kind': \"dyna\" is not one of the values; it can be free or dyno; did you mean dyno?",
             ),
-            ("# flux_map = \"map.csv\"", "flux_map = \"map.csv\"", "line 9, key 'ld': this key excludes flux_map; remove one of them"),
+            (
+                "# flux_map = \"map.csv\"",
+                "flux_map = \"map.csv\"",
+                "line 9, key 'ld': this key cannot be combined with flux_map; remove one of them",
+            ),
             (
                 "# current_gain = [1, 1, 1.02]",
                 "current_gain = [1, 1]",

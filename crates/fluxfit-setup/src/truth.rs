@@ -19,14 +19,14 @@ use std::path::{Path, PathBuf};
 pub struct Truth {
     /// The parameters, SI.
     pub motor: Motor,
-    /// Pole pairs, if the file tells.
+    /// Number of pole pairs, if the file has it.
     pub pole_pairs: Option<u32>,
 }
 
 /// Reads a truth file; the path `-` is standard input.
 ///
 /// # Errors
-/// If the file cannot be read, is no JSON object, says another schema, or lacks a parameter; resistance and inductances must be
+/// If the file cannot be read, is not a JSON object, has another schema, or lacks a parameter; resistance and inductances must be
 /// above zero, the flux linkage zero or more.
 pub fn read_truth(path: &Path) -> Result<Truth, FileError> {
     Truth::parse(&input::name(path), &input::read(path)?)
@@ -42,7 +42,7 @@ impl Truth {
     }
 }
 
-/// Where the truth of a log is: beside it, `rig.truth.json` of `rig.csv`.
+/// The path of the truth of a log: `rig.truth.json` for `rig.csv`.
 pub fn truth_path(log: &Path) -> PathBuf {
     log.with_extension("truth.json")
 }
@@ -83,7 +83,7 @@ fn parse(text: &str) -> Result<Truth, FileError> {
     Ok(Truth { motor: Motor::from(values), pole_pairs: pole_pairs(holder)? })
 }
 
-/// A parameter under its key, or with the key's first letter in upper case.
+/// A parameter, whose key may have its first letter in upper case.
 fn number(holder: &Value, parameter: Parameter) -> Result<f64, FileError> {
     let key = parameter.key();
     let mut letters = key.chars();
@@ -112,7 +112,7 @@ fn pole_pairs(holder: &Value) -> Result<Option<u32>, FileError> {
     found.map(Some).ok_or_else(refusal)
 }
 
-/// The message without its place, which is told in front.
+/// The message without its place, which the error states in front of it.
 pub(crate) fn syntax(error: &serde_json::Error) -> FileError {
     let message = error.to_string();
     let message = message.split_once(" at line ").map_or(message.as_str(), |(message, _)| message).to_owned();
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn refusals_are_one_sentence() {
+    fn errors_are_one_sentence() {
         let cases = [
             ("{\n\"rs\": }", "a.json, line 2: this is not JSON: expected value; correct it"),
             ("[]", "a.json: this is not an object with the keys rs, ld, lq and psi_f; correct it"),
@@ -158,7 +158,7 @@ mod tests {
             ),
             (
                 r#"{"rs": 0.63, "ld": null, "lq": null, "psi_f": null}"#,
-                "a.json: this truth has no constant parameters, because the simulated motor was a flux map; compare without a truth",
+                "a.json: this truth has no constant parameters, because the motor of the simulation was a flux map; compare without a truth",
             ),
             ("", "a.json: the file is empty; export it again"),
         ];

@@ -1,4 +1,4 @@
-//! `key=value` arguments: `rs=0.96±1%`, `ld=0:50mH`, and the window `0.48:0.595`.
+//! Arguments of the form `key=value`: `rs=0.96±1%`, `ld=0:50mH`; and the time window `0.48:0.595`.
 
 use crate::{
     error::{Problem, ValueError},
@@ -7,12 +7,12 @@ use crate::{
 };
 use fluxfit::motor::Parameter;
 
-/// `rs=0.96`: a parameter that is known, and its value in SI units.
+/// `rs=0.96`: a parameter with a known value, in SI units.
 ///
 /// # Errors
-/// If the key is no parameter, or the value is no finite number of its dimension, or negative.
+/// If the key is not a parameter, or the value is negative or not a finite number of its dimension.
 pub fn parse_fix(text: &str) -> Result<(Parameter, f64), ValueError> {
-    let (parameter, value) = of_parameter(text, "PARAMETER=VALUE", "rs=0.96")?;
+    let (parameter, value) = parameter_and_value(text, "PARAMETER=VALUE", "rs=0.96")?;
     let number = parse_quantity(value, Dimension::of(parameter))?;
     if number < 0.0 { Err(out_of_range(value, "zero or more")) } else { Ok((parameter, number)) }
 }
@@ -24,7 +24,7 @@ pub fn parse_fix(text: &str) -> Result<(Parameter, f64), ValueError> {
 /// As [`parse_fix`], or if there is no `±`, the uncertainty is not above zero, or only one of the two numbers has a unit.
 pub fn parse_prior(text: &str) -> Result<(Parameter, f64, f64), ValueError> {
     const FORM: (&str, &str) = ("PARAMETER=VALUE±UNCERTAINTY", "rs=0.96±1%");
-    let (parameter, value) = of_parameter(text, FORM.0, FORM.1)?;
+    let (parameter, value) = parameter_and_value(text, FORM.0, FORM.1)?;
     let sides = ["±", "+/-", "+-"].into_iter().find_map(|sign| value.split_once(sign));
     let (left, right) = sides.ok_or_else(|| form(text, FORM.0, FORM.1))?;
     let dimension = Dimension::of(parameter);
@@ -50,35 +50,35 @@ pub fn parse_prior(text: &str) -> Result<(Parameter, f64, f64), ValueError> {
     }
 }
 
-/// `ld=0:50mH`: a parameter, and the lower and upper end of its search in SI units.
+/// `ld=0:50mH`: a parameter, and its lower and upper bound in the search, in SI units.
 ///
 /// # Errors
-/// If the key is no parameter, an end is no finite number of its dimension, only one end has a unit (a zero needs none), or the
-/// lower end is not below the upper.
+/// If the key is not a parameter, a bound is not a finite number of its dimension, only one bound has a unit (a zero needs none), or
+/// the lower bound is not below the upper one.
 pub fn parse_bounds(text: &str) -> Result<(Parameter, f64, f64), ValueError> {
     const FORM: (&str, &str) = ("PARAMETER=LOWER:UPPER", "ld=0:50mH");
-    let (parameter, value) = of_parameter(text, FORM.0, FORM.1)?;
+    let (parameter, value) = parameter_and_value(text, FORM.0, FORM.1)?;
     let (lower, upper) = value.split_once(':').ok_or_else(|| form(text, FORM.0, FORM.1))?;
-    let (lower, upper) = upward(value, lower, upper, Dimension::of(parameter))?;
+    let (lower, upper) = interval(value, lower, upper, Dimension::of(parameter))?;
     Ok((parameter, lower, upper))
 }
 
 /// `0.48:0.595`: start and end of a window, s.
 ///
 /// # Errors
-/// If an end is no finite time, only one end has a unit (a zero needs none), or the start is not before the end.
+/// If an end is not a finite time, only one end has a unit (a zero needs none), or the start is not before the end.
 pub fn parse_window(text: &str) -> Result<(f64, f64), ValueError> {
     let (start, end) = text.split_once(':').ok_or_else(|| form(text, "START:END in s", "0.48:0.595"))?;
-    upward(text, start, end, Dimension::Time)
+    interval(text, start, end, Dimension::Time)
 }
 
-fn upward(text: &str, lower: &str, upper: &str, dimension: Dimension) -> Result<(f64, f64), ValueError> {
+fn interval(text: &str, lower: &str, upper: &str, dimension: Dimension) -> Result<(f64, f64), ValueError> {
     let (low, high) = parse_pair(text, lower, upper, dimension)?;
     if low < high { Ok((low, high)) } else { Err(Problem::Interval { text: text.trim().to_owned() }.into()) }
 }
 
-/// Key and text of the value. Upper and lower case do not matter in the key: truths of simulators say `Rs`.
-fn of_parameter<'a>(text: &'a str, shape: &'static str, example: &'static str) -> Result<(Parameter, &'a str), ValueError> {
+/// The parameter, and the text of its value. Case does not matter in the key: simulators write `Rs`.
+fn parameter_and_value<'a>(text: &'a str, shape: &'static str, example: &'static str) -> Result<(Parameter, &'a str), ValueError> {
     let (key, value) = key_value(text, shape, example)?;
     let known = Parameter::ALL.map(Parameter::key);
     let parameter = Parameter::ALL.into_iter().find(|parameter| parameter.key().eq_ignore_ascii_case(key));
@@ -91,7 +91,7 @@ fn of_parameter<'a>(text: &'a str, shape: &'static str, example: &'static str) -
 /// `500Hz` or `1 kHz`: a frequency above zero, in Hz.
 ///
 /// # Errors
-/// If it is none.
+/// If the text is not a frequency above zero.
 pub fn parse_frequency(text: &str) -> Result<f64, ValueError> {
     let hertz = parse_quantity(text, Dimension::Frequency)?;
     if hertz > 0.0 { Ok(hertz) } else { Err(out_of_range(text, "above zero")) }
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(parse_fix("Ld = 5.25 mH"), Ok((Parameter::Ld, 5.25e-3)));
         assert_eq!(parse_fix("psi_f=0"), Ok((Parameter::PsiF, 0.0)));
         let refusal = |text| parse_fix(text).unwrap_err().to_string();
-        assert_eq!(refusal("psi=1"), "\"psi\" is no parameter; the parameters are rs, ld, lq and psi_f; did you mean psi_f?");
+        assert_eq!(refusal("psi=1"), "\"psi\" is not a parameter; the parameters are rs, ld, lq and psi_f; did you mean psi_f?");
         assert_eq!(refusal("rs=-1"), "\"-1\" is out of range; it must be zero or more");
         assert_eq!(refusal("rs=nan"), "\"nan\" is not a resistance; write a number, in ohm or with its unit, as in \"0.958 ohm\"");
     }
@@ -154,14 +154,14 @@ mod tests {
     }
 
     #[test]
-    fn intervals_run_upward() {
+    fn intervals_need_a_lower_and_an_upper_end() {
         assert_eq!(parse_bounds("ld=0:50mH"), Ok((Parameter::Ld, 0.0, 50e-3)));
         assert_eq!(parse_bounds("psi_f=-0.1:1"), Ok((Parameter::PsiF, -0.1, 1.0)));
         assert_eq!(parse_window("0.48:0.595"), Ok((0.48, 0.595)));
         assert_eq!(parse_window("480 ms : 595 ms"), Ok((0.48, 0.595)));
-        assert_eq!(parse_bounds("ld=50mH:0H").unwrap_err().to_string(), "\"50mH:0H\" does not run upward; write the lower end first");
+        assert_eq!(parse_bounds("ld=50mH:0H").unwrap_err().to_string(), "\"50mH:0H\" is not an interval; write the lower end first");
         assert_eq!(parse_bounds("ld=5:50mH").unwrap_err().to_string(), "\"5:50mH\" has a unit on one number only; write it on both");
-        assert_eq!(parse_window("1:1").unwrap_err().to_string(), "\"1:1\" does not run upward; write the lower end first");
+        assert_eq!(parse_window("1:1").unwrap_err().to_string(), "\"1:1\" is not an interval; write the lower end first");
         assert_eq!(parse_window("1").unwrap_err().to_string(), "\"1\" is not understood; write START:END in s, as in 0.48:0.595");
         assert!(parse_window("0:inf").unwrap_err().to_string().contains("\"inf\" is not a time"));
     }

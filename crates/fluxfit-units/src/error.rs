@@ -1,9 +1,9 @@
-//! What is wrong with a text that should be a value: one sentence on one line, with a remedy.
+//! Why a text could not be read as a value: one sentence on one line, with what to write instead.
 
 use crate::wording::{did_you_mean, list, one_line, quote};
 use std::fmt;
 
-/// Why a text is no value. Its `Display` is one line.
+/// Why a text could not be read as a value. Its `Display` is one line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ValueError(Problem);
 
@@ -21,12 +21,12 @@ impl fmt::Display for ValueError {
 
 impl std::error::Error for ValueError {}
 
-/// The sentences. Texts of the user are quoted here, never before.
+/// The sentences. What the user wrote is quoted and shortened here and nowhere else.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum Problem {
     #[error("{} is not understood; write {form}, as in {example}", quote(.text))]
     Form { text: String, form: &'static str, example: &'static str },
-    #[error("{} is no parameter; the parameters are {}{}", quote(.name), list(.known), did_you_mean(*.nearest))]
+    #[error("{} is not a parameter; the parameters are {}{}", quote(.name), list(.known), did_you_mean(*.nearest))]
     Parameter { name: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("{} is not {noun}; write a number, in {si} or with its unit, as in {example}", quote(.text))]
     Quantity { text: String, noun: &'static str, si: &'static str, example: &'static str },
@@ -36,6 +36,6 @@ pub(crate) enum Problem {
     Range { text: String, range: &'static str },
     #[error("{} has a unit on one number only; write it on both", quote(.text))]
     OneSidedUnit { text: String },
-    #[error("{} does not run upward; write the lower end first", quote(.text))]
+    #[error("{} is not an interval; write the lower end first", quote(.text))]
     Interval { text: String },
 }

@@ -1,4 +1,4 @@
-//! Numbers with units: as people write them, and as engineers read them.
+//! Numbers with units: parsing and formatting.
 //!
 //! ```
 //! use fluxfit_units::{Dimension, parse_quantity, significant};
@@ -10,12 +10,12 @@
 //!
 //! | file | concept |
 //! |---|---|
-//! | [`quantity`] | numbers with units, as people write them |
-//! | [`mod@unit`] | units of a log's columns: given, or named by the header |
-//! | [`argument`] | `key=value` arguments |
-//! | [`number`] | numbers with units, as people read them |
+//! | [`quantity`] | parsing of numbers with units |
+//! | [`mod@unit`] | units that a column of a log may have |
+//! | [`argument`] | arguments of the form `key=value` |
+//! | [`number`] | formatting of numbers |
 //! | [`wording`] | quotations and lists inside a sentence |
-//! | [`error`] | why a text is no value |
+//! | [`error`] | why a text could not be read as a value |
 
 pub mod argument;
 pub mod error;
@@ -26,6 +26,6 @@ pub mod wording;
 
 pub use argument::{key_value, parse_bounds, parse_fix, parse_frequency, parse_prior, parse_window};
 pub use error::ValueError;
-pub use number::{Scale, beside_the_motor, significant, small};
+pub use number::{Scale, format_unknown, significant, small};
 pub use quantity::{Dimension, parse_quantity};
 pub use unit::Unit;

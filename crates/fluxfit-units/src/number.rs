@@ -1,5 +1,5 @@
-//! Numbers as engineers read them, on a terminal or a page: with the prefix that fits, and no more digits than are known.
-//! [`quantity`](crate::quantity) reads what people write; this writes what they read.
+//! Formatting of numbers for a terminal or a page: with the SI prefix that fits, and no more digits than are known. Parsing is in
+//! [`quantity`](crate::quantity).
 
 use fluxfit::{faults::Fault, motor::Parameter, objective::adjustable::Unknown};
 
@@ -14,8 +14,8 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The prefix under which `value` has one to three digits before the point. Resistances and fluxes stay unprefixed down to a
-    /// tenth, as data sheets print them.
+    /// The prefix that leaves `value` one to three digits before the decimal point. Resistances and flux linkages keep no prefix down
+    /// to a tenth, as data sheets print them.
     pub fn for_value(parameter: Parameter, value: f64) -> Self {
         let smallest = match parameter {
             Parameter::Rs | Parameter::PsiF => 0.1,
@@ -26,12 +26,12 @@ impl Scale {
         Self { factor: 10.0_f64.powi(power), prefix }
     }
 
-    /// The prefixed unit.
+    /// The unit with its prefix.
     pub fn unit(&self, unit: &str) -> String {
         format!("{}{unit}", self.prefix)
     }
 
-    /// A value, to two significant digits of its standard error; with four digits of its own where that is zero.
+    /// A value with the digits up to the second significant one of its standard error; with four significant digits where that is zero.
     pub fn format(&self, value: f64, standard_error: f64) -> String {
         let known = if standard_error > 0.0 { standard_error / self.factor } else { value.abs() / self.factor * 1e-2 };
         // Two digits of the error; no more than twelve, whatever the error is.
@@ -40,9 +40,9 @@ impl Scale {
     }
 }
 
-/// A number of the drive beside the motor, with what it may be wrong by: value, margin and unit. Angles are in degrees, ratios in
-/// percent, everything else under the prefix that fits.
-pub fn beside_the_motor(unknown: Unknown, value: f64, margin: f64) -> [String; 3] {
+/// A fitted quantity of the drive (dead time, angle offset, ..) with its margin: value, margin and unit as texts. Angles are in degrees,
+/// ratios in percent, everything else has the prefix that fits.
+pub fn format_unknown(unknown: Unknown, value: f64, margin: f64) -> [String; 3] {
     let (factor, unit) = match (unknown.fault(), unknown.unit()) {
         (Some(Fault::Disturbance), _) => (1.0, String::new()),
         (_, "rad") => (1.0_f64.to_radians(), "deg".to_owned()),
@@ -60,7 +60,7 @@ pub fn beside_the_motor(unknown: Unknown, value: f64, margin: f64) -> [String; 3
     [format!("{value:.decimals$}"), format!("{margin:.decimals$}"), unit]
 }
 
-/// A small positive number, as 1.2e-8; plain where that is shorter to read.
+/// A number in three digits, or as 1.2e-8 where it is smaller than 0.01 or larger than 10 000.
 pub fn small(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
@@ -95,9 +95,9 @@ mod tests {
     }
 
     #[test]
-    fn numbers_beside_the_motor_get_units_that_people_use() {
+    fn fitted_quantities_of_the_drive_have_customary_units() {
         let unknown = |key: &str| Fault::ALL.into_iter().flat_map(Unknown::of_fault).find(|unknown| unknown.key() == key).unwrap();
-        let show = |key: &str, value, margin| beside_the_motor(unknown(key), value, margin).join(" ");
+        let show = |key: &str, value, margin| format_unknown(unknown(key), value, margin).join(" ");
         // 2 us of 100 us at 310 V are 6.2 V; 3 degrees are 0.05236 rad.
         assert_eq!(show("dead_time_voltage", 6.2, 0.012), "6.200 0.012 V");
         assert_eq!(show("angle_offset", 0.052_36, 1.746e-4), "3.000 0.010 deg");

@@ -1,4 +1,4 @@
-//! Numbers with units, as people write them: `5.25 mH`, `0.958 ohm`, `3000 rpm`, `12e-3`.
+//! Parsing of numbers with units: `5.25 mH`, `0.958 ohm`, `3000 rpm`, `12e-3`.
 //!
 //! A bare number is SI. The prefixes are u (µ), m and k, for frequencies M as well; upper and lower case matter in a prefix and
 //! nowhere else.
@@ -38,7 +38,7 @@ pub enum Dimension {
     Ratio,
 }
 
-/// A unit as it is written, and how many SI units it is; a prefix only where `prefixed`.
+/// A spelling of a unit, its size in SI units, and whether it takes a prefix.
 struct Spelling {
     text: &'static str,
     factor: f64,
@@ -68,12 +68,12 @@ impl Dimension {
         self.words().1
     }
 
-    /// A quantity as people write it, in quotes.
+    /// An example of a quantity, as it is written in TOML.
     pub fn example(self) -> &'static str {
         self.words().2
     }
 
-    /// What a text should have been, its SI unit, and an example.
+    /// What a text should be, the SI unit, and an example.
     fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Time => ("a time", "s", "\"0.5 s\""),
@@ -137,7 +137,7 @@ impl Dimension {
                 'u' | 'µ' | 'μ' => 1e-6,
                 'm' => 1e-3,
                 'k' => 1e3,
-                // Nowhere else in a drive, where M is a slip for m.
+                // Frequencies only: elsewhere M is a typing error for m.
                 'M' if self == Self::Frequency => 1e6,
                 _ => return None,
             };
@@ -157,14 +157,14 @@ impl Dimension {
 /// A number with or without a unit, in SI.
 ///
 /// # Errors
-/// If `text` is no finite number, or its unit is not one of `dimension`.
+/// If `text` is not a finite number, or its unit is not one of `dimension`.
 pub fn parse_quantity(text: &str, dimension: Dimension) -> Result<f64, ValueError> {
     let (value, unit) = split(text).ok_or_else(|| dimension.refusal(text))?;
     in_si(value, unit, dimension).ok_or_else(|| dimension.refusal(text))
 }
 
-/// Two numbers of one dimension, the ends of an interval or a value and its uncertainty. Either both have a unit or none has,
-/// unless the first is zero: of `5:50mH` nobody knows what the 5 is.
+/// Two numbers of one dimension: the ends of an interval, or a value and its uncertainty. Either both have a unit or neither, unless
+/// the first is zero: in `5:50mH` the unit of the 5 is unclear.
 pub(crate) fn parse_pair(text: &str, first: &str, second: &str, dimension: Dimension) -> Result<(f64, f64), ValueError> {
     let ends = [first, second].map(|end| split(end).ok_or_else(|| dimension.refusal(end)));
     let [(a, unit_a), (b, unit_b)] = match ends {
@@ -179,7 +179,7 @@ pub(crate) fn parse_pair(text: &str, first: &str, second: &str, dimension: Dimen
     Ok((a, b))
 }
 
-/// A finite number and what follows it. `nan` and `inf` are no numbers here.
+/// A finite number and the text behind it. `nan` and `inf` are not accepted.
 pub(crate) fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let bytes = text.as_bytes();
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_quantity_is_quoted_with_what_was_expected() {
+    fn a_refused_text_is_quoted_with_what_was_expected() {
         let sentence = |text| parse_quantity(text, Dimension::Inductance).unwrap_err().to_string();
         let expected = |text| format!("\"{text}\" is not an inductance; write a number, in H or with its unit, as in \"5.25 mH\"");
         for text in ["5 ohm", "5 MH", "mH", "", "nan", "inf", "-inf H", "1e999", "5,25 mH", "5 m", "5.25.1 H", "1 e", "0x10", "1e308 k"] {

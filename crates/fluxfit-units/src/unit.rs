@@ -1,4 +1,4 @@
-//! Units of a log's columns: given with `--unit omega=rpm-mech`, or named by the header, as in `speed_rpm` or `ud [mV]`.
+//! Units that a column of a log may have.
 
 use crate::quantity::Dimension;
 use std::f64::consts::{PI, TAU};
@@ -40,27 +40,8 @@ pub enum Unit {
     RadianMechanical,
     /// Mechanical degrees.
     DegreeMechanical,
-    /// Without a unit.
+    /// No unit: a plain number.
     Number,
-}
-
-/// Whether a header says which speed or angle it means.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Side {
-    Mechanical,
-    Electrical,
-    Unsaid,
-}
-
-/// What a header says about its column's unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Named<'a> {
-    /// This unit.
-    Unit(Unit),
-    /// Something that stands where a unit stands, and is none of the column's dimension.
-    Unknown(&'a str),
-    /// Nothing.
-    Nothing,
 }
 
 impl Unit {
@@ -86,8 +67,8 @@ impl Unit {
         Self::Number,
     ];
 
-    /// Name on the command line, name in prose, dimension, SI units in one (of mechanical units: for one pole pair).
-    fn facts(self) -> (&'static str, &'static str, Dimension, f64) {
+    /// Short name, name in a sentence, dimension, and size in SI units (of mechanical units: for one pole pair).
+    fn properties(self) -> (&'static str, &'static str, Dimension, f64) {
         match self {
             Self::Second => ("s", "s", Dimension::Time, 1.0),
             Self::Millisecond => ("ms", "ms", Dimension::Time, 1e-3),
@@ -110,24 +91,24 @@ impl Unit {
         }
     }
 
-    /// Name on the command line.
+    /// Short name, as arguments and mapping files write it.
     pub fn name(self) -> &'static str {
-        self.facts().0
+        self.properties().0
     }
 
     /// Name in a sentence.
     pub fn prose(self) -> &'static str {
-        self.facts().1
+        self.properties().1
     }
 
-    /// What it measures.
+    /// The dimension.
     pub fn dimension(self) -> Dimension {
-        self.facts().2
+        self.properties().2
     }
 
-    /// Whether pole pairs are needed to make it electrical.
+    /// Whether the number of pole pairs is needed to convert it to electrical quantities.
     pub fn is_mechanical(self) -> bool {
-        self.facts().0.ends_with("-mech")
+        self.properties().0.ends_with("-mech")
     }
 
     /// Units of `dimension`, SI first.
@@ -135,15 +116,15 @@ impl Unit {
         Self::ALL.into_iter().filter(move |unit| unit.dimension() == dimension)
     }
 
-    /// The unit called `name` on the command line; `erpm` is `rpm-elec`.
+    /// The unit with this short name; `erpm` is `rpm-elec`.
     pub fn from_name(name: &str, dimension: Dimension) -> Option<Self> {
         let name = if name.eq_ignore_ascii_case("erpm") { "rpm-elec" } else { name };
         Self::of(dimension).find(|unit| unit.name().eq_ignore_ascii_case(name))
     }
 
-    /// Turns values into SI units, in place.
+    /// Converts values to SI units, in place.
     pub fn to_si(self, values: &mut [f64], pole_pairs: u32) {
-        let factor = self.facts().3 * if self.is_mechanical() { f64::from(pole_pairs) } else { 1.0 };
+        let factor = self.properties().3 * if self.is_mechanical() { f64::from(pole_pairs) } else { 1.0 };
         if factor == 1e-3 || factor == 1e-6 {
             // Dividing by a thousand is exact where multiplying by 0.001 is not.
             let divisor = factor.recip().round();
@@ -152,134 +133,11 @@ impl Unit {
             values.iter_mut().for_each(|value| *value *= factor);
         }
     }
-
-    /// The unit that a piece of a header spells. Upper and lower case do not matter: `ID_MA` is not in megaamperes.
-    fn spelled(text: &str, dimension: Dimension, side: Side) -> Option<Self> {
-        let text = text.trim().to_lowercase();
-        let either = |electrical, mechanical, unsaid| match side {
-            Side::Electrical => electrical,
-            Side::Mechanical => mechanical,
-            Side::Unsaid => unsaid,
-        };
-        let unit = match text.as_str() {
-            "s" | "sec" | "seconds" => Self::Second,
-            // `ms_today` is the clock of a VESC's log.
-            "ms" | "msec" | "ms_today" => Self::Millisecond,
-            "us" | "µs" | "μs" | "usec" => Self::Microsecond,
-            "v" | "volt" | "volts" => Self::Volt,
-            "mv" => Self::Millivolt,
-            "a" | "amp" | "amps" | "ampere" => Self::Ampere,
-            "ma" => Self::Milliampere,
-            "erpm" => Self::RpmElectrical,
-            // Drives that mean electrical revolutions say so; shafts don't say that they are shafts.
-            "rpm" | "r/min" | "1/min" | "min-1" => either(Self::RpmElectrical, Self::RpmMechanical, Self::RpmMechanical),
-            "rad/s" | "rad_s" | "rad.s" | "rads" | "rad_per_s" | "radps" => {
-                either(Self::RadianPerSecond, Self::RadianPerSecondMechanical, Self::RadianPerSecond)
-            }
-            "hz" => either(Self::HertzElectrical, Self::HertzMechanical, Self::HertzElectrical),
-            "rad" => either(Self::Radian, Self::RadianMechanical, Self::Radian),
-            "deg" | "degree" | "degrees" | "°" => either(Self::Degree, Self::DegreeMechanical, Self::Degree),
-            _ => return Self::from_name(&text, dimension),
-        };
-        (unit.dimension() == dimension).then_some(unit)
-    }
-}
-
-/// The name in a header without its unit, and what the header says about the unit. A unit stands in brackets or after `@` at the
-/// end, or after the last `_` or space; only in the first two places is it an error that it is not known: `uq_s` may well be the
-/// q voltage of the stator.
-pub fn in_header(header: &str, dimension: Dimension) -> (&str, Named<'_>) {
-    let header = header.trim();
-    let side = side(header);
-    let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
-        let at = header.strip_suffix(close)?.rfind(open)?;
-        Some((&header[..at], &header[at + 1..header.len() - 1]))
-    });
-    if let Some((name, text)) = brackets.or_else(|| header.rsplit_once('@')) {
-        let unit = Unit::spelled(text, dimension, side);
-        return (name.trim_end_matches([' ', '_']), unit.map_or(Named::Unknown(text), Named::Unit));
-    }
-    // From the left: of `speed_rad_s` the unit is `rad_s`.
-    for (at, _) in header.match_indices(['_', ' ']) {
-        if let Some(unit) = Unit::spelled(&header[at + 1..], dimension, side) {
-            return (header[..at].trim_end_matches([' ', '_']), Named::Unit(unit));
-        }
-    }
-    // A header that is a unit and nothing else; one letter is more likely a phase.
-    match Unit::spelled(header, dimension, side) {
-        Some(unit) if header.len() > 1 => ("", Named::Unit(unit)),
-        _ => (header, Named::Nothing),
-    }
-}
-
-/// What a unit of a row of units, or of a container, says of a column with this name.
-pub fn in_units_row<'a>(text: &'a str, header: &str, dimension: Dimension) -> Named<'a> {
-    let bare = text.trim().trim_matches(['[', ']', '(', ')']);
-    let side = match (side(text), side(header)) {
-        (Side::Unsaid, of_header) => of_header,
-        (of_text, _) => of_text,
-    };
-    Unit::spelled(bare, dimension, side).map_or(Named::Unknown(text), Named::Unit)
-}
-
-/// Whether a header says that it is electrical rather than leaving it to custom.
-pub fn says_electrical(header: &str) -> bool {
-    side(header) == Side::Electrical
-}
-
-fn side(header: &str) -> Side {
-    let lower = header.to_lowercase();
-    let words = || lower.split(|c: char| !c.is_alphanumeric());
-    let electrical = lower.contains("elec") || lower.contains("erpm") || words().any(|word| matches!(word, "e" | "el"));
-    match (lower.contains("mech"), electrical) {
-        (true, false) => Side::Mechanical,
-        (false, true) => Side::Electrical,
-        _ => Side::Unsaid,
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn headers_name_their_units() {
-        use Dimension::*;
-        use Named::{Nothing, Unknown};
-        let cases = [
-            ("time_s", Time, ("time", Named::Unit(Unit::Second))),
-            ("stm32_time_ms", Time, ("stm32_time", Named::Unit(Unit::Millisecond))),
-            ("time@s", Time, ("time", Named::Unit(Unit::Second))),
-            ("t (µs)", Time, ("t", Named::Unit(Unit::Microsecond))),
-            ("ms_today", Time, ("", Named::Unit(Unit::Millisecond))),
-            ("motor_ud_v", Voltage, ("motor_ud", Named::Unit(Unit::Volt))),
-            ("UD_MV", Voltage, ("UD", Named::Unit(Unit::Millivolt))),
-            ("uq [pu]", Voltage, ("uq", Unknown("pu"))),
-            ("uq@mA", Voltage, ("uq", Unknown("mA"))),
-            ("uq_s", Voltage, ("uq_s", Nothing)),
-            ("A", Current, ("A", Nothing)),
-            ("id [A]", Current, ("id", Named::Unit(Unit::Ampere))),
-            ("motor_velocity_rpm", Speed, ("motor_velocity", Named::Unit(Unit::RpmMechanical))),
-            ("omega_e [rpm]", Speed, ("omega_e", Named::Unit(Unit::RpmElectrical))),
-            ("erpm", Speed, ("", Named::Unit(Unit::RpmElectrical))),
-            ("speed_elec_rpm", Speed, ("speed_elec", Named::Unit(Unit::RpmElectrical))),
-            ("motor_speed_mech_rpm", Speed, ("motor_speed_mech", Named::Unit(Unit::RpmMechanical))),
-            ("speed_rad_s", Speed, ("speed", Named::Unit(Unit::RadianPerSecond))),
-            ("mech speed rad/s", Speed, ("mech speed", Named::Unit(Unit::RadianPerSecondMechanical))),
-            ("lu_WS_RPM", Speed, ("lu_WS", Named::Unit(Unit::RpmMechanical))),
-            ("f [Hz-mech]", Speed, ("f", Named::Unit(Unit::HertzMechanical))),
-            ("motor_speed", Speed, ("motor_speed", Nothing)),
-            ("theta_e [°]", Angle, ("theta_e", Named::Unit(Unit::Degree))),
-            ("mech_angle_deg", Angle, ("mech_angle", Named::Unit(Unit::DegreeMechanical))),
-            ("theta_mech (rad)", Angle, ("theta_mech", Named::Unit(Unit::RadianMechanical))),
-            ("theta_e_rad", Angle, ("theta_e", Named::Unit(Unit::Radian))),
-            ("speed_rad", Speed, ("speed_rad", Nothing)),
-            ("ü)", Speed, ("ü)", Nothing)),
-        ];
-        for (header, dimension, expected) in cases {
-            assert_eq!(in_header(header, dimension), expected, "{header}");
-        }
-    }
 
     #[test]
     fn values_become_si() {
@@ -297,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn names_lead_back_to_their_units() {
+    fn every_unit_is_found_by_its_name() {
         for unit in Unit::ALL {
             assert_eq!(Unit::from_name(unit.name(), unit.dimension()), Some(unit));
         }

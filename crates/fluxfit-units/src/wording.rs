@@ -1,4 +1,4 @@
-//! Quotations and lists inside a sentence. Whatever a file holds, it stays short and on one line.
+//! Quotations and lists inside a sentence: short and on one line, whatever a file holds.
 
 /// Longest quotation, in characters.
 const QUOTATION: usize = 40;
@@ -6,7 +6,7 @@ const QUOTATION: usize = 40;
 /// Most column names of a file that a sentence lists.
 const LISTED: usize = 20;
 
-/// Least similarity, 0 to 1, at which a name is proposed for another: `psi` for `psi_f` (0.6) is, `speed` for `ud` (0.2) is not.
+/// Smallest similarity, 0 to 1, at which a name is proposed for another: `psi_f` is for `psi` (0.6), `ud` is not for `speed` (0.2).
 const SIMILAR: f64 = 0.5;
 
 /// `text` in double quotes, shortened.
@@ -59,9 +59,9 @@ pub fn columns(names: &[String]) -> String {
     list(&shown)
 }
 
-/// The candidate most like `wanted`, if any is.
+/// The candidate most similar to `wanted`, if any is similar enough.
 pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // Nobody mistypes a name longer than a quotation.
+    // Longer names are compared by their beginning.
     let start = |name: &str| name.chars().take(QUOTATION).collect::<String>().to_lowercase();
     let wanted = start(wanted);
     let scored = candidates.into_iter().map(|candidate| (strsim::normalized_damerau_levenshtein(&wanted, &start(candidate)), candidate));
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_read_as_prose() {
+    fn lists_have_commas_and_a_conjunction() {
         assert_eq!(list::<&str>(&[]), "");
         assert_eq!(list(&["a"]), "a");
         assert_eq!(choice(&["a", "b", "c"]), "a, b or c");
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_name_is_near() {
+    fn the_most_similar_name_is_found() {
         assert_eq!(nearest("psi", ["rs", "psi_f"]), Some("psi_f"));
         assert_eq!(nearest("L_d", ["rs", "ld", "lq"]), Some("ld"));
         assert_eq!(nearest("temperature", ["rs", "ld"]), None);

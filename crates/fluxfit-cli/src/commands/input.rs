@@ -6,7 +6,7 @@ use crate::{
     terminal,
 };
 use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, log::Source, optimizer};
-use fluxfit_log::{LogOptions, read_log_watched, read_mapping};
+use fluxfit_log::{LogOptions, Note, read_log_with_progress, read_mapping};
 use fluxfit_setup::{MotorFile, read_motor};
 use std::{fs, path::Path};
 
@@ -16,10 +16,6 @@ pub(crate) struct Input {
     pub(crate) motor: MotorFile,
     /// Names of the logs, for headings.
     pub(crate) name: String,
-    /// What reading them had to infer.
-    pub(crate) notes: Vec<String>,
-    /// What was read as what, a line for each log.
-    pub(crate) columns: Vec<String>,
     /// Pole pairs, from whoever tells them.
     pub(crate) pole_pairs: Option<u32>,
 }
@@ -27,7 +23,8 @@ pub(crate) struct Input {
 impl Input {
     /// What was read as what, and what was inferred: for a page that stands alone.
     pub(crate) fn said(&self) -> Vec<String> {
-        self.columns.iter().chain(&self.notes).cloned().collect()
+        let Source { columns, notes } = self.log.source();
+        columns.iter().chain(notes).cloned().collect()
     }
 }
 
@@ -43,22 +40,24 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
         return Err(CommandError::Usage("standard input can be read only once; give - once".to_owned()));
     }
     let options = options(&arguments.columns, motor.pole_pairs)?;
-    let (mut logs, mut notes, mut columns) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut logs, mut notes) = (Vec::new(), Vec::new());
     for path in &arguments.logs {
         let progress = terminal::reading(&format!("reading {}", name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
-        let read = read_log_watched(path, &options, progress.teller())?;
+        let read = read_log_with_progress(path, &options, progress.teller())?;
         drop(progress);
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
-        notes.extend(read.notes.iter().map(|note| format!("{}: {note}", name(path))));
-        columns.push(read.columns);
-        logs.push(read.log);
+        let of_log = |note: Note| Note { sentence: format!("{}: {}", name(path), note.sentence), ..note };
+        let of_log: Vec<Note> = read.notes.into_iter().map(of_log).collect();
+        let columns = read.log.source().columns.clone();
+        logs.push(read.log.with_source(Source { columns, notes: of_log.iter().map(|note| note.sentence.clone()).collect() }));
+        notes.extend(of_log);
     }
-    notes.iter().for_each(|note| terminal::note(note));
-    columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
+    let log = Log::join(logs)?;
+    notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
+    log.source().columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
-    let log = Log::join(logs)?.with_source(Source { columns: columns.clone(), notes: notes.clone() });
-    Ok(Input { log, motor, name: names.join(", "), notes, columns, pole_pairs: options.pole_pairs })
+    Ok(Input { log, motor, name: names.join(", "), pole_pairs: options.pole_pairs })
 }
 
 /// What the reader is told; the motor file's pole pairs count where nothing else tells them.

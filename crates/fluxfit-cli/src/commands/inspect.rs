@@ -17,13 +17,18 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
         terminal::inspection::show(&input::name(&arguments.log), &inspection)?;
     }
     if let Some(path) = arguments.output.as_deref() {
-        write_atomically(path, inspection.mapping(&options).as_bytes())?;
+        write_atomically(path, mapping_file(&inspection.mapping(&options)).as_bytes())?;
         terminal::wrote("mapping", path);
     }
     match inspection.log {
         Ok(_) => Ok(Status::Complete),
         Err(error) => Err(error.into()),
     }
+}
+
+/// The proposed mapping file, with the command that takes it.
+fn mapping_file(mapping: &str) -> String {
+    format!("# fluxfit identify LOG --mapping THIS_FILE\n{mapping}")
 }
 
 /// Refuses to write over what is read.

@@ -7,7 +7,7 @@ use fluxfit::{
     evidence::{Flux, Identification, ModelChoice, Outcome, OutputFit, Provenance, Saturation, SteadyFit},
     optimizer::Method,
 };
-use fluxfit_units::{Scale, beside_the_motor, significant, small};
+use fluxfit_units::{Scale, format_unknown, significant, small};
 
 /// Shows an identification; warnings go to standard error.
 pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
@@ -187,7 +187,7 @@ const INTERVAL: f64 = 1.959_964;
 
 fn beside(fit: &OutputFit) -> String {
     let rows = fit.nuisance.iter().map(|nuisance| {
-        let [value, margin, unit] = beside_the_motor(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
+        let [value, margin, unit] = format_unknown(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
         // Units stand at the left of their column.
         (nuisance.unknown.label(), value, margin, unit)
     });

@@ -23,7 +23,7 @@ pub(crate) fn show(name: &str, inspection: &Inspection) -> std::io::Result<()> {
     }
     super::print(&text)?;
     if let Ok(read) = &inspection.log {
-        read.notes.iter().for_each(|note| super::note(note));
+        read.notes.iter().for_each(|note| super::note(&super::advice::with_options(&note.sentence, &note.advice)));
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! What a person sees. Answers on standard output, everything else on standard error; colour only where it is wanted (a terminal,
 //! and no `NO_COLOR`).
 
+pub(crate) mod advice;
 pub(crate) mod current_loop;
 pub(crate) mod decisions;
 mod excerpt;

@@ -1,16 +1,16 @@
-//! Where the header is, and what separates its names.
+//! The header of a table of text: where it is, and what separates its names.
 
 use super::record;
 use crate::{error::FileError, input, problem::Problem};
 use fluxfit_units::wording::{list, quote};
 
-/// The names of a table's columns, and where its rows begin.
+/// The names of the columns, and where the rows begin.
 pub struct Header {
-    /// Without spaces and quotes, and without the empty names of trailing separators.
+    /// The names, without spaces and quotes, and without the empty names after trailing separators.
     pub names: Vec<String>,
-    /// What a row below the names says of their units; empty without such a row.
+    /// The units from a row below the names; empty without such a row.
     pub units: Vec<String>,
-    /// Line, from 1.
+    /// Line of the header, from 1.
     pub line: u64,
     /// Byte between the cells.
     pub separator: u8,
@@ -20,13 +20,17 @@ pub struct Header {
     pub body_line: u64,
 }
 
-/// Most lines of titles above a header.
+/// Maximum number of title lines above a header.
 const TITLES: usize = 20;
 
-/// Longest unit in a row of units, in characters: `electrical rad/s`.
+/// Maximum length of a unit in a row of units, in characters: that of `electrical rad/s`.
 const LONGEST_UNIT: usize = 16;
 
-/// Finds the header: the first line that is neither blank, a comment nor a title; and the row of units below it, if there is one.
+/// Finds the header, which is the first line that is not blank, a comment or a title, and the row of units below it, if there is one.
+/// What had to be inferred is added to `notes`.
+///
+/// # Errors
+/// If there is no header, or it has only one name.
 pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     let mut header = names(text, notes)?;
     if let Some((units, end)) = units(text, &header) {
@@ -38,7 +42,7 @@ pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     Ok(header)
 }
 
-/// A row of short texts and no number, above one with numbers; and where it ends.
+/// A row of short texts without a number above a row with numbers, and the offset of its end.
 fn units(text: &str, header: &Header) -> Option<(Vec<String>, usize)> {
     let record = |from: usize| {
         let (start, line) = lines(&text[from..]).find(|(_, line)| !line.trim().is_empty())?;
@@ -53,7 +57,7 @@ fn units(text: &str, header: &Header) -> Option<(Vec<String>, usize)> {
 
 fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     let mut comment = None;
-    let mut told_separator = None;
+    let mut stated_separator = None;
     let mut titles = Vec::new();
     let mut lines = lines(text);
     let (start, first) = loop {
@@ -61,8 +65,8 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         let trimmed = line.trim();
         if trimmed.starts_with(['#', '%']) {
             comment = Some((start, trimmed));
-        } else if let Some(separator) = told_by_spreadsheet(line) {
-            told_separator = Some(separator);
+        } else if let Some(separator) = separator_line(line) {
+            stated_separator = Some(separator);
         } else if !trimmed.trim_matches([',', ';', ' ', '\t']).is_empty() {
             if titles.len() < TITLES && is_title(text, start, line) {
                 titles.push(quote(trimmed));
@@ -72,9 +76,9 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         }
     };
     if !titles.is_empty() {
-        notes.push(format!("taken for titles above the header: {}", list(&titles)));
+        notes.push(format!("read as titles above the header: {}", list(&titles)));
     }
-    let separator = told_separator.unwrap_or_else(|| sniff(first));
+    let separator = stated_separator.unwrap_or_else(|| most_frequent_separator(first));
     let header = at(text, start, separator);
     if header.names.len() > 1 && header.names.iter().all(|name| is_number(name, separator)) {
         return from_comment(text, comment, start, &header, notes);
@@ -90,7 +94,7 @@ fn at(text: &str, start: usize, separator: u8) -> Header {
     Header { names, units: Vec::new(), line: record::line_of(text, start), separator, body: start + length, body_line: 0 }
 }
 
-/// Some tools write the header as the last comment above the rows.
+/// The header in the last comment above the rows, where some tools write it.
 fn from_comment(
     text: &str,
     comment: Option<(usize, &str)>,
@@ -100,7 +104,7 @@ fn from_comment(
 ) -> Result<Header, FileError> {
     if let Some((start, comment)) = comment {
         let bare = comment.trim_start_matches(['#', '%']);
-        let separator = sniff(bare);
+        let separator = most_frequent_separator(bare);
         let (names, _) = record::first_record(bare, separator);
         if names.len() == first.names.len() && names.iter().all(|name| !is_number(name, separator)) {
             let line = record::line_of(text, start);
@@ -112,15 +116,15 @@ fn from_comment(
     Err(FileError::from(problem).at_line(first.line))
 }
 
-/// A title, a timestamp or a line of facts above the header: one cell, one that begins with a digit, or at most half as many as the
-/// first row of numbers below has; above a line of more cells.
+/// Whether a line is a title, a timestamp or a line of information above the header: it has one cell or begins with a digit, and the
+/// next line has more cells; or it has at most half as many cells as the first row of numbers below.
 fn is_title(text: &str, start: usize, line: &str) -> bool {
-    let header = at(text, start, sniff(line));
+    let header = at(text, start, most_frequent_separator(line));
     let cells = header.names.len();
     let dated =
         header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name, header.separator));
     let below = || lines(&text[header.body..]).filter(|(_, line)| !line.trim().is_empty());
-    let cells_of = |line: &str| record::first_record(line, sniff(line)).0;
+    let cells_of = |line: &str| record::first_record(line, most_frequent_separator(line)).0;
     if cells > 1 && !dated {
         let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell, b';')).count() * 2 > cells.len();
         let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
@@ -129,8 +133,8 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
     below().next().is_some_and(|(_, line)| cells_of(line).len() > cells)
 }
 
-/// `sep=;`, which spreadsheets write and obey.
-fn told_by_spreadsheet(line: &str) -> Option<u8> {
+/// The separator from a line `sep=;`, as spreadsheets write it.
+fn separator_line(line: &str) -> Option<u8> {
     let line = line.trim_end_matches(['\r', '\n']);
     let mark = line.get(..4)?.eq_ignore_ascii_case("sep=").then(|| &line[4..])?;
     match mark {
@@ -139,9 +143,9 @@ fn told_by_spreadsheet(line: &str) -> Option<u8> {
     }
 }
 
-/// The most frequent separator outside of quotes. On a tie the semicolon, which nobody writes for decoration, then the comma:
-/// tabs may be alignment.
-fn sniff(line: &str) -> u8 {
+/// The most frequent separator outside of quotes. On a tie the semicolon, which is rare in other roles, then the comma: tabs may only
+/// align the text.
+fn most_frequent_separator(line: &str) -> u8 {
     let count = |separator: u8| {
         let mut quoted = false;
         let outside = |byte: &u8| {
@@ -181,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn the_header_is_found_below_what_tools_put_above() {
+    fn the_header_is_found_below_comments_blank_lines_and_titles() {
         let names = || vec!["a b".to_owned(), "c".to_owned()];
         assert_eq!(found("a b,c\n1,2"), (names(), 1, b',', "1,2"));
         assert_eq!(found("# x\r\n\r\n% y\r\n \"a b\" ; c;;\r\n1;2"), (names(), 4, b';', "1;2"));
@@ -191,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn names_in_a_comment_count_when_there_are_as_many_as_numbers() {
+    fn names_in_a_comment_are_taken_if_their_number_fits() {
         let mut notes = Vec::new();
         let header = find("# made by hand\n# a,b,c\n1;2,5;3\n", &mut notes).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!((header.names, header.separator, header.body), (vec!["a".into(), "b".into(), "c".into()], b';', 23));
@@ -201,9 +205,9 @@ mod tests {
 
     #[test]
     fn separators_inside_of_quotes_do_not_count() {
-        assert_eq!(sniff("\"a,b,c\";d"), b';');
-        assert_eq!(sniff("a,\tb,\tc"), b',');
-        assert_eq!(sniff("a, x;b"), b';');
-        assert_eq!(sniff("a"), b';');
+        assert_eq!(most_frequent_separator("\"a,b,c\";d"), b';');
+        assert_eq!(most_frequent_separator("a,\tb,\tc"), b',');
+        assert_eq!(most_frequent_separator("a, x;b"), b';');
+        assert_eq!(most_frequent_separator("a"), b';');
     }
 }

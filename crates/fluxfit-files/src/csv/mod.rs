@@ -1,4 +1,4 @@
-//! A table of text: where its header is, what separates its cells, and its records.
+//! Tables of text: the header with what separates its cells, and the records.
 
 pub mod header;
 pub mod record;

@@ -3,8 +3,8 @@
 use crate::{error::FileError, input::line_at, problem::Problem};
 use ::csv::{ByteRecord, Reader, ReaderBuilder};
 
-/// The number in a cell. `nan` and `inf` are numbers here: the log refuses them by row and column. A comma is a decimal one if it
-/// does not separate.
+/// The number in a cell, if it is one. `nan` and `inf` count as numbers here: the log refuses them by row and column. A comma is a
+/// decimal comma unless it is the separator.
 #[inline]
 pub fn number(cell: &[u8], separator: u8, scratch: &mut String) -> Option<f64> {
     let cell = trimmed(cell);
@@ -17,22 +17,22 @@ pub fn number(cell: &[u8], separator: u8, scratch: &mut String) -> Option<f64> {
     let (whole, fraction) = str::from_utf8(cell).ok()?.split_once(',')?;
     scratch.clear();
     scratch.extend([whole, ".", fraction]);
-    // A second comma is still there and spoils it.
+    // A second comma is still there, and makes it not a number.
     fast_float2::parse(scratch.as_bytes()).ok()
 }
 
-/// Names, without those of trailing separators, and how many bytes they take with the end of the line.
+/// The cells of the first record, without empty ones at its end, and its length in bytes including the end of the line.
 pub fn first_record(text: &str, separator: u8) -> (Vec<String>, usize) {
     let mut reader = reader(text.as_bytes(), separator);
     let mut record = ByteRecord::new();
     if next(&mut reader, &mut record).is_err() {
         return (Vec::new(), text.len());
     }
-    let mut names: Vec<String> = record.iter().map(|cell| lossy(trimmed(cell))).collect();
+    let mut names: Vec<String> = record.iter().map(|cell| text_of(trimmed(cell))).collect();
     while names.last().is_some_and(String::is_empty) {
         names.pop();
     }
-    (names, place(reader.position().byte()))
+    (names, in_memory(reader.position().byte()))
 }
 
 /// The line, from 1, of the record that begins at or after `start`.
@@ -40,18 +40,18 @@ pub fn line_of(text: &str, start: usize) -> u64 {
     line_at(text.as_bytes(), begin(text.as_bytes(), start))
 }
 
-/// Where the record begins: the reader counts the blank lines above a record to it.
+/// The offset of the record that begins at or after `start`: the reader counts blank lines above a record as part of it.
 pub fn begin(bytes: &[u8], start: usize) -> usize {
     let start = start.min(bytes.len());
     start + bytes[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count()
 }
 
-/// Records of any length, without a header.
+/// A reader of records of any length, without a header.
 pub fn reader(bytes: &[u8], separator: u8) -> Reader<&[u8]> {
     ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(bytes)
 }
 
-/// The next record; whether there was one.
+/// Reads the next record; false at the end.
 ///
 /// # Errors
 /// If it cannot be read.
@@ -61,15 +61,15 @@ pub fn next(reader: &mut Reader<&[u8]>, record: &mut ByteRecord) -> Result<bool,
 
 /// Where a record begins, blank lines above it included.
 pub fn offset(record: &ByteRecord) -> usize {
-    record.position().map_or(0, |position| place(position.byte()))
+    record.position().map_or(0, |position| in_memory(position.byte()))
 }
 
-/// Offsets into bytes in memory fit.
-pub fn place(offset: u64) -> usize {
+/// An offset into bytes in memory, which always fits.
+pub fn in_memory(offset: u64) -> usize {
     usize::try_from(offset).unwrap_or(usize::MAX)
 }
 
-/// Without spaces around, and without quotes that spaces hid from the reader.
+/// The cell without spaces around it, and without quotes that the reader did not recognize because of those spaces.
 pub fn trimmed(cell: &[u8]) -> &[u8] {
     let cell = cell.trim_ascii();
     match cell {
@@ -78,7 +78,7 @@ pub fn trimmed(cell: &[u8]) -> &[u8] {
     }
 }
 
-/// A cell as text.
-pub fn lossy(cell: &[u8]) -> String {
+/// A cell as text; invalid bytes are replaced.
+pub fn text_of(cell: &[u8]) -> String {
     String::from_utf8_lossy(cell).into_owned()
 }

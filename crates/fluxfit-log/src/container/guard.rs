@@ -1,11 +1,11 @@
-//! The border to crates that panic on damaged files.
+//! Calls into crates that panic on damaged files.
 //!
 //! 200 000 mutated files made parquet 59 panic at five places (an index out of bounds in its byte stream split decoder, a missing
-//! dictionary, an overflow in its delta decoder and its bit reader). A damaged file must give a sentence, so a panic below this border
-//! becomes an error, without a message on the terminal. What panicked is dropped and never used again. It needs the default
-//! `panic = "unwind"`.
+//! dictionary, an overflow in its delta decoder and its bit reader). A damaged file must give an error, so a panic in these crates is
+//! caught here and becomes one, without a message on the terminal. The object that panicked is dropped and not used again. This needs
+//! the default `panic = "unwind"`.
 
-use super::damaged;
+use super::fault::damaged;
 use fluxfit_files::FileError;
 use std::{
     cell::Cell,
@@ -14,14 +14,14 @@ use std::{
 };
 
 thread_local! {
-    /// This thread is below the border.
+    /// This thread is inside a guarded call.
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls `foreign`, which calls nothing of this project that could panic itself.
+/// Calls `foreign`, and turns a panic in it into an error. `foreign` must not call code of this project that could panic.
 pub(super) fn guarded<T>(format: &'static str, foreign: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
     static QUIET: Once = Once::new();
-    // The hook is the whole process's: it stays as it is for all that is not below the border.
+    // The panic hook belongs to the whole process: outside of guarded calls it works as before.
     QUIET.call_once(|| {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |panic| {
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_becomes_a_sentence() {
+    fn a_panic_becomes_an_error() {
         let result: Result<(), FileError> = guarded("Parquet", || panic!("out of bounds"));
         let sentence = "this Parquet file cannot be read: its data are damaged; export it again";
         assert_eq!(result.unwrap_err().to_string(), sentence);

@@ -1,28 +1,34 @@
-//! MATLAB's MAT files of versions 4, 5 to 7 and 7.3, and HDF5 files, of which the last are.
+//! MAT files of MATLAB, versions 4, 5 to 7 and 7.3; and HDF5 files, on which version 7.3 is based.
 //!
-//! Each version's reader lists the arrays of numbers that it finds, under the paths that MATLAB gives them. What makes columns of
-//! them is the same for all, and here:
+//! The reader of each version lists the arrays of numbers, with the paths that MATLAB gives them. Here they become columns, by the same
+//! rules for all versions:
 //!
-//! - A vector is a column, and a matrix is one for each index of its shorter side: `name(:,1)`, or `name(1,:)` if it lies.
-//! - Columns of the same length share their instants, unless a structure around one of them has an own time: a field `time` or
-//!   `Time` of that length.
-//! - Simulink's structures with time have their values in `signals(k).values`; the label `signals(k).label` names them.
-//! - Scalars, texts, truth values, complex and sparse arrays, cells and arrays of three dimensions are no columns.
+//! - A vector is a column. A matrix has one column per index of its shorter side: `name(:,1)`, or `name(1,:)` for a wide matrix.
+//! - Columns of the same length were sampled at the same instants, unless a structure around one of them has its own time: a field
+//!   `time` or `Time` of that length.
+//! - Simulink's structures with time have their values in `signals(k).values` and their names in `signals(k).label`.
+//! - Scalars, texts, booleans, complex and sparse arrays, cells and arrays of three dimensions are not columns.
 
+mod array;
 mod hdf5;
 mod v4;
 mod v5;
 
-use super::{BLOCK, MOST_COLUMNS, Source};
-use crate::{block::Head, problem::Problem};
+use super::{
+    fault::damaged,
+    limits::{BLOCK, MOST_COLUMNS},
+    random_access::RandomAccess,
+};
+use crate::{block::ColumnHead, problem::Problem};
+use array::{Array, Contents, Line, Object};
 use fluxfit_files::FileError;
 use std::collections::HashMap;
 
-/// A file of one of the versions.
+/// An open file.
 pub(crate) struct Mat {
     file: Version,
     format: &'static str,
-    heads: Vec<Head>,
+    heads: Vec<ColumnHead>,
     columns: Vec<Column>,
     unreadable: Vec<String>,
 }
@@ -33,58 +39,18 @@ enum Version {
     Hdf5(hdf5::File),
 }
 
-/// What a reader found in a file.
-struct Contents<Place> {
-    arrays: Vec<Array<Place>>,
-    /// Texts of fields called `label`, by the structure that they are in.
-    labels: HashMap<String, String>,
-    /// Objects that only MATLAB can read.
-    objects: Vec<Object>,
-    /// Other variables that hold no numbers.
-    unreadable: Vec<String>,
-}
-
-impl<Place> Default for Contents<Place> {
-    fn default() -> Self {
-        Self { arrays: Vec::new(), labels: HashMap::new(), objects: Vec::new(), unreadable: Vec::new() }
-    }
-}
-
-/// An array of two dimensions.
-struct Array<Place> {
-    path: String,
-    unit: Option<String>,
-    rows: u64,
-    columns: u64,
-    place: Place,
-}
-
-struct Object {
-    name: String,
-    class: String,
-}
-
-/// One side's line of an array.
+/// A column: a line of an array.
 struct Column {
     array: usize,
     line: Line,
 }
 
-/// The elements of an array with one of its two indices fixed.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Line {
-    /// `(:,k)`, from 0.
-    Column(u64),
-    /// `(k,:)`, from 0.
-    Row(u64),
-}
-
-/// Longest shorter side of a matrix whose lines are columns: beyond it, it is a picture or a field, and no log.
+/// Maximum length of the shorter side of a matrix whose lines are columns: a larger matrix is an image or a map, not a log.
 const MOST_LINES: u64 = 1024;
 
 impl Mat {
-    /// None if the file is no MAT file and no HDF5 file.
-    pub(super) fn open(start: &[u8], source: Source) -> Result<Option<Self>, FileError> {
+    /// Opens a file; none if it is neither a MAT nor an HDF5 file.
+    pub(super) fn open(start: &[u8], source: RandomAccess) -> Result<Option<Self>, FileError> {
         if let Some(at) = hdf5::signature(start) {
             let format = if at == 0 { "HDF5" } else { "MAT" };
             let (file, contents) = hdf5::File::open(source, at, format)?;
@@ -122,7 +88,7 @@ impl Mat {
                     Line::Column(_) => format!("{name}(:,{})", k + 1),
                     Line::Row(_) => format!("{name}({},:)", k + 1),
                 };
-                heads.push(Head { name, unit: array.unit.clone(), rows, group, is_time });
+                heads.push(ColumnHead { name, unit: array.unit.clone(), rows, group, is_time });
                 columns.push(Column { array: at, line });
             }
             if heads.len() > MOST_COLUMNS {
@@ -142,7 +108,7 @@ impl Mat {
         Ok(Self { file, format, heads, columns, unreadable })
     }
 
-    pub(super) fn heads(&self) -> &[Head] {
+    pub(super) fn heads(&self) -> &[ColumnHead] {
         &self.heads
     }
 
@@ -175,7 +141,7 @@ impl Mat {
             for (column, &at) in columns.iter_mut().zip(wanted) {
                 let values = next(column, count as usize).map_err(|error| named(error, at))?;
                 if values.len() as u64 != count {
-                    return Err(named(super::damaged(self.format, "it ends too early"), at));
+                    return Err(named(damaged(self.format, "it ends too early"), at));
                 }
                 block.push(values);
             }
@@ -186,7 +152,7 @@ impl Mat {
     }
 }
 
-/// The array that is the time of a structure, by the structure's path and the number of instants.
+/// The times of structures: the index of the array, by the path of the structure and the length.
 fn times<Place>(arrays: &[Array<Place>]) -> HashMap<(&str, u64), usize> {
     let mut times = HashMap::new();
     for (at, array) in arrays.iter().enumerate() {
@@ -199,12 +165,12 @@ fn times<Place>(arrays: &[Array<Place>]) -> HashMap<(&str, u64), usize> {
     times
 }
 
-/// `a.b.c` is in `a.b` and in `a`.
+/// The structures that contain a path: `a.b` and `a` of `a.b.c`.
 fn ancestors(path: &str) -> impl Iterator<Item = &str> {
     std::iter::successors(path.rsplit_once('.'), |(owner, _)| owner.rsplit_once('.')).map(|(owner, _)| owner)
 }
 
-/// `log.signals(2).values` with the label `i_q` is `log.i_q`.
+/// The name of a Simulink signal: `log.signals(2).values` with the label `i_q` is `log.i_q`.
 fn labelled(path: &str, labels: &HashMap<String, String>) -> String {
     let named = || {
         let signal = path.strip_suffix(".values")?;
@@ -213,14 +179,4 @@ fn labelled(path: &str, labels: &HashMap<String, String>) -> String {
         Some(format!("{owner}.{label}"))
     };
     named().unwrap_or_else(|| path.to_owned())
-}
-
-/// Elements of a structure are numbered if they are several, and nameless only at the top.
-fn join(path: &str, field: &str) -> String {
-    if path.is_empty() { field.to_owned() } else { format!("{path}.{field}") }
-}
-
-/// An array is worth listing if it has two elements.
-fn worthwhile(rows: u64, columns: u64) -> bool {
-    rows.min(columns) >= 1 && rows.max(columns) >= 2
 }

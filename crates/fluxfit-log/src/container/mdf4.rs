@@ -1,10 +1,15 @@
-//! ASAM MDF 4: each channel group is a group of columns, with its master channel as their time.
+//! ASAM MDF 4: each channel group is a group of columns, whose time is its master channel.
 //!
-//! Units are the file's, and conversions (linear, rational, by table) are applied. Samples that the file marks as invalid are NaN.
-//! Texts, arrays and channels that a conversion makes texts are no columns of numbers.
+//! Conversions (linear, rational, by table) are applied. Samples that the file marks as invalid are NaN. Texts, arrays and channels
+//! that are converted to texts are not columns of numbers.
 
-use super::{BLOCK, MOST_COLUMNS, Source, damaged, guard::guarded};
-use crate::{block::Head, problem::Problem};
+use super::{
+    fault::{damaged, unread},
+    guard::guarded,
+    limits::{BLOCK, MOST_COLUMNS},
+    random_access::RandomAccess,
+};
+use crate::{block::ColumnHead, problem::Problem};
 use falcon_mdf::{
     Mf4Error, Mf4File, OpenOptions,
     io::{ByteSlice, ByteSource},
@@ -15,18 +20,18 @@ use std::sync::Arc;
 
 const FORMAT: &str = "MDF";
 
-/// Bytes of an unpacked block at most. Writers make blocks of 4 MB at most, as the standard wants it.
+/// Maximum size of a decompressed block, bytes. The standard recommends at most 4 MB.
 const LARGEST_BLOCK: u64 = 32 << 20;
 
 pub(crate) struct Mdf4 {
     file: Mf4File,
-    heads: Vec<Head>,
+    heads: Vec<ColumnHead>,
     channels: Vec<Channel>,
     unreadable: Vec<String>,
 }
 
 impl Mdf4 {
-    pub(super) fn open(source: Source) -> Result<Self, FileError> {
+    pub(super) fn open(source: RandomAccess) -> Result<Self, FileError> {
         let options = OpenOptions {
             build_channels_db: false,
             parallel_parsing: false,
@@ -45,7 +50,7 @@ impl Mdf4 {
                 } else if channel_group.sample_count > 0 {
                     let unit = (!channel.unit.is_empty()).then(|| channel.unit.clone());
                     let rows = channel_group.sample_count;
-                    heads.push(Head { name: channel.name.clone(), unit, rows, group, is_time: channel.is_time_channel() });
+                    heads.push(ColumnHead { name: channel.name.clone(), unit, rows, group, is_time: channel.is_time_channel() });
                     channels.push(channel.clone());
                 }
                 if heads.len() + unreadable.len() > MOST_COLUMNS {
@@ -59,7 +64,7 @@ impl Mdf4 {
         Ok(Self { file, heads, channels, unreadable })
     }
 
-    pub(super) fn heads(&self) -> &[Head] {
+    pub(super) fn heads(&self) -> &[ColumnHead] {
         &self.heads
     }
 
@@ -79,12 +84,12 @@ impl Mdf4 {
         while let Some(block) = guarded(FORMAT, &mut next)? {
             let count = block.first().map_or(0, Vec::len);
             if block.iter().any(|values| values.len() != count) {
-                return Err(damaged(FORMAT, "its channels differ in their length"));
+                return Err(damaged(FORMAT, "its channels have different lengths"));
             }
             read += count as u64;
             take(block)?;
         }
-        if read == rows { Ok(()) } else { Err(damaged(FORMAT, "it has fewer samples than it says")) }
+        if read == rows { Ok(()) } else { Err(damaged(FORMAT, "it has fewer samples than it states")) }
     }
 }
 
@@ -96,7 +101,7 @@ fn values(signal: &Signal) -> Result<Vec<f64>, FileError> {
     Ok(values)
 }
 
-impl ByteSource for Source {
+impl ByteSource for RandomAccess {
     fn len(&self) -> u64 {
         self.length()
     }
@@ -108,7 +113,7 @@ impl ByteSource for Source {
 
 fn fault(error: Mf4Error) -> FileError {
     match error {
-        Mf4Error::Io(error) => super::unread(FORMAT, &error),
+        Mf4Error::Io(error) => unread(FORMAT, &error),
         error => damaged(FORMAT, error.to_string().lines().next().unwrap_or("it cannot be read")),
     }
 }

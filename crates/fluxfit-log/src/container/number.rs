@@ -1,4 +1,4 @@
-//! Numbers as they lie in a binary file.
+//! Decoding of numbers in binary files.
 
 /// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub(super) enum Kind {
     F64,
 }
 
-/// A kind and its order of bytes.
+/// The kind and the byte order of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Number {
     pub(super) kind: Kind,
@@ -23,7 +23,7 @@ pub(super) struct Number {
 }
 
 impl Number {
-    /// Bytes of one number.
+    /// Bytes per number.
     pub(super) fn width(self) -> usize {
         match self.kind {
             Kind::I8 | Kind::U8 => 1,
@@ -33,8 +33,7 @@ impl Number {
         }
     }
 
-    /// Appends the numbers in `bytes`, the nearest of which an `f64` can hold: only integers beyond 2^53 are rounded.
-    /// Bytes that do not fill a last number are left out.
+    /// Appends the numbers in `bytes` as `f64`; only integers beyond 2^53 are rounded. An incomplete last number is ignored.
     pub(super) fn decode(self, bytes: &[u8], into: &mut Vec<f64>) {
         macro_rules! decode {
             ($t:ty) => {

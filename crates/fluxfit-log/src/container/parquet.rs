@@ -1,14 +1,20 @@
-//! Parquet, row group by row group: the memory needed is that of a page of each wanted column and of one block.
+//! Parquet, row group by row group: in memory are one page of each wanted column and one block.
 //!
-//! Numbers of every width are taken, decimals, and instants: these count in seconds from the column's first one, subtracted as
-//! integers, because the seconds since 1970 as one number would have steps of 0.24 µs. Texts, truth values and repeated fields
-//! are no columns of numbers.
+//! Numbers of every width, decimals and timestamps are read. Timestamps become seconds since the first one of the column, subtracted
+//! as integers: seconds since 1970 as one `f64` would have a resolution of only 0.24 µs. Texts, booleans and repeated fields are not
+//! columns of numbers.
 
 mod pages;
 
-use super::{BLOCK, MOST_COLUMNS, Source, damaged, guard::guarded, most_held};
-use crate::{block::Head, problem::Problem};
+use super::{
+    fault::damaged,
+    guard::guarded,
+    limits::{BLOCK, MOST_COLUMNS, most_held},
+    random_access::RandomAccess,
+};
+use crate::{block::ColumnHead, problem::Problem};
 use fluxfit_files::FileError;
+use pages::FORMAT;
 use parquet::{
     basic::{LogicalType, TimeUnit, Type},
     column::reader::{ColumnReader, ColumnReaderImpl},
@@ -18,39 +24,37 @@ use parquet::{
     schema::types::ColumnDescriptor,
 };
 
-const FORMAT: &str = "Parquet";
-
 pub(crate) struct Parquet {
-    file: SerializedFileReader<Source>,
-    source: Source,
-    heads: Vec<Head>,
+    file: SerializedFileReader<RandomAccess>,
+    source: RandomAccess,
+    heads: Vec<ColumnHead>,
     columns: Vec<Column>,
     unreadable: Vec<String>,
 }
 
 struct Column {
-    /// Its number in the file.
+    /// Its index in the file.
     leaf: usize,
     meaning: Meaning,
-    /// The level at which a value is there; 0 if one is always.
+    /// The definition level of a value that is present; 0 if every value is.
     present: i16,
 }
 
-/// What a stored number stands for.
+/// What a stored number means.
 #[derive(Clone, Copy)]
 enum Meaning {
     Number,
     Unsigned,
-    /// Divided by this power of ten.
+    /// A decimal: to be divided by this power of ten.
     Decimal(f64),
-    /// A decimal in bytes, the first of which weighs most.
+    /// A decimal in big-endian bytes.
     DecimalBytes(f64),
-    /// Counts of which a second has so many.
+    /// A timestamp, in this many units per second.
     Instant(i64),
 }
 
 impl Parquet {
-    pub(super) fn open(source: Source) -> Result<Self, FileError> {
+    pub(super) fn open(source: RandomAccess) -> Result<Self, FileError> {
         let file = guarded(FORMAT, || SerializedFileReader::new(source.clone()).map_err(fault))?;
         let metadata = file.metadata();
         let groups = metadata.row_groups();
@@ -62,7 +66,7 @@ impl Parquet {
         let rows =
             rows.filter(|rows| *rows <= most_held(source.length())).ok_or_else(|| damaged(FORMAT, "its number of rows is impossible"))?;
         if groups.iter().any(|group| group.num_columns() != schema.num_columns()) {
-            return Err(damaged(FORMAT, "its parts differ in their columns"));
+            return Err(damaged(FORMAT, "its row groups have different columns"));
         }
         let (mut heads, mut columns, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
         for (leaf, column) in schema.columns().iter().enumerate() {
@@ -72,7 +76,7 @@ impl Parquet {
                 continue;
             };
             let unit = matches!(meaning, Meaning::Instant(_)).then(|| "s".to_owned());
-            heads.push(Head { name, unit, rows, group: 0, is_time: false });
+            heads.push(ColumnHead { name, unit, rows, group: 0, is_time: false });
             columns.push(Column { leaf, meaning, present: column.max_def_level() });
         }
         if heads.is_empty() {
@@ -81,7 +85,7 @@ impl Parquet {
         Ok(Self { file, source, heads, columns, unreadable })
     }
 
-    pub(super) fn heads(&self) -> &[Head] {
+    pub(super) fn heads(&self) -> &[ColumnHead] {
         &self.heads
     }
 
@@ -131,7 +135,7 @@ fn meaning(column: &ColumnDescriptor) -> Option<Meaning> {
         Some(LogicalType::Timestamp(timestamp)) => Some(instant(&timestamp.unit)),
         Some(LogicalType::Time(time)) => Some(instant(&time.unit)),
         Some(LogicalType::Decimal(decimal)) => power(decimal.scale).map(Meaning::Decimal),
-        // A date has steps of a day: no instant of a log, and no quantity.
+        // A date has a resolution of a day, so it is not the time of a log.
         Some(LogicalType::Date) => None,
         _ => Some(Meaning::Number),
     };
@@ -147,13 +151,13 @@ fn meaning(column: &ColumnDescriptor) -> Option<Meaning> {
     }
 }
 
-/// The part of a column that lies in one row group.
+/// The part of a column in one row group.
 struct Chunk<'a> {
     reader: Typed,
     meaning: Meaning,
     present: i16,
     levels: Vec<i16>,
-    /// The column's first instant.
+    /// The first timestamp of the column.
     start: &'a mut Option<i64>,
 }
 
@@ -164,7 +168,7 @@ enum Typed {
     Int64(ColumnReaderImpl<Int64Type>, Vec<i64>),
     Int96(ColumnReaderImpl<Int96Type>, Vec<parquet::data_type::Int96>),
     Bytes(ColumnReaderImpl<FixedLenByteArrayType>, Vec<parquet::data_type::FixedLenByteArray>),
-    /// Never opened: such a column is no head.
+    /// A type that is not listed as a column of numbers.
     Other,
 }
 
@@ -182,7 +186,7 @@ impl<'a> Chunk<'a> {
         Self { reader, meaning: column.meaning, present: column.present, levels: Vec::new(), start }
     }
 
-    /// The next `count` rows.
+    /// The values of the next `count` rows.
     fn next(&mut self, count: usize) -> Result<Vec<f64>, FileError> {
         let mut values = Vec::with_capacity(count);
         self.levels.clear();
@@ -215,7 +219,7 @@ impl<'a> Chunk<'a> {
             }
             Typed::Int96(reader, raw) => {
                 records(reader, count, levels, raw)?;
-                // Spark's old instants: nanoseconds of a Julian day. Damaged ones may not fit, and wrap.
+                // The old timestamps of Spark: nanoseconds of a Julian day. Damaged ones may overflow, and wrap.
                 let nanoseconds = raw.iter().map(parquet::data_type::Int96::to_nanos);
                 seconds(nanoseconds, 1_000_000_000, self.start, &mut values);
                 raw.clear();
@@ -231,11 +235,11 @@ impl<'a> Chunk<'a> {
         if self.present > 0 && values.len() < self.levels.len() {
             values = spread(&values, &self.levels, self.present);
         }
-        if values.len() == count { Ok(values) } else { Err(damaged(FORMAT, "it has fewer rows than it says")) }
+        if values.len() == count { Ok(values) } else { Err(damaged(FORMAT, "it has fewer rows than it states")) }
     }
 }
 
-/// Exactly `count` rows, of which those that are there come into `values`, and their levels into `levels` if there are any.
+/// Reads exactly `count` rows: present values into `values`, definition levels into `levels` if the column has them.
 fn records<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     count: usize,
@@ -246,20 +250,20 @@ fn records<T: DataType>(
     while done < count {
         let (read, _, _) = reader.read_records(count - done, Some(levels), None, values).map_err(fault)?;
         if read == 0 {
-            return Err(damaged(FORMAT, "it has fewer rows than it says"));
+            return Err(damaged(FORMAT, "it has fewer rows than it states"));
         }
         done += read;
     }
     Ok(())
 }
 
-/// Puts NaN where no value is.
+/// Inserts NaN for missing values.
 fn spread(values: &[f64], levels: &[i16], present: i16) -> Vec<f64> {
     let mut values = values.iter();
     levels.iter().map(|&level| if level == present { values.next().copied().unwrap_or(f64::NAN) } else { f64::NAN }).collect()
 }
 
-/// Counts since the first one, in seconds.
+/// Timestamps as seconds since the first one.
 fn seconds(counts: impl Iterator<Item = i64>, second: i64, start: &mut Option<i64>, into: &mut Vec<f64>) {
     into.extend(counts.map(|count| {
         let since = i128::from(count) - i128::from(*start.get_or_insert(count));
@@ -267,7 +271,7 @@ fn seconds(counts: impl Iterator<Item = i64>, second: i64, start: &mut Option<i6
     }));
 }
 
-/// Two's complement of at most 16 bytes.
+/// A signed integer of at most 16 bytes, two's complement.
 fn from_big_endian(bytes: &[u8]) -> i128 {
     let negative = bytes.first().is_some_and(|byte| *byte >= 0x80);
     bytes.iter().fold(if negative { -1 } else { 0 }, |sum: i128, &byte| (sum << 8) | i128::from(byte))
@@ -278,6 +282,6 @@ fn fault(error: ParquetError) -> FileError {
         ParquetError::General(text) | ParquetError::NYI(text) | ParquetError::EOF(text) => text,
         other => other.to_string(),
     };
-    // Some of the crate's texts have several lines; the first says what is wrong.
+    // Some messages of the crate have several lines; the first states the problem.
     damaged(FORMAT, text.lines().next().unwrap_or("it cannot be read"))
 }

@@ -1,6 +1,6 @@
-//! Files by independent writers, made by `tests/containers/make.py`, of which every value is known by formula.
+//! Files of independent writers, made by `tests/containers/make.py`, with values that are known by formula.
 
-use super::*;
+use super::{limits::BLOCK, *};
 use std::{fs, path::PathBuf};
 
 const ROWS: usize = 100;
@@ -21,12 +21,12 @@ fn iq() -> Vec<f64> {
     k().map(|k| (k + 1.0).sqrt()).collect()
 }
 
-/// What a single holds of it.
+/// The values rounded to single precision.
 fn single(values: Vec<f64>) -> Vec<f64> {
     values.into_iter().map(|value| f64::from(value as f32)).collect()
 }
 
-/// Every integer type's column, by its name.
+/// The column of an integer type, by its name.
 fn integer(name: &str) -> Vec<f64> {
     let (step, start): (i128, i128) = match name {
         "i8" => (1, -50),
@@ -46,11 +46,11 @@ fn path(name: &str) -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "tests", "containers", name].iter().collect()
 }
 
-/// The file from the disk; what it holds from memory must be the same, which is checked on the way.
+/// Opens a file from the disk, and checks that it has the same content from memory.
 fn open(name: &str) -> Binary {
-    let file = Source::file(fs::File::open(path(name)).unwrap()).unwrap();
+    let file = RandomAccess::file(fs::File::open(path(name)).unwrap()).unwrap();
     let binary = Binary::open(file).unwrap_or_else(|error| panic!("{name}: {error}")).unwrap();
-    let memory = Binary::open(Source::memory(fs::read(path(name)).unwrap())).unwrap().unwrap();
+    let memory = Binary::open(RandomAccess::memory(fs::read(path(name)).unwrap())).unwrap().unwrap();
     assert_eq!(binary.heads(), memory.heads());
     for at in 0..binary.heads().len() {
         assert_eq!(bits(&read(&binary, &[at])[0]), bits(&read(&memory, &[at])[0]), "{name}");
@@ -59,7 +59,7 @@ fn open(name: &str) -> Binary {
 }
 
 fn refusal(name: &str) -> String {
-    match Binary::open(Source::memory(fs::read(path(name)).unwrap())) {
+    match Binary::open(RandomAccess::memory(fs::read(path(name)).unwrap())) {
         Err(error) => error.to_string(),
         Ok(_) => panic!("{name} is read"),
     }
@@ -82,7 +82,7 @@ fn at(binary: &Binary, name: &str) -> usize {
     names.iter().position(|found| *found == name).unwrap_or_else(|| panic!("no {name} in {names:?}"))
 }
 
-fn head<'a>(binary: &'a Binary, name: &str) -> &'a Head {
+fn head<'a>(binary: &'a Binary, name: &str) -> &'a ColumnHead {
     &binary.heads()[at(binary, name)]
 }
 
@@ -94,7 +94,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// The columns of these names hold these values, to the bit, each alone and all together where they share a group.
+/// Checks the values of columns to the bit, each alone, and all together if they are of one group.
 fn holds(binary: &Binary, expected: &[(&str, Vec<f64>)]) {
     for (name, values) in expected {
         let found = read(binary, &[at(binary, name)]).remove(0);
@@ -109,7 +109,7 @@ fn holds(binary: &Binary, expected: &[(&str, Vec<f64>)]) {
     }
 }
 
-/// These share a group, and the first is its time.
+/// Checks that these are of one group, and the first is its time.
 fn share(binary: &Binary, time: &str, others: &[&str]) {
     assert!(head(binary, time).is_time);
     let group = head(binary, time).group;
@@ -125,9 +125,9 @@ fn every() -> Vec<(&'static str, Vec<f64>)> {
 }
 
 #[test]
-fn text_is_none_of_these() {
+fn text_is_not_a_container() {
     for text in [&b"t,id,iq\n0,1,2\n"[..], b"", b"\x1f\x8b\x08", b"\xff\xfet\0,\0", &[0; 600], &[255; 4096]] {
-        assert!(Binary::open(Source::memory(text.to_vec())).unwrap().is_none());
+        assert!(Binary::open(RandomAccess::memory(text.to_vec())).unwrap().is_none());
     }
 }
 
@@ -171,19 +171,19 @@ fn parquet_instants_count_in_seconds_from_the_first() {
 
 #[test]
 fn parquet_refusals() {
-    let none = "this Parquet file has no column of two or more numbers; export the log with each quantity as a column of numbers";
+    let none = "this Parquet file has no column of two or more numbers; export each quantity of the log as a column of numbers";
     assert_eq!(refusal("text.parquet"), none);
     let binary = open_only("brotli.parquet");
     let error = binary.read(&[0], &mut |_| Ok(())).unwrap_err().to_string();
-    assert_eq!(error, "column 't': this Parquet file is packed by BROTLI, which is not read here; pack it with zstd, gzip, lz4 or snappy");
+    assert_eq!(error, "column 't': this Parquet file is compressed by BROTLI, which is not supported; use zstd, gzip, lz4 or snappy");
     let mut bytes = fs::read(path("none.parquet")).unwrap();
     bytes.truncate(bytes.len() - 10);
-    let error = Binary::open(Source::memory(bytes)).err().unwrap().to_string();
+    let error = Binary::open(RandomAccess::memory(bytes)).err().unwrap().to_string();
     assert_eq!(error, "this Parquet file cannot be read: Invalid Parquet file. Corrupt footer; export it again");
 }
 
 fn open_only(name: &str) -> Binary {
-    Binary::open(Source::memory(fs::read(path(name)).unwrap())).unwrap().unwrap()
+    Binary::open(RandomAccess::memory(fs::read(path(name)).unwrap())).unwrap().unwrap()
 }
 
 #[test]
@@ -194,12 +194,12 @@ fn mat_4_and_5() {
         let binary = open(name);
         holds(&binary, &log);
         holds(&binary, &[("speed", speed.clone())]);
-        // The scalar is no column, and the slower one is not of their instants.
+        // The scalar is not a column, and the slower one was sampled at other instants.
         assert!(!names(&binary).contains(&"Rs"));
         assert_ne!(head(&binary, "speed").group, head(&binary, "id").group);
         let both = [at(&binary, "speed"), at(&binary, "id")];
         let error = binary.read(&both, &mut |_| Ok(())).unwrap_err().to_string();
-        assert_eq!(error, "these columns were not sampled at the same instants; read them one by one");
+        assert_eq!(error, "these columns were not sampled at the same instants and cannot be read together");
     }
     let binary = open("v5.mat");
     for (name, values) in every().into_iter().filter(|(name, _)| *name != "f64") {
@@ -240,11 +240,11 @@ fn simulink_structures_with_time() {
 }
 
 #[test]
-fn mat_of_what_is_no_column() {
+fn mat_variables_that_are_not_columns() {
     let binary = open("mixed.mat");
     assert_eq!(names(&binary), ["id"]);
     assert_eq!(binary.unreadable(), ["note", "cell", "complex", "sparse", "flag", "cube"]);
-    let none = "this MAT file has no column of two or more numbers; export the log with each quantity as a column of numbers";
+    let none = "this MAT file has no column of two or more numbers; export each quantity of the log as a column of numbers";
     assert_eq!(refusal("texts.mat"), none);
     let remedy = "save its numbers with s = struct('Time', run.Time, 'Data', run.Data); save('log.mat', 's')";
     let object = format!("\"run\" is a timeseries object, which only MATLAB can read; {remedy}");
@@ -252,16 +252,16 @@ fn mat_of_what_is_no_column() {
     assert_eq!(refusal("v73_object.mat"), object);
     let mut cut = fs::read(path("v5.mat")).unwrap();
     cut.truncate(2000);
-    let error = Binary::open(Source::memory(cut)).err().unwrap().to_string();
+    let error = Binary::open(RandomAccess::memory(cut)).err().unwrap().to_string();
     assert_eq!(error, "this MAT file cannot be read: it ends too early; export it again");
 }
 
 #[test]
-fn flux_maps_of_syre_come_through() {
+fn flux_maps_of_syre_are_read() {
     for name in ["syre.mat", "v73.mat"] {
         let binary = open(name);
         for (at, map) in ["Id", "Iq", "Fd", "Fq", "T"].into_iter().enumerate() {
-            // Four rows of five: the fourth is the longer side's line.
+            // Four rows of five elements: the longer side is a column.
             let values: Vec<f64> = (0..5).map(|column| f64::from(3 + column) + at as f64).collect();
             holds(&binary, &[(&format!("motorModel.FluxMap_dq.{map}(4,:)"), values)]);
         }
@@ -297,10 +297,10 @@ fn hdf5_by_h5py() {
 #[test]
 fn hdf5_refusals() {
     let parquet = "or export the log as Parquet";
-    let newer = |what: &str| format!("this HDF5 file uses {what}, which is not read here; write it with libver='earliest', {parquet}");
+    let newer = |what: &str| format!("this HDF5 file has {what}, which is not supported; write it with libver='earliest', {parquet}");
     assert_eq!(refusal("latest_chunks.h5"), format!("column 'id': {}", newer("an index of chunks")));
-    assert_eq!(refusal("many_tracked.h5"), newer("a group with its many names in a heap"));
-    let filter = "column 'id': this HDF5 file is packed by filter 32000, which is not read here; pack it with gzip";
+    assert_eq!(refusal("many_tracked.h5"), newer("a group with its links in a heap"));
+    let filter = "column 'id': this HDF5 file is compressed by filter 32000, which is not supported; use gzip";
     assert_eq!(refusal("lzf.h5"), format!("{filter}, {parquet}"));
 }
 
@@ -316,13 +316,16 @@ fn several_blocks_follow_each_other() {
 
 #[test]
 fn old_mdf_is_refused() {
-    assert_eq!(refusal("old.mdf"), "this is MDF 3 or older; convert it to MDF 4, or export the log as Parquet or CSV");
+    assert_eq!(
+        refusal("old.mdf"),
+        "this is MDF 3 or older, which is not supported; convert it to MDF 4, or export the log as Parquet or CSV"
+    );
 }
 
 #[cfg(not(feature = "mdf4"))]
 #[test]
-fn mdf_without_its_feature_says_how_to_get_it() {
-    let sentence = "this fluxfit was built without MDF 4; build it with --features mdf4, or export the log as Parquet or CSV";
+fn mdf_without_the_feature_is_refused_with_a_remedy() {
+    let sentence = "this build of fluxfit does not read MDF 4; build it with the feature mdf4, or export the log as Parquet or CSV";
     assert_eq!(refusal("plain.mf4"), sentence);
 }
 

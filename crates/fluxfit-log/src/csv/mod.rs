@@ -1,17 +1,17 @@
-//! A table of text.
+//! Tables of text: CSV in its dialects.
 //!
 //! ```text
-//! bytes -> unpacked, decoded text -> header -> cells -> numbers
+//! bytes -> decompressed, decoded text -> header -> cells -> numbers
 //! ```
 //!
-//! Read without being told: comma, semicolon or tab, also at the end of a line; quotes and spaces around names and values; gzip;
+//! Recognized without options: comma, semicolon or tab, also at the end of a line; quotes and spaces around names and values; gzip;
 //! UTF-8, UTF-16 and Windows-1252; titles above the header and `#` and `%` comments; a row of units below it; blank lines; a decimal
-//! comma, unless the comma separates. Of a log of millions of rows only the wanted cells become numbers, a block at a time.
+//! comma, unless the comma is the separator. Only the wanted cells are converted to numbers, a block of rows at a time.
 
 mod rows;
 mod text;
 
-use crate::block::{Block, Head, Wanted};
+use crate::block::{Block, ColumnHead, WantedColumn};
 use fluxfit_files::{
     FileError,
     csv::header::{self, Header},
@@ -19,27 +19,27 @@ use fluxfit_files::{
 use std::io::Read;
 use text::Text;
 
-/// A table whose header is read and whose rows are not.
+/// A table whose header is read, and whose rows are not yet.
 pub(crate) struct TextTable {
     header: Header,
     text: Option<Text>,
-    /// Its columns.
-    pub(crate) heads: Vec<Head>,
-    /// What had to be inferred.
+    /// The columns.
+    pub(crate) heads: Vec<ColumnHead>,
+    /// What was inferred.
     pub(crate) notes: Vec<String>,
 }
 
 impl TextTable {
-    /// Reads as far as the header.
+    /// Reads up to the header.
     ///
     /// # Errors
-    /// If it cannot be read, is no text, or has no header.
-    pub(crate) fn open(raw: Box<dyn Read>) -> Result<Self, FileError> {
-        let mut text = Text::open(raw)?;
+    /// If the bytes cannot be read, are not text, or have no header.
+    pub(crate) fn open(bytes: Box<dyn Read>) -> Result<Self, FileError> {
+        let mut text = Text::open(bytes)?;
         let mut notes = std::mem::take(&mut text.notes);
         let header = header::find(&text.head, &mut notes)?;
         let unit = |place: usize| header.units.get(place).filter(|unit| !unit.is_empty()).cloned();
-        let heads = header.names.iter().enumerate().map(|(place, name)| Head {
+        let heads = header.names.iter().enumerate().map(|(place, name)| ColumnHead {
             name: name.clone(),
             unit: unit(place),
             rows: 0,
@@ -54,7 +54,7 @@ impl TextTable {
         self.header.line
     }
 
-    /// What separates the cells, in words.
+    /// The separator of the cells, in words.
     pub(crate) fn separator(&self) -> &'static str {
         match self.header.separator {
             b';' => "semicolons",
@@ -63,13 +63,13 @@ impl TextTable {
         }
     }
 
-    /// The rows, in blocks, once; what had to be inferred.
+    /// Passes the rows to `take` in blocks; can be called once. Returns what was inferred.
     ///
     /// # Errors
-    /// If a row is of another length, or a wanted cell is no number; those of `take`.
+    /// If a row has another length, a wanted cell is not a number, or `take` fails.
     pub(crate) fn read(
         &mut self,
-        wanted: &[Wanted],
+        wanted: &[WantedColumn],
         take: &mut dyn FnMut(Block) -> Result<(), FileError>,
     ) -> Result<Vec<String>, FileError> {
         self.text.take().map_or(Ok(Vec::new()), |text| rows::read(&self.header, text, wanted, take))

@@ -1,8 +1,8 @@
-//! The rows: the wanted cells of each as numbers, and the line that it stands in.
+//! The rows of a table of text: the wanted cells as numbers, and the line of each row.
 
 use super::text::Text;
 use crate::{
-    block::{Block, Wanted},
+    block::{Block, WantedColumn},
     problem::Problem,
 };
 use ::csv::ByteRecord;
@@ -10,55 +10,56 @@ use fluxfit_files::{
     FileError, Problem as FileProblem,
     csv::{
         header::Header,
-        record::{begin, lossy, next, number, offset, place, reader, trimmed},
+        record::{begin, in_memory, next, number, offset, reader, text_of, trimmed},
     },
     input::line_at,
 };
 
-/// Rows of a block that is handed on.
+/// Rows of a block.
 const BLOCK_ROWS: usize = 1 << 13;
 
-/// The rows on their way: what is carried from one to the next.
+/// The state of reading: what is carried from row to row.
 struct Rows<'a> {
     header: &'a Header,
-    wanted: &'a [Wanted],
+    wanted: &'a [WantedColumn],
     block: Block,
+    /// Whether any row was read.
     any: bool,
     marks: Marks,
     optional: Vec<Marks>,
     scratch: String,
 }
 
-/// A row on its way from cells to numbers.
+/// A record with its place.
 struct Row<'a> {
     record: &'a ByteRecord,
     line: u64,
     separator: u8,
-    /// The file ends within it.
-    cut: bool,
+    /// The file ends within this row.
+    is_cut_off: bool,
 }
 
-/// Lines of rows with a decimal point and with a decimal comma.
+/// The first lines with a decimal point and with a decimal comma.
 #[derive(Default, Clone)]
 struct Marks {
     point: Option<u64>,
     comma: Option<u64>,
 }
 
-/// What becomes of a row.
-enum Outcome {
+/// How a record was read.
+enum Reading {
     Taken,
     Blank,
-    /// The last one, whose end is missing.
+    /// The last row, whose end is missing.
     CutOff,
 }
 
-/// Reads the wanted columns. Missing values, which are empty cells, are NaN; of a dispensable column, so is what is no number.
-/// Returns what had to be inferred.
+/// Reads the wanted columns. Empty cells are missing values, NaN; so are cells of an optional column that are not numbers. Returns
+/// what was inferred.
 pub(super) fn read(
     header: &Header,
     text: Text,
-    wanted: &[Wanted],
+    wanted: &[WantedColumn],
     take: &mut dyn FnMut(Block) -> Result<(), FileError>,
 ) -> Result<Vec<String>, FileError> {
     let mut rows = Rows {
@@ -84,7 +85,7 @@ pub(super) fn read(
 }
 
 impl Rows<'_> {
-    /// The rows of a block of text.
+    /// Reads the rows of a block of text.
     fn read(
         &mut self,
         bytes: &[u8],
@@ -100,16 +101,16 @@ impl Rows<'_> {
             let start = begin(bytes, offset(&record));
             line += line_at(&bytes[counted..start], start - counted) - 1;
             counted = start;
-            let end = place(reader.position().byte());
-            let cut = is_last && end >= bytes.len() && !bytes.ends_with(b"\n") && !bytes.ends_with(b"\r");
-            let row = Row { record: &record, line, separator: self.header.separator, cut };
+            let end = in_memory(reader.position().byte());
+            let is_cut_off = is_last && end >= bytes.len() && !bytes.ends_with(b"\n") && !bytes.ends_with(b"\r");
+            let row = Row { record: &record, line, separator: self.header.separator, is_cut_off };
             match self.take(&row).map_err(|error| error.at_line(line))? {
-                Outcome::Taken => {
+                Reading::Taken => {
                     self.any = true;
                     self.block.lines.push(line);
                 }
-                Outcome::Blank => {}
-                Outcome::CutOff => notes.push(format!("line {line}, the last one, is cut off and left out")),
+                Reading::Blank => {}
+                Reading::CutOff => notes.push(format!("the last line, {line}, is cut off and left out")),
             }
             if self.block.lines.len() == BLOCK_ROWS {
                 take(std::mem::replace(&mut self.block, Block::of(self.wanted.len())))?;
@@ -118,17 +119,17 @@ impl Rows<'_> {
         Ok(())
     }
 
-    /// The row's numbers, appended to the block.
-    fn take(&mut self, row: &Row) -> Result<Outcome, FileError> {
+    /// Appends the numbers of a row to the block.
+    fn take(&mut self, row: &Row) -> Result<Reading, FileError> {
         let expected = self.header.names.len();
         let found = row.record.len();
-        // More cells than names are trailing separators, as long as they are empty.
+        // Empty cells beyond the names are trailing separators.
         if found < expected || row.record.iter().skip(expected).any(|cell| !trimmed(cell).is_empty()) {
             if row.is_blank() {
-                return Ok(Outcome::Blank);
+                return Ok(Reading::Blank);
             }
-            if row.cut && found < expected && self.any {
-                return Ok(Outcome::CutOff);
+            if row.is_cut_off && found < expected && self.any {
+                return Ok(Reading::CutOff);
             }
             let multiline = row.record.as_slice().contains(&b'\n');
             return Err(FileProblem::RowLength { found, expected, multiline }.into());
@@ -138,7 +139,7 @@ impl Rows<'_> {
             let cell = row.cell(column.index);
             let value = match number(cell, row.separator, &mut self.scratch) {
                 Some(value) => {
-                    self.agree(place, cell, row)?;
+                    self.check_mark(place, cell, row)?;
                     value
                 }
                 None if cell.is_empty() => {
@@ -146,12 +147,12 @@ impl Rows<'_> {
                     f64::NAN
                 }
                 None => {
-                    let refused = refusal(cell, column.is_time).in_column(&column.header);
-                    if row.cut && self.any {
+                    let refused = not_a_number(cell, column.is_time).in_column(&column.header);
+                    if row.is_cut_off && self.any {
                         self.undo(place);
-                        return Ok(Outcome::CutOff);
+                        return Ok(Reading::CutOff);
                     }
-                    if !column.dispensable {
+                    if !column.is_optional {
                         return Err(refused);
                     }
                     self.block.refuse(place, refused.at_line(row.line));
@@ -162,14 +163,14 @@ impl Rows<'_> {
         }
         if missing == self.wanted.len() || missing > 0 && row.is_blank() {
             self.undo(self.wanted.len());
-            return Ok(Outcome::Blank);
+            return Ok(Reading::Blank);
         }
-        Ok(Outcome::Taken)
+        Ok(Reading::Taken)
     }
 
-    /// Refuses dispensable columns whose decimal mark is not that of the others; takes over the mark of the rest.
+    /// Refuses optional columns with another decimal mark than the needed ones, and adopts the mark of the others.
     fn compare_marks(&mut self) {
-        for (place, column) in self.wanted.iter().enumerate().filter(|(_, column)| column.dispensable) {
+        for (place, column) in self.wanted.iter().enumerate().filter(|(_, column)| column.is_optional) {
             let own = &self.optional[place];
             let against = own.point.zip(self.marks.comma).or(own.comma.zip(self.marks.point));
             if let Some((line, other)) = against {
@@ -182,24 +183,24 @@ impl Rows<'_> {
         }
     }
 
-    /// Takes back the values of a row that does not count, in the first `columns`.
+    /// Removes the values of the current row from the first `columns`.
     fn undo(&mut self, columns: usize) {
         self.block.values[..columns].iter_mut().for_each(|values| {
             values.pop();
         });
     }
 
-    /// Takes note of the cell's decimal mark. One mark throughout: else the 1,234 of a file with decimal points would be 1.234. A
-    /// column that may be left out answers for itself.
-    fn agree(&mut self, place: usize, cell: &[u8], row: &Row) -> Result<(), FileError> {
+    /// Checks that the decimal mark of a cell is that of the others: otherwise the 1,234 of a file with decimal points would be read as
+    /// 1.234. An optional column is compared with itself only, and refused alone.
+    fn check_mark(&mut self, place: usize, cell: &[u8], row: &Row) -> Result<(), FileError> {
         if row.separator == b',' {
             return Ok(());
         }
         let column = &self.wanted[place];
-        let own = if column.dispensable { &mut self.optional[place] } else { &mut self.marks };
-        let Some(other) = own.disagree(cell, row.line) else { return Ok(()) };
-        let refused = FileError::from(Problem::DecimalMarks { text: lossy(cell), other }).in_column(&column.header);
-        if column.dispensable {
+        let own = if column.is_optional { &mut self.optional[place] } else { &mut self.marks };
+        let Some(other) = own.conflicting(cell, row.line) else { return Ok(()) };
+        let refused = FileError::from(Problem::DecimalMarks { text: text_of(cell), other }).in_column(&column.header);
+        if column.is_optional {
             self.block.refuse(place, refused.at_line(row.line));
             return Ok(());
         }
@@ -217,8 +218,9 @@ impl Row<'_> {
     }
 }
 
-fn refusal(cell: &[u8], is_time: bool) -> FileError {
-    let text = lossy(cell);
+/// The error for a cell that is not a number.
+fn not_a_number(cell: &[u8], is_time: bool) -> FileError {
+    let text = text_of(cell);
     let is_grouped = text.contains(',') && text.contains('.') && text.bytes().all(|byte| byte.is_ascii_digit() || b",.+-".contains(&byte));
     match is_time && text.contains(':') {
         true => Problem::ClockTime { text }.into(),
@@ -228,10 +230,10 @@ fn refusal(cell: &[u8], is_time: bool) -> FileError {
 }
 
 impl Marks {
-    /// Takes note of the cell's decimal mark; the line of a row with the other mark, if there is one.
+    /// Records the decimal mark of a cell, and returns the line of a row with the other mark, if there is one.
     #[inline]
-    fn disagree(&mut self, cell: &[u8], line: u64) -> Option<u64> {
-        // Once points are the rule only a comma matters, and the other way around.
+    fn conflicting(&mut self, cell: &[u8], line: u64) -> Option<u64> {
+        // After the first point only commas matter, and vice versa.
         let has_comma = cell.contains(&b',');
         if has_comma {
             self.comma.get_or_insert(line);

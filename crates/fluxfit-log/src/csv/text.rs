@@ -1,4 +1,4 @@
-//! Text as it comes: unpacked, decoded to UTF-8, a block of whole lines at a time.
+//! Text: decompressed, decoded to UTF-8, in blocks of whole lines.
 
 use crate::problem::Problem;
 use encoding_rs::WINDOWS_1252;
@@ -10,22 +10,22 @@ use fluxfit_files::{
 };
 use std::io::{Cursor, Read};
 
-/// Bytes of the first block, in which the header has to be.
+/// Bytes of the first block, which must contain the header.
 const HEAD: usize = 1 << 20;
 
-/// Bytes of the others: enough that their ends cost nothing.
+/// Bytes of the other blocks: so many that handling their ends takes no time.
 const BLOCK: usize = 1 << 20;
 
-/// A quotation over more bytes than this is no quotation, but a mark that was never closed.
+/// A quotation of more bytes is a quotation mark that was never closed.
 const LONGEST_QUOTATION: usize = 1 << 22;
 
-/// A line of more bytes is cut, and what comes out refused: no table has it.
+/// A longer line is cut into pieces, which are then refused: no table has such lines.
 const LONGEST_LINE: usize = 1 << 24;
 
-/// The first bytes of what `gzip` packs (RFC 1952).
+/// The first bytes of a gzip file (RFC 1952).
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
-/// Documents that are taken for tables, by their first bytes.
+/// The first bytes of documents that users mistake for tables of text.
 const DOCUMENTS: [(&[u8], &str); 4] = [
     (b"PK\x03\x04", "an Excel workbook, or another zip archive"),
     (b"\xd0\xcf\x11\xe0", "an old Excel workbook"),
@@ -33,29 +33,30 @@ const DOCUMENTS: [(&[u8], &str); 4] = [
     (b"{\\rtf", "a text with formats"),
 ];
 
-/// Unpacked, decoded text.
+/// Decompressed, decoded text.
 pub(crate) struct Text {
-    /// Its beginning; all of it, if it is short.
+    /// The beginning; all of a short text.
     pub(super) head: String,
     rest: Box<dyn Read>,
-    is_packed: bool,
-    /// What had to be inferred.
+    is_gzip: bool,
+    /// What was inferred.
     pub(super) notes: Vec<String>,
 }
 
 impl Text {
-    /// Unpacks gzip, decodes UTF-16 and UTF-8 by their byte order marks, and what is no UTF-8 as Windows-1252, which every byte is.
+    /// Decompresses gzip, and decodes UTF-16 and UTF-8 by their byte order marks. Text that is not UTF-8 is decoded as Windows-1252, in
+    /// which every byte is valid.
     ///
     /// # Errors
-    /// If it cannot be read, is empty, or is binary.
+    /// If the bytes cannot be read, are empty, or are not text.
     pub(crate) fn open(mut raw: Box<dyn Read>) -> Result<Self, FileError> {
         let mut notes = Vec::new();
         let magic = read_up_to(&mut *raw, GZIP.len(), false)?;
-        let is_packed = magic == GZIP;
+        let is_gzip = magic == GZIP;
         let raw: Box<dyn Read> = Box::new(Cursor::new(magic).chain(raw));
-        let raw: Box<dyn Read> = if is_packed { Box::new(MultiGzDecoder::new(raw)) } else { raw };
+        let raw: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(raw)) } else { raw };
         let mut decoded = DecodeReaderBytesBuilder::new().utf8_passthru(true).strip_bom(true).build(raw);
-        let head = read_up_to(&mut decoded, HEAD, is_packed)?;
+        let head = read_up_to(&mut decoded, HEAD, is_gzip)?;
         if let Some((_, what)) = DOCUMENTS.iter().find(|(start, _)| head.starts_with(start)) {
             return Err(Problem::Document { what }.into());
         }
@@ -65,7 +66,7 @@ impl Text {
         if head.trim_ascii().is_empty() {
             return Err(FileProblem::Empty.into());
         }
-        let mut text = Self { head: String::new(), rest: Box::new(decoded), is_packed, notes: Vec::new() };
+        let mut text = Self { head: String::new(), rest: Box::new(decoded), is_gzip, notes: Vec::new() };
         text.head = match String::from_utf8(head) {
             Ok(head) => head,
             // The block may end within a character.
@@ -76,7 +77,7 @@ impl Text {
                 String::from_utf8_lossy(&bytes).into_owned()
             }
             Err(error) => {
-                notes.push("the file is no UTF-8; it was read as Windows-1252".to_owned());
+                notes.push("the file is not UTF-8 and was read as Windows-1252".to_owned());
                 let (head, _, _) = WINDOWS_1252.decode(error.as_bytes());
                 text.rest = Box::new(DecodeReaderBytesBuilder::new().encoding(Some(WINDOWS_1252)).bom_sniffing(false).build(text.rest));
                 head.into_owned()
@@ -86,22 +87,22 @@ impl Text {
         Ok(text)
     }
 
-    /// The rest of it from an offset in the head, in blocks of whole lines; each with the number of its first line, and whether it
-    /// is the last one.
+    /// Passes the text from an offset in the head on to `take`, in blocks of whole lines, each with the number of its first line and
+    /// whether it is the last block.
     pub(super) fn blocks(
         self,
         from: usize,
         first_line: u64,
         mut take: impl FnMut(&[u8], u64, bool) -> Result<(), FileError>,
     ) -> Result<(), FileError> {
-        let Self { head, mut rest, is_packed, .. } = self;
+        let Self { head, mut rest, is_gzip, .. } = self;
         let mut bytes = head.into_bytes();
         bytes.drain(..from);
         let mut line = first_line;
         loop {
-            let more = read_up_to(&mut *rest, BLOCK, is_packed)?;
+            let more = read_up_to(&mut *rest, BLOCK, is_gzip)?;
             let ended = more.is_empty();
-            // What was held back before has no end in it: only what is new is searched, unless it is all there is.
+            // Bytes carried over from the block before contain no line end.
             bytes.extend(more);
             let end = if ended { bytes.len() } else { end_of_lines(&bytes) };
             if end > 0 {
@@ -116,7 +117,7 @@ impl Text {
     }
 }
 
-/// Where the last whole record ends: behind a line's end outside of quotes.
+/// The end of the last complete record: after a line end outside of quotes.
 fn end_of_lines(bytes: &[u8]) -> usize {
     let last_end = |bytes: &[u8]| memchr::memrchr(b'\n', bytes).or_else(|| lone_return(bytes)).map_or(0, |at| at + 1);
     let mut end = last_end(bytes);
@@ -127,7 +128,7 @@ fn end_of_lines(bytes: &[u8]) -> usize {
     if marks.is_multiple_of(2) || bytes.len() > LONGEST_QUOTATION {
         return end;
     }
-    // Back over the open quotation to a line's end before it.
+    // Back to the last line end before the open quotation.
     if let Some(open) = memchr::memrchr(b'"', &bytes[..end]) {
         end = last_end(&bytes[..open]);
         if !memchr::memchr_iter(b'"', &bytes[..end]).count().is_multiple_of(2) {
@@ -137,22 +138,22 @@ fn end_of_lines(bytes: &[u8]) -> usize {
     end
 }
 
-/// The last `\r` with something behind it: in the last place a `\n` may follow.
+/// The last `\r` that is not the last byte, after which a `\n` may still follow.
 fn lone_return(bytes: &[u8]) -> Option<usize> {
     memchr::memrchr(b'\r', bytes.split_last()?.1)
 }
 
-/// Line ends: `\n`, `\r\n` or `\r`.
+/// The number of line ends: `\n`, `\r\n` or `\r`.
 fn lines(bytes: &[u8]) -> u64 {
     line_at(bytes, bytes.len()) - 1
 }
 
 /// The next `most` bytes, fewer only at the end.
-fn read_up_to(reader: &mut dyn Read, most: usize, is_packed: bool) -> Result<Vec<u8>, FileError> {
+fn read_up_to(reader: &mut dyn Read, most: usize, is_gzip: bool) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
     match reader.take(most as u64).read_to_end(&mut bytes) {
         Ok(_) => Ok(bytes),
-        Err(error) if is_packed => Err(Problem::Packed { reason: error.to_string() }.into()),
+        Err(error) if is_gzip => Err(Problem::Gzip { reason: error.to_string() }.into()),
         Err(error) => Err(io_problem("reading", &error).into()),
     }
 }

@@ -1,22 +1,24 @@
-//! Channels that were sampled at different instants, on common ones: the currents'.
+//! Channels that were sampled at different instants are interpolated to common ones, those of the currents.
 
-use super::{Channels, kept::Lines};
+use super::{channels::Channels, lines::Lines};
 use crate::{channel::Channel, problem::Problem};
 use Channel::{IA, Id, T};
 use fluxfit_files::FileError;
 use fluxfit_units::wording::list;
 
-/// A table whose rows are complete more often than this is a table with holes; one of fewer complete rows was written row by row as
-/// messages came.
+/// A table with a larger share of complete rows has missing values; one with a smaller share was written message by message, each
+/// row with the channels of one message.
 const COMPLETE: f64 = 0.5;
 
-/// Between values further apart than this many of a channel's usual steps nothing is interpolated: there it has a gap, as a log has.
+/// Values that are further apart than this many usual time steps of the channel are not interpolated: there it has a gap, by the
+/// same factor as a log.
 const GAP: f64 = 2.5;
 
-/// Fewest values of a channel.
+/// Minimum number of values of a channel.
 const FEWEST: usize = 2;
 
-/// Fills missing values of a log that came in messages, each at its own instant; a log with holes is refused. What was done.
+/// Interpolates the missing values of a log that was written message by message; a log with missing cells is refused. Returns a note
+/// if something was interpolated.
 pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<String>, FileError> {
     let rows = channels.rows();
     let is_missing = |row: usize| channels.iter().any(|(_, values)| values[row].is_nan());
@@ -24,8 +26,9 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     let complete = (first..rows).filter(|row| !is_missing(*row)).count() + first;
     let counts: Vec<(Channel, usize)> =
         channels.iter().map(|(channel, values)| (channel, values.iter().filter(|value| !value.is_nan()).count())).collect();
-    let told = counts.iter().all(|(_, count)| *count >= FEWEST) && counts.iter().any(|(channel, count)| *channel == T && *count == rows);
-    if complete as f64 > COMPLETE * rows as f64 || !told {
+    let can_align =
+        counts.iter().all(|(_, count)| *count >= FEWEST) && counts.iter().any(|(channel, count)| *channel == T && *count == rows);
+    if complete as f64 > COMPLETE * rows as f64 || !can_align {
         let (channel, _) = channels.iter().find(|(_, values)| values[first].is_nan()).unwrap_or((T, &[]));
         return Err(channels.refuse(Problem::EmptyCell, channel, lines, first));
     }
@@ -46,14 +49,14 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     let kept: Vec<bool> = (0..channels.rows()).map(|row| channels.iter().all(|(_, values)| !values[row].is_nan())).collect();
     refuse_turning(channels, &moved)?;
     if !kept.contains(&true) {
-        return Err(Problem::Apart { base: base.name() }.into());
+        return Err(Problem::NoCommonInstants { base: base.name() }.into());
     }
     channels.retain(&kept);
     Ok((!moved.is_empty()).then(|| note(&moved, base)))
 }
 
-/// Between two of its instants a phase turns with the rotor, and no straight line follows it; an angle jumps from turn to turn. Where
-/// dq is logged nobody needs the angle then.
+/// Refuses to interpolate what turns with the rotor: phase quantities are not straight lines between two instants, and an angle jumps
+/// at the end of a turn. If dq quantities are logged, the angle is not needed and is left out.
 pub(super) fn refuse_turning(channels: &mut Channels, moved: &[Channel]) -> Result<(), FileError> {
     let has_phases = channels.get(Channel::UA).is_some() || channels.get(IA).is_some();
     let turns = |channel: &Channel| *channel == Channel::ThetaE || Channel::PHASES.contains(channel);
@@ -61,28 +64,29 @@ pub(super) fn refuse_turning(channels: &mut Channels, moved: &[Channel]) -> Resu
         return Ok(());
     }
     if has_phases || channels.get(Channel::OmegaE).is_none() {
-        return Err(Problem::TurningApart.into());
+        return Err(Problem::ChannelsNotSimultaneous.into());
     }
     channels.take(Channel::ThetaE);
     Ok(())
 }
 
-/// What is said of channels that were moved.
+/// The note on interpolated channels.
 pub(super) fn note(moved: &[Channel], base: Channel) -> String {
     let moved: Vec<&str> = moved.iter().map(|channel| channel.name()).collect();
+    let (was, is) = if moved.len() == 1 { ("was", "is") } else { ("were", "are") };
     format!(
-        "{} {} sampled at other instants than {}: interpolated between theirs, and used for steady operating points only",
+        "{} {was} sampled at other instants than {} and {is} interpolated to them; only steady operating points are used",
         list(&moved),
-        if moved.len() == 1 { "was" } else { "were" },
         base.name()
     )
 }
 
+/// The values that are present, with their times.
 fn present<'a>(t: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     t.iter().copied().zip(values.iter().copied()).filter(|(_, value)| !value.is_nan())
 }
 
-/// Values at instants between their own, along straight lines; NaN before the first, behind the last, and within gaps.
+/// Values at other instants by linear interpolation; NaN before the first, after the last, and within gaps.
 pub(super) fn interpolated(at: &[f64], values: &[f64], instants: &[f64]) -> Vec<f64> {
     let mut steps: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
@@ -109,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_lie_on_straight_lines_between_their_instants() {
+    fn values_are_interpolated_linearly_except_in_gaps() {
         let found = interpolated(&[0.0, 1.0, 2.0, 8.0, 9.0], &[0.0, 10.0, 10.0, 0.0, 4.0], &[-1.0, 0.0, 0.25, 2.0, 5.0, 8.5, 9.0, 9.5]);
         let expected = [f64::NAN, 0.0, 2.5, 10.0, f64::NAN, 2.0, 4.0, f64::NAN];
         assert!(found.iter().zip(expected).all(|(a, b)| *a == b || a.is_nan() && b.is_nan()), "{found:?}");

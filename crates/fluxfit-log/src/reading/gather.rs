@@ -1,48 +1,55 @@
-//! The chosen columns of a table, in SI, each row with its time.
+//! Reads the chosen columns of a table, in SI units, each row with its time.
 
 use super::{
-    Channels, Told, align,
+    align,
+    channels::Channels,
+    chosen::{ChosenColumn, left_out},
     clock::Clock,
-    columns::{Chosen, left_out},
-    kept::{Features, Kept, Lines, mean_and_deviation},
     layout::Layout,
+    lines::Lines,
+    options::ResolvedOptions,
+    selection::{Features, Selection, mean_and_deviation},
     table::Table,
 };
-use crate::block::{Block, Head, Wanted};
-use crate::{channel::Channel, problem::Problem};
+use crate::{
+    block::{Block, ColumnHead, WantedColumn},
+    channel::Channel,
+    note::Note,
+    problem::Problem,
+};
 use Channel::{IA, IB, Id, Iq, OmegaE, Run, T, ThetaE};
 use fluxfit::frames::Abc;
 use fluxfit_files::FileError;
-use fluxfit_units::unit::Unit;
+use fluxfit_units::{Unit, wording::shorten};
 use std::f64::consts::{PI, TAU};
 
-/// Where a run of rows ends and nobody logged the time, it goes on this many periods later: more than a gap.
+/// Periods between two runs of a log without times: more than the threshold of a gap.
 const BETWEEN_RUNS: f64 = 10.0;
 
-/// What was gathered.
+/// The channels that were read.
 pub(super) struct Gathered {
     pub(super) channels: Channels,
     pub(super) lines: Lines,
-    /// Some channel was interpolated onto the instants of the currents.
-    pub(super) is_moved: bool,
+    /// Some channel was interpolated to the instants of the currents.
+    pub(super) is_interpolated: bool,
 }
 
-/// Reads the columns. Those of several groups, each with its own times, come onto the instants of the currents.
+/// Reads the columns. Columns of several groups, each with its own times, are interpolated to the instants of the currents.
 pub(super) fn gather(
     table: &mut Table,
-    chosen: &[Chosen],
+    chosen: &[ChosenColumn],
     layout: Option<&'static Layout>,
-    told: &Told,
-    notes: &mut Vec<String>,
+    options: &ResolvedOptions,
+    notes: &mut Vec<Note>,
 ) -> Result<Gathered, FileError> {
     let heads = table.heads().to_vec();
-    let group = |column: &Chosen| heads[column.index].group;
+    let group = |column: &ChosenColumn| heads[column.index].group;
     let base_column = chosen.iter().find(|column| [Id, IA].contains(&column.channel));
     let base = base_column.or(chosen.first()).map_or(0, group);
     let mut groups: Vec<usize> = chosen.iter().filter(|column| column.channel != T).map(group).collect();
     groups.sort_by_key(|group| (*group != base, *group));
     groups.dedup();
-    let period = told.sample_period.or(layout.and_then(|layout| layout.sample_period));
+    let period = options.sample_period.or(layout.and_then(|layout| layout.sample_period));
     let several = groups.len() > 1;
     let mut all: Option<Gathered> = None;
     for group_number in groups {
@@ -50,83 +57,89 @@ pub(super) fn gather(
         if period.is_none() && columns.iter().all(|column| column.channel != T) {
             return Err(lengths(chosen, &heads));
         }
-        // Each group would keep rows of its own.
-        let most_rows = if several { usize::MAX } else { told.most_rows };
+        // Each group would select different rows.
+        let most_rows = if several { usize::MAX } else { options.most_rows };
         let gathered = one_group(table, &columns, period, most_rows, notes)?;
         all = Some(match all {
             None => gathered,
-            Some(base) => joined(base, gathered, notes)?,
+            Some(base) => join(base, gathered, notes)?,
         });
     }
     all.ok_or_else(|| Problem::NoRows.into())
 }
 
-/// The chosen columns of a group with its time; none where the group has no time.
-fn of_group(chosen: &[Chosen], heads: &[Head], group: usize) -> Option<Vec<Chosen>> {
-    let mut columns: Vec<Chosen> = chosen.iter().filter(|column| heads[column.index].group == group).cloned().collect();
-    let has_time = |columns: &[Chosen]| columns.iter().any(|column| column.channel == T);
+/// The chosen columns of a group with its time; none if the group has no time.
+fn of_group(chosen: &[ChosenColumn], heads: &[ColumnHead], group: usize) -> Option<Vec<ChosenColumn>> {
+    let mut columns: Vec<ChosenColumn> = chosen.iter().filter(|column| heads[column.index].group == group).cloned().collect();
+    let has_time = |columns: &[ChosenColumn]| columns.iter().any(|column| column.channel == T);
     if !has_time(&columns) && chosen.iter().any(|column| column.channel == T) {
         let index = heads.iter().position(|head| head.group == group && head.is_time)?;
         let header = heads[index].name.clone();
-        columns.push(Chosen { channel: T, index, header, unit: Unit::Second, pole_pairs: 1, scale: 1.0, dispensable: false });
+        columns.push(ChosenColumn { channel: T, index, header, unit: Unit::Second, pole_pairs: 1, scale: 1.0, is_optional: false });
     }
     Some(columns)
 }
 
-fn lengths(chosen: &[Chosen], heads: &[Head]) -> FileError {
-    let length = |column: &Chosen| format!("'{}' has {} rows", fluxfit_units::wording::shorten(&column.header), heads[column.index].rows);
+fn lengths(chosen: &[ChosenColumn], heads: &[ColumnHead]) -> FileError {
+    let length = |column: &ChosenColumn| format!("'{}' has {} rows", shorten(&column.header), heads[column.index].rows);
     Problem::Lengths { lengths: chosen.iter().map(length).collect() }.into()
 }
 
 fn one_group(
     table: &mut Table,
-    columns: &[Chosen],
+    columns: &[ChosenColumn],
     period: Option<f64>,
     most_rows: usize,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<Gathered, FileError> {
     let place = |channel: Channel| columns.iter().position(|column| column.channel == channel);
-    let wanted: Vec<Wanted> = columns.iter().map(Chosen::wanted).collect();
+    let wanted: Vec<WantedColumn> = columns.iter().map(ChosenColumn::wanted).collect();
     let mut counted = period.filter(|_| place(T).is_none()).map(|period| Counted { period, t: -period, run: None });
-    let mut kept = Kept::new(columns.len() + usize::from(counted.is_some()), telling(&place), most_rows);
+    let mut selection = Selection::new(columns.len() + usize::from(counted.is_some()), features(&place), most_rows);
     let mut clock = Clock::default();
     let mut refused: Vec<Option<FileError>> = vec![None; columns.len()];
-    notes.extend(table.read(&wanted, &mut |mut block: Block| {
-        for (first, later) in refused.iter_mut().zip(&mut block.refused) {
-            if first.is_none() {
-                *first = later.take();
-            }
-        }
-        for (column, values) in columns.iter().zip(&mut block.values) {
-            column.to_si(values);
-        }
-        if let Some(t) = place(T) {
-            clock.unwrap(&mut block.values[t]);
-        }
-        if let Some(counted) = &mut counted {
-            let t = counted.next(block.lines.len(), place(Run).map(|run| block.values[run].as_slice()));
-            block.values.push(t);
-        }
-        kept.push(&block);
-        Ok(())
-    })?);
-    notes.extend(clock.note());
-    let (values, lines, note) = kept.finish();
-    notes.extend(note);
-    let lines = lines.counting_rows(table.line().is_none());
+    notes.extend(
+        table
+            .read(&wanted, &mut |mut block: Block| {
+                for (first, later) in refused.iter_mut().zip(&mut block.refused) {
+                    if first.is_none() {
+                        *first = later.take();
+                    }
+                }
+                for (column, values) in columns.iter().zip(&mut block.values) {
+                    column.to_si(values);
+                }
+                if let Some(t) = place(T) {
+                    clock.unwrap(&mut block.values[t]);
+                }
+                if let Some(counted) = &mut counted {
+                    let t = counted.next(block.lines.len(), place(Run).map(|run| block.values[run].as_slice()));
+                    block.values.push(t);
+                }
+                selection.push(&block);
+                Ok(())
+            })?
+            .into_iter()
+            .map(Note::from),
+    );
+    notes.extend(clock.note().map(Note::from));
+    let (values, lines, note) = selection.finish();
+    notes.extend(note.map(Note::from));
+    let lines = lines.of_container(table.line().is_none());
     let mut channels = Channels::default();
     let names = columns.iter().map(|column| column.channel).chain(counted.is_some().then_some(T));
     channels.columns = names.zip(values).filter(|(channel, _)| *channel != Run).collect();
     channels.headers = columns.iter().map(|column| (column.channel, column.header.clone())).collect();
     if let Some(counted) = counted {
-        notes.push(format!("the rows have no time: one every {} s is taken", counted.period));
+        notes.push(format!("the rows have no time: one row every {} s is assumed", counted.period).into());
     }
     drop_unreadable(&mut channels, columns, refused, &lines, notes);
-    Ok(Gathered { channels, lines, is_moved: false })
+    Ok(Gathered { channels, lines, is_interpolated: false })
 }
 
-/// Means and spreads of the currents in dq and of the speed; of a log of phases, of what these would be.
-fn telling(place: &impl Fn(Channel) -> Option<usize>) -> Features {
+/// The features of a stretch: means and standard deviations of the dq currents and of the speed; of phase quantities, those of the dq
+/// currents and of the turns from row to row.
+fn features(place: &impl Fn(Channel) -> Option<usize>) -> Features {
     let dq: Vec<usize> = [Id, Iq, OmegaE].into_iter().filter_map(place).collect();
     let (Some(a), Some(b), Some(theta)) = (place(IA), place(IB), place(ThetaE)) else {
         return Box::new(move |values| dq.iter().flat_map(|place| mean_and_deviation(&values[*place])).collect());
@@ -142,7 +155,7 @@ fn telling(place: &impl Fn(Channel) -> Option<usize>) -> Features {
     })
 }
 
-/// Times of rows that have none.
+/// Times of rows without a time column.
 struct Counted {
     period: f64,
     t: f64,
@@ -161,24 +174,30 @@ impl Counted {
     }
 }
 
-/// Leaves out the columns that nobody asked for and that cannot be read, or have holes where the others have none.
-fn drop_unreadable(channels: &mut Channels, columns: &[Chosen], refused: Vec<Option<FileError>>, lines: &Lines, notes: &mut Vec<String>) {
-    let dispensable = |channel: Channel| columns.iter().any(|column| column.channel == channel && column.dispensable);
-    let has_holes = channels.iter().any(|(channel, values)| !dispensable(channel) && values.iter().any(|value| value.is_nan()));
-    for (column, refused) in columns.iter().zip(refused).filter(|(column, _)| column.dispensable) {
+/// Leaves out optional columns that cannot be read, or that lack values where the others have them.
+fn drop_unreadable(
+    channels: &mut Channels,
+    columns: &[ChosenColumn],
+    refused: Vec<Option<FileError>>,
+    lines: &Lines,
+    notes: &mut Vec<Note>,
+) {
+    let is_optional = |channel: Channel| columns.iter().any(|column| column.channel == channel && column.is_optional);
+    let has_missing = channels.iter().any(|(channel, values)| !is_optional(channel) && values.iter().any(|value| value.is_nan()));
+    for (column, refused) in columns.iter().zip(refused).filter(|(column, _)| column.is_optional) {
         let Some(values) = channels.get(column.channel) else { continue };
-        let hole = values.iter().position(|value| value.is_nan());
+        let missing = values.iter().position(|value| value.is_nan());
         let is_empty = values.iter().all(|value| value.is_nan());
-        let hole = hole.filter(|_| !has_holes || is_empty);
-        if let Some(error) = refused.or_else(|| hole.map(|row| channels.refuse(Problem::EmptyCell, column.channel, lines, row))) {
-            notes.push(left_out(column.channel, &error.in_column(&column.header)));
+        let missing = missing.filter(|_| !has_missing || is_empty);
+        if let Some(error) = refused.or_else(|| missing.map(|row| channels.refuse(Problem::EmptyCell, column.channel, lines, row))) {
+            notes.push(left_out(column.channel, &error.in_column(&column.header)).into());
             channels.take(column.channel);
         }
     }
 }
 
-/// Channels of another group on the instants of the first.
-fn joined(mut base: Gathered, other: Gathered, notes: &mut Vec<String>) -> Result<Gathered, FileError> {
+/// Adds the channels of another group, at the instants of the first.
+fn join(mut base: Gathered, other: Gathered, notes: &mut Vec<Note>) -> Result<Gathered, FileError> {
     let (Some(instants), Some(at)) = (base.channels.get(T).map(<[f64]>::to_vec), other.channels.get(T)) else { return Ok(base) };
     let is_same = at == instants;
     let moved: Vec<Channel> = other.channels.iter().map(|(channel, _)| channel).filter(|channel| *channel != T).collect();
@@ -192,11 +211,11 @@ fn joined(mut base: Gathered, other: Gathered, notes: &mut Vec<String>) -> Resul
         align::refuse_turning(&mut base.channels, &moved)?;
         let currents = if base.channels.get(Iq).is_some() { Id } else { IA };
         if !kept.contains(&true) {
-            return Err(Problem::Apart { base: currents.name() }.into());
+            return Err(Problem::NoCommonInstants { base: currents.name() }.into());
         }
         base.channels.retain(&kept);
-        notes.push(align::note(&moved, currents));
-        base.is_moved = true;
+        notes.push(align::note(&moved, currents).into());
+        base.is_interpolated = true;
     }
     Ok(base)
 }

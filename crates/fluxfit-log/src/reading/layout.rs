@@ -1,28 +1,29 @@
-//! The layouts of logs that tools write: one table, for the reader, for `fluxfit formats` and for docs/log.md.
+//! The layouts of logs that tools write: one table for the reader, for the list of formats and for docs/log.md.
 //!
-//! A layout is recognized by names that no other has. What it says of its columns, the file's user need not say; `--map`,
-//! `--unit` and a mapping file say otherwise where they speak.
+//! A layout is recognized by names that no other has. It states the channels and units of its columns; options and a mapping file
+//! override it.
 
 use crate::channel::Channel;
 use Channel::{IA, IB, IC, Id, Iq, OmegaE, Run, T, ThetaE, UA, UB, UC, UDc, Ud, Uq};
-use fluxfit_units::unit::Unit;
+use fluxfit_files::Advice;
+use fluxfit_units::Unit;
 
-/// A layout that a tool writes.
+/// The layout of a log that a tool writes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layout {
-    /// Name, for people.
+    /// Name.
     pub name: &'static str,
-    /// Where its columns are defined, or were seen.
+    /// Where the columns are defined, or an example of a file.
     pub source: &'static str,
-    /// Names by which it is recognized: a file with all of them is of this layout.
+    /// Names by which it is recognized: a file with all of them has this layout.
     pub(crate) signature: &'static [&'static str],
-    /// What its columns are.
+    /// Its columns.
     pub(crate) columns: &'static [Column],
-    /// s between rows, where no column tells it.
+    /// Time between rows, s, if there is no time column.
     pub(crate) sample_period: Option<f64>,
-    /// Why a file of this layout is no log, where it is none.
-    pub(crate) refusal: Option<&'static str>,
-    /// What its users should know.
+    /// Why a file with this layout is not a log, if it is not.
+    pub(crate) refusal: Option<NotALog>,
+    /// Remarks for users.
     pub remark: &'static str,
 }
 
@@ -40,10 +41,38 @@ const fn column(channel: Channel, header: &'static str, unit: Unit) -> Column {
 
 const LOG: Layout = Layout { name: "", source: "", signature: &[], columns: &[], sample_period: None, refusal: None, remark: "" };
 
-const IS_FLUX_MAP: &str = "it maps currents to fluxes and is no log of a drive over time: there are no voltages and no time in it; \
-                           as a motor to simulate it can stand in a scenario (flux_map)";
+/// Why a file is not a log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum NotALog {
+    /// It maps currents to flux linkages.
+    FluxMap,
+    /// It has current references in place of measured currents.
+    CurrentReferences,
+}
 
-/// All of them. The first that fits is taken.
+impl NotALog {
+    /// The reason, and what to do.
+    pub(crate) fn reason(self) -> &'static str {
+        match self {
+            Self::FluxMap => {
+                "a flux map has currents and flux linkages, but no voltages and no time; it can be the motor of a simulation (flux_map in a scenario)"
+            }
+            Self::CurrentReferences => {
+                "IqReq and WeakenedId are current references, not measured currents; log the measured i_d and i_q too, and map id and iq to them"
+            }
+        }
+    }
+
+    /// What the user can state to have it read all the same.
+    pub(crate) fn advice(self) -> Option<Advice> {
+        match self {
+            Self::FluxMap => None,
+            Self::CurrentReferences => Some(Advice::MapColumns(vec![(Id.name(), None), (Iq.name(), None)])),
+        }
+    }
+}
+
+/// All layouts. The first that fits is used.
 pub const LAYOUTS: &[Layout] = &[
     Layout {
         name: "canonical",
@@ -75,7 +104,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(OmegaE, "erpm", Unit::RpmElectrical),
             column(UDc, "input_voltage", Unit::Volt),
         ],
-        remark: "filtered values some ten times a second; the clock starts anew at midnight",
+        remark: "filtered values about ten times a second; the time wraps around at midnight",
         ..LOG
     },
     Layout {
@@ -92,7 +121,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(UC, "V3", Unit::Volt),
             column(ThetaE, "Phase", Unit::Degree),
         ],
-        remark: "phase quantities at the drive's own rate; the angle in steps of 1.44 degrees, the speed from it",
+        remark: "phase quantities at the rate of the drive; the angle has steps of 1.44 degrees, the speed is computed from it",
         ..LOG
     },
     Layout {
@@ -113,7 +142,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(ThetaE, "lu_F_G", Unit::Degree),
             column(UDc, "DC", Unit::Volt),
         ],
-        remark: "names with their unit behind @; voltages are those of the phases; lu_F_G, or the currents in both frames, tell the angle",
+        remark: "units in the names, after @; phase voltages; the angle is lu_F_G, or is computed from the currents in phase and dq quantities",
         ..LOG
     },
     Layout {
@@ -128,7 +157,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(Iq, "motor_iq_a", Unit::Ampere),
             column(OmegaE, "motor_speed_mech_rpm", Unit::RpmMechanical),
         ],
-        remark: "a recorder's ten rows a second",
+        remark: "ten rows a second, written by a recorder",
         ..LOG
     },
     Layout {
@@ -144,7 +173,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(OmegaE, "MotorVelocity", Unit::RpmMechanical),
             column(UDc, "BusVoltage", Unit::Volt),
         ],
-        remark: "each message at its own instant; while coasting the voltages are no voltages that act",
+        remark: "each message has its own instant; while coasting the voltages are not those at the motor",
         ..LOG
     },
     Layout {
@@ -160,7 +189,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(OmegaE, "motor_velocity_rpm", Unit::RpmMechanical),
             column(UDc, "bus_voltage_V", Unit::Volt),
         ],
-        remark: "while coasting the voltages are no voltages that act",
+        remark: "while coasting the voltages are not those at the motor",
         ..LOG
     },
     Layout {
@@ -176,7 +205,7 @@ pub const LAYOUTS: &[Layout] = &[
             column(Run, "profile_id", Unit::Number),
         ],
         sample_period: Some(0.5),
-        remark: "two rows a second, without a time; each profile is a run of its own. An older version is standardized and refused",
+        remark: "two rows a second, without a time column; each profile is a separate run. An older, standardized version is refused",
         ..LOG
     },
     Layout {
@@ -193,17 +222,14 @@ pub const LAYOUTS: &[Layout] = &[
             column(UC, "u_cInV", Unit::Volt),
             column(ThetaE, "epsilon_elInRad", Unit::Radian),
         ],
-        remark: "Clarke and Park transforms are applied, the speed comes from the angle",
+        remark: "Clarke and Park transforms are applied, the speed is computed from the angle",
         ..LOG
     },
     Layout {
         name: "dynamometer with references",
         source: "dynamometer sheets of motor controllers",
         signature: &["TimeStamp", "VqFiltered", "VdFiltered", "IqReq", "WeakenedId"],
-        refusal: Some(
-            "IqReq and WeakenedId are what the drive asked for and not the currents that flowed, and what a motor does is told by its currents; \
-             log the measured i_d and i_q too, and name them with --map id=COLUMN,iq=COLUMN",
-        ),
+        refusal: Some(NotALog::CurrentReferences),
         remark: "current references in place of measured currents",
         ..LOG
     },
@@ -211,22 +237,22 @@ pub const LAYOUTS: &[Layout] = &[
         name: "flux map",
         source: "dynamometer tables",
         signature: &["I_d", "I_q", "Psi_d", "Psi_q"],
-        refusal: Some(IS_FLUX_MAP),
-        remark: "a motor to simulate, no log of one",
+        refusal: Some(NotALog::FluxMap),
+        remark: "not a log; it can be the motor of a simulation",
         ..LOG
     },
     Layout {
         name: "SyR-e flux map",
         source: "github.com/SyR-e/syre_public, motorModel.FluxMap_dq (d and q are swapped there)",
         signature: &["motorModel.FluxMap_dq.Id", "motorModel.FluxMap_dq.Fd"],
-        refusal: Some(IS_FLUX_MAP),
-        remark: "a motor to simulate, no log of one",
+        refusal: Some(NotALog::FluxMap),
+        remark: "not a log; it can be the motor of a simulation",
         ..LOG
     },
 ];
 
 impl Layout {
-    /// The layout that a file with columns of these names has, if it is one of the table.
+    /// The layout of a file with these names, if it is in the table.
     pub(crate) fn recognize(names: &[String]) -> Option<&'static Self> {
         LAYOUTS.iter().find(|layout| layout.signature.iter().all(|header| names.iter().any(|name| is_called(name, header))))
     }
@@ -236,35 +262,35 @@ impl Layout {
         self.columns.iter().find(|column| column.channel == channel)
     }
 
-    /// Canonical names and headers of its columns, in one line.
+    /// Canonical names and headers of its columns, on one line.
     pub fn headers(&self) -> String {
         if self.columns.is_empty() {
             return self.signature.join(", ");
         }
-        let said = |column: &Column| match (column.channel.name(), column.header) {
+        let describe = |column: &Column| match (column.channel.name(), column.header) {
             (canonical, header) if canonical == header => header.to_owned(),
             (canonical, header) => format!("{canonical} = {header} ({})", column.unit.prose()),
         };
-        self.columns.iter().map(said).collect::<Vec<_>>().join(", ")
+        self.columns.iter().map(describe).collect::<Vec<_>>().join(", ")
     }
 
-    /// fluxfit's own.
+    /// The layout with the canonical names.
     pub(crate) fn canonical() -> &'static Self {
         &LAYOUTS[0]
     }
 
-    /// Whether it is fluxfit's own, of which nothing need be said.
+    /// Whether it is the layout with the canonical names.
     pub(crate) fn is_canonical(&self) -> bool {
         self.name == Self::canonical().name
     }
 
-    /// Whether files of it are read.
+    /// Whether files with this layout are read.
     pub fn is_log(&self) -> bool {
         self.refusal.is_none()
     }
 }
 
-/// Whether a file's name is this header, upper and lower case apart, and apart from a unit behind `@` or in brackets.
+/// Whether a name is this header, apart from case and from a unit after `@` or in brackets.
 pub(crate) fn is_called(name: &str, header: &str) -> bool {
     let stem = name.split(['@', '[']).next().unwrap_or(name);
     let stem = if stem.ends_with(')') && !header.contains('(') { stem.rsplit_once('(').map_or(stem, |(stem, _)| stem) } else { stem };
@@ -281,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn headers_that_tools_write() {
+    fn headers_of_tools_are_recognized() {
         assert_eq!(recognized("t;ud;uq;id;iq;omega_e"), Some("canonical"));
         let vesc = "ms_today;input_voltage;temp_mos_max;current_motor;d_axis_current;q_axis_current;erpm;duty_cycle;d_axis_voltage;q_axis_voltage;ms_today_setup";
         assert_eq!(recognized(vesc), Some("VESC Tool"));

@@ -1,13 +1,13 @@
-//! `MAPPING.toml`: what the columns of somebody's logs mean, said once.
+//! `MAPPING.toml`: which columns of a kind of log are which channels, stated once for all of them.
 //!
 //! ```toml
 //! pole_pairs = 4
-//! sample_period = "0.1 ms"        # where no column tells the time
-//! park = "amplitude-invariant"    # or "power-invariant", "rms": how long the dq vectors are
+//! sample_period = "0.1 ms"        # of a log without a time column
+//! park = "amplitude-invariant"    # or "power-invariant", "rms": scaling of the dq vectors
 //!
 //! [columns]
 //! t = "time_ms"
-//! # unit as with --unit, without it the header or SI decides; scale: times this; sign = -1: the other way around
+//! # without a unit, that of the header or SI; scale and sign are factors besides the unit
 //! ud = { column = "motor_vd", unit = "mV", scale = 2.0, sign = -1 }
 //! ```
 
@@ -19,37 +19,37 @@ use fluxfit_files::{
 use fluxfit_units::{Dimension, unit::Unit};
 use std::path::Path;
 
-/// What a mapping file says.
+/// The content of a mapping file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mapping {
-    /// Pole pairs.
+    /// Number of pole pairs.
     pub pole_pairs: Option<u32>,
-    /// s between rows.
+    /// Time between rows, s.
     pub sample_period: Option<f64>,
-    /// How long the dq vectors are.
+    /// Scaling of the dq vectors.
     pub park: Park,
     pub(crate) columns: Vec<MappedColumn>,
 }
 
-/// What is said of one column.
+/// The entry of one column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MappedColumn {
     pub(crate) channel: Channel,
     pub(crate) header: Option<String>,
     pub(crate) unit: Option<Unit>,
-    /// Times this, its sign included.
+    /// Scale times sign.
     pub(crate) factor: f64,
 }
 
 /// Scalings of the Clarke and Park transforms.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Park {
-    /// A vector is as long as the phases' peak value: fluxfit's own.
+    /// The length of a vector is the peak value of the phases. fluxfit uses this scaling.
     #[default]
     Amplitude,
-    /// sqrt(3/2) of that, so that power is `u_d i_d + u_q i_q`.
+    /// sqrt(3/2) times that, so that the power is `u_d i_d + u_q i_q`.
     Power,
-    /// 1/sqrt(2) of that: the phases' root mean square.
+    /// 1/sqrt(2) times that: the root mean square of the phases.
     Rms,
 }
 
@@ -63,7 +63,7 @@ impl Park {
         }
     }
 
-    /// What makes a vector as long as the phases' peak value.
+    /// The factor that converts a vector to amplitude-invariant scaling.
     pub(crate) fn factor(self) -> f64 {
         match self {
             Self::Amplitude => 1.0,
@@ -73,8 +73,8 @@ impl Park {
     }
 }
 
-/// What can be said of a column.
-const SAID: &[&str] = &["column", "unit", "scale", "sign"];
+/// Keys of a column.
+const COLUMN_KEYS: &[&str] = &["column", "unit", "scale", "sign"];
 
 const EXAMPLE: &str = "ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit = \"mV\" }";
 
@@ -87,13 +87,13 @@ const SHAPE: Shape = Shape {
 /// Reads a mapping file; the path `-` is standard input.
 ///
 /// # Errors
-/// If the file cannot be read, is no TOML, has a key that is not known, or a value that means nothing there.
+/// If the file cannot be read, is not TOML, or has an unknown key or a value of the wrong kind.
 pub fn read_mapping(path: &Path) -> Result<Mapping, FileError> {
     Mapping::parse(&input::name(path), &input::read(path)?)
 }
 
 impl Mapping {
-    /// Reads a mapping file from memory; `name` is the file's name in messages. An empty file says nothing.
+    /// Reads a mapping file from memory; `name` is the file's name in messages. An empty file is an empty mapping.
     ///
     /// # Errors
     /// As [`read_mapping`].
@@ -133,7 +133,7 @@ fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColu
         let header = named(entry)?;
         return Ok(Some(MappedColumn { channel, header: Some(header), unit: None, factor: 1.0 }));
     }
-    let table = entry.table(SAID, "a column's name, or a table of what is known of it", EXAMPLE)?;
+    let table = entry.table(COLUMN_KEYS, "the name of a column, or a table with its name and unit", EXAMPLE)?;
     let unit = table.get("unit").map(|entry| {
         let text = entry.text()?;
         let allowed = || Unit::of(channel.dimension()).map(Unit::name).collect();
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mapping_says_what_columns_mean() {
+    fn a_mapping_names_columns_units_and_factors() {
         let text = "pole_pairs = 4\nsample_period = \"0.1 ms\"\npark = \"power-invariant\"\n[columns]\n\
                     iq = { column = \"Iq [A]\", scale = 0.5, sign = -1 }\nt = { unit = \"ms\" }\nud = \"vd\"\n";
         let mapping = read(text).unwrap();
@@ -171,25 +171,28 @@ mod tests {
         ];
         assert_eq!(mapping.columns, expected);
         assert_eq!(read(""), Ok(Mapping::default()));
-        // A vector of constant power is sqrt(3/2) as long, one of root mean squares sqrt(1/2).
+        // A power-invariant vector is sqrt(3/2) times as long, an rms one sqrt(1/2) times.
         assert!((Park::Power.factor() * 1.5_f64.sqrt() - 1.0).abs() < 1e-15 && (Park::Rms.factor() * 0.5_f64.sqrt() - 1.0).abs() < 1e-15);
     }
 
     #[test]
-    fn refusals_name_line_and_key() {
+    fn errors_name_line_and_key() {
         let cases = [
-            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is no unit of ud; it can be V or mV"),
+            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is not a unit of ud; it can be V or mV"),
             ("[columns]\nud = { scale = 0 }", "line 2, key 'scale': \"0\" is out of range; it must be a number other than zero"),
             ("sample_period = 0", "line 1, key 'sample_period': \"0\" is out of range; it must be a time above zero"),
-            ("park = \"peak\"", "line 1, key 'park': \"peak\" is not known here; it can be amplitude-invariant, power-invariant or rms"),
+            (
+                "park = \"peak\"",
+                "line 1, key 'park': \"peak\" is not one of the values; it can be amplitude-invariant, power-invariant or rms",
+            ),
             (
                 "[columns]\nid = 3",
-                "line 2, key 'id': this is not a column's name, or a table of what is known of it, \
+                "line 2, key 'id': this is not the name of a column, or a table with its name and unit, \
                  as in ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit = \"mV\" }; correct it",
             ),
             (
                 "[columns]\nid = { name = \"x\" }",
-                "line 2, key 'name': this key is not known; a column's name, or a table of what is known of it can hold column, unit, scale and sign",
+                "line 2, key 'name': this key is not known; the name of a column, or a table with its name and unit can hold column, unit, scale and sign",
             ),
         ];
         for (text, sentence) in cases {

@@ -1,29 +1,30 @@
-//! dq quantities and speed of a log that holds those of the phases and an angle.
+//! dq quantities and speed from phase quantities and an angle.
 
-use super::Channels;
+use super::channels::Channels;
 use crate::channel::Channel;
 use fluxfit::{frames::Abc, log};
-use fluxfit_units::number::significant;
+use fluxfit_units::significant;
 use std::f64::consts::{PI, TAU};
 
-/// Fewest rows on either side of a slope: less is noise.
+/// Minimum number of rows on either side for a slope: fewer give noise.
 const FEWEST_ROWS: usize = 4;
 
-/// Most of them, where the rotor hardly turns.
+/// Maximum number of rows on either side, where the rotor hardly turns.
 const MOST_ROWS: usize = 1000;
 
-/// Relative error of a speed that comes from an angle in steps.
+/// Relative error that is allowed for a speed from an angle in steps.
 const SPEED_ERROR: f64 = 1e-3;
 
-/// A step of an angle that most rows repeat, or that is this part of a turn or more, is a converter's.
+/// A step of the angle of at least this size, rad, is an encoder's resolution; smaller ones are rounding.
 const COARSE: f64 = TAU / 5000.0;
 
-/// Clarke and Park transforms where only phase quantities are there; the angle's slope where no speed is. What was done.
+/// Applies the Clarke and Park transforms where only phase quantities are logged, and computes the speed from the angle where no
+/// speed is. Returns notes.
 pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(theta) = angle_between(channels) {
         channels.set(Channel::ThetaE, theta);
-        notes.push("theta_e is the angle between the current's vector in the phases and in dq".to_owned());
+        notes.push("theta_e is computed from the currents in phase and in dq quantities".to_owned());
     }
     let Some((t, theta)) = channels.get(Channel::T).zip(channels.get(Channel::ThetaE)) else { return notes };
     let is_needed = channels.get(Channel::OmegaE).is_none() || channels.get(Channel::Ud).is_none() || channels.get(Channel::Id).is_none();
@@ -33,7 +34,7 @@ pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
     let (step, smooth, speed) = smoothed(t, theta);
     let theta = if step > 0.0 { smooth } else { theta.to_vec() };
     if step > 0.0 {
-        notes.push(format!("theta_e comes in steps of {} degrees and was smoothed; what is left of them, tenths of a percent of the answer, is in no interval", significant(step.to_degrees(), 3)));
+        notes.push(format!("theta_e has steps of {} degrees and was smoothed; the remaining error, some tenths of a percent of the parameters, is not part of any interval", significant(step.to_degrees(), 3)));
         channels.set(Channel::ThetaE, theta.clone());
     }
     let sets = [
@@ -51,19 +52,20 @@ pub(super) fn transform(channels: &mut Channels) -> Vec<String> {
             Abc { a, b, c: of_c.map_or(-a - b, |c| c[row]) }.to_alpha_beta().to_dq(theta[row])
         };
         let (on_d, on_q) = (0..theta.len()).map(vector).map(|dq| (dq.d, dq.q)).unzip();
-        let third = if of_c.is_none() { format!(", {} being what makes the sum zero", c.name()) } else { String::new() };
-        notes.push(format!("{} and {} are made of the phases and the angle{third}", d.name(), q.name()));
+        let third = if of_c.is_none() { format!(", with {} = -{} - {}", c.name(), a.name(), b.name()) } else { String::new() };
+        notes.push(format!("{} and {} are computed from the phase quantities and the angle{third}", d.name(), q.name()));
         channels.set(d, on_d);
         channels.set(q, on_q);
     }
     if channels.get(Channel::OmegaE).is_none() {
         channels.set(Channel::OmegaE, speed);
-        notes.push("omega_e is the slope of theta_e".to_owned());
+        notes.push("omega_e is computed as the slope of theta_e".to_owned());
     }
     notes
 }
 
-/// The angle of a log that has the voltages of the phases, no angle, and the currents in both frames: theirs is the angle between.
+/// The angle of a log with phase voltages, no angle, and currents both in phase and in dq quantities: the angle between the two
+/// current vectors.
 fn angle_between(channels: &Channels) -> Option<Vec<f64>> {
     let is_missing = channels.get(Channel::ThetaE).is_none() && channels.get(Channel::UA).is_some();
     let (id, iq) = (channels.get(Channel::Id)?, channels.get(Channel::Iq)?);
@@ -77,8 +79,8 @@ fn angle_between(channels: &Channels) -> Option<Vec<f64>> {
     is_missing.then(|| (0..id.len()).map(angle).collect())
 }
 
-/// The step of an angle, 0 if it has none; the angle without it, and its slope, rad/s, at each row: by the parabola of least squares
-/// around it, over as many rows as the steps need, never across a gap. N rows that each turn by `w` and are uniformly within a step
+/// The step of an angle, 0 if it has none; the angle without steps, and its slope, rad/s, at each row. Both come from a least-squares
+/// parabola around the row, over as many rows as the step requires, never across a gap. Over N rows that each turn by `w`, steps of
 /// `q` give `w` a relative error of about `(q/w) N^(-3/2)`.
 fn smoothed(t: &[f64], theta: &[f64]) -> (f64, Vec<f64>, Vec<f64>) {
     let step = coarse_step(theta);
@@ -87,7 +89,7 @@ fn smoothed(t: &[f64], theta: &[f64]) -> (f64, Vec<f64>, Vec<f64>) {
         let (t, turned) = (&t[rows.clone()], unwrapped(&theta[rows]));
         let last = turned.len() - 1;
         let reach = |row: usize| {
-            // How far the rotor turns from row to row hereabouts.
+            // Mean turn of the rotor from row to row around this row.
             let (from, to) = (row.saturating_sub(MOST_ROWS / 8), (row + MOST_ROWS / 8).min(last));
             let turn = (turned[to] - turned[from]).abs() / (to - from).max(1) as f64;
             let needed = if step > 0.0 && turn > 0.0 { (step / (SPEED_ERROR * turn)).powf(2.0 / 3.0) / 2.0 } else { 0.0 };
@@ -104,7 +106,7 @@ fn smoothed(t: &[f64], theta: &[f64]) -> (f64, Vec<f64>, Vec<f64>) {
     (step, angles, slopes)
 }
 
-/// The step of an angle that comes in coarse ones, rad; 0 of one that does not.
+/// The step of an angle with coarse steps, rad; 0 if the angle has none.
 fn coarse_step(theta: &[f64]) -> f64 {
     let smallest = theta.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|change| *change > 1e-9).fold(f64::INFINITY, f64::min);
     let on_grid = |angle: &&f64| ((**angle / smallest) - (**angle / smallest).round()).abs() < 0.01;
@@ -112,11 +114,11 @@ fn coarse_step(theta: &[f64]) -> f64 {
     if is_grid { smallest } else { 0.0 }
 }
 
-/// Value and slope at `at` of the parabola of least squares.
+/// Value and slope at `at` of the least-squares parabola.
 fn tangent(t: &[f64], y: &[f64], at: f64) -> (f64, f64) {
     let span = (t[t.len() - 1] - t[0]).max(f64::MIN_POSITIVE);
     let mean = y.iter().sum::<f64>() / y.len() as f64;
-    // Normal equations in time over the span, around the row: well scaled, three unknowns.
+    // Normal equations for three unknowns; time is relative to the row and divided by the span, so they are well scaled.
     let (mut s, mut r) = ([0.0; 5], [0.0; 3]);
     for (t, y) in t.iter().zip(y) {
         let x = (t - at) / span;
@@ -139,7 +141,7 @@ fn tangent(t: &[f64], y: &[f64], at: f64) -> (f64, f64) {
     if whole.abs() > f64::MIN_POSITIVE { (mean + value / whole, slope / whole / span) } else { (mean, 0.0) }
 }
 
-/// The angle without its jumps from turn to turn.
+/// The angle without jumps at the end of each turn.
 fn unwrapped(theta: &[f64]) -> Vec<f64> {
     let mut turns = 0.0;
     let mut last = theta.first().copied().unwrap_or(0.0);
@@ -158,13 +160,13 @@ fn unwrapped(theta: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// d axis on phase a at angle 0, q ahead by a quarter turn: the phases of a vector, by the book.
+    /// Phase quantities of a dq vector: the d axis is on phase a at angle 0, q leads by a quarter turn.
     fn phases(d: f64, q: f64, theta: f64) -> [f64; 3] {
         [0.0, 1.0, 2.0].map(|k| d * (theta - k * TAU / 3.0).cos() - q * (theta - k * TAU / 3.0).sin())
     }
 
     #[test]
-    fn phases_become_dq() {
+    fn phase_quantities_are_transformed_to_dq() {
         let t: Vec<f64> = (0..400).map(|row| f64::from(row) * 1e-4).collect();
         let theta: Vec<f64> = t.iter().map(|t| (300.0 * t + 1.0) % TAU).collect();
         let mut channels = Channels::default();
@@ -187,14 +189,14 @@ mod tests {
     }
 
     #[test]
-    fn steps_of_the_angle_do_not_become_speed() {
+    fn steps_of_the_angle_do_not_appear_in_the_speed() {
         // 250 steps a turn, 20 kHz, 100 Hz.
         let t: Vec<f64> = (0..2000).map(|row| f64::from(row) * 5e-5).collect();
         let theta: Vec<f64> = t.iter().map(|t| (t * 100.0 % 1.0 * 250.0).floor() / 250.0 * TAU).collect();
         let (_, _, omega) = smoothed(&t, &theta);
         let error = omega[500..1500].iter().map(|omega| (omega / (100.0 * TAU) - 1.0).abs()).fold(0.0, f64::max);
         assert!(error < 3.0 * SPEED_ERROR, "{error}");
-        // Nor errors of the frame: but for half a step, by which rounding down is late, the angle is a sixth of a step right.
+        // Nor in the angle: apart from half a step, by which truncation is late, it is right within a sixth of a step.
         let (step, angle, _) = smoothed(&t, &theta);
         let late = |row: usize| (t[row] * 100.0 * TAU - angle[row] - step / 2.0 + PI).rem_euclid(TAU) - PI;
         let error = (500..1500).map(|row| late(row).abs()).fold(0.0, f64::max);

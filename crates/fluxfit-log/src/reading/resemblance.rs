@@ -1,32 +1,42 @@
-//! Which column of a file a missing one may be: only ever to propose it.
+//! Names that resemble those of a channel or of a reference: for proposals and warnings only, a column is never read because of them.
 
 use crate::channel::Channel;
 use fluxfit_units::Dimension;
 
-/// Least similarity, 0 to 1, of a misspelt time or speed: one wrong letter in four. Voltages and currents must be spelt right,
-/// for d and q differ by one letter.
+/// Smallest similarity, 0 to 1, of a misspelt time or speed: one wrong letter in four. Voltages and currents must be spelt exactly,
+/// because d and q differ by one letter.
 const SIMILAR: f64 = 0.75;
 
-/// Names shorter than this must be spelt right.
+/// Shorter names must be spelt exactly.
 const SHORT: usize = 4;
 
-/// Other words in a header make it less likely: by so much, of 1, if they were everything.
+/// Other words in a header reduce the similarity, by at most this.
 const OTHER_WORDS: f64 = 0.2;
 
-/// A difference of less than one in this many letters is no preference: `Absorber speed` is not likelier than `Test motor speed`.
+/// The share of other words is rounded to this many steps, so that small differences decide nothing: `Absorber speed` is not
+/// preferred to `Test motor speed`.
 const STEPS: f64 = 10.0;
 
-/// Most words of a header that make one name, as in `q-axis current`.
+/// Maximum number of words of a header that make one name, as in `q-axis current`.
 const WORDS: usize = 3;
 
-/// The header most like `channel`, if any is.
+/// Words in the name of a column that mark it as a reference; `soll` is German.
+const REFERENCE: [&str; 13] =
+    ["ref", "reference", "req", "request", "requested", "cmd", "command", "target", "setpoint", "demand", "desired", "set", "soll"];
+
+/// The header that most resembles `channel`, if any does.
 pub(super) fn propose(channel: Channel, names: &[String]) -> Option<usize> {
     let scored = names.iter().enumerate().filter_map(|(index, name)| score(channel, name).map(|score| (index, score)));
-    // The first of equals: a second motor or sensor comes later.
+    // Of equal ones the first: a second motor or sensor comes later.
     scored.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(index, _)| index)
 }
 
-/// Similarity of the best run of words to a spelling.
+/// Whether the name of a column says that it is a reference.
+pub(super) fn is_reference(header: &str) -> bool {
+    words(header).iter().any(|word| REFERENCE.contains(&word.as_str()))
+}
+
+/// The best similarity of consecutive words to a spelling.
 fn score(channel: Channel, name: &str) -> Option<f64> {
     let words = words(name);
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();
@@ -52,8 +62,8 @@ fn similarity(channel: Channel, run: &str, spelling: &str) -> f64 {
     }
 }
 
-/// Words in lower case: parted by punctuation, and where a capital follows a small letter, as in `MotorVd`.
-pub(super) fn words(name: &str) -> Vec<String> {
+/// The words of a name in lower case, split at punctuation and where a capital follows a small letter, as in `MotorVd`.
+fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut small_before = false;
     for c in name.chars() {
@@ -93,5 +103,15 @@ mod tests {
         let dyno = "Input voltage;Test motor q-axis current;Test motor d-axis current;Output Torque;Output Speed;Output Speed set-point;Absorber q-axis current";
         assert_eq!(proposed(dyno), ["-", "-", "-", "Test motor d-axis current", "Test motor q-axis current", "Output Speed"]);
         assert_eq!(proposed("tmie;omga;uds"), ["tmie", "-", "-", "-", "-", "omga"]);
+    }
+
+    #[test]
+    fn references_are_recognized_by_name() {
+        for header in ["IqReq", "id_ref", "i_d_ref (A)", "iq setpoint", "ID_CMD"] {
+            assert!(is_reference(header), "{header}");
+        }
+        for header in ["id", "motor_id_a", "Id preferred", "i_q", "offset_id"] {
+            assert!(!is_reference(header), "{header}");
+        }
     }
 }

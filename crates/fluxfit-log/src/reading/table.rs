@@ -1,103 +1,103 @@
-//! A table, whatever it came in: named columns, and their values in blocks of rows.
+//! A table, whatever its format: named columns, and their values in blocks of rows.
 
-use crate::block::{Block, Head, Wanted};
 use crate::{
-    container::{self, Binary, Source},
+    block::{Block, ColumnHead, WantedColumn},
+    container::{self, Binary, RandomAccess},
     csv::TextTable,
 };
-use bytes::Bytes;
 use fluxfit_files::{
     FileError,
-    input::{Raw, Watched, io_problem},
+    input::{Bytes, Reporting, io_problem},
 };
 use std::io::{Cursor, Read, Seek};
 
-/// What a table came in.
-pub(crate) enum Table {
+/// A table of text or of another format.
+pub(super) enum Table {
     Text(TextTable),
     Binary(Binary),
 }
 
-/// Bytes that tell a container.
+/// Bytes at the beginning of a file by which its format is recognized.
 const START: u64 = 1024;
 
 impl Table {
-    /// Reads as far as the names of the columns.
+    /// Reads up to the names of the columns.
     ///
     /// # Errors
-    /// If it cannot be read, or has none.
-    pub(crate) fn open(raw: Raw) -> Result<Self, FileError> {
+    /// If the bytes cannot be read, or have no names of columns.
+    pub(super) fn open(bytes: Bytes) -> Result<Self, FileError> {
         let failed = |error: std::io::Error| FileError::from(io_problem("reading", &error));
-        match raw {
-            Raw::File(mut file, watch) => match Binary::open(Source::file(file.try_clone().map_err(failed)?)?)? {
+        match bytes {
+            Bytes::File(mut file, progress) => match Binary::open(RandomAccess::file(file.try_clone().map_err(failed)?)?)? {
                 Some(binary) => Ok(Self::Binary(binary)),
                 None => {
                     file.rewind().map_err(failed)?;
-                    TextTable::open(Box::new(Watched { file, watch })).map(Self::Text)
+                    TextTable::open(Box::new(Reporting { file, progress })).map(Self::Text)
                 }
             },
-            Raw::Stream(mut stream) => {
+            Bytes::Stream(mut stream) => {
                 let mut start = Vec::new();
                 (&mut stream).take(START).read_to_end(&mut start).map_err(failed)?;
-                if !container::is_told_by(&start) {
+                if !container::is_container(&start) {
                     return TextTable::open(Box::new(Cursor::new(start).chain(stream))).map(Self::Text);
                 }
                 stream.read_to_end(&mut start).map_err(failed)?;
-                let bytes = Bytes::from(start);
-                match Binary::open(Source::memory(bytes.clone()))? {
+                let content = bytes::Bytes::from(start);
+                match Binary::open(RandomAccess::memory(content.clone()))? {
                     Some(binary) => Ok(Self::Binary(binary)),
-                    None => TextTable::open(Box::new(Cursor::new(bytes))).map(Self::Text),
+                    None => TextTable::open(Box::new(Cursor::new(content))).map(Self::Text),
                 }
             }
         }
     }
 
-    pub(crate) fn heads(&self) -> &[Head] {
+    /// The columns.
+    pub(super) fn heads(&self) -> &[ColumnHead] {
         match self {
             Self::Text(table) => &table.heads,
             Self::Binary(table) => table.heads(),
         }
     }
 
-    /// Columns that hold no numbers, where the container says so.
-    pub(crate) fn unreadable(&self) -> &[String] {
+    /// Names of columns that hold no numbers, where the format states it.
+    pub(super) fn unreadable(&self) -> &[String] {
         match self {
             Self::Text(_) => &[],
             Self::Binary(table) => table.unreadable(),
         }
     }
 
-    /// What had to be inferred so far.
-    pub(crate) fn notes(&self) -> &[String] {
+    /// What was inferred so far.
+    pub(super) fn notes(&self) -> &[String] {
         match self {
             Self::Text(table) => &table.notes,
             Self::Binary(_) => &[],
         }
     }
 
-    /// The line with the names, in a file of text.
-    pub(crate) fn line(&self) -> Option<u64> {
+    /// The line of the header, in a file of text.
+    pub(super) fn line(&self) -> Option<u64> {
         match self {
             Self::Text(table) => Some(table.line()),
             Self::Binary(_) => None,
         }
     }
 
-    /// What it is, in a few words.
-    pub(crate) fn kind(&self) -> String {
+    /// The format, in a few words.
+    pub(super) fn kind(&self) -> String {
         match self {
             Self::Text(table) => format!("text, separated by {}", table.separator()),
             Self::Binary(table) => table.kind().to_owned(),
         }
     }
 
-    /// Values of columns of one group; what had to be inferred.
+    /// Reads columns of one group and passes blocks of their values to `take`. Returns what was inferred.
     ///
     /// # Errors
-    /// Those of reading, and of `take`.
-    pub(crate) fn read(
+    /// If reading or `take` fails.
+    pub(super) fn read(
         &mut self,
-        wanted: &[Wanted],
+        wanted: &[WantedColumn],
         take: &mut dyn FnMut(Block) -> Result<(), FileError>,
     ) -> Result<Vec<String>, FileError> {
         match self {

@@ -302,8 +302,8 @@ def drives():
     tolerances = {"id": 0.5e-3, "iq": 0.5e-3, "omega_e": 0.5e-3 / RPM * POLE_PAIRS}
     columns = {**slow, "t": st["stm32_time_ms"] / 1e3}
     read("st_mcsdk.csv", "ST MCSDK, custom: mechanical r/min", columns, ST_MCSDK, tolerances, told=told)
-    refuse(put("st_mcsdk_no_pole_pairs.csv", (LOGS / "st_mcsdk.csv").read_bytes()), "mechanical speed, and nobody says the pole pairs", "pole",
-           "--pole-pairs")
+    refuse(put("st_mcsdk_no_pole_pairs.csv", (LOGS / "st_mcsdk.csv").read_bytes()), "mechanical speed, and the number of pole pairs is not given", "pole",
+           "state")
 
     emrax = {"time_s": 375.0 + SLOW["t"], "bus_voltage_V": SLOW["u_dc"], "bus_current_A": SLOW["u_dc"] * 0.01, "motor_id_A": SLOW["id"],
              "motor_iq_A": SLOW["iq"], "motor_vd_V": SLOW["ud"], "motor_vq_V": SLOW["uq"], "motor_velocity_rpm": SLOW["omega_e"] * RPM / POLE_PAIRS,

@@ -1,6 +1,6 @@
-//! What every reader promises, whatever the bytes: no panic, a refusal of one line, only finite numbers in what is returned.
+//! What must hold for every reader and any bytes: no panic, errors of one line, only finite numbers in what is returned.
 //!
-//! Two look at it: `tests/reading/regressions.rs` with the files that once broke a promise, and `fuzz/` with files that nobody wrote.
+//! Checked by `tests/reading/regressions.rs` with files that once violated it, and by `fuzz/` with random files.
 
 use fluxfit_log::{LogOptions, Mapping, ReadLog, parse_log, parse_map, parse_unit};
 use fluxfit_units::{parse_bounds, parse_fix, parse_prior, parse_window};
@@ -8,23 +8,23 @@ use fluxfit_units::{parse_bounds, parse_fix, parse_prior, parse_window};
 /// The name of the file in messages.
 const NAME: &str = "any.file";
 
-/// Holds one reader to its promises.
+/// Checks one reader.
 pub(crate) type Promise = fn(&[u8]);
 
-/// The readers. Targets of fuzzing and folders of regressions have these names.
+/// The readers; targets of fuzzing and folders of regressions have these names.
 pub(crate) const READERS: [(&str, Promise); 3] = [("log", log), ("mapping", mapping), ("argument", argument)];
 
-/// A log, as it is and with what a user may say of it.
+/// A log, without options and with those that a user may give.
 pub(crate) fn log(bytes: &[u8]) {
     let map = |text: &str| text.split(',').filter_map(|pair| parse_map(pair).ok()).collect();
     let units = |text: &str| text.split(',').filter_map(|pair| parse_unit(pair).ok()).collect();
-    let told = [
+    let options = [
         LogOptions::default(),
         LogOptions { pole_pairs: Some(4), units: units("omega=rpm-mech,t=ms,theta=deg"), ..LogOptions::default() },
         LogOptions { mapping: Mapping::parse(NAME, b"sample_period = 0.001").unwrap_or_default(), ..LogOptions::default() },
         LogOptions { map: map("t=time,ud=u_d,uq=u_q,id=i_d,iq=i_q,omega=speed,theta=angle"), pole_pairs: Some(3), ..LogOptions::default() },
     ];
-    for options in told {
+    for options in options {
         if let Some(ReadLog { log, notes, .. }) = one_line(parse_log(NAME, bytes, &options)) {
             let columns = log.columns();
             for (name, values) in columns.named().into_iter().chain(columns.optional()) {
@@ -32,7 +32,7 @@ pub(crate) fn log(bytes: &[u8]) {
                 assert!(values.iter().all(|value| value.is_finite()), "{name}");
             }
             assert!(columns.t.windows(2).all(|pair| pair[0] < pair[1]), "time does not increase");
-            notes.iter().for_each(|note| is_one_line(note));
+            notes.iter().for_each(|note| is_one_line(&note.sentence));
         }
     }
 }
@@ -45,7 +45,7 @@ fn mapping(bytes: &[u8]) {
     }
 }
 
-/// Arguments, of which none is a file.
+/// Arguments.
 fn argument(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     one_line(parse_map(&text));
@@ -64,7 +64,7 @@ fn argument(bytes: &[u8]) {
     }
 }
 
-/// What was read; of a refusal, that it is one line.
+/// What was read; an error must be one line.
 fn one_line<T>(read: Result<T, impl std::fmt::Display>) -> Option<T> {
     read.map_err(|error| is_one_line(&error.to_string())).ok()
 }

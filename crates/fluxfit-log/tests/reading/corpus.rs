@@ -86,7 +86,7 @@ fn check(case: &Table) -> Result<(), String> {
 fn check_reading(case: &Table, read: &ReadLog) -> Result<(), String> {
     let log = &read.log;
     let columns = log.columns();
-    let notes = read.notes.join("\n");
+    let notes = log.source().notes.join("\n");
     let found = read.layout.map_or("none", |layout| layout.name);
     ensure(found == text(case, "layout"), || format!("layout {found} in place of {}", text(case, "layout")))?;
     if let Some(rows) = case.get("rows") {

@@ -62,7 +62,10 @@ fn titles_and_a_row_of_units_are_read_over_and_said() {
     let text = format!("Run 7\n\n2019-04-23, 11:04:34\n{header}\ns,V,V,A,A,rad/s\n{rows}");
     let read = parse_log("drive.csv", text.as_bytes(), &LogOptions::default()).unwrap();
     assert_eq!(read.log, expected);
-    assert_eq!(read.notes, ["taken for titles above the header: \"Run 7\" and \"2019-04-23, 11:04:34\"", "line 5 is a row of units"]);
+    assert_eq!(
+        read.log.source().notes,
+        ["read as titles above the header: \"Run 7\" and \"2019-04-23, 11:04:34\"", "line 5 is a row of units"]
+    );
     let in_thousandths = format!("{header}\n[ms],V,V,mA,mA,rad/s\n0,1,2,3000,0,5\n1,1,2,3000,0,5\n");
     let read = parse_log("drive.csv", in_thousandths.as_bytes(), &LogOptions::default()).unwrap();
     assert_eq!((read.log.columns().t[1], read.log.columns().id[0]), (0.001, 3.0));
@@ -84,7 +87,8 @@ fn a_last_line_that_is_cut_off_is_left_out_and_said() {
     let expected = log_of(LOG.as_bytes(), &LogOptions::default());
     for cut in ["0.003,1,2", "0.003,1,2,3,4,-"] {
         let read = parse_log("drive.csv", format!("{LOG}{cut}").as_bytes(), &LogOptions::default()).unwrap();
-        assert_eq!((read.log, read.notes), (expected.clone(), vec!["line 5, the last one, is cut off and left out".to_owned()]));
+        assert_eq!(read.log, expected);
+        assert_eq!(read.log.source().notes, ["the last line, 5, is cut off and left out"]);
     }
 }
 
@@ -92,7 +96,7 @@ fn a_last_line_that_is_cut_off_is_left_out_and_said() {
 fn a_decimal_comma_is_noted_once() {
     let german = LOG.replace(',', ";").replace('.', ",");
     let read = parse_log("drive.csv", german.as_bytes(), &LogOptions::default()).unwrap();
-    assert_eq!(read.notes, ["decimal commas were read as decimal points"]);
+    assert_eq!(read.log.source().notes, ["decimal commas were read as decimal points"]);
 }
 
 /// The refusal of a log in memory, which must be one line.
@@ -120,61 +124,62 @@ fn headers_are_refused_in_one_sentence() {
         (String::new(), "drive.csv: the file is empty; export it again"),
         (
             "# only\n% comments\n".into(),
-            "drive.csv: there are only comments; a header line with the names of the columns and rows of numbers are needed",
+            "drive.csv: the file has only comments; a header line with the names of the columns and rows of numbers are needed",
         ),
         (HEADER.into(), "drive.csv, line 1: there is no row below the header; export the log with its rows"),
         (format!("# x\n{HEADER}\n,,\n"), "drive.csv, line 2: there is no row below the header; export the log with its rows"),
         (
             ROWS.into(),
-            "drive.csv, line 1: \"0, 1, 2, 3, 4, 5\" are numbers where the header should be; put a line with the names of the columns above them",
+            "drive.csv, line 1: \"0, 1, 2, 3, 4, 5\" are numbers in place of a header; put a line with the names of the columns above them",
         ),
         (
             format!("# a,b\n{ROWS}"),
-            "drive.csv, line 2: \"0, 1, 2, 3, 4, 5\" are numbers where the header should be; put a line with the names of the columns above them",
+            "drive.csv, line 2: \"0, 1, 2, 3, 4, 5\" are numbers in place of a header; put a line with the names of the columns above them",
         ),
         (
             "t ud uq\n1 2 3\n".into(),
-            "drive.csv, line 1: \"t ud uq\" is only one column; separate the names, and the values, by comma, semicolon or tab",
+            "drive.csv, line 1: \"t ud uq\" is a single column; separate names and values by comma, semicolon or tab",
         ),
         (
             "Run 7\nspeed,id,iq\n1,2,3\n".into(),
             "drive.csv, line 2: the columns t, ud, uq and omega_e are missing; the file has 'speed', 'id' and 'iq'; \
-             if it has them under other names, add --map omega_e=speed; nothing resembles t, ud and uq, needed too",
+             by the names 'speed' may be omega_e: map it if so; no column resembles t, ud and uq",
         ),
         (
             format!("t,ud,id,iq,omega_e\n{ROWS}"),
             "drive.csv, line 1: the column uq is missing; the file has 't', 'ud', 'id', 'iq' and 'omega_e'; \
-             if it has it under another name, add --map uq=COLUMN; else log it too",
+             map it if it has another name, else log it too",
         ),
         (
             format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
             "drive.csv, line 1: the columns t, ud, uq, id, iq and omega_e are missing; \
              the file has 'u_d', 'motor_speed', 'i_d', 'i_q', 'torque' and 'profile_id'; \
-             if it has them under other names, add --map ud=u_d,id=i_d,iq=i_q,omega_e=motor_speed; nothing resembles t and uq, needed too",
+             by the names 'u_d' may be ud, 'i_d' may be id, 'i_q' may be iq and 'motor_speed' may be omega_e: map them if so; \
+             no column resembles t and uq",
         ),
         (
             format!("tiem,q-axis voltage,ud,id,iq,omega_e\n{ROWS}"),
             "drive.csv, line 1: the columns t and uq are missing; the file has 'tiem', 'q-axis voltage', 'ud', 'id', 'iq' and 'omega_e'; \
-             if it has them under other names, add --map \"t=tiem,uq=q-axis voltage\"",
+             by the names 'tiem' may be t and 'q-axis voltage' may be uq: map them if so",
         ),
         (
             format!("{wide}\n"),
             "drive.csv, line 1: the columns t, ud, uq, id, iq and omega_e are missing; the file has 'c0', 'c1', 'c2', 'c3', 'c4', 'c5', 'c6', \
              'c7', 'c8', 'c9', 'c10', 'c11', 'c12', 'c13', 'c14', 'c15', 'c16', 'c17', 'c18', 'c19' and 3 more; \
-             if it has them under other names, add --map t=COLUMN; else log them too",
+             map them if they have other names, else log them too",
         ),
         (
             format!("t,ud,ud,uq,id,iq,omega_e\n{ROWS}"),
-            "drive.csv, line 1, column 'ud': the header names this column 2 times; rename or remove all but one",
+            "drive.csv, line 1, column 'ud': the header has this name 2 times; rename or remove all but one",
         ),
         (
             format!("t,Ud,UD,uq,id,iq,omega_e\n{ROWS}"),
-            "drive.csv, line 1: the columns 'Ud' and 'UD' could each be ud; choose one with --map ud=COLUMN",
+            "drive.csv, line 1: the columns 'Ud' and 'UD' could each be ud; map one of them to ud",
         ),
         (
             format!("t,ud,uq,id,iq,omega_e [rpm-mech]\n{ROWS}"),
-            "drive.csv, line 1, column 'omega_e [rpm-mech]': the speed is in mechanical r/min, and only the pole pairs make it electrical; \
-             add --pole-pairs N, or --unit omega_e=rpm-elec if it is electrical already",
+            "drive.csv, line 1, column 'omega_e [rpm-mech]': the speed is in mechanical r/min, and converting it takes the number of pole pairs; \
+             state it, or state that the unit is electrical r/min",
         ),
     ];
     check(&cases, &LogOptions::default());
@@ -186,23 +191,23 @@ fn maps_and_units_that_do_not_fit_the_file_are_refused() {
     let told = |speed: &str, options: &LogOptions| refusal(log(speed)[0].0.as_bytes(), options);
     assert_eq!(
         told("motor_speed", &map(&["omega=speeed"])),
-        "drive.csv, line 1: --map omega_e=speeed: the file has no column 'speeed', it has 't', 'ud', 'uq', 'id', 'iq' and 'motor_speed'; \
+        "drive.csv, line 1: omega_e is mapped to 'speeed', which the file does not have; it has 't', 'ud', 'uq', 'id', 'iq' and 'motor_speed'; \
          did you mean 'motor_speed'?"
     );
     assert_eq!(
         told("omega_e", &LogOptions { map: vec![("speed".into(), "omega_e".into())], ..LogOptions::default() }),
-        "\"speed\" is no column of a log; the columns are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+        "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
     );
     assert_eq!(
         told("speed [km/h]", &map(&["omega=speed [km/h]"])),
-        "drive.csv, line 1, column 'speed [km/h]': \"km/h\" in the header is no unit of omega_e known here; \
-         say the unit with --unit omega_e=rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
+        "drive.csv, line 1, column 'speed [km/h]': \"km/h\" in the header is not a known unit of omega_e; \
+         state the unit: rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
     );
     let units = LogOptions { units: vec![("omega".into(), Unit::HertzMechanical)], ..LogOptions::default() };
     assert_eq!(
         told("omega_e", &units),
-        "drive.csv, line 1, column 'omega_e': the speed is in mechanical Hz, and only the pole pairs make it electrical; \
-         add --pole-pairs N, or --unit omega_e=Hz-elec if it is electrical already"
+        "drive.csv, line 1, column 'omega_e': the speed is in mechanical Hz, and converting it takes the number of pole pairs; \
+         state it, or state that the unit is electrical Hz"
     );
 }
 
@@ -212,20 +217,17 @@ fn rows_are_refused_in_one_sentence() {
     let cases = [
         (
             below("a,b,c,d,e,f\n0,1,2,3,4,5\n1,1,2,3,4,5\n"),
-            "drive.csv, line 1, column 't': \"a\" in the header is no unit of t known here; say the unit with --unit t=s, ms or us",
+            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit: s, ms or us",
         ),
         (
             below("0,1,2,3,4,5\n\n1,1,2,3,4\n"),
             "drive.csv, line 4: the row has 5 cells where the header has 6; complete the row or remove it",
         ),
-        (
-            below("0,1,2,3,4,5,6\n"),
-            "drive.csv, line 2: the row has 7 cells where the header has 6; remove the cells that are too many, or the row",
-        ),
+        (below("0,1,2,3,4,5,6\n"), "drive.csv, line 2: the row has 7 cells where the header has 6; remove the extra cells or the row"),
         (below("0,1,2,3,4,5\n# end\n"), "drive.csv, line 3: the row has 1 cell where the header has 6; complete the row or remove it"),
         (
             below("0,1,2,3,4,5\n\"1,1,2,3,4,5\n2,1,2,3,4,5\n"),
-            "drive.csv, line 3: the row has 1 cell where the header has 6; a quotation mark in this line opens a cell that runs over several lines: close it",
+            "drive.csv, line 3: the row has 1 cell where the header has 6; a quotation mark in this line opens a cell that continues over several lines: close it",
         ),
         (below("0,1,2,3,4,5\n\n1,1,abc,3,4,5\n"), "drive.csv, line 4, column 'uq': \"abc\" is not a number; correct it or remove the row"),
         (
@@ -237,7 +239,7 @@ fn rows_are_refused_in_one_sentence() {
             "drive.csv, line 3, column 'uq': \"two\\nlines, and more than forty character…\" is not a number; correct it or remove the row",
         ),
         (below("0,1,2,3,4,5\n1,1, ,3,4,5\n"), "drive.csv, line 3, column 'uq': the cell is empty or NaN; write a number or remove the row"),
-        (below("11:04:34.5,1,2,3,4,5\n"), "drive.csv, line 2, column 't': \"11:04:34.5\" is not a number; write time as a number, in s"),
+        (below("11:04:34.5,1,2,3,4,5\n"), "drive.csv, line 2, column 't': \"11:04:34.5\" is a time of day; write time as a number, in s"),
         (
             below("0,1,2,3,4,5\n1,1,2,NaN,4,5\n"),
             "drive.csv, line 3, column 'id': the cell is empty or NaN; write a number or remove the row",
@@ -267,16 +269,16 @@ fn rows_are_refused_in_one_sentence() {
     let cases = [
         (
             semicolons("0;1,5;2;3;4;5\n1;1;2.5;3;4;5\n"),
-            "drive.csv, line 3, column 'uq': \"2.5\" does not have the decimal mark of line 2; use one mark throughout, and no thousands separators",
+            "drive.csv, line 3, column 'uq': \"2.5\" has another decimal mark than line 2; use one mark throughout, and no thousands separators",
         ),
         (
             semicolons("0;1.5;2;3;4;5\n1;1;1,234;3;4;5\n"),
-            "drive.csv, line 3, column 'uq': \"1,234\" does not have the decimal mark of line 2; use one mark throughout, and no thousands separators",
+            "drive.csv, line 3, column 'uq': \"1,234\" has another decimal mark than line 2; use one mark throughout, and no thousands separators",
         ),
         (semicolons("0;1,234,5;2;3;4;5\n"), "drive.csv, line 2, column 'ud': \"1,234,5\" is not a number; correct it or remove the row"),
         (
             semicolons("0;1.234,5;2;3;4;5\n"),
-            "drive.csv, line 2, column 'ud': \"1.234,5\" has both marks, and which one is decimal is a guess; write numbers without thousands separators",
+            "drive.csv, line 2, column 'ud': \"1.234,5\" has a comma and a point, so its decimal mark is ambiguous; write numbers without thousands separators",
         ),
     ];
     check(&cases, &LogOptions::default());
@@ -304,7 +306,7 @@ fn beside(header: &str, cells: [&str; 2]) -> String {
 
 fn read(text: &str, options: &LogOptions) -> (fluxfit::log::Columns, Vec<String>) {
     let read = parse_log("drive.csv", text.as_bytes(), options).unwrap_or_else(|error| panic!("{text}\n{error}"));
-    (read.log.columns().clone(), read.notes)
+    (read.log.columns().clone(), read.log.source().notes.clone())
 }
 
 #[test]
@@ -325,7 +327,7 @@ fn angle_and_dc_voltage_are_taken_where_the_log_has_them() {
     let german = "u_dc;t;Theta_E;ud;uq;id;iq;omega_e\n310,5;0;-1,5;1;2;3;4;5\n;;;;;;;\n305;1;3;1;2;3;4;5\n";
     let (columns, notes) = read(german, &none());
     assert_eq!((columns.theta_e, columns.u_dc), (Some(vec![-1.5, 3.0]), Some(vec![310.5, 305.0])));
-    assert_eq!(notes, ["theta_e: column 'Theta_E' taken", "decimal commas were read as decimal points"]);
+    assert_eq!(notes, ["theta_e: column 'Theta_E' used", "decimal commas were read as decimal points"]);
     let (columns, notes) = read(&beside("theta_e [deg],u_dc_mV", ["90,310000", "-180,305500"]), &none());
     let half = std::f64::consts::FRAC_PI_2;
     assert_eq!((columns.theta_e, columns.u_dc), (Some(vec![half, -2.0 * half]), Some(vec![310.0, 305.5])));
@@ -341,7 +343,7 @@ fn angle_and_dc_voltage_under_other_names() {
     assert_eq!((columns.theta_e, columns.u_dc, notes.len()), (None, None, 0));
     let (columns, notes) = read(&log, &map(&["theta=phi", "u_dc=bus"]));
     assert_eq!((columns.theta_e, columns.u_dc), (Some(vec![90.0, 180.0]), Some(vec![310.0, 305.5])));
-    let unsaid = "units that no header names are taken as SI: theta_e ('phi') in electrical rad and u_dc ('bus') in V; --unit says otherwise, as in --unit omega=rpm-mech";
+    let unsaid = "no header states these units, so SI is assumed: theta_e ('phi') in electrical rad and u_dc ('bus') in V";
     assert_eq!(notes, [unsaid]);
     // A mechanical angle becomes electrical, in other turns: 90 degrees are 2 pi / 4, four times that a turn.
     let units = vec![("theta".into(), Unit::DegreeMechanical), ("u_dc".into(), Unit::Volt)];
@@ -353,13 +355,10 @@ fn angle_and_dc_voltage_under_other_names() {
     assert_eq!(notes, ["theta_e: column 'phi' read as mechanical degrees with 4 pole pairs"]);
     assert_eq!(
         read(&beside("angle_deg", ["90", "180"]), &map(&["theta=angle_deg"])).1,
-        ["theta_e: column 'angle_deg' read as electrical degrees; if it is mechanical, say so with --unit"]
+        ["theta_e: column 'angle_deg' read as electrical degrees; if it is mechanical, state its unit"]
     );
     let lonely = LogOptions { units: vec![("theta".into(), Unit::Degree)], ..LogOptions::default() };
-    assert_eq!(
-        read(&log, &lonely).1,
-        ["the unit of theta_e, deg, is not used: the log has no such column; --map theta_e=COLUMN names one"]
-    );
+    assert_eq!(read(&log, &lonely).1, ["the unit stated for theta_e, deg, is not used: the log has no such column"]);
 }
 
 #[test]
@@ -390,12 +389,12 @@ fn an_optional_column_refuses_the_log_only_if_it_was_asked_for() {
 #[test]
 fn headers_of_optional_columns_refuse_the_log_only_if_they_were_asked_for() {
     let cases = [
-        ("theta_e,theta_e", "line 1, column 'theta_e': the header names this column 2 times; rename or remove all but one"),
-        ("Theta_e,THETA_E", "line 1: the columns 'Theta_e' and 'THETA_E' could each be theta_e; choose one with --map theta_e=COLUMN"),
+        ("theta_e,theta_e", "line 1, column 'theta_e': the header has this name 2 times; rename or remove all but one"),
+        ("Theta_e,THETA_E", "line 1: the columns 'Theta_e' and 'THETA_E' could each be theta_e; map one of them to theta_e"),
         (
             "x,theta_e [rad-mech]",
-            "line 1, column 'theta_e [rad-mech]': the angle is in mechanical rad, and only the pole pairs make it electrical; \
-             add --pole-pairs N, or --unit theta_e=rad if it is electrical already",
+            "line 1, column 'theta_e [rad-mech]': the angle is in mechanical rad, and converting it takes the number of pole pairs; \
+             state it, or state that the unit is electrical rad",
         ),
     ];
     for (header, why) in cases {
@@ -408,12 +407,12 @@ fn headers_of_optional_columns_refuse_the_log_only_if_they_were_asked_for() {
     assert_eq!(refused("x,theta_e [rad-mech]", &["theta=theta_e [rad-mech]"]), format!("drive.csv, {}", cases[2].1));
     assert_eq!(
         refused("a,Bus voltage", &["u_dc=buss"]),
-        "drive.csv, line 1: --map u_dc=buss: the file has no column 'buss', \
+        "drive.csv, line 1: u_dc is mapped to 'buss', which the file does not have; \
          it has 't', 'ud', 'uq', 'id', 'iq', 'omega_e', 'a' and 'Bus voltage'; did you mean 'Bus voltage'?"
     );
     assert_eq!(
         refused("a,b", &["u_dc=uq"]),
-        "drive.csv, line 1, column 'uq': this column would be both uq and u_dc; say which columns they are, with --map uq=COLUMN,u_dc=COLUMN"
+        "drive.csv, line 1, column 'uq': this column would be both uq and u_dc; map each of them to a column of its own"
     );
     // A column that the user said is another one is not the DC voltage.
     let (columns, notes) = read("t,ud,u_dc,id,iq,omega_e\n0,1,2,3,4,5\n1,1,2,3,4,5\n", &map(&["uq=u_dc"]));
@@ -424,15 +423,14 @@ fn headers_of_optional_columns_refuse_the_log_only_if_they_were_asked_for() {
 #[test]
 fn an_optional_column_does_not_decide_the_decimal_mark() {
     let rows = |cells: [&str; 2]| format!("t;ud;uq;id;iq;omega_e;u_dc\n0;1;2;3;4;5;{}\n1;{};2;3;4;5;310\n", cells[0], cells[1]);
-    let why =
-        "line 2, column 'u_dc': this cell does not have the decimal mark of line 3; use one mark throughout, and no thousands separators";
+    let why = "line 2, column 'u_dc': this cell has another decimal mark than line 3; use one mark throughout, and no thousands separators";
     let text = rows(["310.5", "1,5"]);
     let (columns, notes) = read(&text, &LogOptions::default());
     assert_eq!((columns.ud, columns.u_dc), (vec![1.0, 1.5], None));
     assert_eq!(notes, ["decimal commas were read as decimal points", format!("u_dc is left out: {why}").as_str()]);
     assert_eq!(
         refusal(text.as_bytes(), &map(&["u_dc=u_dc"])),
-        "drive.csv, line 3, column 'ud': \"1,5\" does not have the decimal mark of line 2; use one mark throughout, and no thousands separators"
+        "drive.csv, line 3, column 'ud': \"1,5\" has another decimal mark than line 2; use one mark throughout, and no thousands separators"
     );
     assert_eq!(read(&rows(["310,5", "1,5"]), &LogOptions::default()).0.u_dc, Some(vec![310.5, 310.0]));
     assert_eq!(read(&rows(["1.234", "1.5"]), &LogOptions::default()).0.u_dc, Some(vec![1.234, 310.0]));
@@ -460,7 +458,8 @@ fn real_logs_without_voltages_are_refused_clearly() {
     );
     assert!(
         sentence.ends_with(
-            "add --map \"id=Test motor d-axis current,iq=Test motor q-axis current,omega_e=Output Speed\"; nothing resembles t, ud and uq, needed too"
+            "by the names 'Test motor d-axis current' may be id, 'Test motor q-axis current' may be iq and 'Output Speed' may be omega_e: \
+             map them if so; no column resembles t, ud and uq"
         ),
         "{sentence}"
     );
@@ -480,7 +479,7 @@ fn real_logs_are_read() {
         "omega_e: column 'motor_velocity_rpm' read as mechanical r/min with 10 pole pairs",
         "27 gaps, the longest of 4.19 s at t = 654.604 s: nothing is computed across them",
     ];
-    assert_eq!(read.notes[1..], notes);
+    assert_eq!(read.log.source().notes[1..], notes);
     let expected = -637.188 * std::f64::consts::TAU / 60.0 * 10.0;
     assert!((read.log.columns().omega_e[0] - expected).abs() < 1e-9);
 

@@ -1,4 +1,4 @@
-//! `[motor]` and `[mechanics]`.
+//! The tables `[motor]` and `[mechanics]`.
 
 use crate::{flux_map::read_flux_map, problem::Problem};
 use fluxfit_drive::{
@@ -36,7 +36,7 @@ pub(super) fn mechanics(table: &Table<'_>) -> Result<Mechanics, FileError> {
     if dyno {
         for key in ["mechanics.inertia", "mechanics.friction"] {
             if let Some(entry) = key.split_once('.').and_then(|(_, key)| table.get(key)) {
-                let remedy = "a dynamometer holds its speed whatever it drives: leave it out";
+                let remedy = "a dynamometer holds its speed at any load: leave it out";
                 let incompatible = Error::Incompatible { key, with: "mechanics.kind = \"free\"", remedy };
                 return Err(FileError::from(Problem::Drive(incompatible)).at_line(entry.line()));
             }

@@ -1,4 +1,4 @@
-//! `[schedule]` and `[injection]`.
+//! The tables `[schedule]` and `[injection]`.
 
 use fluxfit_drive::{
     scenario::{Axis, Injection, Schedule, Waveform},
@@ -10,7 +10,7 @@ use fluxfit_files::{
 };
 use fluxfit_units::Dimension;
 
-/// A move as it is written.
+/// A ramp, as an example in messages.
 const RAMP: &str = "{ at = \"0.2 s\", to = .., over = \"10 ms\" }";
 
 pub(super) fn schedule(table: &Table<'_>, injection: &Table<'_>) -> Result<Schedule, FileError> {
@@ -20,7 +20,7 @@ pub(super) fn schedule(table: &Table<'_>, injection: &Table<'_>) -> Result<Sched
         iq: course("iq", Dimension::Current)?,
         speed: course("speed", Dimension::Speed)?,
         load: course("load", Dimension::Torque)?,
-        injection: if injection.is_there() { Some(test_voltage(injection)?) } else { None },
+        injection: if injection.is_present() { Some(test_voltage(injection)?) } else { None },
     })
 }
 
@@ -34,7 +34,7 @@ fn test_voltage(table: &Table<'_>) -> Result<Injection, FileError> {
     })
 }
 
-/// A list of ramps, or one value from the start on.
+/// A list of ramps, or a constant value.
 fn course(entry: &Entry<'_>, dimension: Dimension) -> Result<Profile, FileError> {
     let Some(items) = entry.items() else {
         let wanted = || entry.refuse(FileProblem::Value { wanted: format!("a quantity, or a list of ramps as in [{RAMP}]") });

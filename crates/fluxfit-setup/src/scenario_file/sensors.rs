@@ -1,4 +1,4 @@
-//! `[sensors]`.
+//! The table `[sensors]`.
 
 use fluxfit_drive::scenario::{Adc, CurrentSensors, Sensors};
 use fluxfit_files::{FileError, Problem as FileProblem, toml_table::Table};
@@ -18,7 +18,7 @@ pub(super) fn sensors(table: &Table<'_>) -> Result<Sensors, FileError> {
     })
 }
 
-/// A value for each of the phases a, b, c.
+/// One value per phase, for a, b and c.
 fn of_phases(table: &Table<'_>, key: &str, dimension: Dimension, example: &str, ideal: [f64; 3]) -> Result<[f64; 3], FileError> {
     let Some(entry) = table.get(key) else { return Ok(ideal) };
     let wanted = || entry.refuse(FileProblem::Value { wanted: format!("a list for the phases a, b and c, as in {example}") });
@@ -30,7 +30,7 @@ fn of_phases(table: &Table<'_>, key: &str, dimension: Dimension, example: &str, 
     Ok(values)
 }
 
-/// Bits and range, both or neither.
+/// Bits and range of the converter: both or neither.
 fn adc(table: &Table<'_>) -> Result<Option<Adc>, FileError> {
     match (table.get("adc_bits"), table.quantity("adc_range", Dimension::Current)?) {
         (None, None) => Ok(None),

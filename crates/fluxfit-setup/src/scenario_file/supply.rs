@@ -1,4 +1,4 @@
-//! `[inverter]` and `[control]`.
+//! The tables `[inverter]` and `[control]`.
 
 use fluxfit_drive::scenario::{Control, Inverter, Mechanics, Modulation, Update};
 use fluxfit_files::{FileError, toml_table::Table};
@@ -30,13 +30,13 @@ pub(super) fn control(table: &Table<'_>, mechanics: Mechanics) -> Result<Control
     let current_bandwidth = table.needed("current_bandwidth", Dimension::Frequency)?;
     let speed_bandwidth = match mechanics {
         Mechanics::Free { .. } => table.needed("speed_bandwidth", Dimension::Frequency)?,
-        // No speed loop; the key may stay.
+        // A dynamometer has no speed loop; the key is ignored.
         Mechanics::Dyno => table.quantity("speed_bandwidth", Dimension::Frequency)?.unwrap_or(0.0),
     };
     let usual = Control::new(current_bandwidth, speed_bandwidth, table.needed("max_current", Dimension::Current)?);
     Ok(Control {
         trip_current: table.quantity("trip_current", Dimension::Current)?.unwrap_or(usual.trip_current),
-        field_weakening: table.get("field_weakening").map_or(Ok(usual.field_weakening), |entry| entry.truth())?,
+        field_weakening: table.get("field_weakening").map_or(Ok(usual.field_weakening), |entry| entry.boolean())?,
         ..usual
     })
 }

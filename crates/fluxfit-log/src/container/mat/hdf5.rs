@@ -1,71 +1,35 @@
-//! HDF5 files, as MATLAB 7.3, h5py and PyTables write them by default: the format's older structures, versions 0 to 2 of the
+//! HDF5 files as MATLAB 7.3, h5py and PyTables write them by default: the older structures of the format, versions 0 to 2 of the
 //! superblock, groups with symbol tables or compact links, contiguous or chunked data with deflate and shuffle.
 //!
-//! The subset is small enough to check every length in it; files that need more are refused with the way to write what is read here.
-//! The format: <https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>; what MATLAB adds: the attributes
-//! `MATLAB_class` and `MATLAB_object_decode`, and arrays with their dimensions in reverse order.
+//! This subset is small enough to check every length in it. Other files are refused, and the message states how to write a supported
+//! one. The format: <https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>. MATLAB adds the attributes `MATLAB_class`
+//! and `MATLAB_object_decode`, and stores dimensions in reverse order.
 
 mod groups;
 mod object;
+mod reader;
 mod values;
 
 pub(crate) use values::{Place, Values};
 
-use super::{Array, Contents, Line, Object as Opaque, Source, join, worthwhile};
+use super::array::{Array, Contents, Line, Object as Opaque, is_column, join};
 use crate::{
-    container::{MOST_COLUMNS, damaged, unread},
+    container::{limits::MOST_COLUMNS, random_access::RandomAccess},
     problem::Problem,
 };
 use fluxfit_files::FileError;
 use object::{Object, Type};
+use reader::{Cursor, LONGEST_TEXT, Reader};
 use std::{cell::Cell, collections::HashSet};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// An address that is none.
-const NOWHERE: u64 = u64::MAX;
-
-/// Groups inside of groups at most.
+/// Maximum nesting of groups.
 const DEEPEST: usize = 16;
 
-/// Letters of a label or unit at most.
-const LONGEST_TEXT: usize = 256;
-
-/// Where the file starts: after MATLAB's own header, or at once.
+/// The offset of the HDF5 content: after a header of MATLAB, or 0.
 pub(super) fn signature(start: &[u8]) -> Option<u64> {
     [0, 512].into_iter().find(|&at| start.get(at..).is_some_and(|rest| rest.starts_with(SIGNATURE))).map(|at| at as u64)
-}
-
-/// The file's structures, by address.
-pub(crate) struct Reader {
-    source: Source,
-    base: u64,
-    format: &'static str,
-    /// Bytes that may still be read of structures: what is shared or circular cannot make the reading long.
-    budget: Cell<u64>,
-}
-
-impl Reader {
-    fn bytes(&self, at: u64, length: u64) -> Result<Vec<u8>, FileError> {
-        let left = self.budget.get().checked_sub(length).ok_or_else(|| self.damaged("its structure runs in circles"))?;
-        self.budget.set(left);
-        let at = self.base.checked_add(at).ok_or_else(|| self.damaged("an address in it is impossible"))?;
-        self.source.bytes_at(at, length).map_err(|error| unread(self.format, &error))
-    }
-
-    /// As many of the bytes as there are.
-    fn bytes_up_to(&self, at: u64, length: u64) -> Result<Vec<u8>, FileError> {
-        let left = self.source.length().saturating_sub(self.base).saturating_sub(at);
-        self.bytes(at, length.min(left))
-    }
-
-    fn damaged(&self, fault: &'static str) -> FileError {
-        damaged(self.format, fault)
-    }
-
-    fn newer(&self, what: &'static str) -> FileError {
-        Problem::NewerHdf5 { what }.into()
-    }
 }
 
 /// The arrays of a file, to be read.
@@ -75,8 +39,8 @@ pub(crate) struct File {
 }
 
 impl File {
-    pub(super) fn open(source: Source, base: u64, format: &'static str) -> Result<(Self, Contents<Place>), FileError> {
-        // Structures are read once or twice; the least is for small files that share them.
+    pub(super) fn open(source: RandomAccess, base: u64, format: &'static str) -> Result<(Self, Contents<Place>), FileError> {
+        // Structures are read once or twice; the constant is for small files with shared structures.
         let budget = Cell::new(source.length().saturating_mul(4).saturating_add(1 << 16));
         let reader = Reader { source, base, format, budget };
         let root = superblock(&reader)?;
@@ -99,7 +63,7 @@ impl File {
 fn superblock(reader: &Reader) -> Result<u64, FileError> {
     let bytes = reader.bytes_up_to(0, 128)?;
     let byte = |at: usize| bytes.get(at).copied().unwrap_or(0);
-    // The root's address is, in versions 0 and 1, in the entry that ends the block.
+    // In versions 0 and 1 the address of the root is in the last entry of the block.
     let (sizes, root) = match byte(8) {
         0 => (13, 64),
         1 => (13, 68),
@@ -115,12 +79,12 @@ fn superblock(reader: &Reader) -> Result<u64, FileError> {
 struct Walk<'a> {
     reader: &'a Reader,
     contents: &'a mut Contents<Place>,
-    /// The addresses of those that were entered: links may lead back to them.
+    /// The addresses of groups that were visited: links may lead back to them.
     groups: HashSet<u64>,
 }
 
 impl Walk<'_> {
-    /// A group or an array.
+    /// Visits a group or an array.
     fn object(&mut self, address: u64, path: &str, depth: usize) -> Result<(), FileError> {
         let Some(depth) = depth.checked_sub(1) else { return Ok(()) };
         let object = Object::read(self.reader, address)?;
@@ -130,7 +94,7 @@ impl Walk<'_> {
             return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
         }
         if let (Some(class), true) = (&class, object.has_attribute("MATLAB_object_decode")) {
-            // The texts and functions of MATLAB are objects too, and no logs.
+            // Strings and function handles of MATLAB are objects too.
             if class == "string" || class == "function_handle" {
                 self.contents.unreadable.push(path.to_owned());
             } else {
@@ -146,7 +110,7 @@ impl Walk<'_> {
             if !self.groups.insert(address) {
                 return Ok(());
             }
-            // What starts so is MATLAB's own.
+            // Names that start with # are internal to MATLAB.
             for (name, address) in links.into_iter().filter(|(name, _)| !name.starts_with('#')) {
                 self.object(address, &join(path, &name), depth)?;
             }
@@ -160,7 +124,7 @@ impl Walk<'_> {
         let (first, second) = match dimensions[..] {
             [first] => (first, 1),
             [first, second] => (first, second),
-            // A scalar is no column and not worth a word.
+            // A scalar is not a column, and not reported.
             [] => return Ok(()),
             _ => return self.no_numbers(path),
         };
@@ -171,7 +135,7 @@ impl Walk<'_> {
         let place = |number| Place::new(self.reader, object, number, [first, second], reversed);
         match (kind, class) {
             (Type::Number(_), Some("logical" | "cell")) => self.no_numbers(path),
-            // What netCDF packs so is not what it means.
+            // netCDF stores scaled numbers here, which are not the values.
             (Type::Number(_), _) if object.has_attribute("scale_factor") || object.has_attribute("add_offset") => self.no_numbers(path),
             (Type::Number(number), Some("char")) => {
                 if let Some(owner) = path.strip_suffix(".label") {
@@ -184,7 +148,7 @@ impl Walk<'_> {
             }
             (Type::Number(number), _) => {
                 let (rows, columns) = if reversed { (second, first) } else { (first, second) };
-                if worthwhile(rows, columns) {
+                if is_column(rows, columns) {
                     let unit = match object.text(self.reader, "unit")? {
                         Some(unit) => Some(unit),
                         None => object.text(self.reader, "units")?,
@@ -194,7 +158,7 @@ impl Walk<'_> {
                 }
                 Ok(())
             }
-            // A field of an array of structures: where the field of each is.
+            // A field of an array of structures: references to the field of each.
             (Type::Reference(number), None) => {
                 let Some((owner, field)) = path.rsplit_once('.') else { return Ok(()) };
                 let count = first.saturating_mul(second).min(MOST_COLUMNS as u64) as usize;
@@ -219,38 +183,7 @@ impl Walk<'_> {
     }
 }
 
-/// The line of a vector.
+/// The longer line of an array with one row or column.
 fn longest(first: u64, second: u64, reversed: bool) -> Line {
     if (first >= second) == reversed { Line::Row(0) } else { Line::Column(0) }
-}
-
-/// Little-endian integers, as the structures of the format are.
-struct Cursor<'a>(&'a [u8]);
-
-impl<'a> Cursor<'a> {
-    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(count)?;
-        self.0 = rest;
-        Some(taken)
-    }
-
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.take(N)?.first_chunk().copied()
-    }
-
-    fn u8(&mut self) -> Option<u8> {
-        self.array().map(|[byte]| byte)
-    }
-
-    fn u16(&mut self) -> Option<u16> {
-        self.array().map(u16::from_le_bytes)
-    }
-
-    fn u32(&mut self) -> Option<u32> {
-        self.array().map(u32::from_le_bytes)
-    }
-
-    fn u64(&mut self) -> Option<u64> {
-        self.array().map(u64::from_le_bytes)
-    }
 }

@@ -1,13 +1,17 @@
-//! MAT files of version 4: variables one after the other, each with a header of five integers, its name, and its numbers by columns.
+//! MAT files of version 4: a sequence of variables, each with a header of five integers, its name, and its numbers column by column.
 //!
 //! The format: MathWorks, MAT-File Format, chapter 2.
 
-use super::{Array, Contents, Source, v5, worthwhile};
+use super::{
+    array::{Array, Contents, is_column},
+    v5,
+};
 use crate::{
     container::{
-        MOST_COLUMNS, damaged,
+        fault::{damaged, unread},
+        limits::MOST_COLUMNS,
         number::{Kind, Number},
-        unread,
+        random_access::RandomAccess,
     },
     problem::Problem,
 };
@@ -15,12 +19,12 @@ use fluxfit_files::FileError;
 
 const HEADER: u64 = 20;
 
-/// Bytes of a variable's name at most, with the zero at its end: MATLAB's own limit is 63 letters.
+/// Maximum length of the name of a variable, bytes, with its terminating zero: the limit of MATLAB is 63 letters.
 const LONGEST_NAME: u64 = 64;
 
 struct Variable {
     number: Number,
-    /// 0 is a full matrix, 1 a text, 2 a sparse matrix.
+    /// 0: full matrix, 1: text, 2: sparse matrix.
     matrix: u32,
     rows: u64,
     columns: u64,
@@ -29,10 +33,10 @@ struct Variable {
 }
 
 impl Variable {
-    /// None if no variable starts so.
+    /// None if this is not the header of a variable.
     fn parse(header: &[u8]) -> Option<Self> {
         let words: &[[u8; 4]; 5] = header.as_chunks().0.first_chunk()?;
-        // The type is four decimal digits MOPT, less than 5000, and tells the order of the bytes of all five.
+        // The type is a number with the decimal digits MOPT, less than 5000, which shows the byte order of all five integers.
         let big_endian = u32::from_le_bytes(words[0]) >= 5000;
         let word = |at: usize| if big_endian { u32::from_be_bytes(words[at]) } else { u32::from_le_bytes(words[at]) };
         let (machine, zero, precision, matrix) = (word(0) / 1000, word(0) / 100 % 10, word(0) / 10 % 10, word(0) % 10);
@@ -59,13 +63,13 @@ impl Variable {
 
     /// Bytes of the numbers.
     fn length(&self) -> u64 {
-        // Three factors below 2^32, 2^32 and 2^5 may not fit.
+        // The product of factors below 2^32, 2^32 and 2^5 may overflow.
         let parts = if self.complex { 2 } else { 1 };
         self.rows.saturating_mul(self.columns).saturating_mul(parts * self.number.width() as u64)
     }
 }
 
-/// A version 4 file has no signature: it starts with a variable that has a name and fits into the file.
+/// Whether this is a version 4 file. It has no signature, but starts with a variable that has a valid name and fits into the file.
 pub(super) fn signature(start: &[u8], length: u64) -> bool {
     let Some(variable) = Variable::parse(start) else { return false };
     let name = start.get(HEADER as usize..(HEADER + variable.name_length) as usize);
@@ -77,7 +81,7 @@ fn is_identifier(letters: &[u8]) -> bool {
     letters.first().is_some_and(u8::is_ascii_alphabetic) && letters.iter().all(|letter| letter.is_ascii_alphanumeric() || *letter == b'_')
 }
 
-pub(super) fn open(source: &Source) -> Result<Contents<v5::Place>, FileError> {
+pub(super) fn open(source: &RandomAccess) -> Result<Contents<v5::Place>, FileError> {
     let mut contents = Contents::default();
     let mut at = 0;
     while at < source.length() {
@@ -91,7 +95,7 @@ pub(super) fn open(source: &Source) -> Result<Contents<v5::Place>, FileError> {
             return Err(damaged("MAT", "it ends too early").in_column(&name));
         }
         if variable.matrix == 0 && !variable.complex {
-            if worthwhile(variable.rows, variable.columns) {
+            if is_column(variable.rows, variable.columns) {
                 let place = v5::Place::plain(data, end, variable.number, variable.rows);
                 contents.arrays.push(Array { path: name, unit: None, rows: variable.rows, columns: variable.columns, place });
             }

@@ -1,14 +1,15 @@
-//! MAT files of versions 5 to 7: elements with a tag, those at the top perhaps packed by deflate.
+//! MAT files of versions 5 to 7: elements with a tag; those at the top level may be compressed by deflate.
 //!
-//! A packed array is unpacked while it is read, from its start, and never kept. The format: MathWorks, MAT-File Format, chapter 1.
+//! A compressed array is decompressed while it is read, from its start, and never stored. The format: MathWorks, MAT-File Format,
+//! chapter 1.
 
-use super::{Array, Contents, Line, Object, Source, join, worthwhile};
+use super::array::{Array, Contents, Line, Object, is_column, join};
 use crate::{
     container::{
-        MOST_COLUMNS, damaged,
+        fault::{damaged, unread},
+        limits::MOST_COLUMNS,
         number::{Kind, Number},
-        source::Range,
-        unread,
+        random_access::{RandomAccess, Range},
     },
     problem::Problem,
 };
@@ -19,13 +20,13 @@ use std::io::{self, BufReader, Read};
 const FORMAT: &str = "MAT";
 const HEADER: u64 = 128;
 
-/// Structures inside of structures at most.
+/// Maximum nesting of structures.
 const DEEPEST: usize = 16;
 
-/// Bytes of a name, a label or a class at most; longer ones are cut.
+/// Maximum length of a name, label or class, bytes; longer ones are cut.
 const LONGEST_TEXT: u64 = 256;
 
-/// Bytes that are unpacked at once.
+/// Bytes that are decompressed at once.
 const PIECE: usize = 1 << 16;
 
 /// Whether the integers are big-endian, if this is a file of these versions.
@@ -39,10 +40,10 @@ pub(super) fn signature(start: &[u8]) -> Option<bool> {
 
 /// Where the numbers of an array are, column by column.
 pub(crate) struct Place {
-    /// Of the element at the top that holds them: from, up to.
+    /// Start and end of the top-level element that holds them.
     element: (u64, u64),
     packed: bool,
-    /// Of the first number, in the unpacked element.
+    /// Offset of the first number in the decompressed element.
     offset: u64,
     number: Number,
     rows: u64,
@@ -56,19 +57,19 @@ impl Place {
 
 /// The arrays of a file, to be read.
 pub(crate) struct File {
-    source: Source,
+    source: RandomAccess,
     places: Vec<Place>,
 }
 
 impl File {
-    pub(super) fn new(source: Source, places: Vec<Place>) -> Self {
+    pub(super) fn new(source: RandomAccess, places: Vec<Place>) -> Self {
         Self { source, places }
     }
 
     pub(super) fn line(&self, array: usize, line: Line) -> Result<Values, FileError> {
         let place = &self.places[array];
         let width = place.number.width() as u64;
-        // All of this fits: the array was found to fit into its element.
+        // None of these products overflow: the array was checked to fit into its element.
         let (first, stride) = match line {
             Line::Column(k) => (k * place.rows, 1),
             Line::Row(k) => (k, place.rows),
@@ -80,17 +81,17 @@ impl File {
     }
 }
 
-/// The elements of one line, in their order.
+/// The elements of one line, in order.
 pub(crate) struct Values {
     stream: Stream,
     number: Number,
-    /// Bytes from the end of an element to the next one.
+    /// Bytes between an element and the next one.
     between: u64,
     started: bool,
 }
 
 impl Values {
-    /// The next `count`, or fewer at the end.
+    /// The next `count` elements, fewer at the end.
     pub(super) fn next(&mut self, count: usize) -> Result<Vec<f64>, FileError> {
         let mut values = Vec::with_capacity(count);
         self.fill(&mut values, count).map_err(|error| unread(FORMAT, &error))?;
@@ -122,7 +123,7 @@ impl Values {
     }
 }
 
-/// An element at the top, unpacked.
+/// A top-level element, decompressed.
 struct Stream {
     bytes: Bytes,
     /// Bytes that were read or skipped.
@@ -135,7 +136,7 @@ enum Bytes {
 }
 
 impl Stream {
-    fn new(source: &Source, (from, to): (u64, u64), packed: bool) -> Self {
+    fn new(source: &RandomAccess, (from, to): (u64, u64), packed: bool) -> Self {
         let range = BufReader::new(source.range(from, to));
         let bytes = if packed { Bytes::Packed(Box::new(ZlibDecoder::new(range))) } else { Bytes::Plain(range) };
         Self { bytes, at: 0 }
@@ -171,7 +172,7 @@ impl Stream {
     }
 }
 
-/// Only the bytes that are in the buffer anyway.
+/// Skips only bytes that are in the buffer already.
 trait ConsumeBuffered {
     fn consume_buffered(&mut self, count: usize);
 }
@@ -183,7 +184,7 @@ impl<R: Read> ConsumeBuffered for BufReader<R> {
     }
 }
 
-pub(super) fn open(source: &Source, big_endian: bool) -> Result<Contents<Place>, FileError> {
+pub(super) fn open(source: &RandomAccess, big_endian: bool) -> Result<Contents<Place>, FileError> {
     let mut contents = Contents::default();
     let mut at = HEADER;
     while at < source.length() {
@@ -222,7 +223,7 @@ mod class {
 struct Element {
     kind: u32,
     length: u64,
-    /// Its data are in the tag.
+    /// The data are inside the tag.
     small: Option<[u8; 4]>,
 }
 
@@ -235,7 +236,7 @@ impl Element {
         Ok(Self { kind: first, length: integer(data, big_endian).into(), small: None })
     }
 
-    /// Bytes from the tag's end to the next element, but for those at the top.
+    /// Bytes from the end of the tag to the next element, except at the top level.
     fn padded(&self) -> u64 {
         if self.small.is_some() { 0 } else { self.length.next_multiple_of(8) }
     }
@@ -272,7 +273,7 @@ fn word(stream: &mut Stream, big_endian: bool) -> io::Result<u32> {
     four(stream).map(|bytes| integer(bytes, big_endian))
 }
 
-/// One variable, read from its begin to its end.
+/// Reads one variable from its beginning to its end.
 struct Walk<'a> {
     stream: Stream,
     big_endian: bool,
@@ -282,7 +283,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// An array, from its tag on. `path` is its name, where it has none of its own: at the top it has one.
+    /// Reads an array from its tag. `path` is used as its name if it has none; at the top level it has one.
     fn matrix(&mut self, path: &str, depth: usize) -> Result<(), FileError> {
         let element = self.tag()?;
         if element.kind != kind::MATRIX || element.small.is_some() {
@@ -300,7 +301,7 @@ impl Walk<'_> {
             self.opaque(end)?;
             return self.skip_to(end);
         }
-        // Of the dimensions, two count.
+        // Arrays have two dimensions here.
         let element = self.tag()?;
         let dimensions = self.data(&element, 8)?;
         let dimension = |at: usize| dimensions.get(at..).and_then(|rest| rest.first_chunk()).map(|bytes| integer(*bytes, self.big_endian));
@@ -310,7 +311,7 @@ impl Walk<'_> {
         let name = String::from_utf8_lossy(&name).into_owned();
         let at_top = path.is_empty();
         let path = if at_top { name.as_str() } else { path };
-        // What has no name at the top is MATLAB's own: the data of its objects.
+        // A top-level variable without a name is internal data of MATLAB objects.
         if path.is_empty() {
             return Ok(());
         }
@@ -321,19 +322,19 @@ impl Walk<'_> {
             _ => self.contents.unreadable.extend(at_top.then(|| path.to_owned())),
         }
         self.count()?;
-        // Nothing follows at the top: the numbers need not be unpacked.
+        // At the top level nothing follows, so the numbers need not be decompressed now.
         if at_top { Ok(()) } else { self.skip_to(end) }
     }
 
     fn numbers(&mut self, path: &str, rows: u64, columns: u64) -> Result<(), FileError> {
         let element = self.tag()?;
         let number = element.number(self.big_endian).ok_or_else(|| damaged(FORMAT, "an array has no type").in_column(path))?;
-        if !worthwhile(rows, columns) {
+        if !is_column(rows, columns) {
             return Ok(());
         }
         let length = rows.checked_mul(columns).and_then(|count| count.checked_mul(number.width() as u64));
         if length != Some(element.length) {
-            return Err(damaged(FORMAT, "an array is not as long as it says").in_column(path));
+            return Err(damaged(FORMAT, "an array has another length than it states").in_column(path));
         }
         let offset = if element.small.is_some() { self.stream.at - 4 } else { self.stream.at };
         let place = Place { element: self.element, packed: self.packed, offset, number, rows };
@@ -367,13 +368,13 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The text, for the structure that it labels.
+    /// Reads a label of the structure.
     fn label(&mut self, path: &str) -> Result<(), FileError> {
         let element = self.tag()?;
         let kind = element.kind;
         let bytes = self.data(&element, LONGEST_TEXT)?;
         let text = match kind {
-            // UTF-16, or the older two bytes a letter.
+            // UTF-16, or the older encoding with two bytes per letter.
             4 | 17 => {
                 let units = bytes
                     .as_chunks()
@@ -389,7 +390,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// An object's name, `MCOS`, and its class.
+    /// Reads the name of an object, `MCOS`, and its class.
     fn opaque(&mut self, end: u64) -> Result<(), FileError> {
         let mut texts = Vec::new();
         while texts.len() < 3 && self.stream.at < end {
@@ -404,7 +405,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// What is found must stay little.
+    /// Limits the number of variables.
     fn count(&self) -> Result<(), FileError> {
         let Contents { arrays, labels, objects, unreadable } = &*self.contents;
         if arrays.len() + labels.len() + objects.len() + unreadable.len() > MOST_COLUMNS {
@@ -417,7 +418,7 @@ impl Walk<'_> {
         Element::read(&mut self.stream, self.big_endian).map_err(|error| unread(FORMAT, &error))
     }
 
-    /// The data of the next element, of which at most `most` bytes are kept.
+    /// The data of the next element, cut to `most` bytes.
     fn bytes(&mut self, most: u64) -> Result<Vec<u8>, FileError> {
         let element = self.tag()?;
         self.data(&element, most)
@@ -443,7 +444,7 @@ impl Walk<'_> {
     }
 
     fn skip_to(&mut self, end: u64) -> Result<(), FileError> {
-        let Some(count) = end.checked_sub(self.stream.at) else { return Err(damaged(FORMAT, "an array is longer than it says")) };
+        let Some(count) = end.checked_sub(self.stream.at) else { return Err(damaged(FORMAT, "an array is longer than it states")) };
         self.stream.skip(count).map_err(|error| unread(FORMAT, &error))
     }
 }

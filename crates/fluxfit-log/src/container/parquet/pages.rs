@@ -1,11 +1,13 @@
-//! The sizes that the pages of a Parquet file state, checked before the parquet crate allocates what they say.
+//! Checks the sizes that the pages of a Parquet file state, before the parquet crate allocates memory for them.
 //!
-//! A page's header is a structure in Thrift's compact protocol, followed by the page:
+//! The header of a page is a structure in Thrift's compact protocol, followed by the page:
 //! <https://github.com/apache/parquet-format/blob/master/src/main/thrift/parquet.thrift>, `PageHeader`.
 
-use super::{FORMAT, Source};
 use crate::{
-    container::{damaged, unread},
+    container::{
+        fault::{damaged, unread},
+        random_access::RandomAccess,
+    },
     problem::Problem,
 };
 use fluxfit_files::FileError;
@@ -14,20 +16,23 @@ use parquet::{
     file::metadata::ColumnChunkMetaData,
 };
 
-/// Bytes of a page's header at most: statistics of numbers make it some hundred.
+/// Name of the format in messages.
+pub(super) const FORMAT: &str = "Parquet";
+
+/// Maximum length of the header of a page, bytes: with statistics it has some hundred.
 const LONGEST_HEADER: usize = 4096;
 
-/// Bytes of an unpacked page at most. Writers aim at 1 MB; DuckDB, with the largest, ends at 100 MB.
+/// Maximum size of an uncompressed page, bytes. Writers aim at 1 MB; the largest pages, those of DuckDB, have up to 100 MB.
 const LARGEST_PAGE: u64 = 128 << 20;
 
-/// Structures inside of structures at most; a page's header has two levels.
+/// Maximum nesting of structures; the header of a page has two levels.
 const DEEPEST: usize = 8;
 
-/// Walks along the pages of a column chunk.
+/// Checks the pages of a column chunk.
 ///
 /// # Errors
-/// If a page states that it is larger than it can be.
-pub(super) fn check(source: &Source, chunk: &ColumnChunkMetaData) -> Result<(), FileError> {
+/// If a page states a size that is impossible.
+pub(super) fn check(source: &RandomAccess, chunk: &ColumnChunkMetaData) -> Result<(), FileError> {
     if let codec @ (Compression::LZO | Compression::BROTLI(_)) = chunk.compression() {
         let codec = codec.to_string();
         return Err(Problem::ParquetCodec { codec: codec.split('(').next().unwrap_or_default().to_owned() }.into());
@@ -42,48 +47,48 @@ pub(super) fn check(source: &Source, chunk: &ColumnChunkMetaData) -> Result<(), 
         let count = source.read_at(at, &mut buffer).map_err(|error| unread(FORMAT, &error))?;
         let mut header = Compact { bytes: &buffer[..count] };
         let page = header.page_header().ok_or_else(wrong)?;
-        let packed = u64::try_from(page.packed).map_err(|_| wrong())?;
-        let unpacked = u64::try_from(page.unpacked).map_err(|_| wrong())?;
+        let compressed = u64::try_from(page.compressed).map_err(|_| wrong())?;
+        let uncompressed = u64::try_from(page.uncompressed).map_err(|_| wrong())?;
         let entries = u64::try_from(page.dictionary_entries).map_err(|_| wrong())?;
-        let most = most_unpacked(chunk.compression(), packed).min(LARGEST_PAGE);
-        if unpacked > most || entries > most_entries(chunk.column_type(), unpacked) {
+        let most = most_uncompressed(chunk.compression(), compressed).min(LARGEST_PAGE);
+        if uncompressed > most || entries > most_entries(chunk.column_type(), uncompressed) {
             return Err(wrong());
         }
-        at += (count - header.bytes.len()) as u64 + packed;
+        at += (count - header.bytes.len()) as u64 + compressed;
     }
     Ok(())
 }
 
-/// What `packed` bytes can hold. Snappy copies 64 bytes by 3 at best, LZ4 255 by 1, deflate 258 by 2 bits; a block of Zstandard's may
-/// repeat one byte 128 Ki times by 4, but no numbers of a log worth packing do.
-fn most_unpacked(compression: Compression, packed: u64) -> u64 {
+/// Maximum size of compressed bytes when decompressed. At best Snappy stores 64 bytes in 3, LZ4 255 bytes in 1, deflate 258 bytes in 2
+/// bits. A block of Zstandard may repeat one byte 128 Ki times in 4 bytes, but the numbers of a log do not.
+fn most_uncompressed(compression: Compression, compressed: u64) -> u64 {
     let (factor, more) = match compression {
         Compression::UNCOMPRESSED => (1, 0),
         Compression::SNAPPY => (22, 64),
         Compression::LZ4 | Compression::LZ4_RAW => (256, 64),
         _ => (1032, 1 << 20),
     };
-    packed.saturating_mul(factor).saturating_add(more)
+    compressed.saturating_mul(factor).saturating_add(more)
 }
 
-/// A dictionary's entries lie one after the other.
-fn most_entries(kind: Type, unpacked: u64) -> u64 {
+/// Maximum number of entries of a dictionary of this size.
+fn most_entries(kind: Type, uncompressed: u64) -> u64 {
     match kind {
-        Type::DOUBLE | Type::INT64 => unpacked / 8,
-        Type::FLOAT | Type::INT32 => unpacked / 4,
-        Type::INT96 => unpacked / 12,
-        _ => unpacked,
+        Type::DOUBLE | Type::INT64 => uncompressed / 8,
+        Type::FLOAT | Type::INT32 => uncompressed / 4,
+        Type::INT96 => uncompressed / 12,
+        _ => uncompressed,
     }
 }
 
 #[derive(Default)]
 struct PageHeader {
-    unpacked: i64,
-    packed: i64,
+    uncompressed: i64,
+    compressed: i64,
     dictionary_entries: i64,
 }
 
-/// What is left of a structure in Thrift's compact protocol.
+/// The unread part of a structure in Thrift's compact protocol.
 struct Compact<'a> {
     bytes: &'a [u8],
 }
@@ -110,8 +115,8 @@ impl Compact<'_> {
         let mut id = 0;
         while let Some(kind) = self.field(&mut id)? {
             match (id, kind) {
-                (2, field::I32) => header.unpacked = self.integer()?,
-                (3, field::I32) => header.packed = self.integer()?,
+                (2, field::I32) => header.uncompressed = self.integer()?,
+                (3, field::I32) => header.compressed = self.integer()?,
                 (7, field::STRUCT) => header.dictionary_entries = self.dictionary_header()?,
                 _ => self.skip(kind, DEEPEST)?,
             }
@@ -131,7 +136,7 @@ impl Compact<'_> {
         Some(entries)
     }
 
-    /// The type of the next field, whose number comes into `id`; `Some(None)` at the structure's end.
+    /// The type of the next field, whose number is stored in `id`; `Some(None)` at the end of the structure.
     fn field(&mut self, id: &mut i64) -> Option<Option<u8>> {
         let byte = self.byte()?;
         let kind = byte & 0x0f;
@@ -151,7 +156,7 @@ impl Compact<'_> {
         Some(*first)
     }
 
-    /// Seven bits a byte, the lowest first.
+    /// An unsigned integer: seven bits per byte, the lowest first.
     fn varint(&mut self) -> Option<u64> {
         let mut value = 0;
         for shift in (0..64).step_by(7) {
@@ -164,7 +169,7 @@ impl Compact<'_> {
         None
     }
 
-    /// Signs alternate.
+    /// A signed integer in zigzag encoding.
     fn integer(&mut self) -> Option<i64> {
         self.varint().map(|value| (value >> 1).cast_signed() ^ -(value & 1).cast_signed())
     }
@@ -188,7 +193,7 @@ impl Compact<'_> {
             field::LIST | field::SET => {
                 let byte = self.byte()?;
                 let length = if byte >> 4 == 15 { self.varint()? } else { u64::from(byte >> 4) };
-                // Every element takes a byte at least, truth values too when they are in a list.
+                // Every element takes at least one byte, in a list also a boolean.
                 if length > self.bytes.len() as u64 {
                     return None;
                 }

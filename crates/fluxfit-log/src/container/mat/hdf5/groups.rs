@@ -1,18 +1,18 @@
-//! The names in a group, and the objects that they name.
+//! The links of a group: names and addresses of objects.
 
 use super::{
-    Cursor, NOWHERE, Reader,
     object::{Object, message},
+    reader::{Cursor, NOWHERE, Reader},
 };
-use crate::{container::MOST_COLUMNS, problem::Problem};
+use crate::{container::limits::MOST_COLUMNS, problem::Problem};
 use fluxfit_files::FileError;
 
-/// Bytes of a name at most.
+/// Maximum length of a name, bytes.
 const LONGEST_NAME: u64 = 256;
 
 type Links = Vec<(String, u64)>;
 
-/// None if the object is no group.
+/// The links; none if the object is not a group.
 pub(super) fn links(reader: &Reader, object: &Object) -> Result<Option<Links>, FileError> {
     if let Some(table) = object.message(message::SYMBOL_TABLE) {
         let mut cursor = Cursor(table);
@@ -27,12 +27,12 @@ pub(super) fn links(reader: &Reader, object: &Object) -> Result<Option<Links>, F
         return Ok((!links.is_empty()).then_some(links));
     };
     if is_dense(info) {
-        return Err(reader.newer("a group with its many names in a heap"));
+        return Err(reader.newer("a group with its links in a heap"));
     }
     Ok(Some(object.messages(message::LINK).filter_map(link).collect()))
 }
 
-/// The links are in a fractal heap and no messages.
+/// Whether the links are in a fractal heap instead of messages.
 fn is_dense(info: &[u8]) -> bool {
     let mut cursor = Cursor(info);
     let mut heap = || {
@@ -44,7 +44,7 @@ fn is_dense(info: &[u8]) -> bool {
     heap().is_some_and(|heap| heap != NOWHERE)
 }
 
-/// From a link message; soft and external links lead nowhere here.
+/// The link in a link message; none of a soft or external link.
 fn link(bytes: &[u8]) -> Option<(String, u64)> {
     let mut cursor = Cursor(bytes);
     let (_version, flags) = (cursor.u8()?, cursor.u8()?);
@@ -85,14 +85,14 @@ fn node(reader: &Reader, address: u64, level: Option<u8>, names: (u64, u64), lin
         Some((cursor.u8()?, cursor.u16()?))
     };
     let (found, entries) = head().ok_or_else(wrong)?;
-    // Levels count down to 0: no node is its own descendant.
+    // Levels decrease to 0, so no node is its own descendant.
     if level.is_some_and(|level| level != found) {
         return Err(wrong());
     }
     let entries = u64::from(entries);
     let bytes = reader.bytes(address.saturating_add(24), entries * 16)?;
     for entry in bytes.as_chunks::<16>().0 {
-        // A key, and the child right of it.
+        // A key, and the address of the child to its right.
         let child = Cursor(&entry[8..]).u64().ok_or_else(wrong)?;
         match found.checked_sub(1) {
             Some(below) => node(reader, child, Some(below), names, links)?,

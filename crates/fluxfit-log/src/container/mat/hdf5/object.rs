@@ -1,10 +1,10 @@
-//! Object headers: the messages that say what a group or an array is.
+//! Object headers: the messages that describe a group or an array.
 
-use super::{Cursor, LONGEST_TEXT, NOWHERE, Reader};
+use super::reader::{Cursor, LONGEST_TEXT, NOWHERE, Reader};
 use crate::container::number::{Kind, Number};
 use fluxfit_files::FileError;
 
-/// Blocks of an object header at most.
+/// Maximum number of blocks of an object header.
 const MOST_BLOCKS: usize = 64;
 
 /// Types of messages.
@@ -21,20 +21,20 @@ pub(super) mod message {
     pub(in super::super) const SYMBOL_TABLE: u16 = 0x11;
 }
 
-/// An object's messages.
+/// The messages of an object.
 pub(super) struct Object {
     messages: Vec<(u16, Vec<u8>)>,
 }
 
-/// What the elements of an array are.
+/// The type of the elements of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Type {
     Number(Number),
-    /// Addresses of objects.
+    /// References: addresses of objects.
     Reference(Number),
-    /// Of so many bytes.
+    /// A text of this many bytes.
     Text(usize),
-    /// A length, and an address in a heap.
+    /// A text in a heap: its length and address.
     LongText,
     Other,
 }
@@ -73,7 +73,7 @@ impl Object {
             let bytes = reader.bytes(begin, length)?;
             let body = match (second, next) {
                 (false, _) | (true, 0) => &bytes[..],
-                // Its signature and checksum are around the later blocks.
+                // Later blocks are enclosed by a signature and a checksum.
                 _ => bytes.strip_prefix(b"OCHK").and_then(|rest| rest.get(..rest.len().checked_sub(4)?)).ok_or_else(wrong)?,
             };
             object.block(body, second, ordered, &mut blocks);
@@ -85,7 +85,7 @@ impl Object {
         Ok(object)
     }
 
-    /// Keeps the messages that matter, and notes further blocks.
+    /// Stores the messages that are needed, and the addresses of further blocks.
     fn block(&mut self, bytes: &[u8], second: bool, ordered: bool, blocks: &mut Vec<(u64, u64)>) {
         let mut cursor = Cursor(bytes);
         let mut one = || {
@@ -99,7 +99,7 @@ impl Object {
                 head
             };
             let body = cursor.take(length.into())?;
-            // A shared message is elsewhere: what it says is unknown here.
+            // The content of a shared message is stored elsewhere and not read.
             Some(if flags & 2 != 0 { (0, body) } else { (kind, body) })
         };
         while let Some((kind, body)) = one() {
@@ -142,7 +142,7 @@ impl Object {
         self.attribute(name).is_some()
     }
 
-    /// The text of an attribute, if it has this name and is a text.
+    /// The value of an attribute, if there is one with this name and it is a text.
     pub(super) fn text(&self, reader: &Reader, name: &str) -> Result<Option<String>, FileError> {
         let Some(Attribute { kind, data, .. }) = self.attribute(name) else { return Ok(None) };
         let text = match kind {
@@ -175,7 +175,7 @@ impl<'a> Attribute<'a> {
         cursor.u8()?;
         let lengths = [cursor.u16()?, cursor.u16()?, cursor.u16()?].map(usize::from);
         cursor.take(if version == 3 { 1 } else { 0 })?;
-        // Only the first version pads.
+        // Only version 1 has padding.
         let padded = |length: usize| if version == 1 { length.next_multiple_of(8) } else { length };
         let name = cursor.take(padded(lengths[0]))?;
         let kind = kind(cursor.take(padded(lengths[1]))?)?;
@@ -184,14 +184,14 @@ impl<'a> Attribute<'a> {
     }
 }
 
-/// From a datatype message.
+/// The type in a datatype message.
 fn kind(bytes: &[u8]) -> Option<Type> {
     let mut cursor = Cursor(bytes);
     let (class, bits, size) = (cursor.u8()? & 0x0f, cursor.array::<3>()?, cursor.u32()?);
     let big_endian = bits[0] & 1 != 0;
     let number = |kind| Type::Number(Number { kind, big_endian });
     Some(match class {
-        // Of integers and floating-point numbers, those that use all of their bits.
+        // Only integers and floating-point numbers that use all of their bits.
         0 => {
             let (offset, precision) = (cursor.u16()?, cursor.u16()?);
             if offset != 0 || u32::from(precision) != size.checked_mul(8)? {
@@ -225,7 +225,7 @@ fn kind(bytes: &[u8]) -> Option<Type> {
     })
 }
 
-/// From a dataspace message.
+/// The dimensions in a dataspace message.
 fn dimensions(bytes: &[u8]) -> Option<Vec<u64>> {
     let mut cursor = Cursor(bytes);
     let (version, rank) = (cursor.u8()?, cursor.u8()?);
@@ -233,14 +233,14 @@ fn dimensions(bytes: &[u8]) -> Option<Vec<u64>> {
     (0..rank).map(|_| cursor.u64()).collect()
 }
 
-/// A text of the global heap: its length, the address of the collection, and its number in it.
+/// A text in the global heap, from its length, the address of its collection and its index there.
 fn heap_text(reader: &Reader, data: &[u8]) -> Result<Option<Vec<u8>>, FileError> {
     let mut cursor = Cursor(data);
     let Some((length, address, wanted)) = (|| Some((cursor.u32()?, cursor.u64()?, cursor.u32()?)))() else { return Ok(None) };
     if address == NOWHERE || address == 0 {
         return Ok(None);
     }
-    // The library makes collections of 4 KiB unless a text is longer.
+    // The HDF5 library makes collections of 4 KiB unless a text is longer.
     let bytes = reader.bytes_up_to(address, 1 << 16)?;
     let mut cursor = Cursor(&bytes);
     let mut find = || {

@@ -1,44 +1,50 @@
-//! The numbers of an array: in one piece, or in chunks that are perhaps packed.
+//! The numbers of an array: contiguous, or in chunks that may be compressed.
 
 use super::{
-    Cursor, NOWHERE, Reader, Source,
     object::{Object, message},
+    reader::{Cursor, NOWHERE, Reader},
 };
 use crate::{
-    container::{mat::Line, most_held, number::Number, unread},
+    container::{
+        fault::{damaged, unread},
+        limits::most_held,
+        mat::array::Line,
+        number::Number,
+        random_access::RandomAccess,
+    },
     problem::Problem,
 };
 use flate2::read::ZlibDecoder;
 use fluxfit_files::FileError;
 use std::{collections::HashMap, io::Read};
 
-/// Bytes of an unpacked chunk at most. Writers aim at 16 KiB to 1 MiB.
+/// Maximum size of a decompressed chunk, bytes. Writers aim at 16 KiB to 1 MiB.
 const LARGEST_CHUNK: u64 = 32 << 20;
 
-/// Bytes that are read at once of an array in one piece.
+/// Bytes of a contiguous array that are read at once.
 const PIECE: u64 = 1 << 18;
 
-/// Where the numbers of an array are. An array of one dimension has a second one of 1.
+/// Where the numbers of an array are. A one-dimensional array has a second dimension of 1.
 pub(crate) struct Place {
     number: Number,
     dimensions: [u64; 2],
-    /// The file's dimensions are MATLAB's columns and rows, and not rows and columns.
+    /// The dimensions in the file are columns and rows, as MATLAB writes them, instead of rows and columns.
     reversed: bool,
     layout: Layout,
 }
 
 enum Layout {
-    Here(Source),
-    /// From this address on; none if nothing was written.
+    Here(RandomAccess),
+    /// Contiguous from this address; none if nothing was written.
     Piece(Option<u64>, f64),
     Chunks(Chunks),
 }
 
 struct Chunks {
-    /// The root of the tree of chunks; none if nothing was written.
+    /// The root of the B-tree of chunks; none if nothing was written.
     tree: Option<u64>,
     dimensions: [u64; 2],
-    /// Of the array: one or two.
+    /// Dimensions of the array: one or two.
     rank: usize,
     filters: Vec<Filter>,
     fill: f64,
@@ -57,7 +63,7 @@ impl Place {
         let width = number.width() as u64;
         let length = dimensions[0].checked_mul(dimensions[1]).and_then(|count| count.checked_mul(width)).ok_or_else(wrong)?;
         if length > most_held(reader.source.length()) {
-            return Err(reader.damaged("an array in it is larger than the file can hold"));
+            return Err(reader.damaged("an array in it is larger than the file allows"));
         }
         let fill = object.message(message::FILL_VALUE).and_then(|bytes| fill_value(bytes, number)).unwrap_or(0.0);
         let mut cursor = Cursor(object.message(message::LAYOUT).ok_or_else(wrong)?);
@@ -66,7 +72,7 @@ impl Place {
             (3 | 4, 0) => {
                 let stored = cursor.u16().ok_or_else(wrong)?;
                 let bytes = cursor.take(stored.into()).filter(|bytes| bytes.len() as u64 >= length).ok_or_else(wrong)?;
-                Layout::Here(Source::memory(bytes.to_vec()))
+                Layout::Here(RandomAccess::memory(bytes.to_vec()))
             }
             (3 | 4, 1) => {
                 let (address, stored) = cursor.u64().zip(cursor.u64()).ok_or_else(wrong)?;
@@ -86,7 +92,7 @@ impl Place {
 impl Chunks {
     fn parse(reader: &Reader, object: &Object, mut cursor: Cursor<'_>, number: Number, fill: f64) -> Result<Self, FileError> {
         let wrong = || reader.damaged("the chunks of an array are impossible");
-        // The last dimension is the width of an element.
+        // The last dimension is the size of an element.
         let rank = usize::from(cursor.u8().ok_or_else(wrong)?).checked_sub(1).filter(|rank| (1..=2).contains(rank)).ok_or_else(wrong)?;
         let tree = cursor.u64().ok_or_else(wrong)?;
         let mut dimensions = [1; 2];
@@ -97,7 +103,7 @@ impl Chunks {
         if cursor.u32().map(u64::from) != Some(width) {
             return Err(wrong());
         }
-        // Two numbers below 2^32 and a small one may not fit.
+        // The product of two numbers below 2^32 and a small one may overflow.
         if dimensions[0].saturating_mul(dimensions[1]).saturating_mul(width) > LARGEST_CHUNK {
             return Err(Problem::LargeChunks { most: LARGEST_CHUNK >> 20 }.into());
         }
@@ -106,7 +112,7 @@ impl Chunks {
     }
 }
 
-/// From a filter pipeline message, in the order in which they were applied.
+/// The filters in a filter pipeline message, in the order in which they were applied.
 fn filters(reader: &Reader, bytes: &[u8]) -> Result<Vec<Filter>, FileError> {
     let mut cursor = Cursor(bytes);
     let mut parse = || {
@@ -134,7 +140,7 @@ fn filters(reader: &Reader, bytes: &[u8]) -> Result<Vec<Filter>, FileError> {
     known.collect()
 }
 
-/// From a fill value message, if it has one.
+/// The value in a fill value message, if it has one.
 fn fill_value(bytes: &[u8], number: Number) -> Option<f64> {
     let mut cursor = Cursor(bytes);
     match cursor.u8()? {
@@ -151,19 +157,19 @@ fn fill_value(bytes: &[u8], number: Number) -> Option<f64> {
     values.first().copied()
 }
 
-/// The elements of one line, in their order.
+/// The elements of one line, in order.
 pub(crate) struct Values {
     number: Number,
     format: &'static str,
     from: From,
-    /// The next element, and their number.
+    /// The index of the next element, and the number of elements.
     at: u64,
     end: u64,
 }
 
 enum From {
     Piece {
-        source: Source,
+        source: RandomAccess,
         /// Bytes.
         first: u64,
         /// Elements.
@@ -171,19 +177,19 @@ enum From {
     },
     Nothing(f64),
     Chunks {
-        source: Source,
-        /// By their place along the line.
+        source: RandomAccess,
+        /// Chunks by their position along the line.
         stored: HashMap<u64, Stored>,
         /// Elements of a chunk along the line.
         along: u64,
-        /// Elements in a chunk from its begin to the line, and from an element of the line to the next.
+        /// Elements in a chunk before the line, and from an element of the line to the next.
         first: u64,
         stride: u64,
-        /// Bytes of an unpacked chunk.
+        /// Size of a decompressed chunk, bytes.
         length: u64,
         filters: Vec<Filter>,
         fill: f64,
-        /// The unpacked chunk that holds the element before.
+        /// The decompressed chunk of the element before.
         current: Option<(u64, Vec<u8>)>,
     },
 }
@@ -204,7 +210,7 @@ impl Values {
         let width = place.number.width() as u64;
         let line_of = |dimensions: [u64; 2], fixed: u64| if axis == 1 { (fixed * dimensions[1], 1) } else { (fixed, dimensions[1]) };
         let from = match &place.layout {
-            // The products fit: they are within an array whose length in bytes was found to fit.
+            // The products do not overflow: they are within an array whose size in bytes was checked.
             Layout::Here(source) => {
                 let (first, stride) = line_of(place.dimensions, fixed);
                 From::Piece { source: source.clone(), first: first * width, stride }
@@ -240,7 +246,7 @@ impl Values {
         Ok(Self { number: place.number, format: reader.format, from, at: 0, end: place.dimensions[axis] })
     }
 
-    /// The next `count`, or fewer at the end.
+    /// The next `count` elements, fewer at the end.
     pub(crate) fn next(&mut self, count: usize) -> Result<Vec<f64>, FileError> {
         let end = self.end.min(self.at + count as u64);
         let mut values = Vec::with_capacity((end - self.at) as usize);
@@ -266,7 +272,7 @@ impl Values {
                         None => values.extend(std::iter::repeat_n(*fill, taken as usize)),
                         Some(place) => {
                             if current.as_ref().is_none_or(|(loaded, _)| *loaded != chunk) {
-                                // The old one goes before the new one comes.
+                                // The old chunk is freed before the new one is allocated.
                                 *current = None;
                                 *current = Some((chunk, unpack(source, place, filters, *length, width as usize, self.format)?));
                             }
@@ -284,7 +290,7 @@ impl Values {
     }
 }
 
-/// Every `stride`th number, from the first on.
+/// Appends every `stride`th number, beginning with the first.
 fn strided(number: Number, bytes: &[u8], stride: u64, count: u64, into: &mut Vec<f64>) {
     let width = number.width();
     if stride == 1 {
@@ -296,12 +302,12 @@ fn strided(number: Number, bytes: &[u8], stride: u64, count: u64, into: &mut Vec
     }
 }
 
-/// The chunks that a line meets.
+/// Finds the chunks that a line crosses.
 struct Wanted<'a> {
     reader: &'a Reader,
     chunks: &'a Chunks,
     axis: usize,
-    /// Where they begin across the line.
+    /// Their position across the line.
     across: u64,
     stored: &'a mut HashMap<u64, Stored>,
 }
@@ -317,11 +323,11 @@ impl Wanted<'_> {
             Some((cursor.u8()?, cursor.u16()?))
         };
         let (found, entries) = head().ok_or_else(wrong)?;
-        // Levels count down to 0: no node is its own descendant.
+        // Levels decrease to 0, so no node is its own descendant.
         if level.is_some_and(|level| level != found) {
             return Err(wrong());
         }
-        // A key of a length, a mask, a place for each dimension and one more; and the child right of it.
+        // A key: length, mask, a position for each dimension and one more. Then the address of the child to its right.
         let entry = 8 + 8 * (self.chunks.rank as u64 + 1) + 8;
         let bytes = reader.bytes(address.saturating_add(24), u64::from(entries) * entry)?;
         for entry in bytes.chunks_exact(entry as usize) {
@@ -350,14 +356,14 @@ impl Wanted<'_> {
 }
 
 fn unpack(
-    source: &Source,
+    source: &RandomAccess,
     stored: &Stored,
     filters: &[Filter],
     length: u64,
     width: usize,
     format: &'static str,
 ) -> Result<Vec<u8>, FileError> {
-    let wrong = || crate::container::damaged(format, "a chunk of an array is not as long as it says");
+    let wrong = || damaged(format, "a chunk of an array has another size than it states");
     let mut bytes = source.bytes_at(stored.at, stored.length).map_err(|error| unread(format, &error))?;
     for (at, filter) in filters.iter().enumerate().rev() {
         if stored.unfiltered.checked_shr(at as u32).is_some_and(|rest| rest & 1 != 0) {
@@ -370,7 +376,7 @@ fn unpack(
             }
             Filter::Deflate => {
                 let mut unpacked = Vec::new();
-                // A checksum may have been packed too.
+                // A checksum may follow.
                 let most = length.saturating_add(4);
                 ZlibDecoder::new(&bytes[..]).take(most).read_to_end(&mut unpacked).map_err(|error| unread(format, &error))?;
                 unpacked
@@ -381,7 +387,7 @@ fn unpack(
     if bytes.len() as u64 == length { Ok(bytes) } else { Err(wrong()) }
 }
 
-/// The first bytes of all numbers come first, then their second bytes, and so on.
+/// Reverts the shuffle filter, which stores the first bytes of all numbers, then their second bytes, and so on.
 fn unshuffle(bytes: &[u8], width: usize) -> Vec<u8> {
     let count = bytes.len() / width;
     let mut whole = vec![0; bytes.len()];

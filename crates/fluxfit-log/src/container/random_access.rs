@@ -1,4 +1,4 @@
-//! Bytes that can be read at any place: a file, or what came from standard input.
+//! Bytes that can be read at any offset: a file, or bytes in memory.
 
 use bytes::Bytes;
 use fluxfit_files::{FileError, input};
@@ -12,38 +12,42 @@ use std::{
     sync::{Arc, Mutex},
 };
 
-/// A file or bytes. Copies share them.
+/// A file or bytes in memory; clones share them.
 #[derive(Clone)]
-pub(crate) struct Source {
+pub(crate) struct RandomAccess {
     bytes: Place,
     length: u64,
 }
 
 #[derive(Clone)]
 enum Place {
-    /// Behind a lock, because to seek and to read are two steps.
+    /// In a lock, because seeking and reading are two steps.
     File(Arc<Mutex<File>>),
     Memory(Bytes),
 }
 
-impl Source {
+impl RandomAccess {
+    /// Of a file.
+    ///
     /// # Errors
-    /// If the file cannot tell its length or cannot seek, as a pipe.
+    /// If the file cannot be positioned, as a pipe.
     pub(crate) fn file(mut file: File) -> Result<Self, FileError> {
         let length = file.seek(SeekFrom::End(0)).map_err(|error| FileError::from(input::io_problem("reading", &error)))?;
         Ok(Self { bytes: Place::File(Arc::new(Mutex::new(file))), length })
     }
 
+    /// Of bytes in memory.
     pub(crate) fn memory(bytes: impl Into<Bytes>) -> Self {
         let bytes = bytes.into();
         Self { length: bytes.len() as u64, bytes: Place::Memory(bytes) }
     }
 
+    /// The length in bytes.
     pub(super) fn length(&self) -> u64 {
         self.length
     }
 
-    /// Fills as much of `buffer` as there is from `at` on.
+    /// Fills `buffer` from the offset `at`, up to the end of the bytes.
     pub(super) fn read_at(&self, at: u64, buffer: &mut [u8]) -> io::Result<usize> {
         let left = usize::try_from(self.length.saturating_sub(at)).unwrap_or(usize::MAX);
         let wanted = left.min(buffer.len());
@@ -73,7 +77,7 @@ impl Source {
         }
     }
 
-    /// Exactly `length` bytes from `at` on; nothing is allocated for what is not there.
+    /// Exactly `length` bytes from the offset `at`; nothing is allocated if they do not exist.
     pub(super) fn bytes_at(&self, at: u64, length: u64) -> io::Result<Vec<u8>> {
         if at.checked_add(length).is_none_or(|end| end > self.length) {
             return Err(io::ErrorKind::UnexpectedEof.into());
@@ -83,24 +87,26 @@ impl Source {
         if count == bytes.len() { Ok(bytes) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
     }
 
-    /// The bytes from `at` up to `end`, in their order.
+    /// The bytes from `at` up to `end`, as a reader.
     pub(super) fn range(&self, at: u64, end: u64) -> Range {
         Range { source: self.clone(), at, end: end.min(self.length) }
     }
 }
 
-/// A part of a source, read from its begin.
+/// A part of the bytes, read from its beginning.
 pub(crate) struct Range {
-    source: Source,
+    source: RandomAccess,
     at: u64,
     end: u64,
 }
 
 impl Range {
+    /// Bytes that are not read yet.
     pub(super) fn left(&self) -> u64 {
         self.end.saturating_sub(self.at)
     }
 
+    /// Skips bytes.
     pub(super) fn skip(&mut self, count: u64) {
         self.at = self.at.saturating_add(count);
     }
@@ -115,13 +121,13 @@ impl Read for Range {
     }
 }
 
-impl Length for Source {
+impl Length for RandomAccess {
     fn len(&self) -> u64 {
         self.length
     }
 }
 
-impl ChunkReader for Source {
+impl ChunkReader for RandomAccess {
     type T = BufReader<Range>;
 
     fn get_read(&self, start: u64) -> ParquetResult<Self::T> {

@@ -1,0 +1,52 @@
+//! How this program states what resolves an error or a note of a reader: the options behind each [`Advice`].
+
+use fluxfit_files::Advice;
+
+/// A sentence with the options that do what it advises: `.. (--map uq=COLUMN)`.
+pub(crate) fn with_options(sentence: &str, advice: &[Advice]) -> String {
+    let options: Vec<String> = advice.iter().filter_map(option).collect();
+    if options.is_empty() { sentence.to_owned() } else { format!("{sentence} ({})", options.join(", or ")) }
+}
+
+fn option(advice: &Advice) -> Option<String> {
+    match advice {
+        Advice::MapColumns(pairs) => {
+            let pair = |(channel, header): &(&str, Option<String>)| format!("{channel}={}", header.as_deref().unwrap_or("COLUMN"));
+            let argument = pairs.iter().map(pair).collect::<Vec<_>>().join(",");
+            // Names come from files: what a shell would split or interpret is quoted, and what would not fit a line is left out.
+            let is_plain = argument.chars().all(|c| c.is_alphanumeric() || "_=,.-@".contains(c));
+            let is_printable = argument.chars().all(|c| !c.is_control() && !"\"$`\\".contains(c));
+            match (is_plain, is_printable) {
+                (true, _) => Some(format!("--map {argument}")),
+                (false, true) => Some(format!("--map \"{argument}\"")),
+                (false, false) => Some(format!("--map {}=COLUMN", pairs.first()?.0)),
+            }
+        }
+        Advice::StateUnit { channel, unit } => Some(format!("--unit {channel}={}", unit.unwrap_or("UNIT"))),
+        Advice::StatePolePairs => Some("--pole-pairs N".to_owned()),
+        Advice::FixParameters(keys) => {
+            Some(format!("--fix {}", keys.iter().map(|key| format!("{key}=VALUE")).collect::<Vec<_>>().join(",")))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn advice_becomes_options_that_can_be_pasted() {
+        let map = |pairs: &[(&'static str, Option<&str>)]| {
+            vec![Advice::MapColumns(pairs.iter().map(|(channel, header)| (*channel, header.map(str::to_owned))).collect())]
+        };
+        assert_eq!(with_options("a", &[]), "a");
+        assert_eq!(with_options("a", &map(&[("id", None), ("iq", None)])), "a (--map id=COLUMN,iq=COLUMN)");
+        assert_eq!(with_options("a", &map(&[("ud", Some("u_d")), ("uq", Some("u_q"))])), "a (--map ud=u_d,uq=u_q)");
+        assert_eq!(with_options("a", &map(&[("uq", Some("q-axis voltage"))])), "a (--map \"uq=q-axis voltage\")");
+        assert_eq!(with_options("a", &map(&[("uq", Some("a\n$(b)"))])), "a (--map uq=COLUMN)");
+        let pole_pairs = [Advice::StatePolePairs, Advice::StateUnit { channel: "omega_e", unit: Some("rpm-elec") }];
+        assert_eq!(with_options("a", &pole_pairs), "a (--pole-pairs N, or --unit omega_e=rpm-elec)");
+        assert_eq!(with_options("a", &[Advice::FixParameters(vec!["ld", "rs"])]), "a (--fix ld=VALUE,rs=VALUE)");
+    }
+}

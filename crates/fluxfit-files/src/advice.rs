@@ -1,0 +1,20 @@
+//! What the user can state so that a file is read as meant: facts, from which each interface makes its own option or keyword.
+
+/// A statement that resolves an error or changes what a note reports. Names of channels and parameters are the canonical ones.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Advice {
+    /// Name the columns that hold these channels; where a column of the file resembles the channel, its header.
+    MapColumns(Vec<(&'static str, Option<String>)>),
+    /// State the unit of a channel.
+    StateUnit {
+        /// The channel.
+        channel: &'static str,
+        /// Its unit, where there is a likely one.
+        unit: Option<&'static str>,
+    },
+    /// State the number of pole pairs.
+    StatePolePairs,
+    /// Give the values of these parameters.
+    FixParameters(Vec<&'static str>),
+}

@@ -1,0 +1,148 @@
+//! Units in the headers of columns: `speed_rpm`, `ud [mV]`, `time@s`.
+
+use fluxfit_units::{Dimension, Unit};
+
+/// Whether a header states an electrical or a mechanical speed or angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Rotation {
+    Mechanical,
+    Electrical,
+    Unstated,
+}
+
+/// The unit that a header states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum HeaderUnit<'a> {
+    /// This unit.
+    Known(Unit),
+    /// A text in the place of a unit that is not a unit of the column's dimension.
+    Unknown(&'a str),
+    /// No unit.
+    None,
+}
+
+/// The unit that a part of a header spells. Case does not matter: `ID_MA` is in milliamperes.
+fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit> {
+    let text = text.trim().to_lowercase();
+    let by_rotation = |electrical, mechanical, unstated| match rotation {
+        Rotation::Electrical => electrical,
+        Rotation::Mechanical => mechanical,
+        Rotation::Unstated => unstated,
+    };
+    let unit = match text.as_str() {
+        "s" | "sec" | "seconds" => Unit::Second,
+        // `ms_today` is the time column of a VESC log.
+        "ms" | "msec" | "ms_today" => Unit::Millisecond,
+        "us" | "µs" | "μs" | "usec" => Unit::Microsecond,
+        "v" | "volt" | "volts" => Unit::Volt,
+        "mv" => Unit::Millivolt,
+        "a" | "amp" | "amps" | "ampere" => Unit::Ampere,
+        "ma" => Unit::Milliampere,
+        "erpm" => Unit::RpmElectrical,
+        // Where neither is stated, revolutions are those of the shaft: electrical ones are usually marked as such.
+        "rpm" | "r/min" | "1/min" | "min-1" => by_rotation(Unit::RpmElectrical, Unit::RpmMechanical, Unit::RpmMechanical),
+        "rad/s" | "rad_s" | "rad.s" | "rads" | "rad_per_s" | "radps" => {
+            by_rotation(Unit::RadianPerSecond, Unit::RadianPerSecondMechanical, Unit::RadianPerSecond)
+        }
+        "hz" => by_rotation(Unit::HertzElectrical, Unit::HertzMechanical, Unit::HertzElectrical),
+        "rad" => by_rotation(Unit::Radian, Unit::RadianMechanical, Unit::Radian),
+        "deg" | "degree" | "degrees" | "°" => by_rotation(Unit::Degree, Unit::DegreeMechanical, Unit::Degree),
+        _ => return Unit::from_name(&text, dimension),
+    };
+    (unit.dimension() == dimension).then_some(unit)
+}
+
+/// The name in a header without its unit, and the unit that the header states. The unit is at the end: in brackets, after `@`, or
+/// after `_` or a space. Only in brackets and after `@` is an unknown unit reported: `uq_s` may be the q voltage of the stator.
+pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderUnit<'_>) {
+    let header = header.trim();
+    let rotation = rotation(header);
+    let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
+        let at = header.strip_suffix(close)?.rfind(open)?;
+        Some((&header[..at], &header[at + 1..header.len() - 1]))
+    });
+    if let Some((name, text)) = brackets.or_else(|| header.rsplit_once('@')) {
+        let unit = spelled(text, dimension, rotation);
+        return (name.trim_end_matches([' ', '_']), unit.map_or(HeaderUnit::Unknown(text), HeaderUnit::Known));
+    }
+    // From the left: the unit of `speed_rad_s` is `rad_s`.
+    for (at, _) in header.match_indices(['_', ' ']) {
+        if let Some(unit) = spelled(&header[at + 1..], dimension, rotation) {
+            return (header[..at].trim_end_matches([' ', '_']), HeaderUnit::Known(unit));
+        }
+    }
+    // A header may be a unit and nothing else; a single letter is more likely a phase.
+    match spelled(header, dimension, rotation) {
+        Some(unit) if header.len() > 1 => ("", HeaderUnit::Known(unit)),
+        _ => (header, HeaderUnit::None),
+    }
+}
+
+/// The unit that a row of units, or a container, states for a column with this header.
+pub(crate) fn unit_in_row<'a>(text: &'a str, header: &str, dimension: Dimension) -> HeaderUnit<'a> {
+    let bare = text.trim().trim_matches(['[', ']', '(', ')']);
+    let rotation = match (rotation(text), rotation(header)) {
+        (Rotation::Unstated, of_header) => of_header,
+        (of_text, _) => of_text,
+    };
+    spelled(bare, dimension, rotation).map_or(HeaderUnit::Unknown(text), HeaderUnit::Known)
+}
+
+/// Whether a header states that its speed or angle is electrical.
+pub(crate) fn states_electrical(header: &str) -> bool {
+    rotation(header) == Rotation::Electrical
+}
+
+fn rotation(header: &str) -> Rotation {
+    let lower = header.to_lowercase();
+    let words = || lower.split(|c: char| !c.is_alphanumeric());
+    let electrical = lower.contains("elec") || lower.contains("erpm") || words().any(|word| matches!(word, "e" | "el"));
+    match (lower.contains("mech"), electrical) {
+        (true, false) => Rotation::Mechanical,
+        (false, true) => Rotation::Electrical,
+        _ => Rotation::Unstated,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_state_their_units() {
+        use Dimension::*;
+        let cases = [
+            ("time_s", Time, ("time", HeaderUnit::Known(Unit::Second))),
+            ("stm32_time_ms", Time, ("stm32_time", HeaderUnit::Known(Unit::Millisecond))),
+            ("time@s", Time, ("time", HeaderUnit::Known(Unit::Second))),
+            ("t (µs)", Time, ("t", HeaderUnit::Known(Unit::Microsecond))),
+            ("ms_today", Time, ("", HeaderUnit::Known(Unit::Millisecond))),
+            ("motor_ud_v", Voltage, ("motor_ud", HeaderUnit::Known(Unit::Volt))),
+            ("UD_MV", Voltage, ("UD", HeaderUnit::Known(Unit::Millivolt))),
+            ("uq [pu]", Voltage, ("uq", HeaderUnit::Unknown("pu"))),
+            ("uq@mA", Voltage, ("uq", HeaderUnit::Unknown("mA"))),
+            ("uq_s", Voltage, ("uq_s", HeaderUnit::None)),
+            ("A", Current, ("A", HeaderUnit::None)),
+            ("id [A]", Current, ("id", HeaderUnit::Known(Unit::Ampere))),
+            ("motor_velocity_rpm", Speed, ("motor_velocity", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("omega_e [rpm]", Speed, ("omega_e", HeaderUnit::Known(Unit::RpmElectrical))),
+            ("erpm", Speed, ("", HeaderUnit::Known(Unit::RpmElectrical))),
+            ("speed_elec_rpm", Speed, ("speed_elec", HeaderUnit::Known(Unit::RpmElectrical))),
+            ("motor_speed_mech_rpm", Speed, ("motor_speed_mech", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("speed_rad_s", Speed, ("speed", HeaderUnit::Known(Unit::RadianPerSecond))),
+            ("mech speed rad/s", Speed, ("mech speed", HeaderUnit::Known(Unit::RadianPerSecondMechanical))),
+            ("lu_WS_RPM", Speed, ("lu_WS", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("f [Hz-mech]", Speed, ("f", HeaderUnit::Known(Unit::HertzMechanical))),
+            ("motor_speed", Speed, ("motor_speed", HeaderUnit::None)),
+            ("theta_e [°]", Angle, ("theta_e", HeaderUnit::Known(Unit::Degree))),
+            ("mech_angle_deg", Angle, ("mech_angle", HeaderUnit::Known(Unit::DegreeMechanical))),
+            ("theta_mech (rad)", Angle, ("theta_mech", HeaderUnit::Known(Unit::RadianMechanical))),
+            ("theta_e_rad", Angle, ("theta_e", HeaderUnit::Known(Unit::Radian))),
+            ("speed_rad", Speed, ("speed_rad", HeaderUnit::None)),
+            ("ü)", Speed, ("ü)", HeaderUnit::None)),
+        ];
+        for (header, dimension, expected) in cases {
+            assert_eq!(split_header(header, dimension), expected, "{header}");
+        }
+    }
+}

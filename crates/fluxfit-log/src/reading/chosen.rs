@@ -1,0 +1,57 @@
+//! A column of the file that is read: its channel, its unit and its factor.
+
+use crate::{block::WantedColumn, channel::Channel};
+use fluxfit_files::FileError;
+use fluxfit_units::{Unit, significant, wording::shorten};
+
+/// A column of the file that is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ChosenColumn {
+    pub(super) channel: Channel,
+    /// Index in the table, from 0.
+    pub(super) index: usize,
+    pub(super) header: String,
+    pub(super) unit: Unit,
+    pub(super) pole_pairs: u32,
+    /// Factor besides the unit.
+    pub(super) scale: f64,
+    /// The user did not ask for it: if it cannot be read it is left out, and the log is read without it.
+    pub(super) is_optional: bool,
+}
+
+impl ChosenColumn {
+    /// Converts values of the file to SI units, in place.
+    pub(super) fn to_si(&self, values: &mut [f64]) {
+        self.unit.to_si(values, self.pole_pairs);
+        if self.scale != 1.0 {
+            values.iter_mut().for_each(|value| *value *= self.scale);
+        }
+    }
+
+    /// What the value 1 of the file is in SI units.
+    pub(super) fn factor(&self) -> f64 {
+        let mut one = [1.0];
+        self.to_si(&mut one);
+        one[0]
+    }
+
+    /// The column as the table reads it.
+    pub(super) fn wanted(&self) -> WantedColumn {
+        let is_time = self.channel == Channel::T;
+        WantedColumn { index: self.index, header: self.header.clone(), is_time, is_optional: self.is_optional }
+    }
+}
+
+/// What was read as what: `t = 'time_s' (s), ud = ..`.
+pub(super) fn describe(chosen: &[ChosenColumn]) -> String {
+    let describe_one = |column: &ChosenColumn| {
+        let factor = if column.scale == 1.0 { String::new() } else { format!(", times {}", significant(column.scale, 6)) };
+        format!("{} = '{}' ({}{factor})", column.channel.name(), shorten(&column.header), column.unit.prose())
+    };
+    chosen.iter().map(describe_one).collect::<Vec<_>>().join(", ")
+}
+
+/// The note on an optional column that cannot be read.
+pub(super) fn left_out(channel: Channel, error: &FileError) -> String {
+    format!("{} is left out: {error}", channel.name())
+}

@@ -1,0 +1,304 @@
+//! Finds the columns of a table that make a log, and their units.
+
+use super::{
+    chosen::ChosenColumn,
+    layout::{Layout, is_called},
+    names::{automatic, mapped, only, positions},
+    options::ResolvedOptions,
+    resemblance::{is_reference, propose},
+};
+use crate::{
+    block::ColumnHead,
+    channel::Channel,
+    header_unit::{HeaderUnit, split_header, states_electrical, unit_in_row},
+    note::Note,
+    problem::Problem,
+};
+use Channel::{IA, IB, IC, Id, Iq, OmegaE, T, ThetaE, UA, UB, UC, Ud, Uq};
+use fluxfit_files::{Advice, FileError};
+use fluxfit_units::{Dimension, Unit, wording::shorten};
+
+/// Finds columns by mapping, layout and name.
+pub(super) struct Finder<'a> {
+    pub(super) heads: &'a [ColumnHead],
+    /// Names of columns that hold no numbers.
+    pub(super) unreadable: &'a [String],
+    pub(super) layout: Option<&'static Layout>,
+    pub(super) options: &'a ResolvedOptions,
+}
+
+impl Finder<'_> {
+    /// The names of all columns.
+    pub(super) fn names(&self) -> Vec<String> {
+        self.heads.iter().map(|head| head.name.clone()).collect()
+    }
+
+    /// The columns that a log needs: time, voltages, currents and speed, or the phase quantities and the angle that these are
+    /// computed from. Then the further ones that the user mapped.
+    pub(super) fn needed(&self) -> Result<Vec<(Channel, usize)>, FileError> {
+        let mut found: Vec<(Channel, usize)> = Vec::new();
+        let mut missing: Vec<Channel> = Vec::new();
+        let mut take = |channel: Channel, index: Option<usize>| match index {
+            Some(index) => found.push((channel, index)),
+            None => missing.push(channel),
+        };
+        // An error about the angle counts only if the angle is needed.
+        let theta = self.index(ThetaE);
+        match self.index(T)? {
+            None if self.sample_period().is_some() => {}
+            index => take(T, index),
+        }
+        let mut has_phases = false;
+        for (dq, phases) in [([Ud, Uq], [UA, UB, UC]), ([Id, Iq], [IA, IB, IC])] {
+            let indices = self.pair(dq)?;
+            let is_complete = indices.iter().all(Option::is_some);
+            let of_phases = if is_complete { [None; 3] } else { [self.index(phases[0])?, self.index(phases[1])?, self.index(phases[2])?] };
+            if let [Some(_), Some(_), third] = of_phases {
+                has_phases = true;
+                phases.into_iter().zip(of_phases).take(2).for_each(|(channel, index)| take(channel, index));
+                if third.is_some() {
+                    take(phases[2], third);
+                }
+            } else {
+                dq.into_iter().zip(indices).for_each(|(channel, index)| take(channel, index));
+            }
+        }
+        let speed = self.index(OmegaE)?;
+        let has_angle = matches!(theta, Ok(Some(_)));
+        if speed.is_some() || !has_angle {
+            take(OmegaE, speed);
+        }
+        // The angle can be computed from currents in phase and in dq quantities.
+        let currents = [self.index(IA)?, self.index(IB)?];
+        let from_currents =
+            has_phases && !has_angle && currents.iter().all(Option::is_some) && self.index(Id)?.is_some() && self.index(Iq)?.is_some();
+        if from_currents {
+            [IA, IB, IC]
+                .into_iter()
+                .zip([currents[0], currents[1], self.index(IC)?])
+                .filter(|(_, index)| index.is_some())
+                .for_each(|(channel, index)| take(channel, index));
+        } else if has_phases || speed.is_none() && has_angle {
+            take(ThetaE, theta?);
+        }
+        if !missing.is_empty() {
+            return Err(self.refuse_missing(&missing, &found));
+        }
+        self.add_mapped(&mut found)?;
+        for (place, (second, index)) in found.iter().enumerate() {
+            if let Some((first, _)) = found[..place].iter().find(|(_, earlier)| earlier == index) {
+                let shared = Problem::Shared { first: first.name(), second: second.name() };
+                return Err(FileError::from(shared).in_column(&self.heads[*index].name));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Adds the columns that the user mapped and that are not among those found.
+    fn add_mapped(&self, found: &mut Vec<(Channel, usize)>) -> Result<(), FileError> {
+        for channel in Channel::all() {
+            if let Some(header) = self.options.header(channel)
+                && found.iter().all(|(taken, _)| *taken != channel)
+            {
+                found.push((channel, mapped(channel, header, &self.names())?));
+            }
+        }
+        Ok(())
+    }
+
+    /// The columns of both axes. If neither voltage is there, the two voltage references, which most drives log; never a reference
+    /// together with a voltage of another kind.
+    pub(super) fn pair(&self, [d, q]: [Channel; 2]) -> Result<[Option<usize>; 2], FileError> {
+        let indices = [self.index(d)?, self.index(q)?];
+        let reference = |channel: Channel| {
+            let wanted = format!("{}_ref", channel.name());
+            self.heads.iter().position(|head| split_header(&head.name, channel.dimension()).0.eq_ignore_ascii_case(&wanted))
+        };
+        match indices {
+            [None, None] if d == Ud => Ok(match [reference(d), reference(q)] {
+                both @ [Some(_), Some(_)] => both,
+                _ => indices,
+            }),
+            _ => Ok(indices),
+        }
+    }
+
+    /// The time between rows, s, of a log without a time column, from the options or the layout.
+    fn sample_period(&self) -> Option<f64> {
+        self.options.sample_period.or(self.layout.and_then(|layout| layout.sample_period))
+    }
+
+    /// The column of a channel: the mapped one; else the layout's; else the one with the canonical name, or the time column of an MDF
+    /// or MATLAB file.
+    pub(super) fn index(&self, channel: Channel) -> Result<Option<usize>, FileError> {
+        let names = self.names();
+        if let Some(header) = self.options.header(channel) {
+            return mapped(channel, header, &names).map(Some);
+        }
+        if let Some(column) = self.layout.and_then(|layout| layout.column(channel)) {
+            let tiers = [positions(&names, |name| name == column.header), positions(&names, |name| is_called(name, column.header))];
+            if let Some(index) = only(channel, &names, tiers)? {
+                return Ok(Some(index));
+            }
+        }
+        let found = automatic(channel, self.heads)?;
+        let is_time = || self.heads.iter().position(|head| head.is_time);
+        Ok(if channel == T { found.or_else(is_time) } else { found })
+    }
+
+    /// A column with its unit. If SI is assumed because no unit is stated, the column is added to `unstated`.
+    pub(super) fn column(
+        &self,
+        channel: Channel,
+        index: usize,
+        is_optional: bool,
+        unstated: &mut Vec<(Channel, String)>,
+        notes: &mut Vec<Note>,
+    ) -> Result<ChosenColumn, FileError> {
+        let head = &self.heads[index];
+        Ok(ChosenColumn {
+            channel,
+            index,
+            header: head.name.clone(),
+            unit: self.unit(channel, head, unstated, notes)?,
+            pole_pairs: self.options.pole_pairs.unwrap_or(1),
+            scale: self.options.factor(channel),
+            is_optional,
+        })
+    }
+
+    /// An optional column that the user did not map, if the file has it and it is not read as another channel.
+    pub(super) fn optional(
+        &self,
+        channel: Channel,
+        taken: &[ChosenColumn],
+        notes: &mut Vec<Note>,
+    ) -> Result<Option<ChosenColumn>, FileError> {
+        let Some(index) = self.index(channel)?.filter(|index| taken.iter().all(|column| column.index != *index)) else {
+            if let Some(unit) = self.options.unit(channel) {
+                let sentence = format!("the unit stated for {}, {}, is not used: the log has no such column", channel.name(), unit.name());
+                notes.push(Note::with_advice(sentence, Advice::MapColumns(vec![(channel.name(), None)])));
+            }
+            return Ok(None);
+        };
+        // Its header is canonical or states the unit, so nothing is added to the unstated units.
+        let column = self.column(channel, index, true, &mut Vec::new(), notes);
+        column.map(Some).map_err(|error| error.in_column(&self.heads[index].name))
+    }
+
+    fn refuse_missing(&self, missing: &[Channel], found: &[(Channel, usize)]) -> FileError {
+        // Columns that are used already are not proposed for another channel, and references not for measured currents.
+        let present = self.names();
+        let mut free = present.clone();
+        found.iter().for_each(|(_, index)| free[*index].clear());
+        let currents: Vec<Channel> = missing.iter().copied().filter(|channel| channel.dimension() == Dimension::Current).collect();
+        let mut references = Vec::new();
+        for name in free.iter_mut().filter(|name| is_reference(name)) {
+            if currents.iter().any(|channel| propose(*channel, std::slice::from_ref(name)).is_some()) {
+                references.push(std::mem::take(name));
+            }
+        }
+        let resembles = |name: &&String| missing.iter().any(|channel| propose(*channel, std::slice::from_ref(*name)).is_some());
+        let unreadable: Vec<String> = self.unreadable.iter().filter(resembles).cloned().collect();
+        let mut proposals = Vec::new();
+        for channel in missing {
+            if let Some(index) = propose(*channel, &free) {
+                proposals.push((channel.name(), std::mem::take(&mut free[index])));
+            }
+        }
+        let missing = missing.iter().map(|channel| channel.name()).collect();
+        Problem::Missing { missing, present, proposals, references, unreadable }.into()
+    }
+
+    /// The unit of a column: the stated one; else the layout's; else the one in the header or the row of units; else SI.
+    pub(super) fn unit(
+        &self,
+        channel: Channel,
+        head: &ColumnHead,
+        unstated: &mut Vec<(Channel, String)>,
+        notes: &mut Vec<Note>,
+    ) -> Result<Unit, FileError> {
+        let (dimension, canonical, si, name) = (channel.dimension(), channel.name(), channel.unit(), head.name.as_str());
+        if dimension == Dimension::Ratio {
+            return Ok(si);
+        }
+        let (stem, in_name) = split_header(name, dimension);
+        let named = match (in_name, head.unit.as_deref()) {
+            (HeaderUnit::Known(_), _) | (_, None) => in_name,
+            (_, Some(unit)) => unit_in_row(unit, name, dimension),
+        };
+        // Of a structure, the field.
+        let field = name.rsplit_once('.').map_or(name, |(_, field)| field);
+        let is_canonical = field.eq_ignore_ascii_case(canonical);
+        let of_layout = self.layout.and_then(|layout| layout.column(channel)).filter(|column| is_called(name, column.header));
+        let stated = self.options.unit(channel);
+        let unit = match (stated, of_layout, named) {
+            (Some(unit), ..) => unit,
+            // A unit in the header is more reliable than the usual unit of a layout.
+            (None, Some(_), HeaderUnit::Known(unit)) if !is_canonical => unit,
+            (None, Some(column), _) if head.unit.is_none() => column.unit,
+            (None, _, HeaderUnit::Known(unit)) if !is_canonical || head.unit.is_some() => unit,
+            _ if is_canonical && head.unit.is_none() => si,
+            (None, _, HeaderUnit::Unknown(text)) => {
+                let units = Unit::of(dimension).map(Unit::name).collect();
+                return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), units }.into());
+            }
+            _ => {
+                unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));
+                return Ok(si);
+            }
+        };
+        if unit.is_mechanical() && self.options.pole_pairs.is_none() {
+            return Err(needs_pole_pairs(channel, unit).into());
+        }
+        let column = format!("{canonical}: column '{}'", shorten(name));
+        let turning = matches!(unit, Unit::RadianPerSecond | Unit::HertzElectrical | Unit::Radian | Unit::Degree);
+        let is_sure = stated.is_some() || is_canonical || of_layout.is_some() || states_electrical(name);
+        if turning && !is_sure {
+            let sentence = format!("{column} read as {}; if it is mechanical, state its unit", unit.prose());
+            let advice = Advice::StateUnit { channel: canonical, unit: Some(mechanical(unit).name()) };
+            notes.push(Note::with_advice(sentence, advice));
+        } else if unit != si {
+            let pole_pairs = self.options.pole_pairs.filter(|_| unit.is_mechanical());
+            let with = pole_pairs.map(|n| format!(" with {n} pole pair{}", if n == 1 { "" } else { "s" }));
+            notes.push(format!("{column} read as {}{}", unit.prose(), with.unwrap_or_default()).into());
+        } else if self.options.header(channel).is_none() && of_layout.is_none() && ![stem, field].contains(&canonical) {
+            notes.push(format!("{column} used").into());
+        }
+        Ok(unit)
+    }
+}
+
+fn needs_pole_pairs(channel: Channel, unit: Unit) -> Problem {
+    let what = if channel.dimension() == Dimension::Angle { "angle" } else { "speed" };
+    let electrical = electrical(unit);
+    Problem::PolePairs {
+        what,
+        channel: channel.name(),
+        unit: unit.prose(),
+        electrical: electrical.name(),
+        electrical_unit: electrical.prose(),
+    }
+}
+
+/// The electrical unit that corresponds to a mechanical one.
+fn electrical(mechanical: Unit) -> Unit {
+    match mechanical {
+        Unit::RpmMechanical => Unit::RpmElectrical,
+        Unit::HertzMechanical => Unit::HertzElectrical,
+        Unit::RadianMechanical => Unit::Radian,
+        Unit::DegreeMechanical => Unit::Degree,
+        _ => Unit::RadianPerSecond,
+    }
+}
+
+/// The mechanical unit that corresponds to an electrical one.
+fn mechanical(electrical: Unit) -> Unit {
+    match electrical {
+        Unit::RpmElectrical => Unit::RpmMechanical,
+        Unit::HertzElectrical => Unit::HertzMechanical,
+        Unit::Radian => Unit::RadianMechanical,
+        Unit::Degree => Unit::DegreeMechanical,
+        _ => Unit::RadianPerSecondMechanical,
+    }
+}

@@ -1,0 +1,147 @@
+//! The mapping file that an inspection proposes.
+
+use super::{
+    inspect::{InspectedColumn, Inspection},
+    mapping::Park,
+    options::LogOptions,
+};
+use crate::channel::Channel;
+use std::fmt::Write;
+
+impl Inspection {
+    /// A mapping file with the channels that were recognized, and entries to complete for the others.
+    pub fn mapping(&self, options: &LogOptions) -> String {
+        let mut text = "# A mapping file: which columns of these logs are which channels.\n".to_owned();
+        let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
+        text += &pole_pairs
+            .map_or("# pole_pairs = 4            # needed for a mechanical speed or angle\n".to_owned(), |n| format!("pole_pairs = {n}\n"));
+        let period = options.mapping.sample_period.or(self.layout.and_then(|layout| layout.sample_period));
+        match period {
+            Some(period) => _ = writeln!(text, "sample_period = {period:?}       # s"),
+            None => text += "# sample_period = \"0.1 ms\"  # needed without a time column\n",
+        }
+        let park = options.mapping.park;
+        if park != Park::default() {
+            let _ = writeln!(text, "park = \"{}\"", park.name());
+        }
+        text +=
+            "# park = \"amplitude-invariant\"  # dq values are peak values of the phases; or \"power-invariant\", \"rms\"\n\n[columns]\n";
+        text += "# also possible: scale = 0.01, sign = -1\n";
+        for channel in Channel::NEEDED {
+            let found =
+                |of: fn(&InspectedColumn) -> Option<&'static str>| self.columns.iter().find(|column| of(column) == Some(channel.name()));
+            let (taken, resembling) = (found(|column| column.channel), found(|column| column.resembles));
+            if taken.is_some_and(|column| column.is_time) {
+                text += "# t: each group of channels has its own time\n";
+                continue;
+            }
+            if taken.is_none() && (channel == Channel::T && period.is_some() || self.is_computed(channel)) {
+                continue;
+            }
+            let (column, remark) = match (taken, resembling) {
+                (Some(column), _) => (column.header.as_str(), ""),
+                (None, Some(column)) if column.read_as.is_none() => {
+                    (column.header.as_str(), "  # by its name; check it, and add unit = .. unless it is SI")
+                }
+                (None, Some(column)) => (column.header.as_str(), "  # by its name; check it"),
+                (None, None) => ("", "  # no column resembles it"),
+            };
+            // Of a column that only resembles the channel, the unit only if its header states it.
+            let read_as = taken.or(resembling).and_then(|column| column.read_as);
+            let unit =
+                if taken.is_some() { Some(read_as.map_or(channel.unit().name(), |(unit, _)| unit)) } else { read_as.map(|(unit, _)| unit) };
+            let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default() + &factor(channel, options);
+            let _ = writeln!(text, "{} = {{ column = {}{unit} }}{remark}", channel.name(), quoted(column));
+        }
+        for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
+            if let Some(column) = self.columns.iter().find(|column| column.channel == Some(channel.name())) {
+                let unit = column.read_as.filter(|(unit, _)| *unit != "1").map(|(unit, _)| format!(", unit = \"{unit}\""));
+                let unit = unit.unwrap_or_default() + &factor(channel, options);
+                let _ = writeln!(text, "{} = {{ column = {}{unit} }}", channel.name(), quoted(&column.header));
+            }
+        }
+        text
+    }
+
+    /// Whether a dq quantity or the speed is computed from phase quantities and an angle that the file has.
+    fn is_computed(&self, channel: Channel) -> bool {
+        let has = |name: &str| self.columns.iter().any(|column| column.channel == Some(name));
+        match channel {
+            Channel::Ud | Channel::Uq => has("ua") && has("theta_e"),
+            Channel::Id | Channel::Iq => has("ia") && has("theta_e"),
+            Channel::OmegaE => has("theta_e"),
+            _ => false,
+        }
+    }
+}
+
+/// Scale and sign from the mapping file that was given.
+fn factor(channel: Channel, options: &LogOptions) -> String {
+    let factor = options.mapping.columns.iter().find(|column| column.channel == channel).map_or(1.0, |column| column.factor);
+    let scale = if factor.abs() == 1.0 { String::new() } else { format!(", scale = {:?}", factor.abs()) };
+    scale + if factor < 0.0 { ", sign = -1" } else { "" }
+}
+
+/// A text in TOML's quotes.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::{inspect::inspect, mapping::Mapping};
+
+    fn inspected(text: &str, options: &LogOptions) -> Inspection {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        inspect(file.path(), options).unwrap()
+    }
+
+    #[test]
+    fn a_mapping_that_was_written_reads_the_same_log() {
+        let rows: String = (0..30).map(|row| format!("{};3;4;1;2;{}\n", 100 * row, 500 + row)).collect();
+        let text = format!("zeit [ms];V d;V q;motor_id;i \"q\";speed_rpm\n{rows}");
+        let map = [("t", "zeit [ms]"), ("ud", "V d"), ("uq", "V q"), ("id", "motor_id"), ("iq", "i \"q\""), ("omega_e", "speed_rpm")];
+        let options =
+            LogOptions { map: map.iter().map(|(a, b)| ((*a).into(), (*b).into())).collect(), pole_pairs: Some(4), ..LogOptions::default() };
+        let first = inspected(&text, &options);
+        let mapping = first.mapping(&options);
+        let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
+        let second = inspected(&text, &again);
+        assert_eq!(second.log.unwrap().log, first.log.unwrap().log, "{mapping}");
+    }
+
+    #[test]
+    fn a_written_mapping_keeps_what_was_given() {
+        let rows: String = (0..30).map(|row| format!("{row},3,4,1,2,{}\n", 500 + row)).collect();
+        let given = "park = \"power-invariant\"\n[columns]\nud = { column = \"a\", scale = 0.01, sign = -1 }\nuq = \"b\"\n";
+        let options = LogOptions { mapping: Mapping::parse("m.toml", given.as_bytes()).unwrap(), ..LogOptions::default() };
+        let first = inspected(&format!("t,a,b,id,iq,omega_e\n{rows}"), &options);
+        let mapping = first.mapping(&options);
+        let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
+        assert_eq!(inspected(&format!("t,a,b,id,iq,omega_e\n{rows}"), &again).log.unwrap().log, first.log.unwrap().log, "{mapping}");
+    }
+
+    /// A column that only resembles a channel keeps the unit of its header.
+    #[test]
+    fn a_proposed_column_keeps_the_unit_of_its_header() {
+        let found = inspected("Zeit [ms],Motor.Ud,Motor.Speed_rpm\n1,2,3\n2,2,3\n", &LogOptions::default());
+        let mapping = found.mapping(&LogOptions::default());
+        assert!(
+            mapping.contains("\nomega_e = { column = \"Motor.Speed_rpm\", unit = \"rpm-mech\" }  # by its name; check it\n"),
+            "{mapping}"
+        );
+    }
+
+    #[test]
+    fn a_table_that_is_not_a_log_can_be_inspected() {
+        let found = inspected("u_d,motor_speed,i_d\n1,2,3\n", &LogOptions::default());
+        assert!(found.log.is_err());
+        assert_eq!(found.columns.iter().map(|column| column.resembles).collect::<Vec<_>>(), [Some("ud"), Some("omega_e"), Some("id")]);
+        assert_eq!(found.columns[1].range, Some([2.0, 2.0]));
+        let mapping = found.mapping(&LogOptions::default());
+        assert!(mapping.contains("\nuq = { column = \"\" }  # no column resembles it\n"), "{mapping}");
+        assert!(mapping.contains("\nud = { column = \"u_d\" }  # by its name; check it, and add unit = .. unless it is SI\n"), "{mapping}");
+    }
+}

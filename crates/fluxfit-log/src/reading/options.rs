@@ -1,0 +1,99 @@
+//! What the user states about a log.
+
+use super::{mapping::Mapping, selection::MOST_ROWS};
+use crate::{argument::wrong_unit, channel::Channel, problem::Problem};
+use fluxfit_files::FileError;
+use fluxfit_units::Unit;
+
+/// What is known about a log besides its file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LogOptions {
+    /// Channels under other names in the file: canonical name (or `omega`, `theta`) and header, as from
+    /// [`parse_map`](crate::parse_map).
+    pub map: Vec<(String, String)>,
+    /// Units of channels whose header does not state them: canonical name and unit, as from [`parse_unit`](crate::parse_unit).
+    pub units: Vec<(String, Unit)>,
+    /// Number of pole pairs, which converts a mechanical speed or angle.
+    pub pole_pairs: Option<u32>,
+    /// A mapping file; the three fields above override it.
+    pub mapping: Mapping,
+}
+
+/// The options with their names resolved to channels, and mapping file and arguments merged.
+#[derive(Clone)]
+pub(super) struct ResolvedOptions {
+    headers: Vec<(Channel, String)>,
+    units: Vec<(Channel, Unit)>,
+    factors: Vec<(Channel, f64)>,
+    /// Number of pole pairs.
+    pub(super) pole_pairs: Option<u32>,
+    /// Time between rows, s, where no column has the time.
+    pub(super) sample_period: Option<f64>,
+    /// Maximum number of rows that are used of a longer log.
+    pub(super) most_rows: usize,
+}
+
+impl ResolvedOptions {
+    /// Resolves names.
+    ///
+    /// # Errors
+    /// If a name is not a channel or is given twice, a unit does not fit its channel, or the number of pole pairs is zero.
+    pub(super) fn resolve(options: &LogOptions) -> Result<Self, FileError> {
+        if options.pole_pairs == Some(0) {
+            return Err(Problem::ZeroPolePairs.into());
+        }
+        let mut headers: Vec<(Channel, String)> = Vec::new();
+        for (name, header) in &options.map {
+            let channel = Channel::from_name(name)?;
+            if headers.iter().any(|(earlier, _)| *earlier == channel) {
+                return Err(Problem::Twice { channel: channel.name() }.into());
+            }
+            headers.push((channel, header.trim().to_owned()));
+        }
+        let mut units: Vec<(Channel, Unit)> = Vec::new();
+        for (name, unit) in &options.units {
+            let channel = Channel::from_name(name)?;
+            if unit.dimension() != channel.dimension() {
+                return Err(wrong_unit(channel, unit.name()));
+            }
+            if units.iter().any(|(earlier, _)| *earlier == channel) {
+                return Err(Problem::Twice { channel: channel.name() }.into());
+            }
+            units.push((channel, *unit));
+        }
+        let Mapping { pole_pairs, sample_period, park, columns } = &options.mapping;
+        let mut factors: Vec<(Channel, f64)> =
+            [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(|channel| (channel, park.factor())).to_vec();
+        for column in columns {
+            if let Some(header) = column.header.clone().filter(|_| headers.iter().all(|(stated, _)| *stated != column.channel)) {
+                headers.push((column.channel, header));
+            }
+            if let Some(unit) = column.unit.filter(|_| units.iter().all(|(stated, _)| *stated != column.channel)) {
+                units.push((column.channel, unit));
+            }
+            factors.push((column.channel, column.factor));
+        }
+        let pole_pairs = options.pole_pairs.or(*pole_pairs);
+        Ok(Self { headers, units, factors, pole_pairs, sample_period: *sample_period, most_rows: MOST_ROWS })
+    }
+
+    /// The header that a channel is mapped to.
+    pub(super) fn header(&self, channel: Channel) -> Option<&str> {
+        self.headers.iter().find(|(stated, _)| *stated == channel).map(|(_, header)| header.as_str())
+    }
+
+    /// Whether any channel is mapped.
+    pub(super) fn has_headers(&self) -> bool {
+        !self.headers.is_empty()
+    }
+
+    /// The unit stated for a channel.
+    pub(super) fn unit(&self, channel: Channel) -> Option<Unit> {
+        self.units.iter().find(|(stated, _)| *stated == channel).map(|(_, unit)| *unit)
+    }
+
+    /// The factor besides the unit: scale, sign and scaling of the dq transform.
+    pub(super) fn factor(&self, channel: Channel) -> f64 {
+        self.factors.iter().filter(|(stated, _)| *stated == channel).map(|(_, factor)| factor).product()
+    }
+}

@@ -1,0 +1,200 @@
+//! Reading: from a table to a log.
+//!
+//! ```text
+//! log = table -> layout -> columns -> rows, in SI -> common instants -> repairs -> dq, speed -> checked
+//! ```
+
+use super::{
+    align,
+    channels::Channels,
+    chosen::{self, ChosenColumn},
+    columns,
+    gather::{Gathered, gather},
+    layout::Layout,
+    lines::Lines,
+    options::{LogOptions, ResolvedOptions},
+    phases, plausibility, repair,
+    table::Table,
+};
+use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
+use fluxfit::log::{Columns, Log, Segment, Source, check_values};
+use fluxfit_files::{
+    FileError,
+    input::{self, Bytes},
+};
+use fluxfit_units::significant;
+use std::{
+    io::{Cursor, Read},
+    path::Path,
+};
+
+/// A log, and what had to be inferred to read it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadLog {
+    /// The log, in SI units. Its [`source`](Log::source) has what was read as what, and the sentences of the notes.
+    pub log: Log,
+    /// The recognized layout, if it is one of [`LAYOUTS`](crate::LAYOUTS).
+    pub layout: Option<&'static Layout>,
+    /// What was inferred, repaired or looks wrong.
+    pub notes: Vec<Note>,
+}
+
+/// Reads a log; the path `-` is standard input.
+///
+/// # Errors
+/// If the file cannot be read, or as [`parse_log`].
+pub fn read_log(path: &Path, options: &LogOptions) -> Result<ReadLog, FileError> {
+    read_log_with_progress(path, options, |_| ())
+}
+
+/// Reads a log and reports progress: of a file of text, `progress` is called with the number of further bytes read, several times a
+/// second.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_log_with_progress(path: &Path, options: &LogOptions, progress: impl Fn(u64) + 'static) -> Result<ReadLog, FileError> {
+    let options = ResolvedOptions::resolve(options)?;
+    let read = input::open(path).and_then(|bytes| Table::open(bytes.with_progress(progress))).and_then(|table| read(table, &options));
+    read.map_err(|error| error.in_file(&input::name(path)))
+}
+
+/// Reads a log from a socket, a pipe or anything else that can be read to its end; `name` stands for the file in messages. Text is
+/// read in blocks, other formats are read into memory first.
+///
+/// A drive that sends its rows while it runs needs no file format: push them into a [`LogBuilder`](fluxfit::log::LogBuilder).
+///
+/// ```
+/// use fluxfit_log::{LogOptions, read_log_from};
+/// use std::{io::Write, net::{TcpListener, TcpStream}};
+///
+/// let listener = TcpListener::bind("127.0.0.1:0")?;
+/// let mut drive = TcpStream::connect(listener.local_addr()?)?;
+/// drive.write_all(b"t,ud,uq,id,iq,omega_e\n0,1.5,20,0,3,400\n0.001,1.5,20,0,3,400\n")?;
+/// drop(drive);
+///
+/// let (socket, _) = listener.accept()?;
+/// let read = read_log_from("drive", socket, &LogOptions::default())?;
+/// assert_eq!(read.log.rows(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If reading fails, or as [`parse_log`].
+pub fn read_log_from(name: &str, reader: impl Read + 'static, options: &LogOptions) -> Result<ReadLog, FileError> {
+    let options = ResolvedOptions::resolve(options)?;
+    let read = Table::open(Bytes::Stream(Box::new(reader))).and_then(|table| read(table, &options));
+    read.map_err(|error| error.in_file(name))
+}
+
+/// Reads a log from memory; `name` stands for the file in messages.
+///
+/// # Errors
+/// If an option names no channel or no column of the file, if the bytes are not a table of numbers with a header, or if [`Log::new`]
+/// refuses the values.
+pub fn parse_log(name: &str, bytes: &[u8], options: &LogOptions) -> Result<ReadLog, FileError> {
+    read_log_from(name, Cursor::new(bytes.to_vec()), options)
+}
+
+/// Reads a log from a table.
+///
+/// Rows do not go into a [`LogBuilder`](fluxfit::log::LogBuilder) block by block: selection, alignment, repairs and the transforms
+/// to dq need whole columns. The finished columns become the log at once, without a copy.
+pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLog, FileError> {
+    let mut notes: Vec<Note> = table.notes().iter().cloned().map(Note::from).collect();
+    let line = table.line();
+    let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
+    let layout = recognize(table.heads(), &mut notes).map_err(at_header)?;
+    let named = layout.filter(|layout| !layout.is_canonical());
+    let chosen = columns::choose(&table, named, options, &mut notes)?;
+    let Gathered { mut channels, lines, is_interpolated } = gather(&mut table, &chosen, layout, options, &mut notes)?;
+    let aligned = align::align(&mut channels, &lines)?;
+    plausibility::refuse_standardized(&chosen, &channels)?;
+    let is_interpolated = is_interpolated || aligned.is_some();
+    let mut more: Vec<String> = aligned.into_iter().collect();
+    more.extend(repair::repair(&mut channels));
+    more.extend(phases::transform(&mut channels));
+    more.extend(plausibility::note_references(&channels));
+    notes.extend(more.into_iter().map(Note::from));
+    let log = log(channels, &chosen, &lines, &mut notes)?;
+    notes.extend(gaps(&log).map(Note::from));
+    let source = Source { columns: vec![chosen::describe(&chosen)], notes: notes.iter().map(|note| note.sentence.clone()).collect() };
+    let log = log.with_source(source);
+    // Columns that were found without a mapping and without another layout have the canonical names.
+    let layout = layout.or_else(|| (!options.has_headers()).then(Layout::canonical));
+    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes })
+}
+
+/// The layout with these names, if it is one of the table and that of a log.
+fn recognize(heads: &[ColumnHead], notes: &mut Vec<Note>) -> Result<Option<&'static Layout>, FileError> {
+    let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
+    let Some(layout) = Layout::recognize(&names) else { return Ok(None) };
+    if let Some(refusal) = layout.refusal {
+        return Err(Problem::NotALog { layout: layout.name, reason: refusal.reason(), advice: refusal.advice() }.into());
+    }
+    if !layout.is_canonical() {
+        notes.push(format!("recognized the layout '{}': {}", layout.name, layout.remark).into());
+    }
+    Ok(Some(layout))
+}
+
+/// The checked log. An optional column that was not asked for is left out where the check would refuse the log because of it.
+fn log(mut channels: Channels, chosen: &[ChosenColumn], lines: &Lines, notes: &mut Vec<Note>) -> Result<Log, FileError> {
+    let locator = channels.locator(lines);
+    let mut optional = [Channel::ThetaE, Channel::UDc].map(|channel| {
+        let values = channels.take(channel)?;
+        let is_optional = chosen.iter().any(|column| column.channel == channel && column.is_optional);
+        match check_values(channel.name(), &values) {
+            Err(error) if is_optional => {
+                notes.push(chosen::left_out(channel, &locator.locate(error)).into());
+                None
+            }
+            _ => Some(values),
+        }
+    });
+    let [theta_e, u_dc] = [0, 1].map(|k| optional[k].take());
+    let [t, ud, uq, id, iq, omega_e] = Channel::NEEDED.map(|channel| channels.take(channel).unwrap_or_default());
+    Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e, u_dc }).map_err(|error| locator.locate(error))
+}
+
+/// A note on gaps in time.
+fn gaps(log: &Log) -> Option<String> {
+    let t = &log.columns().t;
+    let gap = |pair: &[Segment]| (t[pair[0].rows.end - 1], t[pair[1].rows.start]);
+    let gaps: Vec<(f64, f64)> = log.segments().windows(2).map(gap).collect();
+    let (from, to) = *gaps.iter().max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))?;
+    let longest = format!("{} s at t = {} s", significant(to - from, 3), significant(from, 6));
+    Some(match gaps.len() {
+        1 => format!("a gap of {longest}: nothing is computed across it"),
+        count => format!("{count} gaps, the longest of {longest}: nothing is computed across them"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fluxfit_units::Unit;
+
+    #[test]
+    fn contradicting_options_are_refused() {
+        let refusal = |options: LogOptions| parse_log("a.csv", b"", &options).unwrap_err().to_string();
+        let map = |pairs: &[(&str, &str)]| LogOptions {
+            map: pairs.iter().map(|(a, b)| ((*a).into(), (*b).into())).collect(),
+            ..LogOptions::default()
+        };
+        assert_eq!(refusal(map(&[("omega", "a"), ("omega_e", "b")])), "omega_e is given twice; give it once");
+        let unknown = refusal(map(&[("uxx", "a")]));
+        assert!(unknown.starts_with("\"uxx\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e"), "{unknown}");
+        let units = LogOptions { units: vec![("ud".into(), Unit::RpmMechanical)], ..LogOptions::default() };
+        assert_eq!(refusal(units), "\"rpm-mech\" is not a unit of ud; it can be V or mV");
+        let no_poles = LogOptions { pole_pairs: Some(0), ..LogOptions::default() };
+        assert_eq!(refusal(no_poles), "the number of pole pairs is 0; it must be at least 1");
+    }
+
+    #[test]
+    fn a_log_carries_its_columns_and_notes() {
+        let read = parse_log("a.csv", b"t_ms,ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n1,1,2,3,4,5\n", &LogOptions::default()).unwrap();
+        let source = read.log.source();
+        assert_eq!(source.notes, ["t: column 't_ms' read as ms"]);
+        assert!(source.columns[0].starts_with("t = 't_ms' (ms), ud = 'ud' (V), "), "{source:?}");
+    }
+}
