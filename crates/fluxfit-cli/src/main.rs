@@ -7,6 +7,7 @@ mod arguments;
 mod commands;
 mod error;
 mod interrupt;
+mod json;
 mod shell;
 mod terminal;
 

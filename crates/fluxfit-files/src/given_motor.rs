@@ -8,14 +8,12 @@ use crate::{
     truth::{self, Truth},
 };
 use fluxfit::{
+    document::{IDENTIFICATION, TRUTH},
     motor::{Motor, PARAMETERS, Parameter},
     validate::Given,
 };
 use serde_json::Value;
 use std::path::Path;
-
-/// The schema of an identification's document.
-const IDENTIFICATION: &str = "fluxfit.identification/1";
 
 /// A motor that is validated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +45,7 @@ impl GivenMotor {
         let document: Value = serde_json::from_str(text).map_err(|error| truth::syntax(&error).in_file(name))?;
         match document.get("schema").and_then(Value::as_str) {
             Some(IDENTIFICATION) => of_identification(&document).map_err(|error| error.in_file(name)),
-            Some(truth::SCHEMA) | None => Truth::parse(name, bytes).map(of_truth),
+            Some(TRUTH) | None => Truth::parse(name, bytes).map(of_truth),
             Some(other) => Err(FileError::from(Problem::MotorSchema { found: other.to_owned() }).in_key("schema").in_file(name)),
         }
     }

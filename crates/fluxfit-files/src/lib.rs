@@ -34,7 +34,6 @@
 //! | [`error`] | the sentence |
 //! | `channel`, `input`, `toml_table`, `wording` | what a log's columns are called; bytes and text; TOML; lists and quotations |
 
-pub mod answer;
 pub mod argument;
 mod channel;
 mod container;

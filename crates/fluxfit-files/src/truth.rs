@@ -10,12 +10,12 @@ use crate::{
     input,
     scenario_file::ReadScenario,
 };
-use fluxfit::motor::{Motor, PARAMETERS, Parameter};
-use serde_json::{Value, json};
+use fluxfit::{
+    document::{TRUTH, TruthDocument},
+    motor::{Motor, PARAMETERS, Parameter},
+};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
-
-/// The schema of a truth file.
-pub const SCHEMA: &str = "fluxfit.truth/1";
 
 /// What a log was simulated with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,25 +52,25 @@ pub fn truth_path(log: &Path) -> PathBuf {
 
 /// The truth file of a simulated log: parameters, and the scenario with which the log can be made again. The inductances and the
 /// flux of a motor that is a flux map are null.
-pub fn truth_of(read: &ReadScenario, draw: u64) -> Value {
+pub fn truth_of(read: &ReadScenario, draw: u64) -> TruthDocument<&Value> {
     let motor = &read.scenario.motor;
     let constant = motor.constant();
-    json!({
-        "schema": SCHEMA,
-        "rs": motor.rs,
-        "ld": constant.map(|motor| motor.ld),
-        "lq": constant.map(|motor| motor.lq),
-        "psi_f": constant.map(|motor| motor.psi_f),
-        "pole_pairs": motor.pole_pairs,
-        "draw": draw,
-        "scenario": read.document,
-    })
+    TruthDocument {
+        schema: TRUTH,
+        rs: motor.rs,
+        ld: constant.map(|motor| motor.ld),
+        lq: constant.map(|motor| motor.lq),
+        psi_f: constant.map(|motor| motor.psi_f),
+        pole_pairs: motor.pole_pairs,
+        draw,
+        scenario: &read.document,
+    }
 }
 
 fn parse(text: &str) -> Result<Truth, FileError> {
     let document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
-    if let Some(found) = document.get("schema").filter(|schema| schema.as_str() != Some(SCHEMA)) {
-        return Err(FileError::from(Problem::Schema { found: found.to_string(), wanted: SCHEMA }).in_key("schema"));
+    if let Some(found) = document.get("schema").filter(|schema| schema.as_str() != Some(TRUTH)) {
+        return Err(FileError::from(Problem::Schema { found: found.to_string(), wanted: TRUTH }).in_key("schema"));
     }
     let holder = document.get("truth").unwrap_or(&document);
     if !holder.is_object() {

@@ -73,8 +73,14 @@ mod tried;
 mod typography;
 mod validation;
 
-use fluxfit::{identify::Identification, log::Log, optimizer::Method, steady::OperatingPoint, study::MethodStudy, validate::Validation};
-use fluxfit_files::answer::StudyFacts;
+use fluxfit::{
+    identify::Identification,
+    log::Log,
+    optimizer::Method,
+    steady::OperatingPoint,
+    study::{MethodStudy, facts::StudyFacts},
+    validate::Validation,
+};
 
 /// What is shown; what is `None` is left out.
 #[derive(Debug, Clone, Copy)]

@@ -8,9 +8,9 @@ use crate::{
 use fluxfit::{
     motor::Parameter,
     optimizer::Method,
-    study::{MethodStudy, fitness::Fitness},
+    study::{MethodStudy, facts::StudyFacts, fitness::Fitness},
 };
-use fluxfit_files::{answer::StudyFacts, number::significant};
+use fluxfit_files::number::significant;
 use maud::{Markup, html};
 
 /// The section; parameters that are not excited are chance, and left out.

@@ -8,12 +8,9 @@ use fluxfit::{
     motor::{Motor, Parameter},
     optimizer::Method,
     paper::{self, Column},
-    study::{MethodStudy, error_percent, fitness::Fitness},
+    study::{MethodStudy, error_percent, facts::StudyFacts, fitness::Fitness},
 };
-use fluxfit_files::{
-    answer::StudyFacts,
-    number::{Scale, significant},
-};
+use fluxfit_files::number::{Scale, significant};
 use maud::{Markup, html};
 
 /// Means this close to the exact answer, %, come from searches that have converged: a tenth of what separates the paper's methods.

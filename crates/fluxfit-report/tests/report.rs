@@ -11,7 +11,7 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{Method, bounds::Bounds, draws::Draws},
     paper,
-    study::{Convergence, MethodStudy, fitness::Problem, run_method},
+    study::{Convergence, MethodStudy, facts::StudyFacts, fitness::Problem, run_method},
     validate::{Course as Predicted, Given, Outcome, Prediction, Validation, validate},
 };
 use fluxfit_drive::{
@@ -19,7 +19,6 @@ use fluxfit_drive::{
     schedule::{Course, Move},
     simulate,
 };
-use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{
     Origin, Report, ValidationReport,
     figure::{self, Size},

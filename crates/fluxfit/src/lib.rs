@@ -34,12 +34,15 @@
 //! | [`current_loop`] | the current controllers' gains for a wanted bandwidth |
 //! | [`validate`](mod@validate) | given parameters held against another log |
 //! | [`study`] | many runs of many methods, as the paper compares them |
+//! | [`document`] | the JSON documents of all that |
 //! | [`paper`] | what the paper states: its motor, its rig, its results |
 //! | [`error`] | the only error |
 //!
 //! Results depend on the log, the settings and the seed: not on files, clocks or the number of threads.
 
 pub mod current_loop;
+#[cfg(feature = "serde")]
+pub mod document;
 pub mod error;
 pub mod frames;
 pub mod identify;

@@ -4,9 +4,10 @@ use super::{Status, input, report};
 use crate::{
     arguments::{Compare, StudyModel},
     error::CommandError,
-    interrupt, terminal,
+    interrupt, json, terminal,
 };
 use fluxfit::{
+    document::StudyDocument,
     identify::Settings,
     log::Log,
     motor::Parameter,
@@ -14,11 +15,12 @@ use fluxfit::{
     optimizer::{self, CloseTo, Method, bounds::Bounds},
     study::{
         MethodStudy,
+        facts::StudyFacts,
         fitness::{Fitness, Problem},
         run_method, settle,
     },
 };
-use fluxfit_files::{answer, read_truth};
+use fluxfit_files::read_truth;
 use fluxfit_report::{Report, figures, html};
 use std::time::Instant;
 
@@ -34,12 +36,10 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     let settings = search_settings(arguments, &problem.fitness)?;
 
     let methods = study(&arguments.methods, arguments.runs, settings, &bounds, &mut problem.fitness)?;
-    let facts = answer::StudyFacts { settings: &settings, runs: arguments.runs, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
+    let facts = StudyFacts { settings: &settings, runs: arguments.runs, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
     let is_whole = facts.is_whole(&methods, arguments.methods.len());
     if arguments.log.json {
-        let mut document = answer::study(&facts, &methods);
-        document["interrupted"] = (!is_whole).into();
-        terminal::print(&answer::to_text(&document))?;
+        terminal::print(&json::text(&StudyDocument::of(&facts, &methods, !is_whole))?)?;
     } else {
         terminal::study::show(&input.name, &facts, &methods)?;
     }

@@ -9,10 +9,9 @@ use fluxfit::{
     objective::voltage_error::IdZero,
     optimizer::{self, Method, bounds::Bounds},
     paper,
-    study::fitness::Problem,
+    study::{facts::StudyFacts, fitness::Problem},
 };
 use fluxfit_drive::{Scenario, simulate};
-use fluxfit_files::answer::StudyFacts;
 use fluxfit_report::{Report, figures, html};
 
 /// What stands where a log's name would.

@@ -4,10 +4,11 @@ use super::{Status, export, input, report};
 use crate::{
     arguments::{Identify, SearchMethod, by_parameter},
     error::CommandError,
-    interrupt, terminal,
+    interrupt, json, terminal,
 };
 use fluxfit::{
     current_loop::CurrentLoop,
+    document::{IdentificationDocument, Identified},
     error::Error,
     identify::{
         Identification, Known, Provenance, Settings, Step, conventions, identify, identify_watched,
@@ -19,9 +20,8 @@ use fluxfit::{
     optimizer::{self, Method, StopReason, tgfpa::Tgfpa},
     validate::{Given, Validation, validate},
 };
-use fluxfit_files::{answer, number::significant};
+use fluxfit_files::number::significant;
 use fluxfit_report::{Report, figures, html};
-use serde_json::Value;
 
 /// Code of the warning that a search was cut.
 const INTERRUPTED: &str = "interrupted";
@@ -58,19 +58,18 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     let current_loop = arguments.bandwidth.map(|bandwidth| CurrentLoop::of(&found, bandwidth, control_rate)).transpose()?;
     found.warnings.extend(current_loop.as_ref().and_then(CurrentLoop::warning));
     let validation = held_out.as_ref().map(|log| check(log, &found, &settings)).transpose()?.flatten();
-    let method = settings.method.map_or("least-squares", |method| method.key());
     if arguments.log.json {
-        let mut document = answer::identification(&input.log, &found, method);
-        document["log"]["columns"] = input.columns.clone().into();
-        document["log"]["notes"] = input.notes.clone().into();
-        document["diagnostics"]["convention"] = answer::convention(&convention);
-        if let Some(current_loop) = &current_loop {
-            document["current_loop"] = answer::current_loop(current_loop);
-        }
-        if let Some(log) = &held_out {
-            document["validation"] = validation.as_ref().map_or(Value::Null, |validation| answer::validation(log, validation));
-        }
-        terminal::print(&answer::to_text(&document))?;
+        let document = IdentificationDocument::of(&Identified {
+            log: &input.log,
+            columns: &input.columns,
+            notes: &input.notes,
+            answer: &found,
+            method: settings.method,
+            convention: &convention,
+            current_loop: current_loop.as_ref(),
+            held_out: held_out.as_ref().map(|log| (log, validation.as_ref())),
+        });
+        terminal::print(&json::text(&document)?)?;
     } else {
         terminal::identification::show(&input.name, &input.log, &found, settings.method.as_ref())?;
         current_loop.as_ref().map(terminal::current_loop::show).transpose()?;

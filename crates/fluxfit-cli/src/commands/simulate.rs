@@ -4,13 +4,13 @@ use super::Status;
 use crate::{
     arguments::Simulate,
     error::CommandError,
-    interrupt,
+    interrupt, json,
     terminal::{self, Progress},
 };
 use fluxfit_drive::{Recording, simulate};
 use fluxfit_files::{
-    Output, ReadScenario, answer, check_writable, is_replaceable, paper_scenario, read_scenario, scenario_file::PAPER_RIG, truth_of,
-    truth_path, write_recording,
+    Output, ReadScenario, check_writable, is_replaceable, paper_scenario, read_scenario, scenario_file::PAPER_RIG, truth_of, truth_path,
+    write_recording,
 };
 use std::{
     fs,
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<Status, CommandError> {
         interrupt::doing("writing the log");
         terminal::stream(|out| write_recording(out, &recording))?;
     } else {
-        write(log, truth.as_deref(), &recording, &answer::to_text(&truth_of(&read, arguments.draw)))?;
+        write(log, truth.as_deref(), &recording, &json::text(&truth_of(&read, arguments.draw))?)?;
         terminal::simulation::show(&name(arguments), &read.scenario, &recording, log, truth.as_deref())?;
     }
     Ok(Status::Complete)

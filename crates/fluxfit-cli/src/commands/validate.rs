@@ -1,12 +1,13 @@
 //! `fluxfit validate`: a motor held against a log that it was not found from.
 
 use super::{Status, input, report};
-use crate::{arguments::Validate, error::CommandError, terminal};
+use crate::{arguments::Validate, error::CommandError, json, terminal};
 use fluxfit::{
+    document::ValidationDocument,
     identify::Settings,
     validate::{Outcome, validate},
 };
-use fluxfit_files::{answer, read_given_motor};
+use fluxfit_files::read_given_motor;
 use fluxfit_report::{ValidationReport, validation_figures, validation_html};
 use std::path::Path;
 
@@ -32,7 +33,7 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     let found = found.map_err(|error| input::of_log(&input.name, error))?;
     let name = path.display().to_string();
     if arguments.log.json {
-        terminal::print(&answer::to_text(&answer::validation(&input.log, &found)))?;
+        terminal::print(&json::text(&ValidationDocument::of(&input.log, &found))?)?;
     } else {
         terminal::validation::show(&input.name, &name, &input.log, &found)?;
     }

@@ -4,12 +4,9 @@ use super::{DIM, HEADING, plot, table};
 use fluxfit::{
     motor::{Motor, Parameter},
     optimizer::Method,
-    study::{MethodStudy, error_percent, fitness::Fitness},
+    study::{MethodStudy, error_percent, facts::StudyFacts, fitness::Fitness},
 };
-use fluxfit_files::{
-    answer::StudyFacts,
-    number::{Scale, significant, small},
-};
+use fluxfit_files::number::{Scale, significant, small};
 
 /// Shows a study.
 pub(crate) fn show(name: &str, facts: &StudyFacts, methods: &[(MethodStudy, f64)]) -> std::io::Result<()> {

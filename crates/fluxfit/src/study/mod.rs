@@ -5,6 +5,7 @@
 //! above the minimum, which is known: `F - F_LS` of fitness (11), `F - F_LM` of the output error. On a noisy log their distance from
 //! the truth ranks the noise.
 
+pub mod facts;
 pub mod fitness;
 
 use crate::{
