@@ -24,6 +24,8 @@ mod pages;
 mod reading;
 #[path = "command/report.rs"]
 mod report;
+#[path = "command/schema.rs"]
+mod schema;
 #[path = "command/simulate.rs"]
 mod simulate;
 #[path = "command/validate.rs"]
@@ -67,10 +69,11 @@ fn fluxfit(arguments: &[&str]) -> Run {
     fluxfit_with_input(arguments, b"")
 }
 
-/// Runs `fluxfit ... --json` and reads its document.
+/// Runs `fluxfit ... --json` and reads its document, which fits its schema.
 fn json(arguments: &[&str]) -> (i32, Value) {
     let run = fluxfit(&[arguments, &["--json"]].concat());
     let document = serde_json::from_str(&run.out).unwrap_or_else(|error| panic!("{error}: {} {}", run.out, run.err));
+    schema::assert_fits(&document);
     (run.status, document)
 }
 

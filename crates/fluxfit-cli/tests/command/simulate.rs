@@ -1,6 +1,6 @@
 //! `fluxfit simulate`: what it writes, and that the examples are identified for what they are.
 
-use super::{fluxfit, fluxfit_with_input, json, root};
+use super::{fluxfit, fluxfit_with_input, json, root, schema};
 use serde_json::Value;
 use std::{fs, path::Path};
 
@@ -13,7 +13,9 @@ fn simulated(folder: &Path, arguments: &[&str]) -> (String, Value) {
     assert_eq!((run.status, run.err.as_str()), (0, ""), "{arguments:?}");
     let truth = fs::read_to_string(folder.join("rig.truth.json")).unwrap();
     assert_eq!(fs::read_dir(folder).unwrap().count(), 2, "something is left over");
-    (fs::read_to_string(&log).unwrap(), serde_json::from_str(&truth).unwrap())
+    let truth = serde_json::from_str(&truth).unwrap();
+    schema::assert_fits(&truth);
+    (fs::read_to_string(&log).unwrap(), truth)
 }
 
 #[test]
