@@ -12,6 +12,7 @@ mod corpus;
 mod dialects;
 mod errors;
 mod fixtures;
+mod layouts;
 mod optional_columns;
 #[path = "../promises/mod.rs"]
 mod promises;
