@@ -184,7 +184,8 @@ fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, Str
     let pairs: Vec<String> = proposals.iter().map(|(channel, header)| format!("'{}' may be {channel}", shorten(header))).collect();
     let rest: Vec<&str> = missing.iter().filter(|channel| proposals.iter().all(|(proposed, _)| proposed != *channel)).copied().collect();
     let lacking = if rest.is_empty() { String::new() } else { format!("; no column resembles {}", list(&rest)) };
-    format!("{what}; by the names {}: map {} if so{lacking}", list(&pairs), if proposals.len() == 1 { "it" } else { "them" })
+    let (by, if_so) = if pairs.len() == 1 { ("its name", "map it if it is") } else { ("their names", "map them if they are") };
+    format!("{what}; by {by}, {}: {if_so}{lacking}", list(&pairs))
 }
 
 fn not_measured(references: &[String], unreadable: &[String]) -> String {
@@ -193,6 +194,10 @@ fn not_measured(references: &[String], unreadable: &[String]) -> String {
         [one] => format!("; '{}' is a reference, not a measured current", shorten(one)),
         several => format!("; {} are references, not measured currents", columns(several)),
     };
-    let of_others = if unreadable.is_empty() { String::new() } else { format!("; {} hold no numbers", columns(unreadable)) };
+    let of_others = match unreadable {
+        [] => String::new(),
+        [one] => format!("; '{}' holds no numbers", shorten(one)),
+        several => format!("; {} hold no numbers", columns(several)),
+    };
     of_references + &of_others
 }

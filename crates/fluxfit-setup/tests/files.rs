@@ -1,4 +1,4 @@
-//! Files of the examples: whole they are read; cut off or with a wrong byte they keep the promises.
+//! Files of the examples, whole and damaged.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test may fail")]
 
@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A file of the examples, by the reader that it is for.
+/// Files of the examples, with the reader for each.
 const EXAMPLES: [(&str, &str); 6] = [
     ("motor_file", "paper_motor.toml"),
     ("given_motor", "paper_motor.toml"),
@@ -34,16 +34,16 @@ fn the_truth_of_an_example_is_read() {
 
 /// A file may be cut off anywhere, and any byte of it may be wrong.
 #[test]
-fn damaged_files_keep_the_promises() {
+fn damaged_files_do_not_make_a_reader_fail() {
     const PLACES: usize = 40;
     for (reader, name) in EXAMPLES {
         let (_, promise) = READERS.into_iter().find(|(other, _)| *other == reader).unwrap();
         let mut bytes = fs::read(example(name)).unwrap();
-        // The first rows of a flux map are like the others.
+        // The first rows of a flux map are enough.
         bytes.truncate(4000);
         for place in 0..PLACES {
             let at = bytes.len() * place / PLACES;
-            // Told before, because a panic says only what broke, not on which file.
+            // Printed before, because a panic does not name the file.
             println!("{name}, byte {at}");
             promise(&bytes[..at]);
             let mut wrong = bytes.clone();

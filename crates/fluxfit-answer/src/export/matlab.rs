@@ -1,16 +1,30 @@
 //! MATLAB: a script that fills the struct `pmsm` of Motor Control Blockset.
 
-use super::{Entry, Exported, File, Quantity, Value, of_gains};
-use fluxfit::current_loop::Gain;
+use super::{
+    entry::{Entry, File, Value},
+    quantity::Quantity,
+    tool::{ExportedMotor, Tool, gains_remark},
+};
+use fluxfit::{current_loop::Gain, motor::Parameter};
 
 const STRUCT: &str = "https://www.mathworks.com/help/mcb/ref/mcb.getpmsmparameters.html";
 const BACK_EMF: &str = "https://www.mathworks.com/help/mcb/ref/pmsmconfiguration.html (Back electromotive force: Vpk_LL/krpm)";
 const GAINS: &str = "Harnefors and Nee 1998, DOI 10.1109/28.658735";
 
-/// Mechanical turns in a second at 1000 r/min.
+/// Mechanical revolutions per second at 1000 r/min.
 const KRPM: f64 = 1000.0 / 60.0;
 
-pub(super) fn file(motor: &Exported) -> File {
+/// The tool.
+pub(super) const TOOL: Tool = Tool {
+    key: "matlab",
+    name: "MATLAB",
+    parameters: &Parameter::ALL,
+    needs_pole_pairs: Some("pmsm.p and the back-EMF constant"),
+    file,
+    text,
+};
+
+fn file(motor: &ExportedMotor<'_>) -> File {
     let measured = |key, quantity, unit, meaning, source| Entry { key, value: Value::Measured(quantity), unit, meaning, source };
     let mut entries = vec![
         Entry { key: "pmsm.p", value: Value::Count(motor.pole_pairs), unit: "", meaning: "Pole pairs.", source: STRUCT },
@@ -27,12 +41,12 @@ pub(super) fn file(motor: &Exported) -> File {
         ),
     ];
     let mut remarks = vec![
-        "Fields that no log in dq quantities tells (J, B, Kt, I_rated, N_max, ..) stay as they are: pmsm = mcb.getPMSMParameters(\"new\") first.".to_owned(),
+        "Fields that a log of dq quantities does not determine (J, B, Kt, I_rated, N_max, ..) are not set: first pmsm = mcb.getPMSMParameters(\"new\").".to_owned(),
         "Simscape Electrical's PMSM block takes the same numbers: pole pairs (pmsm.p), permanent magnet flux linkage (pmsm.FluxPM),".to_owned(),
         "stator d-axis inductance (pmsm.Ld), q-axis inductance (pmsm.Lq), resistance per phase (pmsm.Rs); star winding.".to_owned(),
     ];
     if let Some(current_loop) = motor.current_loop {
-        remarks.push(of_gains(current_loop));
+        remarks.push(gains_remark(current_loop));
         remarks.push("The gains are in SI units; PI_params of Motor Control Blockset may be per unit.".to_owned());
         let mut gain = |key, gain: Option<Gain>, unit, meaning| {
             entries.extend(gain.map(|gain| measured(key, Quantity::from(gain), unit, meaning, GAINS)));
@@ -44,7 +58,7 @@ pub(super) fn file(motor: &Exported) -> File {
     File { entries, remarks }
 }
 
-pub(super) fn text(comments: &[String], entries: &[Entry]) -> String {
+fn text(comments: &[String], entries: &[Entry]) -> String {
     let mut text: String = comments.iter().map(|line| format!("% {line}").trim_end().to_owned() + "\n").collect();
     for entry in entries {
         text += &format!("{} = {}; % {}\n", entry.key, entry.value.text(), entry.unit);

@@ -1,20 +1,35 @@
-//! ST's Motor Control SDK: lines of the header `pmsm_motor_parameters.h` that Workbench generates.
+//! ST's Motor Control SDK: lines for the header `pmsm_motor_parameters.h` that Workbench generates.
 
-use super::{Entry, Exported, File, Value, of_gains};
+use super::{
+    entry::{Entry, File, Value, number},
+    tool::{ExportedMotor, Tool, gains_remark},
+};
+use fluxfit::{current_loop::Gain, motor::Parameter};
 
 const HEADER: &str = "https://github.com/anyway-blows/ST_MCSDK_FULL_5.4.3/blob/ccf6f596fae8a1c0cf4edb0328536ccaa389be9f/Middlewares/ST/MotorControl/templates/pmsm_motor_parameters.h.ftl (MCSDK 5.4.3)";
 const CONVERSION: &str = "https://github.com/anyway-blows/ST_MCSDK_FULL_5.4.3/blob/ccf6f596fae8a1c0cf4edb0328536ccaa389be9f/Middlewares/ST/MotorControl/templates/parameters_conversion.h.ftl (MAX_BEMF_VOLTAGE, C1, C5; MCSDK 5.4.3)";
 
-/// Mechanical turns in a second at 1000 r/min.
+/// Mechanical revolutions per second at 1000 r/min.
 const KRPM: f64 = 1000.0 / 60.0;
 
-pub(super) fn file(motor: &Exported) -> File {
+/// The tool.
+pub(super) const TOOL: Tool = Tool {
+    key: "mcsdk",
+    name: "ST's Motor Control SDK",
+    // The header has no L_d.
+    parameters: &[Parameter::Rs, Parameter::Lq, Parameter::PsiF],
+    needs_pole_pairs: Some("the voltage constant"),
+    file,
+    text,
+};
+
+fn file(motor: &ExportedMotor<'_>) -> File {
     let measured = |key, quantity, unit, meaning, source| Entry { key, value: Value::Measured(quantity), unit, meaning, source };
     let rms = motor.line_to_line_peak_per_hz().map(|per_hz| per_hz * KRPM / 2.0_f64.sqrt());
     let entries = vec![
         Entry { key: "POLE_PAIR_NUM", value: Value::Count(motor.pole_pairs), unit: "", meaning: "Pole pairs.", source: HEADER },
-        measured("RS", motor.rs, "ohm", "R_s, per phase: it acts on phase currents.", CONVERSION),
-        measured("LS", motor.lq, "H", "L_q, per phase: what the header asks for where L_d and L_q differ.", HEADER),
+        measured("RS", motor.rs, "ohm", "R_s, per phase: it is multiplied by phase currents.", CONVERSION),
+        measured("LS", motor.lq, "H", "L_q, per phase: the header asks for it if L_d and L_q differ.", HEADER),
         measured(
             "MOTOR_VOLTAGE_CONSTANT",
             rms,
@@ -24,14 +39,14 @@ pub(super) fn file(motor: &Exported) -> File {
         ),
     ];
     let mut remarks = vec![
-        "Put these lines in the place of their namesakes in Inc/pmsm_motor_parameters.h; its other lines are no matter of a log."
+        "Replace the lines with the same names in Inc/pmsm_motor_parameters.h; its other lines cannot be identified from a log."
             .to_owned(),
-        "Templates of MCSDK 6.3 read the project's field Ls as L_d, and L_q as that times LDLQ_RATIO: see which one your Workbench asks for."
+        "Templates of MCSDK 6.3 read the field Ls of the project as L_d, and L_q as that times LDLQ_RATIO: check which one your Workbench asks for."
             .to_owned(),
     ];
     if let Some(current_loop) = motor.current_loop {
-        remarks.push(of_gains(current_loop));
-        let gain = |gain: Option<fluxfit::current_loop::Gain>| gain.map_or("unknown".to_owned(), |gain| super::number(gain.value));
+        remarks.push(gains_remark(current_loop));
+        let gain = |gain: Option<Gain>| gain.map_or("unknown".to_owned(), |gain| number(gain.value));
         remarks.push(format!(
             "In SI units K_p = {} V/A (d), {} V/A (q), K_i = {} V/(A s).",
             gain(current_loop.kp_d),
@@ -46,7 +61,7 @@ pub(super) fn file(motor: &Exported) -> File {
     File { entries, remarks }
 }
 
-pub(super) fn text(comments: &[String], entries: &[Entry]) -> String {
+fn text(comments: &[String], entries: &[Entry]) -> String {
     let mut text = "/*\n".to_owned();
     for line in comments {
         text += format!(" * {}", inside_a_comment(line)).trim_end();
@@ -59,7 +74,7 @@ pub(super) fn text(comments: &[String], entries: &[Entry]) -> String {
     text + "\n#endif /* FLUXFIT_MOTOR_PARAMETERS_H */\n"
 }
 
-/// C ends a comment at the first `*/`, and compilers wonder at `/*` within one.
+/// C ends a comment at the first `*/`, and compilers warn about `/*` inside one.
 fn inside_a_comment(line: &str) -> String {
     line.replace("*/", "* /").replace("/*", "/ *")
 }
@@ -67,7 +82,7 @@ fn inside_a_comment(line: &str) -> String {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn no_name_of_a_log_ends_a_comment() {
+    fn no_name_of_a_log_ends_the_comment() {
         for name in ["a*/b", "/*/", "*/*/", "/*/*"] {
             let line = super::inside_a_comment(name);
             assert!(!line.contains("*/") && !line.contains("/*"), "{line}");

@@ -1,6 +1,11 @@
-//! VESC Tool: a motor configuration with these parameters only. Loading it leaves all others as they are (`ConfigParams::setXML`).
+//! VESC Tool: a motor configuration with these parameters only. Loading it does not change the others (`ConfigParams::setXML`).
 
-use super::{Entry, Exported, File, Quantity, Value, of_gains};
+use super::{
+    entry::{Entry, File, Value},
+    quantity::Quantity,
+    tool::{ExportedMotor, Tool, gains_remark},
+};
+use fluxfit::motor::Parameter;
 
 const OBSERVER: &str =
     "https://github.com/vedderb/bldc/blob/b9d287b3b8323f4b02618b02dc55e57d54a84996/motor/foc_math.c (foc_observer_update)";
@@ -10,11 +15,14 @@ const GAINS: &str = "https://github.com/vedderb/bldc/blob/b9d287b3b8323f4b02618b
 const DECOUPLING: &str =
     "https://github.com/vedderb/bldc/blob/b9d287b3b8323f4b02618b02dc55e57d54a84996/motor/mcpwm_foc.c (control_current)";
 
-pub(super) fn file(motor: &Exported) -> File {
+/// The tool.
+pub(super) const TOOL: Tool = Tool { key: "vesc", name: "VESC Tool", parameters: &Parameter::ALL, needs_pole_pairs: None, file, text };
+
+fn file(motor: &ExportedMotor<'_>) -> File {
     let entry = |key, quantity, unit, meaning, source| Entry { key, value: Value::Measured(quantity), unit, meaning, source };
     let mean = motor.ld.plus(0.5, 0.5, motor.lq, motor.correlation);
     let mut entries = vec![
-        entry("foc_motor_r", motor.rs, "ohm", "R_s, per phase: half of what is measured between two wires of the motor.", OBSERVER),
+        entry("foc_motor_r", motor.rs, "ohm", "R_s, per phase: half of the resistance between two terminals of the motor.", OBSERVER),
         entry("foc_motor_l", mean, "H", "(L_d + L_q) / 2, per phase.", INDUCTANCES),
         entry("foc_motor_ld_lq_diff", motor.lq.plus(1.0, -1.0, motor.ld, motor.correlation), "H", "L_q - L_d, per phase.", INDUCTANCES),
         entry(
@@ -26,15 +34,14 @@ pub(super) fn file(motor: &Exported) -> File {
         ),
     ];
     let mut remarks = vec![
-        "Load it as a motor configuration (XML); parameters that are not named here stay as they are. VESC Tool may say that it is"
-            .to_owned(),
-        "from another version, since it names none. foc_observer_gain is left alone: it follows from the flux.".to_owned(),
-        "VESC's own detection stores 0.9 of the inductance that it measures; here is the inductance itself.".to_owned(),
+        "Load it as a motor configuration (XML); other parameters are not changed. VESC Tool may report that it is".to_owned(),
+        "from another version, since the file states none. foc_observer_gain is not set: it follows from the flux linkage.".to_owned(),
+        "The detection of VESC Tool stores 0.9 times the measured inductance; this file has the inductance itself.".to_owned(),
     ];
     if let Some(current_loop) = motor.current_loop {
-        remarks.push(of_gains(current_loop));
+        remarks.push(gains_remark(current_loop));
         if let Some(ki) = current_loop.ki {
-            // VESC has one proportional gain for both axes, and takes it from the mean inductance.
+            // VESC has one proportional gain for both axes, computed from the mean inductance.
             let kp = mean.map(|mean| std::f64::consts::TAU * current_loop.bandwidth * mean);
             entries.push(entry("foc_current_kp", kp, "V/A", "Bandwidth (rad/s) times the mean inductance, for both axes.", GAINS));
             entries.push(entry("foc_current_ki", Quantity::from(ki), "V/(A s)", "Bandwidth (rad/s) times R_s.", GAINS));
@@ -43,7 +50,7 @@ pub(super) fn file(motor: &Exported) -> File {
     File { entries, remarks }
 }
 
-pub(super) fn text(comments: &[String], entries: &[Entry]) -> String {
+fn text(comments: &[String], entries: &[Entry]) -> String {
     let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!--\n".to_owned();
     for line in comments {
         text += &format!("  {}\n", inside_a_comment(line));
@@ -55,7 +62,7 @@ pub(super) fn text(comments: &[String], entries: &[Entry]) -> String {
     text + "</MCConfiguration>\n"
 }
 
-/// XML allows no two hyphens in a row there.
+/// XML does not allow two hyphens in a row in a comment.
 fn inside_a_comment(line: &str) -> String {
     let mut line = line.to_owned();
     while line.contains("--") {
@@ -67,7 +74,7 @@ fn inside_a_comment(line: &str) -> String {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn no_name_of_a_log_ends_a_comment() {
+    fn no_name_of_a_log_ends_the_comment() {
         assert_eq!(super::inside_a_comment("a--->b---c"), "a- - ->b- - -c");
     }
 }

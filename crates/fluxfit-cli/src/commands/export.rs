@@ -4,7 +4,7 @@
 use super::{Status, input::Input};
 use crate::{arguments::Identify, error::CommandError, terminal};
 use fluxfit::Answer;
-use fluxfit_answer::export::{Answer as Exported, export};
+use fluxfit_answer::export::{Export, Refusal, export};
 use fluxfit_files::{check_writable, write_atomically};
 use std::{
     fs,
@@ -37,14 +37,14 @@ pub(super) fn check(arguments: &Identify) -> Result<(), CommandError> {
 /// Refuses targets that need pole pairs that nobody gave.
 pub(super) fn check_pole_pairs(arguments: &Identify, pole_pairs: Option<u32>) -> Result<(), CommandError> {
     let mut targets = arguments.export.iter().map(|(target, _)| target);
-    targets.try_for_each(|target| target.check_pole_pairs(pole_pairs)).map_err(|refusal| CommandError::Usage(refusal.to_string()))
+    targets.try_for_each(|target| target.check_pole_pairs(pole_pairs)).map_err(|refusal| CommandError::Usage(with_option(&refusal)))
 }
 
 /// Writes what the answer carries; what it does not is said, and costs the status.
 pub(super) fn write(arguments: &Identify, input: &Input, answer: &Answer) -> Result<Status, CommandError> {
     let logs: Vec<String> = arguments.log.logs.iter().map(|path| file_name(path)).collect();
     let pole_pairs = input.pole_pairs;
-    let exported = Exported { logs: &logs, identification: &answer.identification, pole_pairs, current_loop: answer.current_loop.as_ref() };
+    let exported = Export { logs: &logs, identification: &answer.identification, pole_pairs, current_loop: answer.current_loop.as_ref() };
     let mut status = Status::Complete;
     for (target, path) in &arguments.export {
         match export(*target, &exported) {
@@ -53,12 +53,20 @@ pub(super) fn write(arguments: &Identify, input: &Input, answer: &Answer) -> Res
                 terminal::wrote("export", path);
             }
             Err(refusal) => {
-                terminal::refuse_export(path, &refusal.to_string());
+                terminal::refuse_export(path, &with_option(&refusal));
                 status = Status::Incomplete;
             }
         }
     }
     Ok(status)
+}
+
+/// The reason for no file, with the option that resolves it.
+fn with_option(refusal: &Refusal) -> String {
+    match refusal {
+        Refusal::PolePairs { .. } => format!("{refusal} (--pole-pairs N, or --motor FILE with pole_pairs)"),
+        Refusal::NotIdentified { .. } => refusal.to_string(),
+    }
 }
 
 /// Where a file lies or would lie.

@@ -223,7 +223,7 @@ fn pole_pairs_are_asked_for_before_anything_is_computed() {
         let run = fluxfit(&["identify", LOG, "--export", &format!("{target}={path}")]);
         assert!(run.status == 2 && run.out.is_empty(), "{}", run.err);
         assert!(
-            run.err.contains(&format!("needs the pole pairs for {what}")) && run.err.contains("give --pole-pairs N, or --motor"),
+            run.err.contains(&format!("needs the pole pairs for {what}")) && run.err.contains("(--pole-pairs N, or --motor FILE"),
             "{}",
             run.err
         );

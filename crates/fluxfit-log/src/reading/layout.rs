@@ -318,21 +318,6 @@ mod tests {
         assert_eq!(recognized("time;speed;torque"), None);
     }
 
-    /// The rows of the table in docs/log.md.
-    fn table() -> String {
-        let row = |layout: &Layout| {
-            let refused = if layout.is_log() { "" } else { "**refused**: " };
-            format!("| {} | {refused}{} | {} |\n", layout.name, layout.headers(), layout.remark)
-        };
-        LAYOUTS.iter().map(row).collect()
-    }
-
-    #[test]
-    fn the_page_has_the_same_table() {
-        let page = include_str!("../../../../docs/log.md");
-        assert!(page.contains(&table()), "docs/log.md should have these rows:\n{}", table());
-    }
-
     #[test]
     fn a_layout_is_recognized_by_its_own_names_and_names_each_channel_once() {
         for layout in LAYOUTS {

@@ -65,15 +65,13 @@ pub fn read_log_with_progress(path: &Path, options: &LogOptions, progress: impl 
 ///
 /// ```
 /// use fluxfit_log::{LogOptions, read_log_from};
-/// use std::{io::Write, net::{TcpListener, TcpStream}};
+/// use std::io::Write;
 ///
-/// let listener = TcpListener::bind("127.0.0.1:0")?;
-/// let mut drive = TcpStream::connect(listener.local_addr()?)?;
+/// let (receiver, mut drive) = std::io::pipe()?;
 /// drive.write_all(b"t,ud,uq,id,iq,omega_e\n0,1.5,20,0,3,400\n0.001,1.5,20,0,3,400\n")?;
 /// drop(drive);
 ///
-/// let (socket, _) = listener.accept()?;
-/// let read = read_log_from("drive", socket, &LogOptions::default())?;
+/// let read = read_log_from("drive", receiver, &LogOptions::default())?;
 /// assert_eq!(read.log.rows(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -1,5 +1,5 @@
-//! The corpus: small logs of every format, dialect and trap, written by others' writers, and what must be made of each.
-//! `corpus/make.py` writes them and says what the keys of `expected.toml` mean.
+//! The corpus: small logs of every format, dialect and pitfall, from independent writers, and the expected reading of each.
+//! `corpus/make.py` writes them and explains the keys of `expected.toml`.
 
 use fluxfit::log::Columns;
 use fluxfit_log::{LogOptions, ReadLog, parse_map, parse_unit, read_log, read_mapping};
@@ -10,13 +10,13 @@ use std::{
 };
 use toml::{Table, Value};
 
-/// Largest file: the corpus is part of every copy of the project.
+/// Maximum size of a file, bytes: the corpus is part of every copy of the project.
 const LARGEST: u64 = 40_000;
 
-/// Rows of two logs are of the same instant if no more lies between them, s.
+/// Rows of two logs are of the same instant if they differ by no more than this, s.
 const SAME_INSTANT: f64 = 1e-9;
 
-/// Share of a log's rows whose instants the log that it is held against must have.
+/// Minimum share of the rows of a log whose instants its reference log has.
 const HELD: f64 = 0.9;
 
 #[test]
@@ -46,7 +46,7 @@ fn every_file_has_one_case_and_is_small() {
     }
 }
 
-/// What the user says of a log. The one place that knows how.
+/// The options of a case.
 fn options(case: &Table) -> LogOptions {
     let pairs = |key: &str| list(case, key).into_iter();
     LogOptions {
@@ -57,12 +57,12 @@ fn options(case: &Table) -> LogOptions {
     }
 }
 
-/// Whether the reader that a case needs is built.
+/// Whether the reader that a case needs is part of this build.
 fn is_built(case: &Table) -> bool {
     match case.get("needs").map(|needs| needs.as_str().unwrap()) {
         None => true,
         Some("mdf4") => cfg!(feature = "mdf4"),
-        Some(other) => panic!("{other} is no feature"),
+        Some(other) => panic!("{other} is not a feature"),
     }
 }
 
@@ -72,12 +72,12 @@ fn check(case: &Table) -> Result<(), String> {
         (true, Ok(read)) => Err(format!("read, with {:?}, where a refusal is expected", read.notes)),
         (false, Err(error)) => Err(format!("refused: {error}")),
         (true, Err(error)) => {
-            // The file's name may hold the word.
+            // The name of the file may contain the word.
             let sentence = error.to_string().replace(error.file().unwrap_or_default(), "FILE");
             ensure(!sentence.contains('\n'), || format!("more than one line: {sentence}"))?;
             let line = case.get("line").map(|line| u64::try_from(line.as_integer().unwrap()).unwrap());
             ensure(line.is_none() || error.line() == line, || format!("line {:?} in place of {line:?}: {sentence}", error.line()))?;
-            list(case, "refused").into_iter().try_for_each(|words| says(words, &sentence))
+            list(case, "refused").into_iter().try_for_each(|words| contains(words, &sentence))
         }
         (false, Ok(read)) => check_reading(case, &read),
     }
@@ -102,7 +102,7 @@ fn check_reading(case: &Table, read: &ReadLog) -> Result<(), String> {
         let found = log.segments()[0].sample_period;
         ensure((found - period).abs() < SAME_INSTANT, || format!("a period of {found} s in place of {period}"))?;
     }
-    list(case, "notes").into_iter().try_for_each(|words| says(words, &notes))?;
+    list(case, "notes").into_iter().try_for_each(|words| contains(words, &notes))?;
     for (name, expected) in table(case, "columns") {
         let values = column(columns, name).ok_or_else(|| format!("no column {name}"))?;
         check_column(values, expected.as_table().unwrap()).map_err(|why| format!("{name}: {why}"))?;
@@ -120,7 +120,7 @@ fn check_reading(case: &Table, read: &ReadLog) -> Result<(), String> {
     Ok(())
 }
 
-/// First, last and sum; with a tolerance of zero, to the bit.
+/// Checks first value, last value and sum; with a tolerance of zero, to the bit.
 fn check_column(values: &[f64], expected: &Table) -> Result<(), String> {
     let tolerance = number(expected, "tolerance").unwrap();
     let found = [
@@ -135,7 +135,7 @@ fn check_column(values: &[f64], expected: &Table) -> Result<(), String> {
     Ok(())
 }
 
-/// Each value near that of another log at the same instant.
+/// Checks that each value is near that of another log at the same instant.
 fn check_within(columns: &Columns, name: &str, expected: &Table) -> Result<(), String> {
     let reference = reading_of(expected["reference"].as_str().unwrap());
     let tolerance = number(expected, "tolerance").unwrap();
@@ -155,8 +155,8 @@ fn check_within(columns: &Columns, name: &str, expected: &Table) -> Result<(), S
     })
 }
 
-/// Whether one of the alternatives of `words`, parted by `|`, occurs. Upper and lower case do not matter.
-fn says(words: &str, sentence: &str) -> Result<(), String> {
+/// Whether one of the alternatives of `words`, separated by `|`, occurs. Case does not matter.
+fn contains(words: &str, sentence: &str) -> Result<(), String> {
     let lower = sentence.to_lowercase();
     ensure(words.split('|').any(|word| lower.contains(&word.to_lowercase())), || format!("\"{words}\" is not in: {sentence}"))
 }
@@ -169,7 +169,7 @@ fn column<'a>(columns: &'a Columns, name: &str) -> Option<&'a Vec<f64>> {
     columns.named().into_iter().chain(columns.optional()).find(|(known, _)| *known == name).map(|(_, values)| values)
 }
 
-/// The reading of a file of the corpus that needs no words of its user.
+/// A file of the corpus, read without options.
 fn reading_of(file: &str) -> ReadLog {
     read_log(&home().join("logs").join(file), &LogOptions::default()).unwrap()
 }

@@ -1,4 +1,4 @@
-//! Logs as they are found: the corpus, the dialects of text, and files that once broke a promise.
+//! Reading of whole logs: the corpus, the dialects of text, errors, optional columns, and files that once made a reader fail.
 
 #![allow(
     clippy::expect_used,
@@ -9,7 +9,12 @@
 )]
 
 mod corpus;
-mod csv_dialects;
+mod dialects;
+mod errors;
+mod fixtures;
+mod layouts;
+mod optional_columns;
 #[path = "../promises/mod.rs"]
 mod promises;
+mod real_logs;
 mod regressions;

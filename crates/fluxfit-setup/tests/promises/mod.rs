@@ -1,6 +1,6 @@
-//! What every reader promises, whatever the bytes: no panic, a refusal of one line, only finite numbers in what is returned.
+//! What must hold for every reader and any bytes: no panic, errors of one line, only finite numbers in what is returned.
 //!
-//! Two look at it: `tests/promises.rs` with the files of the examples, whole and damaged, and `fuzz/`.
+//! Checked by `tests/files.rs` with the files of the examples, whole and damaged, and by `fuzz/` with random files.
 
 use fluxfit_setup::{GivenMotor, MotorFile, ReadScenario, Truth};
 use std::{fs, path::Path};
@@ -8,10 +8,10 @@ use std::{fs, path::Path};
 /// The name of the file in messages.
 const NAME: &str = "any.file";
 
-/// Holds one reader to its promises.
+/// Checks one reader.
 pub(crate) type Promise = fn(&[u8]);
 
-/// The readers. Targets of fuzzing have these names.
+/// The readers; targets of fuzzing have these names.
 pub(crate) const READERS: [(&str, Promise); 5] =
     [("motor_file", motor_file), ("scenario_file", scenario_file), ("flux_map", flux_map), ("truth", truth), ("given_motor", given_motor)];
 
@@ -25,9 +25,9 @@ fn motor_file(bytes: &[u8]) {
     }
 }
 
-/// A scenario. Its flux map is looked for in a folder that has none.
+/// A scenario, whose flux map would be in a folder that does not exist.
 fn scenario_file(bytes: &[u8]) {
-    // A scenario may name any file of its user's; this one may not wait for a device or for standard input.
+    // A scenario may name any file, but the test must not wait for a device or for standard input.
     if bytes.windows(8).any(|window| window == b"flux_map") {
         return;
     }
@@ -37,7 +37,7 @@ fn scenario_file(bytes: &[u8]) {
     }
 }
 
-/// A flux map, of which only a scenario's reader knows.
+/// A flux map, which is read through a scenario.
 fn flux_map(bytes: &[u8]) {
     const SCENARIO: &str = "duration = 0.01\n[motor]\nrs = 0.6\nflux_map = \"map.csv\"\npole_pairs = 2\n\
                             [mechanics]\nkind = \"dyno\"\n[inverter]\nu_dc = 500\n";
@@ -63,7 +63,7 @@ fn given_motor(bytes: &[u8]) {
     }
 }
 
-/// What was read; of a refusal, that it is one line.
+/// What was read; an error must be one line.
 fn one_line<T>(read: Result<T, impl std::fmt::Display>) -> Option<T> {
     read.map_err(|error| is_one_line(&error.to_string())).ok()
 }

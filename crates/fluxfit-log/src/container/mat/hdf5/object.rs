@@ -9,16 +9,16 @@ const MOST_BLOCKS: usize = 64;
 
 /// Types of messages.
 pub(super) mod message {
-    pub(in super::super) const DATASPACE: u16 = 0x01;
-    pub(in super::super) const LINK_INFO: u16 = 0x02;
-    pub(in super::super) const DATATYPE: u16 = 0x03;
-    pub(in super::super) const FILL_VALUE: u16 = 0x05;
-    pub(in super::super) const LINK: u16 = 0x06;
-    pub(in super::super) const LAYOUT: u16 = 0x08;
-    pub(in super::super) const FILTERS: u16 = 0x0b;
-    pub(in super::super) const ATTRIBUTE: u16 = 0x0c;
-    pub(in super::super) const CONTINUATION: u16 = 0x10;
-    pub(in super::super) const SYMBOL_TABLE: u16 = 0x11;
+    pub(crate) const DATASPACE: u16 = 0x01;
+    pub(crate) const LINK_INFO: u16 = 0x02;
+    pub(crate) const DATATYPE: u16 = 0x03;
+    pub(crate) const FILL_VALUE: u16 = 0x05;
+    pub(crate) const LINK: u16 = 0x06;
+    pub(crate) const LAYOUT: u16 = 0x08;
+    pub(crate) const FILTERS: u16 = 0x0b;
+    pub(crate) const ATTRIBUTE: u16 = 0x0c;
+    pub(crate) const CONTINUATION: u16 = 0x10;
+    pub(crate) const SYMBOL_TABLE: u16 = 0x11;
 }
 
 /// The messages of an object.

@@ -1,0 +1,218 @@
+//! Logs that cannot be read are refused in one sentence that names the place and what to do.
+
+use crate::fixtures::{HEADER, LOG, ROWS, map, refusal};
+use fluxfit_files::{Advice, FileErrorKind};
+use fluxfit_log::{LogOptions, parse_log, read_log};
+use fluxfit_units::Unit;
+use std::path::Path;
+
+fn check(cases: &[(String, &str)], options: &LogOptions) {
+    for (text, sentence) in cases {
+        assert_eq!(refusal(text.as_bytes(), options), *sentence, "{text}");
+    }
+}
+
+#[test]
+fn headers_are_refused_in_one_sentence() {
+    let wide: String = (0..23).map(|i| format!("c{i},")).collect();
+    let cases = [
+        (String::new(), "drive.csv: the file is empty; export it again"),
+        (
+            "# only\n% comments\n".into(),
+            "drive.csv: the file has only comments; a header line with the names of the columns and rows of numbers are needed",
+        ),
+        (HEADER.into(), "drive.csv, line 1: there is no row below the header; export the log with its rows"),
+        (format!("# x\n{HEADER}\n,,\n"), "drive.csv, line 2: there is no row below the header; export the log with its rows"),
+        (
+            ROWS.into(),
+            "drive.csv, line 1: \"0, 1, 2, 3, 4, 5\" are numbers in place of a header; put a line with the names of the columns above them",
+        ),
+        (
+            format!("# a,b\n{ROWS}"),
+            "drive.csv, line 2: \"0, 1, 2, 3, 4, 5\" are numbers in place of a header; put a line with the names of the columns above them",
+        ),
+        (
+            "t ud uq\n1 2 3\n".into(),
+            "drive.csv, line 1: \"t ud uq\" is a single column; separate names and values by comma, semicolon or tab",
+        ),
+        (
+            "Run 7\nspeed,id,iq\n1,2,3\n".into(),
+            "drive.csv, line 2: the columns t, ud, uq and omega_e are missing; the file has 'speed', 'id' and 'iq'; \
+             by its name, 'speed' may be omega_e: map it if it is; no column resembles t, ud and uq",
+        ),
+        (
+            format!("t,ud,id,iq,omega_e\n{ROWS}"),
+            "drive.csv, line 1: the column uq is missing; the file has 't', 'ud', 'id', 'iq' and 'omega_e'; \
+             map it if it has another name, else log it too",
+        ),
+        (
+            format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
+            "drive.csv, line 1: the columns t, ud, uq, id, iq and omega_e are missing; \
+             the file has 'u_d', 'motor_speed', 'i_d', 'i_q', 'torque' and 'profile_id'; \
+             by their names, 'u_d' may be ud, 'i_d' may be id, 'i_q' may be iq and 'motor_speed' may be omega_e: map them if they are; \
+             no column resembles t and uq",
+        ),
+        (
+            format!("tiem,q-axis voltage,ud,id,iq,omega_e\n{ROWS}"),
+            "drive.csv, line 1: the columns t and uq are missing; the file has 'tiem', 'q-axis voltage', 'ud', 'id', 'iq' and 'omega_e'; \
+             by their names, 'tiem' may be t and 'q-axis voltage' may be uq: map them if they are",
+        ),
+        (
+            format!("{wide}\n"),
+            "drive.csv, line 1: the columns t, ud, uq, id, iq and omega_e are missing; the file has 'c0', 'c1', 'c2', 'c3', 'c4', 'c5', 'c6', \
+             'c7', 'c8', 'c9', 'c10', 'c11', 'c12', 'c13', 'c14', 'c15', 'c16', 'c17', 'c18', 'c19' and 3 more; \
+             map them if they have other names, else log them too",
+        ),
+        (
+            format!("t,ud,ud,uq,id,iq,omega_e\n{ROWS}"),
+            "drive.csv, line 1, column 'ud': the header has this name 2 times; rename or remove all but one",
+        ),
+        (
+            format!("t,Ud,UD,uq,id,iq,omega_e\n{ROWS}"),
+            "drive.csv, line 1: the columns 'Ud' and 'UD' could each be ud; map one of them to ud",
+        ),
+        (
+            format!("t,ud,uq,id,iq,omega_e [rpm-mech]\n{ROWS}"),
+            "drive.csv, line 1, column 'omega_e [rpm-mech]': the speed is in mechanical r/min, and converting it takes the number of pole pairs; \
+             state it, or state that the unit is electrical r/min",
+        ),
+    ];
+    check(&cases, &LogOptions::default());
+}
+
+#[test]
+fn maps_and_units_that_do_not_fit_the_file_are_refused() {
+    let log = |speed: &str| vec![(LOG.replace("omega_e", speed), "")];
+    let error = |speed: &str, options: &LogOptions| refusal(log(speed)[0].0.as_bytes(), options);
+    assert_eq!(
+        error("motor_speed", &map(&["omega=speeed"])),
+        "drive.csv, line 1: omega_e is mapped to 'speeed', which the file does not have; it has 't', 'ud', 'uq', 'id', 'iq' and 'motor_speed'; \
+         did you mean 'motor_speed'?"
+    );
+    assert_eq!(
+        error("omega_e", &LogOptions { map: vec![("speed".into(), "omega_e".into())], ..LogOptions::default() }),
+        "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+    );
+    assert_eq!(
+        error("speed [km/h]", &map(&["omega=speed [km/h]"])),
+        "drive.csv, line 1, column 'speed [km/h]': \"km/h\" in the header is not a known unit of omega_e; \
+         state the unit: rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
+    );
+    let units = LogOptions { units: vec![("omega".into(), Unit::HertzMechanical)], ..LogOptions::default() };
+    assert_eq!(
+        error("omega_e", &units),
+        "drive.csv, line 1, column 'omega_e': the speed is in mechanical Hz, and converting it takes the number of pole pairs; \
+         state it, or state that the unit is electrical Hz"
+    );
+}
+
+#[test]
+fn rows_are_refused_in_one_sentence() {
+    let below = |rows: &str| format!("{HEADER}{rows}");
+    let cases = [
+        (
+            below("a,b,c,d,e,f\n0,1,2,3,4,5\n1,1,2,3,4,5\n"),
+            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit: s, ms or us",
+        ),
+        (
+            below("0,1,2,3,4,5\n\n1,1,2,3,4\n"),
+            "drive.csv, line 4: the row has 5 cells where the header has 6; complete the row or remove it",
+        ),
+        (below("0,1,2,3,4,5,6\n"), "drive.csv, line 2: the row has 7 cells where the header has 6; remove the extra cells or the row"),
+        (below("0,1,2,3,4,5\n# end\n"), "drive.csv, line 3: the row has 1 cell where the header has 6; complete the row or remove it"),
+        (
+            below("0,1,2,3,4,5\n\"1,1,2,3,4,5\n2,1,2,3,4,5\n"),
+            "drive.csv, line 3: the row has 1 cell where the header has 6; a quotation mark in this line opens a cell that continues over several lines: close it",
+        ),
+        (below("0,1,2,3,4,5\n\n1,1,abc,3,4,5\n"), "drive.csv, line 4, column 'uq': \"abc\" is not a number; correct it or remove the row"),
+        (
+            "# x\r\n\r\nt,ud,uq,id,iq,omega_e,note\r\n0,1,2,3,4,5,\"two\r\nlines\"\r\n\r\n1,1,2,3,4,abc,\r\n".into(),
+            "drive.csv, line 7, column 'omega_e': \"abc\" is not a number; correct it or remove the row",
+        ),
+        (
+            below("0,1,2,3,4,5\n1,1,\"two\nlines, and more than forty characters of them\",3,4,5\n"),
+            "drive.csv, line 3, column 'uq': \"two\\nlines, and more than forty character…\" is not a number; correct it or remove the row",
+        ),
+        (below("0,1,2,3,4,5\n1,1, ,3,4,5\n"), "drive.csv, line 3, column 'uq': the cell is empty or NaN; write a number or remove the row"),
+        (below("11:04:34.5,1,2,3,4,5\n"), "drive.csv, line 2, column 't': \"11:04:34.5\" is a time of day; write time as a number, in s"),
+        (
+            below("0,1,2,3,4,5\n1,1,2,NaN,4,5\n"),
+            "drive.csv, line 3, column 'id': the cell is empty or NaN; write a number or remove the row",
+        ),
+        (below("0,1,2,3,4,5\r\n1,1,2,-inf,4,5\r\n"), "drive.csv, line 3, column 'id': id is -inf; remove the row or write a finite number"),
+        (below("0,1,2,3,4,5\n1,1,2,3,Infinity,5\n"), "drive.csv, line 3, column 'iq': iq is inf; remove the row or write a finite number"),
+        (
+            below("0,1,2,3,4,5\n1,1,2,3,4,1e300\n"),
+            "drive.csv, line 3, column 'omega_e': omega_e is 1e300, beyond the 1e9 that any drive can have; check the column's unit or remove the row",
+        ),
+        (
+            below("0,1,2,3,4,5\n\n1,1,2,3,4,5\n1,1,2,3,4,5\n"),
+            "drive.csv, line 5, column 't': time goes from 1 s to 1 s; it must increase from row to row: remove repeated rows, or give the parts as separate logs",
+        ),
+        (
+            below("0,1,2,3,4,5\n1,1,2,3,4,5\n0.5,1,2,3,4,5\n"),
+            "drive.csv, line 4, column 't': time goes from 1 s to 0.5 s; it must increase from row to row: remove repeated rows, or give the parts as separate logs",
+        ),
+        (below("0,1,2,3,4,5\n"), "drive.csv: the log has 1 rows; at least 2 are needed"),
+        (
+            below("0,0,0,0,0,0\n1,0,0,0,0,0\n"),
+            "drive.csv: the currents id and iq are zero in every row; check the mapping of columns, or log the drive while it turns and carries current",
+        ),
+    ];
+    check(&cases, &LogOptions::default());
+    let semicolons = |rows: &str| format!("{}{rows}", HEADER.replace(',', ";"));
+    let cases = [
+        (
+            semicolons("0;1,5;2;3;4;5\n1;1;2.5;3;4;5\n"),
+            "drive.csv, line 3, column 'uq': \"2.5\" has another decimal mark than line 2; use one mark throughout, and no thousands separators",
+        ),
+        (
+            semicolons("0;1.5;2;3;4;5\n1;1;1,234;3;4;5\n"),
+            "drive.csv, line 3, column 'uq': \"1,234\" has another decimal mark than line 2; use one mark throughout, and no thousands separators",
+        ),
+        (semicolons("0;1,234,5;2;3;4;5\n"), "drive.csv, line 2, column 'ud': \"1,234,5\" is not a number; correct it or remove the row"),
+        (
+            semicolons("0;1.234,5;2;3;4;5\n"),
+            "drive.csv, line 2, column 'ud': \"1.234,5\" has a comma and a point, so its decimal mark is ambiguous; write numbers without thousands separators",
+        ),
+    ];
+    check(&cases, &LogOptions::default());
+    // The error of the library names the channel; the file has another name and another unit.
+    let renamed = "clock_ms,ud,uq,id,iq,omega_e\n1000,1,2,3,4,5\n500,1,2,3,4,5\n";
+    let sentence = refusal(renamed.as_bytes(), &map(&["t=clock_ms"]));
+    assert!(sentence.starts_with("drive.csv, line 3, column 'clock_ms': time goes from 1 s to 0.5 s"), "{sentence}");
+}
+
+#[test]
+fn binary_content_folders_and_missing_files_are_refused() {
+    let text = "this is not text in UTF-8; export it as CSV text in UTF-8";
+    assert_eq!(refusal(&[HEADER.as_bytes(), b"0,1,2,\0,4,5\n"].concat(), &LogOptions::default()), format!("drive.csv, line 2: {text}"));
+    let error = |path: &Path| read_log(path, &LogOptions::default()).unwrap_err().to_string();
+    let directory = tempfile::tempdir().unwrap();
+    let shown = directory.path().display();
+    assert_eq!(error(directory.path()), format!("{shown}: this is a directory; name a file in it"));
+    assert_eq!(error(&directory.path().join("x.csv")), format!("{shown}/x.csv: there is no such file; check the path"));
+}
+
+#[test]
+fn errors_and_notes_carry_the_advice_as_facts() {
+    let error = |text: &str, options: &LogOptions| parse_log("drive.csv", text.as_bytes(), options).unwrap_err();
+    let map_to = |pairs: &[(&'static str, Option<&str>)]| {
+        Advice::MapColumns(pairs.iter().map(|(channel, header)| (*channel, header.map(str::to_owned))).collect())
+    };
+    let missing = error("t,u_d,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &LogOptions::default());
+    assert_eq!((missing.kind(), missing.advice()), (FileErrorKind::Columns, &[map_to(&[("ud", Some("u_d"))])][..]));
+    let absent = error("t,uq,id,iq,omega_e\n0,2,3,4,5\n", &LogOptions::default());
+    assert_eq!(absent.advice(), [map_to(&[("ud", None)])]);
+    let unknown_unit = error("t [h],ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &map(&["t=t [h]"]));
+    assert_eq!((unknown_unit.kind(), unknown_unit.advice()), (FileErrorKind::Unit, &[Advice::StateUnit { channel: "t", unit: None }][..]));
+    let mechanical = error("t,ud,uq,id,iq,speed_rpm\n0,1,2,3,4,5\n", &map(&["omega=speed_rpm"]));
+    assert_eq!(mechanical.advice(), [Advice::StatePolePairs, Advice::StateUnit { channel: "omega_e", unit: Some("rpm-elec") }]);
+    let value = error("t,ud,uq,id,iq,omega_e\n0,1,x,3,4,5\n", &LogOptions::default());
+    assert_eq!((value.kind(), value.advice()), (FileErrorKind::Value, &[][..]));
+
+    let read = parse_log("drive.csv", format!("t,ud,uq,id,iq,speed\n{ROWS}").as_bytes(), &map(&["omega=speed"])).unwrap();
+    assert_eq!(read.notes[0].advice, [Advice::StateUnit { channel: "omega_e", unit: None }]);
+    // No sentence names an option of the command line.
+    assert!(read.notes.iter().all(|note| !note.sentence.contains("--")), "{:?}", read.notes);
+}

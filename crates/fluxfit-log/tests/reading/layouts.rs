@@ -1,0 +1,16 @@
+//! The page about logs has the table of layouts.
+
+use fluxfit_log::{LAYOUTS, Layout};
+use std::{fs, path::Path};
+
+#[test]
+fn the_page_has_the_same_table() {
+    let row = |layout: &Layout| {
+        let refused = if layout.is_log() { "" } else { "**refused**: " };
+        format!("| {} | {refused}{} | {} |\n", layout.name, layout.headers(), layout.remark)
+    };
+    let table: String = LAYOUTS.iter().map(row).collect();
+    // A package of this crate alone has no pages.
+    let Ok(page) = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/log.md")) else { return };
+    assert!(page.contains(&table), "docs/log.md should have these rows:\n{table}");
+}
