@@ -20,11 +20,7 @@ use fluxfit_drive::{
     simulate,
 };
 use fluxfit_files::answer::StudyFacts;
-use fluxfit_report::{
-    Origin, Report, ValidationReport,
-    figure::{self, Size},
-    figures, html, validation_html,
-};
+use fluxfit_report::{FigureFile, Origin, Report, Size, ValidationReport, figures, html, screen_figures, validation_html};
 use html5ever::{driver::ParseOpts, parse_document, tendril::TendrilSink, tree_builder::TreeBuilderOpts};
 use markup5ever_rcdom::{Handle, NodeData, RcDom};
 use resvg::tiny_skia::Pixmap;
@@ -53,19 +49,19 @@ fn origin() -> Origin {
 }
 
 fn page(title: &str, log: &Log, found: &Identification, method: Option<Method>) -> String {
-    let origin = origin();
     let notes = ["omega_e: column 'n' read as <mechanical> r/min".to_owned()];
-    let points = found.operating_points();
-    html(&Report {
-        title,
-        log,
-        notes: &notes,
-        operating_points: points,
-        identification: Some((found, method)),
-        held_out: None,
-        study: None,
-        origin: &origin,
-    })
+    html(&Report { title, notes: &notes, identification: Some((found, method)), ..report(log, found, &origin()) })
+}
+
+fn report<'a>(log: &'a Log, found: &'a Identification, origin: &'a Origin) -> Report<'a> {
+    let operating_points = found.operating_points();
+    Report { title: "x", log, notes: &[], operating_points, identification: Some((found, None)), held_out: None, study: None, origin }
+}
+
+/// A figure of the page for a wide screen.
+fn screen_figure(log: &Log, found: &Identification, name: &str) -> FigureFile {
+    let origin = origin();
+    screen_figures(&report(log, found, &origin), Size::Wide).into_iter().find(|figure| figure.name == name).unwrap()
 }
 
 fn identified(currents: &[(f64, f64)], settings: &Settings) -> (Identification, String) {
@@ -89,7 +85,7 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
     let methods: Vec<_> = methods.iter().map(run).collect();
     let facts = StudyFacts { settings: &settings, runs: 3, bounds: &bounds, problem: &problem, truth: truth.as_ref() };
     let origin = origin();
-    html(&Report {
+    let report = Report {
         title: "drive.csv",
         log: &log,
         notes: &[],
@@ -98,7 +94,10 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
         held_out: None,
         study: Some((&facts, &methods)),
         origin: &origin,
-    })
+    };
+    let page = html(&report);
+    assert_eq!(page.matches("<figure>").count(), figures(&report).len());
+    page
 }
 
 /// The text of a document, after checks that hold for every page.
@@ -207,7 +206,7 @@ fn data(page: &str) -> Vec<Numbers> {
 }
 
 #[test]
-fn the_pointer_is_told_what_the_log_says() {
+fn the_data_of_a_figure_are_those_of_the_log() {
     let log = recorded(0.09, |_| ());
     let found = identify(&log, &of_currents()).unwrap();
     let page = page("x", &log, &found, None);
@@ -223,7 +222,7 @@ fn the_pointer_is_told_what_the_log_says() {
         for (shown, measured) in [(t[at], columns.t[row]), (d[0][at], columns.id[row]), (q[0][at], columns.iq[row])] {
             assert!((shown - measured).abs() < 1e-3, "row {row}: {shown} and {measured}");
         }
-        // The residuals are in milliampere, and what the upper panel's curves differ by.
+        // The residuals are in milliampere, and the difference of the upper panel's curves.
         for (above, missed) in [(d, d_missed), (q, q_missed)] {
             assert!((above[0][at] - above[1][at] - 1e-3 * missed[0][at]).abs() < 2e-3, "row {row}");
         }
@@ -231,7 +230,7 @@ fn the_pointer_is_told_what_the_log_says() {
 }
 
 #[test]
-fn an_identification_has_its_values_verdicts_and_command() {
+fn an_identification_shows_values_verdicts_and_command() {
     let (found, page) = identified(&TWO, &Settings { model: Some(Model::Steady), method: Some(Method::all()[0]), ..Settings::default() });
     assert!(found.is_complete());
     let text = checked(&page);
@@ -243,9 +242,9 @@ fn an_identification_has_its_values_verdicts_and_command() {
     assert_eq!(page.matches("class=\"badge identified\"").count(), 4 + 1, "four verdicts and the legend");
 }
 
-/// A browser is not certain to be there: without one this says so, and checks nothing.
+/// Without a browser this test prints a note and checks nothing.
 #[test]
-fn the_script_draws_every_figure_that_has_its_numbers() {
+fn the_script_draws_every_figure_with_data() {
     let log = recorded(0.09, |_| ());
     let found = identify(&log, &of_currents()).unwrap();
     let page = page("x", &log, &found, None);
@@ -267,7 +266,7 @@ fn the_script_draws_every_figure_that_has_its_numbers() {
 }
 
 #[test]
-fn what_is_not_identifiable_has_no_number_anywhere() {
+fn a_parameter_that_is_not_identifiable_has_no_number() {
     let (found, page) = identified(&[(0.0, 9.0), (0.0, 5.0)], &Settings { model: Some(Model::Steady), ..Settings::default() });
     let ld = found.parameter(Parameter::Ld);
     assert_eq!(ld.verdict, Verdict::NotIdentifiable);
@@ -286,17 +285,17 @@ fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict()
     let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
     let (_, page) = identified(&TWO, &Settings { model: Some(Model::Steady), known, method: None, ..Settings::default() });
     let text = checked(&page);
-    assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("The swarm"), "{text}");
+    assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("swarm"), "{text}");
 }
 
 #[test]
-fn nothing_identifiable_is_still_a_page() {
+fn a_page_without_any_identified_parameter() {
     let log = log(&TWO[..1], 0.1);
     let mut found = identify(&log, &Settings::default()).unwrap();
     found.parameters.iter_mut().for_each(|judgement| judgement.verdict = Verdict::NotIdentifiable);
     let text = checked(&page("x", &log, &found, Settings::default().method));
     assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
-    assert!(!text.contains("The swarm") && !text.contains("Where the uncertainty"));
+    assert!(!text.contains("swarm") && !text.contains("Sources of uncertainty"));
 }
 
 /// A log of the paper's motor as a drive records it: up to speed in 0.1 s, a step of i_d on the way; noise of 50 mA on each current.
@@ -325,7 +324,7 @@ fn simulated_currents_have_their_own_sections() {
     let found = identify(&log, &of_currents()).unwrap();
     let text = checked(&page("x", &log, &found, None));
     // Noise of 50 mA a phase is 50 mA times the root of two thirds, 40.8 mA, along each axis; its rms of 1601 rows is right to 0.7 mA.
-    let (_, missed) = text.split_once("Simulated currents miss the measured ones by ").unwrap();
+    let (_, missed) = text.split_once("Simulated and measured currents differ by ").unwrap();
     for mark in [" mA (d)", " mA (q)"] {
         let number = missed.split_once(mark).unwrap().0.rsplit(' ').next().unwrap();
         assert!((number.parse::<f64>().unwrap() - 40.8).abs() < 2.1, "{number}");
@@ -333,20 +332,21 @@ fn simulated_currents_have_their_own_sections() {
     for expected in [
         "Model: output error (as stated)",
         "Measured against simulated",
-        "White, as noise is:",
-        "Its voltages are read as the mean of the two periods around the row, as the currents ask for. No fault of the drive shows",
-        "Nothing was found between the motor and its log",
+        "Yes, white noise:",
+        "The logged voltage of a row is taken as the mean of the two periods around the row, determined from the currents. No fault of the \
+         drive was found",
+        "None of the faults below was found.",
         "explains too little of the residual",
         "ruled out",
         "1601, of which 1601 were simulated",
     ] {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
-    assert!(!text.contains("squared standard uncertainty") && !text.contains("Gaps of the log"));
+    assert!(!text.contains("squared standard uncertainty") && !text.contains("Gaps in the log"));
 }
 
 #[test]
-fn correlations_stand_in_a_table_whose_numbers_are_those_of_the_answer() {
+fn the_table_of_correlations_has_the_numbers_of_the_answer() {
     let log = recorded(0.08, |_| ());
     let found = identify(&log, &of_currents()).unwrap();
     let page = page("x", &log, &found, None);
@@ -372,7 +372,7 @@ fn there_is_no_ellipse_of_a_given_or_missing_parameter() {
 }
 
 #[test]
-fn faults_of_the_drive_are_told_with_their_size() {
+fn faults_of_the_drive_are_shown_with_their_values() {
     let log = recorded(0.08, |scenario| scenario.sensors.current_offset = [0.0, 0.3, 0.0]);
     let found = identify(&log, &of_currents()).unwrap();
     let page = page("x", &log, &found, None);
@@ -388,23 +388,23 @@ fn faults_of_the_drive_are_told_with_their_size() {
         let (value, margin) = shown(key);
         assert!((value - expected).abs() < 2.0 * margin && margin < 0.2 * expected.abs(), "{key}: {value} ± {margin}");
     }
-    assert!(text.contains("shown as the faulty sensors found would read it"), "{text}");
+    assert!(text.contains("includes the identified faults of the sensors"), "{text}");
 }
 
 #[test]
-fn gaps_are_not_bridged_and_a_log_without_operating_points_is_told_as_such() {
+fn gaps_are_not_bridged_and_missing_operating_points_are_reported() {
     let log = recorded(0.09, |_| ());
     let mut found = identify(&log, &of_currents()).unwrap();
     found.steady = None;
     let text = checked(&page("x", &log, &found, None));
     for expected in
-        ["1501, of which 1501 were simulated; the log never holds still", "Gaps of the log are not bridged", "Stretches simulated"]
+        ["1501, of which 1501 were simulated; the log has no operating point", "Gaps in the log are not bridged", "Simulated stretches"]
     {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
     assert!(!text.contains("Operating points, as a check") && !text.contains("Windows of the operating points"));
     // Per axis a measured and a simulated piece on either side of the gap, and a residual.
-    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    let svg = screen_figure(&log, &found, "currents").svg;
     let long = svg.split("<polyline").skip(1).filter(|line| line.split_once('>').unwrap().0.matches(',').count() > 100);
     assert_eq!(long.count(), 2 * 3 * 2);
 }
@@ -424,26 +424,29 @@ fn a_million_rows_make_a_page_of_less_than_a_megabyte_that_shows_a_single_row() 
     let page = page("x", &log, &found, None);
     assert!(page.len() < 900_000, "{}", page.len());
     let (t, panels) = &data(&page)[0];
-    assert!(t.len() <= 6_000 && checked(&page).contains("Of this long log the page holds"), "{}", t.len());
+    assert!(t.len() <= 6_000 && checked(&page).contains("Of this long log, the page contains only"), "{}", t.len());
     let peak = t.iter().position(|t| (t - 65.4321).abs() < 1e-6).unwrap();
     assert_eq!(panels[0][0][peak], 37.0);
     // The axis of i_d reaches up to the row that stands out.
-    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    let svg = screen_figure(&log, &found, "currents").svg;
     assert!(svg.lines().any(|line| line.trim() == "20") && svg.lines().any(|line| line.trim() == "0"), "no tick at 20 A");
 }
 
 #[test]
-fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
+fn the_swarm_search_of_simulated_currents_is_not_called_linear() {
     let log = recorded(0.08, |_| ());
     let search = fluxfit::optimizer::Settings { population: 10, iterations: 5, ..Default::default() };
     let method = Some(Method::all()[0]);
     let found = identify(&log, &Settings { method, search, ..of_currents() }).unwrap();
     let text = checked(&page("x", &log, &found, method));
-    assert!(text.contains("Simulated currents are not linear in the parameters") && !text.contains("solves them exactly"), "{text}");
+    assert!(
+        text.contains("Simulated currents are not linear in the parameters") && !text.contains("exact least-squares solution"),
+        "{text}"
+    );
 }
 
 #[test]
-fn hostile_texts_are_texts() {
+fn markup_in_texts_is_escaped() {
     let log = log(&TWO, 0.1);
     let found = identify(&log, &Settings::default()).unwrap();
     let title = "</title><script>alert(1)</script>\"'&<img src=x onerror=y>";
@@ -451,7 +454,7 @@ fn hostile_texts_are_texts() {
 }
 
 #[test]
-fn a_study_of_the_papers_motor_stands_beside_the_papers_table() {
+fn a_study_of_the_papers_motor_shows_the_papers_table() {
     let text = checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, |_| ()));
     for expected in ["Four methods ran 3 times each", "0.9639", "5.283", "0.01414", "0.051", "cannot be known", "Fig. 4", "Fig. 5"] {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
@@ -472,7 +475,7 @@ fn costs_of_zero_no_iterations_and_broken_numbers() {
         study.cost_above_optimum.fill(0.0);
         study.convergence.quartiles.fill([0.0; 3]);
     };
-    assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("drawn at that floor"));
+    assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("rounding errors and drawn at that value"));
     let empty = |study: &mut MethodStudy| study.convergence = ConvergenceCurves::default();
     assert!(!checked(&study_page(&Method::all(), None, &TWO, empty)).contains("Fig. 4"));
     let start_only = |study: &mut MethodStudy| {
@@ -490,18 +493,15 @@ fn costs_of_zero_no_iterations_and_broken_numbers() {
 }
 
 #[test]
-fn figures_stand_alone() {
+fn screen_figures_are_complete_svg_files() {
     let log = log(&TWO, 0.1);
     let found = identify(&log, &Settings::default()).unwrap();
     let fast = recorded(0.08, |_| ());
     let of_fast = identify(&fast, &of_currents()).unwrap();
+    let origin = origin();
     for size in [Size::Wide, Size::Narrow] {
-        for svg in [
-            figure::currents(&fast, of_fast.output.as_ref().unwrap(), size),
-            figure::intervals(&found, size),
-            figure::residuals(found.steady.as_ref().unwrap(), size),
-            figure::operating_points(found.operating_points(), size),
-        ] {
+        let figures = [screen_figures(&report(&fast, &of_fast, &origin), size), screen_figures(&report(&log, &found, &origin), size)];
+        for FigureFile { svg, .. } in figures.into_iter().flatten() {
             assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && svg.ends_with("</svg>\n"));
             assert!(svg.contains("prefers-color-scheme:dark") && svg.contains("role=\"img\" aria-label=\""));
             assert_eq!(svg.matches("://").count(), 1, "the name space alone");
@@ -512,7 +512,7 @@ fn figures_stand_alone() {
 }
 
 #[test]
-fn what_was_held_out_has_its_own_section() {
+fn held_out_data_have_a_section() {
     let (log, kept_out) = (recorded(0.08, |_| ()), recorded(0.08, |scenario| scenario.sensors.current_noise = 0.06));
     let found = identify(&log, &of_currents()).unwrap();
     let validation = validate(&kept_out, &Given::of(&found).unwrap(), &of_currents()).unwrap();
@@ -529,15 +529,15 @@ fn what_was_held_out_has_its_own_section() {
     };
     let (page, files) = (html(&shown), figures(&shown));
     let text = checked(&page);
-    assert!(text.contains("What was held out") && text.contains("These 1601 rows, 0.160 s, had no part in the answer above"), "{text}");
+    assert!(text.contains("Held-out data") && text.contains("These 1601 rows, 0.160 s, were not used for the answer above"), "{text}");
     assert!(text.contains("Measured against predicted") && text.contains("agrees"), "{text}");
     assert!(files.iter().any(|file| file.name == "held-out") && page.matches("<figure>").count() == files.len());
     let text = checked(&html(&Report { held_out: Some((&kept_out, None)), ..shown }));
-    assert!(text.contains("They are not predicted, because that takes all four parameters."), "{text}");
+    assert!(text.contains("They are not predicted, because a prediction needs all four parameters."), "{text}");
 }
 
 #[test]
-fn every_figure_of_the_page_is_a_file_on_white_paper_with_letters_of_its_own() {
+fn every_figure_of_the_page_is_a_file_for_white_paper() {
     let log = recorded(0.08, |_| ());
     let found = identify(&log, &of_currents()).unwrap();
     let origin = origin();
@@ -605,12 +605,12 @@ fn courses(value: f64) -> Prediction {
 }
 
 #[test]
-fn a_validation_has_its_verdict_both_motors_and_its_channels() {
+fn a_validation_shows_verdict_parameters_and_channels() {
     let (found, page) = validation_page(paper::MOTOR, &TWO, |_| ());
     let text = checked(&page);
     assert_eq!(found.outcome, Outcome::Agrees);
     for expected in
-        ["<m>.toml on a log.csv", "Agrees within the noise", "The log’s own", "agrees", "Warning: no-redundancy", "read as <mechanical>"]
+        ["<m>.toml on a log.csv", "Agrees within the noise", "From this log", "agrees", "Warning: no-redundancy", "read as <mechanical>"]
     {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
@@ -620,10 +620,10 @@ fn a_validation_has_its_verdict_both_motors_and_its_channels() {
 }
 
 #[test]
-fn a_validation_names_what_the_log_cannot_tell() {
+fn a_validation_names_parameters_that_are_not_identifiable() {
     let (_, page) = validation_page(paper::MOTOR, &[(0.0, 9.0), (0.0, 5.0)], |_| ());
     let text = checked(&page);
-    assert!(text.contains("This log cannot tell Ld: it is taken as given.") && text.contains("cannot tell–––"), "{text}");
+    assert!(text.contains("This log cannot tell Ld: it is taken as given.") && text.contains("not identifiable–––"), "{text}");
 }
 
 #[test]

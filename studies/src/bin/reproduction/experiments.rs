@@ -2,6 +2,7 @@
 
 use fluxfit::{
     identify,
+    log::Log,
     motor::PARAMETERS,
     objective::voltage_error::IdZero,
     optimizer::{
@@ -38,6 +39,7 @@ pub(crate) enum Rig {
 /// What one of them logged.
 pub(crate) struct Data {
     pub(crate) rig: Rig,
+    pub(crate) log: Log,
     pub(crate) problem: StudyProblem,
 }
 
@@ -63,7 +65,8 @@ impl Data {
             Rig::Noisy => (scenario.sensors.current_noise, scenario.sensors.adc) = (NOISE, Some(ADC)),
         }
         let log = simulate(&scenario, 0, || ())?.log()?;
-        Ok(Self { rig, problem: StudyProblem::steady(&log, &identify::Settings::default(), IdZero::Measured)? })
+        let problem = StudyProblem::steady(&log, &identify::Settings::default(), IdZero::Measured)?;
+        Ok(Self { rig, log, problem })
     }
 
     /// The paper's number of runs of each method.
@@ -72,10 +75,15 @@ impl Data {
     }
 
     pub(crate) fn study_with(&self, methods: &[Method], runs: usize, settings: Settings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
-        let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
+        let bounds = search_box()?;
         let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.problem.fitness, || ControlFlow::Continue(()));
         Ok(methods.iter().filter_map(|method| run(method).transpose()).collect::<Result<_, _>>()?)
     }
+}
+
+/// The search box of the paper's motor.
+pub(crate) fn search_box() -> Result<Bounds, fluxfit::Error> {
+    Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())
 }
 
 /// The paper's four, in its order.
