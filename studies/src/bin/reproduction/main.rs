@@ -9,12 +9,10 @@ mod experiments;
 mod page;
 mod tables;
 
-use experiments::{Data, Rig, ablation};
-use fluxfit::{
-    optimizer::{Method, SearchSettings},
-    paper,
-};
-use fluxfit_report::figure::{Size, convergence, parameter_courses};
+use experiments::{Data, Rig, ablation, search_box};
+use fluxfit::{optimizer::SearchSettings, paper};
+use fluxfit_answer::answer::StudyFacts;
+use fluxfit_report::{Origin, Report, Size, screen_figures};
 use page::Page;
 use std::{error::Error, path::Path};
 
@@ -42,10 +40,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     page.finish()?;
 
     let timed: Vec<_> = study.iter().map(|study| (study.clone(), 0.0)).collect();
-    page::figure(&docs.join("reproduction/convergence.svg"), &convergence(&rig.problem.fitness, &timed, Size::Wide), check)?;
-    let tgfpa = study.iter().find(|study| matches!(study.method, Method::Tgfpa(_))).ok_or("no study of tGFPA")?;
-    let courses = parameter_courses(tgfpa, Some(&paper::MOTOR), &[], Size::Wide);
-    page::figure(&docs.join("reproduction/parameters.svg"), &courses, check)?;
+    let (settings, bounds) = (SearchSettings::default(), search_box()?);
+    let facts = StudyFacts { settings: &settings, runs: paper::RUNS, bounds: &bounds, problem: &rig.problem, truth: Some(&paper::MOTOR) };
+    let origin = Origin { command: "reproduction".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned(), seed: settings.seed };
+    let report = Report {
+        title: "reproduction",
+        log: &rig.log,
+        notes: &[],
+        operating_points: &[],
+        identification: None,
+        held_out: None,
+        study: Some((&facts, &timed)),
+        origin: &origin,
+    };
+    for figure in screen_figures(&report, Size::Wide) {
+        page::figure(&docs.join(format!("reproduction/{}.svg", figure.name)), &figure.svg, check)?;
+    }
     println!("docs/reproduction.md and its figures {}", if check { "are true" } else { "are written" });
     Ok(())
 }
