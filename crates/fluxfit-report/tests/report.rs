@@ -332,7 +332,7 @@ fn simulated_currents_have_their_own_sections() {
     for expected in [
         "Model: output error (as stated)",
         "Measured against simulated",
-        "Yes, white noise:",
+        "White: of 50 correlations",
         "The logged voltage of a row is taken as the mean of the two periods around the row, determined from the currents. No fault of the \
          drive was found",
         "None of the faults below was found.",

@@ -40,18 +40,18 @@ fn verdict(correlation: &ResidualCorrelation, is_relevant: bool) -> Markup {
     let slight = all().all(|value| value.abs() < SLIGHT);
     html! {
         @if white == [true, true] {
-            strong { "Yes, white noise: " }
+            strong { "White: " }
             "of " (lags) " correlations for each axis, " (outside(0)) " (d) and " (outside(1)) " (q) are outside the band; about "
             (format!("{:.0}", OUTSIDE * lags)) " are expected by chance. The model explains everything in the currents but noise."
         } @else if !is_relevant {
-            strong { "No, but they are negligible: " }
+            strong { "Too small to matter: " }
             (residuals_of(white)) " are correlated, but smaller than 0.01 % of the largest current, as the ripple of an inverter or rounding."
         } @else if slight {
-            strong { "Almost: " }
+            strong { "Almost white: " }
             (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, but none is larger than "
             (largest) ". The error of the model is small compared with the noise; the intervals account for it."
         } @else {
-            strong { "No: " }
+            strong { "Not white: " }
             (residuals_of(white)) " are correlated from row to row; the largest correlation is " (largest)
             ". The model lacks an effect that lasts longer than a row, such as a fault of the drive, saturation or heating. "
             "The intervals account for the correlation, but not for a bias from that effect."
@@ -76,9 +76,9 @@ mod tests {
     fn each_kind_of_residual_has_its_verdict() {
         let with = |outside: usize, value: f64| -> Vec<f64> { (0..50).map(|lag| if lag < outside { value } else { 0.01 }).collect() };
         let of = |d: Vec<f64>, q: Vec<f64>| verdict(&ResidualCorrelation { axes: [d, q], band: 0.02 }, true).into_string();
-        assert!(of(with(6, 0.9), with(0, 0.0)).contains("Yes, white noise"));
+        assert!(of(with(6, 0.9), with(0, 0.0)).contains("White: "));
         assert!(of(with(7, -0.05), with(0, 0.0)).contains("none is larger than \u{2212}0.050"));
         let text = of(with(0, 0.0), with(7, 0.9));
-        assert!(text.contains("No: ") && text.contains("<i>i</i><sub>q</sub>") && text.contains("is 0.90"), "{text}");
+        assert!(text.contains("Not white: ") && text.contains("<i>i</i><sub>q</sub>") && text.contains("is 0.90"), "{text}");
     }
 }
