@@ -1,4 +1,4 @@
-//! The command line, as clap reads it. Texts of values are turned into values by `fluxfit-units` and `fluxfit-log`; nothing is decided here.
+//! The command line, as clap reads it. `fluxfit-units` and `fluxfit-log` parse the values; nothing is decided here.
 
 use anstyle::Style;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, builder::Resettable};
@@ -187,8 +187,8 @@ pub(crate) struct LogArguments {
 pub(crate) struct ColumnArguments {
     /// Columns with other names, e.g. ud=motor_vd_V,omega_e=speed
     ///
-    /// The standard names are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc. Phase quantities ia, ib, ic, ua, ub, uc with theta_e
-    /// may replace id, iq, ud, uq. [default: the standard names, or a known layout]
+    /// The standard names are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc. Phase quantities ia, ib, ic, ua, ub, uc with
+    /// theta_e may replace id, iq, ud, uq. [default: the standard names, or a known layout]
     #[arg(long, value_name = "NAME=COLUMN,..", value_parser = parse_columns)]
     pub(crate) map: Vec<MappedColumns>,
     /// Units of columns, e.g. omega=rpm-mech,t=ms

@@ -7,9 +7,9 @@
 //! v = w - alpha psi,     u = alpha (psi* - psi) + v,     dw/dt = (alpha + j omega_e)(u_limited - v)
 //! ```
 //!
-//! `j omega_e` in the integrator decouples the axes. Integrating the limited voltage `u_limited` instead of `u` is the anti-windup. Briz, Degner and Lorenz, "Analysis and design of current regulators
-//! using complex vectors", 2000, doi 10.1109/28.845057. The speed loop is the same controller with real numbers, the inertia in
-//! place of the inductance, and the torque in place of the voltage.
+//! `j omega_e` in the integrator decouples the axes. Integrating the limited voltage `u_limited` instead of `u` is the anti-windup.
+//! Briz, Degner and Lorenz, "Analysis and design of current regulators using complex vectors", 2000, doi 10.1109/28.845057. The speed
+//! loop is the same controller with real numbers, the inertia in place of the inductance, and the torque in place of the voltage.
 //!
 //! A command that is computed at a sample acts over the period after the next sample: its vector is rotated by `1.5 omega_e T_s`.
 

@@ -1,10 +1,13 @@
-//! Symbols, units and numbers as a page sets them: subscripts, Greek letters, a real minus.
+//! Typography of symbols, units and numbers: subscripts, Greek letters, minus signs.
 
-use fluxfit::motor::Parameter;
-use fluxfit_units::{Scale, small};
+use fluxfit::{evidence::Nuisance, motor::Parameter};
+use fluxfit_units::{Scale, format_unknown, significant, small};
 use maud::{Markup, PreEscaped, html};
 
-/// Symbols as the texts of the program write them: the word, its letter, its subscript.
+/// Half-width of a 95 % interval in standard errors.
+const HALF_WIDTH: f64 = 1.959_964;
+
+/// Symbols: the plain text, its letter, its subscript.
 const SYMBOLS: [(&str, &str, &str); 11] = [
     ("omega_e", "ω", "e"),
     ("psi_f", "ψ", "f"),
@@ -24,8 +27,7 @@ pub(crate) fn symbol(parameter: Parameter) -> Markup {
     prose(parameter.symbol())
 }
 
-/// A sentence of the program with its symbols set, options of the command line as code, and a real minus. Anything else is
-/// escaped.
+/// A sentence with typographic symbols and minus signs, and command-line options as code. Everything else is escaped.
 pub(crate) fn prose(text: &str) -> Markup {
     html! {
         @for (k, word) in text.split(' ').enumerate() {
@@ -49,7 +51,7 @@ fn set_word(word: &str) -> Markup {
     }
 }
 
-/// The same for text inside SVG, where there are only shifted spans: a zero-width space takes the line back up.
+/// Subscripts in SVG text, as shifted spans; a zero-width space returns to the baseline.
 pub(crate) fn svg_subscripts(svg: &str) -> String {
     SYMBOLS.iter().fold(svg.to_owned(), |svg, (name, letter, index)| {
         let set = format!("{letter}<tspan dy=\"0.28em\" font-size=\"75%\">{index}</tspan><tspan dy=\"-0.21em\">\u{200b}</tspan>");
@@ -57,13 +59,13 @@ pub(crate) fn svg_subscripts(svg: &str) -> String {
     })
 }
 
-/// A parameter's unit under a scale, with its Greek letters.
+/// The unit of a parameter with a scale, with Greek letters.
 pub(crate) fn unit(parameter: Parameter, scale: &Scale) -> String {
     let unit = scale.unit(parameter.unit()).replace("ohm", "Ω");
     unit.strip_prefix('u').map(|rest| format!("µ{rest}")).unwrap_or(unit)
 }
 
-/// A number's text with a real minus, and none before a zero.
+/// A number with a minus sign (not a hyphen), and without one before zero.
 pub(crate) fn minus(text: String) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
@@ -72,15 +74,15 @@ pub(crate) fn minus(text: String) -> String {
     }
 }
 
-/// A number if it is one; a dash otherwise.
+/// A number, or a dash if it is not finite.
 pub(crate) fn number(value: f64, show: impl FnOnce(f64) -> String) -> String {
     if value.is_finite() { minus(show(value)) } else { DASH.to_owned() }
 }
 
-/// Stands where there is no number.
+/// Shown where there is no number.
 pub(crate) const DASH: &str = "\u{2013}";
 
-/// A small positive number, as 1.2 · 10⁻⁸; plain where that is shorter to read.
+/// A small positive number, as 1.2·10⁻⁸ or in plain notation, whichever is easier to read.
 pub(crate) fn power(value: f64) -> Markup {
     let text = number(value, small);
     match text.split_once('e') {
@@ -89,34 +91,61 @@ pub(crate) fn power(value: f64) -> Markup {
     }
 }
 
-/// Decimals that show two significant digits of an uncertainty; `least` where there is none.
+/// Decimals for two significant digits of an uncertainty; `least` without one.
 pub(crate) fn decimals(uncertainty: f64, least: usize) -> usize {
     if uncertainty > 0.0 && uncertainty.is_finite() { (1.0 - uncertainty.log10().floor()).clamp(0.0, 9.0) as usize } else { least }
 }
 
-/// A count, in words as far as people read them so.
+/// Decimals that resolve a hundredth of a time span, s.
+pub(crate) fn decimals_of_span(span: f64) -> usize {
+    (2.0 - span.log10().floor()).clamp(0.0, 9.0) as usize
+}
+
+/// A fraction in percent, two significant digits, without the sign.
+pub(crate) fn percent(fraction: f64) -> String {
+    number(100.0 * fraction, |percent| significant(percent, 2))
+}
+
+/// A current with the unit that suits it.
+pub(crate) fn amperes(current: f64) -> String {
+    let (factor, unit) = match current {
+        c if c >= 1.0 => (1.0, "A"),
+        c if c >= 1e-3 => (1e3, "mA"),
+        _ => (1e6, "µA"),
+    };
+    format!("{} {unit}", number(current, |current| significant(factor * current, 2)))
+}
+
+/// The value of a fault of the drive with its 95 % interval and unit.
+pub(crate) fn fault(nuisance: &Nuisance) -> Markup {
+    let [value, half_width, unit] = format_unknown(nuisance.unknown, nuisance.value, HALF_WIDTH * nuisance.standard_error);
+    let unit = unit.replace("deg", "°").strip_prefix('u').map_or_else(|| unit.replace("deg", "°"), |rest| format!("µ{rest}"));
+    html! { (minus(value)) " ± " (half_width) " " (unit) }
+}
+
+/// A count, up to nine in words.
 pub(crate) fn in_words(n: usize) -> String {
     const WORDS: [&str; 10] = ["none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
     WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
 }
 
-/// The same with its noun.
+/// A count with its noun.
 pub(crate) fn count(n: usize, noun: &str) -> String {
     format!("{} {noun}{}", if n == 0 { "no".to_owned() } else { in_words(n) }, if n == 1 { "" } else { "s" })
 }
 
-/// With a capital.
+/// Text with a capital first letter.
 pub(crate) fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
-/// A large count, its thousands apart.
+/// A count with grouped thousands.
 pub(crate) fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (k, digit) in digits.chars().enumerate() {
-        // Five digits and more are hard to read in one piece.
+        // Numbers of four digits are not grouped.
         if k > 0 && digits.len() > 4 && (digits.len() - k).is_multiple_of(3) {
             text.push('\u{202f}');
         }
@@ -125,7 +154,7 @@ pub(crate) fn grouped(n: u64) -> String {
     text
 }
 
-/// Things in a row: `a, b and c`.
+/// A list: `a, b and c`.
 pub(crate) fn list(items: &[Markup]) -> Markup {
     html! {
         @for (k, item) in items.iter().enumerate() {
@@ -140,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sentences_get_their_symbols_and_keep_everything_else() {
+    fn sentences_get_typographic_symbols() {
         assert_eq!(
             prose("R_s, near -2 A (see --fix <b>)").into_string(),
             "<i>R</i><sub>s</sub>, near \u{2212}2 A (see <code>--fix</code> &lt;b&gt;)"
@@ -150,7 +179,12 @@ mod tests {
     }
 
     #[test]
-    fn numbers() {
+    fn currents_have_a_suitable_unit() {
+        assert_eq!([2.5, 0.0404, 1.9e-5].map(amperes), ["2.5 A", "40 mA", "19 µA"]);
+    }
+
+    #[test]
+    fn numbers_are_formatted() {
         assert_eq!((grouped(1234), grouped(1_234_567)), ("1234".to_owned(), "1\u{202f}234\u{202f}567".to_owned()));
         assert_eq!(minus("-0.00".to_owned()), "0.00");
         assert_eq!(number(f64::NAN, |v| v.to_string()), DASH);

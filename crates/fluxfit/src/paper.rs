@@ -45,7 +45,7 @@ pub const SEARCH_BOX: [f64; PARAMETERS] = [5.0, 0.05, 0.05, 1.0];
 
 /// One column of Table 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Column {
+pub struct Table2Column {
     /// [`Method::key`](crate::optimizer::Method::key) of the method.
     pub method: &'static str,
     /// Mean of the estimates.
@@ -55,23 +55,23 @@ pub struct Column {
 }
 
 /// Table 2.
-pub const TABLE_2: [Column; 4] = [
-    Column {
+pub const TABLE_2: [Table2Column; 4] = [
+    Table2Column {
         method: "tgfpa",
         mean: Motor { rs: 0.9639, ld: 5.283e-3, lq: 11.999e-3, psi_f: 0.18263 },
         error_percent: [0.638, 0.629, 0.01414, 0.051],
     },
-    Column {
+    Table2Column {
         method: "fpa",
         mean: Motor { rs: 0.9623, ld: 5.273e-3, lq: 11.998e-3, psi_f: 0.18268 },
         error_percent: [1.156, 0.820, 0.04101, 0.138],
     },
-    Column {
+    Table2Column {
         method: "lpso",
         mean: Motor { rs: 0.9703, ld: 5.287e-3, lq: 11.997e-3, psi_f: 0.18249 },
         error_percent: [1.451, 0.700, 0.02963, 0.145],
     },
-    Column {
+    Table2Column {
         method: "apso",
         mean: Motor { rs: 0.9629, ld: 5.279e-3, lq: 11.999e-3, psi_f: 0.18265 },
         error_percent: [0.908, 0.940, 0.02442, 0.110],

@@ -135,5 +135,5 @@ fn what_was_held_out_is_on_the_page() {
     let run = fluxfit(&["identify", LOG, LOG, "--model", "steady", "--hold-out", "--report", &path]);
     assert!(run.status < 2, "{}", run.err);
     let page = fs::read_to_string(&path).unwrap();
-    assert!(page.contains("What was held out") && page.contains("had no part in the answer above"));
+    assert!(page.contains("Held-out data") && page.contains("were not used for the answer above"));
 }

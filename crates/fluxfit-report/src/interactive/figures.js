@@ -1,5 +1,5 @@
-/* Draws every figure that has its numbers beside it with uPlot, in the place of its SVG: zoom by dragging, a double click back, values under the pointer, the
-   keyboard. Whatever fails leaves the SVG. No request is made. */
+/* Draws every figure that has data with uPlot, in place of its SVG: drag to zoom, double click to reset, values at the pointer, keyboard control. If this fails, the
+   SVG is shown. No request is made. */
 (() => {
   "use strict";
   const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -49,14 +49,14 @@
 
   /* The columns of a panel, and how uPlot draws each: bands take two of their own, below the curves. */
   const drawn = (panel, x) => {
-    const data = [x], series = [{}], bands = [], shown = [];
+    const columns = [x], series = [{}], bands = [], shown = [];
     if (panel.kind === "decades") panel.series.forEach(one => {
-      bands.push({ series: [data.length + 1, data.length], fill: stroke(one, 0.16) });
-      one.about.forEach(edge => { data.push(column(edge)); series.push({ width: 0, points: { show: false } }); });
+      bands.push({ series: [columns.length + 1, columns.length], fill: stroke(one, 0.16) });
+      one.about.forEach(edge => { columns.push(column(edge)); series.push({ width: 0, points: { show: false } }); });
     });
     panel.series.forEach(one => {
-      shown.push(data.length);
-      data.push(column(one.values));
+      shown.push(columns.length);
+      columns.push(column(one.values));
       const points = panel.kind === "plane";
       series.push({
         stroke: stroke(one, one.opacity), width: one.width, dash: one.dash, spanGaps: false,
@@ -64,7 +64,7 @@
         points: points ? { show: true, size: 9, width: 0, fill: stroke(one, 1) } : { show: false },
       });
     });
-    return { data, series, bands, shown };
+    return { columns, series, bands, shown };
   };
 
   /* The point nearest to the pointer in the plane. */
@@ -85,14 +85,14 @@
     u.ctx.restore();
   };
 
-  /* The line of zero, below the curves. */
+  /* The zero line, below the curves. */
   const zero = panel => u => {
     const { left, top, width, height } = u.bbox, y = u.valToPos(0, "y", true);
     if ((panel.kind === "bars" || panel.name.startsWith("measured")) && y > top && y < top + height) line(u, [left, y], [left + width, y], of(TEXT), 1);
   };
 
-  /* What uPlot has no series for: bars with their marks, the numbers of points. */
-  const extras = (panel, told) => u => {
+  /* Drawn by hand: error bars with their markers, and the numbers of points. */
+  const extras = (panel, descriptions) => u => {
     const { left, top, width, height } = u.bbox, ratio = devicePixelRatio, ctx = u.ctx;
     const at = (value, scale) => u.valToPos(value, scale, true);
     ctx.save();
@@ -117,7 +117,7 @@
         const py = point + (above ? -6 : 22) * ratio;
         if (placed.some(([qx, qy]) => Math.abs(qx - px) < 18 * ratio && Math.abs(qy - py) < 14 * ratio)) return;
         placed.push([px, py]);
-        ctx.fillText(told[k].match(/\d+/)[0], px, py);
+        ctx.fillText(descriptions[k].match(/\d+/)[0], px, py);
       });
     }
     ctx.restore();
@@ -131,14 +131,14 @@
   };
 
   const draw = figure => {
-    const live = JSON.parse(figure.querySelector("script").textContent);
-    const x = column(live.x.values), svg = figure.querySelector("svg");
-    if (x.length < 2 && live.panels[0].kind !== "plane" && live.panels[0].kind !== "bars" || !x.length) return;
+    const data = JSON.parse(figure.querySelector("script").textContent);
+    const x = column(data.x.values), svg = figure.querySelector("svg");
+    if (x.length < 2 && data.panels[0].kind !== "plane" && data.panels[0].kind !== "bars" || !x.length) return;
     const plate = document.createElement("div");
-    plate.className = live.told ? "plot told" : "plot";
+    plate.className = data.descriptions ? "plot described" : "plot";
     plate.setAttribute("role", "group");
     plate.tabIndex = 0;
-    plate.setAttribute("aria-label", svg.getAttribute("aria-label") + ". Left and right arrow: values; plus and minus: zoom; Escape: the whole.");
+    plate.setAttribute("aria-label", svg.getAttribute("aria-label") + ". Left and right arrow: values; plus and minus: zoom; Escape: reset the zoom.");
     const bar = element("p", "tools", plate);
     const along = element("output", "", bar);
     figure.insertBefore(plate, svg);
@@ -147,19 +147,19 @@
 
     const zoom = (low, high) => plots.forEach(u => u.setScale("x", { min: low, max: high }));
     const back = () => plots.forEach(u => u.batch(() => {
-      const [low, high] = u.whole("x");
+      const [low, high] = u.fullRange("x");
       u.setScale("x", { min: low, max: high });
-      const y = u.whole("y");
+      const y = u.fullRange("y");
       if (y) u.setScale("y", { min: y[0], max: y[1] });
     }));
     const closer = factor => {
       const u = plots[0], { min, max } = u.scales.x, k = u.cursor.idx;
       const middle = k === null || k === undefined || x[k] < min || x[k] > max ? 0.5 * (min + max) : x[k];
-      const [low, high] = u.whole("x");
+      const [low, high] = u.fullRange("x");
       const [from, to] = [Math.max(low, middle - (middle - min) * factor), Math.min(high, middle + (max - middle) * factor)];
       if (to > from) zoom(from, to);
     };
-    /* Drawing needs a pointer, so the keyboard moves one. */
+    /* uPlot needs a pointer position, so the keyboard moves one. */
     const step = by => {
       const u = plots[0], { min, max } = u.scales.x;
       const inside = x.map((v, k) => k).filter(k => x[k] >= min && x[k] <= max);
@@ -170,7 +170,7 @@
       u.setCursor({ left: u.valToPos(x[k], "x"), top: u.valToPos(y === null ? 0 : y, "y") });
     };
     const tools = element("span", "", bar);
-    [["+", "Zoom in", () => closer(0.5)], [MINUS, "Zoom out", () => closer(2)], ["whole", "Show the whole", back]].forEach(([text, title, act]) => {
+    [["+", "Zoom in", () => closer(0.5)], [MINUS, "Zoom out", () => closer(2)], ["reset", "Reset the zoom", back]].forEach(([text, title, act]) => {
       const button = element("button", "", tools);
       button.type = "button"; button.textContent = text; button.title = title;
       button.setAttribute("aria-label", title);
@@ -184,12 +184,12 @@
       along.setAttribute("aria-live", "polite");
     });
 
-    /* Which of the values along the pointer is at; it is over one panel, and the others may not know yet. */
+    /* The index of the x value at the pointer. The pointer is over one panel; the others may not be updated yet. */
     const pointed = () => plots.map(u => u.cursor.left < 0 ? null : u.panel.kind === "plane" ? nearest(u) : u.cursor.idx).find(k => k !== null && k !== undefined);
     const tell = () => {
       const k = pointed(), none = k === undefined;
-      words(along, none ? "Drag to zoom, double click to go back"
-        : live.told.length ? live.told[k] : live.x.name + " " + fixed(x[k], decimals(live.x)) + (live.x.unit && " " + live.x.unit));
+      words(along, none ? "Drag to zoom, double click to reset"
+        : data.descriptions.length ? data.descriptions[k] : data.x.name + " " + fixed(x[k], decimals(data.x)) + (data.x.unit && " " + data.x.unit));
       plots.forEach(u => u.values.forEach((value, s) => {
         const y = none ? null : u.data[u.shown[s]][k], one = u.panel.series[s];
         value.textContent = y === null || y === undefined ? DASH
@@ -199,9 +199,9 @@
     };
 
     const key = "fluxfit-" + Array.prototype.indexOf.call(document.querySelectorAll("figure"), figure);
-    live.told = live.told || [];
-    live.panels.forEach((panel, number) => {
-      const head = element("p", "keys", plate), last = number === live.panels.length - 1;
+    data.descriptions = data.descriptions || [];
+    data.panels.forEach((panel, number) => {
+      const head = element("p", "keys", plate), last = number === data.panels.length - 1;
       words(element("span", "", head), panel.name);
       const values = panel.kind === "plane" ? [] : panel.series.map(one => {
         const name = element("span", "key", head), mark = element("i", "", name);
@@ -215,10 +215,10 @@
         value.textContent = DASH;
         return value;
       });
-      const { data, series, bands, shown } = drawn(panel, x);
+      const { columns, series, bands, shown } = drawn(panel, x);
       const plane = panel.kind === "plane";
       const options = {
-        width: plate.clientWidth || 320, height: heightOf(live.panels, number), padding: [8, 14, 0, 0], series, bands,
+        width: plate.clientWidth || 320, height: heightOf(data.panels, number), padding: [8, 14, 0, 0], series, bands,
         legend: { show: false },
         cursor: {
           sync: { key, scales: ["x", null] }, drag: { x: true, y: plane, uni: plane ? 12 : undefined, setScale: true },
@@ -240,9 +240,9 @@
         ],
         hooks: {
           drawAxes: [zero(panel)],
-          draw: [extras(panel, live.told)],
+          draw: [extras(panel, data.descriptions)],
           setCursor: [tell],
-          /* Panels that lie over each other show the same time. */
+          /* All panels of a figure show the same range of x. */
           setScale: [(u, scale) => {
             if (scale !== "x") return;
             const { min, max } = u.scales.x;
@@ -252,28 +252,28 @@
           }],
         },
       };
-      const u = new uPlot(options, data, element("div", "", plate));
-      Object.assign(u, { panel, shown, values, whole: scale => panel.whole ? panel.whole[scale === "x" ? 0 : 1] : scale === "x" ? [x[0], x[x.length - 1]] : null });
+      const u = new uPlot(options, columns, element("div", "", plate));
+      Object.assign(u, { panel, shown, values, fullRange: scale => panel.ranges ? panel.ranges[scale === "x" ? 0 : 1] : scale === "x" ? [x[0], x[x.length - 1]] : null });
       plots.push(u);
       u.over.addEventListener("dblclick", back);
       touch(u);
     });
-    words(element("p", "along", plate), live.x.name + (live.x.unit && ", " + live.x.unit));
+    words(element("p", "along", plate), data.x.name + (data.x.unit && ", " + data.x.unit));
     figure.classList.add("live");
-    plots.forEach((u, k) => u.setSize({ width: plate.clientWidth || 320, height: heightOf(live.panels, k) }));
+    plots.forEach((u, k) => u.setSize({ width: plate.clientWidth || 320, height: heightOf(data.panels, k) }));
     back();
     tell();
     new ResizeObserver(() => {
       const width = plate.clientWidth;
-      if (width) plots.forEach((u, k) => u.width !== width && u.setSize({ width, height: heightOf(live.panels, k) }));
+      if (width) plots.forEach((u, k) => u.width !== width && u.setSize({ width, height: heightOf(data.panels, k) }));
     }).observe(plate);
     dark.addEventListener("change", () => plots.forEach(u => u.redraw()));
   };
 
-  /* An upper panel has no numbers below it, and its name stands above it. */
+  /* Only the lowest panel has numbers at its x axis; the name of a panel is above it. */
   const heightOf = (panels, k) => panels[k].height - (k === panels.length - 1 ? 26 : 40);
 
-  /* A finger that moves along does what a pressed mouse does; one that moves up scrolls the page. uPlot takes no mouse that has not moved. */
+  /* A horizontal touch acts as a pressed mouse; a vertical one scrolls the page. uPlot ignores mouse events without movement. */
   const touch = u => {
     const pass = (target, name, event) => target.dispatchEvent(new MouseEvent(name, {
       clientX: event.clientX, clientY: event.clientY, movementX: 1, button: 0, buttons: 1, bubbles: true, view: window }));
@@ -287,7 +287,7 @@
     const end = event => { if (pressed) { pressed = false; pass(document, "mouseup", event); } };
     u.over.addEventListener("pointerup", end);
     u.over.addEventListener("pointercancel", end);
-    /* The mouse that a browser makes of a tap has not moved either. */
+    /* Neither do the mouse events of a tap have movement. */
     u.over.addEventListener("click", event => u.setCursor({ left: event.offsetX, top: event.offsetY }));
   };
 

@@ -1,31 +1,30 @@
-//! Figures without a page: as SVG of their own, and as files on white paper.
+//! Figures as files: for screens and for white paper.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::logs::{Found, TWO, WHOLE, log, origin};
-use fluxfit::{Request, identify};
-use fluxfit_report::{
-    Report,
-    figure::{self, Size},
-    figures, html,
-};
+use crate::logs::{Found, TWO, WHOLE, log, origin, report};
+use fluxfit::{Log, Request, evidence::Identification, identify};
+use fluxfit_report::{FigureFile, Size, figures, html, screen_figures};
 use html5ever::{driver::ParseOpts, parse_document, tendril::TendrilSink};
 use markup5ever_rcdom::RcDom;
 use resvg::tiny_skia::Pixmap;
 
+/// A figure of the page for a wide screen.
+pub(crate) fn screen_figure(log: &Log, found: &Identification, name: &str) -> FigureFile {
+    let origin = origin();
+    screen_figures(&report(log, found, &origin), Size::Wide).into_iter().find(|figure| figure.name == name).unwrap()
+}
+
 #[test]
-fn figures_stand_alone() {
+fn screen_figures_are_complete_svg_files() {
     let log = log(&TWO, 0.1);
     let found = identify(&log, &Request::default()).unwrap().identification;
     let Found { log: fast, found: of_fast } = &*WHOLE;
+    let origin = origin();
     for size in [Size::Wide, Size::Narrow] {
-        for svg in [
-            figure::currents(fast, of_fast.output.as_ref().unwrap(), size),
-            figure::intervals(&found, size),
-            figure::residuals(found.steady.as_ref().unwrap(), size),
-            figure::operating_points(found.operating_points(), size),
-        ] {
+        let figures = [screen_figures(&report(fast, of_fast, &origin), size), screen_figures(&report(&log, &found, &origin), size)];
+        for FigureFile { svg, .. } in figures.into_iter().flatten() {
             assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && svg.ends_with("</svg>\n"));
             assert!(svg.contains("prefers-color-scheme:dark") && svg.contains("role=\"img\" aria-label=\""));
             assert_eq!(svg.matches("://").count(), 1, "the name space alone");
@@ -36,19 +35,10 @@ fn figures_stand_alone() {
 }
 
 #[test]
-fn every_figure_of_the_page_is_a_file_on_white_paper_with_letters_of_its_own() {
+fn every_figure_of_the_page_is_a_file_for_white_paper() {
     let Found { log, found } = &*WHOLE;
     let origin = origin();
-    let shown = Report {
-        title: "x",
-        log,
-        notes: &[],
-        operating_points: found.operating_points(),
-        identification: Some((found, None)),
-        held_out: None,
-        study: None,
-        origin: &origin,
-    };
+    let shown = report(log, found, &origin);
     let files = figures(&shown);
     assert_eq!(html(&shown).matches("<figure>").count(), files.len());
     assert_eq!(

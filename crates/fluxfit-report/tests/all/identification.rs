@@ -4,32 +4,18 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::{
-    logs::{Found, INTERRUPTED, TWO, WHOLE, log, of_currents, origin, recorded},
+    figures::screen_figure,
+    logs::{Found, INTERRUPTED, TWO, WHOLE, log, of_currents, origin, recorded, report},
     markup::checked,
 };
 use fluxfit::{
     Given, Known, Log, Model, Request, Swarm, Verdict, evidence::Identification, identify, motor::Parameter, optimizer::Method, validate,
 };
-use fluxfit_report::{
-    Report,
-    figure::{self, Size},
-    figures, html,
-};
+use fluxfit_report::{Report, figures, html};
 
 pub(crate) fn page(title: &str, log: &Log, found: &Identification, method: Option<Method>) -> String {
-    let origin = origin();
     let notes = ["omega_e: column 'n' read as <mechanical> r/min".to_owned()];
-    let points = found.operating_points();
-    html(&Report {
-        title,
-        log,
-        notes: &notes,
-        operating_points: points,
-        identification: Some((found, method)),
-        held_out: None,
-        study: None,
-        origin: &origin,
-    })
+    html(&Report { title, notes: &notes, identification: Some((found, method)), ..report(log, found, &origin()) })
 }
 
 fn identified(currents: &[(f64, f64)], settings: &Request) -> (Identification, String) {
@@ -40,7 +26,7 @@ fn identified(currents: &[(f64, f64)], settings: &Request) -> (Identification, S
 }
 
 #[test]
-fn an_identification_has_its_values_verdicts_and_command() {
+fn an_identification_shows_values_verdicts_and_command() {
     let (found, page) =
         identified(&TWO, &Request { model: Some(Model::Steady), swarm: Swarm::Method(Method::all()[0]), ..Request::default() });
     assert!(found.is_complete());
@@ -54,7 +40,7 @@ fn an_identification_has_its_values_verdicts_and_command() {
 }
 
 #[test]
-fn what_is_not_identifiable_has_no_number_anywhere() {
+fn a_parameter_that_is_not_identifiable_has_no_number() {
     let (found, page) = identified(&[(0.0, 9.0), (0.0, 5.0)], &Request { model: Some(Model::Steady), ..Request::default() });
     let ld = found.parameter(Parameter::Ld);
     assert_eq!(ld.verdict, Verdict::NotIdentifiable);
@@ -73,17 +59,17 @@ fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict()
     let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
     let (_, page) = identified(&TWO, &Request { model: Some(Model::Steady), known, swarm: Swarm::Off, ..Request::default() });
     let text = checked(&page);
-    assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("The swarm"), "{text}");
+    assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("swarm"), "{text}");
 }
 
 #[test]
-fn nothing_identifiable_is_still_a_page() {
+fn a_page_without_any_identified_parameter() {
     let log = log(&TWO[..1], 0.1);
     let mut found = identify(&log, &Request::default()).unwrap().identification;
     found.parameters.iter_mut().for_each(|judgement| judgement.verdict = Verdict::NotIdentifiable);
     let text = checked(&page("x", &log, &found, None));
     assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
-    assert!(!text.contains("The swarm") && !text.contains("Where the uncertainty"));
+    assert!(!text.contains("swarm") && !text.contains("Sources of uncertainty"));
 }
 
 #[test]
@@ -91,7 +77,7 @@ fn simulated_currents_have_their_own_sections() {
     let Found { log, found } = &*WHOLE;
     let text = checked(&page("x", log, found, None));
     // Noise of 50 mA a phase is 50 mA times the root of two thirds, 40.8 mA, along each axis; its rms of 1601 rows is right to 0.7 mA.
-    let (_, missed) = text.split_once("Simulated currents miss the measured ones by ").unwrap();
+    let (_, missed) = text.split_once("Simulated and measured currents differ by ").unwrap();
     for mark in [" mA (d)", " mA (q)"] {
         let number = missed.split_once(mark).unwrap().0.rsplit(' ').next().unwrap();
         assert!((number.parse::<f64>().unwrap() - 40.8).abs() < 2.1, "{number}");
@@ -99,20 +85,21 @@ fn simulated_currents_have_their_own_sections() {
     for expected in [
         "Model: output error (as stated)",
         "Measured against simulated",
-        "White, as noise is:",
-        "Its voltages are read as the mean of the two periods around the row, as the currents ask for. No fault of the drive shows",
-        "Nothing was found between the motor and its log",
+        "White: of 50 correlations",
+        "The logged voltage of a row is taken as the mean of the two periods around the row, determined from the currents. No fault of the \
+         drive was found",
+        "None of the faults below was found.",
         "explains too little of the residual",
         "ruled out",
         "1601, of which 1601 were simulated",
     ] {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
-    assert!(!text.contains("squared standard uncertainty") && !text.contains("Gaps of the log"));
+    assert!(!text.contains("squared standard uncertainty") && !text.contains("Gaps in the log"));
 }
 
 #[test]
-fn correlations_stand_in_a_table_whose_numbers_are_those_of_the_answer() {
+fn the_table_of_correlations_has_the_numbers_of_the_answer() {
     let Found { log, found } = &*WHOLE;
     let page = page("x", log, found, None);
     let (_, table) = page.split_once("<table class=\"heat\">").unwrap();
@@ -137,7 +124,7 @@ fn there_is_no_ellipse_of_a_given_or_missing_parameter() {
 }
 
 #[test]
-fn faults_of_the_drive_are_told_with_their_size() {
+fn faults_of_the_drive_are_shown_with_their_values() {
     let log = recorded(0.08, |scenario| scenario.sensors.current_offset = [0.0, 0.3, 0.0]);
     let found = identify(&log, &of_currents()).unwrap().identification;
     let page = page("x", &log, &found, None);
@@ -153,37 +140,40 @@ fn faults_of_the_drive_are_told_with_their_size() {
         let (value, margin) = shown(key);
         assert!((value - expected).abs() < 2.0 * margin && margin < 0.2 * expected.abs(), "{key}: {value} ± {margin}");
     }
-    assert!(text.contains("shown as the faulty sensors found would read it"), "{text}");
+    assert!(text.contains("includes the identified faults of the sensors"), "{text}");
 }
 
 #[test]
-fn gaps_are_not_bridged_and_a_log_without_operating_points_is_told_as_such() {
+fn gaps_are_not_bridged_and_missing_operating_points_are_reported() {
     let Found { log, mut found } = INTERRUPTED.clone();
     found.steady = None;
     let text = checked(&page("x", &log, &found, None));
     for expected in
-        ["1501, of which 1501 were simulated; the log never holds still", "Gaps of the log are not bridged", "Stretches simulated"]
+        ["1501, of which 1501 were simulated; the log has no operating point", "Gaps in the log are not bridged", "Simulated stretches"]
     {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
     assert!(!text.contains("Operating points, as a check") && !text.contains("Windows of the operating points"));
     // Per axis a measured and a simulated piece on either side of the gap, and a residual.
-    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    let svg = screen_figure(&log, &found, "currents").svg;
     let long = svg.split("<polyline").skip(1).filter(|line| line.split_once('>').unwrap().0.matches(',').count() > 100);
     assert_eq!(long.count(), 2 * 3 * 2);
 }
 
 #[test]
-fn the_swarms_answer_beside_simulated_currents_is_not_called_linear() {
+fn the_swarm_search_of_simulated_currents_is_not_called_linear() {
     let log = recorded(0.08, |_| ());
     let search = fluxfit::optimizer::SearchSettings { population: 10, iterations: 5, ..Default::default() };
     let found = identify(&log, &Request { swarm: Swarm::Method(Method::all()[0]), search, ..of_currents() }).unwrap().identification;
     let text = checked(&page("x", &log, &found, found.method));
-    assert!(text.contains("Simulated currents are not linear in the parameters") && !text.contains("solves them exactly"), "{text}");
+    assert!(
+        text.contains("Simulated currents are not linear in the parameters") && !text.contains("exact least-squares solution"),
+        "{text}"
+    );
 }
 
 #[test]
-fn hostile_texts_are_texts() {
+fn markup_in_texts_is_escaped() {
     let log = log(&TWO, 0.1);
     let found = identify(&log, &Request::default()).unwrap().identification;
     let title = "</title><script>alert(1)</script>\"'&<img src=x onerror=y>";
@@ -191,7 +181,7 @@ fn hostile_texts_are_texts() {
 }
 
 #[test]
-fn what_was_held_out_has_its_own_section() {
+fn held_out_data_have_a_section() {
     let (log, kept_out) = (recorded(0.08, |_| ()), recorded(0.08, |scenario| scenario.sensors.current_noise = 0.06));
     let found = identify(&log, &of_currents()).unwrap().identification;
     let validation = validate(&kept_out, &Given::of(&found).unwrap(), &of_currents()).unwrap();
@@ -208,9 +198,9 @@ fn what_was_held_out_has_its_own_section() {
     };
     let (page, files) = (html(&shown), figures(&shown));
     let text = checked(&page);
-    assert!(text.contains("What was held out") && text.contains("These 1601 rows, 0.160 s, had no part in the answer above"), "{text}");
+    assert!(text.contains("Held-out data") && text.contains("These 1601 rows, 0.160 s, were not used for the answer above"), "{text}");
     assert!(text.contains("Measured against predicted") && text.contains("agrees"), "{text}");
     assert!(files.iter().any(|file| file.name == "held-out") && page.matches("<figure>").count() == files.len());
     let text = checked(&html(&Report { held_out: Some((&kept_out, None)), ..shown }));
-    assert!(text.contains("They are not predicted, because that takes all four parameters."), "{text}");
+    assert!(text.contains("They are not predicted, because a prediction needs all four parameters."), "{text}");
 }

@@ -1,18 +1,18 @@
-//! The numbers behind the figures that answer the pointer, and the script that draws them.
+//! The data of interactive figures, and the script that draws them.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::{
+    figures::screen_figure,
     identification::page,
     logs::{Found, INTERRUPTED, WHOLE},
     markup::{checked, data},
 };
 use fluxfit::{Columns, Log, optimizer::draws::Draws};
-use fluxfit_report::figure::{self, Size};
 
 #[test]
-fn the_pointer_is_told_what_the_log_says() {
+fn the_data_of_a_figure_are_those_of_the_log() {
     let Found { log, found } = &*INTERRUPTED;
     let page = page("x", log, found, None);
     let (t, panels) = &data(&page)[0];
@@ -27,16 +27,16 @@ fn the_pointer_is_told_what_the_log_says() {
         for (shown, measured) in [(t[at], columns.t[row]), (d[0][at], columns.id[row]), (q[0][at], columns.iq[row])] {
             assert!((shown - measured).abs() < 1e-3, "row {row}: {shown} and {measured}");
         }
-        // The residuals are in milliampere, and what the upper panel's curves differ by.
+        // The residuals are in milliampere, and the difference of the upper panel's curves.
         for (above, missed) in [(d, d_missed), (q, q_missed)] {
             assert!((above[0][at] - above[1][at] - 1e-3 * missed[0][at]).abs() < 2e-3, "row {row}");
         }
     }
 }
 
-/// A browser is not certain to be there: without one this says so, and checks nothing.
+/// Without a browser this test prints a note and checks nothing.
 #[test]
-fn the_script_draws_every_figure_that_has_its_numbers() {
+fn the_script_draws_every_figure_with_data() {
     let Found { log, found } = &*INTERRUPTED;
     let page = page("x", log, found, None);
     let directory = tempfile::tempdir().unwrap();
@@ -71,10 +71,10 @@ fn a_million_rows_make_a_page_of_less_than_a_megabyte_that_shows_a_single_row() 
     let page = page("x", &log, &found, None);
     assert!(page.len() < 900_000, "{}", page.len());
     let (t, panels) = &data(&page)[0];
-    assert!(t.len() <= 6_000 && checked(&page).contains("Of this long log the page holds"), "{}", t.len());
+    assert!(t.len() <= 6_000 && checked(&page).contains("Of this long log, the page contains only"), "{}", t.len());
     let peak = t.iter().position(|t| (t - 65.4321).abs() < 1e-6).unwrap();
     assert_eq!(panels[0][0][peak], 37.0);
     // The axis of i_d reaches up to the row that stands out.
-    let svg = figure::currents(&log, found.output.as_ref().unwrap(), Size::Wide);
+    let svg = screen_figure(&log, &found, "currents").svg;
     assert!(svg.lines().any(|line| line.trim() == "20") && svg.lines().any(|line| line.trim() == "0"), "no tick at 20 A");
 }

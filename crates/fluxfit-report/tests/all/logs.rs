@@ -9,7 +9,7 @@ use fluxfit_drive::{
     schedule::{Profile, Ramp},
     simulate,
 };
-use fluxfit_report::Origin;
+use fluxfit_report::{Origin, Report};
 use std::sync::LazyLock;
 
 /// Rows of each operating point.
@@ -32,6 +32,12 @@ pub(crate) const TWO: [(f64, f64); 2] = [(0.0, 9.0), (-2.0, 8.5)];
 
 pub(crate) fn origin() -> Origin {
     Origin { command: "fluxfit identify 'a log.csv'".to_owned(), version: "0.1.0".to_owned(), seed: 7 }
+}
+
+/// A report of an identification, without a method.
+pub(crate) fn report<'a>(log: &'a Log, found: &'a Identification, origin: &'a Origin) -> Report<'a> {
+    let operating_points = found.operating_points();
+    Report { title: "x", log, notes: &[], operating_points, identification: Some((found, None)), held_out: None, study: None, origin }
 }
 
 /// A log of the paper's motor as a drive records it: up to speed in 0.1 s, a step of i_d on the way; noise of 50 mA on each current.

@@ -16,7 +16,7 @@ use fluxfit::{
         comparison::{ComparisonRequest, compare},
     },
 };
-use fluxfit_report::{Report, html};
+use fluxfit_report::{Report, figures, html};
 use std::ops::ControlFlow;
 
 /// A study, its page checked; `change` bends what the runs left behind.
@@ -30,7 +30,7 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
     comparison.studies.iter_mut().for_each(&change);
     let methods: Vec<_> = comparison.studies.iter().map(|study| (study.clone(), 1e-3)).collect();
     let origin = origin();
-    html(&Report {
+    let report = Report {
         title: "drive.csv",
         log: &log,
         notes: &[],
@@ -39,11 +39,14 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
         held_out: None,
         study: Some((&comparison, &methods)),
         origin: &origin,
-    })
+    };
+    let page = html(&report);
+    assert_eq!(page.matches("<figure>").count(), figures(&report).len());
+    page
 }
 
 #[test]
-fn a_study_of_the_papers_motor_stands_beside_the_papers_table() {
+fn a_study_of_the_papers_motor_shows_the_papers_table() {
     let text = checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, |_| ()));
     for expected in ["Four methods ran 3 times each", "0.9639", "5.283", "0.01414", "0.051", "cannot be known", "Fig. 4", "Fig. 5"] {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
@@ -64,7 +67,7 @@ fn costs_of_zero_no_iterations_and_broken_numbers() {
         study.cost_above_optimum.fill(0.0);
         study.convergence.quartiles.fill([0.0; 3]);
     };
-    assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("drawn at that floor"));
+    assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("rounding errors and drawn at that value"));
     let empty = |study: &mut MethodStudy| study.convergence = ConvergenceCurves::default();
     assert!(!checked(&study_page(&Method::all(), None, &TWO, empty)).contains("Fig. 4"));
     let start_only = |study: &mut MethodStudy| {

@@ -42,12 +42,12 @@ fn courses(value: f64) -> Prediction {
 }
 
 #[test]
-fn a_validation_has_its_verdict_both_motors_and_its_channels() {
+fn a_validation_shows_verdict_parameters_and_channels() {
     let (found, page) = validation_page(paper::MOTOR, &TWO, |_| ());
     let text = checked(&page);
     assert_eq!(found.outcome, Outcome::Agrees);
     for expected in
-        ["<m>.toml on a log.csv", "Agrees within the noise", "The log’s own", "agrees", "Warning: no-redundancy", "read as <mechanical>"]
+        ["<m>.toml on a log.csv", "Agrees within the noise", "From this log", "agrees", "Warning: no-redundancy", "read as <mechanical>"]
     {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
@@ -57,10 +57,10 @@ fn a_validation_has_its_verdict_both_motors_and_its_channels() {
 }
 
 #[test]
-fn a_validation_names_what_the_log_cannot_tell() {
+fn a_validation_names_parameters_that_are_not_identifiable() {
     let (_, page) = validation_page(paper::MOTOR, &[(0.0, 9.0), (0.0, 5.0)], |_| ());
     let text = checked(&page);
-    assert!(text.contains("This log cannot tell Ld: it is taken as given.") && text.contains("cannot tell–––"), "{text}");
+    assert!(text.contains("This log cannot tell Ld: it is taken as given.") && text.contains("not identifiable–––"), "{text}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What is simulated and what is run: the rig three ways, the paper's methods, and the methods with one choice changed.
 
 use fluxfit::{
-    Request,
+    Log, Request,
     motor::PARAMETERS,
     objective::voltage_error::IdZero,
     optimizer::{
@@ -39,6 +39,7 @@ pub(crate) enum Rig {
 /// What one of them logged.
 pub(crate) struct Data {
     pub(crate) rig: Rig,
+    pub(crate) log: Log,
     pub(crate) problem: StudyProblem,
 }
 
@@ -64,7 +65,8 @@ impl Data {
             Rig::Noisy => (scenario.sensors.current_noise, scenario.sensors.adc) = (NOISE, Some(ADC)),
         }
         let log = simulate(&scenario, 0, || ())?.log()?;
-        Ok(Self { rig, problem: StudyProblem::steady(&log, &Request::default(), IdZero::Measured)? })
+        let problem = StudyProblem::steady(&log, &Request::default(), IdZero::Measured)?;
+        Ok(Self { rig, log, problem })
     }
 
     /// The paper's number of runs of each method.
@@ -73,10 +75,15 @@ impl Data {
     }
 
     pub(crate) fn study_with(&self, methods: &[Method], runs: usize, settings: SearchSettings) -> Result<Vec<MethodStudy>, Box<dyn Error>> {
-        let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
+        let bounds = search_box()?;
         let run = |method: &Method| run_method(*method, runs, settings, &bounds, &self.problem.fitness, || ControlFlow::Continue(()));
         Ok(methods.iter().filter_map(|method| run(method).transpose()).collect::<Result<_, _>>()?)
     }
+}
+
+/// The search box of the paper's motor.
+pub(crate) fn search_box() -> Result<Bounds, Box<dyn Error>> {
+    Ok(Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?)
 }
 
 /// Methods with one choice changed.

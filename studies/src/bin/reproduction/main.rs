@@ -11,12 +11,14 @@ mod tables;
 
 use experiments::{Data, Rig, ablation};
 use fluxfit::{
-    optimizer::{Method, SearchSettings},
+    Request,
+    optimizer::SearchSettings,
     paper,
+    study::comparison::{ComparisonRequest, compare},
 };
-use fluxfit_report::figure::{Size, convergence, parameter_courses};
+use fluxfit_report::{Origin, Report, Size, screen_figures};
 use page::Page;
-use std::{error::Error, path::Path};
+use std::{error::Error, ops::ControlFlow, path::Path};
 
 /// Runs of each method where fifty are too few.
 const MANY_RUNS: usize = 2000;
@@ -41,11 +43,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     page.put("ablation", &tables::ranking(ablated.iter().map(|(name, study)| (name.clone(), study))))?;
     page.finish()?;
 
-    let timed: Vec<_> = study.iter().map(|study| (study.clone(), 0.0)).collect();
-    page::figure(&docs.join("reproduction/convergence.svg"), &convergence(&rig.problem.fitness, &timed, Size::Wide), check)?;
-    let tgfpa = study.iter().find(|study| matches!(study.method, Method::Tgfpa(_))).ok_or("no study of tGFPA")?;
-    let courses = parameter_courses(tgfpa, Some(&paper::MOTOR), &[], Size::Wide);
-    page::figure(&docs.join("reproduction/parameters.svg"), &courses, check)?;
+    let bounds = paper::SEARCH_BOX.map(|upper| Some((0.0, upper)));
+    let asked = ComparisonRequest { request: Request { bounds, ..Request::default() }, truth: Some(paper::MOTOR), ..Default::default() };
+    let comparison = compare(&rig.log, &asked, &|_| ControlFlow::Continue(()))?;
+    let timed: Vec<_> = comparison.studies.iter().map(|study| (study.clone(), 0.0)).collect();
+    let origin =
+        Origin { command: "reproduction".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned(), seed: comparison.settings.seed };
+    let report = Report {
+        title: "reproduction",
+        log: &rig.log,
+        notes: &[],
+        operating_points: &[],
+        identification: None,
+        held_out: None,
+        study: Some((&comparison, &timed)),
+        origin: &origin,
+    };
+    for figure in screen_figures(&report, Size::Wide) {
+        page::figure(&docs.join(format!("reproduction/{}.svg", figure.name)), &figure.svg, check)?;
+    }
     println!("docs/reproduction.md and its figures {}", if check { "are true" } else { "are written" });
     Ok(())
 }

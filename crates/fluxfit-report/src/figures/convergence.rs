@@ -1,0 +1,199 @@
+//! Convergence (Fig. 4 of the paper, on a logarithmic scale): cost above the minimum against iteration. Each method has its colour, its
+//! dashes, and its name at the end of its curve.
+
+use crate::{
+    drawing::{
+        axis::{Axis, power_of_ten},
+        canvas::{Area, Drawing, Drawn, UNITS, anchored, line, shade},
+        palette::Ink,
+        plot::{Chart, Plot},
+        size::Size,
+    },
+    figure::Figure,
+    interactive::{DeltaColumn, Panel, PanelKind, PlotData, Series, XAxis},
+    report::Report,
+};
+use fluxfit::study::{MethodStudy, fitness::Fitness};
+use maud::html;
+use plotters::{
+    element::{Circle, PathElement, Polygon},
+    style::text_anchor::{HPos, VPos},
+};
+
+/// Smaller costs are drawn at this value: they are rounding errors.
+const FLOOR: f64 = 1e-12;
+
+/// Smallest distance between two names, pixels.
+const NAMES_APART: i32 = 16;
+
+/// The figure.
+pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
+    let (facts, methods) = report.study?;
+    let fitness = &facts.problem.fitness;
+    let has_curves = methods.iter().any(|(study, _)| !study.convergence.quartiles.is_empty());
+    has_curves.then(|| Figure {
+        name: "convergence",
+        section: "study",
+        draw: Box::new(move |size| draw(fitness, methods, size)),
+        data: Some(Box::new(move || data(fitness, methods))),
+        caption: html! {
+            "Convergence (Fig. 4 of the paper, here on a logarithmic scale): F\u{a0}−\u{a0}F" sub { (fitness.minimum_subscript()) } " against "
+            "iteration. Lines are medians over the runs, bands reach from the lower to the upper quartile."
+            @if has_values_below_floor(methods) {
+                " Values below 10" sup { "\u{2212}12" } " " (fitness.unit()) ", including zero, are rounding errors and drawn at that value."
+            }
+        },
+    })
+}
+
+/// Draws the curves of all methods.
+fn draw(fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> Drawing {
+    let names: Vec<&str> = methods.iter().map(|(study, _)| study.method.label()).collect();
+    let label = format!(
+        "Curves: cost above the {} against iteration, logarithmic, median and quartiles over the runs, for {}",
+        fitness.minimum_label(),
+        names.join(", ")
+    );
+    Drawing::new((size.width(), size.pick(HEIGHTS.0, HEIGHTS.1).unsigned_abs()), label, |area| paint(area, fitness, methods, size))
+}
+
+/// Height of the figure, pixels: wide and narrow.
+const HEIGHTS: (i32, i32) = (400, 340);
+
+/// Largest number of iterations in the data of a page; of more iterations every second, third, … is kept.
+const ITERATIONS: usize = 1_000;
+
+/// Opacity of a band.
+const BAND: f64 = 0.16;
+
+/// Resolution of the decadic logarithms in the data: a hundredth of a decade is two percent.
+const RESOLUTION: f64 = 1e-2;
+
+/// The data of the interactive plot.
+fn data(fitness: &Fitness, methods: &[(MethodStudy, f64)]) -> PlotData {
+    let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len()).max().unwrap_or(0).saturating_sub(1);
+    let every = last / ITERATIONS + 1;
+    // The last iteration is always kept.
+    let shown: Vec<usize> = (0..last).step_by(every).chain([last]).collect();
+    let series = methods.iter().map(|(study, _)| {
+        let column = |which: usize| {
+            let of_iteration = |k: &usize| study.convergence.quartiles.get(*k).map_or(f64::NAN, |quartiles| height(quartiles[which]));
+            DeltaColumn::resolving(&shown.iter().map(of_iteration).collect::<Vec<_>>(), RESOLUTION)
+        };
+        Series::new(study.method.label(), Ink::of_method(&study.method), (2.0, 1.0), column(1)).with_band(vec![column(0), column(2)])
+    });
+    let panel = Panel { name: cost_name(fitness), height: HEIGHTS.0, kind: PanelKind::Decades, ranges: None, series: series.collect() };
+    let numbers: Vec<f64> = shown.iter().map(|k| *k as f64).collect();
+    let x = XAxis { name: "iteration", unit: "", values: DeltaColumn::resolving(&numbers, 1.0) };
+    PlotData { x, panels: vec![panel], descriptions: Vec::new() }
+}
+
+/// Name of the y axis.
+fn cost_name(fitness: &Fitness) -> String {
+    format!("F − F_{}, {}", fitness.minimum_subscript(), fitness.unit())
+}
+
+/// Whether some cost is drawn at [`FLOOR`].
+fn has_values_below_floor(methods: &[(MethodStudy, f64)]) -> bool {
+    methods.iter().flat_map(|(study, _)| &study.convergence.quartiles).flatten().any(|cost| *cost < FLOOR)
+}
+
+/// Decadic logarithm of a cost.
+fn height(cost: f64) -> f64 {
+    // A cost that is not finite is drawn at the upper end.
+    if cost.is_finite() { cost.max(FLOOR).log10() } else { f64::MAX.log10() }
+}
+
+fn paint(area: &Area, fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> Drawn {
+    let all = methods.iter().flat_map(|(study, _)| study.convergence.quartiles.iter().flatten());
+    let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len().saturating_sub(1)).max().unwrap_or(0).max(1) as f64;
+    let cost = cost_name(fitness);
+    let plot = Plot {
+        x: Axis::between(0.0, last, size.pick(6, 3)),
+        y: Axis::decades(all.map(|cost| height(*cost)), size.pick(9, 8)),
+        x_name: "iteration",
+        y_name: &cost,
+        left: 42,
+        right: 76,
+        x_label: &|x| format!("{x:.0}"),
+        y_label: &power_of_ten,
+    };
+    let mut chart = plot.on(area)?;
+    for (study, _) in methods {
+        band(&mut chart, study)?;
+    }
+    for (study, _) in methods {
+        median(&mut chart, study)?;
+    }
+    let ends = methods.iter().filter_map(|(study, _)| {
+        let end = height(study.convergence.quartiles.last()?[1]);
+        Some((study, chart.place(last, end)))
+    });
+    names(area, ends.collect())
+}
+
+/// The band from the lower to the upper quartile.
+fn band(chart: &mut Chart, study: &MethodStudy) -> Drawn {
+    let curve =
+        |which: usize| study.convergence.quartiles.iter().enumerate().map(move |(k, quartiles)| (k as f64, height(quartiles[which])));
+    let outline: Vec<(f64, f64)> = curve(0).chain(curve(2).collect::<Vec<_>>().into_iter().rev()).collect();
+    chart.series.draw_series([Polygon::new(outline, shade(Ink::of_method(&study.method), BAND))])?;
+    Ok(())
+}
+
+fn median(chart: &mut Chart, study: &MethodStudy) -> Drawn {
+    let ink = Ink::of_method(&study.method);
+    let points: Vec<(f64, f64)> =
+        study.convergence.quartiles.iter().enumerate().map(|(k, [_, median, _])| (k as f64, height(*median))).collect();
+    match points.as_slice() {
+        [] => {}
+        [start] => drop(chart.series.draw_series([Circle::new(*start, 3 * UNITS, shade(ink, 1.0))])?),
+        _ => drop(chart.series.draw_series([PathElement::new(points, line(ink, 2.0))])?),
+    }
+    Ok(())
+}
+
+/// A sample of the line and the name of each method beside the end of its curve, moved apart where ends are close.
+fn names(area: &Area, mut ends: Vec<(&MethodStudy, (i32, i32))>) -> Drawn {
+    ends.sort_by_key(|(_, (_, y))| *y);
+    let heights = spread(&ends.iter().map(|(_, (_, y))| *y).collect::<Vec<_>>(), NAMES_APART * UNITS);
+    for ((study, (x, _)), y) in ends.into_iter().zip(heights) {
+        let ink = Ink::of_method(&study.method);
+        area.draw(&PathElement::new(vec![(x + 6 * UNITS, y), (x + 30 * UNITS, y)], line(ink, 2.0)))?;
+        area.draw_text(study.method.label(), &anchored(Ink::Text, HPos::Left, VPos::Center), (x + 34 * UNITS, y))?;
+    }
+    Ok(())
+}
+
+/// Ascending positions with a minimum distance, as close as possible to the wanted ones: positions that are too close form a group
+/// about their mean.
+fn spread(wanted: &[i32], apart: i32) -> Vec<i32> {
+    // Each group: number of members, and the sum of the positions that its members want for the first one.
+    let mut groups: Vec<(i32, i32)> = Vec::new();
+    let first = |(count, sum): (i32, i32)| sum / count;
+    for y in wanted {
+        groups.push((1, *y));
+        while let [.., (count, sum), (next_count, next_sum)] = groups[..]
+            && first((next_count, next_sum)) < first((count, sum)) + count * apart
+        {
+            groups.truncate(groups.len() - 2);
+            groups.push((count + next_count, sum + next_sum - next_count * count * apart));
+        }
+    }
+    groups.into_iter().flat_map(|group| (0..group.0).map(move |k| first(group) + k * apart)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spread;
+
+    #[test]
+    fn names_keep_their_distance() {
+        assert_eq!(spread(&[10, 100, 200], 16), [10, 100, 200]);
+        assert_eq!(spread(&[100, 100], 16), [92, 108]);
+        assert_eq!(spread(&[100, 100, 100, 300], 16), [84, 100, 116, 300]);
+        // The second group is merged with the first.
+        assert_eq!(spread(&[100, 104, 110], 16), [88, 104, 120]);
+        assert!(spread(&[], 16).is_empty());
+    }
+}

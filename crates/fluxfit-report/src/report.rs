@@ -1,0 +1,60 @@
+//! What a page is made from.
+
+use fluxfit::{
+    Validation,
+    evidence::Identification,
+    log::Log,
+    optimizer::Method,
+    steady::OperatingPoint,
+    study::{MethodStudy, comparison::Comparison},
+};
+
+/// An identification, a study or both. What is `None` has no section.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// Heading of the page, such as the log's name.
+    pub title: &'a str,
+    /// The log.
+    pub log: &'a Log,
+    /// Notes on how the log was read or simulated, a sentence each.
+    pub notes: &'a [String],
+    /// The operating points of the identification, or those over which the study's fitness sums.
+    pub operating_points: &'a [OperatingPoint],
+    /// The identification, and the method of its swarm.
+    pub identification: Option<(&'a Identification, Option<Method>)>,
+    /// The rows that were held out of the identification, and their prediction from its answer; `None` there if the answer lacks a
+    /// parameter.
+    pub held_out: Option<(&'a Log, Option<&'a Validation>)>,
+    /// The study's settings, and each method with the seconds per run.
+    pub study: Option<(&'a Comparison, &'a [(MethodStudy, f64)])>,
+    /// How to reproduce the page.
+    pub origin: &'a Origin,
+}
+
+/// How to reproduce a page.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    /// The command line.
+    pub command: String,
+    /// Version of the program.
+    pub version: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+/// A validation of given parameters on a log.
+#[derive(Debug, Clone, Copy)]
+pub struct ValidationReport<'a> {
+    /// Name of the log, for the heading of the page.
+    pub title: &'a str,
+    /// Name of the motor that is validated.
+    pub motor: &'a str,
+    /// The log.
+    pub log: &'a Log,
+    /// Notes on how the log was read, a sentence each.
+    pub notes: &'a [String],
+    /// The result.
+    pub found: &'a Validation,
+    /// How to reproduce the page.
+    pub origin: &'a Origin,
+}

@@ -1,0 +1,130 @@
+//! Faults of the drive and voltage timings: which were tried, and which are part of the fit.
+
+use crate::{
+    report::Report,
+    section::Section,
+    table,
+    typography::{DASH, capitalized, fault, number, power, prose},
+};
+use fluxfit::{
+    evidence::{FaultTrial, Outcome, OutputFit, Provenance, ReadingTrial},
+    faults::Fault,
+};
+use fluxfit_units::significant;
+use maud::{Markup, html};
+
+/// The section.
+pub(crate) fn section(report: &Report) -> Option<Section> {
+    let (found, _) = report.identification?;
+    let fit = found.output.as_ref()?;
+    let content = html! {
+        h3 { "Faults of the drive" }
+        (identified(fit))
+        (tried(fit))
+        h3 { "Voltage timing" }
+        (voltage_timings(fit))
+    };
+    Some(Section { anchor: "faults", heading: "Faults of the drive and voltage timing", content })
+}
+
+/// The faults that are part of the fit.
+fn identified(fit: &OutputFit) -> Markup {
+    html! {
+        @if fit.nuisance.is_empty() {
+            p { "None of the faults below was found." }
+        } @else {
+            (table::scrolling("Identified faults", &html! {
+                table.tried {
+                    thead { tr { th scope="col" { "Identified fault" } th scope="col" { "Value ± 95 %" } } }
+                    tbody { @for nuisance in &fit.nuisance { tr {
+                        th scope="row" { (prose(&capitalized(nuisance.unknown.label()))) }
+                        td { (fault(nuisance)) }
+                    } } }
+                }
+            }))
+            p.small { "They are part of the fit, so the parameters above are not affected by them." }
+        }
+    }
+}
+
+/// All faults that were tried.
+fn tried(fit: &OutputFit) -> Markup {
+    html! {
+        (table::scrolling("Faults that were tried", &html! {
+            table.tried {
+                thead { tr { th scope="col" { "Fault tried" } th scope="col" { "Gain" } th.words scope="col" { "Outcome" } } }
+                tbody { @for tried in &fit.terms { (row(tried)) } }
+            }
+        }))
+        p.small {
+            "The gain is Schwarz’s criterion (BIC): N ln (cost before / cost after) less ln N for each unknown, with N independent residuals. If "
+            "it is positive, the fault explains more than chance. Each fault is compared with the fit that includes the faults taken before. It "
+            "is taken if its gain is positive, its value is physical, and it changes a parameter by more than its standard error or removes a "
+            "noticeable part of the residuals’ power."
+        }
+    }
+}
+
+fn row(tried: &FaultTrial) -> Markup {
+    let judged = !matches!(tried.outcome, Outcome::Covered | Outcome::NeedsAngle);
+    html! {
+        tr {
+            th scope="row" { (capitalized(tried.fault.label())) }
+            td { @if judged { (number(tried.gain, gain)) } @else { (DASH) } }
+            td.words { @if tried.outcome == Outcome::Taken { span.badge.identified { "taken" } } @else { (explained(tried)) } }
+        }
+    }
+}
+
+/// The gain, with tenths only if it is small.
+fn gain(gain: f64) -> String {
+    if gain.abs() < 10.0 { format!("{gain:.1}") } else { format!("{gain:.0}") }
+}
+
+fn explained(tried: &FaultTrial) -> &'static str {
+    match (tried.fault, tried.outcome) {
+        // The observer's gain is not the size of a fault.
+        (Fault::Disturbance, Outcome::NotPhysical) => "correcting with the measured current does not improve the prediction",
+        _ => tried.outcome.label(),
+    }
+}
+
+/// The voltage timings that were tried.
+fn voltage_timings(fit: &OutputFit) -> Markup {
+    let (reading, provenance) = fit.voltage_reading;
+    if provenance == Provenance::Stated {
+        return html! { p { "The voltage timing was stated: " (reading.label()) ". No other one was tried." } };
+    }
+    let best = fit.readings.first().map_or(0.0, ReadingTrial::mean_square);
+    let possible: Vec<_> = fit.possible_readings().map(|tried| tried.reading).collect();
+    html! {
+        p {
+            "The log does not state when its voltages act, so all voltage timings were fitted, with the identified faults. The one with the "
+            "smallest residuals was taken: " (reading.label()) "."
+            @if possible.len() > 1 {
+                " The log does not distinguish it from " (if possible.len() == 2 { "one other" } else { "some others" })
+                "; the differences of the parameters between them are part of the uncertainty, unless the voltage timing is stated."
+            }
+        }
+        (table::scrolling("Voltage timings", &html! {
+            table.tried {
+                thead { tr {
+                    th.words scope="col" { "The voltage of a row is" } th scope="col" { "Residual, A rms" }
+                    th scope="col" { "Relative to the best" } th.words scope="col" { "Outcome" }
+                } }
+                tbody { @for tried in &fit.readings {
+                    tr {
+                        th scope="row" { (tried.reading.label()) }
+                        td { (power(tried.mean_square().sqrt())) }
+                        td { (number((tried.mean_square() / best).sqrt(), |ratio| significant(ratio, 3))) }
+                        td.words {
+                            @if tried.reading == reading { span.badge.identified { "taken" } }
+                            @else if possible.contains(&tried.reading) { "possible" }
+                            @else { "ruled out" }
+                        }
+                    }
+                } }
+            }
+        }))
+    }
+}

@@ -1,0 +1,54 @@
+//! The sections of the pages. A new section is a file here and a line of [`SECTIONS`].
+
+mod answer;
+mod correlation;
+mod currents;
+mod estimates;
+mod faults;
+mod flux;
+mod held_out;
+mod log;
+mod operating_points;
+mod reproduction;
+mod residuals;
+mod search;
+mod study;
+mod validation;
+
+use crate::{
+    report::{Report, ValidationReport},
+    section::Section,
+};
+
+/// Makes a section of a report; `None` if the report lacks its data.
+type MakeSection = fn(&Report) -> Option<Section>;
+
+/// All sections of a report, in the order of the page.
+const SECTIONS: [MakeSection; 12] = [
+    answer::section,
+    currents::section,
+    residuals::section,
+    held_out::section,
+    correlation::section,
+    faults::section,
+    operating_points::section,
+    search::section,
+    study::section,
+    estimates::section,
+    log::section,
+    reproduction::section,
+];
+
+/// All sections of a validation, in the order of the page.
+const VALIDATION_SECTIONS: [fn(&ValidationReport) -> Section; 4] =
+    [validation::parameters_section, validation::prediction_section, validation::log_section, reproduction::validation_section];
+
+/// The sections of a report.
+pub(crate) fn of_report(report: &Report) -> Vec<Section> {
+    SECTIONS.iter().filter_map(|make| make(report)).collect()
+}
+
+/// The sections of a validation.
+pub(crate) fn of_validation(report: &ValidationReport) -> Vec<Section> {
+    VALIDATION_SECTIONS.iter().map(|make| make(report)).collect()
+}

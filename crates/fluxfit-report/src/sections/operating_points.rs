@@ -1,0 +1,97 @@
+//! Operating points: measured against fitted voltages.
+
+use super::flux;
+use crate::{
+    operating_point_uncertainty::residual_uncertainties,
+    report::Report,
+    section::Section,
+    table,
+    typography::{decimals, number, prose},
+};
+use fluxfit::{evidence::SteadyFit, steady::OperatingPoint};
+use maud::{Markup, html};
+
+/// Decimals of a voltage without uncertainty.
+const DECIMALS: usize = 3;
+
+/// The section.
+pub(crate) fn section(report: &Report) -> Option<Section> {
+    let (found, _) = report.identification?;
+    let fit = found.steady.as_ref()?;
+    let is_check = found.output.is_some();
+    let content = html! {
+        @if is_check {
+            p {
+                "The parameters above are identified from the simulated currents. The operating points of the log allow a check with a second, "
+                "simpler model: the values here are fitted to the operating points alone."
+            }
+        }
+        (description(fit))
+        (points(fit))
+        @if let Some(saturation) = &found.saturation { (flux::table(saturation)) }
+    };
+    let heading = if is_check { "Operating points, as a check" } else { "Operating points, measured against fitted" };
+    Some(Section { anchor: "operating-points", heading, content })
+}
+
+fn description(fit: &SteadyFit) -> Markup {
+    let redundancy = fit.estimate.redundancy;
+    html! {
+        p {
+            "At each operating point the steady voltage equations hold for the means over a window. "
+            "The fitted voltages are those of the parameters that fit all points best; the residual is measured less fitted."
+            @if redundancy == 0 {
+                " " strong { "There are no more equations than unknown parameters" }
+                ", so the fit is perfect by construction and does not test the model."
+            } @else {
+                " There " @if redundancy == 1 { "is one equation" } @else { "are " (redundancy) " equations" }
+                " more than unknown parameters"
+                @if fit.misfit.is_none() { ", so small residuals confirm the model." }
+                @else { ", and " strong { "the points contradict each other" } " beyond noise and accuracy: see the warning “misfit” above." }
+            }
+        }
+    }
+}
+
+fn points(found: &SteadyFit) -> Markup {
+    let uncertainties = residual_uncertainties(found);
+    // All values of a column have the decimals of its smallest uncertainty.
+    let least: [f64; 2] = [0, 1].map(|axis| uncertainties.iter().map(|both| both[axis]).fold(f64::INFINITY, f64::min));
+    let rows = found.operating_points.iter().zip(&found.estimate.residuals).zip(uncertainties);
+    html! {
+        (table::scrolling("Operating points, measured and fitted", &html! {
+            table {
+                thead {
+                    tr {
+                        th scope="col" rowspan="2" { "Point" }
+                        th scope="col" rowspan="2" { (prose("i_d")) ", A" } th scope="col" rowspan="2" { (prose("i_q")) ", A" }
+                        th scope="col" rowspan="2" { (prose("omega_e")) ", rad/s" }
+                        @for axis in ["u_d", "u_q"] { th scope="colgroup" colspan="3" { (prose(axis)) } }
+                    }
+                    tr { @for _ in 0..2 {
+                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual, mV" }
+                    } }
+                }
+                tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, residual, uncertainty, least)) } }
+            }
+        }))
+    }
+}
+
+fn row(k: usize, point: &OperatingPoint, residual: &[f64; 2], uncertainty: [f64; 2], least: [f64; 2]) -> Markup {
+    let (u, i) = (point.voltage(), point.current());
+    let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
+    html! {
+        tr {
+            th scope="row" { (k) }
+            @for value in [i.d, i.q, point.omega_e()] { td { (fixed(value, DECIMALS)) } }
+            @for (axis, measured) in [u.d, u.q].into_iter().enumerate() {
+                @let digits = decimals(least[axis], DECIMALS).max(DECIMALS);
+                @let tenths = decimals(1e3 * least[axis], 1);
+                td { (fixed(measured, digits)) }
+                td { (fixed(measured - residual[axis], digits)) }
+                td { (fixed(1e3 * residual[axis], tenths)) " ± " (fixed(1e3 * uncertainty[axis], tenths)) }
+            }
+        }
+    }
+}

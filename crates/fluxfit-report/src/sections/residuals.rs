@@ -1,0 +1,84 @@
+//! Are the residuals of the simulated currents white noise?
+
+use crate::{
+    report::Report,
+    residual_correlation::ResidualCorrelation,
+    section::Section,
+    typography::{number, prose},
+};
+use fluxfit_units::significant;
+use maud::{Markup, html};
+
+/// Fraction of the correlations of white noise that lie outside the band of ±2 standard errors.
+const OUTSIDE: f64 = 0.0455;
+
+/// Allowed excess of correlations outside the band, in standard deviations of their number.
+const EXCESS: f64 = 3.0;
+
+/// Smaller correlations explain less than a hundredth of a residual's variance.
+const SLIGHT: f64 = 0.1;
+
+/// The section.
+pub(crate) fn section(report: &Report) -> Option<Section> {
+    let (found, _) = report.identification?;
+    let fit = found.output.as_ref()?;
+    let correlation = ResidualCorrelation::of(fit);
+    let content = html! { p { (verdict(&correlation, fit.leaves_something())) } };
+    Some(Section { anchor: "residuals", heading: "Are the residuals white noise?", content })
+}
+
+/// The result of the test.
+fn verdict(correlation: &ResidualCorrelation, is_relevant: bool) -> Markup {
+    let ResidualCorrelation { axes, band } = correlation;
+    let lags = correlation.lags() as f64;
+    let allowed = OUTSIDE * lags + EXCESS * (lags * OUTSIDE * (1.0 - OUTSIDE)).sqrt();
+    let outside = |axis: usize| axes[axis].iter().filter(|value| value.abs() > *band).count();
+    let white = [0, 1].map(|axis| outside(axis) as f64 <= allowed);
+    let all = || axes.iter().flatten().copied();
+    let largest = all().fold(0.0, |most: f64, value| if value.abs() > most.abs() { value } else { most });
+    let largest = number(largest, |value| significant(value, 2));
+    let slight = all().all(|value| value.abs() < SLIGHT);
+    html! {
+        @if white == [true, true] {
+            strong { "White: " }
+            "of " (lags) " correlations for each axis, " (outside(0)) " (d) and " (outside(1)) " (q) are outside the band; about "
+            (format!("{:.0}", OUTSIDE * lags)) " are expected by chance. The model explains everything in the currents but noise."
+        } @else if !is_relevant {
+            strong { "Too small to matter: " }
+            (residuals_of(white)) " are correlated, but smaller than 0.01 % of the largest current, as the ripple of an inverter or rounding."
+        } @else if slight {
+            strong { "Almost white: " }
+            (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, but none is larger than "
+            (largest) ". The error of the model is small compared with the noise; the intervals account for it."
+        } @else {
+            strong { "Not white: " }
+            (residuals_of(white)) " are correlated from row to row; the largest correlation is " (largest)
+            ". The model lacks an effect that lasts longer than a row, such as a fault of the drive, saturation or heating. "
+            "The intervals account for the correlation, but not for a bias from that effect."
+        }
+    }
+}
+
+fn residuals_of(white: [bool; 2]) -> Markup {
+    match white {
+        [false, true] => html! { "the residuals of " (prose("i_d")) },
+        [true, false] => html! { "the residuals of " (prose("i_q")) },
+        _ => html! { "the residuals of both currents" },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of 50 correlations, 2.3 are expected outside the band, with a standard deviation of 1.5: six are chance, seven are not.
+    #[test]
+    fn each_kind_of_residual_has_its_verdict() {
+        let with = |outside: usize, value: f64| -> Vec<f64> { (0..50).map(|lag| if lag < outside { value } else { 0.01 }).collect() };
+        let of = |d: Vec<f64>, q: Vec<f64>| verdict(&ResidualCorrelation { axes: [d, q], band: 0.02 }, true).into_string();
+        assert!(of(with(6, 0.9), with(0, 0.0)).contains("White: "));
+        assert!(of(with(7, -0.05), with(0, 0.0)).contains("none is larger than \u{2212}0.050"));
+        let text = of(with(0, 0.0), with(7, 0.9));
+        assert!(text.contains("Not white: ") && text.contains("<i>i</i><sub>q</sub>") && text.contains("is 0.90"), "{text}");
+    }
+}
