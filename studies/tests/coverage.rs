@@ -1,48 +1,38 @@
-//! A slice of the `coverage` program: few draws, and limits as wide as so few need.
+//! A slice of the `coverage` program that takes no time: everyday mistakes would move its numbers. The statistics are in
+//! coverage_statistics.rs.
 
 #![allow(clippy::unwrap_used)]
 
 use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageReading};
-use fluxfit_studies::coverage::Case;
+use fluxfit_studies::coverage::{Case, Tally};
 
-const DRAWS: usize = 100;
+const DRAWS: usize = 16;
 
-/// Of 100 draws more than 13 miss a 95 % interval in less than one case of a thousand: the binomial distribution.
-const MOST_MISSED: usize = 13;
+/// Of 16 draws more than 5 miss a 95 % interval in less than one case of a thousand: the binomial distribution.
+const MOST_MISSED: usize = 5;
 
 /// Four standard errors, 1/sqrt(2 N), of a root-mean-square error.
-const RATIO: f64 = 0.29;
+const RATIO: f64 = 0.71;
 
-/// The normal distribution's 95 %, in standard errors.
-const TWO_SIDED: f64 = 1.96;
-
-/// Intervals of a few thousand rows know their own width to a few percent.
-const WIDTH: f64 = 0.1;
+/// The case that is quickest.
+fn acceleration(threads: usize) -> Tally {
+    let [_, acceleration, ..] = Case::all();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| acceleration.tally(Some(VoltageReading::Centered), DRAWS).unwrap())
+}
 
 #[test]
-fn errors_are_those_of_the_bound_and_intervals_hold() {
-    for case in Case::all() {
-        let tally = case.tally(Some(VoltageReading::Centered), DRAWS).unwrap();
-        assert_eq!(tally.with_fault, 0, "{}: faults of a perfect drive", case.name);
-        for (parameter, figures) in Parameter::ALL.into_iter().zip(&tally.parameters) {
-            let place = format!("{}, {}: {figures:?}", case.name, parameter.symbol());
-            println!("{place}");
-            assert!(DRAWS - figures.covered <= MOST_MISSED, "{place}");
-            assert!((figures.ratio - 1.0).abs() < RATIO, "{place}");
-            // A mean of so many errors is one of a standard normal variable over sqrt(N).
-            assert!(figures.bias.abs() < 4.0 / (DRAWS as f64).sqrt(), "{place}");
-            assert!((figures.half_width / TWO_SIDED - 1.0).abs() < WIDTH, "{place}");
-        }
+fn a_few_errors_are_near_the_bound() {
+    let tally = acceleration(2);
+    assert_eq!(tally.with_fault, 0, "faults of a perfect drive");
+    for (parameter, figures) in Parameter::ALL.into_iter().zip(&tally.parameters) {
+        assert!(DRAWS - figures.covered <= MOST_MISSED, "{}: {figures:?}", parameter.symbol());
+        assert!((figures.ratio - 1.0).abs() < RATIO, "{}: {figures:?}", parameter.symbol());
     }
 }
 
 /// Results come in index order and sums in theirs, whatever the threads do.
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let [_, acceleration, ..] = Case::all();
-    let tally = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        format!("{:?}", pool.install(|| acceleration.tally(Some(VoltageReading::Centered), 8).unwrap()))
-    };
-    assert_eq!(tally(1), tally(3));
+    assert_eq!(format!("{:?}", acceleration(1)), format!("{:?}", acceleration(3)));
 }

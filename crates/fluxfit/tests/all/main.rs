@@ -3,3 +3,4 @@
 mod current_loop;
 mod identify_laws;
 mod saturation;
+mod steady_statistics;

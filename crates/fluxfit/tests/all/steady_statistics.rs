@@ -1,7 +1,7 @@
 //! The intervals of the steady answer hold the truth as often as they say: Monte Carlo on windows with known noise.
 //!
 //! The data are equation (2) at a few operating points, with noise on voltages and currents; nothing of the program makes them.
-//! `cargo test -p fluxfit --test steady_statistics -- --nocapture` prints the table.
+//! `cargo test -p fluxfit --test all steady_statistics -- --nocapture` prints the table.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
