@@ -209,12 +209,10 @@ fn what_no_motor_does_is_no_answer() {
         ("currents", |recording| [&mut recording.columns.id, &mut recording.columns.iq].into_iter().flatten().for_each(|i| *i = -*i)),
         ("voltages", |recording| [&mut recording.columns.ud, &mut recording.columns.uq].into_iter().flatten().for_each(|u| *u = -*u)),
     ];
-    // The tenth of a second around the step of i_d: against such data every fault is tried to its end, which takes a while.
-    let settings = Settings { windows: vec![(std::env::var("WA").unwrap().parse().unwrap(), std::env::var("WB").unwrap().parse().unwrap())], ..Settings::default() };
     for (what, spoil) in spoilt {
         let mut recording = rig(|_| ());
         spoil(&mut recording);
-        for judgement in &identify(&recording.log().unwrap(), &settings).unwrap().parameters {
+        for judgement in &found(&recording).parameters {
             assert_eq!(judgement.value(), None, "{what}: {judgement:?}");
             assert!(
                 judgement.remedy.as_ref().is_some_and(|remedy| remedy.to_string().contains("signs and order of the columns")),
