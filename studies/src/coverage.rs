@@ -114,7 +114,7 @@ impl Case {
             errors: self.relative(&found, |judgement, truth| judgement.raw / truth - 1.0),
             half_widths: self.relative(&found, |judgement, truth| judgement.uncertainty.half_width / truth),
             information: self.information(&objective),
-            has_fault: fit.terms.iter().any(|tried| fit.has(tried.term)),
+            has_fault: fit.terms.iter().any(|tried| fit.has(tried.fault)),
         })
     }
 
