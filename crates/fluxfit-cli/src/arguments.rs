@@ -400,18 +400,31 @@ pub(crate) enum Timing {
     /// Vector of the period after the next
     #[value(name = "2")]
     Two,
+    /// As 0, with the vector given in the dq frame at the row
+    #[value(name = "0-row")]
+    ZeroRow,
+    /// As 1, with the vector given in the dq frame at the row
+    #[value(name = "1-row")]
+    OneRow,
+    /// As 2, with the vector given in the dq frame at the row
+    #[value(name = "2-row")]
+    TwoRow,
 }
 
 impl Timing {
     /// What is stated; nothing, if it is for the library to choose.
     pub(crate) fn stated(self) -> Option<VoltageReading> {
         let delayed = |delay| Some(VoltageReading::Delayed { delay, frame: VoltageFrame::Middle });
+        let at_row = |delay| Some(VoltageReading::Delayed { delay, frame: VoltageFrame::Row });
         match self {
             Self::Auto => None,
             Self::Centered => Some(VoltageReading::Centered),
             Self::Zero => delayed(0),
             Self::One => delayed(1),
             Self::Two => delayed(2),
+            Self::ZeroRow => at_row(0),
+            Self::OneRow => at_row(1),
+            Self::TwoRow => at_row(2),
         }
     }
 }

@@ -18,7 +18,7 @@
 //! # }
 //! let log = Log::new(columns)?;
 //! let found = identify(&log, &Request::default())?.identification;
-//! let origin = Origin { command: "fluxfit identify drive.csv".to_owned(), version: "0.1.0".to_owned(), seed: 1 };
+//! let origin = Origin { command: "fluxfit identify drive.csv".to_owned(), version: "0.2.0".to_owned(), seed: 1 };
 //! let page = html(&Report {
 //!     title: "drive.csv",
 //!     log: &log,

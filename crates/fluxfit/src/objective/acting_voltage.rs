@@ -52,9 +52,9 @@ impl VoltageReading {
             Self::Delayed { delay: 0, frame: VoltageFrame::Middle } => "0",
             Self::Delayed { delay: 1, frame: VoltageFrame::Middle } => "1",
             Self::Delayed { frame: VoltageFrame::Middle, .. } => "2",
-            Self::Delayed { delay: 0, frame: VoltageFrame::Row } => "0, in the frame at the row",
-            Self::Delayed { delay: 1, frame: VoltageFrame::Row } => "1, in the frame at the row",
-            Self::Delayed { frame: VoltageFrame::Row, .. } => "2, in the frame at the row",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Row } => "0-row",
+            Self::Delayed { delay: 1, frame: VoltageFrame::Row } => "1-row",
+            Self::Delayed { frame: VoltageFrame::Row, .. } => "2-row",
         }
     }
 
