@@ -26,9 +26,9 @@ pub const WEAK: f64 = 0.50;
 /// [`Reason`] beside it says why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Half the interval is at most 5 % of the value ([`IDENTIFIED`](crate::evidence::IDENTIFIED)); or the value was fixed.
+    /// Half the interval is at most 5 % of the value ([`IDENTIFIED`]); or the value was fixed.
     Identified,
-    /// Half the interval is at most 50 % of the value ([`WEAK`](crate::evidence::WEAK)), or the model does not fit well enough for more.
+    /// Half the interval is at most 50 % of the value ([`WEAK`]), or the model does not fit well enough for more.
     Weak,
     /// The log cannot tell: the interval is wider, the value is not positive, or the whole fit is not to be trusted.
     NotIdentifiable,
