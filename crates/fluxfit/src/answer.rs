@@ -28,15 +28,15 @@ use crate::{
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Answer {
-    /// The rows that were identified from: the log, less what was held out.
+    /// The rows that were identified from: the log, less what was [held out](Request::hold_out).
     pub log: Log,
     /// The parameters, how they were found, and the warnings.
     pub identification: Identification,
-    /// The answer beside the nameplate.
+    /// The answer compared with the [nameplate](Request::nameplate); without one, nothing is compared.
     pub convention: Convention,
-    /// Gains of the current controllers, where a bandwidth was asked for.
+    /// Gains of the current controllers, where a [bandwidth](Request::bandwidth) was asked for.
     pub current_loop: Option<CurrentLoop>,
-    /// What was held out, where that was asked for.
+    /// What was [held out](Request::hold_out), where that was asked for.
     pub held_out: Option<HeldOut>,
 }
 
@@ -45,12 +45,12 @@ pub struct Answer {
 pub struct HeldOut {
     /// Its rows.
     pub log: Log,
-    /// How well the answer predicts it; none where the answer lacks a parameter.
+    /// How well the answer predicts it; `None` where a parameter of the answer is not identifiable.
     pub validation: Option<Validation>,
 }
 
 impl Answer {
-    /// One parameter.
+    /// One parameter. All four are in `self.identification.parameters`, in the order of [`Parameter::ALL`].
     pub fn parameter(&self, parameter: Parameter) -> &Judgement {
         self.identification.parameter(parameter)
     }
@@ -70,17 +70,17 @@ impl Answer {
         self.parameter(Parameter::Lq)
     }
 
-    /// Flux linkage of the magnets, Wb.
+    /// Flux linkage of the magnets, Wb, peak per phase.
     pub fn psi_f(&self) -> &Judgement {
         self.parameter(Parameter::PsiF)
     }
 
-    /// What the reader should know, whatever the verdicts.
+    /// What the reader should know of the log and the answer as a whole, whatever the verdicts on single parameters.
     pub fn warnings(&self) -> &[Warning] {
         &self.identification.warnings
     }
 
-    /// Whether every parameter was identified.
+    /// Whether the verdict on every parameter is [`Verdict::Identified`](crate::Verdict::Identified), as it is on a fixed one.
     pub fn is_complete(&self) -> bool {
         self.identification.is_complete()
     }
@@ -89,8 +89,9 @@ impl Answer {
 /// Identifies a motor from a log.
 ///
 /// # Errors
-/// If a value of the request is out of range, or the log has no rows that any model could fit. A log that cannot tell some parameter is
-/// no error: the verdicts say so.
+/// If a value of the request is out of range, or the log has no rows that the model could fit
+/// ([`NoOperatingPoint`](ErrorKind::NoOperatingPoint), [`Window`](ErrorKind::Window)); [`ErrorKind`] lists every case. A log that cannot
+/// tell some parameter is no error: its [`Judgement`] says so, with reason and remedy.
 pub fn identify(log: &Log, request: &Request) -> Result<Answer, Error> {
     identify_with_progress(log, request, &silent)
 }
@@ -122,7 +123,8 @@ pub fn identify_with_progress(log: &Log, request: &Request, progress: Progress) 
     Ok(Answer { log, identification, convention, current_loop, held_out })
 }
 
-/// What the rows of a log say of its units, beside a nameplate, where nothing could be identified.
+/// A warning if a log's units look wrong beside the [nameplate](Request::nameplate), for a log that [`identify`] returned an error for:
+/// the flux linkage that the rows suggest is compared with the nameplate's. `None` where they agree or cannot be compared.
 pub fn suspect_units(log: &Log, request: &Request) -> Option<Warning> {
     let convention = conventions::compare_with_nameplate(log, None, &request.nameplate);
     (!convention.agrees()).then(|| Warning::Convention(Box::new(convention)))

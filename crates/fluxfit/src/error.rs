@@ -1,4 +1,5 @@
-//! The only error of this library: misuse, or data that cannot be read as a log.
+//! The only error of this library: misuse, or data that is not usable as a log. What a log cannot tell is no error but a
+//! [verdict](crate::Verdict).
 //!
 //! [`ErrorKind`] carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them
 //! from a file knows their lines ([`Error::row`], [`Error::column`]).
@@ -105,7 +106,7 @@ pub enum ErrorKind {
     /// A setting outside its range.
     #[error("{setting} is {value}; it must be {range}")]
     Setting {
-        /// Name of the setting.
+        /// The setting in words, as the sentence has it; not the name of a field.
         setting: &'static str,
         /// Value given.
         value: f64,
@@ -120,7 +121,7 @@ pub enum ErrorKind {
     /// Rows are too slow to be those of the drive's control, whose rate is needed.
     #[error("rows at {rate:.3} Hz are a recorder's, not those of the drive's control; state how often the current controllers run")]
     ControlRate {
-        /// Hz.
+        /// Rate of the rows, Hz.
         rate: f64,
     },
     /// A log of one segment, of which a part was to be held out.
@@ -145,7 +146,7 @@ impl Error {
         ErrorKind::TooShort { rows: 0, least: 2 }.into()
     }
 
-    /// The row of the log, from 0, that the error is about.
+    /// The row of the log, from 0, that the error is about; `None` if it is about no single row.
     pub fn row(&self) -> Option<usize> {
         match self.kind() {
             ErrorKind::NotFinite { row, .. } | ErrorKind::Implausible { row, .. } | ErrorKind::TimeOrder { row, .. } => Some(*row),
@@ -153,7 +154,7 @@ impl Error {
         }
     }
 
-    /// The canonical name of the column that the error is about.
+    /// The canonical name of the column that the error is about, as in [`Columns`](crate::Columns); `None` if it is about no single one.
     pub fn column(&self) -> Option<&'static str> {
         match self.kind() {
             ErrorKind::NotFinite { column, .. } | ErrorKind::Implausible { column, .. } | ErrorKind::ColumnLength { column, .. } => {

@@ -1,5 +1,8 @@
 //! Finds the electrical parameters of a permanent magnet synchronous motor from a log of its drive: stator resistance, two
-//! inductances, magnet flux; each with an interval and a verdict, or a reason why the log cannot tell it.
+//! inductances, magnet flux; each with a 95 % interval and a verdict, and where it is not well determined, the reason and a remedy.
+//!
+//! All quantities are in SI units, electrical (not mechanical) radians, and the amplitude-invariant dq frame: voltages, currents and flux
+//! are peak values per phase, with d along the magnet and currents counted into the motor. [`frames`] has the transforms.
 //!
 //! ```
 //! use fluxfit::{Columns, Log, Motor, Request, frames::Dq, identify};
@@ -23,14 +26,19 @@
 //! | | |
 //! |---|---|
 //! | [`identify`], [`Request`], [`Answer`] | the one call, what is asked, everything that comes back |
+//! | [`Known`], [`Nameplate`], [`Model`] | of a request: priors and fixed values, the data sheet, how the log is modelled |
 //! | [`validate`](fn@validate), [`Given`], [`Validation`] | given parameters against another log |
-//! | [`Log`], [`Columns`] | what a drive recorded, checked on the way in |
+//! | [`Log`], [`Columns`], [`log::LogBuilder`] | what a drive recorded, checked on the way in: whole columns, or row by row |
 //! | [`Motor`], [`Parameter`], [`frames`] | the motor's equations; the dq frame and its convention |
-//! | [`Judgement`], [`Verdict`], [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
+//! | [`Judgement`], [`Verdict`] | one parameter: value, interval and how well it is determined |
+//! | [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
+//! | [`Error`], [`ErrorKind`] | misuse, or data that is no log; a parameter that the log cannot tell is a verdict, not an error |
+//! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
 //! | [`steady`], [`objective`], [`least_squares`], [`levenberg_marquardt`] | the methods, for those who compare them |
-//! | [`optimizer`], [`study`], [`paper`] | swarms, many runs of them, and what the paper states |
+//! | [`faults`] | the drive's imperfections that are looked for: dead time, angle offset, current sensors, saturation |
+//! | [`optimizer`], [`study`], [`paper`] | swarm optimizers, many runs of them, and what the paper states |
 //! | [`current_loop`] | the current controllers' gains for a wanted bandwidth |
 //!
 //! Results depend on the log, the request and the seed: not on files, clocks or the number of threads.

@@ -34,8 +34,10 @@ pub enum Step {
     Validation,
 }
 
-/// A callback that is told each step as it begins. If it answers [`ControlFlow::Break`], a running search of a swarm ends after its
-/// current iteration; the fits are short and always run to their end.
+/// A callback that is told each step as it begins, for [`identify_with_progress`](crate::identify_with_progress).
+///
+/// If it answers [`ControlFlow::Break`], a running search of a swarm ends after its current iteration; the fits are short and always run
+/// to their end.
 pub type Progress<'a> = &'a dyn Fn(Step) -> ControlFlow<()>;
 
 /// A callback that ignores every step.

@@ -15,32 +15,44 @@ use crate::{
 pub const VOLTAGE_ACCURACY: f64 = 1e-4;
 
 /// What is asked of an identification. The default asks for the four parameters, with everything found from the log.
+///
+/// ```
+/// use fluxfit::{Known, Parameter, Request};
+///
+/// // R_s was measured at the terminals, to 2 %; gains are wanted for a bandwidth of 500 Hz.
+/// let mut request = Request { bandwidth: Some(500.0), ..Request::default() };
+/// request.known[Parameter::Rs as usize] = Known::Prior { value: 0.0352, standard_error: 0.02 * 0.0352 };
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// The model that answers; none: the one that suits the log.
+    /// The model that answers; `None`: the one that [suits](crate::evidence::choose_model) the log.
     pub model: Option<Model>,
-    /// Windows in time, s; none: they are found.
+    /// Start and end of the parts of the log to use, s, on the log's own time, both ends included. Empty: the steady model finds its
+    /// operating points, and the output error uses every segment (pieces of it, where the log is very long).
     pub windows: Vec<(f64, f64)>,
-    /// The timing of the voltage columns; none: the output error finds it; for operating points they count as centred, with the doubt in
-    /// the systematic uncertainty.
+    /// When, relative to its row, a logged voltage acts. `None`: the output error finds it; the steady model takes the voltages as
+    /// centred on the row and counts the doubt as systematic uncertainty.
     pub voltage_timing: Option<VoltageReading>,
     /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
     pub voltage_accuracy: f64,
-    /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL).
+    /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL): index it with
+    /// `Parameter::Rs as usize`.
     pub known: [Known; PARAMETERS],
-    /// Which swarm searches beside the exact answer.
+    /// Which swarm optimizer searches for the same minimum, for comparison. The answer never comes from it.
     pub swarm: Swarm,
-    /// Settings of its search.
+    /// Settings of that search.
     pub search: SearchSettings,
-    /// Lower and upper bound of the search for each parameter, SI; none: from the log and the rating.
+    /// Lower and upper bound of that search for each parameter, SI; `None`: from the log and the rating. They do not bound the answer.
     pub bounds: [Option<(f64, f64)>; PARAMETERS],
-    /// What is known of the motor without the log: compared with the answer, which does not depend on it.
+    /// The data sheet's values: compared with the answer, which does not depend on them. What the answer should use is
+    /// [`known`](Request::known).
     pub nameplate: Nameplate,
-    /// Wanted bandwidth of the current controllers, Hz; none: no gains are computed.
+    /// Wanted bandwidth of the current controllers, Hz; `None`: no gains are computed.
     pub bandwidth: Option<f64>,
-    /// How often the drive's current controllers run, Hz; none: as often as the log's rows come.
+    /// How often the drive's current controllers run, Hz; `None`: as often as the log's rows come. Only for `bandwidth`.
     pub control_rate: Option<f64>,
-    /// Whether the last log, or the last segment, is left out of the identification and then predicted by the answer.
+    /// Whether the last of [joined](crate::Log::join) logs, or the last segment of a single log, is left out of the identification and
+    /// then predicted by the answer.
     pub hold_out: bool,
 }
 
@@ -50,18 +62,20 @@ pub enum Known {
     /// Nothing.
     #[default]
     Nothing,
-    /// Its value, taken as exact.
+    /// Its value, SI, taken as exact. Its verdict is then [`Verdict::Identified`](crate::Verdict::Identified), its reason
+    /// [`Reason::Given`](crate::Reason::Given).
     Fixed(f64),
-    /// A value with a standard error.
+    /// A value with a standard error: one more measurement, weighed against the log. Its contribution to each interval is
+    /// [`Systematic::prior`](crate::evidence::Systematic::prior).
     Prior {
         /// Value, SI.
         value: f64,
-        /// Standard error, SI.
+        /// Standard error (one standard deviation), SI, not a fraction of the value.
         standard_error: f64,
     },
 }
 
-/// Which swarm searches beside the exact answer.
+/// Which swarm optimizer searches beside the answer by least squares.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Swarm {
     /// tGFPA at operating points, where it takes a millisecond; none on the output error, where it takes seconds.
@@ -115,7 +129,8 @@ impl Default for Request {
 }
 
 impl Request {
-    /// The box of a search: what is stated; the rest is what the log allows, or the rating where that is larger.
+    /// The search box of a swarm: the [bounds](Request::bounds) that are stated; for the rest those of the log, or of the rating where
+    /// these are larger.
     ///
     /// # Errors
     /// If a bound is not one that an optimizer takes.

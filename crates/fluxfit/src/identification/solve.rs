@@ -33,21 +33,21 @@ use crate::{
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Identification {
-    /// The parameters, in the order of [`Parameter::ALL`].
+    /// The four parameters, in the order of [`Parameter::ALL`].
     pub parameters: [Judgement; PARAMETERS],
     /// The model that answered, and why it did.
     pub model: ModelChoice,
-    /// What the operating points say; none where there is none.
+    /// The fit of the steady operating points; `None` where the log has none.
     pub steady: Option<SteadyFit>,
-    /// What the simulated currents say; none where the steady model answered.
+    /// The fit of the simulated currents; `None` where the steady model answered.
     pub output: Option<OutputFit>,
-    /// Flux at the operating points, where inductances depend on the current; none where nothing says so.
+    /// Flux at the operating points, where inductances depend on the current; `None` where nothing says so.
     pub saturation: Option<Saturation>,
-    /// Correlation of the parameters' errors.
+    /// Correlation of the parameters' errors, rows and columns in the order of [`Parameter::ALL`].
     pub correlation: [[f64; PARAMETERS]; PARAMETERS],
     /// The swarm that was asked to search, if any.
     pub method: Option<Method>,
-    /// The swarm's own answer.
+    /// The swarm's own answer, for comparison; `None` if no swarm searched.
     pub search: Option<Search>,
     /// What the reader should know.
     pub warnings: Vec<Warning>,
@@ -59,12 +59,12 @@ impl Identification {
         &self.parameters[parameter as usize]
     }
 
-    /// The log's operating points; none where it never holds still.
+    /// The log's operating points; empty where currents and speed are never constant.
     pub fn operating_points(&self) -> &[OperatingPoint] {
         self.steady.as_ref().map_or(&[], |fit| &fit.operating_points)
     }
 
-    /// Whether everything asked for was identified.
+    /// Whether the verdict on every parameter is [`Verdict::Identified`], as it is on a fixed one.
     pub fn is_complete(&self) -> bool {
         self.parameters.iter().all(|judgement| judgement.verdict == Verdict::Identified)
     }

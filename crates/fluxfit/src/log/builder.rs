@@ -161,7 +161,7 @@ impl LogBuilder {
 }
 
 impl Log {
-    /// Checks columns and splits them at gaps.
+    /// Checks columns and splits them at gaps in time. Time is in s on any origin; a gap is a step of more than 2.5 times the median one.
     ///
     /// # Errors
     /// If a column is shorter or longer than `t`, a value is not finite or implausibly large, time does not increase, there are fewer

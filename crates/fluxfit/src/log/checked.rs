@@ -6,7 +6,10 @@ use super::{
 };
 use crate::error::{Error, ErrorKind};
 
-/// A checked log. Two logs are equal if their rows and segments are, wherever they come from.
+/// A checked log: [`Log::new`] makes one of [`Columns`], [`LogBuilder`](super::LogBuilder) of rows as they arrive, and [`Log::join`] of
+/// several logs of one motor.
+///
+/// Two logs are equal if their rows and segments are, wherever they come from.
 #[derive(Debug, Clone)]
 pub struct Log {
     columns: Columns,

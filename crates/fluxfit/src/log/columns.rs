@@ -5,7 +5,12 @@ use std::ops::Range;
 /// Fewest rows of a log: two make a sample period.
 pub(super) const MIN_ROWS: usize = 2;
 
-/// The columns of a log, row by row in SI units; canonical names. Voltages and currents in the dq frame of [`frames`](crate::frames).
+/// The columns of a log, row by row in SI units, all of one length. The field names are the canonical names in messages and files.
+///
+/// Voltages and currents are in the amplitude-invariant dq frame of [`frames`](crate::frames) (peak values per phase), currents counted
+/// into the motor. Voltages are those at the terminals, or the drive's commands for them; when they act relative to their row is
+/// [`Request::voltage_timing`](crate::Request::voltage_timing). Rows may come at any rate; which [`Model`](crate::Model) suits the log
+/// depends on it. [`Log::new`](crate::Log::new) checks the columns.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Columns {
     /// Time, s.
@@ -18,11 +23,12 @@ pub struct Columns {
     pub id: Vec<f64>,
     /// Current along q, A.
     pub iq: Vec<f64>,
-    /// Speed, electrical rad/s.
+    /// Speed, electrical rad/s: mechanical speed times pole pairs.
     pub omega_e: Vec<f64>,
-    /// Angle, electrical rad, in any turn; optional.
+    /// Angle of the d axis from phase a, electrical rad, wrapped or not; optional. Without it, dead time,
+    /// offsets and unequal gains of the current sensors are not looked for.
     pub theta_e: Option<Vec<f64>>,
-    /// DC voltage, V; optional.
+    /// DC link voltage, V; optional. With it, rows at the inverter's voltage limit are noticed.
     pub u_dc: Option<Vec<f64>>,
 }
 
@@ -41,9 +47,9 @@ pub struct Row {
     pub iq: f64,
     /// Speed, electrical rad/s.
     pub omega_e: f64,
-    /// Angle, electrical rad, in any turn; optional.
+    /// Angle of the d axis from phase a, electrical rad, wrapped or not; optional.
     pub theta_e: Option<f64>,
-    /// DC voltage, V; optional.
+    /// DC link voltage, V; optional.
     pub u_dc: Option<f64>,
 }
 

@@ -8,9 +8,9 @@ const GAP_FACTOR: f64 = 2.5;
 /// Rows without a gap between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
-    /// Its rows.
+    /// Its rows in the log.
     pub rows: Range<usize>,
-    /// Number of the log that it came from, among those joined.
+    /// Number of the log that it came from, from 0, among those joined.
     pub log: usize,
     /// Median time step of that log, s.
     pub sample_period: f64,

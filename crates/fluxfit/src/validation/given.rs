@@ -5,7 +5,7 @@ use crate::{
     motor::{Motor, PARAMETERS, Parameter},
 };
 
-/// Parameters to be validated.
+/// Parameters to be validated: from a [`Motor`] by `into()` where they are taken as exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Given {
     /// The motor.
@@ -21,7 +21,8 @@ impl From<Motor> for Given {
 }
 
 impl Given {
-    /// What another log told, with its covariance; none where it could not tell a parameter.
+    /// What another log told ([`Answer::identification`](crate::Answer::identification)), with its covariance; `None` where it could not
+    /// tell a parameter.
     pub fn of(found: &Identification) -> Option<Self> {
         let values = found.parameters.each_ref().map(Judgement::value);
         let errors = found.parameters.each_ref().map(|judgement| judgement.uncertainty.standard_error());
@@ -29,7 +30,7 @@ impl Given {
         Some(Self::with_errors(Motor { rs, ld, lq, psi_f }, errors, &found.correlation))
     }
 
-    /// A motor with standard errors, SI, and their correlation.
+    /// A motor with standard errors, SI, and their correlation (its diagonal is taken as 1), in the order of [`Parameter::ALL`].
     pub fn with_errors(motor: Motor, errors: [f64; PARAMETERS], correlation: &[[f64; PARAMETERS]; PARAMETERS]) -> Self {
         let correlation = |p: usize, q: usize| if p == q { 1.0 } else { correlation[p][q] };
         Self { motor, covariance: std::array::from_fn(|p| std::array::from_fn(|q| errors[p] * errors[q] * correlation(p, q))) }

@@ -1,6 +1,6 @@
 //! Validation: how well given parameters predict a log that they were not found from.
 //!
-//! [`validate`] lets the log answer for itself first: what it [identifies](crate::identification) is the reference, and what that
+//! [`validate`] lets the log answer for itself first: what is [identified](crate::identify) from it is the reference, and what that
 //! leaves is the log's own noise. Then two questions are kept apart. *Is there a difference?* A [test](super::wald) of the given
 //! parameters against the log's own, with the covariance of both. *Does it matter?* The share of the current (or voltage) by which
 //! the predictions differ.
@@ -39,7 +39,7 @@ const COURSE: f64 = 2.0;
 pub enum Outcome {
     /// No difference beyond what noise and accuracy explain.
     Agrees,
-    /// A difference, of at most [`LITTLE`].
+    /// A difference, by a share of at most [`LITTLE`].
     DiffersLittle,
     /// A larger one.
     Contradicts,
@@ -79,16 +79,16 @@ impl Outcome {
     }
 }
 
-/// Given parameters, held against a log.
+/// Given parameters, compared with a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validation {
     /// The parameters.
     pub given: Given,
-    /// The log's own answer, with what it cannot tell held at what is given.
+    /// What is identified from this log alone; parameters that it cannot tell are held at the given values.
     pub own: Identification,
     /// Given and own, parameter by parameter.
     pub parameters: [Difference; PARAMETERS],
-    /// The test of all parameters that the log tells.
+    /// The test of all parameters that the log tells, together.
     pub test: Test,
     /// The channels that are predicted: `id, iq`, or `ud, uq`.
     pub channels: [Channel; 2],
@@ -116,7 +116,7 @@ pub struct Difference {
     pub parameter: Parameter,
     /// As given, SI.
     pub given: f64,
-    /// What the log says; none where it cannot tell.
+    /// What the log says; `None` where it cannot tell.
     pub own: Option<Own>,
 }
 
@@ -137,7 +137,7 @@ impl Difference {
         self.own.map(|own| own.value - self.given)
     }
 
-    /// The same in percent of the given one; none where that is zero.
+    /// The same in percent of the given one; `None` where that is zero.
     pub fn percent(&self) -> Option<f64> {
         let difference = self.difference().filter(|_| self.given > 0.0)?;
         Some(100.0 * difference / self.given)
@@ -179,10 +179,12 @@ impl Channel {
     }
 }
 
-/// Holds given parameters against a log. Of the request the model, the windows and all about the voltages count.
+/// Compares given parameters with a log that they were not found from. A motor taken as exact is `&motor.into()`; the answer to another
+/// log is [`Given::of`]. Of the request only the model, the windows, the voltages' timing and the voltages' accuracy count.
 ///
 /// # Errors
-/// If a given parameter is none that a motor can have, a value of the request is out of range, or the log holds nothing to be predicted.
+/// If a given parameter is not one that a motor can have (psi_f may be zero, the others must be positive), a value of the request is out of
+/// range, or the log holds nothing to be predicted.
 pub fn validate(log: &Log, given: &Given, request: &Request) -> Result<Validation, Error> {
     validate_with_progress(log, given, request, &silent)
 }

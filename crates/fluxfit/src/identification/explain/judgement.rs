@@ -12,30 +12,31 @@ use super::{
 };
 use crate::motor::{PARAMETERS, Parameter};
 
-/// One parameter, judged.
+/// One parameter: value, interval, verdict, and what could be done better.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
-    /// Which.
+    /// Which parameter this is.
     pub parameter: Parameter,
-    /// The number that came out, SI. An answer only unless the verdict is [`Verdict::NotIdentifiable`].
+    /// The number that the fit gave, SI. It means nothing where the verdict is [`Verdict::NotIdentifiable`]: use
+    /// [`value`](Self::value), which is `None` then.
     pub raw: f64,
-    /// Its uncertainty.
+    /// Its uncertainty, SI, by cause.
     pub uncertainty: ParameterUncertainty,
     /// The verdict.
     pub verdict: Verdict,
-    /// Why the verdict is not better, or that the value was given.
+    /// Why the verdict is not better, or that the value was given; `None` for a parameter identified from the log.
     pub reason: Option<Reason>,
-    /// What to do for a better one.
+    /// What to do for a better one; `None` for a parameter that is identified or was given.
     pub remedy: Option<Remedy>,
 }
 
 impl Judgement {
-    /// The value, SI, where it means something.
+    /// The value, SI; `None` where the parameter is not identifiable.
     pub fn value(&self) -> Option<f64> {
         (self.verdict != Verdict::NotIdentifiable).then_some(self.raw)
     }
 
-    /// The 95 % interval, SI, where the value means something.
+    /// Lower and upper end of the 95 % interval, SI; `None` where the parameter is not identifiable.
     pub fn interval(&self) -> Option<[f64; 2]> {
         self.value().map(|value| [value - self.uncertainty.half_width, value + self.uncertainty.half_width])
     }

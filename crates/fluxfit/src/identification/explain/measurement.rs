@@ -25,21 +25,21 @@ use nalgebra::{Matrix4, Vector4};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Measurement {
-    /// A further stretch of the log.
+    /// A further stretch of the log, with currents and speed held constant.
     Stretch {
-        /// How long, s.
+        /// How long to hold it, s.
         seconds: f64,
-        /// Where.
+        /// At which currents and speed.
         place: Place,
     },
-    /// R_s at the terminals, given as a prior with this relative standard error.
+    /// R_s measured at the terminals, given as a [prior](crate::Known::Prior).
     Resistance {
-        /// As a fraction.
+        /// Standard error of that measurement as a fraction of R_s.
         accuracy: f64,
     },
 }
 
-/// Where to hold the motor, relative to the operating point of largest current.
+/// Where to hold the motor, relative to the log's operating point of largest current.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Place {
@@ -47,21 +47,21 @@ pub enum Place {
     Id(f64),
     /// Half the load: this i_q, A, at the same speed.
     HalfLoad {
-        /// A.
+        /// i_q to hold, A.
         iq: f64,
     },
     /// The same currents at half the speed.
     HalfSpeed,
 }
 
-/// A measurement, and the interval that it leaves.
+/// A measurement, and the interval to expect after it: computed, not measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Promised {
     /// What to measure.
     pub measurement: Measurement,
-    /// For which parameter.
+    /// The parameter that it is for.
     pub parameter: Parameter,
-    /// Half of the 95 % interval that it leaves, as a fraction of the value.
+    /// Half of the 95 % interval to expect, as a fraction of the value: 0.05 is ±5 %.
     pub half_width: f64,
 }
 

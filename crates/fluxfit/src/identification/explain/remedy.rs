@@ -12,11 +12,12 @@ use super::{
 };
 use crate::motor::Parameter;
 
-/// What to do for a better verdict.
+/// What to do for a better verdict. It prints as a sentence; who writes their own matches the variants, and prints those that they do
+/// not know.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// A measurement, with what it would bring.
+    /// A measurement, with the interval to expect after it. What it may be: [`Measurement`](crate::evidence::Measurement).
     Measure(Promised),
     /// Add a stretch at the same speed with this i_d, A; zero: with i_d = 0.
     AddStretch {
@@ -25,49 +26,52 @@ pub enum Remedy {
         /// What else would help, or is needed beside it.
         also: Option<Also>,
     },
-    /// Hold each operating point longer, or do the other thing.
+    /// Hold each operating point longer, or follow the alternative.
     HoldLonger {
-        /// How many times as long.
+        /// How many times as long as now.
         times: f64,
-        /// The alternative.
+        /// The alternative, itself a remedy.
         or: Box<Remedy>,
     },
     /// Make the operating points differ more, so that they tell this parameter.
     SpreadPoints {
-        /// Which.
+        /// The parameter to be told.
         parameter: Parameter,
     },
-    /// State the timing of the voltage columns.
+    /// State the timing of the voltage columns: [`Request::voltage_timing`](crate::Request::voltage_timing).
     StateVoltageTiming,
-    /// Log with the drive's dead-time compensation on, or give R_s as measured.
+    /// Log with the drive's dead-time compensation on, or give R_s as measured at the terminals:
+    /// [`Request::known`](crate::Request::known).
     CompensateDeadTime,
-    /// Log without disturbances, or identify from a stretch held still.
+    /// Log without disturbances (torque ripple, supply ripple), or identify by the steady model from a stretch of constant currents and
+    /// speed.
     RemoveDisturbances,
     /// Calibrate the current sensors.
     CalibrateSensors,
-    /// Identify from a part of the log at nearly the same currents.
+    /// The motor saturates: identify from a part of the log at nearly the same currents ([`Request::windows`](crate::Request::windows)).
     NarrowCurrents,
-    /// Identify from three or more windows at nearly the same currents.
+    /// Identify from three or more windows at nearly the same currents, so that saturation is alike in them.
     SimilarWindows,
     /// Give a sharper prior, or log another operating point.
     SharperPrior,
-    /// Log the electrical angle too, or hold the drive still.
+    /// Log the electrical angle too ([`Columns::theta_e`](crate::Columns::theta_e)), or hold currents and speed constant and use the steady
+    /// model.
     LogAngle,
-    /// Compare with the other model, look at the residuals, and log angle and DC voltage too.
+    /// Compare with the steady model, look at the residuals, and log electrical angle and DC voltage too.
     InspectResiduals,
-    /// Check signs and order of the columns.
+    /// Check signs and order of the columns: motor convention, q leading d by 90 degrees.
     CheckSigns {
-        /// Units and pole pairs too.
+        /// Whether units and pole pairs should be checked too.
         units: bool,
     },
 }
 
-/// What else helps beside a stretch with another i_d.
+/// What else helps beside a stretch with another i_d, in [`Remedy::AddStretch`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Also {
-    /// Or a second speed or load, or R_s given.
+    /// Instead: a second speed or load, or R_s given.
     OrSecondPoint,
-    /// And an operating point at a clearly different speed and load.
+    /// In addition: an operating point at a clearly different speed and load.
     AndSecondPoint,
 }
 

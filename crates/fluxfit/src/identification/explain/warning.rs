@@ -21,34 +21,34 @@ use crate::{
     steady::{OperatingPoint, windows, zero_order_hold::MAX_ANGLE_PER_SAMPLE},
 };
 
-/// Something that the reader should know.
+/// Something that the reader should know of the log or the answer as a whole. It prints as a sentence; [`code`](Self::code) names it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// There are exactly as many equations as unknowns.
+    /// There are exactly as many equations as unknowns, so the fit is perfect whatever the data: errors would go unseen.
     NoRedundancy,
     /// The operating points contradict each other.
     Misfit {
-        /// How many times beyond noise and accuracy.
+        /// Their contradiction over what noise and accuracy explain; 1 would be none.
         ratio: f64,
-        /// The fraction of the voltage to which they agree.
+        /// The fraction of the voltage to which they agree: 0.01 is 1 %.
         voltage_accuracy: f64,
     },
     /// The ripple of dead time or device drops is in the log, and the model cannot tell their voltage from resistance.
     DeadTime {
-        /// Voltage along the current, V.
+        /// The voltage lost along the current, V: the largest over the operating points.
         voltage: f64,
     },
     /// Rows without current were left out.
     NoCurrent {
-        /// How many.
+        /// Number of rows left out.
         rows: usize,
-        /// Of so many.
+        /// Number of all rows.
         of: usize,
     },
     /// Windows that were named carry no current, and were used.
     NoCurrentInWindows {
-        /// How many.
+        /// Number of such windows.
         windows: usize,
     },
     /// Steady stretches much shorter than the others were left out.
@@ -58,34 +58,34 @@ pub enum Warning {
     },
     /// The rotor turns too far between rows for the held voltage vector to be corrected.
     CoarseSampling,
-    /// Unknown voltages disturb the motor.
+    /// Voltages that the log does not hold disturb the motor; an observer follows them in the fit.
     ProcessNoise,
     /// The logged angle does not turn with the speed, so it was not used.
     Angle,
-    /// The motor saturates.
+    /// The motor saturates: no constant inductances explain the log, and the intervals are widened to hold what each operating point says.
     Saturation {
-        /// The apparent L_q at the smallest and the largest i_q that tell one, where they differ visibly.
+        /// The apparent inductance `psi_q / i_q` at the smallest and the largest i_q at which it can be computed, where the two differ.
         lq: Option<[Apparent; 2]>,
     },
-    /// Even at the highest speed the motor's own voltage is small beside what the inverter takes.
+    /// Even at the highest speed the motor's own voltage is small beside what dead time and device drops take.
     LowSpeed {
         /// Highest speed, electrical rad/s.
         omega_e: f64,
         /// The motor's own voltage there, V.
         own: f64,
-        /// What the inverter takes, V.
+        /// The voltage that dead time and device drops take, V.
         lost: f64,
     },
-    /// Rows have more voltage than the inverter can make.
+    /// Rows have more voltage than the inverter can make of the logged DC voltage, `u_dc / sqrt 3`.
     VoltageLimit {
-        /// How many.
+        /// Number of such rows.
         rows: usize,
-        /// Of so many.
+        /// Number of all rows.
         of: usize,
     },
-    /// The answer lies outside the search box.
+    /// The answer lies outside the swarm's search box, so the swarm cannot reach it. The answer itself is not affected.
     OutsideBox {
-        /// In these parameters.
+        /// The parameters in which it does.
         parameters: Vec<Parameter>,
     },
     /// The log does not agree with the nameplate.
@@ -98,7 +98,7 @@ pub enum Warning {
         margin: f64,
         /// How often the controllers run, Hz.
         control_rate: f64,
-        /// Whether that was taken from the log.
+        /// Whether that rate was taken from the log's rows rather than stated.
         rate_assumed: bool,
         /// Largest bandwidth without this warning, Hz.
         highest: f64,
@@ -107,7 +107,7 @@ pub enum Warning {
     Interrupted {
         /// Iterations done.
         iterations: usize,
-        /// Of so many.
+        /// Iterations asked for.
         limit: usize,
     },
 }

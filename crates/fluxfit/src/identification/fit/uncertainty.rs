@@ -24,7 +24,7 @@ const CONFIDENCE: f64 = 0.95;
 /// As many degrees of freedom as no end of them: Student's t is the normal distribution to 1e-6.
 const NORMAL: f64 = 1e6;
 
-/// Systematic parts of a standard error, SI units.
+/// Systematic parts of a standard error (type B, what a longer log would not cure), in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Systematic {
     /// Of the voltages' accuracy.
@@ -37,13 +37,14 @@ pub struct Systematic {
     pub dead_time: f64,
     /// Of unknown voltages that disturb the motor.
     pub process_noise: f64,
-    /// Of current sensors of which nobody knows which is right.
+    /// Of current sensors whose gains differ: it is not known which of them is right.
     pub sensors: f64,
     /// Of inductances that depend on the current.
     pub saturation: f64,
     /// Of directions that are not excited.
     pub excitation: f64,
-    /// Of contradiction between the points, where there is any; then in the accuracy's place.
+    /// Of contradiction between the operating points, where there is any; it then replaces `accuracy`. Also what widens an interval whose
+    /// residuals are not noise to ±5 %.
     pub misfit: f64,
 }
 
@@ -69,7 +70,8 @@ impl Systematic {
     }
 }
 
-/// The uncertainty of one parameter, SI units.
+/// The uncertainty of one parameter, in its unit: a statistical part from noise (GUM type A) and a systematic one (type B), combined
+/// in quadrature; the interval uses Student's t.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ParameterUncertainty {
     /// Standard error from noise.
@@ -113,7 +115,7 @@ impl ParameterUncertainty {
     }
 }
 
-/// What an uncertainty is made of.
+/// A contribution to an uncertainty; the systematic ones are the fields of [`Systematic`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// Noise.
@@ -126,15 +128,15 @@ pub enum Part {
     Timing,
     /// Dead time or device drops.
     DeadTime,
-    /// Unknown voltages.
+    /// Unknown voltages that disturb the motor.
     ProcessNoise,
-    /// Current sensors.
+    /// Current sensors whose gains differ.
     Sensors,
     /// Inductances that depend on the current.
     Saturation,
-    /// Directions that are not excited.
+    /// Combinations of the parameters that the log does not excite.
     Excitation,
-    /// Contradiction between the points.
+    /// Contradiction between the operating points.
     Misfit,
 }
 

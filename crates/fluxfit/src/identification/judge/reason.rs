@@ -10,7 +10,7 @@ use crate::{
     motor::{PARAMETERS, Parameter},
 };
 
-/// Why a verdict is not better, or that the value was given.
+/// Why a verdict is not better, or that the value was given. It prints as a sentence.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
@@ -30,30 +30,30 @@ pub enum Reason {
         /// The parameters that are open.
         open: Vec<Parameter>,
     },
-    /// The value came out negative, and not by noise.
+    /// The value came out negative, by more than its uncertainty: signs or order of the columns are probably wrong.
     Negative,
-    /// Another parameter of the same fit came out negative, and not by noise.
+    /// Another parameter of the same fit came out negative, by more than its uncertainty.
     OtherNegative {
         /// Which.
         parameter: Parameter,
     },
-    /// The interval is wide.
+    /// The 95 % interval is wide.
     Wide {
-        /// Its largest part.
+        /// The largest contribution to it.
         part: Part,
-        /// Half of it, as a fraction of the value.
+        /// Half the interval as a fraction of the value: 0.2 is ±20 %; it may exceed 1 or be infinite.
         half_width: f64,
     },
     /// Unknown voltages disturb the motor, and without the electrical angle they cannot be told from faults of the drive.
     DisturbedWithoutAngle,
     /// Neighbouring residuals are correlated: the model lacks something that is in the log.
     CorrelatedResiduals {
-        /// Correlation of neighbours.
+        /// Correlation of residuals of neighbouring rows, from 0 to 1.
         correlation: f64,
     },
-    /// The simulated currents miss the measured ones, and not by noise.
+    /// The simulated currents differ from the measured ones by far more than noise: voltages and currents do not belong together.
     CurrentsMissed {
-        /// Root mean square, as a fraction of the largest current.
+        /// Root mean square of the difference, as a fraction of the largest current.
         fraction: f64,
     },
 }

@@ -22,14 +22,15 @@ pub const IDENTIFIED: f64 = 0.05;
 /// The same of one that is weak.
 pub const WEAK: f64 = 0.50;
 
-/// A verdict.
+/// How well a parameter is determined, by its 95 % interval. It has no sentence of its own: [`key`](Self::key) names it, and the
+/// [`Reason`] beside it says why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Good to 5 %.
+    /// Half the interval is at most 5 % of the value ([`IDENTIFIED`]); or the value was fixed.
     Identified,
-    /// Good to 50 %.
+    /// Half the interval is at most 50 % of the value ([`WEAK`]), or the model does not fit well enough for more.
     Weak,
-    /// The log cannot tell.
+    /// The log cannot tell: the interval is wider, the value is not positive, or the whole fit is not to be trusted.
     NotIdentifiable,
 }
 

@@ -5,12 +5,13 @@
 
 use crate::{log::Log, steady::zero_order_hold::MAX_ANGLE_PER_SAMPLE};
 
-/// A model of the log.
+/// How the log is modelled. Steady operating points need currents and speed held constant for a while; the output error also uses
+/// transients, but needs rows as fast as the drive's own sampling. [`evidence::choose_model`](crate::evidence::choose_model) chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Model {
-    /// The steady equations at operating points.
+    /// The steady voltage equations, by weighted least squares on the means of steady operating points.
     Steady,
-    /// The currents, simulated row by row.
+    /// The output error: currents are simulated row by row from the logged voltages and fitted to the measured ones.
     OutputError,
 }
 
@@ -32,7 +33,7 @@ impl Model {
     }
 }
 
-/// Slower than this no drive controls a current, Hz: such rows are a recorder's.
+/// Lowest rate of rows, Hz, that counts as a drive's own sampling; slower rows count as a recorder's.
 pub const SLOWEST_CONTROL: f64 = 1000.0;
 
 /// A model, and why it answers.
@@ -52,19 +53,19 @@ pub enum ModelReason {
     Stated,
     /// The channels were sampled at different instants.
     Interpolated,
-    /// Rows are slower than any drive's own sampling.
+    /// Rows are slower than any drive's own sampling: below [`evidence::SLOWEST_CONTROL`](crate::evidence::SLOWEST_CONTROL).
     SlowRows {
-        /// Hz.
+        /// Rate of the rows, Hz.
         rate: f64,
     },
     /// The rotor turns too far from row to row for the inverter's own periods.
     TurnsTooFar {
-        /// rad.
+        /// Largest electrical angle from row to row, rad.
         turn: f64,
     },
     /// Rows come as fast as a drive controls.
     FastRows {
-        /// Hz.
+        /// Rate of the rows, Hz.
         rate: f64,
         /// Largest electrical angle from row to row, rad.
         turn: f64,
