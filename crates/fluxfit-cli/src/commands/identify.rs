@@ -7,7 +7,7 @@ use crate::{
     interrupt, json, terminal,
 };
 use fluxfit::{
-    Answer, Known, Request, Step, Swarm, identify_with_progress,
+    Answer, Known, Request, Step, Swarm, Warning, identify_with_progress,
     motor::{PARAMETERS, Parameter},
     suspect_units,
 };
@@ -24,6 +24,8 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     terminal::decisions::show(&answer.identification);
     if arguments.log.json {
         terminal::print(&json::text(&answer)?)?;
+        // The document lists it among others; whoever interrupted the search is told at once.
+        answer.warnings().iter().filter(|warning| matches!(warning, Warning::Interrupted { .. })).for_each(terminal::warn);
     } else {
         terminal::identification::show(&input.name, &answer)?;
     }

@@ -136,7 +136,7 @@ fn an_identification_keeps_its_answer_when_its_swarm_is_cut() {
 #[test]
 fn what_has_no_best_so_far_says_what_was_interrupted() {
     let mut running = Running::start(&["identify", LOG, "--json"]);
-    running.wait_for("trying the readings of the voltages");
+    running.wait_for("trying the timings of the voltages");
     running.send("INT");
     let (status, out, err) = running.end();
     assert_eq!((status, out.as_str()), (Some(130), ""), "{err}");

@@ -82,7 +82,7 @@ fn what_is_no_motor_is_refused_in_a_sentence() {
     let (_two, untold) = file("found.json", &untold.out);
     let (_three, study) = file("study.json", r#"{"schema": "fluxfit.study/1"}"#);
     for (path, sentence) in [
-        (incomplete.as_str(), "the parameters ld and psi_f are missing; a motor is validated with all four"),
+        (incomplete.as_str(), "the parameters ld and psi_f are missing; validation needs all four"),
         (&untold, "the parameter ld has no value, because the log could not tell it"),
         (&study, "which holds no motor; give a motor file"),
         ("nowhere.toml", "there is no such file"),
@@ -133,5 +133,5 @@ fn the_last_log_is_held_out_and_validated() {
     let untold = fluxfit(&["identify", TWO_LOADS, NOISY, "--hold-out", "--model", "steady"]);
     assert!(untold.status == 1 && untold.err.contains("what was held out is not predicted"), "{}", untold.err);
     let run = fluxfit(&["identify", NOISY, "--hold-out"]);
-    assert!(run.status == 2 && run.err.contains("--hold-out needs several logs"), "{}", run.err);
+    assert!(run.status == 2 && run.err.contains("holding out needs several logs"), "{}", run.err);
 }
