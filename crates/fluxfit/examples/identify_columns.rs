@@ -5,7 +5,7 @@
 
 use fluxfit::{
     Columns, Known, Log, Motor, Parameter, Remedy, Request,
-    evidence::{Measurement, Promised},
+    evidence::{Measurement, Place, Promised},
     frames::Dq,
     identify,
 };
@@ -24,11 +24,16 @@ fn main() -> Result<(), fluxfit::Error> {
     let mut request = Request::default();
     request.known[Parameter::Rs as usize] = Known::Prior { value: 0.0352, standard_error: 0.0007 };
     let answer = identify(&Log::new(columns)?, &request)?;
-    for judgement in &answer.identification.parameters {
-        println!("{:6} {:?} {}: {}", judgement.parameter.key(), judgement.value(), judgement.parameter.unit(), judgement.verdict.key());
+    for judgement in answer.parameters() {
+        println!("{:6} {:?} {}: {}", judgement.parameter.key(), judgement.interval(), judgement.parameter.unit(), judgement.verdict.key());
+        if let Some(reason) = &judgement.reason {
+            println!("       {reason}");
+        }
         match &judgement.remedy {
-            Some(Remedy::Measure(Promised { measurement: Measurement::Stretch { seconds, place, .. }, half_width, .. })) => {
-                println!("       hold it for {seconds} s at {place:?}: then it is known to {:.1} %", 100.0 * half_width);
+            Some(Remedy::Measure(Promised {
+                measurement: Measurement::Stretch { seconds, place: Place::Id(id), .. }, half_width, ..
+            })) => {
+                println!("       hold i_d at {id:.1} A for {seconds} s: then it is known to {:.1} %", 100.0 * half_width);
             }
             Some(remedy) => println!("       {remedy}"),
             None => {}

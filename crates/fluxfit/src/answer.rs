@@ -55,6 +55,11 @@ impl Answer {
         self.identification.parameter(parameter)
     }
 
+    /// All four, in the order of [`Parameter::ALL`].
+    pub fn parameters(&self) -> &[Judgement] {
+        &self.identification.parameters
+    }
+
     /// Stator resistance, ohm.
     pub fn rs(&self) -> &Judgement {
         self.parameter(Parameter::Rs)

@@ -83,8 +83,8 @@ fn what_is_no_motor_is_refused_in_a_sentence() {
     let (_three, study) = file("study.json", r#"{"schema": "fluxfit.study/1"}"#);
     for (path, sentence) in [
         (incomplete.as_str(), "the parameters ld and psi_f are missing; validation needs all four"),
-        (&untold, "the parameter ld has no value, because the log could not tell it"),
-        (&study, "which holds no motor; give a motor file"),
+        (&untold, "the parameter ld has no value, because the log could not determine it"),
+        (&study, "which holds no motor"),
         ("nowhere.toml", "there is no such file"),
     ] {
         let run = fluxfit(&["validate", NOISY, "--motor", path]);

@@ -190,8 +190,9 @@ fn check_value(column: &'static str, row: usize, value: f64) -> Result<(), Error
     if !value.is_finite() {
         return Err(ErrorKind::NotFinite { column, row, value }.into());
     }
-    if value.abs() > MAX_MAGNITUDE && column != "t" || value.abs() > MAX_MAGNITUDE * TIME_FACTOR {
-        return Err(ErrorKind::Implausible { column, row, value, limit: MAX_MAGNITUDE }.into());
+    let limit = if column == "t" { MAX_MAGNITUDE * TIME_FACTOR } else { MAX_MAGNITUDE };
+    if value.abs() > limit {
+        return Err(ErrorKind::Implausible { column, row, value, limit }.into());
     }
     Ok(())
 }
