@@ -110,5 +110,5 @@ fn a_flux_map_has_no_constant_truth() {
     let path = |name: &str| folder.path().join(name).display().to_string();
     let run = fluxfit(&["compare", &path("rig.csv"), "--truth", &path("rig.truth.json")]);
     assert_eq!(run.status, 2);
-    assert!(run.err.contains("because the simulated motor was a flux map") && run.err.lines().count() == 1, "{}", run.err);
+    assert!(run.err.contains("because the motor of the simulation was a flux map") && run.err.lines().count() == 1, "{}", run.err);
 }

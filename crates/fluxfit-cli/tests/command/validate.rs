@@ -82,9 +82,9 @@ fn what_is_no_motor_is_refused_in_a_sentence() {
     let (_two, untold) = file("found.json", &untold.out);
     let (_three, study) = file("study.json", r#"{"schema": "fluxfit.study/1"}"#);
     for (path, sentence) in [
-        (incomplete.as_str(), "the parameters ld and psi_f are missing; a motor is validated with all four"),
-        (&untold, "the parameter ld has no value, because the log could not tell it"),
-        (&study, "which holds no motor; give a motor file"),
+        (incomplete.as_str(), "the parameters ld and psi_f are missing; validation needs all four"),
+        (&untold, "the parameter ld has no value, because the log could not determine it"),
+        (&study, "which contains no motor; give a motor file"),
         ("nowhere.toml", "there is no such file"),
     ] {
         let run = fluxfit(&["validate", NOISY, "--motor", path]);
