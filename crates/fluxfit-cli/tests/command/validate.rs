@@ -84,7 +84,7 @@ fn what_is_no_motor_is_refused_in_a_sentence() {
     for (path, sentence) in [
         (incomplete.as_str(), "the parameters ld and psi_f are missing; validation needs all four"),
         (&untold, "the parameter ld has no value, because the log could not determine it"),
-        (&study, "which holds no motor"),
+        (&study, "which contains no motor; give a motor file"),
         ("nowhere.toml", "there is no such file"),
     ] {
         let run = fluxfit(&["validate", NOISY, "--motor", path]);

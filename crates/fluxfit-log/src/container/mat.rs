@@ -11,6 +11,7 @@
 
 mod array;
 mod hdf5;
+mod numbers;
 mod v4;
 mod v5;
 
@@ -35,7 +36,7 @@ pub(crate) struct Mat {
 
 enum Version {
     /// Versions 4 and 5.
-    Flat(v5::File),
+    Flat(numbers::File),
     Hdf5(hdf5::File),
 }
 
@@ -63,7 +64,7 @@ impl Mat {
         } else {
             return Ok(None);
         };
-        Self::new(contents, "MAT", |places| Version::Flat(v5::File::new(source, places))).map(Some)
+        Self::new(contents, "MAT", |places| Version::Flat(numbers::File::new(source, places))).map(Some)
     }
 
     fn new<Place>(contents: Contents<Place>, format: &'static str, version: impl FnOnce(Vec<Place>) -> Version) -> Result<Self, FileError> {
@@ -118,7 +119,7 @@ impl Mat {
 
     pub(super) fn read(&self, wanted: &[usize], take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>) -> Result<(), FileError> {
         match &self.file {
-            Version::Flat(file) => self.blocks(wanted, take, |column| file.line(column.array, column.line), v5::Values::next),
+            Version::Flat(file) => self.blocks(wanted, take, |column| file.line(column.array, column.line), numbers::Values::next),
             Version::Hdf5(file) => self.blocks(wanted, take, |column| file.line(column.array, column.line), hdf5::Values::next),
         }
     }

@@ -5,6 +5,7 @@
 //! one. The format: <https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>. MATLAB adds the attributes `MATLAB_class`
 //! and `MATLAB_object_decode`, and stores dimensions in reverse order.
 
+mod filters;
 mod groups;
 mod object;
 mod reader;

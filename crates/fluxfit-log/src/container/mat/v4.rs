@@ -4,7 +4,7 @@
 
 use super::{
     array::{Array, Contents, is_column},
-    v5,
+    numbers::Place,
 };
 use crate::{
     container::{
@@ -81,7 +81,7 @@ fn is_identifier(letters: &[u8]) -> bool {
     letters.first().is_some_and(u8::is_ascii_alphabetic) && letters.iter().all(|letter| letter.is_ascii_alphanumeric() || *letter == b'_')
 }
 
-pub(super) fn open(source: &RandomAccess) -> Result<Contents<v5::Place>, FileError> {
+pub(super) fn open(source: &RandomAccess) -> Result<Contents<Place>, FileError> {
     let mut contents = Contents::default();
     let mut at = 0;
     while at < source.length() {
@@ -96,7 +96,7 @@ pub(super) fn open(source: &RandomAccess) -> Result<Contents<v5::Place>, FileErr
         }
         if variable.matrix == 0 && !variable.complex {
             if is_column(variable.rows, variable.columns) {
-                let place = v5::Place::plain(data, end, variable.number, variable.rows);
+                let place = Place::plain(data, end, variable.number, variable.rows);
                 contents.arrays.push(Array { path: name, unit: None, rows: variable.rows, columns: variable.columns, place });
             }
         } else {

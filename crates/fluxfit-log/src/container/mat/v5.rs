@@ -3,19 +3,21 @@
 //! A compressed array is decompressed while it is read, from its start, and never stored. The format: MathWorks, MAT-File Format,
 //! chapter 1.
 
-use super::array::{Array, Contents, Line, Object, is_column, join};
+use super::{
+    array::{Array, Contents, Object, is_column, join},
+    numbers::{Place, Stream},
+};
 use crate::{
     container::{
         fault::{damaged, unread},
         limits::MOST_COLUMNS,
         number::{Kind, Number},
-        random_access::{RandomAccess, Range},
+        random_access::RandomAccess,
     },
     problem::Problem,
 };
-use flate2::read::ZlibDecoder;
 use fluxfit_files::FileError;
-use std::io::{self, BufReader, Read};
+use std::io;
 
 const FORMAT: &str = "MAT";
 const HEADER: u64 = 128;
@@ -26,161 +28,12 @@ const DEEPEST: usize = 16;
 /// Maximum length of a name, label or class, bytes; longer ones are cut.
 const LONGEST_TEXT: u64 = 256;
 
-/// Bytes that are decompressed at once.
-const PIECE: usize = 1 << 16;
-
 /// Whether the integers are big-endian, if this is a file of these versions.
 pub(super) fn signature(start: &[u8]) -> Option<bool> {
     match start.get(124..128)? {
         [0, 1, b'I', b'M'] => Some(false),
         [1, 0, b'M', b'I'] => Some(true),
         _ => None,
-    }
-}
-
-/// Where the numbers of an array are, column by column.
-pub(crate) struct Place {
-    /// Start and end of the top-level element that holds them.
-    element: (u64, u64),
-    packed: bool,
-    /// Offset of the first number in the decompressed element.
-    offset: u64,
-    number: Number,
-    rows: u64,
-}
-
-impl Place {
-    pub(super) fn plain(from: u64, to: u64, number: Number, rows: u64) -> Self {
-        Self { element: (from, to), packed: false, offset: 0, number, rows }
-    }
-}
-
-/// The arrays of a file, to be read.
-pub(crate) struct File {
-    source: RandomAccess,
-    places: Vec<Place>,
-}
-
-impl File {
-    pub(super) fn new(source: RandomAccess, places: Vec<Place>) -> Self {
-        Self { source, places }
-    }
-
-    pub(super) fn line(&self, array: usize, line: Line) -> Result<Values, FileError> {
-        let place = &self.places[array];
-        let width = place.number.width() as u64;
-        // None of these products overflow: the array was checked to fit into its element.
-        let (first, stride) = match line {
-            Line::Column(k) => (k * place.rows, 1),
-            Line::Row(k) => (k, place.rows),
-        };
-        let mut stream = Stream::new(&self.source, place.element, place.packed);
-        stream.skip(place.offset + first * width).map_err(|error| unread(FORMAT, &error))?;
-        let between = (stride - 1) * width;
-        Ok(Values { stream, number: place.number, between, started: false })
-    }
-}
-
-/// The elements of one line, in order.
-pub(crate) struct Values {
-    stream: Stream,
-    number: Number,
-    /// Bytes between an element and the next one.
-    between: u64,
-    started: bool,
-}
-
-impl Values {
-    /// The next `count` elements, fewer at the end.
-    pub(super) fn next(&mut self, count: usize) -> Result<Vec<f64>, FileError> {
-        let mut values = Vec::with_capacity(count);
-        self.fill(&mut values, count).map_err(|error| unread(FORMAT, &error))?;
-        Ok(values)
-    }
-
-    fn fill(&mut self, values: &mut Vec<f64>, count: usize) -> io::Result<()> {
-        let width = self.number.width();
-        if self.between == 0 {
-            let mut bytes = vec![0; PIECE.min(count * width)];
-            let mut left = count * width;
-            while left > 0 {
-                let piece = left.min(PIECE);
-                self.stream.read_exact(&mut bytes[..piece])?;
-                self.number.decode(&bytes[..piece], values);
-                left -= piece;
-            }
-            return Ok(());
-        }
-        let mut bytes = [0; 8];
-        for _ in 0..count {
-            if std::mem::replace(&mut self.started, true) {
-                self.stream.skip(self.between)?;
-            }
-            self.stream.read_exact(&mut bytes[..width])?;
-            self.number.decode(&bytes[..width], values);
-        }
-        Ok(())
-    }
-}
-
-/// A top-level element, decompressed.
-struct Stream {
-    bytes: Bytes,
-    /// Bytes that were read or skipped.
-    at: u64,
-}
-
-enum Bytes {
-    Plain(BufReader<Range>),
-    Packed(Box<ZlibDecoder<BufReader<Range>>>),
-}
-
-impl Stream {
-    fn new(source: &RandomAccess, (from, to): (u64, u64), packed: bool) -> Self {
-        let range = BufReader::new(source.range(from, to));
-        let bytes = if packed { Bytes::Packed(Box::new(ZlibDecoder::new(range))) } else { Bytes::Plain(range) };
-        Self { bytes, at: 0 }
-    }
-
-    fn read_exact(&mut self, buffer: &mut [u8]) -> io::Result<()> {
-        match &mut self.bytes {
-            Bytes::Plain(bytes) => bytes.read_exact(buffer)?,
-            Bytes::Packed(bytes) => bytes.read_exact(buffer)?,
-        }
-        self.at += buffer.len() as u64;
-        Ok(())
-    }
-
-    /// # Errors
-    /// If there are fewer bytes.
-    fn skip(&mut self, count: u64) -> io::Result<()> {
-        let skipped = match &mut self.bytes {
-            Bytes::Plain(bytes) => {
-                let buffered = count.min(bytes.buffer().len() as u64);
-                bytes.consume_buffered(buffered as usize);
-                let rest = count - buffered;
-                let there = rest.min(bytes.get_ref().left());
-                if rest > 0 {
-                    bytes.get_mut().skip(there);
-                }
-                buffered + there
-            }
-            Bytes::Packed(bytes) => io::copy(&mut bytes.by_ref().take(count), &mut io::sink())?,
-        };
-        self.at = self.at.saturating_add(skipped);
-        if skipped == count { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
-    }
-}
-
-/// Skips only bytes that are in the buffer already.
-trait ConsumeBuffered {
-    fn consume_buffered(&mut self, count: usize);
-}
-
-impl<R: Read> ConsumeBuffered for BufReader<R> {
-    fn consume_buffered(&mut self, count: usize) {
-        use std::io::BufRead;
-        self.consume(count);
     }
 }
 
@@ -193,11 +46,11 @@ pub(super) fn open(source: &RandomAccess, big_endian: bool) -> Result<Contents<P
         let data = at + 8;
         let end = data.checked_add(element.length).filter(|end| *end <= source.length());
         let end = end.ok_or_else(|| damaged(FORMAT, "it ends too early"))?;
-        let packed = element.kind == kind::PACKED;
-        if packed || element.kind == kind::MATRIX {
-            let place = if packed { (data, end) } else { (at, end) };
-            let stream = Stream::new(source, place, packed);
-            Walk { stream, big_endian, element: place, packed, contents: &mut contents }.matrix("", DEEPEST)?;
+        let compressed = element.kind == kind::COMPRESSED;
+        if compressed || element.kind == kind::MATRIX {
+            let place = if compressed { (data, end) } else { (at, end) };
+            let stream = Stream::new(source, place, compressed);
+            Walk { stream, big_endian, element: place, compressed, contents: &mut contents }.matrix("", DEEPEST)?;
         }
         at = end;
     }
@@ -207,7 +60,7 @@ pub(super) fn open(source: &RandomAccess, big_endian: bool) -> Result<Contents<P
 /// Types of elements.
 mod kind {
     pub(super) const MATRIX: u32 = 14;
-    pub(super) const PACKED: u32 = 15;
+    pub(super) const COMPRESSED: u32 = 15;
 }
 
 /// Classes of arrays.
@@ -278,7 +131,7 @@ struct Walk<'a> {
     stream: Stream,
     big_endian: bool,
     element: (u64, u64),
-    packed: bool,
+    compressed: bool,
     contents: &'a mut Contents<Place>,
 }
 
@@ -337,7 +190,7 @@ impl Walk<'_> {
             return Err(damaged(FORMAT, "an array has another length than it states").in_column(path));
         }
         let offset = if element.small.is_some() { self.stream.at - 4 } else { self.stream.at };
-        let place = Place { element: self.element, packed: self.packed, offset, number, rows };
+        let place = Place { element: self.element, compressed: self.compressed, offset, number, rows };
         self.contents.arrays.push(Array { path: path.to_owned(), unit: None, rows, columns, place });
         Ok(())
     }

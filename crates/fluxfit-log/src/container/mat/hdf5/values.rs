@@ -1,22 +1,16 @@
 //! The numbers of an array: contiguous, or in chunks that may be compressed.
 
 use super::{
+    filters::{Filter, Stored, decode, in_message},
     object::{Object, message},
     reader::{Cursor, NOWHERE, Reader},
 };
 use crate::{
-    container::{
-        fault::{damaged, unread},
-        limits::most_held,
-        mat::array::Line,
-        number::Number,
-        random_access::RandomAccess,
-    },
+    container::{fault::unread, limits::most_held, mat::array::Line, number::Number, random_access::RandomAccess},
     problem::Problem,
 };
-use flate2::read::ZlibDecoder;
 use fluxfit_files::FileError;
-use std::{collections::HashMap, io::Read};
+use std::collections::HashMap;
 
 /// Maximum size of a decompressed chunk, bytes. Writers aim at 16 KiB to 1 MiB.
 const LARGEST_CHUNK: u64 = 32 << 20;
@@ -48,13 +42,6 @@ struct Chunks {
     rank: usize,
     filters: Vec<Filter>,
     fill: f64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Filter {
-    Deflate,
-    Shuffle,
-    Checksum,
 }
 
 impl Place {
@@ -107,37 +94,9 @@ impl Chunks {
         if dimensions[0].saturating_mul(dimensions[1]).saturating_mul(width) > LARGEST_CHUNK {
             return Err(Problem::LargeChunks { most: LARGEST_CHUNK >> 20 }.into());
         }
-        let filters = object.message(message::FILTERS).map_or(Ok(Vec::new()), |bytes| filters(reader, bytes))?;
+        let filters = object.message(message::FILTERS).map_or(Ok(Vec::new()), |bytes| in_message(reader, bytes))?;
         Ok(Self { tree: (tree != NOWHERE).then_some(tree), dimensions, rank, filters, fill })
     }
-}
-
-/// The filters in a filter pipeline message, in the order in which they were applied.
-fn filters(reader: &Reader, bytes: &[u8]) -> Result<Vec<Filter>, FileError> {
-    let mut cursor = Cursor(bytes);
-    let mut parse = || {
-        let (version, count) = (cursor.u8()?, cursor.u8()?);
-        cursor.take(if version == 1 { 6 } else { 0 })?;
-        let mut identifiers = Vec::new();
-        for _ in 0..count {
-            let identifier = cursor.u16()?;
-            let name = if version == 1 || identifier >= 256 { cursor.u16()?.into() } else { 0 };
-            let (_flags, parameters) = (cursor.u16()?, usize::from(cursor.u16()?));
-            cursor.take(if version == 1 { usize::next_multiple_of(name, 8) } else { name })?;
-            cursor.take(4 * parameters)?;
-            cursor.take(if version == 1 && parameters % 2 == 1 { 4 } else { 0 })?;
-            identifiers.push(identifier);
-        }
-        Some(identifiers)
-    };
-    let identifiers = parse().ok_or_else(|| reader.damaged("the filters of an array are impossible"))?;
-    let known = identifiers.into_iter().map(|identifier| match identifier {
-        1 => Ok(Filter::Deflate),
-        2 => Ok(Filter::Shuffle),
-        3 => Ok(Filter::Checksum),
-        other => Err(Problem::Hdf5Filter { identifier: other }.into()),
-    });
-    known.collect()
 }
 
 /// The value in a fill value message, if it has one.
@@ -192,13 +151,6 @@ enum From {
         /// The decompressed chunk of the element before.
         current: Option<(u64, Vec<u8>)>,
     },
-}
-
-struct Stored {
-    at: u64,
-    length: u64,
-    /// A bit for each filter that was not applied.
-    unfiltered: u32,
 }
 
 impl Values {
@@ -274,7 +226,7 @@ impl Values {
                             if current.as_ref().is_none_or(|(loaded, _)| *loaded != chunk) {
                                 // The old chunk is freed before the new one is allocated.
                                 *current = None;
-                                *current = Some((chunk, unpack(source, place, filters, *length, width as usize, self.format)?));
+                                *current = Some((chunk, decode(source, place, filters, *length, width as usize, self.format)?));
                             }
                             let bytes = current.as_ref().map_or(&[][..], |(_, bytes)| bytes);
                             let begin = (*first + within * *stride) * width;
@@ -353,49 +305,4 @@ impl Wanted<'_> {
         }
         Ok(())
     }
-}
-
-fn unpack(
-    source: &RandomAccess,
-    stored: &Stored,
-    filters: &[Filter],
-    length: u64,
-    width: usize,
-    format: &'static str,
-) -> Result<Vec<u8>, FileError> {
-    let wrong = || damaged(format, "a chunk of an array has another size than it states");
-    let mut bytes = source.bytes_at(stored.at, stored.length).map_err(|error| unread(format, &error))?;
-    for (at, filter) in filters.iter().enumerate().rev() {
-        if stored.unfiltered.checked_shr(at as u32).is_some_and(|rest| rest & 1 != 0) {
-            continue;
-        }
-        bytes = match filter {
-            Filter::Checksum => {
-                bytes.truncate(bytes.len().checked_sub(4).ok_or_else(wrong)?);
-                bytes
-            }
-            Filter::Deflate => {
-                let mut unpacked = Vec::new();
-                // A checksum may follow.
-                let most = length.saturating_add(4);
-                ZlibDecoder::new(&bytes[..]).take(most).read_to_end(&mut unpacked).map_err(|error| unread(format, &error))?;
-                unpacked
-            }
-            Filter::Shuffle => unshuffle(&bytes, width),
-        };
-    }
-    if bytes.len() as u64 == length { Ok(bytes) } else { Err(wrong()) }
-}
-
-/// Reverts the shuffle filter, which stores the first bytes of all numbers, then their second bytes, and so on.
-fn unshuffle(bytes: &[u8], width: usize) -> Vec<u8> {
-    let count = bytes.len() / width;
-    let mut whole = vec![0; bytes.len()];
-    for (byte, plane) in bytes[..count * width].chunks_exact(count.max(1)).enumerate() {
-        for (number, value) in plane.iter().enumerate() {
-            whole[number * width + byte] = *value;
-        }
-    }
-    whole[count * width..].copy_from_slice(&bytes[count * width..]);
-    whole
 }
