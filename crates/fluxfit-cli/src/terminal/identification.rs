@@ -4,7 +4,7 @@
 use super::{BAD, DIM, GOOD, HEADING, WARNING, options, table};
 use fluxfit::{
     Answer, HeldOut, Judgement, Log, Parameter, Reason, Verdict,
-    evidence::{Flux, Identification, ModelChoice, Outcome, OutputFit, Provenance, Saturation, SteadyFit},
+    evidence::{FaultOutcome, Flux, Identification, ModelChoice, OutputFit, Provenance, SaturationFinding, SteadyFit},
     optimizer::Method,
 };
 use fluxfit_units::{Scale, format_unknown, significant, small};
@@ -204,9 +204,9 @@ fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
     let mut words = Vec::new();
     for tried in &fit.terms {
         let left_out = if needs_angle {
-            tried.outcome == Outcome::NeedsAngle
+            tried.outcome == FaultOutcome::NeedsAngle
         } else {
-            !matches!(tried.outcome, Outcome::NeedsAngle | Outcome::Taken | Outcome::Covered)
+            !matches!(tried.outcome, FaultOutcome::NeedsAngle | FaultOutcome::Taken | FaultOutcome::Covered)
         };
         let word = tried.fault.family();
         if left_out && !words.contains(&word) {
@@ -228,7 +228,7 @@ fn operating_points(found: &SteadyFit) -> String {
 }
 
 /// Flux per operating point, where inductances depend on the current.
-fn fluxes(found: &Saturation) -> String {
+fn fluxes(found: &SaturationFinding) -> String {
     let given = if found.rs_uncertainty > 0.0 { format!(" ± {}", significant(2.0 * found.rs_uncertainty, 2)) } else { String::new() };
     // The same digits down a column: two of its best error.
     let decimals = |error: fn(&Flux) -> f64| {

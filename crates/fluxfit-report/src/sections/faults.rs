@@ -7,7 +7,7 @@ use crate::{
     typography::{DASH, capitalized, fault, number, power, prose},
 };
 use fluxfit::{
-    evidence::{FaultTrial, Outcome, OutputFit, Provenance, ReadingTrial},
+    evidence::{FaultOutcome, FaultTrial, OutputFit, Provenance, ReadingTrial},
     faults::Fault,
 };
 use fluxfit_units::significant;
@@ -52,7 +52,7 @@ fn tried(fit: &OutputFit) -> Markup {
     html! {
         (table::scrolling("Faults that were tried", &html! {
             table.tried {
-                thead { tr { th scope="col" { "Fault tried" } th scope="col" { "Gain" } th.words scope="col" { "Outcome" } } }
+                thead { tr { th scope="col" { "Fault tried" } th scope="col" { "Gain" } th.words scope="col" { "FaultOutcome" } } }
                 tbody { @for tried in &fit.terms { (row(tried)) } }
             }
         }))
@@ -66,12 +66,12 @@ fn tried(fit: &OutputFit) -> Markup {
 }
 
 fn row(tried: &FaultTrial) -> Markup {
-    let judged = !matches!(tried.outcome, Outcome::Covered | Outcome::NeedsAngle);
+    let judged = !matches!(tried.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle);
     html! {
         tr {
             th scope="row" { (capitalized(tried.fault.label())) }
             td { @if judged { (number(tried.gain, gain)) } @else { (DASH) } }
-            td.words { @if tried.outcome == Outcome::Taken { span.badge.identified { "taken" } } @else { (explained(tried)) } }
+            td.words { @if tried.outcome == FaultOutcome::Taken { span.badge.identified { "taken" } } @else { (explained(tried)) } }
         }
     }
 }
@@ -84,7 +84,7 @@ fn gain(gain: f64) -> String {
 fn explained(tried: &FaultTrial) -> &'static str {
     match (tried.fault, tried.outcome) {
         // The observer's gain is not the size of a fault.
-        (Fault::Disturbance, Outcome::NotPhysical) => "correcting with the measured current does not improve the prediction",
+        (Fault::Disturbance, FaultOutcome::NotPhysical) => "correcting with the measured current does not improve the prediction",
         _ => tried.outcome.label(),
     }
 }
@@ -110,7 +110,7 @@ fn voltage_timings(fit: &OutputFit) -> Markup {
             table.tried {
                 thead { tr {
                     th.words scope="col" { "The voltage of a row is" } th scope="col" { "Residual, A rms" }
-                    th scope="col" { "Relative to the best" } th.words scope="col" { "Outcome" }
+                    th scope="col" { "Relative to the best" } th.words scope="col" { "FaultOutcome" }
                 } }
                 tbody { @for tried in &fit.readings {
                     tr {

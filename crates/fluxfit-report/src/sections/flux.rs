@@ -4,12 +4,12 @@ use crate::{
     table,
     typography::{DASH, decimals, number, prose},
 };
-use fluxfit::evidence::{Flux, Saturation};
+use fluxfit::evidence::{Flux, SaturationFinding};
 use fluxfit_units::significant;
 use maud::{Markup, html};
 
 /// The table, with an explanation.
-pub(crate) fn table(found: &Saturation) -> Markup {
+pub(crate) fn table(found: &SaturationFinding) -> Markup {
     let least = |error: fn(&Flux) -> f64| 1e3 * found.fluxes.iter().flatten().map(error).fold(f64::INFINITY, f64::min);
     let digits = [decimals(least(|flux| flux.uncertainty.d), 1), decimals(least(|flux| flux.uncertainty.q), 1)];
     html! {

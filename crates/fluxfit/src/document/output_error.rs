@@ -1,7 +1,7 @@
 //! `diagnostics.output_error` of an identification: the fit of the simulated currents.
 
 use super::{by_parameter::ByParameter, finite::finite};
-use crate::evidence::{FaultTrial, Outcome, OutputFit, ReadingTrial};
+use crate::evidence::{FaultOutcome, FaultTrial, OutputFit, ReadingTrial};
 use serde::Serialize;
 
 /// The fit of the simulated currents, and everything that was tried.
@@ -73,7 +73,7 @@ impl TermEntry {
         Self {
             term: tried.fault.key(),
             gain: finite(tried.gain),
-            taken: tried.outcome == Outcome::Taken,
+            taken: tried.outcome == FaultOutcome::Taken,
             outcome: tried.outcome.label().to_owned(),
         }
     }

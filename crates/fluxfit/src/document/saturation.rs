@@ -1,7 +1,7 @@
 //! `diagnostics.saturation` of an identification: flux at the operating points of a motor that saturates.
 
 use super::by_parameter::ByParameter;
-use crate::evidence::{Apparent, Flux, Saturation};
+use crate::evidence::{Apparent, Flux, SaturationFinding};
 use serde::Serialize;
 
 /// Flux at the operating points, where inductances depend on the current.
@@ -21,7 +21,7 @@ pub struct SaturationEntry {
 }
 
 impl SaturationEntry {
-    pub(super) fn of(found: &Saturation) -> Self {
+    pub(super) fn of(found: &SaturationFinding) -> Self {
         Self {
             rs: found.rs,
             rs_standard_uncertainty: found.rs_uncertainty,

@@ -8,7 +8,7 @@ use super::{
     fit::{
         finding::Finding,
         output::OutputFit,
-        saturation::Saturation,
+        saturation::SaturationFinding,
         steady::SteadyFit,
         swarm::{self, Search},
     },
@@ -42,7 +42,7 @@ pub struct Identification {
     /// The fit of the simulated currents; `None` where the steady model answered.
     pub output: Option<OutputFit>,
     /// Flux at the operating points, where inductances depend on the current; `None` where nothing says so.
-    pub saturation: Option<Saturation>,
+    pub saturation: Option<SaturationFinding>,
     /// Correlation of the parameters' errors, rows and columns in the order of [`Parameter::ALL`].
     pub correlation: [[f64; PARAMETERS]; PARAMETERS],
     /// The swarm that was asked to search, if any.
@@ -113,12 +113,12 @@ fn finding<'a>(steady: Option<&'a SteadyFit>, output: Option<&'a OutputFit>) -> 
 }
 
 /// Saturation: found by the operating points, by the terms of the simulated currents, or by both.
-fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>, request: &Request) -> Option<Saturation> {
+fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>, request: &Request) -> Option<SaturationFinding> {
     let of_points = steady.and_then(|fit| fit.saturation(request));
     let Some(fit) = output.filter(|fit| fit.has(Fault::Saturation)) else { return of_points };
     let rs_uncertainty = fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
     let points = steady.map_or(&[][..], |fit| &fit.operating_points);
-    Some(Saturation::of_currents(log, &fit.drive, rs_uncertainty, &fit.stretches, (points, of_points), request))
+    Some(SaturationFinding::of_currents(log, &fit.drive, rs_uncertainty, &fit.stretches, (points, of_points), request))
 }
 
 /// The swarm's search of the same cost that the answering model minimized.

@@ -5,7 +5,7 @@ use super::{
     super::{
         fit::{
             output::OutputFit,
-            saturation::{Apparent, Saturation},
+            saturation::{Apparent, SaturationFinding},
             steady::SteadyFit,
             swarm::Search,
         },
@@ -143,7 +143,7 @@ pub(crate) struct Evidence<'a> {
     pub(crate) steady: Option<&'a SteadyFit>,
     /// None where the operating points answer.
     pub(crate) output: Option<&'a OutputFit>,
-    pub(crate) saturation: Option<&'a Saturation>,
+    pub(crate) saturation: Option<&'a SaturationFinding>,
     pub(crate) search: Option<&'a Search>,
 }
 
@@ -252,7 +252,7 @@ fn dead_time(found: &SteadyFit) -> Option<Warning> {
 /// Change of an inductance that is worth two numbers.
 const VISIBLE: f64 = 0.01;
 
-fn saturated(saturation: &Saturation) -> Warning {
+fn saturated(saturation: &SaturationFinding) -> Warning {
     let visible = |[least, most]: &[Apparent; 2]| (most.inductance / least.inductance - 1.0).abs() >= VISIBLE;
     Warning::Saturation { lq: saturation.lq.filter(visible) }
 }

@@ -38,12 +38,12 @@ pub struct FaultTrial {
     /// an observer that was fitted, the fit's own.
     pub gain: f64,
     /// Taken or not, and why.
-    pub outcome: Outcome,
+    pub outcome: FaultOutcome,
 }
 
 /// Whether a fault was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum FaultOutcome {
     /// It is part of the answer.
     Taken,
     /// It does not explain enough of the residual.
@@ -58,7 +58,7 @@ pub enum Outcome {
     NeedsAngle,
 }
 
-impl Outcome {
+impl FaultOutcome {
     /// In prose.
     pub fn label(self) -> &'static str {
         match self {
@@ -101,7 +101,7 @@ impl FaultSearch<'_> {
     /// white and faults are judged by their true worth; then faults; then the observer goes again, if they have made it useless.
     /// Everything that was tried is returned, faults that were taken first.
     pub(crate) fn run(&mut self) -> Vec<FaultTrial> {
-        let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == Outcome::Taken);
+        let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == FaultOutcome::Taken);
         if observer.is_some() {
             self.choose_reading();
         }
@@ -109,7 +109,7 @@ impl FaultSearch<'_> {
         let mut taken = Vec::new();
         let not_taken = loop {
             let trials = self.take_best(&faults, &taken);
-            match trials.iter().find(|trial| trial.outcome == Outcome::Taken) {
+            match trials.iter().find(|trial| trial.outcome == FaultOutcome::Taken) {
                 Some(best) => taken.push(best.clone()),
                 None => break trials,
             }
@@ -117,10 +117,10 @@ impl FaultSearch<'_> {
         };
         let observer = match observer {
             Some(_) => self.drop_observer(),
-            None => FaultTrial { fault: Fault::Disturbance, gain: 0.0, outcome: Outcome::NotNeeded },
+            None => FaultTrial { fault: Fault::Disturbance, gain: 0.0, outcome: FaultOutcome::NotNeeded },
         };
         let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(not_taken).collect();
-        all.sort_by_key(|trial| trial.outcome != Outcome::Taken);
+        all.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);
         all
     }
 
@@ -137,17 +137,17 @@ impl FaultSearch<'_> {
         let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect();
         let Some((place, without)) = readings(self.objectives, &self.drive.without_observer(), &unknowns, self.priors).into_iter().next()
         else {
-            return trial(0.0, Outcome::Taken);
+            return trial(0.0, FaultOutcome::Taken);
         };
         let (rows, peak) = (2.0 * self.objective().rows() as f64, self.objective().peak_current());
         let gain = schwarz(without.polished.cost, self.cost, self.unknowns.len() - unknowns.len(), rows);
         let nothing_left = (without.polished.cost / rows).sqrt() <= LEAST_RESIDUAL * peak;
         let outcome = if gain <= VERY_STRONG || nothing_left {
-            Outcome::NotNeeded
+            FaultOutcome::NotNeeded
         } else if Fault::Disturbance.is_physical(&self.drive.faults, &self.drive.motor, peak) {
-            return trial(gain, Outcome::Taken);
+            return trial(gain, FaultOutcome::Taken);
         } else {
-            Outcome::NotPhysical
+            FaultOutcome::NotPhysical
         };
         (self.reading, self.drive, self.cost, self.unknowns) = (place, without.polished.drive, without.polished.cost, unknowns);
         trial(gain, outcome)
@@ -161,13 +161,13 @@ impl FaultSearch<'_> {
             .filter(|fault| !taken.iter().any(|taken| taken.fault == **fault))
             .map(|fault| {
                 let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
-                    Outcome::Covered
+                    FaultOutcome::Covered
                 } else if fault.needs_angle() && !self.objective().angle_known() {
-                    Outcome::NeedsAngle
+                    FaultOutcome::NeedsAngle
                 } else {
-                    Outcome::NotNeeded
+                    FaultOutcome::NotNeeded
                 };
-                let (gain, starts) = if outcome == Outcome::NotNeeded { test.expected_gain(self, *fault) } else { (0.0, Vec::new()) };
+                let (gain, starts) = if outcome == FaultOutcome::NotNeeded { test.expected_gain(self, *fault) } else { (0.0, Vec::new()) };
                 (FaultTrial { fault: *fault, gain, outcome }, starts)
             })
             .collect();
@@ -179,7 +179,7 @@ impl FaultSearch<'_> {
             }
             let (outcome, fitted) = test.fit(self, trial.fault, starts);
             trial.outcome = outcome;
-            if let (Outcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
+            if let (FaultOutcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
                 (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
                 trials.swap(0, place);
                 break;
@@ -252,20 +252,20 @@ impl ScoreTest {
     }
 
     /// Fits a fault from these starts, and decides whether to take it; the drive, its cost and all unknowns if so.
-    fn fit(&self, search: &FaultSearch, fault: Fault, starts: &[Adjustable]) -> (Outcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
+    fn fit(&self, search: &FaultSearch, fault: Fault, starts: &[Adjustable]) -> (FaultOutcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
         let own: Vec<Unknown> = Unknown::of_fault(fault).collect();
         let unknowns = [&search.unknowns[..], &own].concat();
         let polished = starts
             .iter()
             .map(|start| polish_unknowns(search.objective(), start, &unknowns, search.priors))
             .min_by(|one, other| one.cost.total_cmp(&other.cost));
-        let Some(polished) = polished else { return (Outcome::NotNeeded, None) };
+        let Some(polished) = polished else { return (FaultOutcome::NotNeeded, None) };
         if schwarz(search.cost, polished.cost, own.len(), self.independent) <= VERY_STRONG {
-            return (Outcome::NotNeeded, None);
+            return (FaultOutcome::NotNeeded, None);
         }
         // An observer need not be physical yet: it makes residuals white while faults are looked for.
         if fault != Fault::Disturbance && !fault.is_physical(&polished.drive.faults, &polished.drive.motor, self.peak) {
-            return (Outcome::NotPhysical, None);
+            return (FaultOutcome::NotPhysical, None);
         }
         let moved = search.unknowns.iter().zip(&self.standard_errors).any(|(unknown, standard_error)| {
             matches!(unknown, Unknown::Motor(_)) && (polished.drive.get(*unknown) - search.drive.get(*unknown)).abs() > *standard_error
@@ -273,9 +273,9 @@ impl ScoreTest {
         // Beside an observer the residuals are those of a simple filter of unknown disturbances: small gains prove little.
         let disturbed = search.unknowns.iter().any(|unknown| unknown.is_observer_gain());
         if (!moved || disturbed) && polished.cost > (1.0 - NOTICEABLE) * search.cost {
-            return (Outcome::NoMatter, None);
+            return (FaultOutcome::NoMatter, None);
         }
-        (Outcome::Taken, Some((polished.drive, polished.cost, unknowns)))
+        (FaultOutcome::Taken, Some((polished.drive, polished.cost, unknowns)))
     }
 }
 

@@ -11,7 +11,7 @@ use super::{
         request::{Provenance, Request},
     },
     excitation::Excitation,
-    fault_search::{FaultTrial, LEAST_RESIDUAL, Outcome},
+    fault_search::{FaultOutcome, FaultTrial, LEAST_RESIDUAL},
     finding::{Bench, Finding, Trust, covariance},
     long_run,
     output_choice::{Chosen, choose},
@@ -170,7 +170,7 @@ impl OutputFit {
 }
 
 fn is_taken(trials: &[FaultTrial], fault: Fault) -> bool {
-    trials.iter().any(|trial| trial.fault == fault && trial.outcome == Outcome::Taken)
+    trials.iter().any(|trial| trial.fault == fault && trial.outcome == FaultOutcome::Taken)
 }
 
 /// What is known from noise, accuracy and excitation: what a further stretch would improve.

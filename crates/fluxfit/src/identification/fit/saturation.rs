@@ -29,7 +29,7 @@ use std::ops::Range;
 
 /// Saturation, and what the flux is instead of an inductance times the current.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Saturation {
+pub struct SaturationFinding {
     /// Resistance that the fluxes were computed with, ohm.
     pub rs: f64,
     /// Its standard uncertainty, ohm; zero where it was given.
@@ -82,7 +82,7 @@ const TOLD: f64 = 0.5;
 /// The normal distribution's two-sided 95 % quantile, rounded down: an interval of that many standard deviations or more covers a spread.
 const QUANTILE: f64 = 1.95;
 
-impl Saturation {
+impl SaturationFinding {
     /// Looks for it among operating points that contradict each other.
     pub(crate) fn of_points(
         points: &[OperatingPoint],

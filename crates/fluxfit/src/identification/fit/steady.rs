@@ -9,7 +9,7 @@ use super::{
     excitation::Excitation,
     finding::{Bench, Finding, Trust, covariance},
     misfit::{self, Misfit},
-    saturation::Saturation,
+    saturation::SaturationFinding,
     swarm::{self, Search},
     uncertainty::{SteadyShifts, Uncertainty},
 };
@@ -83,8 +83,8 @@ impl SteadyFit {
     }
 
     /// Saturation, if it explains a contradiction between the operating points.
-    pub(crate) fn saturation(&self, request: &Request) -> Option<Saturation> {
-        Saturation::of_points(&self.operating_points, &self.excitation, &self.estimate.motor, self.misfit.as_ref(), request)
+    pub(crate) fn saturation(&self, request: &Request) -> Option<SaturationFinding> {
+        SaturationFinding::of_points(&self.operating_points, &self.excitation, &self.estimate.motor, self.misfit.as_ref(), request)
     }
 
     /// Lets the swarm minimize the same weighted equations that least squares solved.

@@ -7,7 +7,7 @@ use super::{
     super::{
         fit::{
             finding::{Finding, Trust},
-            saturation::Saturation,
+            saturation::SaturationFinding,
             uncertainty::ParameterUncertainty,
         },
         request::{Known, Request},
@@ -65,7 +65,7 @@ pub(crate) struct Judged {
 }
 
 /// Judges every parameter of a finding.
-pub(crate) fn judge(finding: &Finding, saturation: Option<&Saturation>, request: &Request) -> [Judged; PARAMETERS] {
+pub(crate) fn judge(finding: &Finding, saturation: Option<&SaturationFinding>, request: &Request) -> [Judged; PARAMETERS] {
     let uncertainty = match saturation {
         Some(saturation) => finding.uncertainty.clone().with_saturation(saturation.uncertainty(&finding.motor)),
         None => finding.uncertainty.clone(),
