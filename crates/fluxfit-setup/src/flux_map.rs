@@ -115,7 +115,7 @@ mod tests {
             (at(3, "-1,0,0.1"), "line 5: the row has 3 cells where the header has 4; complete the row or remove it"),
             (
                 at(3, "-1.5,0,0.1,0"),
-                "the flux map has no point at i_d = -1.5 A, i_q = 1 A, although it has others with either; add it, so that every pair is there",
+                "the flux map has no point at i_d = -1.5 A, i_q = 1 A, although it has both currents in other points; add it, so that the grid is complete",
             ),
             (
                 at(4, "-1,1,0.09,-0.02"),
