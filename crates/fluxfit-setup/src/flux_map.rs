@@ -119,7 +119,7 @@ mod tests {
             ),
             (
                 at(4, "-1,1,0.09,-0.02"),
-                "line 5: around i_d = -1 A, i_q = 0 A the flux of the map falls while the current rises, which no motor does; \
+                "line 5: around i_d = -1 A, i_q = 0 A the flux of the map falls while the current rises, which is not physical; \
                  check for swapped axes or signs, or smooth the map",
             ),
         ];
