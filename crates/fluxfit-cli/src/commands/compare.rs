@@ -103,8 +103,9 @@ pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparis
         ComparisonStep::Minimum => ControlFlow::Continue(()),
         ComparisonStep::Method(method) => {
             progress.turn_to("comparing");
-            terminal::detail(|| format!("{}: {} runs begin", method.label(), asked.runs));
+            // Before the line says that they begin: whoever has read it may interrupt them.
             interrupt::be_gentle(true);
+            terminal::detail(|| format!("{}: {} runs begin", method.label(), asked.runs));
             begun().push((Some(method), Instant::now()));
             interrupt::go_on()
         }
