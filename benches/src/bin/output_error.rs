@@ -11,7 +11,7 @@ use fluxfit::{
         output_error::OutputError,
         transition::Transition,
     },
-    optimizer::{Bounds, Method, Optimizer, SearchSettings},
+    optimizer::{Bounds, Method, Objective, Optimizer, SearchSettings},
     paper,
 };
 use fluxfit_log::{LogOptions, read_log};
@@ -35,6 +35,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("rows                       {}", objective.rows());
     println!("one evaluation, us         {:.1}", 1e6 * evaluation);
     println!("  of delayed voltages, us  {:.1}", 1e6 * median_seconds(|| delayed.cost(black_box(&paper::MOTOR))));
+    let near: Vec<f64> = (0..64).flat_map(|k| paper::MOTOR.to_array().map(|value| value * (1.0 + 1e-3 * f64::from(k)))).collect();
+    let mut costs = vec![0.0; 64];
+    println!("of 64, us a candidate      {:.2}", 1e6 / 64.0 * median_seconds(|| objective.evaluate(black_box(&near), &mut costs)));
+    println!("  of delayed voltages, us  {:.2}", 1e6 / 64.0 * median_seconds(|| delayed.evaluate(black_box(&near), &mut costs)));
     println!("one matrix exponential, us {:.2}", 1e6 * transition);
 
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;

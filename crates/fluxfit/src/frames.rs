@@ -5,6 +5,8 @@
 //! magnet, at the electrical angle `theta_e` from alpha; q leads d by 90 electrical degrees. The zero-sequence component
 //! (the mean of the three phases) is not represented in the other two frames and is dropped.
 
+use crate::lanes::Number;
+
 /// Three phase quantities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Abc {
@@ -76,6 +78,58 @@ impl Dq {
         let AlphaBeta { alpha, beta } = self.to_alpha_beta(by);
         Self { d: alpha, q: beta }
     }
+}
+
+/// A turn by an angle: its cosine and sine, computed once for all vectors that it turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Turn {
+    pub(crate) cos: f64,
+    pub(crate) sin: f64,
+}
+
+impl Turn {
+    /// By this angle, rad.
+    pub(crate) fn by(angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { cos, sin }
+    }
+
+    /// A vector of the rotor's frame, in the stator's; or any vector, turned forward. `[d, q]` to `[alpha, beta]`.
+    #[inline(always)]
+    pub(crate) fn forward<V: Number>(self, [d, q]: [V; 2]) -> [V; 2] {
+        turned([d, q], d.constant(self.cos), d.constant(self.sin))
+    }
+
+    /// A vector of the stator's frame, in the rotor's; or any vector, turned backward.
+    #[inline(always)]
+    pub(crate) fn backward<V: Number>(self, [alpha, beta]: [V; 2]) -> [V; 2] {
+        turned([alpha, beta], alpha.constant(self.cos), alpha.constant(-self.sin))
+    }
+
+    /// Twice the turn.
+    pub(crate) fn twice(self) -> Self {
+        Self { cos: self.cos * self.cos - self.sin * self.sin, sin: 2.0 * self.sin * self.cos }
+    }
+}
+
+/// A vector turned forward by an angle with this cosine and sine.
+#[inline(always)]
+pub(crate) fn turned<V: Number>([d, q]: [V; 2], cos: V, sin: V) -> [V; 2] {
+    [cos * d - sin * q, sin * d + cos * q]
+}
+
+/// Clarke transform of vectors side by side, amplitude-invariant: as [`Abc::to_alpha_beta`].
+#[inline(always)]
+pub(crate) fn clarke<V: Number>([a, b, c]: [V; 3]) -> [V; 2] {
+    [(a.constant(2.0) * a - b - c) / a.constant(3.0), (b - c) / a.constant(3.0_f64.sqrt())]
+}
+
+/// Inverse Clarke transform of vectors side by side: as [`AlphaBeta::to_abc`].
+#[inline(always)]
+pub(crate) fn inverse_clarke<V: Number>([alpha, beta]: [V; 2]) -> [V; 3] {
+    let half_beta = alpha.constant(0.5 * 3.0_f64.sqrt()) * beta;
+    let minus_half = alpha.constant(-0.5) * alpha;
+    [alpha, minus_half + half_beta, minus_half - half_beta]
 }
 
 #[cfg(test)]

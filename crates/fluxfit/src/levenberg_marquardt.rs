@@ -10,7 +10,6 @@ use crate::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
-    parallel,
 };
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
@@ -91,12 +90,15 @@ pub fn polish_with_progress(
 
 /// Derivatives of the residuals by each unknown, A per SI unit: a column each.
 pub fn jacobian(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Vec<f64>> {
-    let column = |unknown: &Unknown| {
-        let step = STEP * drive.step_unit(*unknown, objective.peak_current());
-        let moved = |by: f64| objective.residuals(&drive.with(*unknown, drive.get(*unknown) + by));
-        moved(step).iter().zip(moved(-step)).map(|(above, below)| (above - below) / (2.0 * step)).collect()
-    };
-    parallel::map(unknowns, column)
+    let steps: Vec<f64> = unknowns.iter().map(|unknown| STEP * drive.step_unit(*unknown, objective.peak_current())).collect();
+    let moved =
+        unknowns.iter().zip(&steps).flat_map(|(unknown, step)| [*step, -step].map(|by| drive.with(*unknown, drive.get(*unknown) + by)));
+    let residuals = objective.residuals_of_all(&moved.collect::<Vec<_>>());
+    let columns = residuals
+        .chunks_exact(2)
+        .zip(&steps)
+        .map(|(both, step)| both[0].iter().zip(&both[1]).map(|(above, below)| (above - below) / (2.0 * step)).collect());
+    columns.collect()
 }
 
 struct Problem<'a> {

@@ -52,6 +52,7 @@ pub mod evidence;
 pub mod faults;
 pub mod frames;
 mod identification;
+mod lanes;
 pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod log;

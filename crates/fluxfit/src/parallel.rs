@@ -12,11 +12,3 @@ pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync +
     let results = items.iter().map(work).collect();
     results
 }
-
-/// Writes the result of each item into its place.
-pub(crate) fn fill<T: Sync>(results: &mut [f64], items: &[T], work: impl Fn(&T) -> f64 + Sync + Send) {
-    #[cfg(feature = "rayon")]
-    results.par_iter_mut().zip(items).for_each(|(result, item)| *result = work(item));
-    #[cfg(not(feature = "rayon"))]
-    results.iter_mut().zip(items).for_each(|(result, item)| *result = work(item));
-}

@@ -5,7 +5,10 @@
 //! their negative sum, one number is all that there is, the gain of one over that of the other; it turns the current too.
 
 use super::description::{Description, Names, NumberDescription, one, present_state};
-use crate::frames::{AlphaBeta, Dq};
+use crate::{
+    frames::{AlphaBeta, Turn},
+    lanes::Number,
+};
 
 /// What unequal gains of the current sensors do.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -146,21 +149,22 @@ impl CurrentGains {
     fn is_physical(&self) -> bool {
         self.magnitude() < LARGEST
     }
+}
 
-    /// The current, A, without the imbalance, where `i` was measured at the electrical angle `theta_e`; still turned.
-    #[inline]
-    pub(super) fn balanced(&self, i: Dq, theta_e: f64) -> Dq {
-        // In the rotor's frame the imbalance turns backward twice as fast. (i + s conj i) is undone exactly.
-        let s = self.imbalance.to_dq(2.0 * theta_e);
-        let shrunk = 1.0 / (1.0 - s.d * s.d - s.q * s.q);
-        Dq { d: shrunk * (i.d - s.d * i.d - s.q * i.q), q: shrunk * (i.q - s.q * i.d + s.d * i.q) }
-    }
+/// The current, A, without the imbalance `s` (alpha, beta), where `i` (d, q) was measured with the rotor there; still turned.
+#[inline(always)]
+pub(super) fn balanced<V: Number>(s: [V; 2], i: [V; 2], rotor: Turn) -> [V; 2] {
+    // In the rotor's frame the imbalance turns backward twice as fast. (i + s conj i) is undone exactly.
+    let [d, q] = rotor.twice().backward(s);
+    let one = d.constant(1.0);
+    let shrunk = one / (one - d * d - q * q);
+    [shrunk * (i[0] - d * i[0] - q * i[1]), shrunk * (i[1] - q * i[0] + d * i[1])]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frames::Abc;
+    use crate::frames::{Abc, Dq};
 
     /// What two sensors with gains `1 + e/2` and `1 - e/2` make of a current, against imbalance and turn.
     #[test]
@@ -185,13 +189,13 @@ mod tests {
     /// `i + s conj(i)`, written out in the stator, is undone at any angle.
     #[test]
     fn the_imbalance_is_undone_exactly() {
-        let fault = CurrentGains { imbalance: AlphaBeta { alpha: 0.03, beta: -0.02 }, turn: 0.0 };
         for theta_e in [0.0, 0.7, 5.0] {
             let i = Dq { d: -4.0, q: 9.0 }.to_alpha_beta(theta_e);
-            let AlphaBeta { alpha: a, beta: b } = fault.imbalance;
+            let (a, b) = (0.03, -0.02);
             let read = AlphaBeta { alpha: i.alpha + a * i.alpha + b * i.beta, beta: i.beta + b * i.alpha - a * i.beta };
-            let found = fault.balanced(read.to_dq(theta_e), theta_e);
-            assert!((found.d + 4.0).hypot(found.q - 9.0) < 1e-14, "{found:?}");
+            let read = read.to_dq(theta_e);
+            let found = balanced([a, b], [read.d, read.q], Turn::by(theta_e));
+            assert!((found[0] + 4.0).hypot(found[1] - 9.0) < 1e-14, "{found:?}");
         }
     }
 }

@@ -2,7 +2,10 @@
 //! rotor's.
 
 use super::description::{Description, Names, NumberDescription, peak_current, present_state};
-use crate::frames::{AlphaBeta, Dq};
+use crate::{
+    frames::{AlphaBeta, Turn},
+    lanes::Number,
+};
 
 /// Offsets of the current sensors.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -35,28 +38,27 @@ pub(super) static FAULT: Description<CurrentOffset> = Description {
     is_physical: |state, _, peak| state.current.alpha.hypot(state.current.beta) < peak,
 };
 
-impl CurrentOffset {
-    /// The current, A, without the offset, where `i` was measured at the electrical angle `theta_e`.
-    #[inline]
-    pub(super) fn removed(&self, i: Dq, theta_e: f64) -> Dq {
-        let offset = self.current.to_dq(theta_e);
-        Dq { d: i.d - offset.d, q: i.q - offset.q }
-    }
+/// The current, A, without the offset (alpha, beta), where `i` (d, q) was measured with the rotor there.
+#[inline(always)]
+pub(super) fn removed<V: Number>(offset: [V; 2], i: [V; 2], rotor: Turn) -> [V; 2] {
+    let [d, q] = rotor.backward(offset);
+    [i[0] - d, i[1] - q]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frames::Dq;
 
     /// 0.2 A on phase a alone: two thirds of it along alpha, whatever the angle.
     #[test]
     fn the_offset_stands_still_in_the_stator() {
-        let fault = CurrentOffset { current: AlphaBeta { alpha: 0.2 * 2.0 / 3.0, beta: 0.0 } };
         for theta_e in [0.0, 1.0, 4.0] {
             let mut phases = Dq { d: 3.0, q: -2.0 }.to_alpha_beta(theta_e).to_abc();
             phases.a += 0.2;
-            let found = fault.removed(phases.to_alpha_beta().to_dq(theta_e), theta_e);
-            assert!((found.d - 3.0).hypot(found.q + 2.0) < 1e-14, "{found:?}");
+            let read = phases.to_alpha_beta().to_dq(theta_e);
+            let found = removed([0.2 * 2.0 / 3.0, 0.0], [read.d, read.q], Turn::by(theta_e));
+            assert!((found[0] - 3.0).hypot(found[1] + 2.0) < 1e-14, "{found:?}");
         }
     }
 }

@@ -20,7 +20,10 @@
 pub mod ripple;
 
 use super::description::{Description, Names, NumberDescription, peak_current};
-use crate::frames::{Abc, AlphaBeta, Dq};
+use crate::{
+    frames::{Turn, clarke, inverse_clarke},
+    lanes::Number,
+};
 
 /// What dead time and devices take.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -36,13 +39,18 @@ pub struct DeadTime {
 
 /// Where in the log and in the stator a period lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PeriodAngles {
-    /// Row of the log at which it begins.
-    pub(crate) row: usize,
-    /// Electrical angle at its start, middle and end, rad.
-    pub(crate) start: f64,
-    pub(crate) middle: f64,
-    pub(crate) end: f64,
+pub(crate) struct PeriodTurns {
+    /// Plus one or minus one from row to row of the log: the carrier's half, where each half is a row.
+    pub(crate) half: f64,
+    /// The rotor at its start, middle and end.
+    pub(crate) start: Turn,
+    pub(crate) middle: Turn,
+    pub(crate) end: Turn,
+}
+
+/// The carrier's half in which a row of the log begins.
+pub(crate) fn carrier_half(row: usize) -> f64 {
+    if row.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 /// Widths of the ramp from which a fit starts, as fractions of the largest current: from almost none to a ripple nearly as large as the
@@ -80,45 +88,48 @@ pub(super) static FAULT: Description<DeadTime> = Description {
     is_physical: |state, _, _| state.voltage > 0.0,
 };
 
-impl DeadTime {
-    /// What is left of a period's commanded voltage `u`, V, given the current `i`, A, both in the frame of the logged angle.
-    pub(super) fn reduced(&self, u: Dq, i: Dq, angles: &PeriodAngles) -> Dq {
-        // Over a period the current hardly moves against the rotor.
-        let (start, end) = (i.to_alpha_beta(angles.start), i.to_alpha_beta(angles.end));
-        let shift = if angles.row.is_multiple_of(2) { self.ripple } else { -self.ripple };
-        let loss = mean_loss(start, end, shift, self.width);
-        let loss = loss.to_dq(angles.middle);
-        Dq { d: u.d - self.voltage * loss.d, q: u.q - self.voltage * loss.q }
-    }
+/// What is left of a period's commanded voltage `u`, V, given the current `i`, A, both `d, q` in the frame of the logged angle. Of the fault:
+/// voltage, width, ripple.
+#[inline(always)]
+pub(super) fn reduced<V: Number>([voltage, width, ripple]: [V; 3], u: [V; 2], i: [V; 2], turns: &PeriodTurns) -> [V; 2] {
+    // Over a period the current hardly moves against the rotor.
+    let (start, end) = (turns.start.forward(i), turns.end.forward(i));
+    let loss = mean_loss(start, end, voltage.constant(turns.half) * ripple, width);
+    let [d, q] = turns.middle.backward(loss);
+    [u[0] - voltage * d, u[1] - voltage * q]
 }
 
 /// Mean loss over a period, per volt, in the stator, of a current that goes straight from `start` to `end`, A.
-fn mean_loss(start: AlphaBeta, end: AlphaBeta, shift: f64, width: f64) -> AlphaBeta {
-    let (start, end) = (start.to_abc(), end.to_abc());
-    let phase = |from: f64, to: f64| mean_of_ramp(from - shift, to - shift, width);
-    Abc { a: phase(start.a, end.a), b: phase(start.b, end.b), c: phase(start.c, end.c) }.to_alpha_beta()
+#[inline(always)]
+fn mean_loss<V: Number>(start: [V; 2], end: [V; 2], shift: V, width: V) -> [V; 2] {
+    let (start, end) = (inverse_clarke(start), inverse_clarke(end));
+    let phase = |phase: usize| mean_of_ramp(start[phase] - shift, end[phase] - shift, width);
+    clarke([phase(0), phase(1), phase(2)])
 }
 
 /// A way this short, as a fraction of its ends, leaves no digits in a difference of integrals.
 const SHORT: f64 = 1e-6;
 
 /// Mean of the ramp while its argument goes from one value to another.
-fn mean_of_ramp(from: f64, to: f64, width: f64) -> f64 {
-    let ramp =
-        |i: f64| if width > 0.0 { (i / width).clamp(-1.0, 1.0) } else { f64::from(u8::from(i > 0.0)) - f64::from(u8::from(i < 0.0)) };
+#[inline(always)]
+fn mean_of_ramp<V: Number>(from: V, to: V, width: V) -> V {
+    let (zero, half, one) = (from.constant(0.0), from.constant(0.5), from.constant(1.0));
+    let middle = half * (from + to);
+    let sign = zero.if_less(middle, one, middle.if_less(zero, -one, zero));
+    let ramp = middle.abs().if_less(width, middle / width, sign);
     // Its integral: a parabola up to the width, straight from there on.
-    let integral = |i: f64| if i.abs() < width { 0.5 * i * i / width } else { i.abs() - 0.5 * width.max(0.0) };
+    let beyond = zero.if_less(width, half * width, zero);
+    let integral = |i: V| i.abs().if_less(width, half * i * i / width, i.abs() - beyond);
+    let way = to - from;
     // Over a short way the ramp is straight, or about to be.
-    if (to - from).abs() > SHORT * (from.abs() + to.abs()) {
-        (integral(to) - integral(from)) / (to - from)
-    } else {
-        ramp(0.5 * (from + to))
-    }
+    let long = from.constant(SHORT) * (from.abs() + to.abs());
+    long.if_less(way.abs(), (integral(to) - integral(from)) / way, ramp)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frames::{Abc, AlphaBeta};
     use proptest::prelude::*;
 
     proptest! {
@@ -137,12 +148,12 @@ mod tests {
         const STEPS: u32 = 6000;
         let vector = |k: u32| {
             let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(STEPS)).sin_cos();
-            AlphaBeta { alpha: 5.0 * cos, beta: 5.0 * sin }
+            [5.0 * cos, 5.0 * sin]
         };
         let along = |k: u32| {
             let (start, end) = (vector(k), vector(k + 1));
             let loss = mean_loss(start, end, 0.0, 0.0);
-            (loss.alpha * (start.alpha + end.alpha) + loss.beta * (start.beta + end.beta)) / 10.0
+            (loss[0] * (start[0] + end[0]) + loss[1] * (start[1] + end[1])) / 10.0
         };
         let mean = (0..STEPS).map(along).sum::<f64>() / f64::from(STEPS);
         assert!((mean - 4.0 / std::f64::consts::PI).abs() < 1e-5, "{mean}");
@@ -151,13 +162,13 @@ mod tests {
     /// Where each row is half a carrier period, a phase current within the ripple loses in one row what it gains in the next.
     #[test]
     fn the_ripple_alternates_from_row_to_row() {
-        let dead_time = DeadTime { voltage: 2.0, width: 0.0, ripple: 1.0 };
         let AlphaBeta { alpha, beta } = Abc { a: 3.0, b: -0.5, c: -2.5 }.to_alpha_beta();
         for (row, signs) in [(0, Abc { a: 1.0, b: -1.0, c: -1.0 }), (1, Abc { a: 1.0, b: 1.0, c: -1.0 })] {
-            let angles = PeriodAngles { row, start: 0.0, middle: 0.0, end: 0.0 };
-            let left = dead_time.reduced(Dq::default(), Dq { d: alpha, q: beta }, &angles);
+            let still = Turn::by(0.0);
+            let turns = PeriodTurns { half: carrier_half(row), start: still, middle: still, end: still };
+            let left = reduced([2.0, 0.0, 1.0], [0.0; 2], [alpha, beta], &turns);
             let expected = signs.to_alpha_beta();
-            assert!((left.d + 2.0 * expected.alpha).hypot(left.q + 2.0 * expected.beta) < 1e-15, "{row}: {left:?}");
+            assert!((left[0] + 2.0 * expected.alpha).hypot(left[1] + 2.0 * expected.beta) < 1e-15, "{row}: {left:?}");
         }
     }
 }

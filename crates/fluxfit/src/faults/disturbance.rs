@@ -6,7 +6,7 @@
 //! System Identification, 2nd edition, 1999, section 4.3 (innovations form).
 
 use super::description::{Description, Names, NumberDescription, one, present_state};
-use crate::frames::Dq;
+use crate::{frames::Dq, lanes::Number};
 
 /// The observer of a disturbed motor.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -45,18 +45,17 @@ pub(super) static FAULT: Description<Disturbance> = Description {
     },
 };
 
-impl Disturbance {
-    /// The simulated current `i`, A, corrected by its `error`, measured less simulated, A.
-    #[inline]
-    pub(crate) fn corrected(&self, i: Dq, error: Dq) -> Dq {
-        Dq { d: i.d + self.gain.d * error.d, q: i.q + self.gain.q * error.q }
-    }
+/// The simulated current `i`, A, corrected by its `error`, measured less simulated, A; all of them, and the gain, `d, q`.
+#[inline(always)]
+pub(super) fn corrected<V: Number>(gain: [V; 2], i: [V; 2], error: [V; 2]) -> [V; 2] {
+    [i[0] + gain[0] * error[0], i[1] + gain[1] * error[1]]
+}
 
-    /// What the correction leaves of a difference between two simulations of the same measurement.
-    #[inline]
-    pub(crate) fn remaining(&self, difference: Dq) -> Dq {
-        Dq { d: (1.0 - self.gain.d) * difference.d, q: (1.0 - self.gain.q) * difference.q }
-    }
+/// What the correction leaves of a difference between two simulations of the same measurement.
+#[inline(always)]
+pub(super) fn remaining<V: Number>(gain: [V; 2], difference: [V; 2]) -> [V; 2] {
+    let one = gain[0].constant(1.0);
+    [(one - gain[0]) * difference[0], (one - gain[1]) * difference[1]]
 }
 
 #[cfg(test)]
@@ -65,11 +64,11 @@ mod tests {
 
     #[test]
     fn differences_shrink_as_the_correction_makes_them() {
-        let observer = Disturbance { gain: Dq { d: 0.25, q: -0.1 } };
-        let (measured, one, other) = (Dq { d: 1.0, q: 2.0 }, Dq { d: 0.5, q: 2.5 }, Dq { d: 3.0, q: -1.0 });
-        let corrected = |i: Dq| observer.corrected(i, Dq { d: measured.d - i.d, q: measured.q - i.q });
-        let remaining = observer.remaining(Dq { d: one.d - other.d, q: one.q - other.q });
-        let (one, other) = (corrected(one), corrected(other));
-        assert!((remaining.d - (one.d - other.d)).hypot(remaining.q - (one.q - other.q)) < 1e-15);
+        let gain = [0.25, -0.1];
+        let (measured, one, other) = ([1.0, 2.0], [0.5, 2.5], [3.0, -1.0]);
+        let after = |i: [f64; 2]| corrected(gain, i, [measured[0] - i[0], measured[1] - i[1]]);
+        let left = remaining(gain, [one[0] - other[0], one[1] - other[1]]);
+        let (one, other) = (after(one), after(other));
+        assert!((left[0] - (one[0] - other[0])).hypot(left[1] - (one[1] - other[1])) < 1e-15);
     }
 }

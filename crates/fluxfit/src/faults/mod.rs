@@ -5,6 +5,7 @@
 //! currents, the starts of a fit, and what is physical. A further fault is a file, a field of [`Faults`], a variant of [`Fault`], a row
 //! of the table, and a call where its effect belongs.
 
+mod acting;
 pub mod angle_offset;
 pub mod current_gains;
 pub mod current_offset;
@@ -13,11 +14,14 @@ mod description;
 pub mod disturbance;
 pub mod saturation;
 
-use crate::{frames::Dq, motor::Motor};
+pub(crate) use acting::{Acting, FaultKinds};
+pub(crate) use dead_time::{PeriodTurns, carrier_half};
+
+use crate::motor::Motor;
 use angle_offset::AngleOffset;
 use current_gains::CurrentGains;
 use current_offset::CurrentOffset;
-use dead_time::{DeadTime, PeriodAngles};
+use dead_time::DeadTime;
 use description::Names;
 use disturbance::Disturbance;
 use saturation::Saturation;
@@ -220,44 +224,12 @@ impl Faults {
     pub fn set(&mut self, number: Number, value: f64) {
         (number.fault.row().set)(self, number.place, value);
     }
-
-    /// The current in the motor, A, in the frame of its magnet, where `logged` was measured at the electrical angle `theta_e`: the faults
-    /// of the sensors are undone.
-    #[inline]
-    pub(crate) fn motor_current(&self, logged: Dq, theta_e: f64) -> Dq {
-        if *self == Self::default() {
-            return logged;
-        }
-        let i = self.current_offset.removed(logged, theta_e);
-        let i = self.current_gains.balanced(i, theta_e);
-        i.turned(self.angle_offset.angle - self.current_gains.turn)
-    }
-
-    /// The voltage that acts on the motor over a period, V, in the frame of its magnet, where `logged` was commanded, given the current
-    /// `i`, A, in the motor at its start.
-    #[inline]
-    pub(crate) fn motor_voltage(&self, logged: Dq, i: Dq, angles: &PeriodAngles) -> Dq {
-        let offset = self.angle_offset.angle;
-        let u = if self.dead_time.voltage == 0.0 { logged } else { self.dead_time.reduced(logged, i.turned(-offset), angles) };
-        u.turned(offset)
-    }
-
-    /// Whether flux is `L i + psi_f`.
-    #[inline]
-    pub(crate) fn flux_is_linear(&self) -> bool {
-        self.saturation.is_none()
-    }
-
-    /// Flux, Wb, beyond `L i + psi_f` at current `i`, A.
-    #[inline]
-    pub(crate) fn extra_flux(&self, i: Dq) -> Dq {
-        self.saturation.extra_flux(i)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frames::Turn;
     use std::collections::HashSet;
 
     #[test]
@@ -282,11 +254,17 @@ mod tests {
     /// A fit of each begins with finite steps, and a drive without a fault is changed by no fault.
     #[test]
     fn a_perfect_drive_is_left_alone() {
-        let (motor, i) = (Motor { rs: 1.0, ld: 5e-3, lq: 12e-3, psi_f: 0.1 }, Dq { d: -2.0, q: 5.0 });
+        let (motor, i, faults) = (Motor { rs: 1.0, ld: 5e-3, lq: 12e-3, psi_f: 0.1 }, [-2.0, 5.0], Faults::default());
         assert!(Fault::ALL.into_iter().flat_map(Fault::numbers).all(|number| number.usual_size(&motor, 10.0) > 0.0));
-        let (faults, angles) = (Faults::default(), PeriodAngles { row: 0, start: 0.1, middle: 0.2, end: 0.3 });
-        assert_eq!(faults.motor_current(i, 1.0), i);
-        assert_eq!(faults.motor_voltage(i, i, &angles), i);
-        assert!(faults.flux_is_linear());
+        let turns = PeriodTurns { half: 1.0, start: Turn::by(0.1), middle: Turn::by(0.2), end: Turn::by(0.3) };
+        // Also where other lanes have faults of every kind.
+        let kinds = FaultKinds { sensors: true, voltages: true, flux: true, observer: true };
+        for kinds in [FaultKinds::of(&faults), kinds] {
+            let acting = Acting::of(kinds, |number| number(&faults));
+            assert_eq!(acting.motor_current(i, Turn::by(1.0)), i);
+            assert_eq!(acting.motor_voltage(i, i, &turns), i);
+            assert_eq!(acting.extra_flux(i), [0.0; 2]);
+            assert_eq!((acting.corrected(i, [1.0; 2]), acting.remaining(i)), (i, i));
+        }
     }
 }

@@ -8,7 +8,7 @@
 //! `d psi_d / d i_q = d psi_q / d i_d = 2 c i_q`. No fault of the drive but of the model of its motor; it is found like one.
 
 use super::description::{Description, Names, NumberDescription, present_state};
-use crate::{frames::Dq, motor::PARAMETERS};
+use crate::{frames::Dq, lanes::Number, motor::PARAMETERS};
 
 /// Coefficients of saturation, H/A. Iron that saturates makes them negative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -63,17 +63,18 @@ pub(super) static FAULT: Description<Saturation> = Description {
     },
 };
 
-impl Saturation {
-    /// Whether there is none.
-    pub(super) fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
+/// Flux, Wb, `d, q`, beyond `L i + psi_f` at current `i`, A, given `s_d`, `s_q` and `c`.
+#[inline(always)]
+pub(super) fn extra_flux<V: Number>([s_d, s_q, cross]: [V; 3], i: [V; 2]) -> [V; 2] {
+    let [d, q] = i;
+    [s_d * d * d.abs() + cross * q * q, s_q * q * q.abs() + d.constant(2.0) * cross * d * q]
+}
 
+impl Saturation {
     /// Flux, Wb, beyond `L i + psi_f`.
-    #[inline]
     pub fn extra_flux(&self, i: Dq) -> Dq {
-        let Self { d, q, cross } = *self;
-        Dq { d: d * i.d * i.d.abs() + cross * i.q * i.q, q: q * i.q * i.q.abs() + 2.0 * cross * i.d * i.q }
+        let [d, q] = extra_flux([self.d, self.q, self.cross], [i.d, i.q]);
+        Dq { d, q }
     }
 
     /// Voltage, V, that the extra flux takes at steady current `i`, A, and speed `omega_e`, electrical rad/s: what is to be added to

@@ -4,8 +4,11 @@
 
 pub mod acting_voltage;
 pub mod adjustable;
+mod batch;
 pub mod output_error;
 mod simulated_segment;
+mod simulation;
 pub mod transition;
-mod transition_table;
+mod transition_lanes;
+mod transition_polynomials;
 pub mod voltage_error;

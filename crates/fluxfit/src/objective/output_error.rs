@@ -16,15 +16,14 @@
 //! A segment's first current and, of centred voltages, its first vector are not in the log; they are solved for inside, so that the cost
 //! is the smallest over them.
 
-use super::{acting_voltage::VoltageReading, adjustable::Adjustable, simulated_segment::SimulatedSegment};
+use super::{acting_voltage::VoltageReading, adjustable::Adjustable, batch::Rows, simulated_segment::SimulatedSegment};
 use crate::{
     error::{Error, ErrorKind},
-    faults::Faults,
+    faults::{Acting, Faults},
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
-    parallel,
 };
 use std::ops::Range;
 
@@ -34,7 +33,7 @@ const MIN_ROWS: usize = 10;
 /// The squared error of the simulated currents.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputError {
-    segments: Vec<SimulatedSegment>,
+    simulated: Rows,
     rows: usize,
     /// Largest measured current vector, A.
     peak_current: f64,
@@ -68,7 +67,7 @@ impl OutputError {
             return Err(ErrorKind::TooShort { rows: log.rows(), least }.into());
         }
         let peak_current = segments.iter().flat_map(|segment| &segment.measured).map(|i| i.magnitude()).fold(0.0, f64::max);
-        Ok(Self { segments, rows, peak_current, held: Faults::default() })
+        Ok(Self { simulated: Rows::of(segments), rows, peak_current, held: Faults::default() })
     }
 
     /// The same fitness of motors in a drive with these faults.
@@ -83,18 +82,18 @@ impl OutputError {
 
     /// The same for each stretch.
     pub fn rows_per_segment(&self) -> Vec<usize> {
-        self.segments.iter().map(|segment| segment.measured.len()).collect()
+        self.simulated.segments.iter().map(|segment| segment.measured.len()).collect()
     }
 
     /// Rows of the log whose currents are compared, stretch by stretch.
     pub fn stretches(&self) -> impl Iterator<Item = Range<usize>> {
-        self.segments.iter().map(|segment| segment.rows.clone())
+        self.simulated.segments.iter().map(|segment| segment.rows.clone())
     }
 
     /// Whether every stretch has its angle from the log: only then can effects in the stator's frame be distinguished from those in
     /// the rotor's.
     pub fn angle_known(&self) -> bool {
-        self.segments.iter().all(|segment| segment.angle_known)
+        self.simulated.segments.iter().all(|segment| segment.angle_known)
     }
 
     /// Largest measured current vector, A.
@@ -109,40 +108,36 @@ impl OutputError {
 
     /// Cost of one motor in an imperfect drive, A².
     pub fn cost_of(&self, drive: &Adjustable) -> f64 {
-        self.segments.iter().map(|segment| segment.cost(drive)).sum()
+        self.simulated.costs(std::slice::from_ref(drive)).into_iter().sum()
     }
 
     /// Measured less simulated current, A: `d, q` of each row in turn.
     pub fn residuals(&self, drive: &Adjustable) -> Vec<f64> {
-        self.segments.iter().flat_map(|segment| segment.residuals(drive)).collect()
+        self.residuals_of_all(std::slice::from_ref(drive)).into_iter().flatten().collect()
+    }
+
+    /// The same of many drives at once.
+    pub fn residuals_of_all(&self, drives: &[Adjustable]) -> Vec<Vec<f64>> {
+        self.simulated.residuals(drives).into_iter().map(|simulated| simulated.residuals).collect()
     }
 
     /// Simulated currents, A, row by row: the measured ones, faults undone, less the residuals.
     pub fn simulated(&self, drive: &Adjustable) -> Vec<Dq> {
-        let of_segment = |segment: &SimulatedSegment| {
-            let residuals = segment.residuals(drive);
-            let (residuals, _) = residuals.as_chunks::<2>();
-            let rows = residuals.iter().enumerate();
-            let simulated = rows.map(|(row, [d, q])| {
-                let measured = segment.motor_current(row, &drive.faults);
-                Dq { d: measured.d - d, q: measured.q - q }
-            });
-            simulated.collect::<Vec<_>>()
-        };
-        self.segments.iter().flat_map(of_segment).collect()
+        let residuals = self.residuals(drive);
+        let (residuals, _) = residuals.as_chunks::<2>();
+        let acting = Acting::of_one(&drive.faults);
+        let rows = self.simulated.segments.iter().flat_map(|segment| segment.measured.iter().zip(&segment.turns));
+        let simulated = rows.zip(residuals).map(|((measured, turn), [d, q])| {
+            let measured = acting.current(*measured, *turn);
+            Dq { d: measured.d - d, q: measured.q - q }
+        });
+        simulated.collect()
     }
 
-    /// What a volt on each axis over each period does to a linear function of the simulated currents, which `weights` gives: `d, q` per
-    /// row. One entry per period, stretch after stretch.
-    pub fn by_voltage(&self, drive: &Adjustable, weights: &[f64]) -> Vec<Dq> {
-        let mut rest = weights;
-        let mut effects = Vec::with_capacity(self.rows);
-        for segment in &self.segments {
-            let (own, others) = rest.split_at(2 * segment.measured.len());
-            effects.extend(segment.by_voltage(drive, own));
-            rest = others;
-        }
-        effects
+    /// What a volt on each axis over each period does to linear functions of the simulated currents; `d, q` per row are the weights of one
+    /// function. One entry per period, stretch after stretch.
+    pub fn by_voltage(&self, drive: &Adjustable, weights: &[Vec<f64>]) -> Vec<Vec<Dq>> {
+        self.simulated.by_voltage(drive, weights)
     }
 
     /// Voltage (V), current at its start (A), speed (electrical rad/s) of each period, stretch after stretch.
@@ -150,7 +145,7 @@ impl OutputError {
         let of_segment = |segment: &SimulatedSegment| -> Vec<_> {
             segment.periods.iter().zip(&segment.measured).map(|(period, i)| (period.u, *i, period.omega_e)).collect()
         };
-        self.segments.iter().flat_map(of_segment)
+        self.simulated.segments.iter().flat_map(of_segment)
     }
 }
 
@@ -161,6 +156,7 @@ impl Objective for OutputError {
 
     fn evaluate(&self, candidates: &[f64], costs: &mut [f64]) {
         let (candidates, _) = candidates.as_chunks::<PARAMETERS>();
-        parallel::fill(costs, candidates, |candidate| self.cost(&Motor::from(*candidate)));
+        let drives = candidates.iter().map(|candidate| Adjustable { motor: Motor::from(*candidate), faults: self.held });
+        costs.copy_from_slice(&self.simulated.costs(&drives.collect::<Vec<_>>()));
     }
 }

@@ -58,28 +58,6 @@ impl Transition {
         let step = |[fd, fq, gd, gq, _]: [f64; ENTRIES / 2]| fd * i.d + fq * i.q + gd * u.d + gq * u.q;
         Dq { d: step(self.rows[0]), q: step(self.rows[1]) }
     }
-
-    /// What the currents before and the voltage of a period do to a linear function of the currents after it, `weights`.
-    #[inline]
-    pub(super) fn transposed(&self, weights: Dq) -> (Dq, Dq) {
-        let [d, q] = &self.rows;
-        let of = |column: usize| weights.d * d[column] + weights.q * q[column];
-        (Dq { d: of(0), q: of(1) }, Dq { d: of(2), q: of(3) })
-    }
-}
-
-impl Transition {
-    /// A weighted sum of transitions.
-    #[inline]
-    pub(super) fn blend(nodes: &[Self], weights: &[f64]) -> Self {
-        let mut rows = [[0.0; ENTRIES / 2]; 2];
-        for (node, weight) in nodes.iter().zip(weights) {
-            for (row, other) in rows.iter_mut().zip(&node.rows) {
-                row.iter_mut().zip(other).for_each(|(entry, value)| *entry += weight * value);
-            }
-        }
-        Self { rows }
-    }
 }
 
 #[cfg(test)]

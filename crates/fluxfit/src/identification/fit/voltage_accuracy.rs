@@ -39,12 +39,14 @@ pub(crate) fn covariance(
     // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents
     // have the opposite sign.
     let mut cells: BTreeMap<[i32; 3], Vec<Dq>> = BTreeMap::new();
-    for p in 0..size {
+    let weights = (0..size).map(|p| {
         let mut weights = vec![0.0; slopes[0].len()];
         for (q, slope) in slopes.iter().enumerate() {
             weights.iter_mut().zip(slope).for_each(|(weight, slope)| *weight += inverse[(p, q)] * slope);
         }
-        let effects = objective.by_voltage(drive, &weights);
+        weights
+    });
+    for (p, effects) in objective.by_voltage(drive, &weights.collect::<Vec<_>>()).into_iter().enumerate() {
         for ((u, i, omega_e), effect) in objective.periods().zip(effects) {
             let sums = cells.entry(cell(i, omega_e)).or_insert_with(|| vec![Dq::default(); size]);
             let volts = fraction * u.magnitude();

@@ -1,0 +1,178 @@
+//! Numbers of several candidates side by side, as the processor's wide instructions take them, and formulas that hold for one number and
+//! for many.
+//!
+//! Every operation acts on each lane alone and rounds as it does on one number, the fused multiplication and addition too: a candidate has
+//! the same bits in every lane, of any width.
+
+use pulp::Simd;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number, or one number per lane.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The same constant in every lane.
+    fn constant(self, value: f64) -> Self;
+
+    /// `self * factor + sum`, rounded once.
+    fn mul_add(self, factor: Self, sum: Self) -> Self;
+
+    /// Without its sign.
+    fn abs(self) -> Self;
+
+    /// Where this is less than `other`: `then`, else `otherwise`. What is no number is not less.
+    fn if_less(self, other: Self, then: Self, otherwise: Self) -> Self;
+
+    /// Whether any number is less than the other's.
+    fn any_less(self, other: Self) -> bool;
+
+    /// The two constants of a vector.
+    #[inline(always)]
+    fn constants(self, [d, q]: [f64; 2]) -> [Self; 2] {
+        [self.constant(d), self.constant(q)]
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn constant(self, value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, sum: Self) -> Self {
+        self.mul_add(factor, sum)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn if_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if self < other { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn any_less(self, other: Self) -> bool {
+        self < other
+    }
+}
+
+/// Numbers in `K` of the processor's vectors: several keep it busy while one waits for its result.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<S: Simd, const K: usize> {
+    set: S,
+    vectors: [S::f64s; K],
+}
+
+/// Most numbers in a vector of any processor.
+const WIDEST: usize = 8;
+
+impl<S: Simd, const K: usize> Lanes<S, K> {
+    /// How many numbers these are.
+    pub(crate) const COUNT: usize = K * S::F64_LANES;
+
+    /// A number per lane.
+    #[inline(always)]
+    pub(crate) fn of(set: S, number: impl Fn(usize) -> f64) -> Self {
+        let mut numbers = [0.0; WIDEST];
+        let mut vectors = [set.splat_f64s(0.0); K];
+        for k in 0..K {
+            for lane in 0..S::F64_LANES {
+                numbers[lane] = number(k * S::F64_LANES + lane);
+            }
+            vectors[k] = set.partial_load_f64s(&numbers[..S::F64_LANES]);
+        }
+        Self { set, vectors }
+    }
+
+    /// The number of one lane.
+    #[inline(always)]
+    pub(crate) fn lane(self, lane: usize) -> f64 {
+        let mut numbers = [0.0; WIDEST];
+        self.set.partial_store_f64s(&mut numbers[..S::F64_LANES], self.vectors[lane / S::F64_LANES]);
+        numbers[lane % S::F64_LANES]
+    }
+
+    /// Writes the numbers of all lanes, as many as there are.
+    #[inline(always)]
+    pub(crate) fn store(self, numbers: &mut [f64]) {
+        for k in 0..K {
+            self.set.partial_store_f64s(&mut numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES], self.vectors[k]);
+        }
+    }
+}
+
+// The wide instructions of a processor may be used only in functions that are compiled for it: everything between them and the call that
+// chose them is compiled in place. The standard library's functions over arrays are not; hence the loops.
+impl<S: Simd, const K: usize> Number for Lanes<S, K> {
+    #[inline(always)]
+    fn constant(self, value: f64) -> Self {
+        Self { set: self.set, vectors: [self.set.splat_f64s(value); K] }
+    }
+
+    #[inline(always)]
+    fn mul_add(mut self, factor: Self, sum: Self) -> Self {
+        for k in 0..K {
+            self.vectors[k] = self.set.mul_add_f64s(self.vectors[k], factor.vectors[k], sum.vectors[k]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.if_less(self.constant(0.0), -self, self)
+    }
+
+    #[inline(always)]
+    fn if_less(mut self, other: Self, then: Self, otherwise: Self) -> Self {
+        for k in 0..K {
+            let less = self.set.less_than_f64s(self.vectors[k], other.vectors[k]);
+            self.vectors[k] = self.set.select_f64s(less, then.vectors[k], otherwise.vectors[k]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn any_less(self, other: Self) -> bool {
+        let counts = self.if_less(other, self.constant(1.0), self.constant(0.0));
+        let mut any = false;
+        for k in 0..K {
+            any |= self.set.reduce_sum_f64s(counts.vectors[k]) > 0.0;
+        }
+        any
+    }
+}
+
+impl<S: Simd, const K: usize> Neg for Lanes<S, K> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.constant(0.0) - self
+    }
+}
+
+/// An operator on two numbers, lane by lane.
+macro_rules! operator {
+    ($operator:ident, $method:ident, $instruction:ident) => {
+        impl<S: Simd, const K: usize> $operator for Lanes<S, K> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(mut self, other: Self) -> Self {
+                for k in 0..K {
+                    self.vectors[k] = self.set.$instruction(self.vectors[k], other.vectors[k]);
+                }
+                self
+            }
+        }
+    };
+}
+
+operator!(Add, add, add_f64s);
+operator!(Sub, sub, sub_f64s);
+operator!(Mul, mul, mul_f64s);
+operator!(Div, div, div_f64s);

@@ -1,0 +1,315 @@
+//! Many adjustable drives on the same rows, side by side: the walk from row to row that every evaluation of the output error is.
+//!
+//! A lane is a candidate. Each period costs some forty multiplications and additions a lane: the [transition](super::transition_polynomials)
+//! at its speed, the step of the simulated current, the sums of squares; more where a drive has faults. The response to what the log does
+//! not hold, the first current, dies out with the windings' time constants and is then left alone.
+//!
+//! Every operation is done on each lane alone and in the same order, whatever the number of lanes and the processor's instructions: the
+//! bits of a candidate depend on nothing beside it.
+
+use super::{
+    simulated_segment::{LINEAR_UNKNOWNS, PeriodRow, SimulatedSegment},
+    transition_lanes::{MotorLanes, TransitionLanes},
+    transition_polynomials::{TransitionPlan, TransitionPolynomials},
+};
+use crate::{
+    faults::{Acting, PeriodTurns},
+    lanes::Number,
+};
+
+/// Rows between two looks at what has died out.
+const BLOCK: usize = 64;
+
+/// A response to a first current of one ampere that is smaller than this, A, has died out: what it adds to a sum of squares is below
+/// rounding.
+const DIED_OUT: f64 = 1e-12;
+
+/// Products of two linear unknowns, each pair once.
+const PAIRS: usize = LINEAR_UNKNOWNS * (LINEAR_UNKNOWNS + 1) / 2;
+
+/// A pair's place among the products.
+const fn pair(one: usize, other: usize) -> usize {
+    one * (one + 1) / 2 + other
+}
+
+/// Sums over the rows of a segment, a lane per candidate.
+#[derive(Clone, Copy)]
+pub(super) struct Sums<V> {
+    /// Of squared errors, A².
+    pub(super) total: V,
+    /// Of errors times responses.
+    pub(super) right: [V; LINEAR_UNKNOWNS],
+    /// Of products of responses.
+    normal: [V; PAIRS],
+}
+
+impl<V: Copy> Sums<V> {
+    /// The product of two responses.
+    pub(super) fn normal(&self, row: usize, column: usize) -> V {
+        self.normal[pair(row.max(column), row.min(column))]
+    }
+}
+
+/// Where the simulation stands.
+#[derive(Clone, Copy)]
+struct State<V> {
+    /// Simulated current.
+    i: [V; 2],
+    /// Measured less simulated current.
+    error: [V; 2],
+    /// Its response to each linear unknown.
+    response: [[V; 2]; LINEAR_UNKNOWNS],
+}
+
+/// A row's measured less simulated currents, `d, q`.
+pub(super) type Errors<V> = Vec<[V; 2]>;
+
+/// Drives side by side, ready to be simulated.
+pub(super) struct Drives<V, const C: usize> {
+    motors: MotorLanes<V>,
+    faults: Acting<V>,
+    /// Per length of a period; none if each period is computed exactly.
+    polynomials: Vec<TransitionPolynomials<V, C>>,
+}
+
+impl<V: Number, const C: usize> Drives<V, C> {
+    #[inline(always)]
+    pub(super) fn of(motors: MotorLanes<V>, faults: Acting<V>, plan: &TransitionPlan) -> Self {
+        let mut polynomials = Vec::with_capacity(plan.classes.len());
+        for class in &plan.classes {
+            polynomials.push(TransitionPolynomials::of(&motors, class));
+        }
+        Self { motors, faults, polynomials }
+    }
+
+    /// Simulates a segment and sums its squares and products.
+    #[inline(always)]
+    pub(super) fn sums(&self, segment: &SimulatedSegment) -> Sums<V> {
+        let (zero, one) = (self.motors.rs.constant(0.0), self.motors.rs.constant(1.0));
+        let mut sums = Sums { total: zero, right: [zero; LINEAR_UNKNOWNS], normal: [zero; PAIRS] };
+        // The first row's error is zero by definition; a first current changes it one for one.
+        (sums.normal[pair(0, 0)], sums.normal[pair(1, 1)]) = (one, one);
+        let mut state = self.start(segment);
+        if !self.take_the_short_path() {
+            for row in 0..segment.periods.len() {
+                if row % BLOCK == 0 {
+                    state.forget();
+                }
+                self.faulty_row(segment, row, &mut state);
+                state.add::<true, true>(&mut sums);
+            }
+            return sums;
+        }
+        let polynomials = &self.polynomials[..];
+        for rows in segment.rows_of_periods.chunks(BLOCK) {
+            // Whether the first current still matters, and whether there is a first vector, is known to the compiler.
+            match (state.forget(), segment.alternates) {
+                (false, false) => perfect_rows::<V, C, false, false>(rows, polynomials, &mut state, &mut sums),
+                (false, true) => perfect_rows::<V, C, false, true>(rows, polynomials, &mut state, &mut sums),
+                (true, false) => perfect_rows::<V, C, true, false>(rows, polynomials, &mut state, &mut sums),
+                (true, true) => perfect_rows::<V, C, true, true>(rows, polynomials, &mut state, &mut sums),
+            }
+        }
+        sums
+    }
+
+    /// Measured less simulated currents of every row with these values of the linear unknowns.
+    #[inline(always)]
+    pub(super) fn errors(&self, segment: &SimulatedSegment, linear: &[V; LINEAR_UNKNOWNS]) -> Errors<V> {
+        let mut errors = Vec::with_capacity(segment.periods.len() + 1);
+        errors.push([-linear[0], -linear[1]]);
+        let mut state = self.start(segment);
+        if self.take_the_short_path() {
+            let i = [state.i[0] + linear[0], state.i[1] + linear[1]];
+            perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, i, &mut errors);
+            return errors;
+        }
+        for row in 0..segment.periods.len() {
+            if row % BLOCK == 0 {
+                state.forget();
+            }
+            self.faulty_row(segment, row, &mut state);
+            errors.push(state.left(linear));
+        }
+        errors
+    }
+
+    /// Whether there is no fault and no period of a length of its own.
+    fn take_the_short_path(&self) -> bool {
+        !self.faults.kinds.any() && !self.polynomials.is_empty()
+    }
+
+    /// The measured first current, and unit responses.
+    #[inline(always)]
+    fn start(&self, segment: &SimulatedSegment) -> State<V> {
+        let (zero, one) = (self.motors.rs.constant(0.0), self.motors.rs.constant(1.0));
+        let measured = segment.measured[0];
+        let i = self.faults.motor_current([zero.constant(measured.d), zero.constant(measured.q)], segment.turns[0]);
+        State { i, error: [zero; 2], response: [[one, zero], [zero, one], [zero; 2], [zero; 2]] }
+    }
+
+    /// One row of drives with faults, or with a period of its own length. Faults that depend on the current follow the simulated one: the
+    /// measured one would bring its noise into the prediction.
+    #[inline(always)]
+    fn faulty_row(&self, segment: &SimulatedSegment, row: usize, state: &mut State<V>) {
+        let period = &segment.rows_of_periods[row];
+        let zero = self.motors.rs.constant(0.0);
+        let transitions = self.transitions(segment, row);
+        let start = self.faults.corrected(state.i, state.error);
+        let turns =
+            PeriodTurns { half: segment.half(row), start: segment.turns[row], middle: segment.middles[row], end: segment.turns[row + 1] };
+        let u = self.faults.motor_voltage(zero.constants(period.u), start, &turns);
+        state.i = if self.faults.kinds.flux {
+            self.saturated_step(&transitions, zero.constant(segment.periods[row].omega_e), u, start)
+        } else {
+            transitions.after(start, u)
+        };
+        let [alpha_d, alpha_q] = zero.constants(period.alternating);
+        let [first_d, first_q, alpha, beta] = state.response;
+        state.response = [
+            transitions.response(self.faults.remaining(first_d)),
+            transitions.response(self.faults.remaining(first_q)),
+            transitions.driven_response(self.faults.remaining(alpha), [alpha_d, alpha_q]),
+            transitions.driven_response(self.faults.remaining(beta), [-alpha_q, alpha_d]),
+        ];
+        let measured = self.faults.motor_current(zero.constants(period.measured), segment.turns[row + 1]);
+        state.error = [measured[0] - state.i[0], measured[1] - state.i[1]];
+    }
+
+    /// A step whose flux is not only `L i + psi_f`: what is beyond takes a voltage as any flux does, by its turning and by its growth.
+    #[inline(always)]
+    fn saturated_step(&self, transitions: &TransitionLanes<V>, omega_e: V, u: [V; 2], i: [V; 2]) -> [V; 2] {
+        let flux = self.faults.extra_flux(i);
+        let linear = transitions.after(i, [u[0] + omega_e * flux[1], u[1] - omega_e * flux[0]]);
+        let mut end = linear;
+        for _ in 0..EXTRA_FLUX_ROUNDS {
+            let grown = self.faults.extra_flux(end);
+            end = [linear[0] - (grown[0] - flux[0]) / self.motors.ld, linear[1] - (grown[1] - flux[1]) / self.motors.lq];
+        }
+        end
+    }
+
+    /// The transitions over one period.
+    #[inline(always)]
+    fn transitions(&self, segment: &SimulatedSegment, row: usize) -> TransitionLanes<V> {
+        let PeriodRow { class, turn, place, .. } = segment.rows_of_periods[row];
+        if self.polynomials.is_empty() {
+            TransitionLanes::exact(&self.motors, turn, segment.periods[row].length)
+        } else {
+            self.polynomials[class].at(turn, place)
+        }
+    }
+
+    /// What a volt over each period does to linear functions of the simulated currents, one function a lane, of which `weights` gives the
+    /// `d, q` of a row. From the last period to the first, by the adjoint equations; the last period's effects come first.
+    #[inline(always)]
+    pub(super) fn by_voltage(&self, segment: &SimulatedSegment, weights: impl Fn(usize) -> [V; 2]) -> Errors<V> {
+        let mut behind = [self.motors.rs.constant(0.0); 2];
+        let mut effects = Vec::with_capacity(segment.periods.len());
+        for row in (0..segment.periods.len()).rev() {
+            let TransitionLanes { fdd, fdq, fqd, fqq, gdd, gdq, gqd, gqq, .. } = self.transitions(segment, row);
+            let own = weights(row + 1);
+            let (d, q) = (behind[0] + own[0], behind[1] + own[1]);
+            behind = self.faults.remaining([d * fdd + q * fqd, d * fdq + q * fqq]);
+            effects.push([d * gdd + q * gqd, d * gdq + q * gqq]);
+        }
+        effects
+    }
+}
+
+/// Rows of perfect drives.
+#[inline(always)]
+fn perfect_rows<V: Number, const C: usize, const FIRST: bool, const ALTERNATES: bool>(
+    rows: &[PeriodRow],
+    polynomials: &[TransitionPolynomials<V, C>],
+    state: &mut State<V>,
+    sums: &mut Sums<V>,
+) {
+    let zero = sums.total.constant(0.0);
+    for row in rows {
+        let transitions = polynomials[row.class].at(row.turn, row.place);
+        let i = transitions.after(state.i, zero.constants(row.u));
+        state.i = i;
+        let measured = zero.constants(row.measured);
+        state.error = [measured[0] - i[0], measured[1] - i[1]];
+        let [first_d, first_q, alpha, beta] = state.response;
+        if FIRST {
+            state.response[0] = transitions.response(first_d);
+            state.response[1] = transitions.response(first_q);
+        }
+        if ALTERNATES {
+            let [alpha_d, alpha_q] = zero.constants(row.alternating);
+            state.response[2] = transitions.driven_response(alpha, [alpha_d, alpha_q]);
+            state.response[3] = transitions.driven_response(beta, [-alpha_q, alpha_d]);
+        }
+        state.add::<FIRST, ALTERNATES>(sums);
+    }
+}
+
+/// The same from the right start, with the right first vector.
+#[inline(always)]
+fn perfect_errors<V: Number, const C: usize>(
+    rows: &[PeriodRow],
+    polynomials: &[TransitionPolynomials<V, C>],
+    [_, _, alpha, beta]: &[V; LINEAR_UNKNOWNS],
+    mut i: [V; 2],
+    errors: &mut Errors<V>,
+) {
+    let zero = alpha.constant(0.0);
+    for row in rows {
+        let ([u_d, u_q], [alpha_d, alpha_q]) = (zero.constants(row.u), zero.constants(row.alternating));
+        let u = [alpha.mul_add(alpha_d, beta.mul_add(-alpha_q, u_d)), alpha.mul_add(alpha_q, beta.mul_add(alpha_d, u_q))];
+        i = polynomials[row.class].at(row.turn, row.place).after(i, u);
+        let measured = zero.constants(row.measured);
+        errors.push([measured[0] - i[0], measured[1] - i[1]]);
+    }
+}
+
+/// Rounds in which the flux beyond `L i` is found at a period's end: each is a fifth or less of the one before, of a change that is small.
+const EXTRA_FLUX_ROUNDS: usize = 3;
+
+impl<V: Number> State<V> {
+    /// Sets responses to the first current that have died out to zero; whether any is left.
+    #[inline(always)]
+    fn forget(&mut self) -> bool {
+        let mut left = false;
+        let zero = self.error[0].constant(0.0);
+        let (one, limit) = (zero.constant(1.0), zero.constant(DIED_OUT));
+        for k in 0..2 {
+            for axis in 0..2 {
+                let response = self.response[k][axis];
+                // What is no number is kept: it has to be seen.
+                left |= zero.any_less(response.abs().if_less(limit, zero, one));
+                self.response[k][axis] = response.abs().if_less(limit, zero, response);
+            }
+        }
+        left
+    }
+
+    /// Adds a row to the sums.
+    #[inline(always)]
+    fn add<const FIRST: bool, const ALTERNATES: bool>(&self, sums: &mut Sums<V>) {
+        let [d, q] = self.error;
+        sums.total = d.mul_add(d, q.mul_add(q, sums.total));
+        let (from, to) = (if FIRST { 0 } else { 2 }, if ALTERNATES { LINEAR_UNKNOWNS } else { 2 });
+        for one in from..to {
+            let [one_d, one_q] = self.response[one];
+            sums.right[one] = one_d.mul_add(d, one_q.mul_add(q, sums.right[one]));
+            for other in from..one + 1 {
+                let [other_d, other_q] = self.response[other];
+                let sum = &mut sums.normal[pair(one, other)];
+                *sum = one_d.mul_add(other_d, one_q.mul_add(other_q, *sum));
+            }
+        }
+    }
+
+    /// The error that is left with these values of the linear unknowns.
+    #[inline(always)]
+    fn left(&self, linear: &[V; LINEAR_UNKNOWNS]) -> [V; 2] {
+        let mut left = self.error;
+        for k in 0..LINEAR_UNKNOWNS {
+            left = [left[0] - linear[k] * self.response[k][0], left[1] - linear[k] * self.response[k][1]];
+        }
+        left
+    }
+}
