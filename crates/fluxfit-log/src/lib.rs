@@ -38,6 +38,7 @@ mod problem;
 mod reading;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
+pub use container::{CONTAINERS, Container};
 pub use note::Note;
 pub use reading::{
     InspectedColumn, Inspection, LAYOUTS, Layout, LogOptions, Mapping, Park, ReadLog, inspect, parse_log, read_log, read_log_from,
