@@ -1,10 +1,28 @@
 //! `fluxfit inspect`: what is understood of a log, before an answer hangs on it.
 
+mod display;
+
 use super::{Status, input};
-use crate::{arguments::Inspect, error::CommandError, terminal};
+use crate::{arguments::ColumnArguments, error::CommandError, terminal};
+use clap::Args;
 use fluxfit_files::{check_writable, write_atomically};
 use fluxfit_log::inspect;
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+#[derive(Debug, Args)]
+pub(crate) struct Inspect {
+    /// The log; - is standard input
+    #[arg(value_name = "LOG")]
+    log: PathBuf,
+    #[command(flatten)]
+    columns: ColumnArguments,
+    /// Write a mapping file with the columns recognized, to be completed by hand
+    #[arg(short, long, help_heading = "Output", value_name = "MAPPING.toml")]
+    output: Option<PathBuf>,
+}
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
@@ -14,7 +32,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     let options = input::options(&arguments.columns, None)?;
     let inspection = terminal::working("reading".to_owned(), || inspect(&arguments.log, &options))?;
     if arguments.output.as_deref() != Some(Path::new("-")) {
-        terminal::inspection::show(&input::name(&arguments.log), &inspection)?;
+        display::show(&input::name(&arguments.log), &inspection)?;
     }
     if let Some(path) = arguments.output.as_deref() {
         write_atomically(path, mapping_file(&inspection.mapping(&options)).as_bytes())?;

@@ -1,6 +1,6 @@
 //! The current controllers' gains, each with its interval.
 
-use super::{DIM, HEADING, table};
+use crate::terminal::{self, DIM, HEADING, table};
 use fluxfit::{
     current_loop::{CurrentLoop, DELAY_PERIODS, Gain},
     evidence::Provenance,
@@ -24,7 +24,7 @@ pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {
         [vec![name.to_owned()], cells.to_vec(), vec![format!("{parameter} {verdict}")]].concat()
     });
     let note = format!("{DIM}K_p = 2 pi bandwidth L, K_i = 2 pi bandwidth R_s: u = K_p e + K_i ∫ e dt, couplings fed forward{DIM:#}\n");
-    super::print(&format!("{heading}{}{note}", table(&["", "value", "", "95 %", "interval", "from"], 1, rows)))
+    terminal::print(&format!("{heading}{}{note}", table(&["", "value", "", "95 %", "interval", "from"], 1, rows)))
 }
 
 /// Value, unit, relative half-width and interval.

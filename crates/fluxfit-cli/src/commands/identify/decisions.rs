@@ -1,6 +1,6 @@
 //! What an identification decided on the way, for `--verbose`.
 
-use super::detail;
+use crate::terminal::detail;
 use fluxfit::{evidence::Identification, evidence::OutputFit};
 use fluxfit_units::{significant, small};
 

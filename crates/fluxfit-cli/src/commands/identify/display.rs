@@ -1,7 +1,7 @@
 //! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and
 //! what the swarm made of it.
 
-use super::{BAD, DIM, GOOD, HEADING, WARNING, options, table};
+use crate::terminal::{self, BAD, DIM, GOOD, HEADING, WARNING, frequency, options, table};
 use fluxfit::{
     Answer, HeldOut, Judgement, Log, Parameter, Reason, Verdict,
     evidence::{FaultOutcome, Flux, Identification, ModelChoice, OutputFit, Provenance, SaturationFinding, SteadyFit},
@@ -31,21 +31,21 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     if let Some(method) = found.method.as_ref().filter(|_| answered) {
         text += &format!("\n{}\n", search(found, method));
     }
-    super::print(&text)?;
-    found.warnings.iter().for_each(super::warn);
+    terminal::print(&text)?;
+    found.warnings.iter().for_each(terminal::warn);
     answer.current_loop.as_ref().map(super::current_loop::show).transpose()?;
     match &answer.held_out {
         Some(HeldOut { log, validation: Some(validation) }) => {
-            super::print("\n")?;
-            super::validation::show("what was held out", "This answer", log, validation)
+            terminal::print("\n")?;
+            crate::commands::validate::display::show("what was held out", "This answer", log, validation)
         }
         Some(HeldOut { validation: None, .. }) => {
-            super::note("what was held out is not predicted: that takes all four parameters");
+            terminal::note("what was held out is not predicted: that takes all four parameters");
             Ok(())
         }
         None => {
             if answer.log.segments().len() > 1 {
-                super::note(
+                terminal::note(
                     "to test this answer on a part of the log that it was not found from: --hold-out; on another log: fluxfit validate",
                 );
             }
@@ -66,10 +66,6 @@ fn read(log: &Log, found: &Identification) -> String {
         None => format!("{points} with {} rows used", found.operating_points().iter().map(|point| point.rows.len()).sum::<usize>()),
     };
     format!("{} rows at {rate}, {} s in {}; {used}", log.rows(), significant(log.duration(), 3), count(log.segments().len(), "segment"),)
-}
-
-pub(super) fn frequency(hertz: f64) -> String {
-    if hertz >= 1000.0 { format!("{} kHz", significant(hertz / 1000.0, 3)) } else { format!("{} Hz", significant(hertz, 3)) }
 }
 
 fn count(n: usize, what: &str) -> String {
