@@ -1,8 +1,8 @@
 //! Tables in formats other than text: Parquet, MATLAB's MAT, HDF5 and ASAM MDF 4.
 //!
 //! [`CONTAINERS`] lists the formats. A container lists its columns and reads the wanted ones block by block. A damaged file gives an error.
-//! Every length that a file states is checked against the size of the file before memory is allocated, so that a small file cannot claim much
-//! memory.
+//! Every length that a file states is checked against the size of the file before memory is allocated, so that a small file cannot claim
+//! much memory.
 
 mod fault;
 mod guard;
