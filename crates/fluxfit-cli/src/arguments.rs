@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum, builder::Resettable};
 use fluxfit::{
     Model,
     motor::Parameter,
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
     optimizer::METHODS,
 };
 use fluxfit_log::CONTAINERS;
@@ -147,12 +147,12 @@ pub(crate) enum Timing {
 
 impl Timing {
     /// What is stated; nothing, if it is for the library to choose.
-    pub(crate) fn stated(self) -> Option<VoltageReading> {
-        let delayed = |delay| Some(VoltageReading::Delayed { delay, frame: VoltageFrame::Middle });
-        let at_row = |delay| Some(VoltageReading::Delayed { delay, frame: VoltageFrame::Row });
+    pub(crate) fn stated(self) -> Option<VoltageTiming> {
+        let delayed = |delay| Some(VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle });
+        let at_row = |delay| Some(VoltageTiming::Delayed { delay, frame: VoltageFrame::Row });
         match self {
             Self::Auto => None,
-            Self::Centered => Some(VoltageReading::Centered),
+            Self::Centered => Some(VoltageTiming::Centered),
             Self::Zero => delayed(0),
             Self::One => delayed(1),
             Self::Two => delayed(2),

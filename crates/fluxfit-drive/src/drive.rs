@@ -11,7 +11,7 @@ use crate::{
 };
 use fluxfit::{
     frames::{AlphaBeta, Dq},
-    optimizer::draws::Draws,
+    optimizer::Draws,
 };
 use std::f64::consts::TAU;
 

@@ -8,7 +8,7 @@ use crate::{
 };
 use fluxfit::{
     frames::{Abc, AlphaBeta},
-    optimizer::draws::Draws,
+    optimizer::Draws,
 };
 use std::f64::consts::{PI, TAU};
 

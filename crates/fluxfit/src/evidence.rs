@@ -13,8 +13,8 @@ pub use crate::identification::{
         finding::{Finding, Trust},
         misfit::Misfit,
         output::OutputFit,
-        output_errors::Nuisance,
-        readings::ReadingTrial,
+        output_errors::FaultEstimate,
+        readings::TimingTrial,
         saturation::{Apparent, Flux, SaturationFinding},
         steady::{SteadyFit, operating_points},
         swarm::Search,
@@ -22,6 +22,6 @@ pub use crate::identification::{
     },
     judge::verdict::{IDENTIFIED, WEAK},
     prepare::model::{ModelChoice, ModelReason, SLOWEST_CONTROL, choose as choose_model},
-    request::{Provenance, VOLTAGE_ACCURACY},
+    request::{Provenance, Resolved, VOLTAGE_ACCURACY},
     solve::Identification,
 };

@@ -34,8 +34,8 @@ impl CurrentLoopEntry {
             |kp: Option<Gain>| AxisGains { kp: kp.map(|kp| GainEntry::of(kp, "V/A")), ki: found.ki.map(|ki| GainEntry::of(ki, "V/(A s)")) };
         Self {
             bandwidth_hz: found.bandwidth,
-            control_rate_hz: found.control_rate.0,
-            control_rate_stated: found.control_rate.1 == Provenance::Stated,
+            control_rate_hz: found.control_rate.value,
+            control_rate_stated: found.control_rate.provenance == Provenance::Stated,
             delay_periods: DELAY_PERIODS,
             phase_margin_deg: found.phase_margin(),
             highest_bandwidth_hz: found.highest_bandwidth(),

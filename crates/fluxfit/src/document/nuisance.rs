@@ -2,8 +2,8 @@
 
 use super::{by_key::ByKey, finite::finite};
 use crate::{
-    evidence::{Identification, Nuisance, Provenance},
-    steady::zero_order_hold::VoltageTiming,
+    evidence::{FaultEstimate, Identification, Provenance},
+    steady::zero_order_hold::SteadyVoltageTiming,
 };
 use serde::Serialize;
 
@@ -21,7 +21,7 @@ pub struct NuisanceEntries {
 impl NuisanceEntries {
     pub(super) fn of(answer: &Identification) -> Self {
         let found = if let Some(fit) = &answer.output {
-            fit.nuisance.iter().map(|found| (found.unknown.key(), NuisanceEntry::of(found))).collect()
+            fit.fault_estimates.iter().map(|found| (found.unknown.key(), NuisanceEntry::of(found))).collect()
         } else if let Some(fit) = &answer.steady {
             vec![("dead_time_voltage", NuisanceEntry::AlongCurrent { along_current: fit.voltage_losses.clone() })]
         } else {
@@ -53,7 +53,7 @@ pub enum NuisanceEntry {
 }
 
 impl NuisanceEntry {
-    fn of(found: &Nuisance) -> Self {
+    fn of(found: &FaultEstimate) -> Self {
         Self::Number { value: found.value, unit: found.unknown.unit(), standard_error: finite(found.standard_error) }
     }
 }
@@ -74,11 +74,12 @@ pub struct VoltageTimingEntry {
 
 impl VoltageTimingEntry {
     pub(super) fn of(answer: &Identification) -> Option<Self> {
-        let of_currents = answer.output.as_ref().map(|fit| (fit.voltage_reading.0.key(), fit.voltage_reading.1));
-        let of_points = answer.steady.as_ref().map(|fit| match fit.voltage_timing {
-            (VoltageTiming::Centered, provenance) => ("centered", provenance),
-            (VoltageTiming::Compensated, provenance) => ("compensated", provenance),
-        });
+        let of_currents = answer.output.as_ref().map(|fit| (fit.voltage_timing.value.key(), fit.voltage_timing.provenance));
+        let key = |timing| match timing {
+            SteadyVoltageTiming::Centered => "centered",
+            SteadyVoltageTiming::Compensated => "compensated",
+        };
+        let of_points = answer.steady.as_ref().map(|fit| (key(fit.voltage_timing.value), fit.voltage_timing.provenance));
         let (value, provenance) = of_currents.or(of_points)?;
         let from = match provenance {
             Provenance::Stated => "stated",

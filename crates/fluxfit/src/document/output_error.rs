@@ -1,7 +1,7 @@
 //! `diagnostics.output_error` of an identification: the fit of the simulated currents.
 
 use super::{by_parameter::ByParameter, finite::finite};
-use crate::evidence::{FaultOutcome, FaultTrial, OutputFit, ReadingTrial};
+use crate::evidence::{FaultOutcome, FaultTrial, OutputFit, TimingTrial};
 use serde::Serialize;
 
 /// The fit of the simulated currents, and everything that was tried.
@@ -26,8 +26,8 @@ impl OutputErrorEntry {
             rows: fit.stretches.iter().map(|rows| [rows.start, rows.end]).collect(),
             cost: fit.cost,
             correlation_of_neighbours: finite(fit.correlation_of_neighbours),
-            readings: fit.readings.iter().map(TimingEntry::of).collect(),
-            terms: fit.terms.iter().map(TermEntry::of).collect(),
+            readings: fit.timings.iter().map(TimingEntry::of).collect(),
+            terms: fit.fault_trials.iter().map(TermEntry::of).collect(),
         }
     }
 }
@@ -45,9 +45,9 @@ pub struct TimingEntry {
 }
 
 impl TimingEntry {
-    fn of(tried: &ReadingTrial) -> Self {
+    fn of(tried: &TimingTrial) -> Self {
         Self {
-            voltage_timing: tried.reading.key().to_owned(),
+            voltage_timing: tried.timing.key().to_owned(),
             residual_rms: finite(tried.mean_square().sqrt()),
             raw: tried.polished.drive.motor.to_array().map(finite).into(),
         }

@@ -65,7 +65,7 @@ impl StudyDocument {
         Self {
             schema: STUDY,
             model: fitness.key(),
-            voltage_reading: fitness.voltage_reading(),
+            voltage_reading: fitness.voltage_timing(),
             cost_unit: fitness.unit(),
             seed: facts.settings.seed,
             runs: facts.runs,

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     error::{Error, ErrorKind},
     motor::PARAMETERS,
-    objective::acting_voltage::VoltageReading,
+    objective::acting_voltage::VoltageTiming,
     optimizer::{Bounds, Method, SearchSettings},
 };
 
@@ -32,7 +32,7 @@ pub struct Request {
     pub windows: Vec<(f64, f64)>,
     /// When, relative to its row, a logged voltage acts. `None`: the output error finds it; the steady model takes the voltages as
     /// centred on the row and counts the doubt as systematic uncertainty.
-    pub voltage_timing: Option<VoltageReading>,
+    pub voltage_timing: Option<VoltageTiming>,
     /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
     pub voltage_accuracy: f64,
     /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL): index it with
@@ -96,6 +96,15 @@ pub enum Provenance {
     Found,
     /// It is assumed, and the doubt counted as uncertainty.
     Assumed,
+}
+
+/// A setting as it was used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolved<T> {
+    /// Its value.
+    pub value: T,
+    /// Where the value comes from.
+    pub provenance: Provenance,
 }
 
 impl Provenance {

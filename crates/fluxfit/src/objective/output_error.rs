@@ -16,7 +16,7 @@
 //! A segment's first current and, of centred voltages, its first vector are not in the log; they are solved for inside, so that the cost
 //! is the smallest over them.
 
-use super::{acting_voltage::VoltageReading, adjustable::Adjustable, simulated_segment::SimulatedSegment};
+use super::{acting_voltage::VoltageTiming, adjustable::Adjustable, simulated_segment::SimulatedSegment};
 use crate::{
     error::{Error, ErrorKind},
     faults::Faults,
@@ -47,7 +47,7 @@ impl OutputError {
     ///
     /// # Errors
     /// As [`of_rows`](Self::of_rows).
-    pub fn of(log: &Log, reading: VoltageReading) -> Result<Self, Error> {
+    pub fn of(log: &Log, reading: VoltageTiming) -> Result<Self, Error> {
         let segments: Vec<_> = log.segments().iter().map(|segment| segment.rows.clone()).collect();
         Self::of_rows(log, &segments, reading)
     }
@@ -56,7 +56,7 @@ impl OutputError {
     ///
     /// # Errors
     /// If none is, or if the log's channels were sampled at different instants.
-    pub fn of_rows(log: &Log, stretches: &[Range<usize>], reading: VoltageReading) -> Result<Self, Error> {
+    pub fn of_rows(log: &Log, stretches: &[Range<usize>], reading: VoltageTiming) -> Result<Self, Error> {
         if log.is_interpolated() {
             return Err(ErrorKind::Interpolated.into());
         }

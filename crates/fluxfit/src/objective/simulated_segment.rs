@@ -5,7 +5,7 @@
 //! linearly: with each simulation runs the response to each of these, and least squares solves for them.
 
 use super::{
-    acting_voltage::{Period, VoltageReading, angles, periods},
+    acting_voltage::{Period, VoltageTiming, angles, periods},
     adjustable::Adjustable,
     transition::Transition,
     transition_table::TransitionTable,
@@ -52,7 +52,7 @@ pub(super) struct SimulatedSegment {
 }
 
 impl SimulatedSegment {
-    pub(super) fn of(log: &Log, rows: &Range<usize>, reading: VoltageReading) -> Self {
+    pub(super) fn of(log: &Log, rows: &Range<usize>, reading: VoltageTiming) -> Self {
         let angles = angles(log, rows);
         let periods = periods(log, rows, &angles, reading);
         let (lost, columns) = (reading.lost_rows(), log.columns());
@@ -65,7 +65,7 @@ impl SimulatedSegment {
         let measured = rows.clone().zip(frames).map(in_rotor_frame).collect();
         let length = (columns.t[rows.end - 1] - columns.t[rows.start]) / periods.len() as f64;
         let even = periods.iter().all(|period| (period.length / length - 1.0).abs() < EVEN).then_some(length);
-        let alternating = if reading == VoltageReading::Centered { alternating(&periods) } else { Vec::new() };
+        let alternating = if reading == VoltageTiming::Centered { alternating(&periods) } else { Vec::new() };
         Self { rows, periods, measured, theta_e, angle_known: angles.known, alternating, even }
     }
 

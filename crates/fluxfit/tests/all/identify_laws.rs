@@ -12,14 +12,14 @@ use fluxfit::{
     identify,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
-    optimizer::draws::Draws,
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
+    optimizer::Draws,
 };
 
 use proptest::prelude::*;
 
 /// Steady voltages do not know their delay.
-const NEXT: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
+const NEXT: VoltageTiming = VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
 /// Rows of an operating point.
 const ROWS: usize = 60;
@@ -284,7 +284,7 @@ proptest! {
         let settings = Request {
             // Thirty rows to the row.
             windows: if named { vec![(t[0], t[29]), (t[t.len() - 30], t[t.len() - 1])] } else { Vec::new() },
-            voltage_timing: [None, Some(VoltageReading::Centered), Some(NEXT)][timing],
+            voltage_timing: [None, Some(VoltageTiming::Centered), Some(NEXT)][timing],
             voltage_accuracy: if exact { 0.0 } else { 1e-4 },
             swarm: Swarm::Off,
             ..Request::default()

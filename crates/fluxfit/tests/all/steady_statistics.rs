@@ -12,12 +12,12 @@ use fluxfit::{
     identify,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
-    optimizer::draws::Draws,
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
+    optimizer::Draws,
 };
 
 /// Steady voltages do not know their delay.
-const NEXT: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
+const NEXT: VoltageTiming = VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
 const TRUTH: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 

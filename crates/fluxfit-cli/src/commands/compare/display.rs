@@ -14,7 +14,7 @@ pub(crate) fn show(name: &str, facts: &Comparison, methods: &[(MethodStudy, f64)
     let fitness = &facts.problem.fitness;
     let (minimum, index) = (fitness.minimum_label(), fitness.minimum_subscript());
     let rows: Vec<String> = facts.problem.rows.iter().map(ToString::to_string).collect();
-    let reading = fitness.voltage_reading().map(|reading| format!(", voltages read as {reading}")).unwrap_or_default();
+    let reading = fitness.voltage_timing().map(|reading| format!(", voltages read as {reading}")).unwrap_or_default();
     let mut text = format!(
         "{HEADING}{name}{HEADING:#}\n{} on {} rows{reading}; {} runs of each method, population {}, {} iterations, seed {}\nsearch box {}\n",
         fitness.label(),

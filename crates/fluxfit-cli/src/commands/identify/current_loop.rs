@@ -3,19 +3,19 @@
 use crate::terminal::{self, DIM, HEADING, table};
 use fluxfit::{
     current_loop::{CurrentLoop, DELAY_PERIODS, Gain},
-    evidence::Provenance,
+    evidence::{Provenance, Resolved},
 };
 use fluxfit_units::significant;
 
 /// Shows the gains.
 pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {
-    let (rate, from) = found.control_rate;
+    let Resolved { value: rate, provenance } = found.control_rate;
     let heading = format!(
         "\n{HEADING}Current controllers{HEADING:#} for {} Hz: phase margin {:.0} degrees with {DELAY_PERIODS} periods of delay at {} Hz{}\n",
         significant(found.bandwidth, 4),
         found.phase_margin(),
         significant(rate, 5),
-        if from == Provenance::Stated { "" } else { ", the log's rate" },
+        if provenance == Provenance::Stated { "" } else { ", the log's rate" },
     );
     let rows = [("K_p d", found.kp_d, "V/A", "L_d"), ("K_p q", found.kp_q, "V/A", "L_q"), ("K_i d, q", found.ki, "V/(A s)", "R_s")];
     let rows = rows.map(|(name, gain, unit, parameter)| {

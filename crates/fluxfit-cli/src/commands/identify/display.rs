@@ -148,15 +148,15 @@ fn model(found: &Identification) -> String {
     let text = format!("{HEADING}Model{HEADING:#}: {}\n  {DIM}{reason}{DIM:#}", model.label());
     let Some(fit) = &found.output else { return text };
     let rms = fit.residual_rms();
-    let how = if fit.voltage_reading.1 == Provenance::Stated { "as stated" } else { "found" };
+    let how = if fit.voltage_timing.provenance == Provenance::Stated { "as stated" } else { "found" };
     let mut text = format!(
         "{text}\nCurrents of {} rows simulated; they miss the measured ones by {} (d) and {} (q) rms.\nVoltages read as {} ({how}).",
         fit.residuals.len() / 2,
         amperes(rms.d),
         amperes(rms.q),
-        fit.voltage_reading.0.label(),
+        fit.voltage_timing.value.label(),
     );
-    if !fit.nuisance.is_empty() {
+    if !fit.fault_estimates.is_empty() {
         text += &format!("\n\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit).trim_end());
     }
     for (outcome, lines) in [("Not taken", not_taken(fit, false)), ("Not tried without theta_e", not_taken(fit, true))] {
@@ -182,7 +182,7 @@ fn amperes(current: f64) -> String {
 const INTERVAL: f64 = 1.959_964;
 
 fn beside(fit: &OutputFit) -> String {
-    let rows = fit.nuisance.iter().map(|nuisance| {
+    let rows = fit.fault_estimates.iter().map(|nuisance| {
         let [value, margin, unit] = format_unknown(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
         // Units stand at the left of their column.
         (nuisance.unknown.label(), value, margin, unit)
@@ -198,7 +198,7 @@ fn beside(fit: &OutputFit) -> String {
 /// Faults that the answer does without, in few words: for want of the electrical angle, or for any other reason.
 fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
     let mut words = Vec::new();
-    for tried in &fit.terms {
+    for tried in &fit.fault_trials {
         let left_out = if needs_angle {
             tried.outcome == FaultOutcome::NeedsAngle
         } else {

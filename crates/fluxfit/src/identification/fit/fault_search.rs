@@ -22,7 +22,7 @@ use crate::{
     faults::{Fault, Faults},
     levenberg_marquardt::{PriorResidual, jacobian, polish_unknowns},
     objective::{
-        acting_voltage::VoltageReading,
+        acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
@@ -81,7 +81,7 @@ pub(crate) const LEAST_RESIDUAL: f64 = 1e-4;
 /// The search, and where it stands.
 pub(crate) struct FaultSearch<'a> {
     /// The output error under each reading of the voltages.
-    pub(crate) objectives: &'a [(VoltageReading, OutputError)],
+    pub(crate) objectives: &'a [(VoltageTiming, OutputError)],
     /// The reading that fits best now, by its place among them.
     pub(crate) reading: usize,
     pub(crate) priors: &'a [PriorResidual],
