@@ -6,7 +6,7 @@
 //! Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 3.7.
 
 use fluxfit::{
-    Judgement, Model, Request,
+    Judgement, Model, Request, TimeWindow,
     evidence::Identification,
     identify,
     levenberg_marquardt::{MOTOR, jacobian},
@@ -35,7 +35,7 @@ pub struct Case {
     /// Its motor.
     pub motor: Motor,
     /// From when to when, s; none: all of it.
-    pub window: Option<(f64, f64)>,
+    pub window: Option<TimeWindow>,
 }
 
 /// What many draws make of a parameter.

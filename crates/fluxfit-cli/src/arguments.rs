@@ -2,12 +2,7 @@
 //! stand in its own file.
 
 use clap::{Args, ValueEnum, builder::Resettable};
-use fluxfit::{
-    Model,
-    motor::Parameter,
-    objective::acting_voltage::{VoltageFrame, VoltageTiming},
-    optimizer::METHODS,
-};
+use fluxfit::{Model, TimeWindow, VoltageFrame, VoltageTiming, motor::Parameter, optimizer::METHODS};
 use fluxfit_log::CONTAINERS;
 use fluxfit_units::{Unit, wording::choice};
 use std::path::PathBuf;
@@ -25,7 +20,7 @@ pub(crate) struct LogArguments {
     ///
     /// [default: all rows; the steady model finds its windows]
     #[arg(long, value_name = "T0:T1", value_parser = fluxfit_units::parse_window, allow_hyphen_values = true)]
-    pub(crate) window: Vec<(f64, f64)>,
+    pub(crate) window: Vec<TimeWindow>,
     /// When the voltages ud, uq of a row are applied
     ///
     /// Either they are the mean of the two periods around the row (centered), or the vector of one period that begins 0, 1 or 2 periods

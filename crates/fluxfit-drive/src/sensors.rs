@@ -86,7 +86,7 @@ impl Sensors {
 
 /// One sample of all sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measurement {
+pub struct Sample {
     /// Current, A.
     pub i: AlphaBeta,
     /// Electrical angle, rad, from -pi to pi.
@@ -115,9 +115,9 @@ impl SensorModel {
     }
 
     /// Samples the plant at time `t`, s.
-    pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Measurement {
+    pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Sample {
         let (theta_m, omega_m) = self.rotor(plant);
-        Measurement {
+        Sample {
             i: self.currents(plant.current().to_alpha_beta(plant.theta_e())),
             theta_e: wrapped(self.pole_pairs * theta_m + self.settings.angle_offset),
             omega_e: self.pole_pairs * omega_m,

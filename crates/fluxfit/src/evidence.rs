@@ -1,11 +1,7 @@
 //! What an answer rests on: the fits behind it, their uncertainty, and what was tried.
 
 pub use crate::identification::{
-    explain::{
-        conventions::{Candidate, Convention, Ratio, TOLERANCE, compare_with_nameplate, patterns::Pattern},
-        measurement::{Measurement, Place, Promised},
-        remedy::Also,
-    },
+    explain::conventions::{Candidate, Convention, Ratio, TOLERANCE, compare_with_nameplate, patterns::Pattern},
     fit::{
         estimate::Estimate,
         excitation::{Direction, Excitation},

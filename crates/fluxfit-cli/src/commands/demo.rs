@@ -3,7 +3,7 @@
 use super::{Status, compare, identify::display, report};
 use crate::{error::CommandError, terminal};
 use clap::Args;
-use fluxfit::{Log, Request, identify, optimizer::SearchSettings, paper, study::comparison::ComparisonRequest};
+use fluxfit::{Error, Log, Request, identify, optimizer::SearchSettings, paper, study::comparison::ComparisonRequest};
 use fluxfit_drive::{Scenario, simulate};
 use fluxfit_report::{Report, figures, html};
 use std::path::PathBuf;
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     let log = terminal::working("simulating".to_owned(), || simulate(&scenario, 0, || ()))?.log()?;
     let search = SearchSettings { seed: arguments.seed, ..SearchSettings::default() };
     let request = Request { search, bounds: paper::SEARCH_BOX.map(|upper| Some((0.0, upper))), ..Request::default() };
-    let answer = identify(&log, &request)?;
+    let answer = identify(&log, &request).map_err(Error::from)?;
     let found = &answer.identification;
     display::show(NAME, &answer)?;
 

@@ -16,7 +16,6 @@ use fluxfit::{
     Answer, Known, Request, Step, Swarm, Warning, identify_with_progress,
     motor::{PARAMETERS, Parameter},
     optimizer::Method,
-    suspect_units,
 };
 use fluxfit_answer::export::Target;
 use fluxfit_report::{Report, figures, html};
@@ -140,10 +139,9 @@ fn identified(input: &input::Input, request: &Request) -> Result<Answer, Command
     };
     let answer = identify_with_progress(&input.log, request, &show);
     interrupt::be_gentle(false);
-    answer.map_err(|error| {
-        // A log without an operating point may be one in the wrong units: its rows still say so.
-        suspect_units(&input.log, request).iter().for_each(terminal::warn);
-        input::of_log(&input.name, error)
+    answer.map_err(|found| {
+        found.suspected_units.iter().for_each(terminal::warn);
+        input::of_log(&input.name, found.error)
     })
 }
 

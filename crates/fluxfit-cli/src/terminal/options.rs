@@ -1,6 +1,6 @@
 //! How this program does what the library proposes: the options behind remedies, warnings and errors.
 
-use fluxfit::{ErrorKind, Remedy, Warning, evidence::Measurement};
+use fluxfit::{ErrorKind, Measurement, Remedy, Warning};
 
 /// The option that carries out a remedy.
 pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {

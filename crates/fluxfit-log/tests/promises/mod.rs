@@ -59,7 +59,7 @@ fn argument(bytes: &[u8]) {
     if let Some((_, lower, upper)) = one_line(parse_bounds(&text)) {
         assert!(lower.is_finite() && upper.is_finite() && lower < upper, "{lower} {upper}");
     }
-    if let Some((start, end)) = one_line(parse_window(&text)) {
+    if let Some(fluxfit::TimeWindow { from: start, to: end }) = one_line(parse_window(&text)) {
         assert!(start.is_finite() && end.is_finite() && start < end, "{start} {end}");
     }
 }
