@@ -42,6 +42,7 @@ pub struct Answer {
 
 /// A part of the log that the answer was not found from.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct HeldOut {
     /// Its rows.
     pub log: Log,

@@ -44,6 +44,7 @@ pub const MIN_PHASE_MARGIN: f64 = 60.0;
 
 /// Gains of both current controllers.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CurrentLoop {
     /// Bandwidth of the closed loop (-3 dB, without delay), Hz.
     pub bandwidth: f64,
@@ -75,6 +76,7 @@ pub fn control_rate(log: &Log, request: &Request) -> Result<Resolved<f64>, Error
 
 /// One gain, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Gain {
     /// Value.
     pub value: f64,

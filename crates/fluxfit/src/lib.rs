@@ -26,14 +26,15 @@
 //! | | |
 //! |---|---|
 //! | [`identify`], [`Request`], [`Answer`] | the one call, what is asked, everything that comes back |
-//! | [`Known`], [`Nameplate`], [`Model`], [`TimeWindow`], [`VoltageTiming`] | of a request: priors and fixed values, the data sheet, how the log is modelled and read |
+//! | [`Known`], [`Nameplate`], [`Model`] | of a request: priors and fixed values, the data sheet, how the log is modelled |
+//! | [`TimeWindow`], [`VoltageTiming`] | which part of the log is used; when its voltages act |
 //! | [`validate`](fn@validate), [`Given`], [`Validation`] | given parameters against another log |
 //! | [`Log`], [`Columns`], [`log::LogBuilder`] | what a drive recorded, checked on the way in: whole columns, or row by row |
 //! | [`Motor`], [`Parameter`], [`frames`] | the motor's equations; the dq frame and its convention |
 //! | [`Judgement`], [`Verdict`] | one parameter: value, interval and how well it is determined |
 //! | [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
 //! | [`Promised`], [`Measurement`], [`Place`], [`Also`] | of a remedy: what to measure, where, and what it would bring |
-//! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; a parameter that the log cannot tell is a verdict, not an error |
+//! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is a verdict, not an error |
 //! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |

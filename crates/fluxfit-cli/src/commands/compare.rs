@@ -158,7 +158,6 @@ pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparis
     let starts = Mutex::new(Vec::new());
     let begun = || starts.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let show = |step: ComparisonStep| match step {
-        ComparisonStep::Minimum => ControlFlow::Continue(()),
         ComparisonStep::Method(method) => {
             progress.turn_to("comparing");
             // Before the line says that they begin: whoever has read it may interrupt them.
@@ -177,6 +176,7 @@ pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparis
             progress.turn_to("polishing the lowest end of a swarm");
             ControlFlow::Continue(())
         }
+        _ => ControlFlow::Continue(()),
     };
     let comparison = compare(log, asked, &show);
     interrupt::be_gentle(false);

@@ -3,10 +3,10 @@
 mod display;
 
 use super::{Status, input};
-use crate::{arguments::ColumnArguments, error::CommandError, terminal};
+use crate::{arguments::ColumnArguments, error::CommandError, json, terminal};
 use clap::Args;
 use fluxfit_files::{check_writable, write_atomically};
-use fluxfit_log::inspect;
+use fluxfit_log::{document::InspectionDocument, inspect};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -19,6 +19,9 @@ pub(crate) struct Inspect {
     log: PathBuf,
     #[command(flatten)]
     columns: ColumnArguments,
+    /// Print the result as one JSON document and nothing else
+    #[arg(long, help_heading = "Output")]
+    json: bool,
     /// Write a mapping file with the columns recognized, to be completed by hand
     #[arg(short, long, help_heading = "Output", value_name = "MAPPING.toml")]
     output: Option<PathBuf>,
@@ -31,7 +34,9 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     }
     let options = input::options(&arguments.columns, None)?;
     let inspection = terminal::working("reading".to_owned(), || inspect(&arguments.log, &options))?;
-    if arguments.output.as_deref() != Some(Path::new("-")) {
+    if arguments.json {
+        terminal::print(&json::text(&InspectionDocument::of(&inspection))?)?;
+    } else if arguments.output.as_deref() != Some(Path::new("-")) {
         display::show(&input::name(&arguments.log), &inspection)?;
     }
     if let Some(path) = arguments.output.as_deref() {
@@ -49,8 +54,11 @@ fn mapping_file(mapping: &str) -> String {
     format!("# fluxfit identify LOG --mapping THIS_FILE\n{mapping}")
 }
 
-/// Refuses to write over what is read.
+/// Refuses to write over what is read, or into the document.
 fn check_output(path: &Path, arguments: &Inspect) -> Result<(), CommandError> {
+    if arguments.json && path.as_os_str() == "-" {
+        return Err(CommandError::Usage("--json and -o - both print on standard output; name a file for the mapping".to_owned()));
+    }
     let place = |path: &Path| fs::canonicalize(path).ok().filter(|path| path.is_file());
     let read = [Some(arguments.log.as_path()), arguments.columns.mapping.as_deref()];
     if place(path).is_some_and(|written| read.into_iter().flatten().filter_map(place).any(|read| read == written)) {

@@ -31,7 +31,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
 
 /// The model, the reason for its choice, and the effects identified in addition to the motor.
 fn model(found: &Identification) -> Markup {
-    let ModelChoice { model, reason: why } = &found.model;
+    let ModelChoice { model, reason: why, .. } = &found.model;
     html! {
         p {
             strong { "Model: " (model.label()) } " (" (prose(&why.to_string())) "). "

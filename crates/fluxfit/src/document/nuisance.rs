@@ -10,6 +10,7 @@ use serde::Serialize;
 /// The voltage timing and the drive's faults.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct NuisanceEntries {
     /// How the voltage columns were read; null where nothing was fitted.
     pub voltage_timing: Option<VoltageTimingEntry>,
@@ -35,6 +36,7 @@ impl NuisanceEntries {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum NuisanceEntry {
     /// One number, found by the output error.
     Number {
@@ -61,6 +63,7 @@ impl NuisanceEntry {
 /// How the voltage columns were read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct VoltageTimingEntry {
     /// Output error: `centered`, or the delay in sample periods, with the frame if it is not that of the middle of the period. Steady
     /// model: `centered` or `compensated`.

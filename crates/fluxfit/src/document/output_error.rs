@@ -7,6 +7,7 @@ use serde::Serialize;
 /// The fit of the simulated currents, and everything that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct OutputErrorEntry {
     /// Stretches of rows that were compared: the first row, counted from 0, and the row after the last.
     pub rows: Vec<[usize; 2]>,
@@ -35,6 +36,7 @@ impl OutputErrorEntry {
 /// A voltage timing that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TimingEntry {
     /// The timing, named as in `nuisance.voltage_timing`.
     pub voltage_timing: String,
@@ -57,6 +59,7 @@ impl TimingEntry {
 /// A fault of the drive that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TermEntry {
     /// Its name.
     pub term: &'static str,

@@ -41,6 +41,7 @@ pub struct Faults {
 
 /// A fault of the drive, or of the model of its motor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Fault {
     /// Dead time and device drops.
     DeadTime,

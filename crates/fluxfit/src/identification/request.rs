@@ -63,8 +63,8 @@ pub enum Known {
     /// Nothing.
     #[default]
     Nothing,
-    /// Its value, SI, taken as exact; above zero, or zero for a resistance or a flux. Its verdict is then [`Verdict::Identified`](crate::Verdict::Identified), its reason
-    /// [`Reason::Given`](crate::Reason::Given).
+    /// Its value, SI, taken as exact; above zero, or zero for a resistance or a flux. Its verdict is then
+    /// [`Verdict::Identified`](crate::Verdict::Identified), its reason [`Reason::Given`](crate::Reason::Given).
     Fixed(f64),
     /// A value with a standard error: one more measurement, weighed against the log. Its contribution to each interval is
     /// [`Systematic::prior`](crate::evidence::Systematic::prior).

@@ -63,7 +63,7 @@ fn an_error_says_what_may_be_behind_it() {
     assert!(matches!(error.kind(), ErrorKind::Window { from: 10.0, to: 11.0, .. }), "{error}");
     let Some(Warning::Convention(convention)) = &error.suspected_units else { panic!("{error:?}") };
     assert_eq!(convention.ratios.len(), 1);
-    // Of the voltage across the inductances too little is taken off at a quarter of the speed, so the flux looks more than four times as large.
+    // At a quarter of the speed too little is taken off for the inductances, so the flux looks more than four times as large.
     assert!((4.0..5.0).contains(&convention.ratios[0].ratio), "{convention:?}");
     assert_eq!(identify(&log(1.0), &request).unwrap_err().suspected_units, None);
     // Whoever does not care has the plain error.

@@ -35,7 +35,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     found.warnings.iter().for_each(terminal::warn);
     answer.current_loop.as_ref().map(super::current_loop::show).transpose()?;
     match &answer.held_out {
-        Some(HeldOut { log, validation: Some(validation) }) => {
+        Some(HeldOut { log, validation: Some(validation), .. }) => {
             terminal::print("\n")?;
             crate::commands::validate::display::show("what was held out", "This answer", log, validation)
         }
@@ -144,7 +144,7 @@ fn wrapped(indent: &str, text: &str) -> String {
 
 /// The model that answered, and what it found beside the motor.
 fn model(found: &Identification) -> String {
-    let ModelChoice { model, reason } = &found.model;
+    let ModelChoice { model, reason, .. } = &found.model;
     let text = format!("{HEADING}Model{HEADING:#}: {}\n  {DIM}{reason}{DIM:#}", model.label());
     let Some(fit) = &found.output else { return text };
     let rms = fit.residual_rms();

@@ -35,7 +35,7 @@ fn read(log: &Log, found: &Validation) -> String {
 
 fn parameters(found: &Validation) -> String {
     let rows = found.parameters.iter().map(|difference| {
-        let Difference { parameter, given, own } = *difference;
+        let Difference { parameter, given, own, .. } = *difference;
         let scale = Scale::for_value(parameter, given);
         let mut row = vec![parameter.symbol().to_owned()];
         let Some(own) = own else {

@@ -68,6 +68,7 @@ pub enum Remedy {
 
 /// What else helps beside a stretch with another i_d, in [`Remedy::AddStretch`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Also {
     /// Instead: a second speed or load, or R_s given.
     OrSecondPoint,

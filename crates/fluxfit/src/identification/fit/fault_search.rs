@@ -31,6 +31,7 @@ use nalgebra::DVector;
 
 /// A fault that was tried.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FaultTrial {
     /// The fault.
     pub fault: Fault,
@@ -43,6 +44,7 @@ pub struct FaultTrial {
 
 /// Whether a fault was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FaultOutcome {
     /// It is part of the answer.
     Taken,

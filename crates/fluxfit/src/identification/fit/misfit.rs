@@ -18,6 +18,7 @@ const BISECTIONS: usize = 60;
 
 /// Contradiction between the points.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Misfit {
     /// Root of chi squared per degree of freedom under the noise and the accuracy stated.
     pub ratio: f64,

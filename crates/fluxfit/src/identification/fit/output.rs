@@ -37,6 +37,7 @@ use std::ops::Range;
 
 /// The simulated currents, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct OutputFit {
     /// The motor, and what was found to stand between it and the log.
     pub drive: Adjustable,

@@ -23,6 +23,7 @@ use nalgebra::DMatrix;
 
 /// A number of the drive beside the motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct FaultEstimate {
     /// Which.
     pub unknown: Unknown,

@@ -24,6 +24,7 @@ pub(crate) const VERY_STRONG: f64 = 10.0;
 
 /// A trial of one timing.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct TimingTrial {
     /// The timing.
     pub timing: VoltageTiming,

@@ -28,6 +28,7 @@ use crate::{
 
 /// The operating points, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SteadyFit {
     /// The windows that carried it.
     pub operating_points: Vec<OperatingPoint>,
