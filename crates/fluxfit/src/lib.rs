@@ -34,7 +34,7 @@
 //! | [`Judgement`], [`Verdict`] | one parameter: value, interval and how well it is determined |
 //! | [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
 //! | [`Promised`], [`Measurement`], [`Place`], [`Also`] | of a remedy: what to measure, where, and what it would bring |
-//! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is a verdict, not an error |
+//! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is no error but a verdict |
 //! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
