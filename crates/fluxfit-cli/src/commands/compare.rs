@@ -162,9 +162,10 @@ pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparis
             progress.turn_to("comparing");
             // Before the line says that they begin: whoever has read it may interrupt them.
             interrupt::be_gentle(true);
+            let go_on = interrupt::go_on();
             terminal::detail(|| format!("{}: {} runs begin", method.label(), asked.runs));
             begun().push((Some(method), Instant::now()));
-            interrupt::go_on()
+            go_on
         }
         ComparisonStep::Iteration => {
             progress.add(1);

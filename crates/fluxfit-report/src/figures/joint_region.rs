@@ -117,7 +117,7 @@ fn paint(area: &Area, pair: &ParameterPair, size: Size) -> Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fluxfit::{Columns, Log, Request, frames::Dq, identify, paper};
+    use fluxfit::{Columns, Log, Request, evidence::ParameterUncertainty, frames::Dq, identify, paper};
 
     /// That of any log, with this value and standard error.
     fn judgement(parameter: Parameter, raw: f64, statistical: f64) -> Judgement {
@@ -132,6 +132,7 @@ mod tests {
         }
         let mut judgement = identify(&Log::new(columns).unwrap(), &Request::default()).unwrap().parameter(parameter).clone();
         judgement.raw = raw;
+        judgement.uncertainty = ParameterUncertainty::default();
         judgement.uncertainty.statistical = statistical;
         judgement
     }
