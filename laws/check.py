@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The laws of ARCHITECTURE.md that a search can check: prints every violation, and ends with status 1 if there is one.
+"""Checks the rules of ARCHITECTURE.md that a search of the source can check. Prints every violation; exit status 1 if there is one.
 
-    laws/check.py [FOLDER]    of this working tree, or of the one in FOLDER
+    laws/check.py [FOLDER]    checks this working tree, or the one in FOLDER
 """
 
 import os

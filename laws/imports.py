@@ -1,7 +1,7 @@
-"""Imports between the files of a crate, and the circles in them.
+"""Finds files of a crate that import each other in a circle.
 
 A file imports what its `use` lines and the paths in its code name; a re-export (`pub use`) counts as the file that it comes from, and
-a parent that only declares or re-exports its children imports none of them. Tests are left out.
+a parent that only declares or re-exports its children imports none of them. Tests are not checked.
 """
 
 from collections import defaultdict
@@ -10,14 +10,14 @@ from modules import load, resolve
 
 
 def imports(root_file):
-    """For each file of the crate: the files that it imports, each with a place and a path as evidence."""
+    """For each file of the crate: the files that it imports, each with the line and the path that import it."""
     root = load(root_file)
     edges = defaultdict(dict)
 
     def visit(module):
         for path, line, name in module.mentions:
             file, target = resolve(module, path, root)
-            # A module that is only named imports nothing yet: what is taken from it is a path in the code, `module::thing`.
+            # `use module;` alone imports nothing: the code then names what it uses as `module::thing`, which is found there.
             if file and file != module.file and not (name and name != "*" and target):
                 edges[module.file].setdefault(file, f"{module.file}:{line}: {'::'.join(path)}")
         for child in module.children.values():
@@ -28,7 +28,7 @@ def imports(root_file):
 
 
 def circles(edges):
-    """The strongly connected components of more than one file, after Tarjan (1972)."""
+    """The strongly connected components of more than one file, by Tarjan's algorithm (1972)."""
     index, low, stack, found = {}, {}, [], []
 
     def visit(file):
@@ -53,7 +53,7 @@ def circles(edges):
 
 
 def violations(root_files):
-    """A line for each circle, and one for each import within it."""
+    """One line for each circle, and one for each import in it."""
     for root_file in root_files:
         edges = imports(root_file)
         for component in circles(edges):

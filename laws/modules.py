@@ -1,4 +1,4 @@
-"""The modules of a crate: which file holds each, what it brings into scope, and which file a path leads to."""
+"""The modules of a crate: the file of each, the names that it imports, and the file that a path refers to."""
 
 import re
 from dataclasses import dataclass, field
@@ -15,31 +15,31 @@ INLINE_PATH = re.compile(r"(?<![\w:])(?:r#)?\w+(?:\s*::\s*\w+)+")
 
 @dataclass
 class Module:
-    """A module: its file, its children, the names it imports, and the paths that its code mentions."""
+    """A module: its file, its children, the names that it imports, and the paths in its code."""
 
     file: Path
     parent: "Module | None"
     children: dict = field(default_factory=dict)
-    # Names that its own code defines; those of methods are among them and do no harm.
+    # Names that its own code defines. Names of methods are included; they do not change the result.
     items: set = field(default_factory=set)
-    # Name in scope to the path that it stands for; a re-export is one too.
+    # From each imported name to its path, re-exports included.
     names: dict = field(default_factory=dict)
     # Paths whose every name is imported: `use path::*`.
     globs: list = field(default_factory=list)
-    # (path, line) of every import that is no re-export, and of every path within the code.
+    # (path, line, name) of every import that is not a re-export, and of every path in the code.
     mentions: list = field(default_factory=list)
 
 
 def load(root):
     """The module tree that begins at a crate's root file, without its tests."""
     module = Module(root, None)
-    # The children of lib.rs, main.rs and mod.rs stand beside them; those of name.rs in the folder name/.
+    # The child modules of lib.rs, main.rs and mod.rs are in the same folder; those of name.rs are in the folder name/.
     read(module, without_tests(root.read_text()), root.parent, 0)
     return module
 
 
 def read(module, text, folder, first_line):
-    """Reads a module's text; `folder` holds its children, `first_line` is what its lines count from."""
+    """Reads a module's text; `folder` contains its child modules, `first_line` is the number of its first line."""
     blanked = code(text)
     elsewhere = {name: path for path, name in PATH_ATTRIBUTE.findall(text)}
     position = 0
@@ -68,7 +68,7 @@ def read(module, text, folder, first_line):
                 module.globs.append(path)
             else:
                 module.names[name] = path
-            # What is only passed on is not imported; what is passed on and used is.
+            # A re-export counts as an import only if the code also uses the name.
             if not use.group(1) or re.search(rf"\b{re.escape(name)}\b", rest):
                 module.mentions.append((path, line, name))
     for path in INLINE_PATH.finditer(rest):
@@ -77,7 +77,7 @@ def read(module, text, folder, first_line):
 
 
 def child_file(parent_file, folder, name, elsewhere):
-    """The file of `mod name;` and the folder of its own children."""
+    """The file of `mod name;` and the folder of its child modules."""
     if elsewhere:
         file = parent_file.parent / elsewhere
         return file, file.parent if file.name == "mod.rs" else file.with_suffix("")
@@ -86,7 +86,7 @@ def child_file(parent_file, folder, name, elsewhere):
 
 
 def expanded(tree, prefix=()):
-    """The paths of a `use` tree, each with the name that it gets: `a::{b, c as d}` is a::b named b, and a::c named d."""
+    """The paths of a `use` tree, each with its name in the module: `a::{b, c as d}` is a::b named b, and a::c named d."""
     tree = tree.strip()
     if tree.startswith("{"):
         for branch in branches(tree[1 : tree.rindex("}")]):
@@ -104,7 +104,7 @@ def expanded(tree, prefix=()):
 
 
 def branches(text):
-    """Splits at the commas that stand in no inner braces."""
+    """Splits at the commas that are not in inner braces."""
     depth, start = 0, 0
     for position, character in enumerate(text):
         depth += (character == "{") - (character == "}")
@@ -116,7 +116,7 @@ def branches(text):
 
 
 def resolve(module, path, root, seen=frozenset()):
-    """What a path in a module's code leads to: the file that defines it and, where it is one, the module; (None, None) for other crates."""
+    """The file that defines what a path refers to and, if that is a module, the module; (None, None) for other crates."""
     first, rest = path[0], path[1:]
     if first == "crate":
         return descend(root, rest, root, seen)
@@ -138,7 +138,7 @@ def descend(module, path, root, seen):
     name, rest = path[0], path[1:]
     child = module.children.get(name)
     key = (id(module), name)
-    # A function may share the name of a module; what follows the name, or nothing, tells them apart.
+    # A function may have the name of a module: only a module is followed by a further name.
     if name in module.names and key not in seen and not (child and rest):
         file, target = resolve(module, module.names[name], root, seen | {key})
         if target and rest:

@@ -1,4 +1,4 @@
-"""The laws that a search of the text can check. Each rule yields one line per violation."""
+"""The rules. Each function checks the rule in its docstring and yields one line for each violation."""
 
 import re
 import subprocess
@@ -11,16 +11,16 @@ LONGEST_FILE = 600
 MOST_PUBLIC_TRAITS = 4
 LONGEST_COMMENT_LINE = 140
 
-# The faces: they parse arguments and may name them. Every other crate of crates/ is a library.
+# Crates with a user interface: they may name command-line options. Every other crate in crates/ is a library.
 FACES = {"fluxfit-cli"}
 
-# The crates that compute: double precision, nothing from outside, the same bits in every run.
+# The computing crates: double precision, no input from outside, the same bits in every run.
 COMPUTING = ("fluxfit", "fluxfit-optimize", "fluxfit-drive")
 
-# Names that say nothing of what a file holds.
+# File names that do not say what the file contains.
 EMPTY_NAMES = {"util", "utils", "common", "helper", "helpers", "types", "misc"}
 
-# Crates whose types are no part of our interface.
+# Crates whose types must not appear in the public interface.
 ALGEBRA = ("nalgebra", "levenberg_marquardt", "statrs")
 
 OPTION = re.compile(r"(?<![\w-])--[a-zA-Z]")
@@ -28,7 +28,7 @@ UNFINISHED = re.compile(r"\btodo!\(|\bunimplemented!\(|#\[ignore|FIXME|XXX")
 PANIC = re.compile(r"\b(?:panic|unreachable|(?:debug_)?assert(?:_eq|_ne)?)!\s*[({\[]")
 PUBLIC_TRAIT = re.compile(r"\bpub\s+(?:unsafe\s+)?trait\s+(\w+)")
 SINGLE_PRECISION = re.compile(r"\bf32\b")
-# Files, clocks, the environment; and maps whose order differs from run to run.
+# Files, clocks, the environment; maps whose order differs from run to run.
 OUTSIDE = re.compile(r"\bstd::(?:fs|env|net|process|time)\b|\bstd::\{[^;]*\b(?:fs|env|net|process|time)\b|\bHash(?:Map|Set)\b")
 ALGEBRA_IMPORT = re.compile(rf"\buse\s+(?:{'|'.join(ALGEBRA)})::([^;]+);")
 PUBLIC_FUNCTION = re.compile(r"\bpub\s+(?:const\s+)?fn\s[^{;]*")
@@ -36,7 +36,7 @@ PUBLIC_FIELD = re.compile(r"^\s*pub\s+\w+\s*:[^\n]*", re.M)
 
 
 def tracked(*patterns):
-    """The files under version control, and new ones, that fit a pattern."""
+    """The files that match a pattern: those under version control, and new ones that git does not ignore."""
     listed = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns], check=True, capture_output=True, text=True
     )
@@ -44,7 +44,7 @@ def tracked(*patterns):
 
 
 def sources(crates=None):
-    """The .rs files of the crates' src folders, tests left out: path and text."""
+    """The .rs files in the src folders of the crates, without tests: path and text."""
     for path in tracked("crates/*/src/*.rs"):
         is_test_file = path.name == "tests.rs" or "tests" in path.parts
         if not is_test_file and (crates is None or path.parts[1] in crates):
@@ -69,7 +69,7 @@ def file_length():
 
 
 def file_names():
-    """A file or folder is named after what it holds."""
+    """The name of a file or folder says what it contains; names such as util, common and types do not."""
     for path in tracked("*.rs", "*.py"):
         if EMPTY_NAMES & {part.removesuffix(path.suffix) for part in path.parts}:
             yield str(path)
@@ -84,14 +84,14 @@ def comment_length():
 
 
 def nothing_unfinished():
-    """Nothing is unfinished or switched off."""
+    """No unfinished code (todo!, FIXME) and no ignored tests."""
     for path in tracked("*.rs", "*.py"):
         if path.parts[0] != "laws":
             yield from places(path, path.read_text(), UNFINISHED)
 
 
 def no_panics():
-    """No panic is reachable from input: no code outside tests panics on purpose. (clippy forbids unwrap and expect.)"""
+    """No code outside tests contains panic!, unreachable! or assert!. (clippy forbids unwrap and expect.)"""
     for path, text in sources():
         yield from places(path, code(text), PANIC)
 
@@ -104,7 +104,7 @@ def public_traits():
 
 
 def no_options_in_libraries():
-    """No library speaks the command line: no option in any of its strings."""
+    """No string of a library names a command-line option."""
     for path, text in sources(libraries()):
         for position, literal in strings(text):
             if option := OPTION.search(literal):
@@ -113,7 +113,7 @@ def no_options_in_libraries():
 
 
 def double_precision():
-    """The computing crates know f64 alone."""
+    """The computing crates use f64 only."""
     for path, text in sources(COMPUTING):
         yield from places(path, code(text), SINGLE_PRECISION)
 
@@ -125,7 +125,7 @@ def nothing_from_outside():
 
 
 def algebra_stays_inside():
-    """No type of an algebra crate stands in a public signature or a public field."""
+    """No type of an algebra crate is in a public signature or a public field."""
     for path, text in sources():
         blanked = code(text)
         types = {name for found in ALGEBRA_IMPORT.finditer(blanked) for name in re.findall(r"\b[A-Z]\w*", found.group(1))}
@@ -136,7 +136,7 @@ def algebra_stays_inside():
 
 
 def lints_everywhere():
-    """Every package takes the lints of the workspace, `unsafe_code = "forbid"` among them."""
+    """Every package uses the lints of the workspace, which forbid unsafe code."""
     for path in tracked("crates/*/Cargo.toml", "benches/Cargo.toml", "studies/Cargo.toml"):
         if not tomllib.loads(path.read_text()).get("lints", {}).get("workspace"):
             yield f"{path}: no [lints] workspace = true"

@@ -1,8 +1,8 @@
-"""Rust source as the laws read it: code, string literals, and what of it is a test."""
+"""Separates Rust source into code, string literals and tests."""
 
 import re
 
-# Comments, string and character literals. A lifetime ('a) is none of them: no quote closes it after one character.
+# Comments, string literals and character literals. A lifetime ('a) is not a character literal: it has no closing quote.
 TOKEN = re.compile(
     r"""(?P<comment>//[^\n]*|/\*.*?\*/)
       | (?P<string>\b[bc]?r(?P<hashes>\#*)".*?"(?P=hashes)|(?:\b[bc])?"(?:\\.|[^"\\])*")
@@ -10,17 +10,17 @@ TOKEN = re.compile(
     re.S | re.X,
 )
 
-# An attribute that keeps the item after it out of everything but tests: #[cfg(test)], #[cfg(all(test, unix))], #[test].
+# An attribute of an item that is compiled for tests only: #[cfg(test)], #[cfg(all(test, unix))], #[test].
 TEST_ATTRIBUTE = re.compile(r"#\[\s*(?:cfg\((?:all\([^)]*)?\btest\b[^\]]*|test)\s*\]")
 
 
 def blank(text):
-    """The same text with a space for every character but line ends, so that positions and line numbers stay."""
+    """The text with every character replaced by a space, except line ends, so that positions and line numbers stay the same."""
     return re.sub(r"[^\n]", " ", text)
 
 
 def code(text):
-    """The text without comments and without the contents of literals."""
+    """The text with comments and literals replaced by spaces."""
     return TOKEN.sub(lambda token: blank(token.group()), text)
 
 
@@ -33,7 +33,7 @@ def strings(text):
 
 
 def block_end(blanked, start):
-    """The position behind the item that begins at `start`: behind its block, or its semicolon where that comes first."""
+    """The position after the item that begins at `start`: after its block, or after its semicolon if that comes first."""
     depth = 0
     for position in range(start, len(blanked)):
         character = blanked[position]
@@ -49,11 +49,11 @@ def block_end(blanked, start):
 
 
 def without_tests(text):
-    """The text with its tests blanked: every item under `#[cfg(test)]` or `#[test]`."""
+    """The text with tests replaced by spaces: every item with `#[cfg(test)]` or `#[test]`."""
     blanked = code(text)
     position = 0
     while attribute := TEST_ATTRIBUTE.search(blanked, position):
-        # Further attributes of the same item are passed over: their brackets close before the item's block does.
+        # Further attributes of the same item are skipped.
         end = block_end(blanked, skip_attributes(blanked, attribute.end()))
         text = text[: attribute.start()] + blank(text[attribute.start() : end]) + text[end:]
         blanked = blanked[: attribute.start()] + blank(blanked[attribute.start() : end]) + blanked[end:]
@@ -62,12 +62,12 @@ def without_tests(text):
 
 
 def skip_attributes(blanked, position):
-    """The position behind any attributes that stand at `position`."""
+    """The position after the attributes at `position`."""
     while attribute := re.compile(r"\s*#\[[^\]]*\]").match(blanked, position):
         position = attribute.end()
     return position
 
 
 def line_of(text, position):
-    """The line, from 1, of a position."""
+    """The number of the line, from 1, that contains a position."""
     return text.count("\n", 0, position) + 1

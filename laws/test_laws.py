@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The laws on samples small enough to see what must be found."""
+"""Tests of the rules on small samples."""
 
 import tempfile
 import unittest
@@ -11,7 +11,7 @@ from rust_source import code, strings, without_tests
 
 
 def sample(files):
-    """The imports of a crate with these files: file to the files that it imports, and every circle as a sorted list."""
+    """The imports of a crate with these files: for each file the files that it imports; and every circle as a sorted list."""
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         for name, text in files.items():

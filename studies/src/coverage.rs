@@ -6,12 +6,12 @@
 //! Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 3.7.
 
 use fluxfit::{
-    Judgement, Model, Request,
+    Judgement, Model, Request, TimeWindow,
     evidence::Identification,
     identify,
     levenberg_marquardt::{MOTOR, jacobian},
     motor::{Motor, PARAMETERS, Parameter},
-    objective::{acting_voltage::VoltageReading, adjustable::Adjustable, output_error::OutputError},
+    objective::{acting_voltage::VoltageTiming, adjustable::Adjustable, output_error::OutputError},
 };
 use fluxfit_drive::{
     Scenario,
@@ -35,7 +35,7 @@ pub struct Case {
     /// Its motor.
     pub motor: Motor,
     /// From when to when, s; none: all of it.
-    pub window: Option<(f64, f64)>,
+    pub window: Option<TimeWindow>,
 }
 
 /// What many draws make of a parameter.
@@ -80,7 +80,7 @@ impl Case {
     ///
     /// # Errors
     /// If a log cannot be simulated or identified.
-    pub fn tally(&self, voltage_timing: Option<VoltageReading>, draws: usize) -> Result<Tally, Box<dyn Error>> {
+    pub fn tally(&self, voltage_timing: Option<VoltageTiming>, draws: usize) -> Result<Tally, Box<dyn Error>> {
         let settings = Request {
             model: Some(Model::OutputError),
             windows: self.window.into_iter().collect(),
@@ -111,12 +111,12 @@ impl Case {
         let log = recording.log().map_err(|error| error.to_string())?;
         let found = identify(&log, settings).map_err(|error| error.to_string())?.identification;
         let fit = found.output.as_ref().ok_or("another model than the output error answered")?;
-        let objective = OutputError::of_rows(&log, &fit.stretches, VoltageReading::Centered).map_err(|error| error.to_string())?;
+        let objective = OutputError::of_rows(&log, &fit.stretches, VoltageTiming::Centered).map_err(|error| error.to_string())?;
         Ok(Draw {
             errors: self.relative(&found, |judgement, truth| judgement.raw / truth - 1.0),
             half_widths: self.relative(&found, |judgement, truth| judgement.uncertainty.half_width / truth),
             information: self.information(&objective),
-            has_fault: fit.terms.iter().any(|tried| fit.has(tried.fault)),
+            has_fault: fit.fault_trials.iter().any(|tried| fit.has(tried.fault)),
         })
     }
 

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageReading};
+use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageTiming};
 use fluxfit_studies::coverage::{Case, Tally};
 
 const DRAWS: usize = 16;
@@ -18,7 +18,7 @@ const RATIO: f64 = 0.71;
 fn acceleration(threads: usize) -> Tally {
     let [_, acceleration, ..] = Case::all();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| acceleration.tally(Some(VoltageReading::Centered), DRAWS).unwrap())
+    pool.install(|| acceleration.tally(Some(VoltageTiming::Centered), DRAWS).unwrap())
 }
 
 #[test]

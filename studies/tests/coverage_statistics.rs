@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageReading};
+use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageTiming};
 use fluxfit_studies::coverage::Case;
 
 const DRAWS: usize = 100;
@@ -22,7 +22,7 @@ const WIDTH: f64 = 0.1;
 #[test]
 fn errors_are_those_of_the_bound_and_intervals_hold() {
     for case in Case::all() {
-        let tally = case.tally(Some(VoltageReading::Centered), DRAWS).unwrap();
+        let tally = case.tally(Some(VoltageTiming::Centered), DRAWS).unwrap();
         assert_eq!(tally.with_fault, 0, "{}: faults of a perfect drive", case.name);
         for (parameter, figures) in Parameter::ALL.into_iter().zip(&tally.parameters) {
             let place = format!("{}, {}: {figures:?}", case.name, parameter.symbol());

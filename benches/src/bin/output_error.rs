@@ -7,7 +7,7 @@ use fluxfit::{
     log::Log,
     motor::{Motor, PARAMETERS},
     objective::{
-        acting_voltage::{VoltageFrame, VoltageReading},
+        acting_voltage::{VoltageFrame, VoltageTiming},
         output_error::OutputError,
         transition::Transition,
     },
@@ -25,7 +25,7 @@ const REPEATS: usize = 201;
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).map_or_else(|| PathBuf::from(LOG), PathBuf::from);
     let log = read_log(&path, &LogOptions::default())?.log;
-    let objective = OutputError::of(&log, VoltageReading::Centered)?;
+    let objective = OutputError::of(&log, VoltageTiming::Centered)?;
     let delayed = of_delayed(&log)?;
     let segment = log.segments().first().ok_or("the log has no segment")?;
     let omega_e = log.columns().omega_e[segment.rows.start];
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// With two linear unknowns instead of four: the difference is what two cost.
 fn of_delayed(log: &Log) -> Result<OutputError, fluxfit::error::Error> {
-    OutputError::of(log, VoltageReading::Delayed { delay: 0, frame: VoltageFrame::Middle })
+    OutputError::of(log, VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Middle })
 }
 
 /// Median wall time of a call, s.

@@ -4,6 +4,7 @@
 //! log agrees; 1 the log was read but cannot carry some parameter, or differs; 2 misuse or unreadable input; 130 interrupted.
 
 mod arguments;
+mod command_line;
 mod commands;
 mod error;
 mod interrupt;
@@ -17,26 +18,18 @@ use std::process::ExitCode;
 use terminal::Detail;
 
 fn main() -> ExitCode {
-    let matches = arguments::command().get_matches();
-    let command = match arguments::Command::from_arg_matches(&matches) {
+    let matches = command_line::command().get_matches();
+    let command = match command_line::Command::from_arg_matches(&matches) {
         Ok(command) => command,
-        Err(error) => error.format(&mut arguments::command()).exit(),
+        Err(error) => error.format(&mut command_line::command()).exit(),
     };
-    terminal::tell(detail(&command.telling), !command.verb.is_json());
+    // Standard output is for a program: no progress.
+    let is_json = matches.subcommand().is_some_and(|(_, verb)| matches!(verb.try_get_one("json"), Ok(Some(true))));
+    terminal::tell(detail(&command.telling), !is_json);
     if let Err(error) = interrupt::listen() {
         terminal::note(&format!("Ctrl-C will end this without the best so far: {error}"));
     }
-    let outcome = match &command.verb {
-        arguments::Verb::Demo(arguments) => commands::demo::run(arguments),
-        arguments::Verb::Inspect(arguments) => commands::inspect::run(arguments),
-        arguments::Verb::Formats => commands::formats::run(),
-        arguments::Verb::Identify(arguments) => commands::identify::run(arguments),
-        arguments::Verb::Compare(arguments) => commands::compare::run(arguments),
-        arguments::Verb::Simulate(arguments) => commands::simulate::run(arguments),
-        arguments::Verb::Validate(arguments) => commands::validate::run(arguments),
-        arguments::Verb::Completions(arguments) => commands::manual::completions(arguments),
-        arguments::Verb::Man(arguments) => commands::manual::pages(arguments),
-    };
+    let outcome = command.verb.run(command_line::command);
     match outcome {
         Ok(status) => interrupt::exit_status().map_or_else(|| status.into(), ExitCode::from),
         // Whoever closed the pipe has seen enough.
@@ -48,7 +41,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn detail(telling: &arguments::Telling) -> Detail {
+fn detail(telling: &command_line::Telling) -> Detail {
     match (telling.quiet, telling.verbose) {
         (true, _) => Detail::Quiet,
         (false, true) => Detail::Everything,

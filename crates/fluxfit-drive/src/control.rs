@@ -16,7 +16,7 @@
 use crate::{
     inverter::duties,
     scenario::{Axis, Control, Injection, Mechanics, Scenario, SimulatedMotor, Waveform},
-    sensors::Measurement,
+    sensors::Sample,
 };
 use fluxfit::{
     frames::{Abc, AlphaBeta, Dq},
@@ -99,7 +99,7 @@ impl<'a> Controller<'a> {
     }
 
     /// The command computed from a sample at time `t`, s.
-    pub fn command(&mut self, measured: &Measurement, references: &References, t: f64) -> VoltageCommand {
+    pub fn command(&mut self, measured: &Sample, references: &References, t: f64) -> VoltageCommand {
         let i = measured.i.to_dq(measured.theta_e);
         let reference = self.current_reference(measured, references, i);
         let alpha = TAU * self.settings.current_bandwidth;
@@ -136,7 +136,7 @@ impl<'a> Controller<'a> {
 
     /// References of the currents within the current limit, where `i_d` has priority. With field weakening, i_q also stays within the
     /// voltage limit; `i` is the present current.
-    fn current_reference(&mut self, measured: &Measurement, references: &References, i: Dq) -> Dq {
+    fn current_reference(&mut self, measured: &Sample, references: &References, i: Dq) -> Dq {
         let most = self.settings.max_current;
         let d = (references.id + self.weakening_current).clamp(-most, most);
         let mut most_q = (most * most - d * d).sqrt();

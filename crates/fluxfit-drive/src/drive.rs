@@ -7,11 +7,11 @@ use crate::{
     plant::Plant,
     recording::{RecordedRow, Recording},
     scenario::{Mechanics, Scenario},
-    sensors::{Measurement, SensorModel},
+    sensors::{Sample, SensorModel},
 };
 use fluxfit::{
     frames::{AlphaBeta, Dq},
-    optimizer::draws::Draws,
+    optimizer::Draws,
 };
 use std::f64::consts::TAU;
 
@@ -150,7 +150,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Voltages are the commanded ones, as in a real log: the mean of the periods before and after the sample.
-    fn row(&self, t: f64, measured: &Measurement, command: &VoltageCommand) -> RecordedRow {
+    fn row(&self, t: f64, measured: &Sample, command: &VoltageCommand) -> RecordedRow {
         let (before, after) = (self.acted, self.acting.u_stator);
         let mean = AlphaBeta { alpha: 0.5 * (before.alpha + after.alpha), beta: 0.5 * (before.beta + after.beta) };
         RecordedRow {

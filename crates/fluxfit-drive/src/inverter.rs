@@ -1,4 +1,4 @@
-//! The two-level inverter: duty ratios to terminal voltages, averaged or switch by switch.
+//! The two-level inverter, its settings and its faults: duty ratios to terminal voltages, averaged or switch by switch.
 //!
 //! Space vector modulation against a triangular carrier: the common mode `-(max + min)/2` is added to the three phase voltages.
 //! A leg with the duty ratio `d` is high in the middle `d` of a carrier period; samples are taken at the carrier's extremes.
@@ -8,14 +8,116 @@
 //! one depends on the current at the start of the edge. Currents that change sign within the dead time are not clamped at zero.
 
 use crate::{
+    error::Error,
     plant::Plant,
-    scenario::{Inverter, Modulation, Update},
+    range::{not_negative, positive, setting},
 };
 use fluxfit::frames::{Abc, AlphaBeta};
 use std::f64::consts::TAU;
 
 /// Largest number of edges in a sample period: two halves of the carrier, three legs, each with an edge at the start and one within.
 const MAX_EDGES: usize = 12;
+
+/// The two-level inverter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inverter {
+    /// Whether the switching is simulated.
+    pub modulation: Modulation,
+    /// DC voltage, V.
+    pub u_dc: f64,
+    /// Amplitude of the DC voltage's sinusoidal ripple, V.
+    pub ripple: f64,
+    /// Frequency of that ripple, Hz.
+    pub ripple_frequency: f64,
+    /// Frequency of the carrier, Hz.
+    pub carrier: f64,
+    /// How often the duty ratios are updated.
+    pub update: Update,
+    /// Dead time: time for which both switches of a leg are off, s.
+    pub dead_time: f64,
+    /// Voltage drop of a conducting switch, V, without that of its resistance, which is part of `rs`.
+    pub switch_drop: f64,
+    /// Voltage drop of a conducting diode, V, likewise.
+    pub diode_drop: f64,
+    /// Standard deviation on each axis of a white voltage disturbance, V, constant over a sample period and unknown to the drive.
+    pub voltage_noise: f64,
+}
+
+/// Whether the switching is simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Modulation {
+    /// Each period's mean vector, constant in the stator frame.
+    Averaged,
+    /// Every switching instant of space vector modulation.
+    Switched,
+}
+
+/// How often the duty ratios are updated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Update {
+    /// Once per carrier period.
+    Single,
+    /// Twice per carrier period, at its extremes.
+    Double,
+}
+
+impl Inverter {
+    /// A switched inverter with double update and without losses.
+    pub fn ideal(u_dc: f64, carrier: f64) -> Self {
+        Self {
+            modulation: Modulation::Switched,
+            u_dc,
+            ripple: 0.0,
+            ripple_frequency: 0.0,
+            carrier,
+            update: Update::Double,
+            dead_time: 0.0,
+            switch_drop: 0.0,
+            diode_drop: 0.0,
+            voltage_noise: 0.0,
+        }
+    }
+
+    /// Sample rate, Hz.
+    pub fn sample_rate(&self) -> f64 {
+        match self.update {
+            Update::Single => self.carrier,
+            Update::Double => 2.0 * self.carrier,
+        }
+    }
+
+    /// Sample period, s.
+    pub fn sample_period(&self) -> f64 {
+        1.0 / self.sample_rate()
+    }
+
+    /// Length of the longest voltage vector without overmodulation, V.
+    pub fn voltage_limit(&self) -> f64 {
+        self.u_dc / 3.0_f64.sqrt()
+    }
+
+    /// Refuses settings out of their ranges.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        positive("inverter.u_dc", self.u_dc)?;
+        not_negative("inverter.ripple", self.ripple)?;
+        not_negative("inverter.ripple_frequency", self.ripple_frequency)?;
+        positive("inverter.carrier", self.carrier)?;
+        not_negative("inverter.dead_time", self.dead_time)?;
+        not_negative("inverter.switch_drop", self.switch_drop)?;
+        not_negative("inverter.diode_drop", self.diode_drop)?;
+        not_negative("inverter.voltage_noise", self.voltage_noise)?;
+        if self.dead_time >= 0.25 / self.carrier {
+            return Err(setting("inverter.dead_time", self.dead_time, "less than a quarter of the carrier's period"));
+        }
+        if self.ripple_frequency > self.sample_rate() {
+            return Err(setting("inverter.ripple_frequency", self.ripple_frequency, "at most the sample rate"));
+        }
+        if self.ripple >= self.u_dc {
+            return Err(setting("inverter.ripple", self.ripple, "less than inverter.u_dc"));
+        }
+        Ok(())
+    }
+}
 
 /// The three-phase bridge with its state.
 #[derive(Debug, Clone)]

@@ -11,13 +11,13 @@
 //!
 //! | file | concept |
 //! |---|---|
-//! | [`scenario`] | all settings of a simulation; the paper's rig |
+//! | [`scenario`] | all settings of a simulation and what they require of each other; the paper's rig |
 //! | [`schedule`] | references and loads over time |
 //! | [`mod@drive`] | the simulation loop: sample, command, integrate |
 //! | [`plant`], [`flux_map`] | motor and mechanics in continuous time; measured saturation |
-//! | [`inverter`] | duty ratios to terminal voltages: modulation, dead time, voltage drops |
+//! | [`inverter`] | settings of the inverter; duty ratios to terminal voltages: modulation, dead time, voltage drops |
 //! | [`control`] | current loop, speed loop, field weakening |
-//! | [`sensors`] | noise, offsets, A/D converters, encoder |
+//! | [`sensors`] | settings of the sensors; noise, offsets, A/D converters, encoder |
 //! | [`recording`] | the columns of the log |
 //! | [`error`] | why a scenario is refused, or its simulation stops |
 //!
@@ -28,7 +28,9 @@ pub mod drive;
 pub mod error;
 pub mod flux_map;
 pub mod inverter;
+mod machine;
 pub mod plant;
+mod range;
 pub mod recording;
 pub mod scenario;
 pub mod schedule;

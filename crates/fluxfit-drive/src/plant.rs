@@ -11,7 +11,7 @@
 //! The integrator is the classical fourth-order Runge-Kutta method. Its step is at most [`MAX_STEP`] divided by the fastest rate of the
 //! state: the decay of the winding, the rotation and the oscillation of the rotor.
 
-use crate::scenario::{Mechanics, SimulatedMotor};
+use crate::machine::{Mechanics, SimulatedMotor};
 use fluxfit::frames::{AlphaBeta, Dq};
 
 /// Longest step, in radians or time constants of the fastest rate. The fourth-order error of the energies is then about

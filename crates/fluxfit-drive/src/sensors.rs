@@ -1,13 +1,14 @@
-//! The sensors: currents through current sensors and A/D converter, angle and speed through the encoder.
+//! The sensors, their settings and their faults: currents through current sensors and A/D converter, angle and speed through the encoder.
 
 use crate::{
+    error::Error,
     inverter::Bridge,
     plant::Plant,
-    scenario::{CurrentSensors, Sensors},
+    range::{finite, not_negative, positive, setting},
 };
 use fluxfit::{
     frames::{Abc, AlphaBeta},
-    optimizer::draws::Draws,
+    optimizer::Draws,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -15,9 +16,77 @@ use std::f64::consts::{PI, TAU};
 /// constant acceleration its speed lags by twice the acceleration divided by this bandwidth.
 pub(crate) const SPEED_OBSERVER: f64 = TAU * 100.0;
 
+/// Current sensors and encoder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensors {
+    /// How many phases have a current sensor.
+    pub current_sensors: CurrentSensors,
+    /// White noise of each current sample, standard deviation, A.
+    pub current_noise: f64,
+    /// Offset of each phase's sensor, A.
+    pub current_offset: [f64; 3],
+    /// Gain of each phase's sensor.
+    pub current_gain: [f64; 3],
+    /// The A/D converter of the currents; `None` for an ideal one.
+    pub adc: Option<Adc>,
+    /// Error of the measured angle, electrical rad.
+    pub angle_offset: f64,
+    /// Steps of the encoder per mechanical revolution; the angle is read as the middle of a step. `None`: angle and speed are exact.
+    pub encoder_steps: Option<u32>,
+}
+
+/// How many phases have a current sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CurrentSensors {
+    /// Phases a and b; the current of c is minus their sum.
+    Two,
+    /// All phases.
+    Three,
+}
+
+/// An analog to digital converter of currents.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adc {
+    /// Number of bits.
+    pub bits: u32,
+    /// Largest current, A; the smallest is its negative.
+    pub range: f64,
+}
+
+impl Sensors {
+    /// Sensors without a fault.
+    pub const IDEAL: Self = Self {
+        current_sensors: CurrentSensors::Three,
+        current_noise: 0.0,
+        current_offset: [0.0; 3],
+        current_gain: [1.0; 3],
+        adc: None,
+        angle_offset: 0.0,
+        encoder_steps: None,
+    };
+
+    /// Refuses settings out of their ranges.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        not_negative("sensors.current_noise", self.current_noise)?;
+        self.current_offset.iter().try_for_each(|offset| finite("sensors.current_offset", *offset))?;
+        self.current_gain.iter().try_for_each(|gain| positive("sensors.current_gain", *gain))?;
+        finite("sensors.angle_offset", self.angle_offset)?;
+        if let Some(adc) = self.adc {
+            positive("sensors.adc_range", adc.range)?;
+            if !(2..=32).contains(&adc.bits) {
+                return Err(setting("sensors.adc_bits", f64::from(adc.bits), "from 2 to 32"));
+            }
+        }
+        match self.encoder_steps {
+            Some(steps) if steps < 16 => Err(setting("sensors.encoder_steps", f64::from(steps), "at least 16")),
+            _ => Ok(()),
+        }
+    }
+}
+
 /// One sample of all sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measurement {
+pub struct Sample {
     /// Current, A.
     pub i: AlphaBeta,
     /// Electrical angle, rad, from -pi to pi.
@@ -46,9 +115,9 @@ impl SensorModel {
     }
 
     /// Samples the plant at time `t`, s.
-    pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Measurement {
+    pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Sample {
         let (theta_m, omega_m) = self.rotor(plant);
-        Measurement {
+        Sample {
             i: self.currents(plant.current().to_alpha_beta(plant.theta_e())),
             theta_e: wrapped(self.pole_pairs * theta_m + self.settings.angle_offset),
             omega_e: self.pole_pairs * omega_m,

@@ -22,6 +22,7 @@
 //! | `csv` | tables of text |
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
+//! | [`document`] | the JSON document of an inspection |
 //! | `channel` | the channels of a log and their names |
 //! | `header_unit` | units in the headers of columns |
 //! | `argument` | arguments of the form `channel=value` |
@@ -32,12 +33,14 @@ mod block;
 mod channel;
 mod container;
 mod csv;
+pub mod document;
 mod header_unit;
 mod note;
 mod problem;
 mod reading;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
+pub use container::{CONTAINERS, Container};
 pub use note::Note;
 pub use reading::{
     InspectedColumn, Inspection, LAYOUTS, Layout, LogOptions, Mapping, Park, ReadLog, inspect, parse_log, read_log, read_log_from,

@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 
-pub mod bounds;
-pub mod draws;
+mod bounds;
+mod draws;
 mod error;
 mod iteration;
 mod levy;

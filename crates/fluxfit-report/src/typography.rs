@@ -1,6 +1,6 @@
 //! Typography of symbols, units and numbers: subscripts, Greek letters, minus signs.
 
-use fluxfit::{evidence::Nuisance, motor::Parameter};
+use fluxfit::{evidence::FaultEstimate, motor::Parameter};
 use fluxfit_units::{Scale, format_unknown, significant, small};
 use maud::{Markup, PreEscaped, html};
 
@@ -117,7 +117,7 @@ pub(crate) fn amperes(current: f64) -> String {
 }
 
 /// The value of a fault of the drive with its 95 % interval and unit.
-pub(crate) fn fault(nuisance: &Nuisance) -> Markup {
+pub(crate) fn fault(nuisance: &FaultEstimate) -> Markup {
     let [value, half_width, unit] = format_unknown(nuisance.unknown, nuisance.value, HALF_WIDTH * nuisance.standard_error);
     let unit = unit.replace("deg", "°").strip_prefix('u').map_or_else(|| unit.replace("deg", "°"), |rest| format!("µ{rest}"));
     html! { (minus(value)) " ± " (half_width) " " (unit) }

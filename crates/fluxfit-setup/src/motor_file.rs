@@ -34,12 +34,12 @@ pub struct MotorFile {
     /// Number of pole pairs.
     pub pole_pairs: Option<u32>,
     /// Rated values.
-    pub rating: Rating,
+    pub rating: RatedValues,
 }
 
 /// Rated values of a motor; every number is above zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Rating {
+pub struct RatedValues {
     /// Current, A, phase peak.
     pub current: Option<f64>,
     /// Voltage, V, phase peak.
@@ -88,7 +88,7 @@ fn parse(text: &str) -> Result<MotorFile, FileError> {
         lq: above_zero(&motor, "lq", Dimension::Inductance)?,
         psi_f: above_zero(&motor, "psi_f", Dimension::FluxLinkage)?,
         pole_pairs: motor.get("pole_pairs").map(|entry| entry.whole(1, "a whole number above zero")).transpose()?,
-        rating: Rating {
+        rating: RatedValues {
             current: above_zero(&rating, "current", Dimension::Current)?,
             voltage: above_zero(&rating, "voltage", Dimension::Voltage)?,
             speed: above_zero(&rating, "speed", Dimension::Speed)?,
@@ -122,7 +122,7 @@ mod tests {
             lq: Some(12e-3),
             psi_f: Some(0.1827),
             pole_pairs: Some(4),
-            rating: Rating { current: Some(20.0), voltage: Some(180.0), speed: Some(3000.0 * (TAU / 60.0)) },
+            rating: RatedValues { current: Some(20.0), voltage: Some(180.0), speed: Some(3000.0 * (TAU / 60.0)) },
         };
         assert_eq!(read(text), Ok(expected));
         assert_eq!(read(""), Ok(MotorFile::default()));

@@ -5,7 +5,7 @@ use crate::{
     quantity::{Dimension, parse_pair, parse_quantity, split},
     wording::nearest,
 };
-use fluxfit::motor::Parameter;
+use fluxfit::{TimeWindow, motor::Parameter};
 
 /// `rs=0.96`: a parameter with a known value, in SI units.
 ///
@@ -67,9 +67,9 @@ pub fn parse_bounds(text: &str) -> Result<(Parameter, f64, f64), ValueError> {
 ///
 /// # Errors
 /// If an end is not a finite time, only one end has a unit (a zero needs none), or the start is not before the end.
-pub fn parse_window(text: &str) -> Result<(f64, f64), ValueError> {
+pub fn parse_window(text: &str) -> Result<TimeWindow, ValueError> {
     let (start, end) = text.split_once(':').ok_or_else(|| form(text, "START:END in s", "0.48:0.595"))?;
-    interval(text, start, end, Dimension::Time)
+    interval(text, start, end, Dimension::Time).map(|(from, to)| TimeWindow { from, to })
 }
 
 fn interval(text: &str, lower: &str, upper: &str, dimension: Dimension) -> Result<(f64, f64), ValueError> {
@@ -157,8 +157,8 @@ mod tests {
     fn intervals_need_a_lower_and_an_upper_end() {
         assert_eq!(parse_bounds("ld=0:50mH"), Ok((Parameter::Ld, 0.0, 50e-3)));
         assert_eq!(parse_bounds("psi_f=-0.1:1"), Ok((Parameter::PsiF, -0.1, 1.0)));
-        assert_eq!(parse_window("0.48:0.595"), Ok((0.48, 0.595)));
-        assert_eq!(parse_window("480 ms : 595 ms"), Ok((0.48, 0.595)));
+        assert_eq!(parse_window("0.48:0.595"), Ok(TimeWindow { from: 0.48, to: 0.595 }));
+        assert_eq!(parse_window("480 ms : 595 ms"), Ok(TimeWindow { from: 0.48, to: 0.595 }));
         assert_eq!(parse_bounds("ld=50mH:0H").unwrap_err().to_string(), "\"50mH:0H\" is not an interval; write the lower end first");
         assert_eq!(parse_bounds("ld=5:50mH").unwrap_err().to_string(), "\"5:50mH\" has a unit on one number only; write it on both");
         assert_eq!(parse_window("1:1").unwrap_err().to_string(), "\"1:1\" is not an interval; write the lower end first");

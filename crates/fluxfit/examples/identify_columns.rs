@@ -3,12 +3,7 @@
 //! `cargo run --release -p fluxfit --example identify_columns`
 #![allow(clippy::print_stdout)] // An example prints.
 
-use fluxfit::{
-    Columns, Known, Log, Motor, Parameter, Remedy, Request,
-    evidence::{Measurement, Place, Promised},
-    frames::Dq,
-    identify,
-};
+use fluxfit::{Columns, Known, Log, Measurement, Motor, Parameter, Place, Promised, Remedy, Request, frames::Dq, identify};
 
 fn main() -> Result<(), fluxfit::Error> {
     // A drone motor at i_d = 0 and two speeds, as a log at 1 kHz would have it; a real log has noise.
@@ -21,11 +16,11 @@ fn main() -> Result<(), fluxfit::Error> {
         let Columns { t, ud, uq, id, iq, omega_e, .. } = &mut columns;
         [t, ud, uq, id, iq, omega_e].into_iter().zip(values).for_each(|(column, value)| column.push(value));
     }
-    let mut request = Request::default();
-    request.known[Parameter::Rs as usize] = Known::Prior { value: 0.0352, standard_error: 0.0007 };
+    let request = Request::default().with_known(Parameter::Rs, Known::Prior { value: 0.0352, standard_error: 0.0007 });
     let answer = identify(&Log::new(columns)?, &request)?;
     for judgement in answer.parameters() {
-        println!("{:6} {:?} {}: {}", judgement.parameter.key(), judgement.interval(), judgement.parameter.unit(), judgement.verdict.key());
+        let (parameter, verdict) = (judgement.parameter, judgement.verdict);
+        println!("{parameter:6} {:?} {}: {verdict}", judgement.interval(), parameter.unit());
         if let Some(reason) = &judgement.reason {
             println!("       {reason}");
         }

@@ -42,11 +42,37 @@ pub struct Answer {
 
 /// A part of the log that the answer was not found from.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct HeldOut {
     /// Its rows.
     pub log: Log,
     /// How well the answer predicts it; `None` where a parameter of the answer is not identifiable.
     pub validation: Option<Validation>,
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{error}")]
+#[non_exhaustive]
+pub struct IdentificationError {
+    /// What went wrong.
+    pub error: Error,
+    /// What may be behind it: units of the log that do not agree with the [nameplate](Request::nameplate). `None` where they agree or
+    /// cannot be compared.
+    pub suspected_units: Option<Warning>,
+}
+
+impl IdentificationError {
+    /// What went wrong, for programs.
+    pub fn kind(&self) -> &ErrorKind {
+        self.error.kind()
+    }
+}
+
+impl From<IdentificationError> for Error {
+    fn from(error: IdentificationError) -> Self {
+        error.error
+    }
 }
 
 impl Answer {
@@ -97,7 +123,7 @@ impl Answer {
 /// If a value of the request is out of range, or the log has no rows that the model could fit
 /// ([`NoOperatingPoint`](ErrorKind::NoOperatingPoint), [`Window`](ErrorKind::Window)); [`ErrorKind`] lists every case. A log that cannot
 /// tell some parameter is no error: its [`Judgement`] says so, with reason and remedy.
-pub fn identify(log: &Log, request: &Request) -> Result<Answer, Error> {
+pub fn identify(log: &Log, request: &Request) -> Result<Answer, IdentificationError> {
     identify_with_progress(log, request, &silent)
 }
 
@@ -105,7 +131,11 @@ pub fn identify(log: &Log, request: &Request) -> Result<Answer, Error> {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn identify_with_progress(log: &Log, request: &Request, progress: Progress) -> Result<Answer, Error> {
+pub fn identify_with_progress(log: &Log, request: &Request, progress: Progress) -> Result<Answer, IdentificationError> {
+    answer(log, request, progress).map_err(|error| IdentificationError { error, suspected_units: suspect_units(log, request) })
+}
+
+fn answer(log: &Log, request: &Request, progress: Progress) -> Result<Answer, Error> {
     let (log, held_out) = if request.hold_out {
         let (rest, last) = log.part_last().ok_or(ErrorKind::NothingToHoldOut)?;
         (rest, Some(last))
@@ -128,9 +158,8 @@ pub fn identify_with_progress(log: &Log, request: &Request, progress: Progress) 
     Ok(Answer { log, identification, convention, current_loop, held_out })
 }
 
-/// A warning if a log's units look wrong beside the [nameplate](Request::nameplate), for a log that [`identify`] returned an error for:
-/// the flux linkage that the rows suggest is compared with the nameplate's. `None` where they agree or cannot be compared.
-pub fn suspect_units(log: &Log, request: &Request) -> Option<Warning> {
+/// A warning if a log's units look wrong beside the nameplate: the flux linkage that the rows suggest is compared with the nameplate's.
+fn suspect_units(log: &Log, request: &Request) -> Option<Warning> {
     let convention = conventions::compare_with_nameplate(log, None, &request.nameplate);
     (!convention.agrees()).then(|| Warning::Convention(Box::new(convention)))
 }

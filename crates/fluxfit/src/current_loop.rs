@@ -27,7 +27,7 @@ use crate::{
         explain::{judgement::Judgement, warning::Warning},
         judge::verdict::Verdict,
         prepare::model::SLOWEST_CONTROL,
-        request::{Provenance, Request},
+        request::{Provenance, Request, Resolved},
     },
     log::Log,
     motor::{PARAMETERS, Parameter},
@@ -44,11 +44,12 @@ pub const MIN_PHASE_MARGIN: f64 = 60.0;
 
 /// Gains of both current controllers.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CurrentLoop {
     /// Bandwidth of the closed loop (-3 dB, without delay), Hz.
     pub bandwidth: f64,
     /// Control rate: how often the controllers run, Hz, and where that value comes from.
-    pub control_rate: (f64, Provenance),
+    pub control_rate: Resolved<f64>,
     /// Proportional gain of the d axis, V/A; `None` if L_d is not identifiable.
     pub kp_d: Option<Gain>,
     /// Proportional gain of the q axis, V/A; `None` if L_q is not identifiable.
@@ -61,16 +62,21 @@ pub struct CurrentLoop {
 ///
 /// # Errors
 /// If nothing is stated and the rows are too slow for a drive's control.
-pub fn control_rate(log: &Log, request: &Request) -> Result<(f64, Provenance), Error> {
+pub fn control_rate(log: &Log, request: &Request) -> Result<Resolved<f64>, Error> {
     if let Some(rate) = request.control_rate {
-        return Ok((rate, Provenance::Stated));
+        return Ok(Resolved { value: rate, provenance: Provenance::Stated });
     }
     let rate = 1.0 / log.segments().iter().map(|segment| segment.sample_period).fold(f64::INFINITY, f64::min);
-    if rate < SLOWEST_CONTROL { Err(ErrorKind::ControlRate { rate }.into()) } else { Ok((rate, Provenance::Assumed)) }
+    if rate < SLOWEST_CONTROL {
+        Err(ErrorKind::ControlRate { rate }.into())
+    } else {
+        Ok(Resolved { value: rate, provenance: Provenance::Assumed })
+    }
 }
 
 /// One gain, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Gain {
     /// Value.
     pub value: f64,
@@ -85,8 +91,8 @@ impl CurrentLoop {
     ///
     /// # Errors
     /// If the bandwidth or the control rate is no positive number.
-    pub fn of(parameters: &[Judgement; PARAMETERS], bandwidth: f64, control_rate: (f64, Provenance)) -> Result<Self, Error> {
-        for (setting, value) in [("the bandwidth", bandwidth), ("the control rate", control_rate.0)] {
+    pub fn of(parameters: &[Judgement; PARAMETERS], bandwidth: f64, control_rate: Resolved<f64>) -> Result<Self, Error> {
+        for (setting, value) in [("the bandwidth", bandwidth), ("the control rate", control_rate.value)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(ErrorKind::Setting { setting, value, range: "a positive number of Hz" }.into());
             }
@@ -97,12 +103,12 @@ impl CurrentLoop {
 
     /// Phase margin, degrees, with [`DELAY_PERIODS`]; negative if the loop is unstable.
     pub fn phase_margin(&self) -> f64 {
-        (FRAC_PI_2 - TAU * self.bandwidth * DELAY_PERIODS / self.control_rate.0).to_degrees()
+        (FRAC_PI_2 - TAU * self.bandwidth * DELAY_PERIODS / self.control_rate.value).to_degrees()
     }
 
     /// The bandwidth, Hz, at which the phase margin is [`MIN_PHASE_MARGIN`].
     pub fn highest_bandwidth(&self) -> f64 {
-        (FRAC_PI_2 - MIN_PHASE_MARGIN.to_radians()) * self.control_rate.0 / (TAU * DELAY_PERIODS)
+        (FRAC_PI_2 - MIN_PHASE_MARGIN.to_radians()) * self.control_rate.value / (TAU * DELAY_PERIODS)
     }
 
     /// The warning about the phase margin, if it is small.
@@ -111,12 +117,11 @@ impl CurrentLoop {
         if self.bandwidth <= self.highest_bandwidth() * (1.0 + 1e-9) {
             return None;
         }
-        let (control_rate, from) = self.control_rate;
         Some(Warning::PhaseMargin {
             bandwidth: self.bandwidth,
             margin: self.phase_margin(),
-            control_rate,
-            rate_assumed: from != Provenance::Stated,
+            control_rate: self.control_rate.value,
+            rate_assumed: self.control_rate.provenance != Provenance::Stated,
             highest: self.highest_bandwidth(),
         })
     }

@@ -4,6 +4,8 @@
 //! [`ErrorKind`] carries the values; the sentence is written once, here, and says what to do. Rows count from 0; whoever read them
 //! from a file knows their lines ([`Error::row`], [`Error::column`]).
 
+use crate::motor::Parameter;
+
 /// What went wrong: its [kind](Error::kind) for programs, its sentence for people.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(transparent)]
@@ -113,6 +115,22 @@ pub enum ErrorKind {
         /// Values allowed.
         range: &'static str,
     },
+    /// A known value of a parameter that no motor has.
+    #[error("the known value of {parameter} is {value}; it must be a finite number, {}", if has_zero(*.parameter) { "zero or more" } else { "above zero" })]
+    KnownValue {
+        /// The parameter.
+        parameter: Parameter,
+        /// Value given, SI.
+        value: f64,
+    },
+    /// The standard error of a known value is not above zero.
+    #[error("the standard error of the known value of {parameter} is {standard_error}; it must be a finite number above zero")]
+    KnownError {
+        /// The parameter.
+        parameter: Parameter,
+        /// Standard error given, SI.
+        standard_error: f64,
+    },
     /// Rows that were interpolated, where the output error needs those of one instant.
     #[error(
         "the log's channels were sampled at different instants, so no row is one instant of the drive and the output error means nothing; use the steady model, or log all channels together"
@@ -133,6 +151,12 @@ pub enum ErrorKind {
     /// A search that cannot be made.
     #[error(transparent)]
     Search(#[from] fluxfit_optimize::Error),
+}
+
+/// Whether zero is a value of this parameter: of an ideal winding's resistance, and of the flux of a motor without magnets. A current
+/// could not be computed with an inductance of zero.
+pub(crate) fn has_zero(parameter: Parameter) -> bool {
+    matches!(parameter, Parameter::Rs | Parameter::PsiF)
 }
 
 impl Error {

@@ -1,11 +1,7 @@
 //! What an answer rests on: the fits behind it, their uncertainty, and what was tried.
 
 pub use crate::identification::{
-    explain::{
-        conventions::{Candidate, Convention, Ratio, TOLERANCE, compare_with_nameplate, patterns::Pattern},
-        measurement::{Measurement, Place, Promised},
-        remedy::Also,
-    },
+    explain::conventions::{Candidate, Convention, Ratio, TOLERANCE, compare_with_nameplate, patterns::Pattern},
     fit::{
         estimate::Estimate,
         excitation::{Direction, Excitation},
@@ -13,8 +9,8 @@ pub use crate::identification::{
         finding::{Finding, Trust},
         misfit::Misfit,
         output::OutputFit,
-        output_errors::Nuisance,
-        readings::ReadingTrial,
+        output_errors::FaultEstimate,
+        readings::TimingTrial,
         saturation::{Apparent, Flux, SaturationFinding},
         steady::{SteadyFit, operating_points},
         swarm::Search,
@@ -22,6 +18,6 @@ pub use crate::identification::{
     },
     judge::verdict::{IDENTIFIED, WEAK},
     prepare::model::{ModelChoice, ModelReason, SLOWEST_CONTROL, choose as choose_model},
-    request::{Provenance, VOLTAGE_ACCURACY},
+    request::{Provenance, Resolved, VOLTAGE_ACCURACY},
     solve::Identification,
 };

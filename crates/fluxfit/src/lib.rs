@@ -18,7 +18,7 @@
 //!     columns.omega_e.push(400.0);
 //! }
 //! let answer = identify(&Log::new(columns)?, &Request::default())?;
-//! println!("R_s: {:?} ohm, 95 % within {:?}: {}", answer.rs().value(), answer.rs().interval(), answer.rs().verdict.key());
+//! println!("R_s: {:?} ohm, 95 % within {:?}: {}", answer.rs().value(), answer.rs().interval(), answer.rs().verdict);
 //! # assert!((answer.rs().value().unwrap() - 0.958).abs() < 1e-3);
 //! # Ok::<(), fluxfit::Error>(())
 //! ```
@@ -27,12 +27,14 @@
 //! |---|---|
 //! | [`identify`], [`Request`], [`Answer`] | the one call, what is asked, everything that comes back |
 //! | [`Known`], [`Nameplate`], [`Model`] | of a request: priors and fixed values, the data sheet, how the log is modelled |
+//! | [`TimeWindow`], [`VoltageTiming`] | which part of the log is used; when its voltages act |
 //! | [`validate`](fn@validate), [`Given`], [`Validation`] | given parameters against another log |
 //! | [`Log`], [`Columns`], [`log::LogBuilder`] | what a drive recorded, checked on the way in: whole columns, or row by row |
 //! | [`Motor`], [`Parameter`], [`frames`] | the motor's equations; the dq frame and its convention |
 //! | [`Judgement`], [`Verdict`] | one parameter: value, interval and how well it is determined |
 //! | [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
-//! | [`Error`], [`ErrorKind`] | misuse, or data that is no log; a parameter that the log cannot tell is a verdict, not an error |
+//! | [`Promised`], [`Measurement`], [`Place`], [`Also`] | of a remedy: what to measure, where, and what it would bring |
+//! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is no error but a verdict |
 //! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
@@ -67,11 +69,16 @@ pub mod study;
 pub mod validation;
 mod words;
 
-pub use answer::{Answer, HeldOut, identify, identify_with_progress, suspect_units};
+pub use answer::{Answer, HeldOut, IdentificationError, identify, identify_with_progress};
 pub use error::{Error, ErrorKind};
 pub use fluxfit_optimize as optimizer;
 pub use identification::{
-    explain::{judgement::Judgement, remedy::Remedy, warning::Warning},
+    explain::{
+        judgement::Judgement,
+        measurement::{Measurement, Place, Promised},
+        remedy::{Also, Remedy},
+        warning::Warning,
+    },
     judge::{reason::Reason, verdict::Verdict},
     nameplate::{Nameplate, Rating},
     prepare::model::Model,
@@ -80,6 +87,8 @@ pub use identification::{
 };
 pub use log::{Columns, Log};
 pub use motor::{Motor, Parameter};
+pub use objective::acting_voltage::{VoltageFrame, VoltageTiming};
+pub use steady::windows::TimeWindow;
 pub use validation::{
     given::Given,
     validate::{Validation, validate},

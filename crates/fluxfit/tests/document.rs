@@ -11,7 +11,7 @@ use fluxfit::{
     identify,
     log::{Columns, Log},
     motor::Motor,
-    optimizer::{self, draws::Draws},
+    optimizer::{self, Draws},
 };
 use proptest::prelude::*;
 use serde_json::Value;

@@ -5,7 +5,7 @@
 // The table on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
-use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageReading};
+use fluxfit::{motor::Parameter, objective::acting_voltage::VoltageTiming};
 use fluxfit_studies::coverage::{Case, Tally};
 use std::error::Error;
 
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("|---|---|--:|--:|---|--:|--:|--:|--:|");
     for case in Case::all() {
-        show(&case, "stated", &case.tally(Some(VoltageReading::Centered), draws)?);
+        show(&case, "stated", &case.tally(Some(VoltageTiming::Centered), draws)?);
         show(&case, "found", &case.tally(None, draws.div_ceil(FEWER))?);
     }
     Ok(())

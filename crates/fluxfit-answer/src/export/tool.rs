@@ -50,6 +50,6 @@ pub(super) fn gains_remark(current_loop: &CurrentLoop) -> String {
         "Current controllers for a bandwidth of {} Hz, by pole cancellation: phase margin {:.0} degrees with 1.5 periods of delay at {} Hz.",
         significant(current_loop.bandwidth, 4),
         current_loop.phase_margin(),
-        significant(current_loop.control_rate.0, 5),
+        significant(current_loop.control_rate.value, 5),
     )
 }

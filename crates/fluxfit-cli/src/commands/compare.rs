@@ -1,16 +1,19 @@
 //! `fluxfit compare`: arguments to a request, the library's comparison to the terminal, to JSON and to a report.
 
+pub(crate) mod display;
+
 use super::{Status, input, report};
 use crate::{
-    arguments::{Compare, StudyModel},
+    arguments::{LogArguments, method_keys},
     error::CommandError,
     interrupt, json, terminal,
 };
+use clap::{Args, ValueEnum};
 use fluxfit::{
     Error, Log, Model, Parameter, Request,
     document::StudyDocument,
     objective::voltage_error::IdZero,
-    optimizer::SearchSettings,
+    optimizer::{Method, SearchSettings},
     study::{
         MethodStudy,
         comparison::{Comparison, ComparisonRequest, ComparisonStep, compare},
@@ -18,7 +21,62 @@ use fluxfit::{
 };
 use fluxfit_report::{Report, figures, html};
 use fluxfit_setup::read_truth;
-use std::{ops::ControlFlow, sync::Mutex, time::Instant};
+use std::{ops::ControlFlow, path::PathBuf, sync::Mutex, time::Instant};
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    #[command(flatten)]
+    log: LogArguments,
+    // The paper's four, unless others are asked for.
+    #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method,
+          help = format!("Optimizers to compare: {}", method_keys()))]
+    methods: Vec<Method>,
+    /// Fitness that is minimized
+    #[arg(long, help_heading = "Model", value_enum, default_value_t = StudyModel::Steady)]
+    model: StudyModel,
+    /// Number of independent runs of each optimizer
+    #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 50)]
+    runs: usize,
+    /// Number of candidates in each run
+    #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 50)]
+    population: usize,
+    /// Number of iterations of each run
+    #[arg(long, help_heading = "Search", value_name = "N", default_value_t = 300)]
+    iterations: usize,
+    /// Stop a run when its cost is this close to the minimum (V², or A² with the output error)
+    #[arg(long, help_heading = "Search", value_name = "COST")]
+    tolerance: Option<f64>,
+    /// Stop a run when its cost is at or below this value (V², or A² with the output error)
+    #[arg(long, help_heading = "Search", value_name = "COST")]
+    target_cost: Option<f64>,
+    /// Value of i_d in windows at i_d = 0: measured, or as-paper (zero, the paper's equation (3))
+    #[arg(long, help_heading = "Search", value_name = "HOW", default_value = "measured", value_parser = parse_id_zero)]
+    id_zero: IdZero,
+    /// File of true parameters (LOG.truth.json), for the errors of the runs
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FILE")]
+    truth: Option<PathBuf>,
+}
+
+/// Models that `compare` knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StudyModel {
+    /// Fitness (11) of the paper, on the samples of steady windows
+    Steady,
+    /// Simulated minus measured currents, on all rows; slow: half an hour on one core for the default study
+    OutputError,
+}
+
+fn parse_method(text: &str) -> Result<Method, String> {
+    Method::named(text).ok_or_else(|| format!("no method '{text}'; there are {}", method_keys()))
+}
+
+fn parse_id_zero(text: &str) -> Result<IdZero, String> {
+    match text {
+        "measured" => Ok(IdZero::Measured),
+        "as-paper" => Ok(IdZero::AsPaper),
+        _ => Err(format!("no way '{text}'; there are measured, as-paper")),
+    }
+}
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
@@ -31,10 +89,10 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     if arguments.log.json {
         terminal::print(&json::text(&StudyDocument::of(&comparison, &methods, !is_whole))?)?;
     } else {
-        terminal::study::show(&input.name, &comparison, &methods)?;
+        display::show(&input.name, &comparison, &methods)?;
     }
     if !is_whole {
-        terminal::study::interrupted(&comparison);
+        display::interrupted(&comparison);
         return Ok(Status::Incomplete);
     }
     let shown = Report {
@@ -100,14 +158,14 @@ pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparis
     let starts = Mutex::new(Vec::new());
     let begun = || starts.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let show = |step: ComparisonStep| match step {
-        ComparisonStep::Minimum => ControlFlow::Continue(()),
         ComparisonStep::Method(method) => {
             progress.turn_to("comparing");
             // Before the line says that they begin: whoever has read it may interrupt them.
             interrupt::be_gentle(true);
+            let go_on = interrupt::go_on();
             terminal::detail(|| format!("{}: {} runs begin", method.label(), asked.runs));
             begun().push((Some(method), Instant::now()));
-            interrupt::go_on()
+            go_on
         }
         ComparisonStep::Iteration => {
             progress.add(1);
@@ -119,6 +177,7 @@ pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparis
             progress.turn_to("polishing the lowest end of a swarm");
             ControlFlow::Continue(())
         }
+        _ => ControlFlow::Continue(()),
     };
     let comparison = compare(log, asked, &show);
     interrupt::be_gentle(false);

@@ -1,10 +1,25 @@
 //! `fluxfit demo`: the paper's rig, end to end: simulate, identify, compare four methods, write a report.
 
-use super::{Status, compare, report};
-use crate::{arguments::Demo, error::CommandError, terminal};
-use fluxfit::{Log, Request, identify, optimizer::SearchSettings, paper, study::comparison::ComparisonRequest};
+use super::{Status, compare, identify::display, report};
+use crate::{error::CommandError, terminal};
+use clap::Args;
+use fluxfit::{Error, Log, Request, identify, optimizer::SearchSettings, paper, study::comparison::ComparisonRequest};
 use fluxfit_drive::{Scenario, simulate};
 use fluxfit_report::{Report, figures, html};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct Demo {
+    /// File for the report
+    #[arg(long, value_name = "FILE.html", default_value = "fluxfit-demo.html")]
+    report: PathBuf,
+    /// Also write every figure of the report into this directory, as NAME.svg and NAME.png
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
 
 /// What stands where a log's name would.
 const NAME: &str = "The paper's rig, simulated";
@@ -17,16 +32,16 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     let log = terminal::working("simulating".to_owned(), || simulate(&scenario, 0, || ()))?.log()?;
     let search = SearchSettings { seed: arguments.seed, ..SearchSettings::default() };
     let request = Request { search, bounds: paper::SEARCH_BOX.map(|upper| Some((0.0, upper))), ..Request::default() };
-    let answer = identify(&log, &request)?;
+    let answer = identify(&log, &request).map_err(Error::from)?;
     let found = &answer.identification;
-    terminal::identification::show(NAME, &answer)?;
+    display::show(NAME, &answer)?;
 
     let asked = ComparisonRequest { request, truth: Some(paper::MOTOR), ..ComparisonRequest::default() };
     let (comparison, methods) = compare::compared(&log, &asked)?;
     terminal::print("\n")?;
-    terminal::study::show(NAME, &comparison, &methods)?;
+    compare::display::show(NAME, &comparison, &methods)?;
     if !comparison.is_whole() {
-        terminal::study::interrupted(&comparison);
+        compare::display::interrupted(&comparison);
         return Ok(Status::Incomplete);
     }
 

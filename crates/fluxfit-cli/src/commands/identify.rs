@@ -1,35 +1,106 @@
 //! `fluxfit identify`: arguments to a request, the library's answer to the terminal, to JSON, to a report and to exports.
 
-use super::{Status, export, input, report};
+mod current_loop;
+mod decisions;
+pub(crate) mod display;
+mod export;
+
+use super::{Status, input, report};
 use crate::{
-    arguments::{Identify, SearchMethod, by_parameter},
+    arguments::{LogArguments, ModelArgument, by_parameter, method_keys},
     error::CommandError,
     interrupt, json, terminal,
 };
+use clap::Args;
 use fluxfit::{
     Answer, Known, Request, Step, Swarm, Warning, identify_with_progress,
     motor::{PARAMETERS, Parameter},
-    suspect_units,
+    optimizer::Method,
 };
+use fluxfit_answer::export::Target;
 use fluxfit_report::{Report, figures, html};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct Identify {
+    #[command(flatten)]
+    log: LogArguments,
+    /// Model that is fitted to the log
+    #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
+    model: ModelArgument,
+    // Its help lists the methods: `help_of_search_method`.
+    #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method,
+          help = help_of_search_method(), long_help = long_help_of_search_method())]
+    method: SearchMethod,
+    /// Standard uncertainty of the voltages, as a fraction of the vector
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
+    voltage_accuracy: f64,
+    /// A parameter known exactly, e.g. rs=0.96 or ld=5.25mH; a bare number is SI
+    #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
+    fix: Vec<(Parameter, f64)>,
+    /// A parameter known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
+    #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_units::parse_prior, allow_hyphen_values = true)]
+    prior: Vec<(Parameter, f64, f64)>,
+    /// Identify without the last log (of one log: the last segment), and validate on it
+    #[arg(long, help_heading = "Output")]
+    hold_out: bool,
+    // Its help lists the targets: `export::help`.
+    #[arg(long, help_heading = "Output", value_name = "TARGET=FILE", value_parser = export::parse, help = export::help())]
+    export: Vec<(Target, PathBuf)>,
+    /// Compute the current controllers' gains for this bandwidth, e.g. 500Hz
+    #[arg(long, help_heading = "Output", value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency)]
+    bandwidth: Option<f64>,
+    /// Rate of the current controllers, for the phase margin, e.g. 10kHz [default: the log's sample rate]
+    #[arg(long, help_heading = "Output", value_name = "FREQUENCY", value_parser = fluxfit_units::parse_frequency, requires = "bandwidth")]
+    control_rate: Option<f64>,
+}
+
+/// Who searches in `identify`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum SearchMethod {
+    Auto,
+    LeastSquares,
+    Swarm(Method),
+}
+
+fn help_of_search_method() -> String {
+    format!("Optimizer that is run for comparison: least-squares (none), {}", method_keys())
+}
+
+fn long_help_of_search_method() -> String {
+    let auto = "The identified parameters do not depend on it. auto is tgfpa with the steady model, and none with the output error, where a run \
+                takes seconds.";
+    format!("{}\n\n{auto}", help_of_search_method())
+}
+
+fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
+    match text {
+        "auto" => Ok(SearchMethod::Auto),
+        "least-squares" => Ok(SearchMethod::LeastSquares),
+        _ => {
+            let unknown = || format!("no method '{text}'; there are auto, least-squares, {}", method_keys());
+            Method::named(text).map(SearchMethod::Swarm).ok_or_else(unknown)
+        }
+    }
+}
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     report::check(&arguments.log, [])?;
-    export::check(arguments)?;
+    export::check(&arguments.log, &arguments.export)?;
     let input = input::read(&arguments.log)?;
     let request = request(arguments, &input)?;
-    export::check_pole_pairs(arguments, input.pole_pairs)?;
+    export::check_pole_pairs(&arguments.export, input.pole_pairs)?;
     let answer = identified(&input, &request)?;
-    terminal::decisions::show(&answer.identification);
+    decisions::show(&answer.identification);
     if arguments.log.json {
         terminal::print(&json::text(&answer)?)?;
         // The document lists it among others; whoever interrupted the search is told at once.
         answer.warnings().iter().filter(|warning| matches!(warning, Warning::Interrupted { .. })).for_each(terminal::warn);
     } else {
-        terminal::identification::show(&input.name, &answer)?;
+        display::show(&input.name, &answer)?;
     }
-    let exported = export::write(arguments, &input, &answer)?;
+    let exported = export::write(&arguments.log, &arguments.export, &input, &answer)?;
     let shown = Report {
         title: &input.name,
         log: &answer.log,
@@ -68,10 +139,9 @@ fn identified(input: &input::Input, request: &Request) -> Result<Answer, Command
     };
     let answer = identify_with_progress(&input.log, request, &show);
     interrupt::be_gentle(false);
-    answer.map_err(|error| {
-        // A log without an operating point may be one in the wrong units: its rows still say so.
-        suspect_units(&input.log, request).iter().for_each(terminal::warn);
-        input::of_log(&input.name, error)
+    answer.map_err(|found| {
+        found.suspected_units.iter().for_each(terminal::warn);
+        input::of_log(&input.name, found.error)
     })
 }
 

@@ -1,10 +1,31 @@
 //! `fluxfit inspect`: what is understood of a log, before an answer hangs on it.
 
+mod display;
+
 use super::{Status, input};
-use crate::{arguments::Inspect, error::CommandError, terminal};
+use crate::{arguments::ColumnArguments, error::CommandError, json, terminal};
+use clap::Args;
 use fluxfit_files::{check_writable, write_atomically};
-use fluxfit_log::inspect;
-use std::{fs, path::Path};
+use fluxfit_log::{document::InspectionDocument, inspect};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+#[derive(Debug, Args)]
+pub(crate) struct Inspect {
+    /// The log; - is standard input
+    #[arg(value_name = "LOG")]
+    log: PathBuf,
+    #[command(flatten)]
+    columns: ColumnArguments,
+    /// Print the result as one JSON document and nothing else
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+    /// Write a mapping file with the columns recognized, to be completed by hand
+    #[arg(short, long, help_heading = "Output", value_name = "MAPPING.toml")]
+    output: Option<PathBuf>,
+}
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
@@ -13,8 +34,10 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     }
     let options = input::options(&arguments.columns, None)?;
     let inspection = terminal::working("reading".to_owned(), || inspect(&arguments.log, &options))?;
-    if arguments.output.as_deref() != Some(Path::new("-")) {
-        terminal::inspection::show(&input::name(&arguments.log), &inspection)?;
+    if arguments.json {
+        terminal::print(&json::text(&InspectionDocument::of(&inspection))?)?;
+    } else if arguments.output.as_deref() != Some(Path::new("-")) {
+        display::show(&input::name(&arguments.log), &inspection)?;
     }
     if let Some(path) = arguments.output.as_deref() {
         write_atomically(path, mapping_file(&inspection.mapping(&options)).as_bytes())?;
@@ -31,8 +54,11 @@ fn mapping_file(mapping: &str) -> String {
     format!("# fluxfit identify LOG --mapping THIS_FILE\n{mapping}")
 }
 
-/// Refuses to write over what is read.
+/// Refuses to write over what is read, or into the document.
 fn check_output(path: &Path, arguments: &Inspect) -> Result<(), CommandError> {
+    if arguments.json && path.as_os_str() == "-" {
+        return Err(CommandError::Usage("--json and -o - both print on standard output; name a file for the mapping".to_owned()));
+    }
     let place = |path: &Path| fs::canonicalize(path).ok().filter(|path| path.is_file());
     let read = [Some(arguments.log.as_path()), arguments.columns.mapping.as_deref()];
     if place(path).is_some_and(|written| read.into_iter().flatten().filter_map(place).any(|read| read == written)) {

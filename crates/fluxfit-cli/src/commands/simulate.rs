@@ -1,20 +1,43 @@
 //! `fluxfit simulate`: a scenario to a log, and its truth beside it.
 
+mod display;
+
 use super::Status;
 use crate::{
-    arguments::Simulate,
     error::CommandError,
     interrupt, json,
     terminal::{self, Progress},
 };
+use clap::Args;
 use fluxfit_drive::{Recording, simulate};
 use fluxfit_files::{Output, check_writable, is_replaceable};
 use fluxfit_setup::{ReadScenario, paper_scenario, read_scenario, scenario_file::PAPER_RIG, truth_of, truth_path, write_recording};
 use std::{
     fs,
     io::{self, Write},
-    path::Path,
+    path::{Path, PathBuf},
 };
+
+#[derive(Debug, Args)]
+#[command(override_usage = "fluxfit simulate [SCENARIO.toml] -o <LOG> [OPTIONS]\n       fluxfit simulate --template")]
+pub(crate) struct Simulate {
+    /// The scenario; - is standard input [default: the paper's rig]
+    #[arg(value_name = "SCENARIO.toml")]
+    scenario: Option<PathBuf>,
+    /// The log, as CSV; - is standard output. The true parameters are written beside it: rig.truth.json for rig.csv
+    #[arg(short, long, value_name = "LOG", required_unless_present = "template")]
+    output: Option<PathBuf>,
+    /// Seed of all noise [default: that of the scenario]
+    // No larger than TOML can hold: with the truth's scenario the log can be made again.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: Option<u64>,
+    /// Number of the noise realization; each is independent of the others
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    draw: u64,
+    /// Print the paper's rig as a scenario to start from; nothing is simulated
+    #[arg(long, exclusive = true)]
+    template: bool,
+}
 
 /// Rows between two movements of the progress bar.
 const STRIDE: usize = 1024;
@@ -38,7 +61,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<Status, CommandError> {
         terminal::stream(|out| write_recording(out, &recording))?;
     } else {
         write(log, truth.as_deref(), &recording, &json::text(&truth_of(&read, arguments.draw))?)?;
-        terminal::simulation::show(&name(arguments), &read.scenario, &recording, log, truth.as_deref())?;
+        display::show(&name(arguments), &read.scenario, &recording, log, truth.as_deref())?;
     }
     Ok(Status::Complete)
 }

@@ -1,11 +1,35 @@
 //! `fluxfit validate`: a motor held against a log that it was not found from.
 
+pub(crate) mod display;
+
 use super::{Status, input, report};
-use crate::{arguments::Validate, error::CommandError, json, terminal};
+use crate::{
+    arguments::{LogArguments, ModelArgument},
+    error::CommandError,
+    json, terminal,
+};
+use clap::Args;
 use fluxfit::{Request, document::ValidationDocument, validate, validation::validate::Outcome};
 use fluxfit_report::{ValidationReport, validation_figures, validation_html};
 use fluxfit_setup::read_given_motor;
 use std::path::Path;
+
+#[derive(Debug, Args)]
+#[command(override_usage = "fluxfit validate <LOG>... --motor <MOTOR> [OPTIONS]")]
+#[command(mut_arg("motor", |motor| motor.required(true).value_name("MOTOR").help(VALIDATED).long_help(VALIDATED)))]
+#[command(mut_arg("bounds", |bounds| bounds.hide(true)), mut_arg("seed", |seed| seed.hide(true)))]
+pub(crate) struct Validate {
+    #[command(flatten)]
+    log: LogArguments,
+    /// Model that predicts the log
+    #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
+    model: ModelArgument,
+    /// Standard uncertainty of the voltages, as a fraction of the vector
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
+    voltage_accuracy: f64,
+}
+
+const VALIDATED: &str = "The parameters to validate: a motor file with all four, the JSON document of fluxfit identify (with its standard errors), or a file of true parameters";
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
@@ -29,7 +53,7 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     if arguments.log.json {
         terminal::print(&json::text(&ValidationDocument::of(&input.log, &found))?)?;
     } else {
-        terminal::validation::show(&input.name, &name, &input.log, &found)?;
+        display::show(&input.name, &name, &input.log, &found)?;
     }
     let origin = report::origin(arguments.log.seed);
     let shown =

@@ -2,23 +2,16 @@
 //! and no `NO_COLOR`).
 
 pub(crate) mod advice;
-pub(crate) mod current_loop;
-pub(crate) mod decisions;
 mod excerpt;
-pub(crate) mod formats;
-pub(crate) mod identification;
-pub(crate) mod inspection;
 pub(crate) mod options;
-mod plot;
+pub(crate) mod plot;
 mod progress;
-pub(crate) mod simulation;
-pub(crate) mod study;
-pub(crate) mod validation;
 
 use crate::error::CommandError;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit::Warning;
+use fluxfit_units::significant;
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},
@@ -30,12 +23,12 @@ use std::{
     time::Instant,
 };
 
-const ERROR: Style = AnsiColor::Red.on_default().bold();
-const WARNING: Style = AnsiColor::Yellow.on_default().bold();
-const GOOD: Style = AnsiColor::Green.on_default();
-const BAD: Style = AnsiColor::Red.on_default();
-const DIM: Style = Style::new().dimmed();
-const HEADING: Style = Style::new().bold();
+pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
+pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
+pub(crate) const GOOD: Style = AnsiColor::Green.on_default();
+pub(crate) const BAD: Style = AnsiColor::Red.on_default();
+pub(crate) const DIM: Style = Style::new().dimmed();
+pub(crate) const HEADING: Style = Style::new().bold();
 
 /// Prints an answer.
 pub(crate) fn print(text: &str) -> std::io::Result<()> {
@@ -109,7 +102,8 @@ pub(crate) fn warn(warning: &Warning) {
     warn_of(warning.code(), &options::with_option(&warning.to_string(), options::of_warning(warning)));
 }
 
-fn warn_of(code: &str, message: &str) {
+/// Prints a warning that is not one of the library's.
+pub(crate) fn warn_of(code: &str, message: &str) {
     say(&format!("{WARNING}warning{WARNING:#} [{code}]: {message}"));
 }
 
@@ -138,7 +132,7 @@ fn say(line: &str) {
 }
 
 /// A table without frame: a heading, and rows whose columns after the first `left` are aligned to the right.
-fn table(heading: &[&str], left: usize, rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub(crate) fn table(heading: &[&str], left: usize, rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
     table.set_header(heading.iter().map(Cell::new));
@@ -152,4 +146,9 @@ fn table(heading: &[&str], left: usize, rows: impl IntoIterator<Item = Vec<Strin
         }
     }
     table.lines().map(|line| format!("{}\n", line.trim_end())).collect()
+}
+
+/// A frequency with its unit.
+pub(crate) fn frequency(hertz: f64) -> String {
+    if hertz >= 1000.0 { format!("{} kHz", significant(hertz / 1000.0, 3)) } else { format!("{} Hz", significant(hertz, 3)) }
 }

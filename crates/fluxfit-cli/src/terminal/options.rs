@@ -1,9 +1,9 @@
 //! How this program does what the library proposes: the options behind remedies, warnings and errors.
 
-use fluxfit::{ErrorKind, Remedy, Warning, evidence::Measurement};
+use fluxfit::{ErrorKind, Measurement, Remedy, Warning};
 
 /// The option that carries out a remedy.
-pub(super) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
+pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
     match remedy {
         Remedy::Measure(promised) => matches!(promised.measurement, Measurement::Resistance { .. }).then_some("--prior rs=VALUE±1%"),
         Remedy::AddStretch { also: Some(_), .. } => Some("--fix rs=VALUE"),
@@ -20,7 +20,7 @@ pub(super) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
 }
 
 /// The option that answers a warning.
-pub(super) fn of_warning(warning: &Warning) -> Option<&'static str> {
+pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
     match warning {
         Warning::NoRedundancy => Some("--fix or --prior"),
         Warning::ShortStretches { .. } | Warning::VoltageLimit { .. } => Some("--window T0:T1"),
@@ -40,6 +40,6 @@ pub(crate) fn of_error(error: &ErrorKind) -> Option<&'static str> {
 }
 
 /// A sentence with the option that does what it says.
-pub(super) fn with_option(sentence: &str, option: Option<&str>) -> String {
+pub(crate) fn with_option(sentence: &str, option: Option<&str>) -> String {
     option.map_or_else(|| sentence.to_owned(), |option| format!("{sentence} ({option})"))
 }

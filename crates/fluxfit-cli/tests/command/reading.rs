@@ -76,6 +76,30 @@ fn an_inspection_shows_columns_and_writes_a_mapping_that_identify_takes() {
     assert_eq!(document["parameters"], answer("slow.csv")["parameters"]);
 }
 
+/// The numbers are those of the file, by eye: `t` from 0 to 0.199, with a gap after the first hundred rows in the other one.
+#[test]
+fn the_document_of_an_inspection_has_columns_and_gaps() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("gap.csv");
+    let row = |k: u32| format!("{:.3},1.5,20,0,{},400\n", f64::from(k + if k < 100 { 0 } else { 500 }) * 1e-3, 3 + k % 2);
+    fs::write(&path, format!("t,ud,uq,id,iq,omega_e\n{}", (0..200).map(row).collect::<String>())).unwrap();
+    let (status, document) = json(&["inspect", path.to_str().unwrap()]);
+    assert_eq!((status, &document["schema"], &document["layout"]), (0, &"fluxfit.inspection/1".into(), &"canonical".into()));
+    let iq = &document["columns"][4];
+    assert_eq!((&iq["name"], &iq["channel"], &iq["range"]), (&"iq".into(), &"iq".into(), &serde_json::json!([3.0, 4.0])));
+    assert_eq!((&document["log"]["rows"], &document["log"]["interpolated"]), (&200.into(), &false.into()));
+    assert_eq!(document["log"]["gaps"], serde_json::json!([{ "t0": 0.099, "t1": 0.6 }]));
+    assert_eq!(document["error"], Value::Null);
+
+    fs::write(&path, "t,Motor.Vd,uq,id,iq,omega_e\n0,1,20,0,3,400\n1,1,20,0,3,400\n").unwrap();
+    let (status, document) = json(&["inspect", path.to_str().unwrap()]);
+    assert_eq!((status, &document["log"], &document["columns"][1]["resembles"]), (2, &Value::Null, &"ud".into()));
+    assert!(document["error"].as_str().unwrap().contains("the column ud is missing"), "{document}");
+
+    let run = fluxfit(&["inspect", path.to_str().unwrap(), "--json", "-o", "-"]);
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+}
+
 #[test]
 fn layouts_are_listed() {
     let run = fluxfit(&["formats"]);

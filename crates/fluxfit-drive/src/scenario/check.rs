@@ -3,6 +3,7 @@
 use super::{Injection, Magnetics, Mechanics, Scenario};
 use crate::{
     error::{BandwidthLimit, Error},
+    range::{finite, not_negative, positive, setting},
     schedule::Profile,
     sensors::SPEED_OBSERVER,
 };
@@ -37,7 +38,7 @@ impl Scenario {
     /// voltage or flux than there is.
     pub fn check(&self) -> Result<(), Error> {
         self.check_numbers()?;
-        self.check_sensors()?;
+        self.sensors.check()?;
         self.check_compatibility()?;
         self.check_sampling()?;
         self.check_feasibility()
@@ -59,24 +60,7 @@ impl Scenario {
             positive("mechanics.inertia", inertia)?;
             not_negative("mechanics.friction", friction)?;
         }
-        let inverter = &self.inverter;
-        positive("inverter.u_dc", inverter.u_dc)?;
-        not_negative("inverter.ripple", inverter.ripple)?;
-        not_negative("inverter.ripple_frequency", inverter.ripple_frequency)?;
-        positive("inverter.carrier", inverter.carrier)?;
-        not_negative("inverter.dead_time", inverter.dead_time)?;
-        not_negative("inverter.switch_drop", inverter.switch_drop)?;
-        not_negative("inverter.diode_drop", inverter.diode_drop)?;
-        not_negative("inverter.voltage_noise", inverter.voltage_noise)?;
-        if inverter.dead_time >= 0.25 / inverter.carrier {
-            return Err(setting("inverter.dead_time", inverter.dead_time, "less than a quarter of the carrier's period"));
-        }
-        if inverter.ripple_frequency > inverter.sample_rate() {
-            return Err(setting("inverter.ripple_frequency", inverter.ripple_frequency, "at most the sample rate"));
-        }
-        if inverter.ripple >= inverter.u_dc {
-            return Err(setting("inverter.ripple", inverter.ripple, "less than inverter.u_dc"));
-        }
+        self.inverter.check()?;
         positive("control.current_bandwidth", self.control.current_bandwidth)?;
         if matches!(self.mechanics, Mechanics::Free { .. }) {
             positive("control.speed_bandwidth", self.control.speed_bandwidth)?;
@@ -95,33 +79,15 @@ impl Scenario {
         }
         if let Some(Injection { frequency, voltage, .. }) = &self.schedule.injection {
             positive("injection.frequency", *frequency)?;
-            if *frequency > 0.5 * inverter.sample_rate() {
+            if *frequency > 0.5 * self.inverter.sample_rate() {
                 return Err(setting("injection.frequency", *frequency, "at most half the sample rate"));
             }
             check_ramps("injection.voltage", voltage)?;
-            if let Some(most) = voltage.ramps().iter().find(|amplitude| amplitude.to.abs() > inverter.voltage_limit()) {
+            if let Some(most) = voltage.ramps().iter().find(|amplitude| amplitude.to.abs() > self.inverter.voltage_limit()) {
                 return Err(setting("injection.voltage", most.to, "at most u_dc / sqrt(3)"));
             }
         }
         Ok(())
-    }
-
-    fn check_sensors(&self) -> Result<(), Error> {
-        let sensors = &self.sensors;
-        not_negative("sensors.current_noise", sensors.current_noise)?;
-        sensors.current_offset.iter().try_for_each(|offset| finite("sensors.current_offset", *offset))?;
-        sensors.current_gain.iter().try_for_each(|gain| positive("sensors.current_gain", *gain))?;
-        finite("sensors.angle_offset", sensors.angle_offset)?;
-        if let Some(adc) = sensors.adc {
-            positive("sensors.adc_range", adc.range)?;
-            if !(2..=32).contains(&adc.bits) {
-                return Err(setting("sensors.adc_bits", f64::from(adc.bits), "from 2 to 32"));
-            }
-        }
-        match sensors.encoder_steps {
-            Some(steps) if steps < 16 => Err(setting("sensors.encoder_steps", f64::from(steps), "at least 16")),
-            _ => Ok(()),
-        }
     }
 
     fn check_compatibility(&self) -> Result<(), Error> {
@@ -191,22 +157,6 @@ impl Scenario {
         };
         Error::OutsideMap { t, id: i.d, iq: i.q, id_range, iq_range }
     }
-}
-
-fn setting(key: &'static str, value: f64, range: &'static str) -> Error {
-    Error::Setting { key, value, range }
-}
-
-fn positive(key: &'static str, value: f64) -> Result<(), Error> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(setting(key, value, "a finite number above zero")) }
-}
-
-fn not_negative(key: &'static str, value: f64) -> Result<(), Error> {
-    if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(setting(key, value, "a finite number, zero or more")) }
-}
-
-fn finite(key: &'static str, value: f64) -> Result<(), Error> {
-    if value.is_finite() { Ok(()) } else { Err(setting(key, value, "a finite number")) }
 }
 
 fn check_ramps(key: &'static str, profile: &Profile) -> Result<(), Error> {

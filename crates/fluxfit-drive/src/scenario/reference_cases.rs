@@ -3,15 +3,15 @@
 
 use super::{Control, Inverter, Mechanics, Modulation, Scenario, Schedule, Sensors, SimulatedMotor};
 use crate::schedule::{Profile, Ramp};
-use fluxfit::{motor::Motor, paper};
+use fluxfit::{TimeWindow, motor::Motor, paper};
 use std::f64::consts::TAU;
 
 /// The steady part of [`two_modes`] and [`two_loads`], with a step in its middle, s.
-pub const STEADY: (f64, f64) = (0.45, 0.75);
+pub const STEADY: TimeWindow = TimeWindow { from: 0.45, to: 0.75 };
 
 /// The paper's rig at its two operating points, i_d = 0 and -2 A.
 pub fn two_modes() -> Scenario {
-    Scenario { duration: STEADY.1, ..rig() }
+    Scenario { duration: STEADY.to, ..rig() }
 }
 
 /// The rig with i_d = 0 throughout, and less load in the second half: only noise in the control loop excites L_d.

@@ -11,7 +11,7 @@ use fluxfit::{
     faults::Fault,
     identify,
     motor::{Motor, PARAMETERS, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
     paper,
 };
 use fluxfit_drive::{
@@ -59,10 +59,10 @@ fn holds(name: &str, found: &Identification, truth: &Motor, limits: [f64; PARAME
 
 /// The faults found are these, with these values inside three of their own standard errors.
 fn finds(name: &str, fit: &OutputFit, fault: Fault, values: &[(&str, f64)]) {
-    let faults: Vec<&str> = fit.terms.iter().filter(|tried| fit.has(tried.fault)).map(|tried| tried.fault.key()).collect();
+    let faults: Vec<&str> = fit.fault_trials.iter().filter(|tried| fit.has(tried.fault)).map(|tried| tried.fault.key()).collect();
     assert_eq!(faults, [fault.key()], "{name}");
     for (key, expected) in values {
-        let nuisance = fit.nuisance.iter().find(|nuisance| nuisance.unknown.key() == *key).unwrap();
+        let nuisance = fit.fault_estimates.iter().find(|nuisance| nuisance.unknown.key() == *key).unwrap();
         println!("{name}: {key} {:.5} ± {:.5}, truly {expected:.5}", nuisance.value, 2.0 * nuisance.standard_error);
         assert!((nuisance.value - expected).abs() < 3.0 * nuisance.standard_error, "{name}: {nuisance:?} instead of {expected}");
     }
@@ -74,7 +74,7 @@ const WITHIN_ONE_PERCENT: [f64; PARAMETERS] = [1.0; PARAMETERS];
 fn a_perfect_drive_has_no_faults() {
     let found = found(&rig(|_| ()));
     let fit = found.output.as_ref().unwrap();
-    assert!(fit.terms.iter().all(|tried| !fit.has(tried.fault)), "{:?}", fit.terms);
+    assert!(fit.fault_trials.iter().all(|tried| !fit.has(tried.fault)), "{:?}", fit.fault_trials);
     holds("perfect", &found, &paper::MOTOR, [0.2, 0.2, 0.05, 0.05]);
 }
 
@@ -136,7 +136,7 @@ fn a_delay_of_no_one_and_two_periods() {
         let fit = found.output.as_ref().unwrap();
         // The frame is that of the period in which it acts: two periods' looking ahead, if the column is that late, and so on.
         let frame = VoltageFrame::Middle;
-        assert_eq!(fit.voltage_reading.0, VoltageReading::Delayed { delay, frame }, "{delay}");
+        assert_eq!(fit.voltage_timing.value, VoltageTiming::Delayed { delay, frame }, "{delay}");
         holds("delay", &found, &paper::MOTOR, WITHIN_ONE_PERCENT);
     }
 }

@@ -5,7 +5,7 @@
 
 use fluxfit::{
     frames::{Abc, AlphaBeta, Dq},
-    optimizer::draws::Draws,
+    optimizer::Draws,
     paper,
 };
 use fluxfit_drive::{

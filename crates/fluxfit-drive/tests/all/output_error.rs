@@ -7,7 +7,7 @@ use fluxfit::{
     levenberg_marquardt::{MOTOR, Polished, jacobian, polish},
     motor::{Motor, PARAMETERS},
     objective::{
-        acting_voltage::{VoltageFrame, VoltageReading},
+        acting_voltage::{VoltageFrame, VoltageTiming},
         output_error::OutputError,
     },
     optimizer::{Bounds, Method, Optimizer, SearchSettings},
@@ -22,7 +22,7 @@ use fluxfit_drive::{
 };
 use std::path::Path;
 
-const NEXT_PERIOD: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
+const NEXT_PERIOD: VoltageTiming = VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
 /// A log of `examples/logs`, with these columns as voltages.
 fn example(name: &str, voltages: [&str; 2]) -> Log {
@@ -47,8 +47,8 @@ fn errors(motor: &Motor) -> [f64; PARAMETERS] {
 }
 
 /// The reading that fits best, and the motor found under it.
-fn best(log: &Log) -> (VoltageReading, Polished) {
-    let found = VoltageReading::ALL.map(|reading| (reading, polish(&OutputError::of(log, reading).unwrap(), &START)));
+fn best(log: &Log) -> (VoltageTiming, Polished) {
+    let found = VoltageTiming::ALL.map(|reading| (reading, polish(&OutputError::of(log, reading).unwrap(), &START)));
     found.into_iter().min_by(|a, b| a.1.cost.total_cmp(&b.1.cost)).unwrap()
 }
 
@@ -60,9 +60,9 @@ fn independent_logs_give_their_motor_and_their_timing() {
     let noise = [0.2, 0.1, 0.03, 0.03];
     let (logged, commands) = (["ud", "uq"], ["ud_ref", "uq_ref"]);
     for (name, voltages, expected, limits) in [
-        (ideal, logged, VoltageReading::Centered, exact),
+        (ideal, logged, VoltageTiming::Centered, exact),
         (ideal, commands, NEXT_PERIOD, exact),
-        (noisy, logged, VoltageReading::Centered, noise),
+        (noisy, logged, VoltageTiming::Centered, noise),
         (noisy, commands, NEXT_PERIOD, noise),
     ] {
         let (reading, found) = best(&example(name, voltages));
@@ -79,7 +79,7 @@ fn a_stiff_motor_at_speed_is_integrated_exactly() {
     let motor = scenario.motor.unsaturated();
     scenario.sensors.current_noise = 0.0;
     let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
-    let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
+    let objective = OutputError::of(&log, VoltageTiming::Centered).unwrap();
     let rms = (objective.cost(&motor) / (2 * objective.rows()) as f64).sqrt();
     assert!(rms < 1e-6, "the true motor misses the log by {rms:e} A");
     let start = Motor { rs: 0.06, ld: 15e-6, lq: 30e-6, psi_f: 2.2e-3 };
@@ -98,7 +98,7 @@ fn even_and_uneven_periods_agree() {
         // Half a percent of the last period; its own row's part of the cost changes.
         *last += 5e-7;
     }
-    let cost = |columns| OutputError::of(&Log::new(columns).unwrap(), VoltageReading::Centered).unwrap().cost(&START);
+    let cost = |columns| OutputError::of(&Log::new(columns).unwrap(), VoltageTiming::Centered).unwrap().cost(&START);
     let (even, uneven) = (cost(columns), cost(stretched));
     assert!((even / uneven - 1.0).abs() < 1e-6 && even != uneven, "{even} {uneven}");
 }
@@ -110,7 +110,7 @@ fn the_papers_swarm_ends_where_the_polish_does() {
     scenario.duration = 0.12;
     scenario.sensors.adc = Some(Adc { bits: 12, range: 20.0 });
     let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
-    let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
+    let objective = OutputError::of(&log, VoltageTiming::Centered).unwrap();
     let bounds = Bounds::new(vec![0.05, 5e-4, 5e-4, 0.01], paper::SEARCH_BOX.to_vec()).unwrap();
     let settings = SearchSettings { population: 40, iterations: 250, ..SearchSettings::default() };
     let report = Optimizer::start(Method::all()[0], settings, bounds, &objective).unwrap().run(&objective);
@@ -125,7 +125,7 @@ fn the_papers_swarm_ends_where_the_polish_does() {
 #[test]
 fn a_cost_is_the_sum_of_its_squared_residuals_wherever_the_motor_is() {
     let log = example("paper_rig_ideal.csv", ["ud", "uq"]);
-    let objective = OutputError::of(&log, VoltageReading::Centered).unwrap();
+    let objective = OutputError::of(&log, VoltageTiming::Centered).unwrap();
     for motor in [paper::MOTOR, START, Motor { ld: -2e-2, ..START }, Motor { rs: -0.05, ..START }, Motor { rs: 5.0, ld: 1e-9, ..START }] {
         let direct: f64 = objective.residuals(&motor.into()).iter().map(|residual| residual * residual).sum();
         let cost = objective.cost(&motor);

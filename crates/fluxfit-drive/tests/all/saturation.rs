@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
-    Known, Model, Request, evidence::Identification, frames::Dq, identify, motor::Parameter, objective::acting_voltage::VoltageReading,
+    Known, Model, Request, evidence::Identification, frames::Dq, identify, motor::Parameter, objective::acting_voltage::VoltageTiming,
 };
 use fluxfit_drive::{
     FluxMap, Scenario,
@@ -86,7 +86,7 @@ fn flux_is_the_maps(found: &Identification, part: f64) {
 }
 
 fn settings(model: Option<Model>, fix_rs: bool) -> Request {
-    let mut settings = Request { model, voltage_timing: Some(VoltageReading::Centered), ..Request::default() };
+    let mut settings = Request { model, voltage_timing: Some(VoltageTiming::Centered), ..Request::default() };
     if fix_rs {
         settings.known[Parameter::Rs as usize] = Known::Fixed(RS);
     }
@@ -127,7 +127,7 @@ fn simulated_currents_of_a_saturating_motor() {
         let found = bench(&POINTS, 0.12, 2e3, &settings(None, fix_rs));
         assert_eq!(found.model.model, Model::OutputError);
         let verdicts = found.parameters.each_ref().map(|judgement| (judgement.raw, judgement.verdict.key()));
-        println!("R_s fixed {fix_rs}: {verdicts:?} {:?}", found.output.as_ref().unwrap().nuisance);
+        println!("R_s fixed {fix_rs}: {verdicts:?} {:?}", found.output.as_ref().unwrap().fault_estimates);
         assert!(warns(&found, "saturation"), "{fix_rs}");
         nothing_is_confidently_wrong(&found, &POINTS);
         if fix_rs {

@@ -7,7 +7,7 @@ use fluxfit_drive::{
     inverter::Bridge,
     plant::Plant,
     scenario::{Adc, CurrentSensors, Inverter, Magnetics, Mechanics, Modulation, Sensors, SimulatedMotor},
-    sensors::{Measurement, SensorModel},
+    sensors::{Sample, SensorModel},
 };
 use std::f64::consts::{PI, TAU};
 
@@ -39,7 +39,7 @@ fn phases(plant: &Plant) -> [f64; 3] {
     [a, b, c]
 }
 
-fn measured(settings: Sensors, plant: &Plant) -> Measurement {
+fn measured(settings: Sensors, plant: &Plant) -> Sample {
     SensorModel::new(settings, 1, 0, POLE_PAIRS, SAMPLE_PERIOD).measure(plant, &bridge(), 0.0)
 }
 

@@ -6,7 +6,7 @@ use fluxfit::{
     Columns, Log,
     frames::Dq,
     motor::{Motor, PARAMETERS, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
     optimizer::{Bounds, Draws, Method, Objective, SearchSettings},
     paper,
     study::{
@@ -56,7 +56,7 @@ fn study(problem: &mut StudyProblem, runs: usize, iterations: usize) -> Vec<Meth
 fn the_polish_finds_the_motor_and_the_timing_without_a_steady_window() {
     let problem = StudyProblem::output_error(&log(), None).unwrap();
     let Fitness::OutputError { reading, .. } = problem.fitness else { panic!("not the output error") };
-    assert_eq!(reading, VoltageReading::Centered);
+    assert_eq!(reading, VoltageTiming::Centered);
     assert!(problem.fitness.has_converged() && problem.unexcited.is_empty());
     // 300 rows of 0.05 A noise: the Cramér-Rao bound is some percent of R_s, less of the others.
     let (motor, cost) = problem.fitness.minimum();
@@ -75,7 +75,7 @@ fn all_methods_are_finite_above_the_minimum_and_the_same_on_any_number_of_thread
     let log = log();
     let on = |threads: usize| {
         ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| {
-            let mut problem = StudyProblem::output_error(&log, Some(VoltageReading::Centered)).unwrap();
+            let mut problem = StudyProblem::output_error(&log, Some(VoltageTiming::Centered)).unwrap();
             (study(&mut problem, 3, 15), problem)
         })
     };
@@ -99,7 +99,7 @@ fn all_methods_are_finite_above_the_minimum_and_the_same_on_any_number_of_thread
 /// A polish that stopped short: the swarm's end lies below it, is polished, and everything counts from there.
 #[test]
 fn a_swarm_that_finds_less_than_the_polish_moves_the_minimum() {
-    let mut problem = StudyProblem::output_error(&log(), Some(VoltageReading::Centered)).unwrap();
+    let mut problem = StudyProblem::output_error(&log(), Some(VoltageTiming::Centered)).unwrap();
     let (motor, lowest) = problem.fitness.minimum();
     if let Fitness::OutputError { minimum, .. } = &mut problem.fitness {
         minimum.drive.motor = Motor { rs: 3.0, ..motor };
@@ -115,7 +115,7 @@ fn a_swarm_that_finds_less_than_the_polish_moves_the_minimum() {
 /// The paper's box begins at no resistance, no inductance, no flux: none of its corners may stop a search or win it.
 #[test]
 fn no_corner_of_the_papers_box_beats_the_minimum() {
-    let problem = StudyProblem::output_error(&log(), Some(VoltageReading::Centered)).unwrap();
+    let problem = StudyProblem::output_error(&log(), Some(VoltageTiming::Centered)).unwrap();
     let (_, lowest) = problem.fitness.minimum();
     for corner in 0..1 << PARAMETERS {
         for nearly_zero in [0.0, 5e-324, 1e-300, 1e-30, 1e-9] {
@@ -143,7 +143,7 @@ fn a_steady_log_without_d_current_does_not_tell_ld() {
         let Columns { t, ud, uq, id, iq, omega_e, .. } = &mut columns;
         [t, ud, uq, id, iq, omega_e].into_iter().zip(row).for_each(|(column, value)| column.push(value));
     }
-    let reading = VoltageReading::Delayed { delay: 0, frame: VoltageFrame::Middle };
+    let reading = VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Middle };
     let problem = StudyProblem::output_error(&Log::new(columns).unwrap(), Some(reading)).unwrap();
     assert_eq!(problem.rows, [200, 200]);
     assert_eq!(problem.unexcited, [Parameter::Ld], "{:?}", problem.fitness.minimum());

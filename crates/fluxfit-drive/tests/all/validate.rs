@@ -7,8 +7,8 @@ use fluxfit::{
     frames::Dq,
     identify,
     motor::{Motor, Parameter},
-    objective::acting_voltage::VoltageReading,
-    optimizer::draws::Draws,
+    objective::acting_voltage::VoltageTiming,
+    optimizer::Draws,
     paper, validate,
     validation::prediction::Prediction,
     validation::validate::LITTLE,
@@ -68,7 +68,7 @@ fn log(scenario: &Scenario, draw: u64) -> Log {
 
 /// The voltages of a simulated drive are exact, and what their columns mean is known.
 fn exact() -> Request {
-    Request { voltage_accuracy: 0.0, voltage_timing: Some(VoltageReading::Centered), ..Request::default() }
+    Request { voltage_accuracy: 0.0, voltage_timing: Some(VoltageTiming::Centered), ..Request::default() }
 }
 
 fn with(parameter: Parameter, factor: f64) -> Given {

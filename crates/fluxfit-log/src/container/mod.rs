@@ -1,7 +1,8 @@
 //! Tables in formats other than text: Parquet, MATLAB's MAT, HDF5 and ASAM MDF 4.
 //!
-//! A container lists its columns and reads the wanted ones block by block. A damaged file gives an error. Every length that a file
-//! states is checked against the size of the file before memory is allocated, so that a small file cannot claim much memory.
+//! [`CONTAINERS`] lists the formats. A container lists its columns and reads the wanted ones block by block. A damaged file gives an error.
+//! Every length that a file states is checked against the size of the file before memory is allocated, so that a small file cannot claim
+//! much memory.
 
 mod fault;
 mod guard;
@@ -20,10 +21,39 @@ pub(crate) use random_access::RandomAccess;
 use crate::{block::ColumnHead, problem::Problem};
 use fluxfit_files::{FileError, input::io_problem};
 
+/// A container format.
+#[derive(Debug)]
+pub struct Container {
+    /// Its name, and those of formats that are read as the same.
+    pub names: &'static [&'static str],
+    /// Whether this build reads it.
+    pub is_built: bool,
+    /// What its files begin with.
+    signatures: &'static [&'static [u8]],
+    open: fn(&[u8], RandomAccess) -> Result<Option<Binary>, FileError>,
+}
+
+/// The formats that are read. A file without any of their signatures is given to the last one, because MAT 4 has none.
+pub const CONTAINERS: &[Container] = &[
+    Container { names: &["Parquet"], is_built: true, signatures: &[b"PAR1", ENCRYPTED_PARQUET], open: open_parquet },
+    Container { names: &["MDF 4"], is_built: cfg!(feature = "mdf4"), signatures: &[b"MDF     ", b"UnFinMF "], open: open_mdf },
+    MAT,
+];
+
+const MAT: Container =
+    Container { names: &["MATLAB", "HDF5"], is_built: true, signatures: &[b"MATLAB ", b"\x89HDF\r\n\x1a\n"], open: open_mat };
+
+const ENCRYPTED_PARQUET: &[u8] = b"PARE";
+
+impl Container {
+    fn has_signature(&self, start: &[u8]) -> bool {
+        self.signatures.iter().any(|signature| start.starts_with(signature))
+    }
+}
+
 /// Whether the start of a file has the signature of one of these formats. MAT 4 has no signature.
 pub(crate) fn is_container(start: &[u8]) -> bool {
-    const STARTS: [&[u8]; 6] = [b"PAR1", b"PARE", b"MDF     ", b"UnFinMF ", b"MATLAB ", b"\x89HDF\r\n\x1a\n"];
-    STARTS.iter().any(|known| start.starts_with(known))
+    CONTAINERS.iter().any(|container| container.has_signature(start))
 }
 
 /// An open container.
@@ -43,16 +73,8 @@ impl Binary {
         let mut start = [0; 1024];
         let count = file.read_at(0, &mut start).map_err(|error| FileError::from(io_problem("reading", &error)))?;
         let start = &start[..count];
-        if start.starts_with(b"PAR1") {
-            return Ok(Some(Self::Parquet(Box::new(parquet::Parquet::open(file)?))));
-        }
-        if start.starts_with(b"PARE") {
-            return Err(Problem::Container { format: "Parquet", fault: "it is encrypted; export it without encryption".to_owned() }.into());
-        }
-        if start.starts_with(b"MDF     ") || start.starts_with(b"UnFinMF ") {
-            return mdf(start, file).map(Some);
-        }
-        Ok(mat::Mat::open(start, file)?.map(|mat| Self::Mat(Box::new(mat))))
+        let container = CONTAINERS.iter().find(|container| container.has_signature(start)).unwrap_or(&MAT);
+        (container.open)(start, file)
     }
 
     /// The name of the format.
@@ -106,13 +128,24 @@ impl Binary {
     }
 }
 
+fn open_parquet(start: &[u8], file: RandomAccess) -> Result<Option<Binary>, FileError> {
+    if start.starts_with(ENCRYPTED_PARQUET) {
+        return Err(Problem::Container { format: "Parquet", fault: "it is encrypted; export it without encryption".to_owned() }.into());
+    }
+    Ok(Some(Binary::Parquet(Box::new(parquet::Parquet::open(file)?))))
+}
+
+fn open_mat(start: &[u8], file: RandomAccess) -> Result<Option<Binary>, FileError> {
+    Ok(mat::Mat::open(start, file)?.map(|mat| Binary::Mat(Box::new(mat))))
+}
+
 /// Opens an MDF file. Its start is `MDF     4.10    `, with the version as text.
-fn mdf(start: &[u8], file: RandomAccess) -> Result<Binary, FileError> {
+fn open_mdf(start: &[u8], file: RandomAccess) -> Result<Option<Binary>, FileError> {
     if start.get(8).is_some_and(|major| *major != b'4') {
         return Err(Problem::OldMdf.into());
     }
     #[cfg(feature = "mdf4")]
-    return Ok(Binary::Mdf4(Box::new(mdf4::Mdf4::open(file)?)));
+    return Ok(Some(Binary::Mdf4(Box::new(mdf4::Mdf4::open(file)?))));
     #[cfg(not(feature = "mdf4"))]
     {
         drop(file);

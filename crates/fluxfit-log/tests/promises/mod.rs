@@ -59,8 +59,8 @@ fn argument(bytes: &[u8]) {
     if let Some((_, lower, upper)) = one_line(parse_bounds(&text)) {
         assert!(lower.is_finite() && upper.is_finite() && lower < upper, "{lower} {upper}");
     }
-    if let Some((start, end)) = one_line(parse_window(&text)) {
-        assert!(start.is_finite() && end.is_finite() && start < end, "{start} {end}");
+    if let Some(window) = one_line(parse_window(&text)) {
+        assert!(window.from.is_finite() && window.to.is_finite() && window.from < window.to, "{window:?}");
     }
 }
 

@@ -117,11 +117,24 @@ fn paint(area: &Area, pair: &ParameterPair, size: Size) -> Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fluxfit::{Verdict, evidence::ParameterUncertainty};
+    use fluxfit::{Columns, Log, Request, evidence::ParameterUncertainty, frames::Dq, identify, paper};
 
+    /// That of any log, with this value and standard error.
     fn judgement(parameter: Parameter, raw: f64, statistical: f64) -> Judgement {
-        let uncertainty = ParameterUncertainty { statistical, ..ParameterUncertainty::default() };
-        Judgement { parameter, raw, uncertainty, verdict: Verdict::Identified, reason: None, remedy: None }
+        let mut columns = Columns::default();
+        for row in 0..200 {
+            let i = if row < 100 { Dq { d: 0.0, q: 9.0 } } else { Dq { d: -2.0, q: 8.5 } };
+            let u = paper::MOTOR.steady_voltage(i, 400.0);
+            let Columns { t, ud, uq, id, iq, omega_e, .. } = &mut columns;
+            for (column, value) in [(t, f64::from(row) * 1e-3), (ud, u.d), (uq, u.q), (id, i.d), (iq, i.q), (omega_e, 400.0)] {
+                column.push(value);
+            }
+        }
+        let mut judgement = identify(&Log::new(columns).unwrap(), &Request::default()).unwrap().parameter(parameter).clone();
+        judgement.raw = raw;
+        judgement.uncertainty = ParameterUncertainty::default();
+        judgement.uncertainty.statistical = statistical;
+        judgement
     }
 
     /// Every point of the outline has the same Mahalanobis distance: its square is 2 ln 20, beyond which 5 % of the probability lie.

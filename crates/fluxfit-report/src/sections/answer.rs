@@ -31,17 +31,17 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
 
 /// The model, the reason for its choice, and the effects identified in addition to the motor.
 fn model(found: &Identification) -> Markup {
-    let ModelChoice { model, reason: why } = &found.model;
+    let ModelChoice { model, reason: why, .. } = &found.model;
     html! {
         p {
             strong { "Model: " (model.label()) } " (" (prose(&why.to_string())) "). "
             @if let Some(fit) = &found.output {
                 "The parameters minimize the difference between simulated and measured currents over all rows. The logged voltage of a row is taken "
                 "as "
-                (fit.voltage_reading.0.label()) @if fit.voltage_reading.1 == Provenance::Found { ", determined from the currents" } ". "
-                @if fit.nuisance.is_empty() { "No fault of the drive was found" } @else {
+                (fit.voltage_timing.value.label()) @if fit.voltage_timing.provenance == Provenance::Found { ", determined from the currents" } ". "
+                @if fit.fault_estimates.is_empty() { "No fault of the drive was found" } @else {
                     "Faults found and corrected: "
-                    @for (k, nuisance) in fit.nuisance.iter().enumerate() {
+                    @for (k, nuisance) in fit.fault_estimates.iter().enumerate() {
                         @if k > 0 { "; " } (prose(nuisance.unknown.label())) " " (fault(nuisance))
                     }
                 }

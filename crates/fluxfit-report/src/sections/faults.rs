@@ -7,7 +7,7 @@ use crate::{
     typography::{DASH, capitalized, fault, number, power, prose},
 };
 use fluxfit::{
-    evidence::{FaultOutcome, FaultTrial, OutputFit, Provenance, ReadingTrial},
+    evidence::{FaultOutcome, FaultTrial, OutputFit, Provenance, Resolved, TimingTrial},
     faults::Fault,
 };
 use fluxfit_units::significant;
@@ -30,13 +30,13 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
 /// The faults that are part of the fit.
 fn identified(fit: &OutputFit) -> Markup {
     html! {
-        @if fit.nuisance.is_empty() {
+        @if fit.fault_estimates.is_empty() {
             p { "None of the faults below was found." }
         } @else {
             (table::scrolling("Identified faults", &html! {
                 table.tried {
                     thead { tr { th scope="col" { "Identified fault" } th scope="col" { "Value ± 95 %" } } }
-                    tbody { @for nuisance in &fit.nuisance { tr {
+                    tbody { @for nuisance in &fit.fault_estimates { tr {
                         th scope="row" { (prose(&capitalized(nuisance.unknown.label()))) }
                         td { (fault(nuisance)) }
                     } } }
@@ -52,8 +52,8 @@ fn tried(fit: &OutputFit) -> Markup {
     html! {
         (table::scrolling("Faults that were tried", &html! {
             table.tried {
-                thead { tr { th scope="col" { "Fault tried" } th scope="col" { "Gain" } th.words scope="col" { "FaultOutcome" } } }
-                tbody { @for tried in &fit.terms { (row(tried)) } }
+                thead { tr { th scope="col" { "Fault tried" } th scope="col" { "Gain" } th.words scope="col" { "Outcome" } } }
+                tbody { @for tried in &fit.fault_trials { (row(tried)) } }
             }
         }))
         p.small {
@@ -91,16 +91,16 @@ fn explained(tried: &FaultTrial) -> &'static str {
 
 /// The voltage timings that were tried.
 fn voltage_timings(fit: &OutputFit) -> Markup {
-    let (reading, provenance) = fit.voltage_reading;
+    let Resolved { value: timing, provenance } = fit.voltage_timing;
     if provenance == Provenance::Stated {
-        return html! { p { "The voltage timing was stated: " (reading.label()) ". No other one was tried." } };
+        return html! { p { "The voltage timing was stated: " (timing.label()) ". No other one was tried." } };
     }
-    let best = fit.readings.first().map_or(0.0, ReadingTrial::mean_square);
-    let possible: Vec<_> = fit.possible_readings().map(|tried| tried.reading).collect();
+    let best = fit.timings.first().map_or(0.0, TimingTrial::mean_square);
+    let possible: Vec<_> = fit.possible_timings().map(|tried| tried.timing).collect();
     html! {
         p {
             "The log does not state when its voltages act, so all voltage timings were fitted, with the identified faults. The one with the "
-            "smallest residuals was taken: " (reading.label()) "."
+            "smallest residuals was taken: " (timing.label()) "."
             @if possible.len() > 1 {
                 " The log does not distinguish it from " (if possible.len() == 2 { "one other" } else { "some others" })
                 "; the differences of the parameters between them are part of the uncertainty, unless the voltage timing is stated."
@@ -110,16 +110,16 @@ fn voltage_timings(fit: &OutputFit) -> Markup {
             table.tried {
                 thead { tr {
                     th.words scope="col" { "The voltage of a row is" } th scope="col" { "Residual, A rms" }
-                    th scope="col" { "Relative to the best" } th.words scope="col" { "FaultOutcome" }
+                    th scope="col" { "Relative to the best" } th.words scope="col" { "Outcome" }
                 } }
-                tbody { @for tried in &fit.readings {
+                tbody { @for tried in &fit.timings {
                     tr {
-                        th scope="row" { (tried.reading.label()) }
+                        th scope="row" { (tried.timing.label()) }
                         td { (power(tried.mean_square().sqrt())) }
                         td { (number((tried.mean_square() / best).sqrt(), |ratio| significant(ratio, 3))) }
                         td.words {
-                            @if tried.reading == reading { span.badge.identified { "taken" } }
-                            @else if possible.contains(&tried.reading) { "possible" }
+                            @if tried.timing == timing { span.badge.identified { "taken" } }
+                            @else if possible.contains(&tried.timing) { "possible" }
                             @else { "ruled out" }
                         }
                     }

@@ -33,7 +33,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                 "from the operating points or from differences of rows. "
             }
             (method.label()) " searched " @if found.output.is_some() { "the whole search box " } "for the same minimum"
-            @if found.output.as_ref().is_some_and(|fit| !fit.nuisance.is_empty()) { ", with the values of the identified faults fixed," }
+            @if found.output.as_ref().is_some_and(|fit| !fit.fault_estimates.is_empty()) { ", with the values of the identified faults fixed," }
             " and ended after " (grouped(search.report.evaluations)) " evaluations with a cost " (distance(found, search)) " that of the answer ("
             (stop_reason(search.report.stop_reason)) "). "
             @if found.output.is_none() { "The unit of this difference is one squared standard uncertainty: below 1 it is negligible." }

@@ -49,7 +49,7 @@ fn minimum(fitness: &Fitness) -> Markup {
             "This fitness is a linear least-squares problem, whose single minimum, " (cost) ", a factorization finds exactly in microseconds."
         },
         Fitness::OutputError { minimum, .. } => html! {
-            "The voltage timing is " (fitness.voltage_reading().unwrap_or_default()) ". "
+            "The voltage timing is " (fitness.voltage_timing().unwrap_or_default()) ". "
             @if minimum.converged {
                 "The lowest minimum known, " (cost) ", was found by the Levenberg-Marquardt method (polish); a lower one may exist."
             } @else {

@@ -91,7 +91,7 @@ fn probability(probability: f64) -> Markup {
 }
 
 fn parameter(difference: &Difference) -> Markup {
-    let Difference { parameter, given, own } = *difference;
+    let Difference { parameter, given, own, .. } = *difference;
     let scale = Scale::for_value(parameter, given);
     let error = own.map_or(0.0, |own| own.standard_error);
     let show = |value: f64| number(value, |value| scale.format(value, error));

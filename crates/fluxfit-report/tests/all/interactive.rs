@@ -9,7 +9,7 @@ use crate::{
     logs::{Found, INTERRUPTED, WHOLE},
     markup::{checked, data},
 };
-use fluxfit::{Columns, Log, optimizer::draws::Draws};
+use fluxfit::{Columns, Log, optimizer::Draws};
 
 #[test]
 fn the_data_of_a_figure_are_those_of_the_log() {

@@ -3,7 +3,7 @@
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use fluxfit::{Columns, Log, Model, Request, evidence::Identification, frames::Dq, identify, optimizer::draws::Draws, paper};
+use fluxfit::{Columns, Log, Model, Request, evidence::Identification, frames::Dq, identify, optimizer::Draws, paper};
 use fluxfit_drive::{
     Scenario,
     schedule::{Profile, Ramp},

@@ -9,6 +9,9 @@ use fluxfit_files::{FileError, toml_table::Table};
 use fluxfit_units::Dimension;
 use std::path::Path;
 
+/// Keys of `[motor]`.
+pub(super) const MOTOR_KEYS: &[&str] = &["rs", "ld", "lq", "psi_f", "flux_map", "pole_pairs"];
+
 pub(super) fn motor(table: &Table<'_>, folder: &Path) -> Result<SimulatedMotor, FileError> {
     Ok(SimulatedMotor {
         rs: table.needed("rs", Dimension::Resistance)?,
@@ -30,6 +33,9 @@ fn magnetics(table: &Table<'_>, folder: &Path) -> Result<Magnetics, FileError> {
     }
     read_flux_map(&folder.join(entry.text()?)).map(Magnetics::Map)
 }
+
+/// Keys of `[mechanics]`.
+pub(super) const MECHANICS_KEYS: &[&str] = &["kind", "inertia", "friction"];
 
 pub(super) fn mechanics(table: &Table<'_>) -> Result<Mechanics, FileError> {
     let dyno = table.get("kind").map_or(Ok(false), |kind| kind.word(&[("free", false), ("dyno", true)]))?;

@@ -13,6 +13,9 @@ use fluxfit_units::Dimension;
 /// A ramp, as an example in messages.
 const RAMP: &str = "{ at = \"0.2 s\", to = .., over = \"10 ms\" }";
 
+/// Keys of `[schedule]`.
+pub(super) const SCHEDULE_KEYS: &[&str] = &["id", "iq", "speed", "load"];
+
 pub(super) fn schedule(table: &Table<'_>, injection: &Table<'_>) -> Result<Schedule, FileError> {
     let course = |key, dimension| table.get(key).map_or(Ok(Profile::default()), |entry| course(&entry, dimension));
     Ok(Schedule {
@@ -23,6 +26,9 @@ pub(super) fn schedule(table: &Table<'_>, injection: &Table<'_>) -> Result<Sched
         injection: if injection.is_present() { Some(test_voltage(injection)?) } else { None },
     })
 }
+
+/// Keys of `[injection]`.
+pub(super) const INJECTION_KEYS: &[&str] = &["axis", "waveform", "frequency", "voltage"];
 
 fn test_voltage(table: &Table<'_>) -> Result<Injection, FileError> {
     let needed = |key, example| table.get(key).ok_or_else(|| table.missing(key, example));

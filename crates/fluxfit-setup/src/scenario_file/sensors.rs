@@ -4,6 +4,10 @@ use fluxfit_drive::scenario::{Adc, CurrentSensors, Sensors};
 use fluxfit_files::{FileError, Problem as FileProblem, toml_table::Table};
 use fluxfit_units::Dimension;
 
+/// Keys of `[sensors]`.
+pub(super) const KEYS: &[&str] =
+    &["current_sensors", "current_noise", "current_offset", "current_gain", "adc_bits", "adc_range", "angle_offset", "encoder_steps"];
+
 pub(super) fn sensors(table: &Table<'_>) -> Result<Sensors, FileError> {
     let ideal = Sensors::IDEAL;
     let counts = [("3", CurrentSensors::Three), ("2", CurrentSensors::Two)];

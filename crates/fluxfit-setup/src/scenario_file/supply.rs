@@ -4,6 +4,10 @@ use fluxfit_drive::scenario::{Control, Inverter, Mechanics, Modulation, Update};
 use fluxfit_files::{FileError, toml_table::Table};
 use fluxfit_units::Dimension;
 
+/// Keys of `[inverter]`.
+pub(super) const INVERTER_KEYS: &[&str] =
+    &["modulation", "u_dc", "ripple", "ripple_frequency", "carrier", "update", "dead_time", "switch_drop", "diode_drop", "voltage_noise"];
+
 pub(super) fn inverter(table: &Table<'_>) -> Result<Inverter, FileError> {
     let ideal = Inverter::ideal(table.needed("u_dc", Dimension::Voltage)?, table.needed("carrier", Dimension::Frequency)?);
     let ripple = table.quantity("ripple", Dimension::Voltage)?;
@@ -25,6 +29,9 @@ pub(super) fn inverter(table: &Table<'_>) -> Result<Inverter, FileError> {
         ..ideal
     })
 }
+
+/// Keys of `[control]`.
+pub(super) const CONTROL_KEYS: &[&str] = &["current_bandwidth", "speed_bandwidth", "max_current", "trip_current", "field_weakening"];
 
 pub(super) fn control(table: &Table<'_>, mechanics: Mechanics) -> Result<Control, FileError> {
     let current_bandwidth = table.needed("current_bandwidth", Dimension::Frequency)?;

@@ -4,6 +4,7 @@ use serde::{Serialize, Serializer};
 
 /// An object whose keys are not the same in every document.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ByKey<T>(pub Vec<(&'static str, T)>);
 
 impl<T: Serialize> Serialize for ByKey<T> {

@@ -9,6 +9,7 @@ use serde::Serialize;
 /// One value for each parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "ByParameterOf_{T}"))]
+#[non_exhaustive]
 pub struct ByParameter<T> {
     /// Stator resistance R_s; its unit is ohm.
     pub rs: T,
@@ -52,6 +53,7 @@ impl ByParameter<[f64; 2]> {
 /// A motor and its cost.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "CostOf_{T}"))]
+#[non_exhaustive]
 pub struct MotorWithCost<T> {
     /// The parameters, SI units.
     #[serde(flatten)]

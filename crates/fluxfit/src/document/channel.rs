@@ -6,6 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "PerChannelOf_{T}"))]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum PerChannel<T> {
     /// Of the output error.
     Currents {

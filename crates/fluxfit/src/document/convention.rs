@@ -10,6 +10,7 @@ use serde::Serialize;
 /// The comparison of the log with the nameplate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ConventionEntry {
     /// Whether everything that can be compared agrees.
     pub agrees: bool,
@@ -43,6 +44,7 @@ impl ConventionEntry {
 /// One confusion of units or conventions, or two together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CandidateEntry {
     /// The confusions.
     pub patterns: Vec<PatternEntry>,
@@ -65,6 +67,7 @@ impl CandidateEntry {
 /// A confusion of units or conventions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct PatternEntry {
     /// Its name.
     pub name: &'static str,
@@ -84,6 +87,7 @@ impl PatternEntry {
 /// How many times too large the columns of a log are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ColumnFactors {
     /// The voltages.
     pub u: f64,

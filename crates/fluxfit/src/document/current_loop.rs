@@ -9,6 +9,7 @@ use serde::Serialize;
 /// Proportional and integral gains of both current controllers for a wanted bandwidth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CurrentLoopEntry {
     /// The wanted bandwidth of the closed loop, Hz.
     pub bandwidth_hz: f64,
@@ -34,8 +35,8 @@ impl CurrentLoopEntry {
             |kp: Option<Gain>| AxisGains { kp: kp.map(|kp| GainEntry::of(kp, "V/A")), ki: found.ki.map(|ki| GainEntry::of(ki, "V/(A s)")) };
         Self {
             bandwidth_hz: found.bandwidth,
-            control_rate_hz: found.control_rate.0,
-            control_rate_stated: found.control_rate.1 == Provenance::Stated,
+            control_rate_hz: found.control_rate.value,
+            control_rate_stated: found.control_rate.provenance == Provenance::Stated,
             delay_periods: DELAY_PERIODS,
             phase_margin_deg: found.phase_margin(),
             highest_bandwidth_hz: found.highest_bandwidth(),
@@ -48,6 +49,7 @@ impl CurrentLoopEntry {
 /// The gains of one current controller.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct AxisGains {
     /// Proportional gain, V/A; null if the inductance that it comes from is `not-identifiable`.
     pub kp: Option<GainEntry>,
@@ -58,6 +60,7 @@ pub struct AxisGains {
 /// One gain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct GainEntry {
     /// The value.
     pub value: f64,

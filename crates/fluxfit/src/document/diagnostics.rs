@@ -13,6 +13,7 @@ use serde::Serialize;
 /// Raw numbers of an identification, whatever the verdicts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Diagnostics {
     /// What the fit gave, SI units; no answer where the verdict is `not-identifiable`.
     pub raw: ByParameter<Option<f64>>,
@@ -59,6 +60,7 @@ impl Diagnostics {
 /// The parts of a systematic standard error, in the parameter's unit; they add in quadrature.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SystematicEntry {
     /// From the standard errors of parameters that were known beforehand.
     pub prior: Option<f64>,

@@ -31,6 +31,7 @@ const LEAST_SQUARES: &str = "least-squares";
 /// added in later versions, never renamed. What is not known is null.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(title = IDENTIFICATION))]
+#[non_exhaustive]
 pub struct IdentificationDocument {
     /// Name and version of this document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = IDENTIFICATION)))]
@@ -111,6 +112,7 @@ fn identifiable(motor: &Motor, answer: &Identification) -> ByParameter<Option<f6
 /// One parameter of the answer. Its numbers are null if the verdict is `not-identifiable`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ParameterEntry {
     /// The value, SI units.
     pub value: Option<f64>,
@@ -153,6 +155,7 @@ impl ParameterEntry {
 /// What an optimizer found by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SearchEntry {
     /// The best parameters and their cost, V² or A² by the model. A parameter is null if its verdict is `not-identifiable`.
     #[serde(flatten)]
@@ -180,6 +183,7 @@ impl SearchEntry {
 /// What a fit leaves over.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FitEntry {
     /// Root mean square of the residuals: of the currents, A, or of the voltage equations over the operating points, V.
     pub residual_rms: PerChannel<Option<f64>>,

@@ -6,6 +6,7 @@ use serde::Serialize;
 /// The log that was identified from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LogDocument {
     /// Rows; of several logs together.
     pub rows: usize,
@@ -40,6 +41,7 @@ impl LogDocument {
 /// A stretch of rows with steady currents and speed, and its mean values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct OperatingPointEntry {
     /// Time of the first row, s.
     pub t0: f64,
@@ -69,6 +71,7 @@ impl OperatingPointEntry {
 /// The log that parameters were validated on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ValidatedLogEntry {
     /// Rows; of several logs together.
     pub rows: usize,

@@ -55,9 +55,20 @@ pub use nuisance::{NuisanceEntries, NuisanceEntry, VoltageTimingEntry};
 pub use output_error::{OutputErrorEntry, TermEntry, TimingEntry};
 pub use saturation::{ApparentEntry, FluxEntry, SaturationEntry};
 #[cfg(feature = "schema")]
-pub use schema::schemas;
+pub use schema::schema_of;
 pub use steady::{ExcitationEntry, MisfitEntry, SteadyEntry};
 pub use study::{ConvergenceEntry, CostAboveOptimum, MethodEntry, QuartileEntry, STUDY, StudyDocument};
 pub use truth::{TRUTH, TruthDocument};
 pub use validation::{ChannelEntry, DifferenceEntry, LimitsEntry, TestEntry, VALIDATION, ValidationDocument};
 pub use warning::WarningEntry;
+
+/// The name and the schema of each document of this crate.
+#[cfg(feature = "schema")]
+pub fn schemas() -> Vec<(&'static str, schemars::Schema)> {
+    vec![
+        (IDENTIFICATION, schema_of::<IdentificationDocument>()),
+        (STUDY, schema_of::<StudyDocument>()),
+        (VALIDATION, schema_of::<ValidationDocument>()),
+        (TRUTH, schema_of::<TruthDocument<()>>()),
+    ]
+}

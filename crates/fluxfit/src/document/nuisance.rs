@@ -2,14 +2,15 @@
 
 use super::{by_key::ByKey, finite::finite};
 use crate::{
-    evidence::{Identification, Nuisance, Provenance},
-    steady::zero_order_hold::VoltageTiming,
+    evidence::{FaultEstimate, Identification, Provenance},
+    steady::zero_order_hold::SteadyVoltageTiming,
 };
 use serde::Serialize;
 
 /// The voltage timing and the drive's faults.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct NuisanceEntries {
     /// How the voltage columns were read; null where nothing was fitted.
     pub voltage_timing: Option<VoltageTimingEntry>,
@@ -21,7 +22,7 @@ pub struct NuisanceEntries {
 impl NuisanceEntries {
     pub(super) fn of(answer: &Identification) -> Self {
         let found = if let Some(fit) = &answer.output {
-            fit.nuisance.iter().map(|found| (found.unknown.key(), NuisanceEntry::of(found))).collect()
+            fit.fault_estimates.iter().map(|found| (found.unknown.key(), NuisanceEntry::of(found))).collect()
         } else if let Some(fit) = &answer.steady {
             vec![("dead_time_voltage", NuisanceEntry::AlongCurrent { along_current: fit.voltage_losses.clone() })]
         } else {
@@ -35,6 +36,7 @@ impl NuisanceEntries {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum NuisanceEntry {
     /// One number, found by the output error.
     Number {
@@ -53,7 +55,7 @@ pub enum NuisanceEntry {
 }
 
 impl NuisanceEntry {
-    fn of(found: &Nuisance) -> Self {
+    fn of(found: &FaultEstimate) -> Self {
         Self::Number { value: found.value, unit: found.unknown.unit(), standard_error: finite(found.standard_error) }
     }
 }
@@ -61,6 +63,7 @@ impl NuisanceEntry {
 /// How the voltage columns were read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct VoltageTimingEntry {
     /// Output error: `centered`, or the delay in sample periods, with the frame if it is not that of the middle of the period. Steady
     /// model: `centered` or `compensated`.
@@ -74,11 +77,12 @@ pub struct VoltageTimingEntry {
 
 impl VoltageTimingEntry {
     pub(super) fn of(answer: &Identification) -> Option<Self> {
-        let of_currents = answer.output.as_ref().map(|fit| (fit.voltage_reading.0.key(), fit.voltage_reading.1));
-        let of_points = answer.steady.as_ref().map(|fit| match fit.voltage_timing {
-            (VoltageTiming::Centered, provenance) => ("centered", provenance),
-            (VoltageTiming::Compensated, provenance) => ("compensated", provenance),
-        });
+        let of_currents = answer.output.as_ref().map(|fit| (fit.voltage_timing.value.key(), fit.voltage_timing.provenance));
+        let key = |timing| match timing {
+            SteadyVoltageTiming::Centered => "centered",
+            SteadyVoltageTiming::Compensated => "compensated",
+        };
+        let of_points = answer.steady.as_ref().map(|fit| (key(fit.voltage_timing.value), fit.voltage_timing.provenance));
         let (value, provenance) = of_currents.or(of_points)?;
         let from = match provenance {
             Provenance::Stated => "stated",

@@ -1,12 +1,13 @@
 //! `diagnostics.output_error` of an identification: the fit of the simulated currents.
 
 use super::{by_parameter::ByParameter, finite::finite};
-use crate::evidence::{FaultOutcome, FaultTrial, OutputFit, ReadingTrial};
+use crate::evidence::{FaultOutcome, FaultTrial, OutputFit, TimingTrial};
 use serde::Serialize;
 
 /// The fit of the simulated currents, and everything that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct OutputErrorEntry {
     /// Stretches of rows that were compared: the first row, counted from 0, and the row after the last.
     pub rows: Vec<[usize; 2]>,
@@ -26,8 +27,8 @@ impl OutputErrorEntry {
             rows: fit.stretches.iter().map(|rows| [rows.start, rows.end]).collect(),
             cost: fit.cost,
             correlation_of_neighbours: finite(fit.correlation_of_neighbours),
-            readings: fit.readings.iter().map(TimingEntry::of).collect(),
-            terms: fit.terms.iter().map(TermEntry::of).collect(),
+            readings: fit.timings.iter().map(TimingEntry::of).collect(),
+            terms: fit.fault_trials.iter().map(TermEntry::of).collect(),
         }
     }
 }
@@ -35,6 +36,7 @@ impl OutputErrorEntry {
 /// A voltage timing that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TimingEntry {
     /// The timing, named as in `nuisance.voltage_timing`.
     pub voltage_timing: String,
@@ -45,9 +47,9 @@ pub struct TimingEntry {
 }
 
 impl TimingEntry {
-    fn of(tried: &ReadingTrial) -> Self {
+    fn of(tried: &TimingTrial) -> Self {
         Self {
-            voltage_timing: tried.reading.key().to_owned(),
+            voltage_timing: tried.timing.key().to_owned(),
             residual_rms: finite(tried.mean_square().sqrt()),
             raw: tried.polished.drive.motor.to_array().map(finite).into(),
         }
@@ -57,6 +59,7 @@ impl TimingEntry {
 /// A fault of the drive that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TermEntry {
     /// Its name.
     pub term: &'static str,

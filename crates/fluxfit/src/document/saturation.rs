@@ -7,6 +7,7 @@ use serde::Serialize;
 /// Flux at the operating points, where inductances depend on the current.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SaturationEntry {
     /// Resistance that the fluxes were computed with, ohm.
     pub rs: f64,
@@ -35,6 +36,7 @@ impl SaturationEntry {
 /// An apparent inductance along q: flux over current.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ApparentEntry {
     /// Current along q, A.
     pub iq: f64,
@@ -51,6 +53,7 @@ impl ApparentEntry {
 /// The flux at an operating point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FluxEntry {
     /// Current along d, A.
     pub id: f64,

@@ -1,25 +1,9 @@
-//! The JSON Schemas of the documents: those in `docs/schema`.
+//! The JSON Schema of a document, as `docs/schema` has it.
 
-use super::{
-    identification::{IDENTIFICATION, IdentificationDocument},
-    study::{STUDY, StudyDocument},
-    truth::{TRUTH, TruthDocument},
-    validation::{VALIDATION, ValidationDocument},
-};
 use schemars::{JsonSchema, Schema, generate::SchemaSettings, transform::RecursiveTransform};
 
-/// Each document's name and its schema, draft 2020-12.
-pub fn schemas() -> [(&'static str, Schema); 4] {
-    [
-        (IDENTIFICATION, schema_of::<IdentificationDocument>()),
-        (STUDY, schema_of::<StudyDocument>()),
-        (VALIDATION, schema_of::<ValidationDocument>()),
-        (TRUTH, schema_of::<TruthDocument<()>>()),
-    ]
-}
-
-/// The schema of what serde writes.
-fn schema_of<Document: JsonSchema>() -> Schema {
+/// The schema of what serde writes, draft 2020-12.
+pub fn schema_of<Document: JsonSchema>() -> Schema {
     let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(tidy));
     settings.into_generator().into_root_schema_for::<Document>()
 }

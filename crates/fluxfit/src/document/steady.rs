@@ -7,6 +7,7 @@ use serde::Serialize;
 /// The fit of the steady operating points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SteadyEntry {
     /// The parameters by weighted least squares, SI units.
     pub raw: ByParameter<Option<f64>>,
@@ -35,6 +36,7 @@ impl SteadyEntry {
 /// A combination of the parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ExcitationEntry {
     /// Its components, each parameter in units of what the voltage allows; of length 1.
     pub direction: ByParameter<f64>,
@@ -53,6 +55,7 @@ impl ExcitationEntry {
 /// Contradiction between operating points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MisfitEntry {
     /// Root of chi squared per degree of freedom.
     pub ratio: f64,

@@ -14,6 +14,7 @@ pub const STUDY: &str = "fluxfit.study/1";
 /// versions, never renamed. What is not known is null.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(title = STUDY))]
+#[non_exhaustive]
 pub struct StudyDocument {
     /// Name and version of this document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = STUDY)))]
@@ -65,7 +66,7 @@ impl StudyDocument {
         Self {
             schema: STUDY,
             model: fitness.key(),
-            voltage_reading: fitness.voltage_reading(),
+            voltage_reading: fitness.voltage_timing(),
             cost_unit: fitness.unit(),
             seed: facts.settings.seed,
             runs: facts.runs,
@@ -87,6 +88,7 @@ impl StudyDocument {
 /// The runs of one method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MethodEntry {
     /// Its name.
     pub method: &'static str,
@@ -124,6 +126,7 @@ impl MethodEntry {
 /// Cost above the minimum at the ends of many runs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CostAboveOptimum {
     /// The median over the runs.
     pub median: f64,
@@ -134,6 +137,7 @@ pub struct CostAboveOptimum {
 /// The course of many runs. All lists have an entry for each iteration, the start included.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ConvergenceEntry {
     /// Iterations done.
     pub iteration: Vec<usize>,
@@ -158,6 +162,7 @@ impl ConvergenceEntry {
 /// Quartiles over the runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct QuartileEntry {
     /// The median.
     pub median: Vec<f64>,

@@ -20,6 +20,7 @@ pub const VALIDATION: &str = "fluxfit.validation/1";
 /// added in later versions, never renamed. What is not known is null.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(title = VALIDATION))]
+#[non_exhaustive]
 pub struct ValidationDocument {
     /// Name and version of this document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = VALIDATION)))]
@@ -81,6 +82,7 @@ impl ValidationDocument {
 /// Limits behind an outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LimitsEntry {
     /// Probability of a test's statistic below which there is a difference.
     pub significance: f64,
@@ -91,6 +93,7 @@ pub struct LimitsEntry {
 /// Wald's test: whether two sets of parameters differ by more than their covariances explain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TestEntry {
     /// How many parameters were tested.
     pub parameters: usize,
@@ -117,6 +120,7 @@ impl TestEntry {
 /// One parameter, as given and as identified from the log.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct DifferenceEntry {
     /// The unit: ohm, H or Wb.
     pub unit: &'static str,
@@ -161,6 +165,7 @@ impl DifferenceEntry {
 /// One channel, measured and predicted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ChannelEntry {
     /// The unit: A or V.
     pub unit: &'static str,

@@ -6,6 +6,7 @@ use serde::Serialize;
 /// What limits an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct WarningEntry {
     /// The name of its kind, such as `saturation`; it stays the same from version to version.
     pub code: &'static str,

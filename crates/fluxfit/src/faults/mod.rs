@@ -45,6 +45,7 @@ pub struct Faults {
 
 /// A fault of the drive, or of the model of its motor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Fault {
     /// Dead time and device drops.
     DeadTime,
@@ -68,7 +69,7 @@ pub enum Fault {
 
 /// A number of a fault, which a fit may move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Number {
+pub struct FaultNumber {
     fault: Fault,
     /// Its place among the fault's numbers.
     place: usize,
@@ -168,8 +169,8 @@ impl Fault {
     }
 
     /// Its numbers.
-    pub fn numbers(self) -> impl Iterator<Item = Number> {
-        (0..self.row().numbers).map(move |place| Number { fault: self, place })
+    pub fn numbers(self) -> impl Iterator<Item = FaultNumber> {
+        (0..self.row().numbers).map(move |place| FaultNumber { fault: self, place })
     }
 
     /// The states from which a fit begins, given the largest measured current, A.
@@ -183,7 +184,7 @@ impl Fault {
     }
 }
 
-impl Number {
+impl FaultNumber {
     /// Whose it is.
     pub fn fault(self) -> Fault {
         self.fault
@@ -216,12 +217,12 @@ impl Number {
 
 impl Faults {
     /// The value of a number, SI.
-    pub fn get(&self, number: Number) -> f64 {
+    pub fn get(&self, number: FaultNumber) -> f64 {
         (number.fault.row().get)(self, number.place)
     }
 
     /// Sets the value of a number, SI.
-    pub fn set(&mut self, number: Number, value: f64) {
+    pub fn set(&mut self, number: FaultNumber, value: f64) {
         (number.fault.row().set)(self, number.place, value);
     }
 }
@@ -248,7 +249,7 @@ mod tests {
         let faults: HashSet<_> = Fault::ALL.into_iter().map(Fault::key).collect();
         assert_eq!(faults.len(), Fault::ALL.len());
         let numbers = || Fault::ALL.into_iter().flat_map(Fault::numbers);
-        assert_eq!(numbers().map(Number::key).collect::<HashSet<_>>().len(), numbers().count());
+        assert_eq!(numbers().map(FaultNumber::key).collect::<HashSet<_>>().len(), numbers().count());
     }
 
     /// A fit of each begins with finite steps, and a drive without a fault is changed by no fault.

@@ -5,10 +5,11 @@ use super::{
     prepare::{model::Model, search_box},
 };
 use crate::{
-    error::{Error, ErrorKind},
-    motor::PARAMETERS,
-    objective::acting_voltage::VoltageReading,
+    error::{Error, ErrorKind, has_zero},
+    motor::{PARAMETERS, Parameter},
+    objective::acting_voltage::VoltageTiming,
     optimizer::{Bounds, Method, SearchSettings},
+    steady::windows::TimeWindow,
 };
 
 /// Systematic uncertainty of the voltages, as a fraction of their vector, unless stated otherwise: no drive's are known better.
@@ -20,23 +21,23 @@ pub const VOLTAGE_ACCURACY: f64 = 1e-4;
 /// use fluxfit::{Known, Parameter, Request};
 ///
 /// // R_s was measured at the terminals, to 2 %; gains are wanted for a bandwidth of 500 Hz.
-/// let mut request = Request { bandwidth: Some(500.0), ..Request::default() };
-/// request.known[Parameter::Rs as usize] = Known::Prior { value: 0.0352, standard_error: 0.02 * 0.0352 };
+/// let rs = Known::Prior { value: 0.0352, standard_error: 0.02 * 0.0352 };
+/// let request = Request { bandwidth: Some(500.0), ..Request::default() }.with_known(Parameter::Rs, rs);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// The model that answers; `None`: the one that [suits](crate::evidence::choose_model) the log.
     pub model: Option<Model>,
-    /// Start and end of the parts of the log to use, s, on the log's own time, both ends included. Empty: the steady model finds its
+    /// The parts of the log to use. Empty: the steady model finds its
     /// operating points, and the output error uses every segment (pieces of it, where the log is very long).
-    pub windows: Vec<(f64, f64)>,
+    pub windows: Vec<TimeWindow>,
     /// When, relative to its row, a logged voltage acts. `None`: the output error finds it; the steady model takes the voltages as
     /// centred on the row and counts the doubt as systematic uncertainty.
-    pub voltage_timing: Option<VoltageReading>,
+    pub voltage_timing: Option<VoltageTiming>,
     /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
     pub voltage_accuracy: f64,
-    /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL): index it with
-    /// `Parameter::Rs as usize`.
+    /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL);
+    /// [`with_known`](Self::with_known) sets one.
     pub known: [Known; PARAMETERS],
     /// Which swarm optimizer searches for the same minimum, for comparison. The answer never comes from it.
     pub swarm: Swarm,
@@ -62,13 +63,13 @@ pub enum Known {
     /// Nothing.
     #[default]
     Nothing,
-    /// Its value, SI, taken as exact. Its verdict is then [`Verdict::Identified`](crate::Verdict::Identified), its reason
-    /// [`Reason::Given`](crate::Reason::Given).
+    /// Its value, SI, taken as exact; above zero, or zero for a resistance or a flux. Its verdict is then
+    /// [`Verdict::Identified`](crate::Verdict::Identified), its reason [`Reason::Given`](crate::Reason::Given).
     Fixed(f64),
     /// A value with a standard error: one more measurement, weighed against the log. Its contribution to each interval is
     /// [`Systematic::prior`](crate::evidence::Systematic::prior).
     Prior {
-        /// Value, SI.
+        /// Value, SI; in the same range.
         value: f64,
         /// Standard error (one standard deviation), SI, not a fraction of the value.
         standard_error: f64,
@@ -96,6 +97,15 @@ pub enum Provenance {
     Found,
     /// It is assumed, and the doubt counted as uncertainty.
     Assumed,
+}
+
+/// A setting as it was used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolved<T> {
+    /// Its value.
+    pub value: T,
+    /// Where the value comes from.
+    pub provenance: Provenance,
 }
 
 impl Provenance {
@@ -129,6 +139,13 @@ impl Default for Request {
 }
 
 impl Request {
+    /// The same request with this knowledge of one parameter.
+    #[must_use]
+    pub fn with_known(mut self, parameter: Parameter, known: Known) -> Self {
+        self.known[parameter as usize] = known;
+        self
+    }
+
     /// The search box of a swarm: the [bounds](Request::bounds) that are stated; for the rest those of the log, or of the rating where
     /// these are larger.
     ///
@@ -151,18 +168,17 @@ impl Request {
         if !(0.0..1.0).contains(&accuracy) {
             return Err(ErrorKind::Setting { setting: "the voltage accuracy", value: accuracy, range: "a fraction from 0 up to 1" }.into());
         }
-        for known in self.known {
+        for (parameter, known) in Parameter::ALL.into_iter().zip(self.known) {
             let (value, standard_error) = match known {
                 Known::Nothing => continue,
                 Known::Fixed(value) => (value, 1.0),
                 Known::Prior { value, standard_error } => (value, standard_error),
             };
-            if !value.is_finite() {
-                return Err(ErrorKind::Setting { setting: "a known parameter", value, range: "a finite number" }.into());
+            if !(value.is_finite() && (value > 0.0 || value == 0.0 && has_zero(parameter))) {
+                return Err(ErrorKind::KnownValue { parameter, value }.into());
             }
             if !(standard_error > 0.0 && standard_error.is_finite()) {
-                let setting = "the standard error of a known parameter";
-                return Err(ErrorKind::Setting { setting, value: standard_error, range: "a positive number" }.into());
+                return Err(ErrorKind::KnownError { parameter, standard_error }.into());
             }
         }
         if self.known.iter().all(|known| matches!(known, Known::Fixed(_))) { Err(ErrorKind::NothingToIdentify.into()) } else { Ok(()) }

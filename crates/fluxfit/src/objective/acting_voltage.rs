@@ -12,7 +12,7 @@ use std::{f64::consts::TAU, ops::Range};
 
 /// What `ud, uq` of row `k` mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum VoltageReading {
+pub enum VoltageTiming {
     /// The mean of the periods before and after the row, in the frame at the row.
     Centered,
     /// What acts over the period that begins `delay` rows later.
@@ -33,8 +33,8 @@ pub enum VoltageFrame {
     Row,
 }
 
-impl VoltageReading {
-    /// All readings that are known from drives.
+impl VoltageTiming {
+    /// All timings that are known from drives.
     pub const ALL: [Self; 7] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
@@ -107,9 +107,9 @@ pub(super) struct Angles {
     pub(super) known: bool,
 }
 
-/// The periods between these rows of one segment, from row [`lost_rows`](VoltageReading::lost_rows) on: one less than there are
+/// The periods between these rows of one segment, from row [`lost_rows`](VoltageTiming::lost_rows) on: one less than there are
 /// rows left.
-pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: VoltageReading) -> Vec<Period> {
+pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: VoltageTiming) -> Vec<Period> {
     let columns = log.columns();
     let first = rows.start + reading.lost_rows();
     let frame = |row: usize| angles.logged[row - rows.start];
@@ -122,17 +122,17 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
             let middle = 0.5 * (angles.rotor[row - rows.start] + angles.rotor[row + 1 - rows.start]);
             let length = columns.t[row + 1] - columns.t[row];
             let stator = match reading {
-                VoltageReading::Centered => {
+                VoltageTiming::Centered => {
                     let mean = logged(row).to_alpha_beta(frame(row));
                     before = AlphaBeta { alpha: 2.0 * mean.alpha - before.alpha, beta: 2.0 * mean.beta - before.beta };
                     before
                 }
-                VoltageReading::Delayed { delay, frame: VoltageFrame::Middle } => {
+                VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => {
                     // The drive advanced the angle by its speed times the delay.
                     let ahead = columns.omega_e[row - delay] * (delay as f64 + 0.5) * length;
                     logged(row - delay).to_alpha_beta(frame(row - delay) + ahead)
                 }
-                VoltageReading::Delayed { delay, frame: VoltageFrame::Row } => logged(row - delay).to_alpha_beta(frame(row - delay)),
+                VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => logged(row - delay).to_alpha_beta(frame(row - delay)),
             };
             let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
             Period { length, omega_e: turn / length, u: stator.to_dq(middle), theta_e: middle }

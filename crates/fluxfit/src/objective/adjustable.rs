@@ -2,7 +2,7 @@
 //! may move.
 
 use crate::{
-    faults::{Fault, Faults, Number, disturbance::Disturbance},
+    faults::{Fault, FaultNumber, Faults, disturbance::Disturbance},
     motor::{Motor, Parameter},
 };
 
@@ -21,7 +21,7 @@ pub enum Unknown {
     /// One of the four parameters.
     Motor(Parameter),
     /// A number of a fault.
-    Fault(Number),
+    Fault(FaultNumber),
 }
 
 impl Unknown {

@@ -275,3 +275,180 @@ fn linear_unknowns<S: Simd, const K: usize>(sums: &Sums<Lanes<S, K>>, lane: usiz
         None => ([0.0; LINEAR_UNKNOWNS], total),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        faults::{
+            Faults, angle_offset::AngleOffset, current_gains::CurrentGains, current_offset::CurrentOffset, dead_time::DeadTime,
+            disturbance::Disturbance, saturation::Saturation,
+        },
+        frames::AlphaBeta,
+        log::{Columns, Log},
+        motor::Motor,
+        objective::{acting_voltage::VoltageTiming, output_error::OutputError, transition::Transition},
+        optimizer::Draws,
+    };
+
+    const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
+
+    /// A motor that speeds up from standstill to this turn per row, rad, and noise on everything; periods of these lengths in turn, s.
+    fn log(rows: usize, turn: f64, lengths: &[f64]) -> Log {
+        let mut draws = Draws::seeded(3, 0);
+        let mut columns = Columns::default();
+        let (mut t, mut theta_e) = (0.0, 0.0);
+        for row in 0..rows {
+            let length = lengths[row % lengths.len()];
+            let omega_e = turn / lengths[0] * row as f64 / rows as f64;
+            columns.t.push(t);
+            columns.ud.push(-20.0 + 5.0 * draws.normal());
+            columns.uq.push(0.2 * omega_e + 10.0 + 5.0 * draws.normal());
+            columns.id.push(-1.0 + draws.normal());
+            columns.iq.push(8.0 + draws.normal());
+            columns.omega_e.push(omega_e);
+            columns.theta_e.get_or_insert_default().push(theta_e % std::f64::consts::TAU);
+            t += length;
+            theta_e += omega_e * length;
+        }
+        Log::new(columns).unwrap()
+    }
+
+    fn rows(log: &Log, timing: VoltageTiming) -> Rows {
+        Rows::of(vec![SimulatedSegment::of(log, &(0..log.rows()), timing)])
+    }
+
+    fn motors(count: usize) -> Vec<Adjustable> {
+        let by = |k: usize, p: usize| 1.0 + 0.3 * ((k * 7 + p * 3) % 11) as f64 / 11.0;
+        let values = MOTOR.to_array();
+        (0..count).map(|k| Adjustable::from(Motor::from(std::array::from_fn(|p| values[p] * by(k, p))))).collect()
+    }
+
+    /// Drives with every fault, one more than the other.
+    fn faulty(count: usize) -> Vec<Adjustable> {
+        let faults = |x: f64| Faults {
+            dead_time: DeadTime { voltage: 2.0 * x, width: 0.5, ripple: 0.1 * x },
+            angle_offset: AngleOffset { angle: 0.05 * x },
+            current_offset: CurrentOffset { current: AlphaBeta { alpha: 0.1 * x, beta: -0.05 } },
+            current_gains: CurrentGains { imbalance: AlphaBeta { alpha: 0.01, beta: 0.02 * x }, turn: 0.01 },
+            saturation: Saturation { d: -1e-5 * x, q: -1e-4 * x, cross: -1e-5 },
+            disturbance: Disturbance { gain: Dq { d: 0.1 * x, q: 0.2 } },
+        };
+        motors(count).into_iter().enumerate().map(|(k, drive)| Adjustable { faults: faults(0.5 + k as f64 / 20.0), ..drive }).collect()
+    }
+
+    /// The definition: a matrix exponential per row. With the linear unknowns at these values.
+    fn exact_errors(rows: &Rows, motor: &Motor, linear: &[f64; LINEAR_UNKNOWNS]) -> Vec<f64> {
+        let segment = &rows.segments[0];
+        let mut i = Dq { d: segment.measured[0].d + linear[0], q: segment.measured[0].q + linear[1] };
+        let mut errors = vec![-linear[0], -linear[1]];
+        for ((period, row), measured) in segment.periods.iter().zip(&segment.rows_of_periods).zip(&segment.measured[1..]) {
+            let [d, q] = row.alternating;
+            let u = Dq { d: period.u.d + linear[2] * d - linear[3] * q, q: period.u.q + linear[2] * q + linear[3] * d };
+            i = Transition::of(motor, period.omega_e, period.length).after(i, u);
+            errors.extend([measured.d - i.d, measured.q - i.q]);
+        }
+        errors
+    }
+
+    /// Over a whole log, from standstill to a sixth of a turn per row, with one length of a period, three, and a hundred.
+    #[test]
+    fn simulated_currents_are_those_of_a_matrix_exponential_per_row() {
+        let hundred: Vec<f64> = (0..100).map(|k| 1e-4 * (1.0 + 0.003 * f64::from(k))).collect();
+        for (turn, lengths) in [
+            (0.04, vec![1e-4]),
+            (0.15, vec![1e-4]),
+            (0.5, vec![1e-4]),
+            (1.0, vec![1e-4]),
+            (0.04, vec![0.99e-4, 1e-4, 1.01e-4]),
+            (0.1, hundred),
+        ] {
+            let log = log(3000, turn, &lengths);
+            for timing in [VoltageTiming::ALL[0], VoltageTiming::ALL[2]] {
+                let rows = rows(&log, timing);
+                for drive in motors(4) {
+                    let found = &rows.residuals(&[drive])[0];
+                    // The linear unknowns are what makes the first rows alike.
+                    let solved = solved(&rows, &drive);
+                    let expected = exact_errors(&rows, &drive.motor, &solved);
+                    let worst = found.residuals.iter().zip(&expected).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+                    let peak = expected.iter().map(|error| error.abs()).fold(0.0, f64::max);
+                    assert!(worst < 1e-11 * peak, "{turn} {} {timing:?}: {worst} of {peak}", lengths.len());
+                    let cost = expected.iter().map(|error| error * error).sum::<f64>();
+                    assert!((found.cost / cost - 1.0).abs() < 1e-11, "{turn} {}: {} {cost}", lengths.len(), found.cost);
+                }
+            }
+        }
+    }
+
+    /// The linear unknowns by their definition: least squares on responses from matrix exponentials.
+    fn solved(rows: &Rows, drive: &Adjustable) -> [f64; LINEAR_UNKNOWNS] {
+        let unknowns = if rows.segments[0].alternates { LINEAR_UNKNOWNS } else { 2 };
+        let base = exact_errors(rows, &drive.motor, &[0.0; LINEAR_UNKNOWNS]);
+        let columns: Vec<Vec<f64>> = (0..unknowns)
+            .map(|k| {
+                let unit = std::array::from_fn(|other| f64::from(u8::from(k == other)));
+                exact_errors(rows, &drive.motor, &unit).iter().zip(&base).map(|(one, base)| base - one).collect()
+            })
+            .collect();
+        let matrix = nalgebra::DMatrix::from_fn(base.len(), unknowns, |row, k| columns[k][row]);
+        let best = matrix.qr();
+        let right = best.q().transpose() * nalgebra::DVector::from_vec(base);
+        let best = best.r().solve_upper_triangular(&right).unwrap();
+        std::array::from_fn(|k| if k < unknowns { best[k] } else { 0.0 })
+    }
+
+    /// A candidate has the same bits alone and among others, with every set of instructions that this machine has.
+    #[test]
+    fn bits_depend_on_nothing_beside() {
+        let lengths: Vec<f64> = (0..100).map(|k| 1e-4 * (1.0 + 0.003 * f64::from(k))).collect();
+        let (log, uneven) = (self::log(700, 0.1, &[1e-4]), self::log(700, 0.1, &lengths));
+        for (log, timing) in [(&log, VoltageTiming::ALL[0]), (&log, VoltageTiming::ALL[2]), (&uneven, VoltageTiming::ALL[0])] {
+            let rows = rows(log, timing);
+            let drives: Vec<Adjustable> = motors(37).into_iter().chain(faulty(27)).chain(motors(3)).collect();
+            let bits =
+                |simulated: &Simulated| (simulated.cost.to_bits(), simulated.residuals.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+            let expected: Vec<_> = drives.iter().map(|drive| bits(&InstructionSet::Portable.simulate(&rows, &[*drive], true)[0])).collect();
+            for set in InstructionSet::all() {
+                let found: Vec<_> = set.simulate(&rows, &drives, true).iter().map(bits).collect();
+                assert!(found == expected, "{set:?}");
+            }
+        }
+    }
+
+    /// The effect of a volt by the adjoint equations is that of a simulation with a volt more.
+    #[test]
+    fn effects_of_voltages_are_differences_of_simulations() {
+        let log = log(60, 0.1, &[1e-4]);
+        let timing = VoltageTiming::ALL[2];
+        let weights: Vec<f64> = (0..2 * 59).map(|k| (k as f64).sin()).collect();
+        let drive = motors(1)[0];
+        let before = rows(&log, timing);
+        let effects = &before.by_voltage(&drive, std::slice::from_ref(&weights))[0];
+        let sum = |rows: &Rows| {
+            exact_errors(rows, &drive.motor, &[0.0; LINEAR_UNKNOWNS])
+                .iter()
+                .zip(&weights)
+                .map(|(error, weight)| -error * weight)
+                .sum::<f64>()
+        };
+        let base = sum(&before);
+        for k in [0, 17, 40] {
+            let mut changed = before.clone();
+            changed.segments[0].periods[k].u.d += 1.0;
+            assert!((sum(&changed) - base - effects[k].d).abs() < 1e-9, "{k}: {} {}", sum(&changed) - base, effects[k].d);
+        }
+    }
+
+    /// A motor without inductance has no finite cost, and its neighbours are what they are.
+    #[test]
+    fn what_cannot_be_simulated_stays_in_its_lane() {
+        let log = log(700, 0.1, &[1e-4]);
+        let objective = OutputError::of(&log, VoltageTiming::ALL[2]).unwrap();
+        let mut drives = motors(8);
+        let alone = objective.cost_of(&drives[5]);
+        drives[4].motor.ld = 0.0;
+        let costs = rows(&log, VoltageTiming::ALL[2]).costs(&drives);
+        assert!(!costs[4].is_finite() && costs[5].to_bits() == alone.to_bits());
+    }
+}

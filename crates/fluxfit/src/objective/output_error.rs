@@ -16,7 +16,7 @@
 //! A segment's first current and, of centred voltages, its first vector are not in the log; they are solved for inside, so that the cost
 //! is the smallest over them.
 
-use super::{acting_voltage::VoltageReading, adjustable::Adjustable, batch::Rows, simulated_segment::SimulatedSegment};
+use super::{acting_voltage::VoltageTiming, adjustable::Adjustable, batch::Rows, simulated_segment::SimulatedSegment};
 use crate::{
     error::{Error, ErrorKind},
     faults::{Acting, Faults},
@@ -46,22 +46,22 @@ impl OutputError {
     ///
     /// # Errors
     /// As [`of_rows`](Self::of_rows).
-    pub fn of(log: &Log, reading: VoltageReading) -> Result<Self, Error> {
+    pub fn of(log: &Log, timing: VoltageTiming) -> Result<Self, Error> {
         let segments: Vec<_> = log.segments().iter().map(|segment| segment.rows.clone()).collect();
-        Self::of_rows(log, &segments, reading)
+        Self::of_rows(log, &segments, timing)
     }
 
     /// Stretches of a log, none of them across a gap; those that are long enough.
     ///
     /// # Errors
     /// If none is, or if the log's channels were sampled at different instants.
-    pub fn of_rows(log: &Log, stretches: &[Range<usize>], reading: VoltageReading) -> Result<Self, Error> {
+    pub fn of_rows(log: &Log, stretches: &[Range<usize>], timing: VoltageTiming) -> Result<Self, Error> {
         if log.is_interpolated() {
             return Err(ErrorKind::Interpolated.into());
         }
-        let least = MIN_ROWS + reading.lost_rows();
+        let least = MIN_ROWS + timing.lost_rows();
         let long_enough = stretches.iter().filter(|rows| rows.len() >= least);
-        let segments: Vec<SimulatedSegment> = long_enough.map(|rows| SimulatedSegment::of(log, rows, reading)).collect();
+        let segments: Vec<SimulatedSegment> = long_enough.map(|rows| SimulatedSegment::of(log, rows, timing)).collect();
         let rows = segments.iter().map(|segment| segment.measured.len()).sum();
         if rows == 0 {
             return Err(ErrorKind::TooShort { rows: log.rows(), least }.into());

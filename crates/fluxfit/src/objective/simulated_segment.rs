@@ -1,7 +1,7 @@
 //! A segment of the log, ready to be simulated: each period with the voltage that acted over it, each row with its measured current.
 
 use super::{
-    acting_voltage::{Period, VoltageReading, angles, periods},
+    acting_voltage::{Period, VoltageTiming, angles, periods},
     transition_polynomials::TransitionPlan,
 };
 use crate::{
@@ -54,10 +54,10 @@ pub(super) struct SimulatedSegment {
 }
 
 impl SimulatedSegment {
-    pub(super) fn of(log: &Log, rows: &Range<usize>, reading: VoltageReading) -> Self {
+    pub(super) fn of(log: &Log, rows: &Range<usize>, timing: VoltageTiming) -> Self {
         let angles = angles(log, rows);
-        let periods = periods(log, rows, &angles, reading);
-        let (lost, columns) = (reading.lost_rows(), log.columns());
+        let periods = periods(log, rows, &angles, timing);
+        let (lost, columns) = (timing.lost_rows(), log.columns());
         let rows = rows.start + lost..rows.end;
         // Out of the drive's frame, into the rotor's.
         let frames = angles.logged[lost..].iter().zip(&angles.rotor[lost..]);
@@ -69,7 +69,7 @@ impl SimulatedSegment {
             turns: angles.rotor[lost..].iter().map(|theta_e| Turn::by(*theta_e)).collect(),
             middles: periods.iter().map(|period| Turn::by(period.theta_e)).collect(),
             angle_known: angles.known,
-            alternates: reading == VoltageReading::Centered,
+            alternates: timing == VoltageTiming::Centered,
             rows_of_periods: Vec::new(),
             rows,
             periods,

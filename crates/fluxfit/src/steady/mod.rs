@@ -32,6 +32,7 @@ const DRIFT_ROWS: usize = 8;
 
 /// Means of one steady window.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct OperatingPoint {
     /// Rows in the log.
     pub rows: Range<usize>,

@@ -109,11 +109,20 @@ fn stretches(log: &Log, segments: &[Segment], scale: &Scale, block_rows: impl Fn
     windows
 }
 
-/// The rows of each segment between two times, s, both included.
+/// A part of a log, on the log's own time, both ends included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeWindow {
+    /// Start, s.
+    pub from: f64,
+    /// End, s.
+    pub to: f64,
+}
+
+/// The rows of each segment within a window.
 ///
 /// # Errors
-/// If no segment has at least [`MIN_ROWS`] rows between them.
-pub fn between(log: &Log, (from, to): (f64, f64)) -> Result<Vec<Range<usize>>, Error> {
+/// If no segment has at least [`MIN_ROWS`] rows in it.
+pub fn between(log: &Log, TimeWindow { from, to }: TimeWindow) -> Result<Vec<Range<usize>>, Error> {
     let t = &log.columns().t;
     let within = log.segments().iter().map(|segment| {
         let times = &t[segment.rows.clone()];
@@ -252,16 +261,16 @@ mod tests {
         let windows = find(&log).unwrap();
         assert!(windows.iter().all(|rows| rows.end <= 437 || rows.start >= 437), "{windows:?}");
         assert_eq!(windows.len(), 2);
-        assert_eq!(between(&log, (0.0, 2.0)).unwrap(), [0..437, 437..1000]);
+        assert_eq!(between(&log, TimeWindow { from: 0.0, to: 2.0 }).unwrap(), [0..437, 437..1000]);
     }
 
     #[test]
     fn named_windows_include_their_ends_and_short_ones_are_errors() {
         let log = log((0..1000).map(|_| (-1.0, 8.0, 400.0)));
-        assert_eq!(between(&log, (0.1, 0.2)).unwrap(), vec![100..201; 1]);
-        let short = between(&log, (0.0995, 0.1285));
+        assert_eq!(between(&log, TimeWindow { from: 0.1, to: 0.2 }).unwrap(), vec![100..201; 1]);
+        let short = between(&log, TimeWindow { from: 0.0995, to: 0.1285 });
         assert_eq!(short, Err(ErrorKind::Window { from: 0.0995, to: 0.1285, rows: 29, least: 30, start: 0.0, end: 0.999 }.into()));
-        let outside = between(&log, (5.0, 6.0));
+        let outside = between(&log, TimeWindow { from: 5.0, to: 6.0 });
         assert_eq!(outside, Err(ErrorKind::Window { from: 5.0, to: 6.0, rows: 0, least: 30, start: 0.0, end: 0.999 }.into()));
     }
 

@@ -21,22 +21,22 @@
 //!
 //! A *centred* column, the mean of the two periods around the row in the frame at the row, is that vector times `cos x`.
 
-use crate::{frames::Dq, objective::acting_voltage::VoltageReading};
+use crate::{frames::Dq, objective::acting_voltage::VoltageTiming};
 
 /// What `ud, uq` of a row mean, as far as it matters in the steady state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum VoltageTiming {
+pub enum SteadyVoltageTiming {
     /// The mean of the two periods around the row, in the frame at the row.
     Centered,
     /// The vector that acts over one period, in the frame at the middle of that period. Its delay does not matter in the steady state.
     Compensated,
 }
 
-impl From<VoltageReading> for VoltageTiming {
-    fn from(reading: VoltageReading) -> Self {
-        match reading {
-            VoltageReading::Centered => Self::Centered,
-            VoltageReading::Delayed { .. } => Self::Compensated,
+impl From<VoltageTiming> for SteadyVoltageTiming {
+    fn from(timing: VoltageTiming) -> Self {
+        match timing {
+            VoltageTiming::Centered => Self::Centered,
+            VoltageTiming::Delayed { .. } => Self::Compensated,
         }
     }
 }
@@ -53,7 +53,7 @@ pub const MAX_DECAY_PER_SAMPLE: f64 = 0.25;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZeroOrderHold {
     /// What the voltage columns mean.
-    pub timing: VoltageTiming,
+    pub timing: SteadyVoltageTiming,
     /// Sample period, s; with zero nothing is corrected.
     pub sample_period: f64,
     /// Inductances that determine the current ripple within a period, H, d and q. Infinite where unknown: the current is then not
@@ -64,7 +64,7 @@ pub struct ZeroOrderHold {
 impl ZeroOrderHold {
     /// No correction.
     pub const NONE: Self =
-        Self { timing: VoltageTiming::Compensated, sample_period: 0.0, inductance: Dq { d: f64::INFINITY, q: f64::INFINITY } };
+        Self { timing: SteadyVoltageTiming::Compensated, sample_period: 0.0, inductance: Dq { d: f64::INFINITY, q: f64::INFINITY } };
 
     /// The voltage that satisfies the steady equations, V, and the current's mean over a period, A, for the resistive drop; `omega_e` in
     /// electrical rad/s.
@@ -72,8 +72,8 @@ impl ZeroOrderHold {
         let x = 0.5 * omega_e * self.sample_period;
         let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
         let factor = match self.timing {
-            VoltageTiming::Centered => 1.0 / (sinc * x.cos()),
-            VoltageTiming::Compensated => 1.0 / sinc,
+            SteadyVoltageTiming::Centered => 1.0 / (sinc * x.cos()),
+            SteadyVoltageTiming::Compensated => 1.0 / sinc,
         };
         let ripple = omega_e * self.sample_period * self.sample_period / 12.0;
         let mean = Dq { d: i.d - u.q * ripple / self.inductance.d, q: i.q + u.d * ripple / self.inductance.q };
@@ -141,7 +141,7 @@ mod tests {
             let omega_e: f64 = angle / period;
             let u = periodic_voltage(i, omega_e, period);
             let cos = (0.5 * angle).cos();
-            let logged = [(VoltageTiming::Compensated, u), (VoltageTiming::Centered, Dq { d: cos * u.d, q: cos * u.q })];
+            let logged = [(SteadyVoltageTiming::Compensated, u), (SteadyVoltageTiming::Centered, Dq { d: cos * u.d, q: cos * u.q })];
             for (timing, logged) in logged {
                 let hold = ZeroOrderHold { timing, sample_period: period, inductance: Dq { d: MOTOR.ld, q: MOTOR.lq } };
                 let (corrected, mean) = hold.correct(logged, i, omega_e);
@@ -161,7 +161,7 @@ mod tests {
         let u = periodic_voltage(i, omega_e, period);
         for factor in [0.5, 2.0, f64::INFINITY] {
             let inductance = Dq { d: factor * MOTOR.ld, q: factor * MOTOR.lq };
-            let hold = ZeroOrderHold { timing: VoltageTiming::Compensated, sample_period: period, inductance };
+            let hold = ZeroOrderHold { timing: SteadyVoltageTiming::Compensated, sample_period: period, inductance };
             let (corrected, mean) = hold.correct(u, i, omega_e);
             // At most R_s T_s / L times omega T_s / 12: the whole correction.
             let term = MOTOR.rs * period / MOTOR.ld * omega_e * period / 12.0;

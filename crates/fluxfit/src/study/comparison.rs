@@ -51,6 +51,7 @@ impl Default for ComparisonRequest {
 
 /// What a comparison is about to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum ComparisonStep {
     /// Find the minimum of what is minimized.
     Minimum,

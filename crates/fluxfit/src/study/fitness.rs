@@ -16,7 +16,7 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
     objective::{
-        acting_voltage::VoltageReading,
+        acting_voltage::VoltageTiming,
         adjustable::Adjustable,
         output_error::OutputError,
         voltage_error::{IdZero, VoltageError},
@@ -61,7 +61,7 @@ pub enum Fitness {
         /// The objective.
         objective: OutputError,
         /// The voltage timing.
-        reading: VoltageReading,
+        reading: VoltageTiming,
         /// The lowest minimum known.
         minimum: Polished,
     },
@@ -77,7 +77,7 @@ impl StudyProblem {
         let whole = operating_points(log, request)?;
         let rows = at_most_paper_rows(&whole.into_iter().map(|point| point.rows).collect::<Vec<_>>());
         let points: Vec<_> = rows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect();
-        let preliminary = preliminary_estimates(log, &points, voltage_timing(request).0, request);
+        let preliminary = preliminary_estimates(log, &points, voltage_timing(request).value, request);
         let windows: Vec<_> = points.iter().zip(preliminary).map(|(point, estimate)| (point.rows.clone(), estimate.hold)).collect();
         let excitation = Excitation::of(&points, &[Known::Nothing; PARAMETERS]);
         Ok(Self {
@@ -93,13 +93,13 @@ impl StudyProblem {
     ///
     /// # Errors
     /// If the log is too short, or no motor in the search box has a finite cost.
-    pub fn output_error(log: &Log, stated: Option<VoltageReading>) -> Result<Self, Error> {
+    pub fn output_error(log: &Log, stated: Option<VoltageTiming>) -> Result<Self, Error> {
         let steady = Self::steady(log, &Request::default(), IdZero::Measured).ok();
         let (mut starts, bounds) = match steady {
             Some(steady) => (vec![steady.fitness.minimum().0], steady.bounds),
             None => (Vec::new(), search_box::from_rows(log)?),
         };
-        let objectives: Vec<(VoltageReading, OutputError)> = voltage_timings(stated)
+        let objectives: Vec<(VoltageTiming, OutputError)> = voltage_timings(stated)
             .into_iter()
             .map(|reading| Ok((reading, OutputError::of(log, reading)?)))
             .collect::<Result<_, Error>>()?;
@@ -107,7 +107,7 @@ impl StudyProblem {
         if let Some((_, objective)) = objectives.first() {
             starts.push(coarse_start(objective, &bounds)?);
         }
-        let lowest = |(_, objective): &(VoltageReading, OutputError)| {
+        let lowest = |(_, objective): &(VoltageTiming, OutputError)| {
             let ends = starts.iter().map(|start| polish(objective, start)).filter(|end| end.cost.is_finite());
             ends.min_by(|a, b| a.cost.total_cmp(&b.cost))
         };
@@ -115,7 +115,7 @@ impl StudyProblem {
         let polished =
             objectives.into_iter().zip(minima).filter_map(|((reading, objective), minimum)| Some((reading, objective, minimum?)));
         // Costs are compared per row: a delay leaves fewer rows, and a sum over fewer rows is smaller without a better fit.
-        let per_row = |(_, objective, minimum): &(VoltageReading, OutputError, Polished)| minimum.cost / objective.rows() as f64;
+        let per_row = |(_, objective, minimum): &(VoltageTiming, OutputError, Polished)| minimum.cost / objective.rows() as f64;
         let best = polished.min_by(|a, b| per_row(a).total_cmp(&per_row(b)));
         let (reading, objective, minimum) = best.ok_or(optimizer::Error::NonFiniteStart { population: COARSE_SEARCH.population })?;
         Ok(Self {
@@ -178,7 +178,7 @@ impl Fitness {
     }
 
     /// The voltage timing, for a fitness that depends on it.
-    pub fn voltage_reading(&self) -> Option<String> {
+    pub fn voltage_timing(&self) -> Option<String> {
         match self {
             Self::VoltageError(_) => None,
             Self::OutputError { reading, .. } => Some(reading.key().to_owned()),
@@ -235,8 +235,8 @@ impl Objective for Fitness {
 }
 
 /// The voltage timings to try: the one stated, or all that drives are known to have.
-fn voltage_timings(stated: Option<VoltageReading>) -> Vec<VoltageReading> {
-    stated.map_or_else(|| VoltageReading::ALL.to_vec(), |stated| vec![stated])
+fn voltage_timings(stated: Option<VoltageTiming>) -> Vec<VoltageTiming> {
+    stated.map_or_else(|| VoltageTiming::ALL.to_vec(), |stated| vec![stated])
 }
 
 /// The best motor of a coarse search.

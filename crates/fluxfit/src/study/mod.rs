@@ -19,6 +19,7 @@ use std::ops::ControlFlow;
 
 /// The results of many runs of one method.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct MethodStudy {
     /// The method.
     pub method: Method,
@@ -34,6 +35,7 @@ pub struct MethodStudy {
 
 /// Convergence of many runs: one entry per iteration, the start included. A run that stopped early keeps its last value.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ConvergenceCurves {
     /// Cost above the minimum: lower quartile, median and upper quartile over the runs.
     pub quartiles: Vec<[f64; 3]>,

@@ -85,7 +85,7 @@ impl Predicted {
 
 fn currents(log: &Log, fit: &OutputFit, own: &Motor, given: &Given, request: &Request) -> Result<Predicted, Error> {
     let stretches = stretches::all(log, &request.windows)?;
-    let objective = OutputError::of_rows(log, &stretches, fit.voltage_reading.0)?;
+    let objective = OutputError::of_rows(log, &stretches, fit.voltage_timing.value)?;
     let own = drive(&objective, fit, own);
     let predicting = drive(&objective, fit, &given.motor);
     let (left, left_by_own) = (objective.residuals(&predicting), objective.residuals(&own));
@@ -122,7 +122,7 @@ fn currents(log: &Log, fit: &OutputFit, own: &Motor, given: &Given, request: &Re
 /// A motor in the log's drive: faults as they fit it best, without an observer.
 fn drive(objective: &OutputError, fit: &OutputFit, motor: &Motor) -> Adjustable {
     let start = Adjustable { motor: *motor, faults: Faults { disturbance: Disturbance::default(), ..fit.drive.faults } };
-    let found = fit.nuisance.iter().map(|nuisance| nuisance.unknown);
+    let found = fit.fault_estimates.iter().map(|nuisance| nuisance.unknown);
     let faults: Vec<Unknown> = found.filter(|unknown| unknown.fault() != Some(Fault::Disturbance)).collect();
     if faults.is_empty() { start } else { polish_unknowns(objective, &start, &faults, &[]).drive }
 }

@@ -81,6 +81,7 @@ impl Outcome {
 
 /// Given parameters, compared with a log.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Validation {
     /// The parameters.
     pub given: Given,
@@ -111,6 +112,7 @@ impl Validation {
 
 /// One parameter, given and as the log has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Difference {
     /// Which.
     pub parameter: Parameter,
@@ -122,6 +124,7 @@ pub struct Difference {
 
 /// What a log says of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Own {
     /// Its value, SI.
     pub value: f64,
@@ -152,6 +155,7 @@ impl Difference {
 
 /// One channel, measured and predicted; A or V.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Channel {
     /// Its column.
     pub name: &'static str,

@@ -27,6 +27,7 @@ const RIDGE: f64 = 1e-9;
 
 /// What a test found.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Test {
     /// The statistic per degree of freedom: about one where nothing differs.
     pub statistic: f64,

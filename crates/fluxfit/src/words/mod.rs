@@ -4,6 +4,7 @@
 mod digits;
 mod model;
 mod nameplate;
+mod names;
 mod reason;
 mod remedy;
 mod validation;

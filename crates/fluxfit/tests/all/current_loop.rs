@@ -6,8 +6,7 @@
 use fluxfit::{
     Model, Request, Verdict,
     current_loop::{CurrentLoop, Gain},
-    evidence::Identification,
-    evidence::Provenance,
+    evidence::{Identification, Provenance, Resolved},
     frames::Dq,
     identify,
     log::{Columns, Log},
@@ -18,7 +17,7 @@ use std::{f64::consts::TAU, sync::LazyLock};
 
 const PAPER: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
-const RATE: (f64, Provenance) = (10e3, Provenance::Stated);
+const RATE: Resolved<f64> = Resolved { value: 10e3, provenance: Provenance::Stated };
 
 /// What operating points at these (i_d, i_q) tell of the paper's motor.
 fn found(points: &[(f64, f64)]) -> Identification {
@@ -69,7 +68,7 @@ fn the_phase_margin_is_what_the_delay_leaves() {
     );
     // Without phase from a sixth of the rate on.
     assert!(at(1700.0).warning().unwrap().to_string().starts_with("a bandwidth of 1700 Hz makes the loop unstable, with"));
-    let assumed = CurrentLoop::of(&FOUND.parameters, 1000.0, (10e3, Provenance::Assumed)).unwrap();
+    let assumed = CurrentLoop::of(&FOUND.parameters, 1000.0, Resolved { provenance: Provenance::Assumed, ..RATE }).unwrap();
     assert!(assumed.warning().unwrap().to_string().contains("taken from the log; state the control rate"));
 }
 
@@ -85,7 +84,7 @@ fn a_parameter_that_the_log_does_not_hold_gives_no_gain() {
 fn frequencies_are_positive_numbers() {
     for wrong in [0.0, -500.0, f64::NAN, f64::INFINITY] {
         assert!(CurrentLoop::of(&FOUND.parameters, wrong, RATE).unwrap_err().to_string().starts_with("the bandwidth"), "{wrong}");
-        let rate = (wrong, Provenance::Stated);
+        let rate = Resolved { value: wrong, ..RATE };
         assert!(CurrentLoop::of(&FOUND.parameters, 500.0, rate).unwrap_err().to_string().starts_with("the control rate"), "{wrong}");
     }
 }

@@ -6,20 +6,20 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
-    Known, Model, Request, Swarm, Verdict,
+    Known, Model, Request, Swarm, TimeWindow, Verdict,
     evidence::Identification,
     frames::Dq,
     identify,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
-    optimizer::draws::Draws,
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
+    optimizer::Draws,
 };
 
 use proptest::prelude::*;
 
 /// Steady voltages do not know their delay.
-const NEXT: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
+const NEXT: VoltageTiming = VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
 /// Rows of an operating point.
 const ROWS: usize = 60;
@@ -74,7 +74,7 @@ fn columns(drive: &Drive, noise: f64, seed: u64) -> Columns {
 /// One window per operating point, half a row beyond its ends.
 fn settings(columns: &Columns) -> Request {
     let period = columns.t[1] - columns.t[0];
-    let ends = columns.t.chunks(ROWS).map(|t| (t[0] - 0.5 * period, t[t.len() - 1] + 0.5 * period));
+    let ends = columns.t.chunks(ROWS).map(|t| TimeWindow { from: t[0] - 0.5 * period, to: t[t.len() - 1] + 0.5 * period });
     Request { model: Some(Model::Steady), windows: ends.collect(), voltage_timing: Some(NEXT), swarm: Swarm::Off, ..Request::default() }
 }
 
@@ -283,8 +283,8 @@ proptest! {
         let t = &log.columns().t;
         let settings = Request {
             // Thirty rows to the row.
-            windows: if named { vec![(t[0], t[29]), (t[t.len() - 30], t[t.len() - 1])] } else { Vec::new() },
-            voltage_timing: [None, Some(VoltageReading::Centered), Some(NEXT)][timing],
+            windows: if named { vec![TimeWindow { from: t[0], to: t[29] }, TimeWindow { from: t[t.len() - 30], to: t[t.len() - 1] }] } else { Vec::new() },
+            voltage_timing: [None, Some(VoltageTiming::Centered), Some(NEXT)][timing],
             voltage_accuracy: if exact { 0.0 } else { 1e-4 },
             swarm: Swarm::Off,
             ..Request::default()

@@ -2,5 +2,6 @@
 
 mod current_loop;
 mod identify_laws;
+mod request;
 mod saturation;
 mod steady_statistics;

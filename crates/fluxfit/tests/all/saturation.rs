@@ -12,8 +12,8 @@ use fluxfit::{
     identify,
     log::{Columns, Log},
     motor::{Motor, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
-    optimizer::draws::Draws,
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
+    optimizer::Draws,
 };
 
 const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
@@ -24,7 +24,7 @@ const POINTS: [(f64, f64, f64); 5] = [(0.0, 3.0, 400.0), (0.0, 9.0, 400.0), (-3.
 const ROWS: usize = 100;
 
 fn settings() -> Request {
-    let timing = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
+    let timing = VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle };
     Request { model: Some(Model::Steady), voltage_timing: Some(timing), ..Request::default() }
 }
 

@@ -7,17 +7,17 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use fluxfit::{
-    Model, Request, Swarm,
+    Model, Request, Swarm, TimeWindow,
     frames::Dq,
     identify,
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageReading},
-    optimizer::draws::Draws,
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
+    optimizer::Draws,
 };
 
 /// Steady voltages do not know their delay.
-const NEXT: VoltageReading = VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle };
+const NEXT: VoltageTiming = VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle };
 
 const TRUTH: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
@@ -40,13 +40,13 @@ struct Noise {
     rho: f64,
 }
 
-fn noisy_log(modes: &[(f64, f64, f64)], noise: &Noise, draws: &mut Draws) -> (Log, Vec<(f64, f64)>) {
+fn noisy_log(modes: &[(f64, f64, f64)], noise: &Noise, draws: &mut Draws) -> (Log, Vec<TimeWindow>) {
     let mut columns = Columns::default();
     let mut windows = Vec::new();
     for (mode, &(id, iq, omega_e)) in modes.iter().enumerate() {
         let u = TRUTH.steady_voltage(Dq { d: id, q: iq }, omega_e);
         let start = mode as f64 * 2.0;
-        windows.push((start - 0.5 * SAMPLE_PERIOD, start + (ROWS as f64 - 0.5) * SAMPLE_PERIOD));
+        windows.push(TimeWindow { from: start - 0.5 * SAMPLE_PERIOD, to: start + (ROWS as f64 - 0.5) * SAMPLE_PERIOD });
         columns.t.extend((0..ROWS).map(|k| start + k as f64 * SAMPLE_PERIOD));
         columns.omega_e.extend([omega_e; ROWS]);
         for (column, mean, deviation) in [

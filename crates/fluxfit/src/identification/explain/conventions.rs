@@ -70,6 +70,7 @@ const LEAST_ROWS: usize = 10;
 
 /// One parameter of the log beside the nameplate's.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Ratio {
     /// Which.
     pub parameter: Parameter,
@@ -83,6 +84,7 @@ pub struct Ratio {
 
 /// One or two patterns, as an explanation.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Candidate {
     /// Its patterns.
     pub patterns: Vec<Pattern>,
@@ -94,6 +96,7 @@ pub struct Candidate {
 
 /// The log beside the nameplate.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Convention {
     /// Every parameter that both know.
     pub ratios: Vec<Ratio>,

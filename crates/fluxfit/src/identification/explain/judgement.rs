@@ -14,6 +14,7 @@ use crate::motor::{PARAMETERS, Parameter};
 
 /// One parameter: value, interval, verdict, and what could be done better.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Judgement {
     /// Which parameter this is.
     pub parameter: Parameter,

@@ -56,6 +56,7 @@ pub enum Place {
 
 /// A measurement, and the interval to expect after it: computed, not measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Promised {
     /// What to measure.
     pub measurement: Measurement,

@@ -17,7 +17,7 @@ use crate::motor::Parameter;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// A measurement, with the interval to expect after it. What it may be: [`Measurement`](crate::evidence::Measurement).
+    /// A measurement, with the interval to expect after it. What it may be: [`Measurement`](crate::Measurement).
     Measure(Promised),
     /// Add a stretch at the same speed with this i_d, A; zero: with i_d = 0.
     AddStretch {
@@ -68,6 +68,7 @@ pub enum Remedy {
 
 /// What else helps beside a stretch with another i_d, in [`Remedy::AddStretch`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Also {
     /// Instead: a second speed or load, or R_s given.
     OrSecondPoint,

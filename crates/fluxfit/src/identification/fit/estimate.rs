@@ -35,6 +35,7 @@ const NO_VOLTAGE: f64 = 1e-30;
 
 /// The solution of the operating points' equations.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// The motor found. Of directions that are not excited it has nothing.
     pub motor: Motor,

@@ -33,6 +33,7 @@ const OPEN_PART: f64 = 0.1;
 
 /// What the operating points excite.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Excitation {
     /// Units of the parameters in which each lies between 0 and 1.
     pub scale: [f64; PARAMETERS],
@@ -44,6 +45,7 @@ pub struct Excitation {
 
 /// One direction in parameter space.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Direction {
     /// Its components, unit length, in units of [`Excitation::scale`].
     pub components: [f64; PARAMETERS],

@@ -22,7 +22,7 @@ use crate::{
     faults::{Fault, Faults},
     levenberg_marquardt::{PriorResidual, jacobian, polish_unknowns},
     objective::{
-        acting_voltage::VoltageReading,
+        acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
@@ -31,6 +31,7 @@ use nalgebra::DVector;
 
 /// A fault that was tried.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FaultTrial {
     /// The fault.
     pub fault: Fault,
@@ -43,6 +44,7 @@ pub struct FaultTrial {
 
 /// Whether a fault was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FaultOutcome {
     /// It is part of the answer.
     Taken,
@@ -81,7 +83,7 @@ pub(crate) const LEAST_RESIDUAL: f64 = 1e-4;
 /// The search, and where it stands.
 pub(crate) struct FaultSearch<'a> {
     /// The output error under each reading of the voltages.
-    pub(crate) objectives: &'a [(VoltageReading, OutputError)],
+    pub(crate) objectives: &'a [(VoltageTiming, OutputError)],
     /// The reading that fits best now, by its place among them.
     pub(crate) reading: usize,
     pub(crate) priors: &'a [PriorResidual],

@@ -9,6 +9,7 @@ use nalgebra::Matrix4;
 
 /// The motor of a fit, its uncertainty, and what else bears on its verdicts.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Finding {
     /// The motor found.
     pub motor: Motor,
@@ -25,6 +26,7 @@ pub struct Finding {
 /// What speaks against a fit of simulated currents, whatever its intervals say. The default is nothing, as for operating points, whose
 /// contradictions are part of the uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Trust {
     /// Correlation of neighbouring residuals; zero where the residuals are too small to mean anything.
     pub correlation_of_neighbours: f64,

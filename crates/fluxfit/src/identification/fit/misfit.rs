@@ -18,6 +18,7 @@ const BISECTIONS: usize = 60;
 
 /// Contradiction between the points.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Misfit {
     /// Root of chi squared per degree of freedom under the noise and the accuracy stated.
     pub ratio: f64,
@@ -69,8 +70,8 @@ mod tests {
         },
         log::{Columns, Log},
         motor::{Motor, Parameter},
-        objective::acting_voltage::{VoltageFrame, VoltageReading},
-        optimizer::draws::Draws,
+        objective::acting_voltage::{VoltageFrame, VoltageTiming},
+        optimizer::Draws,
     };
 
     const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
@@ -94,7 +95,7 @@ mod tests {
         let request = Request {
             model: Some(Model::Steady),
             swarm: Swarm::Off,
-            voltage_timing: Some(VoltageReading::Delayed { delay: 1, frame: VoltageFrame::Middle }),
+            voltage_timing: Some(VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle }),
             ..Request::default()
         };
         solve(&Log::new(columns).unwrap(), &request, &crate::identification::progress::silent).unwrap()

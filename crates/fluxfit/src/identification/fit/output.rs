@@ -8,16 +8,16 @@ use super::{
     super::{
         prepare::stretches,
         progress::{Progress, Step},
-        request::{Provenance, Request},
+        request::{Provenance, Request, Resolved},
     },
     excitation::Excitation,
     fault_search::{FaultOutcome, FaultTrial, LEAST_RESIDUAL},
     finding::{Bench, Finding, Trust, covariance},
     long_run,
     output_choice::{Chosen, choose},
-    output_errors::{Errors, Nuisance, OutputShifts, sensors, without_observer},
+    output_errors::{Errors, FaultEstimate, OutputShifts, sensors, without_observer},
     output_start,
-    readings::{self, ReadingTrial},
+    readings::{self, TimingTrial},
     steady::SteadyFit,
     swarm::{self, Search},
     uncertainty::{Systematic, Uncertainty},
@@ -29,7 +29,7 @@ use crate::{
     levenberg_marquardt::{Polished, polish_with_progress},
     log::Log,
     motor::Motor,
-    objective::{acting_voltage::VoltageReading, adjustable::Adjustable, output_error::OutputError},
+    objective::{acting_voltage::VoltageTiming, adjustable::Adjustable, output_error::OutputError},
     optimizer::{Bounds, Method},
     steady::OperatingPoint,
 };
@@ -37,17 +37,18 @@ use std::ops::Range;
 
 /// The simulated currents, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct OutputFit {
     /// The motor, and what was found to stand between it and the log.
     pub drive: Adjustable,
-    /// How the voltage columns were read, and whether that was stated or found.
-    pub voltage_reading: (VoltageReading, Provenance),
-    /// Every reading that was tried, with the faults that were found, the best first.
-    pub readings: Vec<ReadingTrial>,
+    /// The timing of the voltage columns, stated or found.
+    pub voltage_timing: Resolved<VoltageTiming>,
+    /// Every timing that was tried, with the faults that were found, the best first.
+    pub timings: Vec<TimingTrial>,
     /// Every fault that was tried, those taken first.
-    pub terms: Vec<FaultTrial>,
+    pub fault_trials: Vec<FaultTrial>,
     /// Numbers of the drive beside the motor that were found.
-    pub nuisance: Vec<Nuisance>,
+    pub fault_estimates: Vec<FaultEstimate>,
     /// Stretches of the log whose rows are compared.
     pub stretches: Vec<Range<usize>>,
     /// Measured less simulated current, A: `d, q` of each of those rows in turn; with an observer, less the prediction from the row before.
@@ -110,15 +111,18 @@ impl OutputFit {
         };
         Ok(Self {
             drive,
-            voltage_reading: (reading, if request.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found }),
-            terms,
-            nuisance: errors.nuisance(&drive, &unknowns),
+            voltage_timing: Resolved {
+                value: reading,
+                provenance: if request.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found },
+            },
+            fault_trials: terms,
+            fault_estimates: errors.nuisance(&drive, &unknowns),
             stretches: objective.stretches().collect(),
             angle_known: objective.angle_known(),
             redundancy: residuals.len().saturating_sub(unknowns.len()),
             correlation_of_neighbours: correlation,
             finding,
-            readings,
+            timings: readings,
             residuals,
             cost,
         })
@@ -126,7 +130,7 @@ impl OutputFit {
 
     /// Whether a fault is part of the answer.
     pub fn has(&self, fault: Fault) -> bool {
-        is_taken(&self.terms, fault)
+        is_taken(&self.fault_trials, fault)
     }
 
     /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.
@@ -152,8 +156,8 @@ impl OutputFit {
     }
 
     /// The readings of the voltages that are not ruled out, the best first: they fit about as well as it does.
-    pub fn possible_readings(&self) -> impl Iterator<Item = &ReadingTrial> {
-        readings::possible(&self.readings, long_run::effective_sample_size(&self.residuals))
+    pub fn possible_timings(&self) -> impl Iterator<Item = &TimingTrial> {
+        readings::possible(&self.timings, long_run::effective_sample_size(&self.residuals))
     }
 
     /// Lets the swarm minimize the same output error.
@@ -162,7 +166,7 @@ impl OutputFit {
     /// If the box or the settings do not suit it.
     pub(crate) fn search(&self, log: &Log, method: Method, bounds: Bounds, request: &Request, progress: Progress) -> Result<Search, Error> {
         let stretches = stretches::fitted(log, &request.windows)?;
-        let objective = OutputError::of_rows(log, &stretches, self.voltage_reading.0)?.holding(self.drive.faults);
+        let objective = OutputError::of_rows(log, &stretches, self.voltage_timing.value)?.holding(self.drive.faults);
         let report = swarm::run(&objective, method, &bounds, request, progress)?;
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report })

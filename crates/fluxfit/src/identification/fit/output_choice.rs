@@ -9,7 +9,7 @@ use super::{
     fault_search::{FaultSearch, FaultTrial, LEAST_RESIDUAL},
     long_run,
     output_start::{self, free},
-    readings::{self, ReadingTrial},
+    readings::{self, TimingTrial},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -17,7 +17,7 @@ use crate::{
     levenberg_marquardt::PriorResidual,
     log::Log,
     objective::{
-        acting_voltage::VoltageReading,
+        acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
@@ -26,12 +26,12 @@ use std::ops::Range;
 
 /// What is to be fitted to all rows.
 pub(super) struct Chosen {
-    pub(super) reading: VoltageReading,
+    pub(super) reading: VoltageTiming,
     pub(super) drive: Adjustable,
     pub(super) unknowns: Vec<Unknown>,
     pub(super) priors: Vec<PriorResidual>,
     /// Every reading with these unknowns, the best first.
-    pub(super) readings: Vec<ReadingTrial>,
+    pub(super) readings: Vec<TimingTrial>,
     pub(super) terms: Vec<FaultTrial>,
     /// Independent residuals of the rows by which it was chosen.
     pub(super) independent: f64,
@@ -83,7 +83,7 @@ pub(super) fn choose(
 }
 
 /// The faults that a log carries under a reading, and the reading that suits them.
-fn with_faults(mut search: FaultSearch, objectives: &[(VoltageReading, OutputError)], priors: &[PriorResidual]) -> Chosen {
+fn with_faults(mut search: FaultSearch, objectives: &[(VoltageTiming, OutputError)], priors: &[PriorResidual]) -> Chosen {
     let terms = search.run();
     let FaultSearch { drive, unknowns, cost, reading, .. } = search;
     let (reading, objective) = &objectives[reading];

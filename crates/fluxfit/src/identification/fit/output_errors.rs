@@ -23,7 +23,8 @@ use nalgebra::DMatrix;
 
 /// A number of the drive beside the motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Nuisance {
+#[non_exhaustive]
+pub struct FaultEstimate {
     /// Which.
     pub unknown: Unknown,
     /// SI.
@@ -122,10 +123,10 @@ impl Errors {
         }
     }
 
-    pub(super) fn nuisance(&self, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Nuisance> {
+    pub(super) fn nuisance(&self, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<FaultEstimate> {
         let beside = unknowns.iter().enumerate().filter(|(_, unknown)| !matches!(unknown, Unknown::Motor(_)));
         beside
-            .map(|(k, unknown)| Nuisance {
+            .map(|(k, unknown)| FaultEstimate {
                 unknown: *unknown,
                 value: drive.get(*unknown),
                 standard_error: (self.covariance[(k, k)].max(0.0) + self.accuracy[(k, k)].max(0.0)).sqrt(),

@@ -10,7 +10,7 @@ use crate::{
     log::Log,
     motor::PARAMETERS,
     objective::{
-        acting_voltage::VoltageReading,
+        acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
@@ -22,18 +22,19 @@ use std::ops::Range;
 /// factors", J. Am. Stat. Assoc. 90 (1995) 773, call it very strong.
 pub(crate) const VERY_STRONG: f64 = 10.0;
 
-/// A trial of one reading.
+/// A trial of one timing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReadingTrial {
-    /// The reading.
-    pub reading: VoltageReading,
+#[non_exhaustive]
+pub struct TimingTrial {
+    /// The timing.
+    pub timing: VoltageTiming,
     /// Where its polish ended.
     pub polished: Polished,
     /// Rows that it compares: a delay loses some.
     pub rows: usize,
 }
 
-impl ReadingTrial {
+impl TimingTrial {
     /// Mean square of a residual, A²: what readings are compared by.
     pub fn mean_square(&self) -> f64 {
         self.polished.cost / (2 * self.rows) as f64
@@ -44,36 +45,36 @@ impl ReadingTrial {
 ///
 /// # Errors
 /// If no stretch is long enough.
-pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Vec<(VoltageReading, OutputError)>, Error> {
-    let readings = request.voltage_timing.map_or(VoltageReading::ALL.to_vec(), |stated| vec![stated]);
+pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Vec<(VoltageTiming, OutputError)>, Error> {
+    let readings = request.voltage_timing.map_or(VoltageTiming::ALL.to_vec(), |stated| vec![stated]);
     readings.into_iter().map(|reading| Ok((reading, OutputError::of_rows(log, stretches, reading)?))).collect()
 }
 
 /// Tries every reading from the same start. The best one first, with its place among the objectives.
 pub(crate) fn readings(
-    objectives: &[(VoltageReading, OutputError)],
+    objectives: &[(VoltageTiming, OutputError)],
     start: &Adjustable,
     unknowns: &[Unknown],
     priors: &[PriorResidual],
-) -> Vec<(usize, ReadingTrial)> {
-    let try_one = |(reading, objective): &(VoltageReading, OutputError)| {
+) -> Vec<(usize, TimingTrial)> {
+    let try_one = |(reading, objective): &(VoltageTiming, OutputError)| {
         let polished = polish_unknowns(objective, start, unknowns, priors);
-        ReadingTrial { reading: *reading, polished, rows: objective.rows() }
+        TimingTrial { timing: *reading, polished, rows: objective.rows() }
     };
-    let mut tried: Vec<(usize, ReadingTrial)> = parallel::map(objectives, try_one).into_iter().enumerate().collect();
+    let mut tried: Vec<(usize, TimingTrial)> = parallel::map(objectives, try_one).into_iter().enumerate().collect();
     tried.sort_by(|(_, one), (_, other)| one.mean_square().total_cmp(&other.mean_square()));
     tried
 }
 
 /// The readings that are not ruled out, given how many independent residuals there are. The best one first.
-pub(crate) fn possible(tried: &[ReadingTrial], independent: f64) -> impl Iterator<Item = &ReadingTrial> {
-    let least = tried.first().map_or(0.0, ReadingTrial::mean_square);
+pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
+    let least = tried.first().map_or(0.0, TimingTrial::mean_square);
     // Where the best is perfect, so is every other one that is possible.
     tried.iter().filter(move |other| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG)
 }
 
 /// How far each parameter moves between them.
-pub(crate) fn doubt(tried: &[ReadingTrial], independent: f64) -> [f64; PARAMETERS] {
+pub(crate) fn doubt(tried: &[TimingTrial], independent: f64) -> [f64; PARAMETERS] {
     let Some(best) = tried.first() else { return [0.0; PARAMETERS] };
     possible(tried, independent).fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
         let (one, other) = (best.polished.drive.motor.to_array(), other.polished.drive.motor.to_array());

@@ -29,6 +29,7 @@ use std::ops::Range;
 
 /// Saturation, and what the flux is instead of an inductance times the current.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SaturationFinding {
     /// Resistance that the fluxes were computed with, ohm.
     pub rs: f64,
@@ -46,6 +47,7 @@ pub struct SaturationFinding {
 
 /// The flux at an operating point.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Flux {
     /// Current, A.
     pub current: Dq,
@@ -63,6 +65,7 @@ pub struct Flux {
 
 /// An apparent inductance, H, and the current, A, at which it is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Apparent {
     /// Along its own axis.
     pub current: f64,

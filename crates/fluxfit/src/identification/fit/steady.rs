@@ -3,7 +3,7 @@
 use super::{
     super::{
         progress::Progress,
-        request::{Known, Provenance, Request, VOLTAGE_ACCURACY},
+        request::{Known, Provenance, Request, Resolved, VOLTAGE_ACCURACY},
     },
     estimate::Estimate,
     excitation::Excitation,
@@ -22,12 +22,13 @@ use crate::{
     optimizer::{Bounds, Method},
     steady::{
         OperatingPoint, PreliminaryEstimate, windows,
-        zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, VoltageTiming, ZeroOrderHold},
+        zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, SteadyVoltageTiming, ZeroOrderHold},
     },
 };
 
 /// The operating points, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SteadyFit {
     /// The windows that carried it.
     pub operating_points: Vec<OperatingPoint>,
@@ -35,8 +36,8 @@ pub struct SteadyFit {
     pub estimate: Estimate,
     /// What they excite.
     pub excitation: Excitation,
-    /// How the voltage columns were read, and whether that was stated or assumed.
-    pub voltage_timing: (VoltageTiming, Provenance),
+    /// The timing of the voltage columns, stated or assumed.
+    pub voltage_timing: Resolved<SteadyVoltageTiming>,
     /// Contradiction between the operating points, if proven.
     pub misfit: Option<Misfit>,
     /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
@@ -126,8 +127,11 @@ fn bench(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate
 }
 
 /// Centred, unless stated otherwise: what drives that log their realized voltage mostly mean.
-pub(crate) fn voltage_timing(request: &Request) -> (VoltageTiming, Provenance) {
-    request.voltage_timing.map_or((VoltageTiming::Centered, Provenance::Assumed), |stated| (stated.into(), Provenance::Stated))
+pub(crate) fn voltage_timing(request: &Request) -> Resolved<SteadyVoltageTiming> {
+    match request.voltage_timing {
+        Some(stated) => Resolved { value: stated.into(), provenance: Provenance::Stated },
+        None => Resolved { value: SteadyVoltageTiming::Centered, provenance: Provenance::Assumed },
+    }
 }
 
 /// The operating points in the windows named, or in those found, as the log has them: before any correction, and with a coarse covariance.
@@ -148,7 +152,7 @@ pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoi
 /// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
 /// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
 fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
-    let with = |timing: VoltageTiming| -> Vec<OperatingPoint> {
+    let with = |timing: SteadyVoltageTiming| -> Vec<OperatingPoint> {
         let preliminary = preliminary_estimates(log, rough, timing, request);
         rough
             .iter()
@@ -157,11 +161,11 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
             .collect()
     };
     let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request).motor;
-    let points = with(voltage_timing(request).0);
+    let points = with(voltage_timing(request).value);
     let doubt = match request.voltage_timing {
         Some(_) => [0.0; PARAMETERS],
         None => {
-            let (one, other) = (solve(&points).to_array(), solve(&with(VoltageTiming::Compensated)).to_array());
+            let (one, other) = (solve(&points).to_array(), solve(&with(SteadyVoltageTiming::Compensated)).to_array());
             std::array::from_fn(|p| (one[p] - other[p]).abs())
         }
     };
@@ -172,7 +176,7 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
 pub(crate) fn preliminary_estimates(
     log: &Log,
     rough: &[OperatingPoint],
-    timing: VoltageTiming,
+    timing: SteadyVoltageTiming,
     request: &Request,
 ) -> Vec<PreliminaryEstimate> {
     let excitation = Excitation::of(rough, &request.known);
@@ -187,7 +191,7 @@ pub(crate) fn preliminary_estimates(
 
 /// The correction that fits a window: none where the log's sampling cannot be the inverter's at the fastest speed (rad/s) of all
 /// windows, so that either all of them are corrected or none; none of the current where so long a period does not shape it.
-fn zero_order_hold(log: &Log, point: &OperatingPoint, fastest: f64, timing: VoltageTiming, rs: f64, inductance: Dq) -> ZeroOrderHold {
+fn zero_order_hold(log: &Log, point: &OperatingPoint, fastest: f64, timing: SteadyVoltageTiming, rs: f64, inductance: Dq) -> ZeroOrderHold {
     match log.segment_of(point.rows.start).map(|segment| segment.sample_period) {
         Some(sample_period) if fastest * sample_period <= MAX_ANGLE_PER_SAMPLE => {
             let shapes = |l: f64| if rs > 0.0 && rs * sample_period <= MAX_DECAY_PER_SAMPLE * l { l } else { f64::INFINITY };

@@ -13,6 +13,7 @@ use crate::{
 
 /// What a swarm found, unpolished.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Search {
     /// Its motor.
     pub motor: Motor,

@@ -26,6 +26,7 @@ const NORMAL: f64 = 1e6;
 
 /// Systematic parts of a standard error (type B, what a longer log would not cure), in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Systematic {
     /// Of the voltages' accuracy.
     pub accuracy: f64,
@@ -73,6 +74,7 @@ impl Systematic {
 /// The uncertainty of one parameter, in its unit: a statistical part from noise (GUM type A) and a systematic one (type B), combined
 /// in quadrature; the interval uses Student's t.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ParameterUncertainty {
     /// Standard error from noise.
     pub statistical: f64,
@@ -117,6 +119,7 @@ impl ParameterUncertainty {
 
 /// A contribution to an uncertainty; the systematic ones are the fields of [`Systematic`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Part {
     /// Noise.
     Noise,
@@ -185,6 +188,7 @@ pub(crate) struct SteadyShifts {
 
 /// The uncertainty of an estimate.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Uncertainty {
     /// Of each parameter.
     pub parameters: [ParameterUncertainty; PARAMETERS],

@@ -22,7 +22,7 @@ pub const IDENTIFIED: f64 = 0.05;
 /// The same of one that is weak.
 pub const WEAK: f64 = 0.50;
 
-/// How well a parameter is determined, by its 95 % interval. It has no sentence of its own: [`key`](Self::key) names it, and the
+/// How well a parameter is determined, by its 95 % interval. Its `Display` is its name; the
 /// [`Reason`] beside it says why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {

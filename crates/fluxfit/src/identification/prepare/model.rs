@@ -8,6 +8,7 @@ use crate::{log::Log, steady::zero_order_hold::MAX_ANGLE_PER_SAMPLE};
 /// How the log is modelled. Steady operating points need currents and speed held constant for a while; the output error also uses
 /// transients, but needs rows as fast as the drive's own sampling. [`evidence::choose_model`](crate::evidence::choose_model) chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Model {
     /// The steady voltage equations, by weighted least squares on the means of steady operating points.
     Steady,
@@ -38,6 +39,7 @@ pub const SLOWEST_CONTROL: f64 = 1000.0;
 
 /// A model, and why it answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ModelChoice {
     /// The model.
     pub model: Model,

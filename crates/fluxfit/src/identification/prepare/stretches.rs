@@ -4,7 +4,10 @@
 use crate::{
     error::Error,
     log::Log,
-    steady::{OperatingPoint, windows},
+    steady::{
+        OperatingPoint,
+        windows::{self, TimeWindow},
+    },
 };
 use std::ops::Range;
 
@@ -12,7 +15,7 @@ use std::ops::Range;
 ///
 /// # Errors
 /// If a window is not in the log.
-pub(crate) fn fitted(log: &Log, windows: &[(f64, f64)]) -> Result<Vec<Range<usize>>, Error> {
+pub(crate) fn fitted(log: &Log, windows: &[TimeWindow]) -> Result<Vec<Range<usize>>, Error> {
     Ok(different(log, all(log, windows)?))
 }
 
@@ -20,7 +23,7 @@ pub(crate) fn fitted(log: &Log, windows: &[(f64, f64)]) -> Result<Vec<Range<usiz
 ///
 /// # Errors
 /// If a window is not in the log.
-pub(crate) fn all(log: &Log, windows: &[(f64, f64)]) -> Result<Vec<Range<usize>>, Error> {
+pub(crate) fn all(log: &Log, windows: &[TimeWindow]) -> Result<Vec<Range<usize>>, Error> {
     let mut named = Vec::new();
     for times in windows {
         named.extend(windows::between(log, *times)?);

@@ -23,6 +23,7 @@ const RPM: f64 = 60.0 / TAU;
 
 /// One named confusion, in one of its two directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Pattern {
     /// Name in files.
     pub name: &'static str,

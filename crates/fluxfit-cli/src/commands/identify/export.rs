@@ -1,24 +1,48 @@
 //! `--export TARGET=FILE`: refused before anything is computed where it cannot be written, and after the answer is printed where
 //! the answer does not carry it.
 
-use super::{Status, input::Input};
-use crate::{arguments::Identify, error::CommandError, terminal};
+use crate::{
+    arguments::LogArguments,
+    commands::{Status, input::Input},
+    error::CommandError,
+    terminal,
+};
 use fluxfit::Answer;
-use fluxfit_answer::export::{Export, Refusal, export};
+use fluxfit_answer::export::{Export, Refusal, Target, export};
 use fluxfit_files::{check_writable, write_atomically};
+use fluxfit_units::{
+    key_value,
+    wording::{did_you_mean, list, nearest, quote},
+};
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
+/// A target and its file.
+type Wanted = (Target, PathBuf);
+
+/// The help of the option.
+pub(super) fn help() -> String {
+    format!("Write the result as a file for another tool: {}; repeatable", Target::ALL.map(Target::key).join(", "))
+}
+
+/// `vesc=motor.xml`: a tool, and the file that is written for it.
+pub(super) fn parse(text: &str) -> Result<(Target, PathBuf), String> {
+    let (name, file) = key_value(text, "TARGET=FILE", "vesc=motor.xml").map_err(|error| error.to_string())?;
+    let keys = Target::ALL.map(Target::key);
+    let unknown = || format!("{} is no target of --export; there are {}{}", quote(name), list(&keys), did_you_mean(nearest(name, keys)));
+    Ok((Target::named(name).ok_or_else(unknown)?, PathBuf::from(file)))
+}
+
 /// Refuses files that would mix with the answer, take the place of what is read or of each other, or cannot be written.
-pub(super) fn check(arguments: &Identify) -> Result<(), CommandError> {
+pub(super) fn check(log: &LogArguments, exports: &[Wanted]) -> Result<(), CommandError> {
     let refuse = |path: &Path, why: &str| Err(CommandError::Usage(format!("--export {}: {why}; name another one", path.display())));
-    let read = arguments.log.logs.iter().chain(&arguments.log.motor).filter_map(|path| fs::canonicalize(path).ok());
+    let read = log.logs.iter().chain(&log.motor).filter_map(|path| fs::canonicalize(path).ok());
     let mut taken: Vec<PathBuf> = read.collect();
     let inputs = taken.len();
-    taken.extend(arguments.log.report.as_deref().map(place));
-    for (_, path) in &arguments.export {
+    taken.extend(log.report.as_deref().map(place));
+    for (_, path) in exports {
         if path.as_os_str() == "-" {
             return Err(CommandError::Usage("--export needs the name of a file: standard output is for the answer".to_owned()));
         }
@@ -35,18 +59,18 @@ pub(super) fn check(arguments: &Identify) -> Result<(), CommandError> {
 }
 
 /// Refuses targets that need pole pairs that nobody gave.
-pub(super) fn check_pole_pairs(arguments: &Identify, pole_pairs: Option<u32>) -> Result<(), CommandError> {
-    let mut targets = arguments.export.iter().map(|(target, _)| target);
+pub(super) fn check_pole_pairs(exports: &[Wanted], pole_pairs: Option<u32>) -> Result<(), CommandError> {
+    let mut targets = exports.iter().map(|(target, _)| target);
     targets.try_for_each(|target| target.check_pole_pairs(pole_pairs)).map_err(|refusal| CommandError::Usage(with_option(&refusal)))
 }
 
 /// Writes what the answer carries; what it does not is said, and costs the status.
-pub(super) fn write(arguments: &Identify, input: &Input, answer: &Answer) -> Result<Status, CommandError> {
-    let logs: Vec<String> = arguments.log.logs.iter().map(|path| file_name(path)).collect();
+pub(super) fn write(log: &LogArguments, exports: &[Wanted], input: &Input, answer: &Answer) -> Result<Status, CommandError> {
+    let logs: Vec<String> = log.logs.iter().map(|path| file_name(path)).collect();
     let pole_pairs = input.pole_pairs;
     let exported = Export { logs: &logs, identification: &answer.identification, pole_pairs, current_loop: answer.current_loop.as_ref() };
     let mut status = Status::Complete;
-    for (target, path) in &arguments.export {
+    for (target, path) in exports {
         match export(*target, &exported) {
             Ok(text) => {
                 write_atomically(path, text.as_bytes())?;

@@ -1,6 +1,6 @@
 //! What an identification decided on the way, for `--verbose`.
 
-use super::detail;
+use crate::terminal::detail;
 use fluxfit::{evidence::Identification, evidence::OutputFit};
 use fluxfit_units::{significant, small};
 
@@ -19,12 +19,12 @@ pub(crate) fn show(found: &Identification) {
 }
 
 fn output(fit: &OutputFit) {
-    for tried in &fit.readings {
+    for tried in &fit.timings {
         let converged = if tried.polished.converged { "" } else { ", not converged" };
         let rms = tried.mean_square().sqrt();
-        detail(|| format!("voltages read as {}: misses the currents by {} A rms{converged}", tried.reading.label(), small(rms)));
+        detail(|| format!("voltages read as {}: misses the currents by {} A rms{converged}", tried.timing.label(), small(rms)));
     }
-    for tried in &fit.terms {
+    for tried in &fit.fault_trials {
         detail(|| format!("{}: {}", tried.fault.label(), tried.outcome.label()));
     }
 }

@@ -1,6 +1,6 @@
 //! A validation, to be read at a glance: the verdict, what the log asks for instead, and how well each channel is predicted.
 
-use super::{BAD, GOOD, HEADING, WARNING, table};
+use crate::terminal::{self, BAD, GOOD, HEADING, WARNING, table};
 use anstyle::Style;
 use fluxfit::{Validation, log::Log, validation::validate::Channel, validation::validate::Difference, validation::validate::Outcome};
 use fluxfit_units::{Scale, significant, small};
@@ -13,8 +13,8 @@ pub(crate) fn show(name: &str, motor: &str, log: &Log, found: &Validation) -> st
     text += &parameters(found);
     text += "\n";
     text += &channels(found);
-    super::print(&text)?;
-    found.own.warnings.iter().for_each(super::warn);
+    terminal::print(&text)?;
+    found.own.warnings.iter().for_each(terminal::warn);
     Ok(())
 }
 
@@ -35,7 +35,7 @@ fn read(log: &Log, found: &Validation) -> String {
 
 fn parameters(found: &Validation) -> String {
     let rows = found.parameters.iter().map(|difference| {
-        let Difference { parameter, given, own } = *difference;
+        let Difference { parameter, given, own, .. } = *difference;
         let scale = Scale::for_value(parameter, given);
         let mut row = vec![parameter.symbol().to_owned()];
         let Some(own) = own else {

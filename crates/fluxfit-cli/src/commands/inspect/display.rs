@@ -1,6 +1,6 @@
 //! What was understood of a file, to be checked at a glance: columns, units, ranges, rows, gaps, and the courses of the currents.
 
-use super::{BAD, DIM, HEADING, identification::frequency, plot, table};
+use crate::terminal::{self, BAD, DIM, HEADING, frequency, plot, table};
 use fluxfit::log::Log;
 use fluxfit_log::Inspection;
 use fluxfit_units::significant;
@@ -21,9 +21,9 @@ pub(crate) fn show(name: &str, inspection: &Inspection) -> std::io::Result<()> {
         text += &format!("\n{}\n", rows(log));
         text += &format!("\n{}", plot::courses(log));
     }
-    super::print(&text)?;
+    terminal::print(&text)?;
     if let Ok(read) = &inspection.log {
-        read.notes.iter().for_each(|note| super::note(&super::advice::with_options(&note.sentence, &note.advice)));
+        read.notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! What was simulated, where it is, and what to do with it.
 
-use super::HEADING;
 use crate::shell;
+use crate::terminal::HEADING;
 use fluxfit_drive::{Recording, Scenario};
 use fluxfit_units::significant;
 use std::{io::Write, path::Path};

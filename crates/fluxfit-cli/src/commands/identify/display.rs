@@ -1,7 +1,7 @@
 //! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and
 //! what the swarm made of it.
 
-use super::{BAD, DIM, GOOD, HEADING, WARNING, options, table};
+use crate::terminal::{self, BAD, DIM, GOOD, HEADING, WARNING, frequency, options, table};
 use fluxfit::{
     Answer, HeldOut, Judgement, Log, Parameter, Reason, Verdict,
     evidence::{FaultOutcome, Flux, Identification, ModelChoice, OutputFit, Provenance, SaturationFinding, SteadyFit},
@@ -31,21 +31,21 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     if let Some(method) = found.method.as_ref().filter(|_| answered) {
         text += &format!("\n{}\n", search(found, method));
     }
-    super::print(&text)?;
-    found.warnings.iter().for_each(super::warn);
+    terminal::print(&text)?;
+    found.warnings.iter().for_each(terminal::warn);
     answer.current_loop.as_ref().map(super::current_loop::show).transpose()?;
     match &answer.held_out {
-        Some(HeldOut { log, validation: Some(validation) }) => {
-            super::print("\n")?;
-            super::validation::show("what was held out", "This answer", log, validation)
+        Some(HeldOut { log, validation: Some(validation), .. }) => {
+            terminal::print("\n")?;
+            crate::commands::validate::display::show("what was held out", "This answer", log, validation)
         }
         Some(HeldOut { validation: None, .. }) => {
-            super::note("what was held out is not predicted: that takes all four parameters");
+            terminal::note("what was held out is not predicted: that takes all four parameters");
             Ok(())
         }
         None => {
             if answer.log.segments().len() > 1 {
-                super::note(
+                terminal::note(
                     "to test this answer on a part of the log that it was not found from: --hold-out; on another log: fluxfit validate",
                 );
             }
@@ -66,10 +66,6 @@ fn read(log: &Log, found: &Identification) -> String {
         None => format!("{points} with {} rows used", found.operating_points().iter().map(|point| point.rows.len()).sum::<usize>()),
     };
     format!("{} rows at {rate}, {} s in {}; {used}", log.rows(), significant(log.duration(), 3), count(log.segments().len(), "segment"),)
-}
-
-pub(super) fn frequency(hertz: f64) -> String {
-    if hertz >= 1000.0 { format!("{} kHz", significant(hertz / 1000.0, 3)) } else { format!("{} Hz", significant(hertz, 3)) }
 }
 
 fn count(n: usize, what: &str) -> String {
@@ -148,19 +144,19 @@ fn wrapped(indent: &str, text: &str) -> String {
 
 /// The model that answered, and what it found beside the motor.
 fn model(found: &Identification) -> String {
-    let ModelChoice { model, reason } = &found.model;
+    let ModelChoice { model, reason, .. } = &found.model;
     let text = format!("{HEADING}Model{HEADING:#}: {}\n  {DIM}{reason}{DIM:#}", model.label());
     let Some(fit) = &found.output else { return text };
     let rms = fit.residual_rms();
-    let how = if fit.voltage_reading.1 == Provenance::Stated { "as stated" } else { "found" };
+    let how = if fit.voltage_timing.provenance == Provenance::Stated { "as stated" } else { "found" };
     let mut text = format!(
         "{text}\nCurrents of {} rows simulated; they miss the measured ones by {} (d) and {} (q) rms.\nVoltages read as {} ({how}).",
         fit.residuals.len() / 2,
         amperes(rms.d),
         amperes(rms.q),
-        fit.voltage_reading.0.label(),
+        fit.voltage_timing.value.label(),
     );
-    if !fit.nuisance.is_empty() {
+    if !fit.fault_estimates.is_empty() {
         text += &format!("\n\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit).trim_end());
     }
     for (outcome, lines) in [("Not taken", not_taken(fit, false)), ("Not tried without theta_e", not_taken(fit, true))] {
@@ -186,7 +182,7 @@ fn amperes(current: f64) -> String {
 const INTERVAL: f64 = 1.959_964;
 
 fn beside(fit: &OutputFit) -> String {
-    let rows = fit.nuisance.iter().map(|nuisance| {
+    let rows = fit.fault_estimates.iter().map(|nuisance| {
         let [value, margin, unit] = format_unknown(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
         // Units stand at the left of their column.
         (nuisance.unknown.label(), value, margin, unit)
@@ -202,7 +198,7 @@ fn beside(fit: &OutputFit) -> String {
 /// Faults that the answer does without, in few words: for want of the electrical angle, or for any other reason.
 fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
     let mut words = Vec::new();
-    for tried in &fit.terms {
+    for tried in &fit.fault_trials {
         let left_out = if needs_angle {
             tried.outcome == FaultOutcome::NeedsAngle
         } else {

@@ -1,21 +1,21 @@
 //! The current controllers' gains, each with its interval.
 
-use super::{DIM, HEADING, table};
+use crate::terminal::{self, DIM, HEADING, table};
 use fluxfit::{
     current_loop::{CurrentLoop, DELAY_PERIODS, Gain},
-    evidence::Provenance,
+    evidence::{Provenance, Resolved},
 };
 use fluxfit_units::significant;
 
 /// Shows the gains.
 pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {
-    let (rate, from) = found.control_rate;
+    let Resolved { value: rate, provenance } = found.control_rate;
     let heading = format!(
         "\n{HEADING}Current controllers{HEADING:#} for {} Hz: phase margin {:.0} degrees with {DELAY_PERIODS} periods of delay at {} Hz{}\n",
         significant(found.bandwidth, 4),
         found.phase_margin(),
         significant(rate, 5),
-        if from == Provenance::Stated { "" } else { ", the log's rate" },
+        if provenance == Provenance::Stated { "" } else { ", the log's rate" },
     );
     let rows = [("K_p d", found.kp_d, "V/A", "L_d"), ("K_p q", found.kp_q, "V/A", "L_q"), ("K_i d, q", found.ki, "V/(A s)", "R_s")];
     let rows = rows.map(|(name, gain, unit, parameter)| {
@@ -24,7 +24,7 @@ pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {
         [vec![name.to_owned()], cells.to_vec(), vec![format!("{parameter} {verdict}")]].concat()
     });
     let note = format!("{DIM}K_p = 2 pi bandwidth L, K_i = 2 pi bandwidth R_s: u = K_p e + K_i ∫ e dt, couplings fed forward{DIM:#}\n");
-    super::print(&format!("{heading}{}{note}", table(&["", "value", "", "95 %", "interval", "from"], 1, rows)))
+    terminal::print(&format!("{heading}{}{note}", table(&["", "value", "", "95 %", "interval", "from"], 1, rows)))
 }
 
 /// Value, unit, relative half-width and interval.

@@ -1,6 +1,6 @@
 //! A study: the paper's Table 2, the ranking by cost above the minimum, and its Fig. 4 in characters.
 
-use super::{DIM, HEADING, plot, table};
+use crate::terminal::{self, DIM, HEADING, plot, table};
 use fluxfit::study::comparison::Comparison;
 use fluxfit::{
     motor::{Motor, Parameter},
@@ -14,7 +14,7 @@ pub(crate) fn show(name: &str, facts: &Comparison, methods: &[(MethodStudy, f64)
     let fitness = &facts.problem.fitness;
     let (minimum, index) = (fitness.minimum_label(), fitness.minimum_subscript());
     let rows: Vec<String> = facts.problem.rows.iter().map(ToString::to_string).collect();
-    let reading = fitness.voltage_reading().map(|reading| format!(", voltages read as {reading}")).unwrap_or_default();
+    let reading = fitness.voltage_timing().map(|reading| format!(", voltages read as {reading}")).unwrap_or_default();
     let mut text = format!(
         "{HEADING}{name}{HEADING:#}\n{} on {} rows{reading}; {} runs of each method, population {}, {} iterations, seed {}\nsearch box {}\n",
         fitness.label(),
@@ -26,7 +26,7 @@ pub(crate) fn show(name: &str, facts: &Comparison, methods: &[(MethodStudy, f64)
         search_box(facts),
     );
     if methods.is_empty() {
-        return super::print(&text);
+        return terminal::print(&text);
     }
     text += &format!("\n{HEADING}Mean of the runs' estimates{HEADING:#} (Table 2 of the paper)\n{}", table_2(facts, methods));
     text += &format!(
@@ -37,7 +37,7 @@ pub(crate) fn show(name: &str, facts: &Comparison, methods: &[(MethodStudy, f64)
     );
     text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_{index} (Fig. 4 of the paper)\n{}", plot::convergence(methods));
     text += &format!("\n{DIM}{}{DIM:#}\n", remark(fitness));
-    super::print(&text)
+    terminal::print(&text)
 }
 
 /// Prints how many runs an interrupted study has finished.
@@ -47,7 +47,7 @@ pub(crate) fn interrupted(comparison: &Comparison) {
         format!("{} {finished}", method.label())
     };
     let finished: Vec<String> = comparison.asked.iter().map(of).collect();
-    super::warn_of(
+    terminal::warn_of(
         "interrupted",
         &format!("of {} runs of each method these are finished: {}; a report is not written", comparison.runs, finished.join(", ")),
     );

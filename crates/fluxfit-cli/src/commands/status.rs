@@ -1,0 +1,21 @@
+//! How a verb ended.
+
+use std::process::ExitCode;
+
+/// How a command ended, errors apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Status {
+    /// Everything asked for was identified.
+    Complete,
+    /// The log cannot carry some parameter.
+    Incomplete,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Complete => Self::SUCCESS,
+            Status::Incomplete => Self::from(1),
+        }
+    }
+}

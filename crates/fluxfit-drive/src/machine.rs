@@ -1,0 +1,99 @@
+//! Settings of the simulated machine: motor and mechanics. `plant` has its equations.
+
+use crate::flux_map::{FluxLinkage, FluxMap};
+use fluxfit::{frames::Dq, motor::Motor};
+
+/// The simulated motor, whose parameters are the log's true ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedMotor {
+    /// Stator resistance, ohm.
+    pub rs: f64,
+    /// Flux linkage as a function of current.
+    pub magnetics: Magnetics,
+    /// Pole pairs.
+    pub pole_pairs: u32,
+}
+
+/// Flux linkage as a function of current.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Magnetics {
+    /// `psi_d = L_d i_d + psi_f`, `psi_q = L_q i_q`.
+    Constant {
+        /// d-axis inductance, H.
+        ld: f64,
+        /// q-axis inductance, H.
+        lq: f64,
+        /// Magnet flux linkage, Wb, peak per phase.
+        psi_f: f64,
+    },
+    /// A measured flux map.
+    Map(FluxMap),
+}
+
+/// The mechanics.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mechanics {
+    /// A free rotor with a load; the drive controls the speed.
+    Free {
+        /// Inertia of rotor and load, kg m².
+        inertia: f64,
+        /// Viscous friction, N m s.
+        friction: f64,
+    },
+    /// A dynamometer, which imposes the scheduled speed; the drive controls the currents.
+    Dyno,
+}
+
+impl SimulatedMotor {
+    /// The flux linkage at a current, A; `None` outside of a flux map.
+    #[inline]
+    pub(crate) fn flux(&self, i: Dq) -> Option<FluxLinkage> {
+        match &self.magnetics {
+            Magnetics::Constant { ld, lq, psi_f } => {
+                Some(FluxLinkage { psi: Dq { d: ld * i.d + psi_f, q: lq * i.q }, inductance: [[*ld, 0.0], [0.0, *lq]] })
+            }
+            Magnetics::Map(map) => map.at(i),
+        }
+    }
+
+    /// The motor with the constant parameters of zero current, which a flux map must contain.
+    pub fn unsaturated(&self) -> Motor {
+        match &self.magnetics {
+            Magnetics::Constant { ld, lq, psi_f } => Motor { rs: self.rs, ld: *ld, lq: *lq, psi_f: *psi_f },
+            Magnetics::Map(_) => {
+                let (ld, lq, psi_f) = self.flux(Dq::default()).map_or((f64::NAN, f64::NAN, f64::NAN), |flux| {
+                    let [[ld, _], [_, lq]] = flux.inductance;
+                    (ld, lq, flux.psi.d)
+                });
+                Motor { rs: self.rs, ld, lq, psi_f }
+            }
+        }
+    }
+
+    /// The current clamped to the range of a flux map.
+    pub(crate) fn within_map(&self, i: Dq) -> Dq {
+        match &self.magnetics {
+            Magnetics::Constant { .. } => i,
+            Magnetics::Map(map) => {
+                let within = |[low, high]: [f64; 2], current: f64| current.clamp(low, high);
+                Dq { d: within(map.id_range(), i.d), q: within(map.iq_range(), i.q) }
+            }
+        }
+    }
+
+    /// The true parameters, if they are constant.
+    pub fn constant_parameters(&self) -> Option<Motor> {
+        matches!(self.magnetics, Magnetics::Constant { .. }).then(|| self.unsaturated())
+    }
+
+    /// Torque, N m, from flux linkage and current.
+    pub(crate) fn torque(&self, psi: Dq, i: Dq) -> f64 {
+        1.5 * f64::from(self.pole_pairs) * (psi.d * i.q - psi.q * i.d)
+    }
+}
+
+impl From<Motor> for Magnetics {
+    fn from(motor: Motor) -> Self {
+        Self::Constant { ld: motor.ld, lq: motor.lq, psi_f: motor.psi_f }
+    }
+}

@@ -1,0 +1,133 @@
+//! The JSON document of an inspection: schema `fluxfit.inspection/1`.
+//!
+//! Its fields are the document's keys, in this order, and their comments are the descriptions of its JSON Schema (`docs/schema`, feature
+//! `schema`). Fields are added, never renamed.
+
+use crate::reading::{InspectedColumn, Inspection, ReadLog};
+use fluxfit::log::Log;
+use serde::Serialize;
+
+/// The name of this document.
+pub const INSPECTION: &str = "fluxfit.inspection/1";
+
+/// The document that `fluxfit inspect --json` prints: how a file is read. Fields are added in later versions, never renamed. What is not
+/// known is null.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(title = INSPECTION))]
+#[non_exhaustive]
+pub struct InspectionDocument {
+    /// Name and version of this document.
+    #[cfg_attr(feature = "schema", schemars(extend("const" = INSPECTION)))]
+    pub schema: &'static str,
+    /// The format of the file, in a few words.
+    pub format: String,
+    /// The recognized layout; null if the columns have other names.
+    pub layout: Option<&'static str>,
+    /// The columns of the file, in order.
+    pub columns: Vec<ColumnEntry>,
+    /// The log; null if the file cannot be read as one.
+    pub log: Option<InspectedLogEntry>,
+    /// What reading the log inferred or repaired; one sentence each.
+    pub notes: Vec<String>,
+    /// Why the file cannot be read as a log, in one sentence; null if it can.
+    pub error: Option<String>,
+}
+
+/// A column of the file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct ColumnEntry {
+    /// Its name in the file.
+    pub name: String,
+    /// Its unit, as the file spells it.
+    pub unit: Option<String>,
+    /// The channel that it is read as; null if it is not read.
+    pub channel: Option<&'static str>,
+    /// The missing channel that its name resembles, if it is not read.
+    pub resembles: Option<&'static str>,
+    /// The unit in which it is read, or would be.
+    pub read_as: Option<&'static str>,
+    /// Its smallest and largest number, as the file has them; null if it has no numbers, or if the file came through a pipe.
+    pub range: Option<[f64; 2]>,
+    /// Whether the file states that it is the time of the columns of its group.
+    pub is_time: bool,
+}
+
+/// The log that the file holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct InspectedLogEntry {
+    /// Rows.
+    pub rows: usize,
+    /// Time covered, gaps left out, s.
+    pub duration_s: f64,
+    /// Time between two rows of the first segment, s.
+    pub sample_period_s: Option<f64>,
+    /// Gaps in time, in order. Nothing is computed across them.
+    pub gaps: Vec<GapEntry>,
+    /// Whether channels were sampled at different instants and are interpolated; only steady operating points can be used then.
+    pub interpolated: bool,
+}
+
+/// A gap in time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct GapEntry {
+    /// Time of the last row before it, s.
+    pub t0: f64,
+    /// Time of the first row after it, s.
+    pub t1: f64,
+}
+
+impl InspectionDocument {
+    /// The document of an inspection.
+    pub fn of(inspection: &Inspection) -> Self {
+        let read = inspection.log.as_ref();
+        Self {
+            schema: INSPECTION,
+            format: inspection.kind.clone(),
+            layout: inspection.layout.map(|layout| layout.name),
+            columns: inspection.columns.iter().map(ColumnEntry::of).collect(),
+            log: read.ok().map(|read| InspectedLogEntry::of(&read.log)),
+            notes: read.map_or(Vec::new(), |ReadLog { notes, .. }| notes.iter().map(|note| note.sentence.clone()).collect()),
+            error: read.err().map(ToString::to_string),
+        }
+    }
+}
+
+impl ColumnEntry {
+    fn of(column: &InspectedColumn) -> Self {
+        Self {
+            name: column.header.clone(),
+            unit: column.unit.clone(),
+            channel: column.channel,
+            resembles: column.resembles,
+            read_as: column.read_as.map(|(name, _)| name),
+            range: column.range,
+            is_time: column.is_time,
+        }
+    }
+}
+
+impl InspectedLogEntry {
+    fn of(log: &Log) -> Self {
+        let (t, segments) = (&log.columns().t, log.segments());
+        let gap = |pair: &[fluxfit::log::Segment]| GapEntry { t0: t[pair[0].rows.end - 1], t1: t[pair[1].rows.start] };
+        Self {
+            rows: log.rows(),
+            duration_s: log.duration(),
+            sample_period_s: segments.first().map(|segment| segment.sample_period),
+            gaps: segments.windows(2).map(gap).collect(),
+            interpolated: log.is_interpolated(),
+        }
+    }
+}
+
+/// The name and the schema of each document of this crate.
+#[cfg(feature = "schema")]
+pub fn schemas() -> Vec<(&'static str, schemars::Schema)> {
+    vec![(INSPECTION, fluxfit::document::schema_of::<InspectionDocument>())]
+}
