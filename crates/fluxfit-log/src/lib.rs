@@ -22,6 +22,7 @@
 //! | `csv` | tables of text |
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
+//! | `in_order` | work on all cores, with results in order |
 //! | `channel` | the channels of a log and their names |
 //! | `header_unit` | units in the headers of columns |
 //! | `argument` | arguments of the form `channel=value` |
@@ -33,6 +34,7 @@ mod channel;
 mod container;
 mod csv;
 mod header_unit;
+mod in_order;
 mod note;
 mod problem;
 mod reading;
