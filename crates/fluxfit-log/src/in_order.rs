@@ -4,10 +4,10 @@
 use fluxfit_files::FileError;
 
 /// Items of a batch for each thread: so many that a thread that is done early finds another one.
-const ITEMS_PER_THREAD: usize = 4;
+const ITEMS_PER_THREAD: usize = 8;
 
 /// Maximum number of items of a batch, which bounds the memory on a machine with many cores.
-const MOST_ITEMS: usize = 64;
+const MOST_ITEMS: usize = 128;
 
 /// Applies `work` to every item of `next`, and passes the results to `take` in the order of the items, so the outcome is the same on
 /// any number of threads. An error of `next` is returned after the results of the items before it.

@@ -120,9 +120,9 @@ impl Carried {
 }
 
 impl<'a> BlockRows<'a> {
-    /// Reads the rows of a block, up to the first error.
-    pub(super) fn read(rules: &'a Rules, carried: Carried, text: &TextBlock) -> Self {
-        let mut block = Block::of(rules.wanted.len());
+    /// Reads the rows of a block, up to the first error, into `memory`.
+    pub(super) fn read(rules: &'a Rules, carried: Carried, text: &TextBlock, memory: Block) -> Self {
+        let mut block = memory.emptied(rules.wanted.len());
         // A row has at least as many bytes as cells.
         let most = in_memory(text.lines + 1).min(text.bytes.len() / rules.expected.max(1) + 1);
         block.lines.reserve(most);

@@ -4,9 +4,9 @@ use super::text::{Text, read_up_to};
 use fluxfit_files::FileError;
 use std::io::{Cursor, Read};
 
-/// Bytes of a block: a quarter of a millisecond of work, besides which handing it to a thread takes no time, and few enough to stay in
-/// the cache of a core.
-pub(super) const BLOCK: usize = 1 << 18;
+/// Bytes of a block: so many that handing it to a thread takes no time beside some tenths of a millisecond of work, so few that it stays
+/// in the cache of a core.
+pub(super) const BLOCK: usize = 1 << 17;
 
 /// A quotation of more bytes is a quotation mark that was never closed.
 const LONGEST_QUOTATION: usize = 1 << 22;

@@ -78,7 +78,7 @@ impl TextTable {
     pub(crate) fn read(
         &mut self,
         wanted: &[WantedColumn],
-        take: &mut dyn FnMut(Block) -> Result<(), FileError>,
+        take: &mut dyn FnMut(&mut Block) -> Result<(), FileError>,
     ) -> Result<Vec<String>, FileError> {
         self.text.take().map_or(Ok(Vec::new()), |text| rows::read(&self.header, text, wanted, self.block_size, take))
     }

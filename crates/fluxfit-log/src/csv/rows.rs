@@ -4,8 +4,8 @@
 //! once more, as a continuation of those before it. So neither the size of the blocks nor the number of threads changes the result.
 
 use super::{
-    blocks::{Blocks, TextBlock},
     block_rows::{BlockRows, Carried, Rules},
+    blocks::Blocks,
     text::Text,
 };
 use crate::{
@@ -23,23 +23,28 @@ pub(super) fn read(
     text: Text,
     wanted: &[WantedColumn],
     size: usize,
-    take: &mut dyn FnMut(Block) -> Result<(), FileError>,
+    take: &mut dyn FnMut(&mut Block) -> Result<(), FileError>,
 ) -> Result<Vec<String>, FileError> {
     let rules = Rules::new(header.separator, header.names.len(), wanted);
     let mut blocks = Blocks::new(text, header.body, header.body_line, header.separator, size);
     let mut carried = Carried::of(wanted.len());
     let mut notes = Vec::new();
-    // Memory of blocks that were read.
+    // Memory of blocks that were taken, for the next ones.
     let spare = RefCell::new(Vec::new());
     in_order(
-        || blocks.next(spare.borrow_mut().pop().unwrap_or_default()),
-        |text| (BlockRows::read(&rules, Carried::of(wanted.len()), &text), text),
-        |(rows, text): (BlockRows, TextBlock)| {
-            let rows = if carried.changes(&rows, &text) { BlockRows::read(&rules, carried.clone(), &text) } else { rows };
+        || {
+            let (bytes, memory) = spare.borrow_mut().pop().unwrap_or_default();
+            Ok(blocks.next(bytes)?.map(|text| (text, memory)))
+        },
+        |(text, memory)| (BlockRows::read(&rules, Carried::of(wanted.len()), &text, memory), text),
+        |(mut rows, text)| {
+            if carried.changes(&rows, &text) {
+                rows = BlockRows::read(&rules, carried.clone(), &text, rows.block);
+            }
             carried.join(&rows);
             notes.extend(rows.note);
-            spare.borrow_mut().push(text.bytes);
-            take(rows.block)?;
+            take(&mut rows.block)?;
+            spare.borrow_mut().push((text.bytes, rows.block));
             rows.end
         },
     )?;
@@ -51,6 +56,6 @@ pub(super) fn read(
     if carried.marks.comma.is_some() {
         notes.push("decimal commas were read as decimal points".to_owned());
     }
-    take(block)?;
+    take(&mut block)?;
     Ok(notes)
 }

@@ -25,9 +25,9 @@ fn outcome(text: &[u8], size: usize) -> Outcome {
             assert_eq!(more.len(), block.lines.len());
             all.extend(more.iter().map(|value: &f64| value.to_bits()));
         }
-        lines.extend(block.lines);
-        for (first, later) in refused.iter_mut().zip(block.refused) {
-            *first = first.take().or(later.map(|error: FileError| error.to_string()));
+        lines.extend_from_slice(&block.lines);
+        for (first, later) in refused.iter_mut().zip(&mut block.refused) {
+            *first = first.take().or(later.take().map(|error: FileError| error.to_string()));
         }
         Ok(())
     });
