@@ -48,11 +48,7 @@ pub(crate) fn in_order<T: Send, R: Send>(
 }
 
 /// The next items, at most `most`. `end` is set at the end of the sequence.
-fn batch<T>(
-    next: &mut impl FnMut() -> Result<Option<T>, FileError>,
-    most: usize,
-    end: &mut Option<Result<(), FileError>>,
-) -> Vec<T> {
+fn batch<T>(next: &mut impl FnMut() -> Result<Option<T>, FileError>, most: usize, end: &mut Option<Result<(), FileError>>) -> Vec<T> {
     let mut items = Vec::new();
     while items.len() < most && end.is_none() {
         match next() {

@@ -116,12 +116,7 @@ impl Parquet {
     }
 
     /// The wanted columns in a row group, and its number of rows.
-    fn group<'a>(
-        &'a self,
-        group: usize,
-        wanted: &[usize],
-        starts: &'a mut [Option<i64>],
-    ) -> Result<(Vec<Chunk<'a>>, usize), FileError> {
+    fn group<'a>(&'a self, group: usize, wanted: &[usize], starts: &'a mut [Option<i64>]) -> Result<(Vec<Chunk<'a>>, usize), FileError> {
         let reader = guarded(FORMAT, || self.file.get_row_group(group).map_err(fault))?;
         let rows = usize::try_from(reader.metadata().num_rows()).map_err(|_| damaged(FORMAT, "its number of rows is impossible"))?;
         let mut chunks = Vec::with_capacity(wanted.len());

@@ -58,7 +58,9 @@ fn with_quotation(text: &str) -> String {
     let (header, rows) = text.split_once('\n').unwrap();
     let separator = if header.contains(';') { ';' } else { ',' };
     let names = format!("x{separator}{header}\n");
-    rows.split_inclusive('\n').map(|row| if row.trim().is_empty() { row.to_owned() } else { format!("\"\"{separator}{row}") }).fold(names, |all, row| all + &row)
+    rows.split_inclusive('\n')
+        .map(|row| if row.trim().is_empty() { row.to_owned() } else { format!("\"\"{separator}{row}") })
+        .fold(names, |all, row| all + &row)
 }
 
 #[test]
@@ -160,6 +162,8 @@ proptest! {
 
 /// The outcome without the numbers of cells in a sentence, since one table has a column more.
 fn without_lengths((values, lines, refused, notes): Outcome) -> Outcome {
-    let shorten = |error: String| if error.contains(" where the header has ") { error.split(':').next().unwrap_or_default().to_owned() } else { error };
+    let shorten = |error: String| {
+        if error.contains(" where the header has ") { error.split(':').next().unwrap_or_default().to_owned() } else { error }
+    };
     (values, lines, refused, notes.map_err(shorten))
 }
