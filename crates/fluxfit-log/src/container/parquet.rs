@@ -6,6 +6,8 @@
 //! columns of numbers.
 
 mod pages;
+#[cfg(test)]
+mod tests;
 
 use super::{
     fault::damaged,
@@ -37,6 +39,10 @@ pub(crate) struct Parquet {
     heads: Vec<ColumnHead>,
     columns: Vec<Column>,
     unreadable: Vec<String>,
+    /// Rows of a stretch.
+    stretch: usize,
+    /// Minimum number of values in a stretch that several threads decode.
+    fewest: usize,
 }
 
 struct Column {
@@ -89,7 +95,7 @@ impl Parquet {
         if heads.is_empty() {
             return Err(Problem::NoNumbers { format: FORMAT }.into());
         }
-        Ok(Self { file, source, heads, columns, unreadable })
+        Ok(Self { file, source, heads, columns, unreadable, stretch: STRETCH, fewest: FEWEST_VALUES })
     }
 
     pub(super) fn heads(&self) -> &[ColumnHead] {
@@ -108,8 +114,10 @@ impl Parquet {
                 Ok(group) => group,
                 Err(error) => return stretch.pass(take).and(Err(error)),
             };
-            for start in (0..rows).step_by(STRETCH) {
-                stretch = Stretch::decoded(&mut chunks, STRETCH.min(rows - start), || stretch.pass(take))?;
+            for start in (0..rows).step_by(self.stretch) {
+                let rows = self.stretch.min(rows - start);
+                let is_split = rayon::current_num_threads() > 1 && rows * wanted.len() >= self.fewest;
+                stretch = Stretch::decoded(&mut chunks, rows, is_split, || stretch.pass(take))?;
             }
         }
         stretch.pass(take)
@@ -139,20 +147,25 @@ struct Stretch {
 }
 
 impl Stretch {
-    /// The next rows, decoded by the threads of the pool, column by column. Meanwhile this thread does something else.
-    fn decoded(chunks: &mut [Chunk], rows: usize, meanwhile: impl FnOnce() -> Result<(), FileError>) -> Result<Self, FileError> {
+    /// The next rows. If the work is split, the threads of the pool decode the columns, while this thread does something else.
+    fn decoded(
+        chunks: &mut [Chunk],
+        rows: usize,
+        is_split: bool,
+        meanwhile: impl FnOnce() -> Result<(), FileError>,
+    ) -> Result<Self, FileError> {
         let mut columns = vec![(Vec::new(), None); chunks.len()];
         let work = chunks.iter_mut().zip(&mut columns);
-        if rayon::current_num_threads() == 1 || rows * work.len() < FEWEST_VALUES {
-            meanwhile()?;
-            work.for_each(|(chunk, column)| *column = chunk.blocks(rows));
-        } else {
+        if is_split {
             rayon::in_place_scope(|scope| {
                 for (chunk, column) in work {
                     scope.spawn(move |_| *column = chunk.blocks(rows));
                 }
                 meanwhile()
             })?;
+        } else {
+            meanwhile()?;
+            work.for_each(|(chunk, column)| *column = chunk.blocks(rows));
         }
         Ok(Self { columns })
     }
