@@ -4,9 +4,9 @@ use super::text::{Text, read_up_to};
 use fluxfit_files::FileError;
 use std::io::{Cursor, Read};
 
-/// Bytes of a block: so many that handing it to a thread takes no time beside some tenths of a millisecond of work, so few that it stays
+/// Bytes of a block: so many that handing it to a thread takes no time beside a tenth of a millisecond of work, so few that it stays
 /// in the cache of a core.
-pub(super) const BLOCK: usize = 1 << 17;
+pub(super) const BLOCK: usize = 1 << 16;
 
 /// A quotation of more bytes is a quotation mark that was never closed.
 const LONGEST_QUOTATION: usize = 1 << 22;
