@@ -1,7 +1,6 @@
 //! How fast logs are read, beside the parquet crate's own decoding: `reading FILE..`, each of them read several times; prints JSON.
 //!
-//! `reading.py` calls it, and sets it beside pandas. Times are CPU seconds of the one thread that reads: other work on the machine
-//! does not count.
+//! `reading.py` calls it, on one thread and on all, and sets it beside pandas and polars.
 // The JSON on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
@@ -11,10 +10,10 @@ use parquet::{
     file::reader::{FileReader, SerializedFileReader},
 };
 use serde::Serialize;
-use std::{error::Error, fs::File, path::Path};
+use std::{error::Error, fs::File, path::Path, time::Instant};
 
 /// Readings of each file; the fastest counts.
-const REPEATS: usize = 7;
+const REPEATS: usize = 3;
 
 /// Columns that a log is made of here.
 const COLUMNS: [&str; 8] = ["t", "ud", "uq", "id", "iq", "omega_e", "theta_e", "u_dc"];
@@ -26,9 +25,18 @@ const BATCH: usize = 1 << 16;
 struct Figures {
     file: String,
     bytes: u64,
-    seconds: f64,
-    /// The parquet crate alone, the same columns.
-    seconds_of_crate: Option<f64>,
+    threads: usize,
+    own: Times,
+    /// The parquet crate alone, the same columns, on one thread.
+    of_crate: Option<Times>,
+}
+
+/// Times of the fastest reading, s.
+#[derive(Serialize)]
+struct Times {
+    /// Of all threads together: other work on the machine does not count.
+    cpu: f64,
+    wall: f64,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -36,26 +44,34 @@ fn main() -> Result<(), Box<dyn Error>> {
     for file in std::env::args().skip(1) {
         let path = Path::new(&file);
         let is_parquet = path.extension().is_some_and(|ending| ending == "parquet");
-        let (mut own, mut of_crate) = (f64::INFINITY, f64::INFINITY);
+        let (mut own, mut of_crate) = (Times::longest(), Times::longest());
         // In turns, so that both see the same machine.
         for _ in 0..REPEATS {
-            own = own.min(seconds(|| Ok(read_log(path, &LogOptions::default())?.log.rows()))?);
+            own.measure(|| Ok(read_log(path, &LogOptions::default())?.log.rows()))?;
             if is_parquet {
-                of_crate = of_crate.min(seconds(|| decode(path))?);
+                of_crate.measure(|| decode(path))?;
             }
         }
         let bytes = std::fs::metadata(path)?.len();
-        figures.push(Figures { file, bytes, seconds: own, seconds_of_crate: is_parquet.then_some(of_crate) });
+        figures.push(Figures { file, bytes, threads: rayon::current_num_threads(), own, of_crate: is_parquet.then_some(of_crate) });
     }
     println!("{}", serde_json::to_string_pretty(&figures)?);
     Ok(())
 }
 
-/// CPU time of this thread.
-fn seconds(work: impl FnOnce() -> Result<usize, Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
-    let start = cpu_time::ThreadTime::now();
-    std::hint::black_box(work()?);
-    Ok(start.elapsed().as_secs_f64())
+impl Times {
+    fn longest() -> Self {
+        Self { cpu: f64::INFINITY, wall: f64::INFINITY }
+    }
+
+    /// Does the work once more.
+    fn measure(&mut self, work: impl FnOnce() -> Result<usize, Box<dyn Error>>) -> Result<(), Box<dyn Error>> {
+        let (cpu, wall) = (cpu_time::ProcessTime::now(), Instant::now());
+        std::hint::black_box(work()?);
+        self.cpu = self.cpu.min(cpu.elapsed().as_secs_f64());
+        self.wall = self.wall.min(wall.elapsed().as_secs_f64());
+        Ok(())
+    }
 }
 
 /// The columns as vectors, by the crate alone.

@@ -44,6 +44,16 @@ impl Block {
         Self { values: vec![Vec::new(); columns], lines: Vec::new(), refused: vec![None; columns] }
     }
 
+    /// An empty block of as many columns in the memory of this one.
+    pub(crate) fn emptied(mut self, columns: usize) -> Self {
+        self.values.resize_with(columns, Vec::new);
+        self.values.iter_mut().for_each(Vec::clear);
+        self.lines.clear();
+        self.refused.clear();
+        self.refused.resize(columns, None);
+        self
+    }
+
     /// Records why a wanted column cannot be read; the first reason stays.
     pub(crate) fn refuse(&mut self, column: usize, error: FileError) {
         self.refused[column].get_or_insert(error);

@@ -23,6 +23,7 @@
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
 //! | [`document`] | the JSON document of an inspection |
+//! | `in_order` | work on all cores, with results in order |
 //! | `channel` | the channels of a log and their names |
 //! | `header_unit` | units in the headers of columns |
 //! | `argument` | arguments of the form `channel=value` |
@@ -35,6 +36,7 @@ mod container;
 mod csv;
 pub mod document;
 mod header_unit;
+mod in_order;
 mod note;
 mod problem;
 mod reading;

@@ -21,6 +21,12 @@ pub fn number(cell: &[u8], separator: u8, scratch: &mut String) -> Option<f64> {
     fast_float2::parse(scratch.as_bytes()).ok()
 }
 
+/// The number with which a text begins, and its length in bytes; of a cell that is nothing but a number, the same as [`number`].
+#[inline]
+pub fn leading_number(text: &[u8]) -> Option<(f64, usize)> {
+    fast_float2::parse_partial(text).ok()
+}
+
 /// The cells of the first record, without empty ones at its end, and its length in bytes including the end of the line.
 pub fn first_record(text: &str, separator: u8) -> (Vec<String>, usize) {
     let mut reader = reader(text.as_bytes(), separator);

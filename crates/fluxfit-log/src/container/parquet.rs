@@ -1,10 +1,13 @@
-//! Parquet, row group by row group: in memory are one page of each wanted column and one block.
+//! Parquet, row group by row group: in memory are one page of each wanted column and two stretches of rows, of which one is decoded, its
+//! columns on all cores, while the other is taken.
 //!
 //! Numbers of every width, decimals and timestamps are read. Timestamps become seconds since the first one of the column, subtracted
 //! as integers: seconds since 1970 as one `f64` would have a resolution of only 0.24 µs. Texts, booleans and repeated fields are not
 //! columns of numbers.
 
 mod pages;
+#[cfg(test)]
+mod tests;
 
 use super::{
     fault::damaged,
@@ -24,12 +27,22 @@ use parquet::{
     schema::types::ColumnDescriptor,
 };
 
+/// Rows that are decoded at a time: so many that handing a column to a thread takes no time, so few that the values stay in the cache.
+const STRETCH: usize = 16 * BLOCK;
+
+/// Fewer values are decoded on one thread: handing them to others would take as long.
+const FEWEST_VALUES: usize = 1 << 13;
+
 pub(crate) struct Parquet {
     file: SerializedFileReader<RandomAccess>,
     source: RandomAccess,
     heads: Vec<ColumnHead>,
     columns: Vec<Column>,
     unreadable: Vec<String>,
+    /// Rows of a stretch.
+    stretch: usize,
+    /// Minimum number of values in a stretch that several threads decode.
+    fewest: usize,
 }
 
 struct Column {
@@ -82,7 +95,7 @@ impl Parquet {
         if heads.is_empty() {
             return Err(Problem::NoNumbers { format: FORMAT }.into());
         }
-        Ok(Self { file, source, heads, columns, unreadable })
+        Ok(Self { file, source, heads, columns, unreadable, stretch: STRETCH, fewest: FEWEST_VALUES })
     }
 
     pub(super) fn heads(&self) -> &[ColumnHead] {
@@ -95,28 +108,81 @@ impl Parquet {
 
     pub(super) fn read(&self, wanted: &[usize], take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>) -> Result<(), FileError> {
         let mut starts = vec![None; wanted.len()];
+        let mut stretch = Stretch::default();
         for group in 0..self.file.num_row_groups() {
-            let reader = guarded(FORMAT, || self.file.get_row_group(group).map_err(fault))?;
-            let mut left =
-                usize::try_from(reader.metadata().num_rows()).map_err(|_| damaged(FORMAT, "its number of rows is impossible"))?;
-            let mut columns = Vec::with_capacity(wanted.len());
-            for (&at, start) in wanted.iter().zip(&mut starts) {
-                let column = &self.columns[at];
-                pages::check(&self.source, reader.metadata().column(column.leaf)).map_err(|error| error.in_column(&self.heads[at].name))?;
-                let chunk = guarded(FORMAT, || reader.get_column_reader(column.leaf).map_err(fault))?;
-                columns.push(Chunk::new(chunk, column, start));
-            }
-            while left > 0 {
-                let count = left.min(BLOCK);
-                let mut block = Vec::with_capacity(wanted.len());
-                for (column, &at) in columns.iter_mut().zip(wanted) {
-                    block.push(guarded(FORMAT, || column.next(count)).map_err(|error| error.in_column(&self.heads[at].name))?);
-                }
-                take(block)?;
-                left -= count;
+            let (mut chunks, rows) = match self.group(group, wanted, &mut starts) {
+                Ok(group) => group,
+                Err(error) => return stretch.pass(take).and(Err(error)),
+            };
+            for start in (0..rows).step_by(self.stretch) {
+                let rows = self.stretch.min(rows - start);
+                let is_split = rayon::current_num_threads() > 1 && rows * wanted.len() >= self.fewest;
+                stretch = Stretch::decoded(&mut chunks, rows, is_split, || stretch.pass(take))?;
             }
         }
-        Ok(())
+        stretch.pass(take)
+    }
+
+    /// The wanted columns in a row group, and its number of rows.
+    fn group<'a>(&'a self, group: usize, wanted: &[usize], starts: &'a mut [Option<i64>]) -> Result<(Vec<Chunk<'a>>, usize), FileError> {
+        let reader = guarded(FORMAT, || self.file.get_row_group(group).map_err(fault))?;
+        let rows = usize::try_from(reader.metadata().num_rows()).map_err(|_| damaged(FORMAT, "its number of rows is impossible"))?;
+        let mut chunks = Vec::with_capacity(wanted.len());
+        for (&at, start) in wanted.iter().zip(starts) {
+            let column = &self.columns[at];
+            let name = &self.heads[at].name;
+            pages::check(&self.source, reader.metadata().column(column.leaf)).map_err(|error| error.in_column(name))?;
+            let chunk = guarded(FORMAT, || reader.get_column_reader(column.leaf).map_err(fault))?;
+            chunks.push(Chunk::new(chunk, column, start, name));
+        }
+        Ok((chunks, rows))
+    }
+}
+
+/// Consecutive rows of a row group.
+#[derive(Default)]
+struct Stretch {
+    /// The blocks of each column, up to its first error.
+    columns: Vec<(Vec<Vec<f64>>, Option<FileError>)>,
+}
+
+impl Stretch {
+    /// The next rows. If the work is split, the threads of the pool decode the columns, while this thread does something else.
+    fn decoded(
+        chunks: &mut [Chunk],
+        rows: usize,
+        is_split: bool,
+        meanwhile: impl FnOnce() -> Result<(), FileError>,
+    ) -> Result<Self, FileError> {
+        let mut columns = vec![(Vec::new(), None); chunks.len()];
+        let work = chunks.iter_mut().zip(&mut columns);
+        if is_split {
+            rayon::in_place_scope(|scope| {
+                for (chunk, column) in work {
+                    scope.spawn(move |_| *column = chunk.blocks(rows));
+                }
+                meanwhile()
+            })?;
+        } else {
+            meanwhile()?;
+            work.for_each(|(chunk, column)| *column = chunk.blocks(rows));
+        }
+        Ok(Self { columns })
+    }
+
+    /// Passes the rows on in blocks, up to the first error.
+    fn pass(self, take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>) -> Result<(), FileError> {
+        let complete = self.columns.iter().map(|(blocks, _)| blocks.len()).min().unwrap_or(0);
+        let mut error = None;
+        let mut columns: Vec<_> = Vec::with_capacity(self.columns.len());
+        for (blocks, end) in self.columns {
+            error = error.or(end.filter(|_| blocks.len() == complete));
+            columns.push(blocks.into_iter());
+        }
+        for _ in 0..complete {
+            take(columns.iter_mut().filter_map(Iterator::next).collect())?;
+        }
+        error.map_or(Ok(()), Err)
     }
 }
 
@@ -159,6 +225,7 @@ struct Chunk<'a> {
     levels: Vec<i16>,
     /// The first timestamp of the column.
     start: &'a mut Option<i64>,
+    name: &'a str,
 }
 
 enum Typed {
@@ -173,7 +240,7 @@ enum Typed {
 }
 
 impl<'a> Chunk<'a> {
-    fn new(reader: ColumnReader, column: &Column, start: &'a mut Option<i64>) -> Self {
+    fn new(reader: ColumnReader, column: &Column, start: &'a mut Option<i64>, name: &'a str) -> Self {
         let reader = match reader {
             ColumnReader::DoubleColumnReader(reader) => Typed::Double(reader),
             ColumnReader::FloatColumnReader(reader) => Typed::Float(reader, Vec::new()),
@@ -183,7 +250,19 @@ impl<'a> Chunk<'a> {
             ColumnReader::FixedLenByteArrayColumnReader(reader) => Typed::Bytes(reader, Vec::new()),
             ColumnReader::BoolColumnReader(_) | ColumnReader::ByteArrayColumnReader(_) => Typed::Other,
         };
-        Self { reader, meaning: column.meaning, present: column.present, levels: Vec::new(), start }
+        Self { reader, meaning: column.meaning, present: column.present, levels: Vec::new(), start, name }
+    }
+
+    /// The values of the next rows in blocks, up to the first error.
+    fn blocks(&mut self, rows: usize) -> (Vec<Vec<f64>>, Option<FileError>) {
+        let mut blocks = Vec::with_capacity(rows.div_ceil(BLOCK));
+        for start in (0..rows).step_by(BLOCK) {
+            match guarded(FORMAT, || self.next(BLOCK.min(rows - start))) {
+                Ok(values) => blocks.push(values),
+                Err(error) => return (blocks, Some(error.in_column(self.name))),
+            }
+        }
+        (blocks, None)
     }
 
     /// The values of the next `count` rows.

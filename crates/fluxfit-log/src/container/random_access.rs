@@ -9,7 +9,7 @@ use parquet::{
 use std::{
     fs::File,
     io::{self, BufReader, Read, Seek, SeekFrom},
-    sync::{Arc, Mutex},
+    sync::Arc,
 };
 
 /// A file or bytes in memory; clones share them.
@@ -21,8 +21,7 @@ pub(crate) struct RandomAccess {
 
 #[derive(Clone)]
 enum Place {
-    /// In a lock, because seeking and reading are two steps.
-    File(Arc<Mutex<File>>),
+    File(Arc<File>),
     Memory(Bytes),
 }
 
@@ -33,7 +32,7 @@ impl RandomAccess {
     /// If the file cannot be positioned, as a pipe.
     pub(crate) fn file(mut file: File) -> Result<Self, FileError> {
         let length = file.seek(SeekFrom::End(0)).map_err(|error| FileError::from(input::io_problem("reading", &error)))?;
-        Ok(Self { bytes: Place::File(Arc::new(Mutex::new(file))), length })
+        Ok(Self { bytes: Place::File(Arc::new(file)), length })
     }
 
     /// Of bytes in memory.
@@ -61,11 +60,9 @@ impl RandomAccess {
                 Ok(count)
             }
             Place::File(file) => {
-                let mut file = file.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-                file.seek(SeekFrom::Start(at))?;
                 let mut count = 0;
                 while count < wanted {
-                    match file.read(&mut buffer[count..]) {
+                    match read_file(file, &mut buffer[count..], at + count as u64) {
                         Ok(0) => break,
                         Ok(read) => count += read,
                         Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -91,6 +88,18 @@ impl RandomAccess {
     pub(super) fn range(&self, at: u64, end: u64) -> Range {
         Range { source: self.clone(), at, end: end.min(self.length) }
     }
+}
+
+/// Reads from a file at an offset, whatever other threads read at the same time.
+#[cfg(unix)]
+fn read_file(file: &File, buffer: &mut [u8], at: u64) -> io::Result<usize> {
+    std::os::unix::fs::FileExt::read_at(file, buffer, at)
+}
+
+/// Reads from a file at an offset, whatever other threads read at the same time.
+#[cfg(windows)]
+fn read_file(file: &File, buffer: &mut [u8], at: u64) -> io::Result<usize> {
+    std::os::windows::fs::FileExt::seek_read(file, buffer, at)
 }
 
 /// A part of the bytes, read from its beginning.

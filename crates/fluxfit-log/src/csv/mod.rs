@@ -6,9 +6,15 @@
 //!
 //! Recognized without options: comma, semicolon or tab, also at the end of a line; quotes and spaces around names and values; gzip;
 //! UTF-8, UTF-16 and Windows-1252; titles above the header and `#` and `%` comments; a row of units below it; blank lines; a decimal
-//! comma, unless the comma is the separator. Only the wanted cells are converted to numbers, a block of rows at a time.
+//! comma, unless the comma is the separator. Only the wanted cells are converted to numbers, in blocks of rows on all cores.
 
+mod block_rows;
+mod blocks;
+mod marks;
+mod plain;
 mod rows;
+#[cfg(test)]
+mod tests;
 mod text;
 
 use crate::block::{Block, ColumnHead, WantedColumn};
@@ -23,6 +29,8 @@ use text::Text;
 pub(crate) struct TextTable {
     header: Header,
     text: Option<Text>,
+    /// Bytes of the blocks that are read at a time.
+    block_size: usize,
     /// The columns.
     pub(crate) heads: Vec<ColumnHead>,
     /// What was inferred.
@@ -46,7 +54,7 @@ impl TextTable {
             group: 0,
             is_time: false,
         });
-        Ok(Self { heads: heads.collect(), header, text: Some(text), notes })
+        Ok(Self { heads: heads.collect(), header, text: Some(text), block_size: blocks::BLOCK, notes })
     }
 
     /// The line of the header.
@@ -70,8 +78,8 @@ impl TextTable {
     pub(crate) fn read(
         &mut self,
         wanted: &[WantedColumn],
-        take: &mut dyn FnMut(Block) -> Result<(), FileError>,
+        take: &mut dyn FnMut(&mut Block) -> Result<(), FileError>,
     ) -> Result<Vec<String>, FileError> {
-        self.text.take().map_or(Ok(Vec::new()), |text| rows::read(&self.header, text, wanted, take))
+        self.text.take().map_or(Ok(Vec::new()), |text| rows::read(&self.header, text, wanted, self.block_size, take))
     }
 }

@@ -100,7 +100,7 @@ fn one_group(
     let mut refused: Vec<Option<FileError>> = vec![None; columns.len()];
     notes.extend(
         table
-            .read(&wanted, &mut |mut block: Block| {
+            .read(&wanted, &mut |block: &mut Block| {
                 for (first, later) in refused.iter_mut().zip(&mut block.refused) {
                     if first.is_none() {
                         *first = later.take();
@@ -116,7 +116,7 @@ fn one_group(
                     let t = counted.next(block.lines.len(), place(Run).map(|run| block.values[run].as_slice()));
                     block.values.push(t);
                 }
-                selection.push(&block);
+                selection.push(block);
                 Ok(())
             })?
             .into_iter()

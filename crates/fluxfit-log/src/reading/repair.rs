@@ -51,6 +51,10 @@ fn standstill(channels: &mut Channels) -> Option<String> {
 fn frozen(channels: &mut Channels) -> Option<String> {
     let t = channels.get(T).filter(|t| !t.is_empty())?;
     let live: Vec<(Channel, &[f64])> = LIVE.iter().filter_map(|channel| Some((*channel, channels.get(*channel)?))).collect();
+    // Usually no value repeats for long, and nothing needs to be remembered of the rows.
+    if !live.iter().any(|(_, values)| repeats(values, FROZEN)) {
+        return None;
+    }
     let changes: Vec<Vec<usize>> = live.iter().map(|(_, values)| changes(values)).collect();
     let mut kept = vec![true; t.len()];
     let mut found = Vec::new();
@@ -85,6 +89,17 @@ fn frozen(channels: &mut Channels) -> Option<String> {
     }
     channels.retain(&kept);
     Some(note)
+}
+
+/// Whether a value repeats for at least this many rows.
+fn repeats(values: &[f64], rows: usize) -> bool {
+    let mut first = 0;
+    (1..values.len()).any(|row| {
+        if values[row] != values[row - 1] {
+            first = row;
+        }
+        row - first + 1 >= rows
+    })
 }
 
 /// The usual length of runs of one value: half of the rows are in runs of at most this length. It is long where values have coarse

@@ -22,6 +22,8 @@ pub(super) struct Selection {
     most: usize,
     features: Features,
     stretches: Vec<Stretch>,
+    /// The scales of the features with which the stretches were compared.
+    scales: Vec<f64>,
     columns: usize,
     rows: u64,
 }
@@ -33,11 +35,19 @@ struct Stretch {
     lines: Lines,
     /// Its features, once it is full.
     features: Vec<f64>,
+    /// The most similar earlier stretch: the distance from it, and its place. None if they have to be compared.
+    most_similar: Option<(f64, usize)>,
+}
+
+impl Stretch {
+    fn new(columns: usize) -> Self {
+        Self { values: vec![Vec::new(); columns], lines: Lines::default(), features: Vec::new(), most_similar: None }
+    }
 }
 
 impl Selection {
     pub(super) fn new(columns: usize, features: Features, most: usize) -> Self {
-        Self { most, features, stretches: Vec::new(), columns, rows: 0 }
+        Self { most, features, stretches: Vec::new(), scales: Vec::new(), columns, rows: 0 }
     }
 
     /// Adds rows.
@@ -46,7 +56,7 @@ impl Selection {
         while from < block.lines.len() {
             if self.stretches.last().is_none_or(|stretch| stretch.lines.rows() == STRETCH) {
                 self.make_room();
-                self.stretches.push(Stretch { values: vec![Vec::new(); self.columns], lines: Lines::default(), features: Vec::new() });
+                self.stretches.push(Stretch::new(self.columns));
             }
             let Some(stretch) = self.stretches.last_mut() else { return };
             let to = block.lines.len().min(from + STRETCH - stretch.lines.rows());
@@ -68,18 +78,40 @@ impl Selection {
             return;
         }
         let scales = self.scales();
-        let scaled = |stretch: &Stretch| stretch.features.iter().zip(&scales).map(|(feature, scale)| feature / scale).collect::<Vec<_>>();
-        let features: Vec<Vec<f64>> = self.stretches.iter().map(scaled).collect();
-        let mut most_similar = (f64::INFINITY, self.stretches.len() - 1);
-        for (later, of_later) in features.iter().enumerate() {
-            for of_earlier in &features[..later] {
-                let distance = of_earlier.iter().zip(of_later).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-                if distance < most_similar.0 {
-                    most_similar = (distance, later);
-                }
+        if scales != self.scales {
+            self.stretches.iter_mut().for_each(|stretch| stretch.most_similar = None);
+            self.scales = scales;
+        }
+        let mut least = (f64::INFINITY, self.stretches.len() - 1);
+        for later in 0..self.stretches.len() {
+            let (distance, earlier) = self.stretches[later].most_similar.unwrap_or_else(|| self.most_similar(later));
+            self.stretches[later].most_similar = Some((distance, earlier));
+            if distance < least.0 {
+                least = (distance, later);
             }
         }
-        self.stretches.remove(most_similar.1);
+        let dropped = least.1;
+        self.stretches.remove(dropped);
+        for stretch in &mut self.stretches {
+            stretch.most_similar = stretch.most_similar.filter(|(_, earlier)| *earlier != dropped);
+            if let Some((_, earlier)) = &mut stretch.most_similar {
+                *earlier -= usize::from(*earlier > dropped);
+            }
+        }
+    }
+
+    /// The most similar of the stretches before one: the distance from it, and its place.
+    fn most_similar(&self, later: usize) -> (f64, usize) {
+        let of_later = &self.stretches[later].features;
+        let mut least = (f64::INFINITY, later);
+        for (earlier, stretch) in self.stretches[..later].iter().enumerate() {
+            let pairs = stretch.features.iter().zip(of_later).zip(&self.scales);
+            let distance = pairs.map(|((a, b), scale)| (a / scale - b / scale) * (a / scale - b / scale)).sum::<f64>();
+            if distance < least.0 {
+                least = (distance, earlier);
+            }
+        }
+        least
     }
 
     /// The scale of each feature: its range over the stretches; 1 where it does not vary.
@@ -155,6 +187,35 @@ mod tests {
         assert_eq!((values, note), (block(0, 10_000, 3).values, None));
         let numbered = |row| lines.locate(FileError::new(FileErrorKind::Value, ""), row).line();
         assert_eq!((numbered(0), numbered(9_999)), (Some(2), Some(10_001)));
+    }
+
+    /// The pair of most similar stretches, compared anew each time.
+    fn dropped_of(features: &[[f64; 2]]) -> usize {
+        let range = |k: usize| {
+            let of = || features.iter().map(|feature| feature[k]);
+            of().fold(f64::MIN, f64::max) - of().fold(f64::MAX, f64::min)
+        };
+        let scales = [range(0), range(1)].map(|range| if range > 0.0 { range } else { 1.0 });
+        let distance = |a: usize, b: usize| (0..2).map(|k| ((features[a][k] - features[b][k]) / scales[k]).powi(2)).sum::<f64>();
+        let pairs = (0..features.len()).flat_map(|later| (0..later).map(move |earlier| (earlier, later)));
+        pairs.min_by(|a, b| distance(a.0, a.1).total_cmp(&distance(b.0, b.1))).unwrap().1
+    }
+
+    #[test]
+    fn the_later_one_of_the_most_similar_pair_is_dropped_each_time() {
+        let value = |stretch: u32| f64::from((stretch * stretch * 37 + stretch * 11) % 101);
+        let mut selection = Selection::new(1, Box::new(|values| vec![values[0][0], values[0][0].sin()]), 6 * STRETCH);
+        let mut expected: Vec<u32> = Vec::new();
+        for stretch in 0..60 {
+            if expected.len() == 6 {
+                let features: Vec<[f64; 2]> = expected.iter().map(|stretch| [value(*stretch), value(*stretch).sin()]).collect();
+                expected.remove(dropped_of(&features));
+            }
+            expected.push(stretch);
+            selection.push(&Block { values: vec![vec![value(stretch); STRETCH]], lines: vec![1; STRETCH], refused: Vec::new() });
+            let held: Vec<f64> = selection.stretches.iter().map(|stretch| stretch.values[0][0]).collect();
+            assert_eq!(held, expected.iter().map(|stretch| value(*stretch)).collect::<Vec<_>>());
+        }
     }
 
     #[test]

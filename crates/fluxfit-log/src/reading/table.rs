@@ -98,7 +98,7 @@ impl Table {
     pub(super) fn read(
         &mut self,
         wanted: &[WantedColumn],
-        take: &mut dyn FnMut(Block) -> Result<(), FileError>,
+        take: &mut dyn FnMut(&mut Block) -> Result<(), FileError>,
     ) -> Result<Vec<String>, FileError> {
         match self {
             Self::Text(table) => table.read(wanted, take),
@@ -109,7 +109,7 @@ impl Table {
                     let rows = values.first().map_or(0, |column| column.len() as u64);
                     let lines = (row + 1..=row + rows).collect();
                     row += rows;
-                    take(Block { values, lines, refused: vec![None; columns.len()] })
+                    take(&mut Block { values, lines, refused: vec![None; columns.len()] })
                 })?;
                 Ok(Vec::new())
             }

@@ -18,3 +18,4 @@ mod optional_columns;
 mod promises;
 mod real_logs;
 mod regressions;
+mod threads;
