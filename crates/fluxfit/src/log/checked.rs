@@ -3,6 +3,7 @@
 use super::{
     columns::{Columns, MIN_ROWS},
     segment::Segment,
+    spikes::Spikes,
 };
 use crate::error::{Error, ErrorKind};
 
@@ -15,6 +16,7 @@ pub struct Log {
     columns: Columns,
     segments: Vec<Segment>,
     interpolated: bool,
+    spikes: Spikes,
     source: Source,
 }
 
@@ -35,8 +37,8 @@ impl PartialEq for Log {
 
 impl Log {
     /// A log of columns that were checked.
-    pub(super) fn checked(columns: Columns, segments: Vec<Segment>) -> Self {
-        Self { columns, segments, interpolated: false, source: Source::default() }
+    pub(super) fn checked(columns: Columns, segments: Vec<Segment>, spikes: Spikes) -> Self {
+        Self { columns, segments, interpolated: false, spikes, source: Source::default() }
     }
 
     /// Several logs of one motor as one; no segment reaches from one into the next. Their sources are joined too.
@@ -54,6 +56,7 @@ impl Log {
                 ..segment
             }));
             joined.interpolated |= log.interpolated;
+            joined.spikes.append(log.spikes, number);
             joined.source.columns.extend(log.source.columns);
             joined.source.notes.extend(log.source.notes);
             joined.columns.append(log.columns);
@@ -99,7 +102,18 @@ impl Log {
 
     /// The same log without its rows.
     fn without_rows(&self) -> Self {
-        Self { columns: Columns::default(), segments: Vec::new(), interpolated: self.interpolated, source: self.source.clone() }
+        Self {
+            columns: Columns::default(),
+            segments: Vec::new(),
+            interpolated: self.interpolated,
+            spikes: self.spikes.clone(),
+            source: self.source.clone(),
+        }
+    }
+
+    /// The rows that were left out because no drive had their values. Of a [part](Self::part_last) of a log, those of the whole.
+    pub fn spikes(&self) -> &Spikes {
+        &self.spikes
     }
 
     /// The columns.

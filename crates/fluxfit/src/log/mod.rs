@@ -2,7 +2,7 @@
 //!
 //! A [`Log`] always has equal columns, finite plausible numbers, increasing time, some current, some voltage and some speed. Time may
 //! jump: a jump ends a [segment](Log::segments), and nothing is ever computed across one. Several logs of one motor
-//! [join](Log::join) into one.
+//! [join](Log::join) into one. Single rows that no drive had are left out, as a gap: [`Log::spikes`].
 //!
 //! Whole columns become a log with [`Log::new`]; rows that arrive one by one or block by block with [`LogBuilder`].
 
@@ -10,8 +10,10 @@ mod builder;
 mod checked;
 mod columns;
 mod segment;
+mod spikes;
 
 pub use builder::{LogBuilder, check_values};
 pub use checked::{Log, Source};
 pub use columns::{Columns, Row};
 pub use segment::{Segment, without_gaps};
+pub use spikes::{Spike, Spikes};

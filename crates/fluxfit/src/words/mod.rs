@@ -6,5 +6,6 @@ mod model;
 mod nameplate;
 mod reason;
 mod remedy;
+mod spikes;
 mod validation;
 mod warning;
