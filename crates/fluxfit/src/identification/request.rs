@@ -151,6 +151,7 @@ impl Request {
         if !(0.0..1.0).contains(&accuracy) {
             return Err(ErrorKind::Setting { setting: "the voltage accuracy", value: accuracy, range: "a fraction from 0 up to 1" }.into());
         }
+        self.search.check()?;
         for known in self.known {
             let (value, standard_error) = match known {
                 Known::Nothing => continue,
