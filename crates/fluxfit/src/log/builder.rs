@@ -3,7 +3,7 @@
 use super::{
     checked::Log,
     columns::{Columns, MIN_ROWS, Row},
-    segment,
+    segment, short_circuit,
     spikes::Spikes,
 };
 use crate::{
@@ -112,7 +112,8 @@ impl LogBuilder {
     /// The log, with its segments and quantization steps, and without the rows that no drive had ([`Log::spikes`]).
     ///
     /// # Errors
-    /// If there are fewer than two rows, or the currents, the voltages or the speed are zero throughout.
+    /// If there are fewer than two rows, or the currents or the speed are zero throughout, or the voltages without the currents of a short
+    /// circuit.
     pub fn finish(self) -> Result<Log, Error> {
         let mut columns = self.columns;
         if columns.t.len() < MIN_ROWS {
@@ -123,7 +124,7 @@ impl LogBuilder {
         if all_zero([&columns.id, &columns.iq]) {
             return Err(ErrorKind::AllZero { what: "the currents id and iq are" }.into());
         }
-        if all_zero([&columns.ud, &columns.uq]) {
+        if short_circuit::voltages_are_zero(&columns) && !short_circuit::currents_brake(&columns) {
             return Err(ErrorKind::AllZero { what: "the voltages ud and uq are" }.into());
         }
         if all_zero([&columns.omega_e; 2]) {
@@ -168,7 +169,7 @@ impl Log {
     ///
     /// # Errors
     /// If a column is shorter or longer than `t`, a value is not finite or implausibly large, time does not increase, there are fewer
-    /// than two rows, or the currents, the voltages or the speed are zero throughout.
+    /// than two rows, the currents or the speed are zero throughout, or the voltages are without the currents of a short circuit.
     pub fn new(columns: Columns) -> Result<Self, Error> {
         check_lengths(&columns)?;
         if columns.t.len() < MIN_ROWS {

@@ -3,6 +3,7 @@
 use super::{
     columns::{Columns, MIN_ROWS},
     segment::Segment,
+    short_circuit,
     spikes::Spikes,
 };
 use crate::error::{Error, ErrorKind};
@@ -114,6 +115,11 @@ impl Log {
     /// The rows that were left out because no drive had their values. Of a [part](Self::part_last) of a log, those of the whole.
     pub fn spikes(&self) -> &Spikes {
         &self.spikes
+    }
+
+    /// Whether the voltages are zero throughout: the motor turned with shorted terminals.
+    pub(crate) fn is_short_circuit(&self) -> bool {
+        short_circuit::voltages_are_zero(&self.columns)
     }
 
     /// The columns.

@@ -1,6 +1,7 @@
 //! The log: what a drive recorded, in SI units, checked on the way in.
 //!
-//! A [`Log`] always has equal columns, finite plausible numbers, increasing time, some current, some voltage and some speed. Time may
+//! A [`Log`] always has equal columns, finite plausible numbers, increasing time, some current, some speed, and some voltage unless its
+//! currents are those of a short circuit. Time may
 //! jump: a jump ends a [segment](Log::segments), and nothing is ever computed across one. Several logs of one motor
 //! [join](Log::join) into one. Single rows that no drive had are left out, as a gap: [`Log::spikes`].
 //!
@@ -10,6 +11,7 @@ mod builder;
 mod checked;
 mod columns;
 mod segment;
+mod short_circuit;
 mod spikes;
 
 pub use builder::{LogBuilder, check_values};

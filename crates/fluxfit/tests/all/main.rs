@@ -3,4 +3,5 @@
 mod current_loop;
 mod identify_laws;
 mod saturation;
+mod short_circuit;
 mod steady_statistics;
