@@ -83,6 +83,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let (steady, output) = match model.model {
         Model::Steady => (Some(steady?), None),
         Model::OutputError => {
+            log.refuse_short_circuit()?;
             let steady = steady.ok();
             let output = OutputFit::of(log, steady.as_ref(), request, progress)?;
             (steady, Some(output))

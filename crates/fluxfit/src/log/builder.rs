@@ -125,7 +125,7 @@ impl LogBuilder {
             return Err(ErrorKind::AllZero { what: "the currents id and iq are" }.into());
         }
         if short_circuit::voltages_are_zero(&columns) && !short_circuit::currents_brake(&columns) {
-            return Err(ErrorKind::AllZero { what: "the voltages ud and uq are" }.into());
+            return Err(Error::no_voltages());
         }
         if all_zero([&columns.omega_e; 2]) {
             return Err(ErrorKind::AllZero { what: "the speed omega_e is" }.into());

@@ -122,6 +122,15 @@ impl Log {
         short_circuit::voltages_are_zero(&self.columns)
     }
 
+    /// Refuses a log that the output error cannot tell more of than the steady model: it would look at length for a minimum that every
+    /// motor with the same ratios of parameters shares.
+    ///
+    /// # Errors
+    /// If the log is one of a short circuit.
+    pub(crate) fn refuse_short_circuit(&self) -> Result<(), Error> {
+        if self.is_short_circuit() { Err(ErrorKind::ShortCircuit.into()) } else { Ok(()) }
+    }
+
     /// The columns.
     pub fn columns(&self) -> &Columns {
         &self.columns

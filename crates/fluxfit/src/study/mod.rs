@@ -59,6 +59,7 @@ pub fn run_method(
     fitness: &Fitness,
     go_on: impl Fn() -> ControlFlow<()> + Sync,
 ) -> Result<Option<MethodStudy>, Error> {
+    settings.check_runs(runs)?;
     let records = runs as f64 * (settings.iterations as f64 + 1.0);
     if records > MOST_RECORDS {
         let (setting, reason) = ("the number of runs x iterations", "so that the convergence of all runs fits into memory");

@@ -2,6 +2,7 @@
 
 mod current_loop;
 mod identify_laws;
+mod promises;
 mod saturation;
 mod short_circuit;
 mod steady_statistics;

@@ -10,6 +10,7 @@ use fluxfit::{
     log::{Columns, Log},
     motor::Motor,
     optimizer::draws::Draws,
+    validate,
 };
 
 const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
@@ -36,16 +37,17 @@ fn shorted(factor: f64) -> Columns {
 fn a_short_circuit_tells_ratios_alone() {
     let log = Log::new(shorted(1.0)).unwrap();
     for known in [Known::Nothing, Known::Prior { value: MOTOR.rs, standard_error: 0.01 }] {
-        for model in [None, Some(Model::OutputError)] {
-            let mut request = Request { model, ..Request::default() };
-            request.known[Parameter::Rs as usize] = known;
-            let found = identify(&log, &request).unwrap().identification;
-            for judgement in &found.parameters {
-                assert_eq!((judgement.verdict, judgement.value()), (Verdict::NotIdentifiable, None));
-                assert_eq!((&judgement.reason, &judgement.remedy), (&Some(Reason::ShortCircuit), &Some(Remedy::FixOne)));
-            }
-            assert!(model.is_some() || found.model.reason == ModelReason::ShortCircuit);
+        let mut request = Request::default();
+        request.known[Parameter::Rs as usize] = known;
+        let found = identify(&log, &request).unwrap().identification;
+        for judgement in &found.parameters {
+            assert_eq!((judgement.verdict, judgement.value()), (Verdict::NotIdentifiable, None));
+            assert_eq!((&judgement.reason, &judgement.remedy), (&Some(Reason::ShortCircuit), &Some(Remedy::FixOne)));
         }
+        assert_eq!(found.model.reason, ModelReason::ShortCircuit);
+        let stated = identify(&log, &Request { model: Some(Model::OutputError), ..request }).unwrap_err();
+        assert_eq!(*stated.kind(), ErrorKind::ShortCircuit);
+        assert!(matches!(validate(&log, &MOTOR.into(), &Request::default()).unwrap_err().kind(), ErrorKind::AllZero { .. }));
     }
 }
 
