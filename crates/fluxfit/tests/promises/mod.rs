@@ -1,6 +1,6 @@
 //! What must hold for a whole identification of any log: no panic, errors of one line, only finite numbers in the answer.
 //!
-//! Checked by `tests/all/promises.rs` with a few logs, and by `fuzz/` with many; that also limits the time.
+//! Checked by `tests/all/any_log.rs` with a few logs, and by `fuzz/` with many; that also limits the time.
 
 use fluxfit::{
     Known, Model, Parameter, Request, Swarm,

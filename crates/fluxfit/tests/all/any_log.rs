@@ -18,7 +18,7 @@ fn any_bytes_make_a_log_that_is_identified_or_refused() {
         let mut byte = || (256.0 * draws.uniform()) as u8;
         let mut any: Vec<u8> = (0..60).map(|_| byte()).collect();
         // Of the operating points; the fuzzer lets simulate currents as well, which takes long.
-        any[1] = any[1] & !3 | 2;
+        any[1] = (any[1] & !3) | 2;
         promise(&any);
         // 160 rows at 10 kHz, two stretches, voltages by the equation; currents of some A, 400 rad/s.
         let sound = [158, 0, 100, 1, 3, 0, 0, 0, 0, 0, 0, 7, 0x90, 9, 7, 0x70, 9, 5, 0x30, 11];
