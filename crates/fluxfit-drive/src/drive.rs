@@ -21,12 +21,13 @@ const DISTURBANCE_SEED: u64 = 0x243f_6a88_85a3_08d3;
 /// Simulates a scenario with noise stream `draw`; `row_done` is called after each row.
 ///
 /// # Errors
-/// If [`Scenario::check`] refuses the scenario, the drive trips, or the current leaves the flux map.
+/// If [`Scenario::check`] refuses the scenario, there is no memory for its rows, the drive trips, or the current leaves the flux map.
 pub fn simulate(scenario: &Scenario, draw: u64, mut row_done: impl FnMut()) -> Result<Recording, Error> {
     scenario.check()?;
     let mut drive = Drive::new(scenario, draw);
-    let mut recording = Recording::with_capacity(scenario.rows());
-    for _ in 0..scenario.rows() {
+    let rows = scenario.rows();
+    let mut recording = Recording::with_capacity(rows).ok_or(Error::Memory { rows })?;
+    for _ in 0..rows {
         recording.push(&drive.step()?);
         row_done();
     }

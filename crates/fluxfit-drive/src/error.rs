@@ -46,6 +46,12 @@ pub enum Error {
         /// Largest number of rows.
         most: f64,
     },
+    /// The log does not fit into the memory that is free.
+    #[error("a log of {rows} rows does not fit into memory; shorten duration")]
+    Memory {
+        /// Number of rows.
+        rows: usize,
+    },
     /// The sample period is too long for stable current control.
     #[error(
         "a sample every {} ms is slower than the winding's L/R of {} ms, too slow for stable current control; raise inverter.carrier to at least {} Hz",
@@ -316,6 +322,7 @@ impl Error {
             | Self::RampTime { .. }
             | Self::Incompatible { .. }
             | Self::TooLong { .. }
+            | Self::Memory { .. }
             | Self::SlowSampling { .. }
             | Self::Bandwidth { .. }
             | Self::SlowObserver { .. } => ErrorKind::Setting,
@@ -342,7 +349,7 @@ impl Error {
                 Some(key)
             }
             Self::SlowSampling { .. } | Self::SlowObserver { .. } => Some("inverter.carrier"),
-            Self::TooLong { .. } => Some("duration"),
+            Self::TooLong { .. } | Self::Memory { .. } => Some("duration"),
             _ => None,
         }
     }

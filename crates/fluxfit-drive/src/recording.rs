@@ -38,23 +38,26 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// An empty recording with capacity for `rows`.
-    pub fn with_capacity(rows: usize) -> Self {
-        let column = || Vec::with_capacity(rows);
-        Self {
+    /// An empty recording with capacity for `rows`; `None` if there is no memory for it.
+    pub fn with_capacity(rows: usize) -> Option<Self> {
+        let column = || {
+            let mut column = Vec::new();
+            column.try_reserve_exact(rows).is_ok().then_some(column)
+        };
+        Some(Self {
             columns: Columns {
-                t: column(),
-                ud: column(),
-                uq: column(),
-                id: column(),
-                iq: column(),
-                omega_e: column(),
-                theta_e: Some(column()),
-                u_dc: Some(column()),
+                t: column()?,
+                ud: column()?,
+                uq: column()?,
+                id: column()?,
+                iq: column()?,
+                omega_e: column()?,
+                theta_e: Some(column()?),
+                u_dc: Some(column()?),
             },
-            ud_ref: column(),
-            uq_ref: column(),
-        }
+            ud_ref: column()?,
+            uq_ref: column()?,
+        })
     }
 
     /// Appends a row.
@@ -92,5 +95,23 @@ impl Recording {
     /// If the motor never turned or never carried current.
     pub fn log(&self) -> Result<Log, Error> {
         Log::new(self.columns.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_no_machine_holds_are_none() {
+        assert!(Recording::with_capacity(usize::MAX / 8).is_none());
+        assert!(Recording::with_capacity(usize::MAX).is_none());
+        assert_eq!(
+            Recording::with_capacity(0),
+            Some(Recording {
+                columns: Columns { theta_e: Some(vec![]), u_dc: Some(vec![]), ..Columns::default() },
+                ..Recording::default()
+            })
+        );
     }
 }

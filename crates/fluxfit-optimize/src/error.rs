@@ -60,7 +60,25 @@ pub enum Error {
         /// Values allowed.
         range: &'static str,
     },
+    /// A setting that asks for more memory or time than a machine has.
+    #[error("{setting} is {}; it must be at most {}, {reason}", count(*.value), count(*.most))]
+    Limit {
+        /// Name of the setting, or of a product of settings.
+        setting: &'static str,
+        /// Value given.
+        value: f64,
+        /// Largest value allowed.
+        most: f64,
+        /// What limits it.
+        reason: &'static str,
+    },
     /// A saved search whose parts do not belong together.
     #[error("the saved search is damaged: the sizes of its parts do not agree; start a new search")]
     SavedSearch,
+}
+
+/// A number of things: whole, and large ones with an exponent.
+fn count(value: f64) -> String {
+    const LONG: f64 = 1e9;
+    if value < LONG { format!("{value}") } else { format!("{value:.2e}") }
 }

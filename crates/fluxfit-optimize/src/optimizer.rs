@@ -14,7 +14,7 @@ use crate::{
     objective::Objective,
     population::Population,
     report::{Record, SearchReport, StopReason},
-    setting::{LARGEST_POPULATION, SearchSettings},
+    setting::SearchSettings,
 };
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -37,8 +37,8 @@ impl Optimizer {
     /// Lays out and evaluates the first population.
     ///
     /// # Errors
-    /// If the population is too small for the method or larger than a million, a setting of the method is out of range, the box has
-    /// another dimension than the objective, or no candidate of the start has a finite cost.
+    /// If the population is too small for the method, population or iterations are [too many](SearchSettings::check), a setting of the
+    /// method is out of range, the box has another dimension than the objective, or no candidate of the start has a finite cost.
     pub fn start(method: Method, settings: SearchSettings, bounds: Bounds, objective: &impl Objective) -> Result<Self, Error> {
         let draws = Draws::seeded(settings.seed, settings.run);
         Self::start_from(method, settings, bounds, draws, objective)
@@ -59,9 +59,7 @@ impl Optimizer {
         if size < facts.smallest_population {
             return Err(Error::Population { method: facts.label, given: size, least: facts.smallest_population });
         }
-        if size > LARGEST_POPULATION {
-            return Err(Error::Setting { setting: "the population", value: size as f64, range: "at most a million" });
-        }
+        settings.check()?;
         if bounds.dimension() != objective.dimension() {
             return Err(Error::Dimension { bounds: bounds.dimension(), objective: objective.dimension() });
         }

@@ -23,7 +23,7 @@ use std::{
 /// if all were.
 ///
 /// # Errors
-/// If `runs` is zero or a run cannot start.
+/// If `runs` is zero, all runs together need [too many evaluations](SearchSettings::check_runs), or a run cannot start.
 pub fn run_many<T: Send>(
     method: Method,
     runs: usize,
@@ -36,6 +36,7 @@ pub fn run_many<T: Send>(
     if runs == 0 {
         return Err(Error::Setting { setting: "the number of runs", value: 0.0, range: "at least 1" });
     }
+    settings.check_runs(runs)?;
     let interrupted = AtomicBool::new(false);
     let run = |run: usize| {
         // A run that has not begun would evaluate its first population before `go_on` is asked.

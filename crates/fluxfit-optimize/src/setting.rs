@@ -5,7 +5,13 @@ use crate::error::Error;
 use serde::{Deserialize, Serialize};
 
 /// Most candidates of a population: far beyond what any method gains from, and a run of four dimensions stays within 200 MB.
-pub(crate) const LARGEST_POPULATION: usize = 1_000_000;
+const LARGEST_POPULATION: usize = 1_000_000;
+
+/// Most iterations: their history, of some 100 bytes each, stays within 100 MB.
+const MOST_ITERATIONS: usize = 1_000_000;
+
+/// Most evaluations of a search, or of many runs together: at 10 us each, more than a day of computing. The paper's runs need 15 050.
+const MOST_EVALUATIONS: f64 = 1e10;
 
 /// Largest magnitude of a factor: its products with distances in a box, up to 2e150, stay finite.
 const LARGEST_FACTOR: f64 = 1e100;
@@ -26,6 +32,33 @@ pub struct SearchSettings {
     pub close_to_optimum: Option<CloseTo>,
     /// Stop once the best cost is at or below this.
     pub target_cost: Option<f64>,
+}
+
+impl SearchSettings {
+    /// Refuses what asks for more memory or time than a machine has. Every search begins with this check; whoever computes something
+    /// before a search can ask earlier.
+    ///
+    /// # Errors
+    /// If the population or the number of iterations is larger than a million, or both together need more than 10¹⁰ evaluations.
+    pub fn check(&self) -> Result<(), Error> {
+        self.check_runs(1)
+    }
+
+    /// [`check`](Self::check) of a number of runs.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check), of all runs together.
+    pub fn check_runs(&self, runs: usize) -> Result<(), Error> {
+        let Self { population, iterations, .. } = *self;
+        limit("the population", population as f64, LARGEST_POPULATION as f64, "so that it fits into memory")?;
+        limit("the number of iterations", iterations as f64, MOST_ITERATIONS as f64, "so that their history fits into memory")?;
+        let evaluations = runs as f64 * population as f64 * (iterations as f64 + 1.0);
+        limit("the number of evaluations (runs x population x iterations)", evaluations, MOST_EVALUATIONS, "more take days")
+    }
+}
+
+fn limit(setting: &'static str, value: f64, most: f64, reason: &'static str) -> Result<(), Error> {
+    if value <= most { Ok(()) } else { Err(Error::Limit { setting, value, most, reason }) }
 }
 
 /// A known optimum and what counts as close to it.

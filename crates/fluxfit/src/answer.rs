@@ -10,6 +10,7 @@ use crate::{
             judgement::{Judgement, explained},
             warning::Warning,
         },
+        fit::steady::SteadyFit,
         judge::verdict::judge,
         progress::{Progress, Step, silent},
         request::Request,
@@ -168,7 +169,8 @@ fn suspect_units(log: &Log, request: &Request) -> Option<Warning> {
 /// of a current shows the unit of time.
 fn compare_with_nameplate(log: &Log, found: &Identification, request: &Request) -> Convention {
     let of_points = found.steady.as_ref().filter(|_| found.output.is_some());
-    let of_points = of_points.map(|fit| explained(judge(&fit.finding, fit.saturation(request).as_ref(), request), &fit.finding));
+    let judged = |fit: &SteadyFit| judge(&fit.finding, fit.saturation(request).as_ref(), request, log.is_short_circuit());
+    let of_points = of_points.map(|fit| explained(judged(fit), &fit.finding));
     conventions::compare_with_nameplate(log, Some((of_points.as_ref().unwrap_or(&found.parameters), &request.known)), &request.nameplate)
 }
 

@@ -136,6 +136,11 @@ pub enum ErrorKind {
         "the log's channels were sampled at different instants, so no row is one instant of the drive and the output error means nothing; use the steady model, or log all channels together"
     )]
     Interpolated,
+    /// A log without voltages, where the output error would simulate the currents from them.
+    #[error(
+        "the voltages are zero in every row, as in a short circuit, of which the output error tells no more than its steady currents; use the steady model, and fix one parameter"
+    )]
+    ShortCircuit,
     /// Rows are too slow to be those of the drive's control, whose rate is needed.
     #[error("rows at {rate:.3} Hz are a recorder's, not those of the drive's control; state how often the current controllers run")]
     ControlRate {
@@ -168,6 +173,11 @@ impl Error {
     /// The error of a log without rows that could be fitted.
     pub(crate) fn no_rows() -> Self {
         ErrorKind::TooShort { rows: 0, least: 2 }.into()
+    }
+
+    /// The error of a log without voltages that is no short circuit, or of one that would have to be predicted.
+    pub(crate) fn no_voltages() -> Self {
+        ErrorKind::AllZero { what: "the voltages ud and uq are" }.into()
     }
 
     /// The row of the log, from 0, that the error is about; `None` if it is about no single row.

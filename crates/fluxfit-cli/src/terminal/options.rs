@@ -10,7 +10,7 @@ pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
         Remedy::HoldLonger { or, .. } => of_remedy(or),
         Remedy::SpreadPoints { parameter: fluxfit::Parameter::Rs } => Some("--prior rs=VALUE±1%"),
         Remedy::StateVoltageTiming => Some("--voltage-timing"),
-        Remedy::CompensateDeadTime => Some("--fix rs=VALUE"),
+        Remedy::CompensateDeadTime | Remedy::FixOne => Some("--fix rs=VALUE"),
         Remedy::RemoveDisturbances => Some("--window T0:T1 --model steady"),
         Remedy::NarrowCurrents | Remedy::SimilarWindows => Some("--window T0:T1"),
         Remedy::SharperPrior => Some("--prior"),
@@ -33,7 +33,7 @@ pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
 pub(crate) fn of_error(error: &ErrorKind) -> Option<&'static str> {
     match error {
         ErrorKind::NoOperatingPoint { .. } => Some("--window T0:T1"),
-        ErrorKind::Interpolated => Some("--model steady"),
+        ErrorKind::Interpolated | ErrorKind::ShortCircuit => Some("--model steady"),
         ErrorKind::ControlRate { .. } => Some("--control-rate FREQUENCY"),
         _ => None,
     }

@@ -90,8 +90,9 @@ fn a_study_shows_the_runs_that_are_finished_and_they_are_those_of_the_whole_stud
 #[test]
 fn a_study_without_a_finished_run_is_an_empty_one() {
     for shown in [&["--json"][..], &[]] {
-        let mut running =
-            Running::start(&[&["compare", LOG, "--methods", "lpso", "--runs", "3", "--iterations", "100000000"], shown].concat());
+        // As long as is allowed: hours.
+        let study = ["compare", LOG, "--methods", "lpso", "--runs", "3", "--population", "3000", "--iterations", "1000000"];
+        let mut running = Running::start(&[&study[..], shown].concat());
         running.wait_for("LPSO: 3 runs begin");
         running.send("TERM");
         let (status, out, err) = running.end();

@@ -156,7 +156,7 @@ fn the_adjoint_tells_what_a_volt_does() {
     for (parameter, row) in [(0, 700), (1, 400), (2, 1500), (3, 90)] {
         let weights: Vec<f64> =
             (0..slopes[0].len()).map(|k| (0..PARAMETERS).map(|q| inverse[(parameter, q)] * slopes[q][k]).sum()).collect();
-        let expected = VOLT * objective.by_voltage(&drive, &weights)[row].q;
+        let expected = VOLT * objective.by_voltage(&drive, std::slice::from_ref(&weights))[0][row].q;
         let (_, above) = fit(&|columns| columns.uq[row] += VOLT);
         let (_, below) = fit(&|columns| columns.uq[row] -= VOLT);
         let found = 0.5 * (above.motor.to_array()[parameter] - below.motor.to_array()[parameter]);

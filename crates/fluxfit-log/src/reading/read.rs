@@ -114,6 +114,9 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     more.extend(plausibility::note_references(&channels));
     notes.extend(more.into_iter().map(Note::from));
     let log = log(channels, &chosen, &lines, &mut notes)?;
+    if !log.spikes().is_empty() {
+        notes.push(log.spikes().to_string().into());
+    }
     notes.extend(gaps(&log).map(Note::from));
     let source = Source { columns: vec![chosen::describe(&chosen)], notes: notes.iter().map(|note| note.sentence.clone()).collect() };
     let log = log.with_source(source);
@@ -154,7 +157,7 @@ fn log(mut channels: Channels, chosen: &[ChosenColumn], lines: &Lines, notes: &m
     Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e, u_dc }).map_err(|error| locator.locate(error))
 }
 
-/// A note on gaps in time.
+/// A note on gaps in time; those of rows that were left out have theirs.
 fn gaps(log: &Log) -> Option<String> {
     let t = &log.columns().t;
     let gap = |pair: &[Segment]| (t[pair[0].rows.end - 1], t[pair[1].rows.start]);
@@ -186,6 +189,16 @@ mod tests {
         assert_eq!(refusal(units), "\"rpm-mech\" is not a unit of ud; it can be V or mV");
         let no_poles = LogOptions { pole_pairs: Some(0), ..LogOptions::default() };
         assert_eq!(refusal(no_poles), "the number of pole pairs is 0; it must be at least 1");
+    }
+
+    #[test]
+    fn rows_that_no_drive_had_are_left_out_with_a_note() {
+        let row = |k: usize| format!("{},1,20,0.1,3,{}\n", k as f64 * 1e-3, if k == 80 { 1e6 } else { 400.0 + (k % 3) as f64 });
+        let text = format!("t,ud,uq,id,iq,omega_e\n{}", (0..160).map(row).collect::<String>());
+        let read = parse_log("a.csv", text.as_bytes(), &LogOptions::default()).unwrap();
+        assert_eq!((read.log.rows(), read.log.segments().len()), (159, 2));
+        let sentence = "1 row with a value that no drive had is left out, as a gap: omega_e is 1e6 rad/s at t = 0.0800 s";
+        assert!(read.log.source().notes.iter().any(|note| note == sentence), "{:?}", read.notes);
     }
 
     #[test]

@@ -61,3 +61,21 @@ fn real_logs_are_read() {
     let turns = (angle[8001] - angle[8000] - columns.omega_e[8000] * (columns.t[8001] - columns.t[8000])) / std::f64::consts::TAU;
     assert!((turns - turns.round()).abs() < 1e-5, "{turns}");
 }
+
+/// Dead time, filters, jitter, coarse converters, coasting, gaps: whatever a drive does, it is no spike.
+#[test]
+fn no_row_of_a_drive_is_taken_for_a_spike() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/logs");
+    let mut read = 0;
+    for folder in [Some(examples), shared("drives"), shared(".")].into_iter().flatten() {
+        for file in std::fs::read_dir(folder).unwrap() {
+            let path = file.unwrap().path();
+            let options = LogOptions { pole_pairs: Some(10), ..LogOptions::default() };
+            // Some files beside them are no logs.
+            let Ok(found) = read_log(&path, &options) else { continue };
+            assert!(found.log.spikes().is_empty(), "{}: {}", path.display(), found.log.spikes());
+            read += 1;
+        }
+    }
+    assert!(read >= 3, "{read}");
+}

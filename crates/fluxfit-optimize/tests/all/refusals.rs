@@ -4,7 +4,7 @@ use crate::{bowl, bowl_box};
 use fluxfit_optimize::{
     Bounds, Error, Method, Optimizer, SearchSettings,
     methods::{apso::Apso, fpa::Fpa, lpso::Lpso, particles::Flight, tgfpa::Tgfpa},
-    objective_from,
+    objective_from, run_many,
 };
 
 #[test]
@@ -28,8 +28,28 @@ fn a_population_that_no_machine_holds_is_an_error() {
         for population in [1_000_001, usize::MAX] {
             let settings = SearchSettings { population, ..SearchSettings::default() };
             let error = Optimizer::start(method, settings, bowl_box(), &bowl()).unwrap_err();
-            assert!(matches!(error, Error::Setting { setting: "the population", .. }), "{error}");
+            assert!(matches!(error, Error::Limit { setting: "the population", .. }), "{error}");
         }
+    }
+}
+
+#[test]
+fn more_iterations_runs_or_evaluations_than_a_machine_has_time_for_are_an_error() {
+    let start = |population, iterations| {
+        let settings = SearchSettings { population, iterations, ..SearchSettings::default() };
+        Optimizer::start(Method::Fpa(Fpa::DEFAULT), settings, bowl_box(), &bowl()).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(start(50, 1_000_000), Ok(()));
+    let sentence = "the number of iterations is 1000001; it must be at most 1000000, so that their history fits into memory";
+    assert_eq!(start(50, 1_000_001), Err(sentence.to_owned()));
+    assert!(start(50, usize::MAX).is_err());
+    // 1e5 (1e5 + 1) evaluations are more than 1e10.
+    assert_eq!(start(100_000, 99_999), Ok(()));
+    assert!(start(100_000, 100_000).unwrap_err().contains("evaluations"));
+    for runs in [1_000_000_000, usize::MAX] {
+        let begun = || std::ops::ControlFlow::Break(());
+        let error = run_many(Method::Fpa(Fpa::DEFAULT), runs, SearchSettings::default(), &bowl_box(), &bowl(), |_| (), begun).unwrap_err();
+        assert!(matches!(error, Error::Limit { most: 1e10, .. }), "{error}");
     }
 }
 

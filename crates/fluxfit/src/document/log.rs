@@ -1,6 +1,9 @@
 //! The log, as the documents describe it.
 
-use crate::{log::Log, steady::OperatingPoint};
+use crate::{
+    log::{Log, Spike},
+    steady::OperatingPoint,
+};
 use serde::Serialize;
 
 /// The log that was identified from.
@@ -22,6 +25,33 @@ pub struct LogDocument {
     pub columns: Vec<String>,
     /// What reading the log inferred or repaired; one sentence each.
     pub notes: Vec<String>,
+    /// Rows that were left out because no drive had their values; they do not count as rows.
+    pub spikes: Vec<SpikeEntry>,
+}
+
+/// A short run of rows that were left out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SpikeEntry {
+    /// The column with the value.
+    pub column: &'static str,
+    /// Number of the log, from 0, among those given.
+    pub log: usize,
+    /// First row that was left out, from 0, among the rows of that log.
+    pub row: usize,
+    /// Number of rows.
+    pub rows: usize,
+    /// Time of the row with the largest value, s.
+    pub t: f64,
+    /// That value, SI units.
+    pub value: f64,
+}
+
+impl SpikeEntry {
+    fn of(spike: &Spike) -> Self {
+        let Spike { column, log, time, value, .. } = *spike;
+        Self { column, log, row: spike.rows.start, rows: spike.rows.len(), t: time, value }
+    }
 }
 
 impl LogDocument {
@@ -34,6 +64,7 @@ impl LogDocument {
             operating_points: operating_points.iter().map(OperatingPointEntry::of).collect(),
             columns: log.source().columns.clone(),
             notes: log.source().notes.clone(),
+            spikes: log.spikes().all().iter().map(SpikeEntry::of).collect(),
         }
     }
 }

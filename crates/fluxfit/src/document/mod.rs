@@ -50,7 +50,7 @@ pub use convention::{CandidateEntry, ColumnFactors, ConventionEntry, PatternEntr
 pub use current_loop::{AxisGains, CurrentLoopEntry, GainEntry};
 pub use diagnostics::{Diagnostics, SystematicEntry};
 pub use identification::{FitEntry, IDENTIFICATION, IdentificationDocument, ParameterEntry, SearchEntry};
-pub use log::{LogDocument, OperatingPointEntry, ValidatedLogEntry};
+pub use log::{LogDocument, OperatingPointEntry, SpikeEntry, ValidatedLogEntry};
 pub use nuisance::{NuisanceEntries, NuisanceEntry, VoltageTimingEntry};
 pub use output_error::{OutputErrorEntry, TermEntry, TimingEntry};
 pub use saturation::{ApparentEntry, FluxEntry, SaturationEntry};

@@ -168,6 +168,7 @@ impl Request {
         if !(0.0..1.0).contains(&accuracy) {
             return Err(ErrorKind::Setting { setting: "the voltage accuracy", value: accuracy, range: "a fraction from 0 up to 1" }.into());
         }
+        self.search.check()?;
         for (parameter, known) in Parameter::ALL.into_iter().zip(self.known) {
             let (value, standard_error) = match known {
                 Known::Nothing => continue,

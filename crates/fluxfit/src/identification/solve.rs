@@ -83,6 +83,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let (steady, output) = match model.model {
         Model::Steady => (Some(steady?), None),
         Model::OutputError => {
+            log.refuse_short_circuit()?;
             let steady = steady.ok();
             let output = OutputFit::of(log, steady.as_ref(), request, progress)?;
             (steady, Some(output))
@@ -90,7 +91,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
     let finding = finding(steady.as_ref(), output.as_ref())?;
-    let parameters = explained(judge(finding, saturation.as_ref(), request), finding);
+    let parameters = explained(judge(finding, saturation.as_ref(), request, log.is_short_circuit()), finding);
     let method = swarm::method(request, model.model);
     let search = method.map(|method| search(log, steady.as_ref(), output.as_ref(), method, request, progress)).transpose()?;
     let evidence = Evidence {

@@ -3,7 +3,8 @@
 use super::{
     checked::Log,
     columns::{Columns, MIN_ROWS, Row},
-    segment,
+    segment, short_circuit,
+    spikes::Spikes,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -108,28 +109,30 @@ impl LogBuilder {
         self.take(block.clone())
     }
 
-    /// The log, with its segments and quantization steps.
+    /// The log, with its segments and quantization steps, and without the rows that no drive had ([`Log::spikes`]).
     ///
     /// # Errors
-    /// If there are fewer than two rows, or the currents, the voltages or the speed are zero throughout.
+    /// If there are fewer than two rows, or the currents or the speed are zero throughout, or the voltages without the currents of a short
+    /// circuit.
     pub fn finish(self) -> Result<Log, Error> {
-        let columns = self.columns;
+        let mut columns = self.columns;
         if columns.t.len() < MIN_ROWS {
             return Err(ErrorKind::TooShort { rows: columns.t.len(), least: MIN_ROWS }.into());
         }
+        let (spikes, starts) = take_spikes(&mut columns);
         let all_zero = |columns: [&Vec<f64>; 2]| columns.iter().all(|column| column.iter().all(|value| *value == 0.0));
         if all_zero([&columns.id, &columns.iq]) {
             return Err(ErrorKind::AllZero { what: "the currents id and iq are" }.into());
         }
-        if all_zero([&columns.ud, &columns.uq]) {
-            return Err(ErrorKind::AllZero { what: "the voltages ud and uq are" }.into());
+        if short_circuit::voltages_are_zero(&columns) && !short_circuit::currents_brake(&columns) {
+            return Err(Error::no_voltages());
         }
         if all_zero([&columns.omega_e; 2]) {
             return Err(ErrorKind::AllZero { what: "the speed omega_e is" }.into());
         }
         let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| quantization::step(column));
-        let segments = segment::split(&columns.t, steps);
-        Ok(Log::checked(columns, segments))
+        let segments = segment::split(&columns.t, steps, &starts);
+        Ok(Log::checked(columns, segments, spikes))
     }
 
     /// Checks a block and moves its rows in.
@@ -162,10 +165,11 @@ impl LogBuilder {
 
 impl Log {
     /// Checks columns and splits them at gaps in time. Time is in s on any origin; a gap is a step of more than 2.5 times the median one.
+    /// Rows that no drive had are left out, as a gap: [`spikes`](Self::spikes).
     ///
     /// # Errors
     /// If a column is shorter or longer than `t`, a value is not finite or implausibly large, time does not increase, there are fewer
-    /// than two rows, or the currents, the voltages or the speed are zero throughout.
+    /// than two rows, the currents or the speed are zero throughout, or the voltages are without the currents of a short circuit.
     pub fn new(columns: Columns) -> Result<Self, Error> {
         check_lengths(&columns)?;
         if columns.t.len() < MIN_ROWS {
@@ -175,6 +179,26 @@ impl Log {
         builder.take(columns)?;
         builder.finish()
     }
+}
+
+/// Takes the spikes out of columns. Returns them, and the rows, of those that are left, before which rows are missing.
+fn take_spikes(columns: &mut Columns) -> (Spikes, Vec<usize>) {
+    let spikes = Spikes::find(columns, &segment::without_gaps(&columns.t), segment::median_step(&columns.t));
+    if spikes.is_empty() {
+        return (spikes, Vec::new());
+    }
+    let mut kept = vec![true; columns.t.len()];
+    spikes.all().iter().for_each(|spike| kept[spike.rows.clone()].fill(false));
+    columns.retain(&kept);
+    let mut starts = Vec::new();
+    let mut row = 0;
+    for pair in kept.windows(2) {
+        row += usize::from(pair[0]);
+        if !pair[0] && pair[1] {
+            starts.push(row);
+        }
+    }
+    (spikes, starts)
 }
 
 /// Checks one column's values, as [`Log::new`] does; `column` is its canonical name.

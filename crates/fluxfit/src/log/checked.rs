@@ -3,6 +3,8 @@
 use super::{
     columns::{Columns, MIN_ROWS},
     segment::Segment,
+    short_circuit,
+    spikes::Spikes,
 };
 use crate::error::{Error, ErrorKind};
 
@@ -15,6 +17,7 @@ pub struct Log {
     columns: Columns,
     segments: Vec<Segment>,
     interpolated: bool,
+    spikes: Spikes,
     source: Source,
 }
 
@@ -35,8 +38,8 @@ impl PartialEq for Log {
 
 impl Log {
     /// A log of columns that were checked.
-    pub(super) fn checked(columns: Columns, segments: Vec<Segment>) -> Self {
-        Self { columns, segments, interpolated: false, source: Source::default() }
+    pub(super) fn checked(columns: Columns, segments: Vec<Segment>, spikes: Spikes) -> Self {
+        Self { columns, segments, interpolated: false, spikes, source: Source::default() }
     }
 
     /// Several logs of one motor as one; no segment reaches from one into the next. Their sources are joined too.
@@ -54,6 +57,7 @@ impl Log {
                 ..segment
             }));
             joined.interpolated |= log.interpolated;
+            joined.spikes.append(log.spikes, number);
             joined.source.columns.extend(log.source.columns);
             joined.source.notes.extend(log.source.notes);
             joined.columns.append(log.columns);
@@ -99,7 +103,32 @@ impl Log {
 
     /// The same log without its rows.
     fn without_rows(&self) -> Self {
-        Self { columns: Columns::default(), segments: Vec::new(), interpolated: self.interpolated, source: self.source.clone() }
+        Self {
+            columns: Columns::default(),
+            segments: Vec::new(),
+            interpolated: self.interpolated,
+            spikes: self.spikes.clone(),
+            source: self.source.clone(),
+        }
+    }
+
+    /// The rows that were left out because no drive had their values. Of a [part](Self::part_last) of a log, those of the whole.
+    pub fn spikes(&self) -> &Spikes {
+        &self.spikes
+    }
+
+    /// Whether the voltages are zero throughout: the motor turned with shorted terminals.
+    pub(crate) fn is_short_circuit(&self) -> bool {
+        short_circuit::voltages_are_zero(&self.columns)
+    }
+
+    /// Refuses a log that the output error cannot tell more of than the steady model: it would look at length for a minimum that every
+    /// motor with the same ratios of parameters shares.
+    ///
+    /// # Errors
+    /// If the log is one of a short circuit.
+    pub(crate) fn refuse_short_circuit(&self) -> Result<(), Error> {
+        if self.is_short_circuit() { Err(ErrorKind::ShortCircuit.into()) } else { Ok(()) }
     }
 
     /// The columns.

@@ -84,6 +84,15 @@ impl Columns {
         }
     }
 
+    /// Leaves out the rows that are not marked.
+    pub(super) fn retain(&mut self, kept: &[bool]) {
+        let Self { t, ud, uq, id, iq, omega_e, theta_e, u_dc } = self;
+        for column in [t, ud, uq, id, iq, omega_e].into_iter().chain(theta_e.as_mut()).chain(u_dc.as_mut()) {
+            let mut marks = kept.iter();
+            column.retain(|_| marks.next().is_some_and(|kept| *kept));
+        }
+    }
+
     /// Appends the rows of other columns. An optional column stays only if both have it.
     pub(super) fn append(&mut self, other: Self) {
         self.t.extend(other.t);

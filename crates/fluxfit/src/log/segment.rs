@@ -18,10 +18,21 @@ pub struct Segment {
     pub steps: [f64; 5],
 }
 
-/// The segments of a log with these times, s, and quantization steps.
-pub(super) fn split(t: &[f64], steps: [f64; 5]) -> Vec<Segment> {
+/// The segments of a log with these times, s, and quantization steps. One also begins at each of `starts`, rows in order.
+pub(super) fn split(t: &[f64], steps: [f64; 5], starts: &[usize]) -> Vec<Segment> {
     let sample_period = median_step(t);
-    without_gaps(t).into_iter().map(|rows| Segment { rows, log: 0, sample_period, steps }).collect()
+    let mut starts = starts.iter().copied().peekable();
+    let mut segments = Vec::new();
+    for Range { mut start, end } in without_gaps(t) {
+        while let Some(next) = starts.next_if(|next| *next < end) {
+            if next > start {
+                segments.push(Segment { rows: start..next, log: 0, sample_period, steps });
+                start = next;
+            }
+        }
+        segments.push(Segment { rows: start..end, log: 0, sample_period, steps });
+    }
+    segments
 }
 
 /// Stretches of rows with these times, s, split where a step is a gap: more than 2.5 times the median one.
@@ -39,7 +50,7 @@ pub fn without_gaps(t: &[f64]) -> Vec<Range<usize>> {
 }
 
 /// The median time step, s; 0 of fewer than two times.
-fn median_step(t: &[f64]) -> f64 {
+pub(super) fn median_step(t: &[f64]) -> f64 {
     let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }

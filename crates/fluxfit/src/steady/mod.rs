@@ -135,18 +135,28 @@ impl OperatingPoint {
     /// Covariance, V², of the two equations' residuals for a motor: the noise of voltages, currents and speed together.
     pub fn residual_covariance(&self, motor: &Motor) -> [[f64; 2]; 2] {
         let weights = residual_weights(motor);
-        let mut covariance = weights.map(|one| weights.map(|other| self.covariance_between(&one, &other)));
-        covariance[0][0] += motor.ld.powi(2) * self.drift_variance.d;
-        covariance[1][1] += motor.lq.powi(2) * self.drift_variance.q;
-        covariance
+        let between = self.covariance_between(&weights[0], &weights[1]);
+        let [d, q] = weights.map(|weights| self.variance(&weights));
+        [[d + motor.ld.powi(2) * self.drift_variance.d, between], [between, q + motor.lq.powi(2) * self.drift_variance.q]]
     }
 
     /// Variance of each equation's `coefficients . direction` caused by the noise of currents and speed: `[d, q]`.
     pub fn coefficient_variance(&self, direction: &[f64; 4]) -> [f64; 2] {
         let [rs, ld, lq, psi_f] = *direction;
         let weights = [[0.0, 0.0, rs, 0.0, 0.0, -lq, 0.0], [0.0, 0.0, 0.0, rs, ld, 0.0, psi_f]];
-        let [d, q] = weights.map(|weights| self.covariance_between(&weights, &weights));
+        let [d, q] = weights.map(|weights| self.variance(&weights));
         [d + ld.powi(2) * self.drift_variance.d, q + lq.powi(2) * self.drift_variance.q]
+    }
+
+    /// Variance of a weighted sum of the channels: at least the rounding error of its terms. Where the noise of two channels cancels,
+    /// the sum alone could come out negative, and no weight would follow from it.
+    fn variance(&self, weights: &[f64; CHANNELS]) -> f64 {
+        let magnitudes = weights
+            .iter()
+            .zip(&self.covariance)
+            .map(|(weight, row)| weight.abs() * weights.iter().zip(row).map(|(other, covariance)| (other * covariance).abs()).sum::<f64>());
+        let rounding = f64::EPSILON * magnitudes.sum::<f64>();
+        self.covariance_between(weights, weights).max(rounding)
     }
 
     fn covariance_between(&self, one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
@@ -200,4 +210,36 @@ fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let change = mean(&current[n - rows..]) - mean(&current[..rows]);
     let deviations: Vec<f64> = current.iter().enumerate().map(|(k, i)| i - change * k as f64 / steps).collect();
     (change / span, 2.0 * variance_of_short_mean(&deviations, rows) / span.powi(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optimizer::Draws;
+
+    /// All channels move together, as on a ramp without noise: exactly, every residual of a motor that follows the ramp has the variance
+    /// zero. Half of the sums come out negative by rounding.
+    #[test]
+    fn noise_that_cancels_never_has_a_negative_variance() {
+        let mut draws = Draws::seeded(1, 0);
+        for _ in 0..200 {
+            let moves: [f64; CHANNELS] = std::array::from_fn(|_| draws.normal() * 10.0_f64.powf(6.0 * draws.normal()));
+            // R_s and psi_f that cancel what u_q, i_q and omega_e do together.
+            let (rs, psi_f) = (0.5 * moves[1] / moves[3], 0.5 * moves[1] / moves[6]);
+            let motor = Motor { rs, ld: 0.0, lq: (rs * moves[2] - moves[0]) / moves[5], psi_f };
+            let point = OperatingPoint {
+                rows: 0..30,
+                time: (0.0, 1.0),
+                means: [1.0; CHANNELS],
+                drift: Dq::default(),
+                drift_variance: Dq::default(),
+                covariance: moves.map(|one| moves.map(|other| one * other)),
+                degrees_of_freedom: 3,
+            };
+            let covariance = point.residual_covariance(&motor);
+            assert!(covariance[0][0] >= 0.0 && covariance[1][1] >= 0.0, "{covariance:?}");
+            let [d, q] = point.coefficient_variance(&motor.to_array());
+            assert!(d >= 0.0 && q >= 0.0, "{d} {q}");
+        }
+    }
 }

@@ -94,6 +94,7 @@ impl StudyProblem {
     /// # Errors
     /// If the log is too short, or no motor in the search box has a finite cost.
     pub fn output_error(log: &Log, stated: Option<VoltageTiming>) -> Result<Self, Error> {
+        log.refuse_short_circuit()?;
         let steady = Self::steady(log, &Request::default(), IdZero::Measured).ok();
         let (mut starts, bounds) = match steady {
             Some(steady) => (vec![steady.fitness.minimum().0], steady.bounds),

@@ -43,13 +43,16 @@ pub struct ConvergenceCurves {
     pub parameters_median: Vec<[f64; PARAMETERS]>,
 }
 
+/// Most records of convergence, of 40 bytes each: 400 MB. The paper's study has 15 050 of each method.
+const MOST_RECORDS: f64 = 1e7;
+
 /// Runs one method `runs` times. `go_on` is called after each iteration, from any thread, and can interrupt the study: then only the
 /// finished runs count, with the results of an uninterrupted study; `None` if no run is finished.
 ///
 /// For the output error, costs may lie below the minimum known until [`use_lowest_minimum`] has been called with all methods.
 ///
 /// # Errors
-/// If `runs` is zero or a run cannot start.
+/// If `runs` is zero or a run cannot start, or if the runs are too many or too long for their convergence to be kept.
 pub fn run_method(
     method: Method,
     runs: usize,
@@ -58,6 +61,12 @@ pub fn run_method(
     fitness: &Fitness,
     go_on: impl Fn() -> ControlFlow<()> + Sync,
 ) -> Result<Option<MethodStudy>, Error> {
+    settings.check_runs(runs)?;
+    let records = runs as f64 * (settings.iterations as f64 + 1.0);
+    if records > MOST_RECORDS {
+        let (setting, reason) = ("the number of runs x iterations", "so that the convergence of all runs fits into memory");
+        return Err(fluxfit_optimize::Error::Limit { setting, value: records, most: MOST_RECORDS, reason }.into());
+    }
     let histories = run_many(method, runs, settings, bounds, fitness, |report| RunHistory::of(&report, fitness), go_on)?;
     Ok((!histories.is_empty()).then(|| MethodStudy {
         method,

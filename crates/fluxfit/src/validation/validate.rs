@@ -199,6 +199,10 @@ pub fn validate(log: &Log, given: &Given, request: &Request) -> Result<Validatio
 /// As [`validate`].
 pub fn validate_with_progress(log: &Log, given: &Given, request: &Request, progress: Progress) -> Result<Validation, Error> {
     check(given)?;
+    if log.is_short_circuit() {
+        // Only ratios of the parameters could be tested, and no voltage says by how much they differ.
+        return Err(Error::no_voltages());
+    }
     let (own, tested) = own_answer(log, given, request, progress)?;
     let predicted = Predicted::of(log, &own, given, request)?;
     let covariance = Covariance::of(&own, given, &tested);

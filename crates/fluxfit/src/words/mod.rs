@@ -7,5 +7,6 @@ mod nameplate;
 mod names;
 mod reason;
 mod remedy;
+mod spikes;
 mod validation;
 mod warning;

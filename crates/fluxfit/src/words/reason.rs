@@ -23,6 +23,9 @@ impl Display for Reason {
                 let open = open.join(", ");
                 write!(f, "the operating points are too similar for their noise: only combinations of {open} show in them")
             }
+            Self::ShortCircuit => {
+                write!(f, "the voltages are zero in every row, and the currents of a short circuit show only ratios of the parameters")
+            }
             Self::Negative => write!(f, "the value came out negative, which no motor has, and not by noise"),
             Self::OtherNegative { parameter } => {
                 write!(f, "{} came out negative, so nothing else of this fit is to be trusted", parameter.symbol())

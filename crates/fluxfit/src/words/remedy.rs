@@ -45,6 +45,10 @@ impl Display for Remedy {
                  contradiction would still show, and only where the drive switches"
             ),
             Self::SharperPrior => write!(f, "give a sharper prior, or log another operating point"),
+            Self::FixOne => write!(
+                f,
+                "if the terminals were shorted, give one parameter exactly, for example R_s as measured there; else log the voltages"
+            ),
             Self::LogAngle => {
                 write!(f, "log theta_e too (electrical, as the drive uses it), or hold the drive still and use the steady model")
             }

@@ -327,3 +327,25 @@ fn a_window_without_voltage_or_speed_is_no_trap() {
         found.steady.as_ref().unwrap().estimate.motor
     );
 }
+
+/// Currents, speed and `u_d` rise together from zero, without noise: the noise of the residuals cancels exactly. Found by the property
+/// above.
+#[test]
+fn ramps_whose_noise_cancels_are_no_trap() {
+    const ROWS: usize = 104;
+    let ramp = |size: f64| (0..ROWS).map(|k| k as f64 / ROWS as f64 * size).collect::<Vec<_>>();
+    let t = |k: usize| 1.1629807517725456e-6 * (k + [0, 3, 6][usize::from(k >= 30) + usize::from(k >= 64)]) as f64;
+    let columns = Columns {
+        t: (0..ROWS).map(t).collect(),
+        ud: ramp(1.0),
+        uq: vec![0.8455358964454691; ROWS],
+        id: ramp(218919.11016478797),
+        iq: ramp(126082104.29874085),
+        omega_e: ramp(1.9936738402685122e-7),
+        ..Columns::default()
+    };
+    let windows = vec![(0.0, t(29)), (t(ROWS - 30), t(ROWS - 1))];
+    let request = Request { windows, voltage_accuracy: 0.0, swarm: Swarm::Off, ..Request::default() };
+    let fit = identify(&Log::new(columns).unwrap(), &request).unwrap().identification.steady.unwrap();
+    assert!(fit.estimate.chi_squared.is_finite() && fit.estimate.residuals.iter().flatten().all(|x| x.is_finite()), "{:?}", fit.estimate);
+}

@@ -1,7 +1,9 @@
 //! The integration tests of this crate, linked once; a file per topic.
 
+mod any_log;
 mod current_loop;
 mod identify_laws;
 mod request;
 mod saturation;
+mod short_circuit;
 mod steady_statistics;

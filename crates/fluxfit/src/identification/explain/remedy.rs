@@ -54,6 +54,8 @@ pub enum Remedy {
     SimilarWindows,
     /// Give a sharper prior, or log another operating point.
     SharperPrior,
+    /// Fix one parameter ([`Known::Fixed`](crate::Known::Fixed)), for example R_s as measured at the terminals.
+    FixOne,
     /// Log the electrical angle too ([`Columns::theta_e`](crate::Columns::theta_e)), or hold currents and speed constant and use the steady
     /// model.
     LogAngle,
@@ -88,6 +90,7 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding) -> Op
         Reason::IdZero { .. } | Reason::IdConstant => or_stretch(None),
         Reason::OnePoint => or_stretch(Some(Also::OrSecondPoint)),
         Reason::TooSimilar { .. } => or_stretch(Some(Also::AndSecondPoint)),
+        Reason::ShortCircuit => Remedy::FixOne,
         Reason::Negative | Reason::OtherNegative { .. } => Remedy::CheckSigns { units: false },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
         Reason::CorrelatedResiduals { .. } => Remedy::InspectResiduals,

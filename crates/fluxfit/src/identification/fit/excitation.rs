@@ -59,7 +59,9 @@ impl Excitation {
     /// Judges the operating points, with what is known beforehand.
     pub fn of(points: &[OperatingPoint], known: &[Known; PARAMETERS]) -> Self {
         let most = |value: fn(&OperatingPoint) -> f64| points.iter().map(value).fold(NOTHING, f64::max);
-        let (u, i, omega) = (most(|p| p.voltage().magnitude()), most(|p| p.current().magnitude()), most(|p| p.omega_e().abs()));
+        let (i, omega) = (most(|p| p.current().magnitude()), most(|p| p.omega_e().abs()));
+        let applied = most(|p| p.voltage().magnitude());
+        let u = if applied > NOTHING { applied } else { voltage_of_fixed(points, known) };
         // A standing drive's inductances show in the drift of its currents alone.
         let slope = (omega * i).max(most(|p| p.drift.magnitude()));
         let scale = [u / i, u / slope, u / slope, u / omega];
@@ -161,6 +163,13 @@ impl Excitation {
             .sqrt();
         part > OPEN_PART
     }
+}
+
+/// The largest voltage, V, that the fixed parameters take: in a short circuit it is the scale of all others.
+fn voltage_of_fixed(points: &[OperatingPoint], known: &[Known; PARAMETERS]) -> f64 {
+    let fixed = known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 });
+    let taken = |equation: Equation| equation.coefficients.iter().zip(fixed).map(|(coefficient, value)| coefficient * value).sum::<f64>();
+    points.iter().flat_map(OperatingPoint::equations).map(|equation| taken(equation).abs()).fold(NOTHING, f64::max)
 }
 
 /// Standard deviation of the voltage, in fractions of `u`, that noise in the coefficients makes along a direction.

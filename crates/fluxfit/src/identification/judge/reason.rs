@@ -30,6 +30,8 @@ pub enum Reason {
         /// The parameters that are open.
         open: Vec<Parameter>,
     },
+    /// The voltages are zero throughout, and no parameter is fixed: a short circuit shows only the ratios of the parameters.
+    ShortCircuit,
     /// The value came out negative, by more than its uncertainty: signs or order of the columns are probably wrong.
     Negative,
     /// Another parameter of the same fit came out negative, by more than its uncertainty.

@@ -64,8 +64,13 @@ pub(crate) struct Judged {
     pub(crate) reason: Option<Reason>,
 }
 
-/// Judges every parameter of a finding.
-pub(crate) fn judge(finding: &Finding, saturation: Option<&SaturationFinding>, request: &Request) -> [Judged; PARAMETERS] {
+/// Judges every parameter of a finding; `is_short_circuit`: of a log without voltages.
+pub(crate) fn judge(
+    finding: &Finding,
+    saturation: Option<&SaturationFinding>,
+    request: &Request,
+    is_short_circuit: bool,
+) -> [Judged; PARAMETERS] {
     let uncertainty = match saturation {
         Some(saturation) => finding.uncertainty.clone().with_saturation(saturation.uncertainty(&finding.motor)),
         None => finding.uncertainty.clone(),
@@ -78,6 +83,10 @@ pub(crate) fn judge(finding: &Finding, saturation: Option<&SaturationFinding>, r
         distrust_all(&mut judged, request, &Reason::CurrentsMissed { fraction });
     }
     distrust_if_negative(&mut judged, request);
+    // Zero times any motor fits as well, and a prior does not hold against equations without any voltage error.
+    if is_short_circuit && !request.known.iter().any(|known| matches!(known, Known::Fixed(_))) {
+        distrust_all(&mut judged, request, &Reason::ShortCircuit);
+    }
     judged
 }
 

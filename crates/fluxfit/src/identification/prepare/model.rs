@@ -55,6 +55,8 @@ pub enum ModelReason {
     Stated,
     /// The channels were sampled at different instants.
     Interpolated,
+    /// The voltages are zero throughout: what they tell is in the steady currents of the short circuit.
+    ShortCircuit,
     /// Rows are slower than any drive's own sampling: below [`evidence::SLOWEST_CONTROL`](crate::evidence::SLOWEST_CONTROL).
     SlowRows {
         /// Rate of the rows, Hz.
@@ -81,7 +83,9 @@ pub fn choose(log: &Log, stated: Option<Model>) -> ModelChoice {
     }
     let slowest = log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max);
     let turn = largest_turn(log);
-    let (model, reason) = if log.is_interpolated() {
+    let (model, reason) = if log.is_short_circuit() {
+        (Model::Steady, ModelReason::ShortCircuit)
+    } else if log.is_interpolated() {
         (Model::Steady, ModelReason::Interpolated)
     } else if slowest > 1.0 / SLOWEST_CONTROL {
         (Model::Steady, ModelReason::SlowRows { rate: 1.0 / slowest })
