@@ -136,6 +136,11 @@ pub enum ErrorKind {
         "the log's channels were sampled at different instants, so no row is one instant of the drive and the output error means nothing; use the steady model, or log all channels together"
     )]
     Interpolated,
+    /// No motor near the start of the fit has simulated currents that are numbers.
+    #[error(
+        "the simulated currents are no finite numbers with any inductances near those that the rows suggest; check the units and the sign of the columns, give R_s, L_d and L_q if they are known, or use the steady model"
+    )]
+    NoFiniteFit,
     /// A log without voltages, where the output error would simulate the currents from them.
     #[error(
         "the voltages are zero in every row, as in a short circuit, of which the output error tells no more than its steady currents; use the steady model, and fix one parameter"

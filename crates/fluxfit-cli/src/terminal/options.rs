@@ -33,7 +33,7 @@ pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
 pub(crate) fn of_error(error: &ErrorKind) -> Option<&'static str> {
     match error {
         ErrorKind::NoOperatingPoint { .. } => Some("--window T0:T1"),
-        ErrorKind::Interpolated | ErrorKind::ShortCircuit => Some("--model steady"),
+        ErrorKind::Interpolated | ErrorKind::ShortCircuit | ErrorKind::NoFiniteFit => Some("--model steady"),
         ErrorKind::ControlRate { .. } => Some("--control-rate FREQUENCY"),
         _ => None,
     }

@@ -103,8 +103,11 @@ pub(super) fn reduced<V: Number>([voltage, width, ripple]: [V; 3], u: [V; 2], i:
 #[inline(always)]
 fn mean_loss<V: Number>(start: [V; 2], end: [V; 2], shift: V, width: V) -> [V; 2] {
     let (start, end) = (inverse_clarke(start), inverse_clarke(end));
-    let phase = |phase: usize| mean_of_ramp(start[phase] - shift, end[phase] - shift, width);
-    clarke([phase(0), phase(1), phase(2)])
+    clarke([
+        mean_of_ramp(start[0] - shift, end[0] - shift, width),
+        mean_of_ramp(start[1] - shift, end[1] - shift, width),
+        mean_of_ramp(start[2] - shift, end[2] - shift, width),
+    ])
 }
 
 /// A way this short, as a fraction of its ends, leaves no digits in a difference of integrals.
@@ -117,13 +120,18 @@ fn mean_of_ramp<V: Number>(from: V, to: V, width: V) -> V {
     let middle = half * (from + to);
     let sign = zero.if_less(middle, one, middle.if_less(zero, -one, zero));
     let ramp = middle.abs().if_less(width, middle / width, sign);
-    // Its integral: a parabola up to the width, straight from there on.
-    let beyond = zero.if_less(width, half * width, zero);
-    let integral = |i: V| i.abs().if_less(width, half * i * i / width, i.abs() - beyond);
     let way = to - from;
     // Over a short way the ramp is straight, or about to be.
     let long = from.constant(SHORT) * (from.abs() + to.abs());
-    long.if_less(way.abs(), (integral(to) - integral(from)) / way, ramp)
+    long.if_less(way.abs(), (integral_of_ramp(to, width) - integral_of_ramp(from, width)) / way, ramp)
+}
+
+/// The ramp's integral: a parabola up to the width, straight from there on.
+#[inline(always)]
+fn integral_of_ramp<V: Number>(i: V, width: V) -> V {
+    let (zero, half) = (i.constant(0.0), i.constant(0.5));
+    let beyond = zero.if_less(width, half * width, zero);
+    i.abs().if_less(width, half * i * i / width, i.abs() - beyond)
 }
 
 #[cfg(test)]

@@ -98,6 +98,11 @@ struct Series<V> {
     doublings: V,
 }
 
+#[inline(always)]
+fn larger<V: Number>(one: V, other: V) -> V {
+    one.if_less(other, other, one)
+}
+
 /// Product of two matrices, row by row.
 #[inline(always)]
 fn product<V: Number>(a: [V; 4], b: [V; 4]) -> [V; 4] {
@@ -114,14 +119,14 @@ impl<V: Number> Series<V> {
         // Rates times the period: of the currents, row by row; of a volt along either axis; of the magnet.
         let (volt_d, volt_q, ratio) = (length / ld, length / lq, ld / lq);
         let rates = [-(rs * volt_d), turn * (lq / ld), -(turn * ratio), -(rs * volt_q)];
-        let larger = |one: V, other: V| one.if_less(other, other, one);
         let norm = larger(larger(rates[0].abs() + rates[1].abs(), rates[2].abs() + rates[3].abs()), turn.abs());
         // Halved until the norm is small enough.
         let (mut part, mut doublings, mut most) = (one, zero, 0);
         let limit = one.constant(PART);
         while most < MOST_DOUBLINGS && limit.any_less(norm * part) {
-            let large = |then, otherwise| limit.if_less(norm * part, then, otherwise);
-            (part, doublings) = (large(part * one.constant(0.5), part), large(doublings + one, doublings));
+            let rest = norm * part;
+            part = limit.if_less(rest, part * one.constant(0.5), part);
+            doublings = limit.if_less(rest, doublings + one, doublings);
             most += 1;
         }
         let m = [rates[0] * part, rates[1] * part, rates[2] * part, rates[3] * part];
@@ -154,16 +159,15 @@ impl<V: Number> Series<V> {
     fn double(&mut self, doubled: u32) {
         let Self { e, g, h, cos, sin, doublings } = *self;
         let (doubled, two) = (cos.constant(f64::from(doubled)), cos.constant(2.0));
-        let unfinished = |then: V, otherwise: V| doubled.if_less(doublings, then, otherwise);
         let (ee, eg, turned) = (product(e, e), product(e, g), product(g, [cos, sin, -sin, cos]));
         for k in 0..4 {
-            self.e[k] = unfinished(two.mul_add(e[k], ee[k]), e[k]);
-            self.g[k] = unfinished(g[k] + eg[k] + turned[k], g[k]);
+            self.e[k] = doubled.if_less(doublings, two.mul_add(e[k], ee[k]), e[k]);
+            self.g[k] = doubled.if_less(doublings, g[k] + eg[k] + turned[k], g[k]);
         }
-        self.h[0] = unfinished(two.mul_add(h[0], e[0].mul_add(h[0], e[1] * h[1])), h[0]);
-        self.h[1] = unfinished(two.mul_add(h[1], e[2].mul_add(h[0], e[3] * h[1])), h[1]);
-        self.cos = unfinished(cos.mul_add(cos, -(sin * sin)), cos);
-        self.sin = unfinished(two * sin * cos, sin);
+        self.h[0] = doubled.if_less(doublings, two.mul_add(h[0], e[0].mul_add(h[0], e[1] * h[1])), h[0]);
+        self.h[1] = doubled.if_less(doublings, two.mul_add(h[1], e[2].mul_add(h[0], e[3] * h[1])), h[1]);
+        self.cos = doubled.if_less(doublings, cos.mul_add(cos, -(sin * sin)), cos);
+        self.sin = doubled.if_less(doublings, two * sin * cos, sin);
     }
 
     /// With the voltage in the frame at the middle of the period, half a turn (sine, cosine) later.

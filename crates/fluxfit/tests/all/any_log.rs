@@ -6,7 +6,7 @@
 #[path = "../promises/mod.rs"]
 mod promises;
 
-use fluxfit::optimizer::draws::Draws;
+use fluxfit::optimizer::Draws;
 use promises::READERS;
 
 /// Bytes as a fuzzer makes them: any, and those of a sound log with a few rows changed.

@@ -344,7 +344,7 @@ fn ramps_whose_noise_cancels_are_no_trap() {
         omega_e: ramp(1.9936738402685122e-7),
         ..Columns::default()
     };
-    let windows = vec![(0.0, t(29)), (t(ROWS - 30), t(ROWS - 1))];
+    let windows = [(0.0, t(29)), (t(ROWS - 30), t(ROWS - 1))].map(|(from, to)| TimeWindow { from, to }).to_vec();
     let request = Request { windows, voltage_accuracy: 0.0, swarm: Swarm::Off, ..Request::default() };
     let fit = identify(&Log::new(columns).unwrap(), &request).unwrap().identification.steady.unwrap();
     assert!(fit.estimate.chi_squared.is_finite() && fit.estimate.residuals.iter().flatten().all(|x| x.is_finite()), "{:?}", fit.estimate);

@@ -9,7 +9,7 @@ use fluxfit::{
     identify,
     log::{Columns, Log},
     motor::Motor,
-    optimizer::draws::Draws,
+    optimizer::Draws,
     validate,
 };
 

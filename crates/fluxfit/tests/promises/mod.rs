@@ -8,7 +8,7 @@ use fluxfit::{
     identify,
     log::{Columns, Log},
     motor::Motor,
-    optimizer::draws::Draws,
+    optimizer::Draws,
 };
 use std::fmt::Display;
 

@@ -23,7 +23,7 @@ use super::{
     uncertainty::{Systematic, Uncertainty},
 };
 use crate::{
-    error::Error,
+    error::{Error, ErrorKind},
     faults::Fault,
     frames::Dq,
     levenberg_marquardt::{Polished, polish_with_progress},
@@ -86,6 +86,9 @@ impl OutputFit {
             let _ = progress(Step::Fit { simulations, usual });
         };
         let Polished { drive, cost, .. } = polish_with_progress(objective, &drive, &unknowns, &priors, &fitting);
+        if !cost.is_finite() {
+            return Err(ErrorKind::NoFiniteFit.into());
+        }
         let _ = progress(Step::Uncertainty);
         let residuals = objective.residuals(&drive);
         let shifts = OutputShifts {
