@@ -26,6 +26,9 @@ pub(crate) trait Number:
     /// Whether any number is less than the other's.
     fn any_less(self, other: Self) -> bool;
 
+    /// Writes the numbers of all lanes, as many as there are.
+    fn store(self, numbers: &mut [f64]);
+
     /// The two constants of a vector.
     #[inline(always)]
     fn constants(self, [d, q]: [f64; 2]) -> [Self; 2] {
@@ -57,6 +60,11 @@ impl Number for f64 {
     #[inline(always)]
     fn any_less(self, other: Self) -> bool {
         self < other
+    }
+
+    #[inline(always)]
+    fn store(self, numbers: &mut [f64]) {
+        numbers[0] = self;
     }
 }
 
@@ -94,14 +102,6 @@ impl<S: Simd, const K: usize> Lanes<S, K> {
         let mut numbers = [0.0; WIDEST];
         self.set.partial_store_f64s(&mut numbers[..S::F64_LANES], self.vectors[lane / S::F64_LANES]);
         numbers[lane % S::F64_LANES]
-    }
-
-    /// Writes the numbers of all lanes, as many as there are.
-    #[inline(always)]
-    pub(crate) fn store(self, numbers: &mut [f64]) {
-        for k in 0..K {
-            self.set.partial_store_f64s(&mut numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES], self.vectors[k]);
-        }
     }
 }
 
@@ -143,6 +143,13 @@ impl<S: Simd, const K: usize> Number for Lanes<S, K> {
             any |= self.set.reduce_sum_f64s(counts.vectors[k]) > 0.0;
         }
         any
+    }
+
+    #[inline(always)]
+    fn store(self, numbers: &mut [f64]) {
+        for k in 0..K {
+            self.set.partial_store_f64s(&mut numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES], self.vectors[k]);
+        }
     }
 }
 

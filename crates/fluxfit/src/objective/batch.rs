@@ -175,6 +175,7 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
         let kinds = drives.iter().map(|drive| FaultKinds::of(&drive.faults)).fold(FaultKinds::default(), FaultKinds::or);
         let group: Drives<Lanes<S, K>, C> = lanes(set, rows, kinds, |lane| drives[lane.min(drives.len() - 1)]);
         let mut results = vec![Simulated::default(); drives.len()];
+        let mut errors = Vec::new();
         for segment in &rows.segments {
             let sums = group.sums(segment);
             let (totals, solved) =
@@ -190,23 +191,19 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
                 continue;
             }
             let linear = std::array::from_fn(|k| Lanes::of(set, |lane| solved.get(lane).map_or(0.0, |(best, _)| best[k])));
-            let errors = group.errors(segment, &linear);
-            let mut rest: Vec<Vec<f64>> = drives.iter().map(|_| Vec::with_capacity(2 * errors.len())).collect();
-            let mut numbers = vec![0.0; 2 * Lanes::<S, K>::COUNT];
-            for [d, q] in errors {
-                let (of_d, of_q) = numbers.split_at_mut(Lanes::<S, K>::COUNT);
-                d.store(of_d);
-                q.store(of_q);
-                for (lane, rest) in rest.iter_mut().enumerate() {
-                    rest.extend([of_d[lane], of_q[lane]]);
-                }
-            }
-            for (lane, (result, own)) in results.iter_mut().zip(rest).enumerate() {
+            let lanes = Lanes::<S, K>::COUNT;
+            errors.resize(2 * lanes * segment.measured.len(), 0.0);
+            group.errors(segment, &linear, lanes, &mut errors);
+            for (lane, result) in results.iter_mut().enumerate() {
+                let own = |row: &[f64]| [row[lane], row[lane + lanes]];
                 if cancelled(lane) {
-                    result.cost += own.iter().map(|error| error * error).sum::<f64>();
+                    result.cost += errors.chunks_exact(2 * lanes).flat_map(own).map(|error| error * error).sum::<f64>();
                 }
                 if residuals {
-                    result.residuals.extend(own);
+                    result.residuals.reserve(2 * segment.measured.len());
+                    for row in errors.chunks_exact(2 * lanes) {
+                        result.residuals.extend(own(row));
+                    }
                 }
             }
         }
@@ -229,13 +226,15 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Adjoint<'_, S, K
     fn call(self) -> Vec<Vec<Dq>> {
         let Self { set, rows, drive, weights } = self;
         let group: Drives<Lanes<S, K>, C> = lanes(set, rows, FaultKinds::of(&drive.faults), |_| drive);
-        let mut effects = vec![Vec::new(); weights.len()];
+        let (mut effects, mut numbers) = (vec![Vec::new(); weights.len()], Vec::new());
         let mut first = 0;
         for segment in &rows.segments {
             let weight = |row: usize, axis: usize| Lanes::of(set, |lane| weights.get(lane).map_or(0.0, |own| own[first + 2 * row + axis]));
-            let backward = group.by_voltage(segment, |row| [weight(row, 0), weight(row, 1)]);
+            let lanes = Lanes::<S, K>::COUNT;
+            numbers.resize(2 * lanes * segment.periods.len(), 0.0);
+            group.by_voltage(segment, |row| [weight(row, 0), weight(row, 1)], lanes, &mut numbers);
             for (lane, effects) in effects.iter_mut().enumerate() {
-                effects.extend(backward.iter().rev().map(|[d, q]| Dq { d: d.lane(lane), q: q.lane(lane) }));
+                effects.extend(numbers.chunks_exact(2 * lanes).map(|row| Dq { d: row[lane], q: row[lane + lanes] }));
             }
             first += 2 * segment.measured.len();
         }

@@ -61,8 +61,13 @@ struct State<V> {
     response: [[V; 2]; LINEAR_UNKNOWNS],
 }
 
-/// A row's measured less simulated currents, `d, q`.
-pub(super) type Errors<V> = Vec<[V; 2]>;
+/// Writes the lanes of d, then those of q.
+#[inline(always)]
+fn store<V: Number>([d, q]: [V; 2], numbers: &mut [f64]) {
+    let (of_d, of_q) = numbers.split_at_mut(numbers.len() / 2);
+    d.store(of_d);
+    q.store(of_q);
+}
 
 /// Drives side by side, ready to be simulated.
 pub(super) struct Drives<V, const C: usize> {
@@ -113,25 +118,25 @@ impl<V: Number, const C: usize> Drives<V, C> {
         sums
     }
 
-    /// Measured less simulated currents of every row with these values of the linear unknowns.
+    /// Measured less simulated currents of every row with these values of the linear unknowns, into `errors`: of each row the lanes of d,
+    /// then those of q.
     #[inline(always)]
-    pub(super) fn errors(&self, segment: &SimulatedSegment, linear: &[V; LINEAR_UNKNOWNS]) -> Errors<V> {
-        let mut errors = Vec::with_capacity(segment.periods.len() + 1);
-        errors.push([-linear[0], -linear[1]]);
+    pub(super) fn errors(&self, segment: &SimulatedSegment, linear: &[V; LINEAR_UNKNOWNS], lanes: usize, errors: &mut [f64]) {
+        let (first, errors) = errors.split_at_mut(2 * lanes);
+        store([-linear[0], -linear[1]], first);
         let mut state = self.start(segment);
         if self.take_the_short_path() {
             let i = [state.i[0] + linear[0], state.i[1] + linear[1]];
-            perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, i, &mut errors);
-            return errors;
+            perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, i, errors.chunks_exact_mut(2 * lanes));
+            return;
         }
-        for row in 0..segment.periods.len() {
+        for (row, errors) in errors.chunks_exact_mut(2 * lanes).enumerate() {
             if row % BLOCK == 0 {
                 state.forget();
             }
             self.faulty_row(segment, row, &mut state);
-            errors.push(state.left(linear));
+            store(state.left(linear), errors);
         }
-        errors
     }
 
     /// Whether there is no fault and no period of a length of its own.
@@ -201,19 +206,18 @@ impl<V: Number, const C: usize> Drives<V, C> {
     }
 
     /// What a volt over each period does to linear functions of the simulated currents, one function a lane, of which `weights` gives the
-    /// `d, q` of a row. From the last period to the first, by the adjoint equations; the last period's effects come first.
+    /// `d, q` of a row. From the last period to the first, by the adjoint equations; into `effects`, of each period the lanes of d, then those
+    /// of q.
     #[inline(always)]
-    pub(super) fn by_voltage(&self, segment: &SimulatedSegment, weights: impl Fn(usize) -> [V; 2]) -> Errors<V> {
+    pub(super) fn by_voltage(&self, segment: &SimulatedSegment, weights: impl Fn(usize) -> [V; 2], lanes: usize, effects: &mut [f64]) {
         let mut behind = [self.motors.rs.constant(0.0); 2];
-        let mut effects = Vec::with_capacity(segment.periods.len());
         for row in (0..segment.periods.len()).rev() {
             let TransitionLanes { fdd, fdq, fqd, fqq, gdd, gdq, gqd, gqq, .. } = self.transitions(segment, row);
             let own = weights(row + 1);
             let (d, q) = (behind[0] + own[0], behind[1] + own[1]);
             behind = self.faults.remaining([d * fdd + q * fqd, d * fdq + q * fqq]);
-            effects.push([d * gdd + q * gqd, d * gdq + q * gqq]);
+            store([d * gdd + q * gqd, d * gdq + q * gqq], &mut effects[2 * lanes * row..2 * lanes * (row + 1)]);
         }
-        effects
     }
 }
 
@@ -248,20 +252,20 @@ fn perfect_rows<V: Number, const C: usize, const FIRST: bool, const ALTERNATES: 
 
 /// The same from the right start, with the right first vector.
 #[inline(always)]
-fn perfect_errors<V: Number, const C: usize>(
+fn perfect_errors<'a, V: Number, const C: usize>(
     rows: &[PeriodRow],
     polynomials: &[TransitionPolynomials<V, C>],
     [_, _, alpha, beta]: &[V; LINEAR_UNKNOWNS],
     mut i: [V; 2],
-    errors: &mut Errors<V>,
+    errors: impl Iterator<Item = &'a mut [f64]>,
 ) {
     let zero = alpha.constant(0.0);
-    for row in rows {
+    for (row, errors) in rows.iter().zip(errors) {
         let ([u_d, u_q], [alpha_d, alpha_q]) = (zero.constants(row.u), zero.constants(row.alternating));
         let u = [alpha.mul_add(alpha_d, beta.mul_add(-alpha_q, u_d)), alpha.mul_add(alpha_q, beta.mul_add(alpha_d, u_q))];
         i = polynomials[row.class].at(row.turn, row.place).after(i, u);
         let measured = zero.constants(row.measured);
-        errors.push([measured[0] - i[0], measured[1] - i[1]]);
+        store([measured[0] - i[0], measured[1] - i[1]], errors);
     }
 }
 

@@ -61,9 +61,9 @@ pub(super) fn choose(
     let rough = readings::readings(&objectives, start, &free, &[]);
     let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut best: Option<Chosen> = None;
-    let tried = readings::readings(&objectives, start, &free, &priors);
+    let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors) };
     let _ = progress(Step::Faults);
-    for (place, tried) in tried.into_iter().take(TRIED_READINGS) {
+    for (place, tried) in tried.iter().copied().take(TRIED_READINGS) {
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
         let search =
             FaultSearch { objectives: &objectives, reading: place, priors: &priors, drive, unknowns: free.clone(), cost, voltage_accuracy };
@@ -77,7 +77,8 @@ pub(super) fn choose(
         }
     }
     let mut best = best.ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
-    let readings = readings::readings(&objectives, &best.drive, &best.unknowns, &priors);
+    // Without a fault they were tried with these unknowns already.
+    let readings = if best.unknowns == free { tried } else { readings::readings(&objectives, &best.drive, &best.unknowns, &priors) };
     best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
     Ok(best)
 }
