@@ -25,6 +25,9 @@ const HOPELESS: f64 = 1e100;
 /// error that noise causes over a million rows, and above the errors of differences and rounding.
 const NO_STEP: f64 = 1e-9;
 
+/// The same for fits that are only compared with each other: of ten thousand residuals a thousandth of what noise changes in a cost.
+const NO_STEP_OF_CHOICE: f64 = 1e-7;
+
 /// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
 const PATIENCE: usize = 4;
 
@@ -64,6 +67,11 @@ pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[
     polish_with_progress(objective, start, unknowns, priors, &|_| ())
 }
 
+/// [`polish_unknowns`] as far as a comparison of costs needs it.
+pub(crate) fn polish_to_choose(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
+    minimize(objective, start, unknowns, priors, NO_STEP_OF_CHOICE, &|_| ())
+}
+
 /// [`polish_unknowns`], which calls `progress` after each step with the number of simulations so far.
 pub fn polish_with_progress(
     objective: &OutputError,
@@ -72,9 +80,20 @@ pub fn polish_with_progress(
     priors: &[PriorResidual],
     progress: &dyn Fn(usize),
 ) -> Polished {
+    minimize(objective, start, unknowns, priors, NO_STEP, progress)
+}
+
+fn minimize(
+    objective: &OutputError,
+    start: &Adjustable,
+    unknowns: &[Unknown],
+    priors: &[PriorResidual],
+    no_step: f64,
+    progress: &dyn Fn(usize),
+) -> Polished {
     let scale: Vec<f64> = unknowns.iter().map(|unknown| start.step_unit(*unknown, objective.peak_current())).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
-    let (problem, report) = LevenbergMarquardt::new().with_ftol(NO_STEP).with_xtol(NO_STEP).with_patience(PATIENCE).minimize(Problem {
+    let (problem, report) = LevenbergMarquardt::new().with_ftol(no_step).with_xtol(no_step).with_patience(PATIENCE).minimize(Problem {
         objective,
         start,
         unknowns,

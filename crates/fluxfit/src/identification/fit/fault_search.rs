@@ -20,12 +20,13 @@ use super::{
 };
 use crate::{
     faults::{Fault, Faults},
-    levenberg_marquardt::{PriorResidual, jacobian, polish_unknowns},
+    levenberg_marquardt::{PriorResidual, jacobian, polish_to_choose},
     objective::{
         acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
+    parallel,
 };
 use nalgebra::DVector;
 
@@ -158,21 +159,19 @@ impl FaultSearch<'_> {
     /// Judges faults; of those that deserve it the best is taken, and comes first.
     fn take_best(&mut self, faults: &[Fault], taken: &[FaultTrial]) -> Vec<FaultTrial> {
         let test = ScoreTest::of(self, faults);
-        let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = faults
-            .iter()
-            .filter(|fault| !taken.iter().any(|taken| taken.fault == **fault))
-            .map(|fault| {
-                let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
-                    FaultOutcome::Covered
-                } else if fault.needs_angle() && !self.objective().angle_known() {
-                    FaultOutcome::NeedsAngle
-                } else {
-                    FaultOutcome::NotNeeded
-                };
-                let (gain, starts) = if outcome == FaultOutcome::NotNeeded { test.expected_gain(self, *fault) } else { (0.0, Vec::new()) };
-                (FaultTrial { fault: *fault, gain, outcome }, starts)
-            })
-            .collect();
+        let left: Vec<Fault> = faults.iter().copied().filter(|fault| !taken.iter().any(|taken| taken.fault == *fault)).collect();
+        let this = &*self;
+        let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = parallel::map(&left, |fault| {
+            let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
+                FaultOutcome::Covered
+            } else if fault.needs_angle() && !this.objective().angle_known() {
+                FaultOutcome::NeedsAngle
+            } else {
+                FaultOutcome::NotNeeded
+            };
+            let (gain, starts) = if outcome == FaultOutcome::NotNeeded { test.expected_gain(this, *fault) } else { (0.0, Vec::new()) };
+            (FaultTrial { fault: *fault, gain, outcome }, starts)
+        });
         trials.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
         for place in 0..trials.len() {
             let (trial, starts) = &mut trials[place];
@@ -239,15 +238,15 @@ impl ScoreTest {
             return (0.0, Vec::new());
         }
         let unknowns: Vec<Unknown> = Unknown::of_fault(fault).collect();
-        let gain_from = |faults: Faults| {
-            let start = Adjustable { faults, ..search.drive };
+        let gain_from = |faults: &Faults| {
+            let start = Adjustable { faults: *faults, ..search.drive };
             let columns = jacobian(search.objective(), &start, &unknowns);
             let all = [self.jacobian.clone(), columns].concat();
             let right = DVector::from_iterator(all.len(), all.iter().map(|column| dot(column, &self.residuals)));
             let explained = right.dot(&(inverse_normal(&all) * &right)).min(search.cost);
             (schwarz(search.cost, search.cost - explained, unknowns.len(), self.independent), start)
         };
-        let mut gains: Vec<(f64, Adjustable)> = fault.starts(&search.drive.faults, self.peak).into_iter().map(gain_from).collect();
+        let mut gains: Vec<(f64, Adjustable)> = parallel::map(&fault.starts(&search.drive.faults, self.peak), gain_from);
         gains.sort_by(|one, other| other.0.total_cmp(&one.0));
         let best = gains.first().map_or(f64::NEG_INFINITY, |best| best.0);
         (best, gains.into_iter().take(FITTED_STARTS).map(|(_, start)| start).collect())
@@ -257,10 +256,8 @@ impl ScoreTest {
     fn fit(&self, search: &FaultSearch, fault: Fault, starts: &[Adjustable]) -> (FaultOutcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
         let own: Vec<Unknown> = Unknown::of_fault(fault).collect();
         let unknowns = [&search.unknowns[..], &own].concat();
-        let polished = starts
-            .iter()
-            .map(|start| polish_unknowns(search.objective(), start, &unknowns, search.priors))
-            .min_by(|one, other| one.cost.total_cmp(&other.cost));
+        let polished = parallel::map(starts, |start| polish_to_choose(search.objective(), start, &unknowns, search.priors));
+        let polished = polished.into_iter().min_by(|one, other| one.cost.total_cmp(&other.cost));
         let Some(polished) = polished else { return (FaultOutcome::NotNeeded, None) };
         if schwarz(search.cost, polished.cost, own.len(), self.independent) <= VERY_STRONG {
             return (FaultOutcome::NotNeeded, None);

@@ -6,7 +6,7 @@
 use super::super::request::Request;
 use crate::{
     error::Error,
-    levenberg_marquardt::{Polished, PriorResidual, polish_unknowns},
+    levenberg_marquardt::{Polished, PriorResidual, polish_to_choose},
     log::Log,
     motor::PARAMETERS,
     objective::{
@@ -58,7 +58,7 @@ pub(crate) fn readings(
     priors: &[PriorResidual],
 ) -> Vec<(usize, TimingTrial)> {
     let try_one = |(reading, objective): &(VoltageTiming, OutputError)| {
-        let polished = polish_unknowns(objective, start, unknowns, priors);
+        let polished = polish_to_choose(objective, start, unknowns, priors);
         TimingTrial { timing: *reading, polished, rows: objective.rows() }
     };
     let mut tried: Vec<(usize, TimingTrial)> = parallel::map(objectives, try_one).into_iter().enumerate().collect();
