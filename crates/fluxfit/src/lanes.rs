@@ -4,7 +4,7 @@
 //! Every operation acts on each lane alone and rounds as it does on one number, the fused multiplication and addition too: a candidate has
 //! the same bits in every lane, of any width.
 
-use pulp::Simd;
+use pulp::{NullaryFnOnce, Simd};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number, or one number per lane.
@@ -28,6 +28,9 @@ pub(crate) trait Number:
 
     /// Writes the numbers of all lanes, as many as there are.
     fn store(self, numbers: &mut [f64]);
+
+    /// Calls what is compiled for the same instructions, but once and not in place: for large work that several callers share.
+    fn call<F: NullaryFnOnce>(self, work: F) -> F::Output;
 
     /// The two constants of a vector.
     #[inline(always)]
@@ -65,6 +68,11 @@ impl Number for f64 {
     #[inline(always)]
     fn store(self, numbers: &mut [f64]) {
         numbers[0] = self;
+    }
+
+    #[inline(always)]
+    fn call<F: NullaryFnOnce>(self, work: F) -> F::Output {
+        work.call()
     }
 }
 
@@ -150,6 +158,11 @@ impl<S: Simd, const K: usize> Number for Lanes<S, K> {
         for k in 0..K {
             self.set.partial_store_f64s(&mut numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES], self.vectors[k]);
         }
+    }
+
+    #[inline(always)]
+    fn call<F: NullaryFnOnce>(self, work: F) -> F::Output {
+        self.set.vectorize(work)
     }
 }
 

@@ -16,6 +16,7 @@ use crate::{
     faults::{Acting, PeriodTurns},
     lanes::Number,
 };
+use pulp::NullaryFnOnce;
 
 /// Rows between two looks at what has died out.
 const BLOCK: usize = 64;
@@ -96,13 +97,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
         (sums.normal[pair(0, 0)], sums.normal[pair(1, 1)]) = (one, one);
         let mut state = self.start(segment);
         if !self.take_the_short_path() {
-            for row in 0..segment.periods.len() {
-                if row % BLOCK == 0 {
-                    state.forget();
-                }
-                self.faulty_row(segment, row, &mut state);
-                state.add::<true, true>(&mut sums);
-            }
+            self.faulty_rows(segment, &mut state, Into::Sums(&mut sums));
             return sums;
         }
         let polynomials = &self.polynomials[..];
@@ -130,13 +125,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
             perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, i, errors.chunks_exact_mut(2 * lanes));
             return;
         }
-        for (row, errors) in errors.chunks_exact_mut(2 * lanes).enumerate() {
-            if row % BLOCK == 0 {
-                state.forget();
-            }
-            self.faulty_row(segment, row, &mut state);
-            store(state.left(linear), errors);
-        }
+        self.faulty_rows(segment, &mut state, Into::Errors { linear, lanes, errors });
     }
 
     /// Whether there is no fault and no period of a length of its own.
@@ -153,55 +142,35 @@ impl<V: Number, const C: usize> Drives<V, C> {
         State { i, error: [zero; 2], response: [[one, zero], [zero, one], [zero; 2], [zero; 2]] }
     }
 
-    /// One row of drives with faults, or with a period of its own length. Faults that depend on the current follow the simulated one: the
-    /// measured one would bring its noise into the prediction.
+    /// All rows of drives with faults, or with periods of lengths of their own: block by block, the transitions first.
     #[inline(always)]
-    fn faulty_row(&self, segment: &SimulatedSegment, row: usize, state: &mut State<V>) {
-        let period = &segment.rows_of_periods[row];
-        let zero = self.motors.rs.constant(0.0);
-        let transitions = self.transitions(segment, row);
-        let start = self.faults.corrected(state.i, state.error);
-        let turns =
-            PeriodTurns { half: segment.half(row), start: segment.turns[row], middle: segment.middles[row], end: segment.turns[row + 1] };
-        let u = self.faults.motor_voltage(zero.constants(period.u), start, &turns);
-        state.i = if self.faults.kinds.flux {
-            self.saturated_step(&transitions, zero.constant(segment.periods[row].omega_e), u, start)
-        } else {
-            transitions.after(start, u)
-        };
-        let [alpha_d, alpha_q] = zero.constants(period.alternating);
-        let [first_d, first_q, alpha, beta] = state.response;
-        state.response = [
-            transitions.response(self.faults.remaining(first_d)),
-            transitions.response(self.faults.remaining(first_q)),
-            transitions.driven_response(self.faults.remaining(alpha), [alpha_d, alpha_q]),
-            transitions.driven_response(self.faults.remaining(beta), [-alpha_q, alpha_d]),
-        ];
-        let measured = self.faults.motor_current(zero.constants(period.measured), segment.turns[row + 1]);
-        state.error = [measured[0] - state.i[0], measured[1] - state.i[1]];
-    }
-
-    /// A step whose flux is not only `L i + psi_f`: what is beyond takes a voltage as any flux does, by its turning and by its growth.
-    #[inline(always)]
-    fn saturated_step(&self, transitions: &TransitionLanes<V>, omega_e: V, u: [V; 2], i: [V; 2]) -> [V; 2] {
-        let flux = self.faults.extra_flux(i);
-        let linear = transitions.after(i, [u[0] + omega_e * flux[1], u[1] - omega_e * flux[0]]);
-        let mut end = linear;
-        for _ in 0..EXTRA_FLUX_ROUNDS {
-            let grown = self.faults.extra_flux(end);
-            end = [linear[0] - (grown[0] - flux[0]) / self.motors.ld, linear[1] - (grown[1] - flux[1]) / self.motors.lq];
+    fn faulty_rows(&self, segment: &SimulatedSegment, state: &mut State<V>, mut into: Into<V>) {
+        let mut transitions = Vec::with_capacity(BLOCK);
+        for first in (0..segment.periods.len()).step_by(BLOCK) {
+            self.transitions(segment, first, &mut transitions);
+            state.i[0].call(FaultyBlock {
+                motors: &self.motors,
+                faults: &self.faults,
+                segment,
+                first,
+                transitions: &transitions,
+                state,
+                into: &mut into,
+            });
         }
-        end
     }
 
-    /// The transitions over one period.
+    /// The transitions over the periods of a block.
     #[inline(always)]
-    fn transitions(&self, segment: &SimulatedSegment, row: usize) -> TransitionLanes<V> {
-        let PeriodRow { class, turn, place, .. } = segment.rows_of_periods[row];
-        if self.polynomials.is_empty() {
-            TransitionLanes::exact(&self.motors, turn, segment.periods[row].length)
-        } else {
-            self.polynomials[class].at(turn, place)
+    fn transitions(&self, segment: &SimulatedSegment, first: usize, transitions: &mut Vec<TransitionLanes<V>>) {
+        transitions.clear();
+        let last = (first + BLOCK).min(segment.periods.len());
+        for (row, period) in segment.rows_of_periods[first..last].iter().zip(&segment.periods[first..last]) {
+            transitions.push(if self.polynomials.is_empty() {
+                TransitionLanes::exact(&self.motors, row.turn, period.length)
+            } else {
+                self.polynomials[row.class].at(row.turn, row.place)
+            });
         }
     }
 
@@ -211,12 +180,17 @@ impl<V: Number, const C: usize> Drives<V, C> {
     #[inline(always)]
     pub(super) fn by_voltage(&self, segment: &SimulatedSegment, weights: impl Fn(usize) -> [V; 2], lanes: usize, effects: &mut [f64]) {
         let mut behind = [self.motors.rs.constant(0.0); 2];
-        for row in (0..segment.periods.len()).rev() {
-            let TransitionLanes { fdd, fdq, fqd, fqq, gdd, gdq, gqd, gqq, .. } = self.transitions(segment, row);
-            let own = weights(row + 1);
-            let (d, q) = (behind[0] + own[0], behind[1] + own[1]);
-            behind = self.faults.remaining([d * fdd + q * fqd, d * fdq + q * fqq]);
-            store([d * gdd + q * gqd, d * gdq + q * gqq], &mut effects[2 * lanes * row..2 * lanes * (row + 1)]);
+        let mut transitions = Vec::with_capacity(BLOCK);
+        for first in (0..segment.periods.len()).step_by(BLOCK).rev() {
+            self.transitions(segment, first, &mut transitions);
+            for (k, transition) in transitions.iter().enumerate().rev() {
+                let row = first + k;
+                let TransitionLanes { fdd, fdq, fqd, fqq, gdd, gdq, gqd, gqq, .. } = *transition;
+                let own = weights(row + 1);
+                let (d, q) = (behind[0] + own[0], behind[1] + own[1]);
+                behind = self.faults.remaining([d * fdd + q * fqd, d * fdq + q * fqq]);
+                store([d * gdd + q * gqd, d * gdq + q * gqq], &mut effects[2 * lanes * row..2 * lanes * (row + 1)]);
+            }
         }
     }
 }
@@ -266,6 +240,88 @@ fn perfect_errors<'a, V: Number, const C: usize>(
         i = polynomials[row.class].at(row.turn, row.place).after(i, u);
         let measured = zero.constants(row.measured);
         store([measured[0] - i[0], measured[1] - i[1]], errors);
+    }
+}
+
+/// Where a row goes.
+enum Into<'a, V> {
+    /// Into sums.
+    Sums(&'a mut Sums<V>),
+    /// What these values of the linear unknowns leave, into an array: of each row the lanes of d, then those of q.
+    Errors { linear: &'a [V; LINEAR_UNKNOWNS], lanes: usize, errors: &'a mut [f64] },
+}
+
+/// Rows of drives with faults.
+struct FaultyBlock<'a, 'b, V> {
+    motors: &'a MotorLanes<V>,
+    faults: &'a Acting<V>,
+    segment: &'a SimulatedSegment,
+    first: usize,
+    transitions: &'a [TransitionLanes<V>],
+    state: &'a mut State<V>,
+    into: &'a mut Into<'b, V>,
+}
+
+impl<V: Number> NullaryFnOnce for FaultyBlock<'_, '_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let mut state = *self.state;
+        state.forget();
+        for (k, transitions) in self.transitions.iter().enumerate() {
+            self.row(self.first + k, transitions, &mut state);
+            match self.into {
+                Into::Sums(sums) => state.add::<true, true>(sums),
+                Into::Errors { linear, lanes, errors } => {
+                    let row = 2 * *lanes * (self.first + k);
+                    store(state.left(linear), &mut errors[row..row + 2 * *lanes]);
+                }
+            }
+        }
+        *self.state = state;
+    }
+}
+
+impl<V: Number> FaultyBlock<'_, '_, V> {
+    /// One row. Faults that depend on the current follow the simulated one: the measured one would bring its noise into the prediction.
+    #[inline(always)]
+    fn row(&self, row: usize, transitions: &TransitionLanes<V>, state: &mut State<V>) {
+        let segment = self.segment;
+        let period = &segment.rows_of_periods[row];
+        let zero = self.motors.rs.constant(0.0);
+        let start = self.faults.corrected(state.i, state.error);
+        let turns =
+            PeriodTurns { half: segment.half(row), start: segment.turns[row], middle: segment.middles[row], end: segment.turns[row + 1] };
+        let u = self.faults.motor_voltage(zero.constants(period.u), start, &turns);
+        state.i = if self.faults.kinds.flux {
+            self.saturated_step(transitions, zero.constant(segment.periods[row].omega_e), u, start)
+        } else {
+            transitions.after(start, u)
+        };
+        let [alpha_d, alpha_q] = zero.constants(period.alternating);
+        let [first_d, first_q, alpha, beta] = state.response;
+        state.response = [
+            transitions.response(self.faults.remaining(first_d)),
+            transitions.response(self.faults.remaining(first_q)),
+            transitions.driven_response(self.faults.remaining(alpha), [alpha_d, alpha_q]),
+            transitions.driven_response(self.faults.remaining(beta), [-alpha_q, alpha_d]),
+        ];
+        let measured = self.faults.motor_current(zero.constants(period.measured), segment.turns[row + 1]);
+        state.error = [measured[0] - state.i[0], measured[1] - state.i[1]];
+    }
+
+    /// A step whose flux is not only `L i + psi_f`: what is beyond takes a voltage as any flux does, by its turning and by its growth.
+    #[inline(always)]
+    fn saturated_step(&self, transitions: &TransitionLanes<V>, omega_e: V, u: [V; 2], i: [V; 2]) -> [V; 2] {
+        let flux = self.faults.extra_flux(i);
+        let linear = transitions.after(i, [u[0] + omega_e * flux[1], u[1] - omega_e * flux[0]]);
+        let mut end = linear;
+        for _ in 0..EXTRA_FLUX_ROUNDS {
+            let grown = self.faults.extra_flux(end);
+            end = [linear[0] - (grown[0] - flux[0]) / self.motors.ld, linear[1] - (grown[1] - flux[1]) / self.motors.lq];
+        }
+        end
     }
 }
 

@@ -7,6 +7,7 @@
 //! its digits.
 
 use crate::{lanes::Number, motor::Motor};
+use pulp::NullaryFnOnce;
 
 /// Motors, one per lane.
 #[derive(Debug, Clone, Copy)]
@@ -65,12 +66,28 @@ impl<V: Number> TransitionLanes<V> {
     /// A period of `length` seconds in which the rotor turns by `turn` electrical radians. Not finite where a motor has no inductance.
     #[inline(always)]
     pub(super) fn exact(motors: &MotorLanes<V>, turn: f64, length: f64) -> Self {
-        let (mut series, most) = Series::of(motors, turn, length);
+        motors.rs.call(Exact { motors, turn, length })
+    }
+}
+
+/// An exact transition.
+struct Exact<'a, V> {
+    motors: &'a MotorLanes<V>,
+    turn: f64,
+    length: f64,
+}
+
+impl<V: Number> NullaryFnOnce for Exact<'_, V> {
+    type Output = TransitionLanes<V>;
+
+    #[inline(always)]
+    fn call(self) -> TransitionLanes<V> {
+        let (mut series, most) = Series::of(self.motors, self.turn, self.length);
         for doubled in 0..most {
             series.double(doubled);
         }
         // The voltage at the period's start is the middle's, half a turn ahead.
-        let (sin, cos) = (0.5 * turn).sin_cos();
+        let (sin, cos) = (0.5 * self.turn).sin_cos();
         series.from_middle(sin, cos)
     }
 }
