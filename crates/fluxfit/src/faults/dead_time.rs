@@ -88,8 +88,8 @@ pub(super) static FAULT: Description<DeadTime> = Description {
     is_physical: |state, _, _| state.voltage > 0.0,
 };
 
-/// What is left of a period's commanded voltage `u`, V, given the current `i`, A, both `d, q` in the frame of the logged angle. Of the fault:
-/// voltage, width, ripple.
+/// What is left of a period's commanded voltage `u`, V, given the current `i`, A, both `d, q` in the frame of the logged angle. The first
+/// argument is voltage, width and ripple of the fault.
 #[inline(always)]
 pub(super) fn reduced<V: Number>([voltage, width, ripple]: [V; 3], u: [V; 2], i: [V; 2], turns: &PeriodTurns) -> [V; 2] {
     // Over a period the current hardly moves against the rotor.

@@ -1,8 +1,8 @@
 //! Many adjustable drives on the same rows, side by side: the walk from row to row that every evaluation of the output error is.
 //!
-//! A lane is a candidate. Each period costs some forty multiplications and additions a lane: the [transition](super::transition_polynomials)
-//! at its speed, the step of the simulated current, the sums of squares; more where a drive has faults. The response to what the log does
-//! not hold, the first current, dies out with the windings' time constants and is then left alone.
+//! A lane is a candidate. Each period costs some forty multiplications and additions a lane: the transition at its speed
+//! ([polynomials](super::transition_polynomials)), the step of the simulated current, the sums of squares; more where a drive has faults.
+//! The response to what the log does not hold, the first current, dies out with the windings' time constants and is then left alone.
 //!
 //! Every operation is done on each lane alone and in the same order, whatever the number of lanes and the processor's instructions: the
 //! bits of a candidate depend on nothing beside it.
@@ -175,8 +175,8 @@ impl<V: Number, const C: usize> Drives<V, C> {
     }
 
     /// What a volt over each period does to linear functions of the simulated currents, one function a lane, of which `weights` gives the
-    /// `d, q` of a row. From the last period to the first, by the adjoint equations; into `effects`, of each period the lanes of d, then those
-    /// of q.
+    /// `d, q` of a row. From the last period to the first, by the adjoint equations; into `effects`, of each period the lanes of d, then
+    /// those of q.
     #[inline(always)]
     pub(super) fn by_voltage(&self, segment: &SimulatedSegment, weights: impl Fn(usize) -> [V; 2], lanes: usize, effects: &mut [f64]) {
         let mut behind = [self.motors.rs.constant(0.0); 2];

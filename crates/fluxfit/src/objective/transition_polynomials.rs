@@ -2,8 +2,8 @@
 //! polynomial of the squared turn per period.
 //!
 //! Turning the other way round is the same as reversing the q axis, so `F_dd, F_qq, G_dd, G_qq, h_d` are even functions of the turn
-//! `w = omega_e T` and `F_dq, F_qd, G_dq, G_qd, h_q` are odd ones. Both are entire: a polynomial in `w²` through Chebyshev nodes is right to
-//! rounding with three to eleven coefficients, from standstill up to half a turn per period. `F` is a sum of the identity and of the
+//! `w = omega_e T` and `F_dq, F_qd, G_dq, G_qd, h_q` are odd ones. Both are entire: a polynomial in `w²` through Chebyshev nodes is right
+//! to rounding with four to eleven coefficients, from standstill up to half a turn per period. `F` is a sum of the identity and of the
 //! rates `M` (Cayley and Hamilton), which gives two of its numbers from the other two.
 
 use super::{
@@ -112,8 +112,8 @@ impl Gathered {
 }
 
 /// Coefficients that suit squared turns of this range: the error of a Chebyshev interpolation of `cos w` with `n` of them is
-/// `2 (range / 4)ⁿ / (2n)!` at most, that of `sin w`, with one less, `2 w (range / 4)ⁿ⁻¹ / (2n - 1)!`. `F` varies as they do; `G` and `h` up to
-/// 1.5 times as fast, because the voltage turns too, but what they add to the current in a period is a small part of it.
+/// `2 (range / 4)ⁿ / (2n)!` at most, that of `sin w`, with one less, `2 w (range / 4)ⁿ⁻¹ / (2n - 1)!`. `F` varies as they do; `G` and `h`
+/// up to 1.5 times as fast, because the voltage turns too, but what they add to the current in a period is a small part of it.
 fn needed(least: f64, most: f64) -> usize {
     let quarter = (most - least) / 4.0;
     let (mut n, mut even, mut odd) = (1, 2.0 * quarter / 2.0, 2.0 * most.sqrt());
@@ -128,7 +128,7 @@ fn needed(least: f64, most: f64) -> usize {
     n
 }
 
-/// From values at the Chebyshev nodes to coefficients of powers: of `C` nodes, for polynomials with as many coefficients, and with one less.
+/// From values at the Chebyshev nodes to coefficients of powers: `C` nodes, for polynomials of as many coefficients, and of one less.
 struct Interpolation<const C: usize> {
     nodes: [f64; C],
     even: [[f64; C]; C],
