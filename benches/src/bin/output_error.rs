@@ -1,68 +1,111 @@
-//! The output error's times on a log whose voltages are centred, one thread: a run of the paper's method with its 15 050 evaluations, one
-//! evaluation, and the part of it that is matrix exponentials. `output_error [LOG.csv]`, by default the paper's rig with noise.
-// The figures on standard output are what this program is for.
+//! The output error's times on a log, as JSON: of batches of candidates, of one alone, and of a run of the paper's method.
+//!
+//! `output_error [LOG.csv]`, by default the paper's rig with noise. `output_error.py` calls it, on one thread and on all, and evaluates the
+//! same candidates by other means.
+// The JSON on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
 use fluxfit::{
     log::Log,
-    motor::{Motor, PARAMETERS},
+    motor::PARAMETERS,
     objective::{
         acting_voltage::{VoltageFrame, VoltageTiming},
         output_error::OutputError,
-        transition::Transition,
     },
     optimizer::{Bounds, Method, Objective, Optimizer, SearchSettings},
     paper,
 };
 use fluxfit_log::{LogOptions, read_log};
+use serde::Serialize;
 use std::{error::Error, hint::black_box, path::PathBuf, time::Instant};
 
 const LOG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/logs/paper_rig_pwm_noise.csv");
 
+/// Candidates of a batch: about a population.
+const BATCH: usize = 64;
+
+/// Relative distance of a candidate from the next.
+const APART: f64 = 1e-3;
+
 /// Calls timed; the median counts.
-const REPEATS: usize = 201;
+const REPEATS: usize = 51;
+
+/// Runs of the paper's method timed; the median counts.
+const RUNS: usize = 5;
+
+#[derive(Serialize)]
+struct Figures {
+    rows: usize,
+    threads: usize,
+    candidates: Vec<[f64; PARAMETERS]>,
+    delayed: Times,
+    centred: Times,
+    /// With centred voltages, in the paper's box.
+    search_seconds: f64,
+    search_evaluations: u64,
+}
+
+#[derive(Serialize)]
+struct Times {
+    /// Of each candidate, A².
+    costs: Vec<f64>,
+    /// Microseconds per candidate of a batch.
+    in_batch: f64,
+    /// The same of a candidate alone.
+    alone: f64,
+}
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).map_or_else(|| PathBuf::from(LOG), PathBuf::from);
     let log = read_log(&path, &LogOptions::default())?.log;
-    let objective = OutputError::of(&log, VoltageTiming::Centered)?;
-    let delayed = of_delayed(&log)?;
-    let segment = log.segments().first().ok_or("the log has no segment")?;
-    let omega_e = log.columns().omega_e[segment.rows.start];
-
-    let evaluation = median_seconds(|| objective.cost(black_box(&paper::MOTOR)));
-    let transition = median_seconds(|| Transition::of(black_box(&paper::MOTOR), omega_e, segment.sample_period));
-    println!("rows                       {}", objective.rows());
-    println!("one evaluation, us         {:.1}", 1e6 * evaluation);
-    println!("  of delayed voltages, us  {:.1}", 1e6 * median_seconds(|| delayed.cost(black_box(&paper::MOTOR))));
-    let near: Vec<f64> = (0..64).flat_map(|k| paper::MOTOR.to_array().map(|value| value * (1.0 + 1e-3 * f64::from(k)))).collect();
-    let mut costs = vec![0.0; 64];
-    println!("of 64, us a candidate      {:.2}", 1e6 / 64.0 * median_seconds(|| objective.evaluate(black_box(&near), &mut costs)));
-    println!("  of delayed voltages, us  {:.2}", 1e6 / 64.0 * median_seconds(|| delayed.evaluate(black_box(&near), &mut costs)));
-    println!("one matrix exponential, us {:.2}", 1e6 * transition);
-
-    let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
-    let start = Instant::now();
-    let report = Optimizer::start(Method::default(), SearchSettings::default(), bounds, &objective)?.run(&objective);
-    println!("one run of tGFPA, s        {:.2}", start.elapsed().as_secs_f64());
-    println!("evaluations                {}", report.evaluations);
-    println!("ends at                    {:?}", Motor::from(<[f64; PARAMETERS]>::try_from(report.best.as_slice())?));
+    let candidates: Vec<[f64; PARAMETERS]> =
+        (0..BATCH).map(|k| paper::MOTOR.to_array().map(|value| value * (1.0 + APART * k as f64))).collect();
+    let centred = OutputError::of(&log, VoltageTiming::Centered)?;
+    let delayed = VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Middle };
+    let (search_seconds, search_evaluations) = search(&centred)?;
+    let figures = Figures {
+        rows: centred.rows(),
+        threads: rayon::current_num_threads(),
+        delayed: times(&log, delayed, &candidates)?,
+        centred: times(&log, VoltageTiming::Centered, &candidates)?,
+        candidates,
+        search_seconds,
+        search_evaluations,
+    };
+    println!("{}", serde_json::to_string_pretty(&figures)?);
     Ok(())
 }
 
-/// With two linear unknowns instead of four: the difference is what two cost.
-fn of_delayed(log: &Log) -> Result<OutputError, fluxfit::error::Error> {
-    OutputError::of(log, VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Middle })
+/// Evaluates the candidates together and one alone.
+fn times(log: &Log, timing: VoltageTiming, candidates: &[[f64; PARAMETERS]]) -> Result<Times, Box<dyn Error>> {
+    let objective = OutputError::of(log, timing)?;
+    let candidates = candidates.as_flattened();
+    let mut costs = vec![0.0; BATCH];
+    let batch = median_seconds(REPEATS, || objective.evaluate(black_box(candidates), black_box(&mut costs)));
+    let alone = median_seconds(REPEATS, || black_box(objective.cost(black_box(&paper::MOTOR))));
+    Ok(Times { costs, in_batch: 1e6 * batch / BATCH as f64, alone: 1e6 * alone })
+}
+
+/// Seconds and evaluations of a run of the paper's method with its own settings.
+fn search(objective: &OutputError) -> Result<(f64, u64), Box<dyn Error>> {
+    let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
+    let run = || -> Result<u64, fluxfit::error::Error> {
+        let mut search = Optimizer::start(Method::default(), SearchSettings::default(), bounds.clone(), objective)?;
+        Ok(search.run(objective).evaluations)
+    };
+    let evaluations = run()?;
+    Ok((median_seconds(RUNS, run), evaluations))
 }
 
 /// Median wall time of a call, s.
-fn median_seconds<T>(mut call: impl FnMut() -> T) -> f64 {
-    let mut seconds = [0.0; REPEATS];
-    for seconds in &mut seconds {
-        let start = Instant::now();
-        black_box(call());
-        *seconds = start.elapsed().as_secs_f64();
-    }
+fn median_seconds<T>(calls: usize, mut call: impl FnMut() -> T) -> f64 {
+    let mut seconds: Vec<f64> = (0..calls)
+        .map(|_| {
+            let start = Instant::now();
+            black_box(call());
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
     seconds.sort_unstable_by(f64::total_cmp);
-    seconds[REPEATS / 2]
+    seconds[calls / 2]
 }

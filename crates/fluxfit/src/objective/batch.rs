@@ -80,7 +80,9 @@ enum InstructionSet {
 impl InstructionSet {
     fn of_this_machine() -> Self {
         #[cfg(target_arch = "x86_64")]
-        if let Some(set) = pulp::x86::V4::try_new() {
+        if !cfg!(feature = "avx2-only")
+            && let Some(set) = pulp::x86::V4::try_new()
+        {
             return Self::Avx512(set);
         } else if let Some(set) = pulp::x86::V3::try_new() {
             return Self::Avx2(set);
