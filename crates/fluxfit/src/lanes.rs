@@ -95,11 +95,11 @@ impl<S: Simd, const K: usize> Lanes<S, K> {
     pub(crate) fn of(set: S, number: impl Fn(usize) -> f64) -> Self {
         let mut numbers = [0.0; WIDEST];
         let mut vectors = [set.splat_f64s(0.0); K];
-        for k in 0..K {
-            for lane in 0..S::F64_LANES {
-                numbers[lane] = number(k * S::F64_LANES + lane);
+        for (k, vector) in vectors.iter_mut().enumerate() {
+            for (lane, one) in numbers[..S::F64_LANES].iter_mut().enumerate() {
+                *one = number(k * S::F64_LANES + lane);
             }
-            vectors[k] = set.partial_load_f64s(&numbers[..S::F64_LANES]);
+            *vector = set.partial_load_f64s(&numbers[..S::F64_LANES]);
         }
         Self { set, vectors }
     }

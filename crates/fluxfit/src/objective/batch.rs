@@ -184,7 +184,8 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
                 (sums.total, drives.iter().enumerate().map(|(lane, _)| linear_unknowns(&sums, lane, segment.alternates)));
             let solved: Vec<_> = solved.collect();
             // What is left may be no number where the total is one.
-            let cancelled = |lane: usize| totals.lane(lane).is_finite() && !(solved[lane].1 > CANCELLED * totals.lane(lane));
+            let cancelled =
+                |lane: usize| totals.lane(lane).is_finite() && (solved[lane].1.is_nan() || solved[lane].1 <= CANCELLED * totals.lane(lane));
             let any_cancelled = (0..drives.len()).any(cancelled);
             for (lane, result) in results.iter_mut().enumerate().filter(|(lane, _)| !cancelled(*lane)) {
                 result.cost += solved[lane].1;

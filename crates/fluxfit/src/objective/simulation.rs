@@ -367,8 +367,8 @@ impl<V: Number> State<V> {
     #[inline(always)]
     fn left(&self, linear: &[V; LINEAR_UNKNOWNS]) -> [V; 2] {
         let mut left = self.error;
-        for k in 0..LINEAR_UNKNOWNS {
-            left = [left[0] - linear[k] * self.response[k][0], left[1] - linear[k] * self.response[k][1]];
+        for (value, [d, q]) in linear.iter().zip(&self.response) {
+            left = [left[0] - *value * *d, left[1] - *value * *q];
         }
         left
     }

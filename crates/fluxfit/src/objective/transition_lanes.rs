@@ -88,7 +88,7 @@ impl<V: Number> NullaryFnOnce for Exact<'_, V> {
         }
         // The voltage at the period's start is the middle's, half a turn ahead.
         let (sin, cos) = (0.5 * self.turn).sin_cos();
-        series.from_middle(sin, cos)
+        series.turned_to_middle(sin, cos)
     }
 }
 
@@ -189,7 +189,7 @@ impl<V: Number> Series<V> {
 
     /// With the voltage in the frame at the middle of the period, half a turn (sine, cosine) later.
     #[inline(always)]
-    fn from_middle(&self, sin: f64, cos: f64) -> TransitionLanes<V> {
+    fn turned_to_middle(&self, sin: f64, cos: f64) -> TransitionLanes<V> {
         let Self { e, g, h, .. } = *self;
         let (sin, cos, one) = (h[0].constant(sin), h[0].constant(cos), h[0].constant(1.0));
         TransitionLanes {

@@ -146,10 +146,10 @@ impl<const C: usize> Interpolation<C> {
             for (j, node) in nodes.iter().enumerate() {
                 let value = (0..C).rev().fold(0.0, |value, k| value * node + present[k]);
                 let weight = value * if m == 0 { 1.0 } else { 2.0 } / C as f64;
-                for k in 0..C {
-                    interpolation.even[k][j] += weight * present[k];
+                for (k, power) in present.iter().enumerate() {
+                    interpolation.even[k][j] += weight * power;
                     if m + 1 < C {
-                        interpolation.odd[k][j] += weight * present[k];
+                        interpolation.odd[k][j] += weight * power;
                     }
                 }
             }
