@@ -152,7 +152,7 @@ def table(ours, theirs):
     for who, milliseconds, evaluations, above in rows:
         # No evaluations: an exact solver.
         excess = "exact" if evaluations == 0 else f"{above:.1e}"
-        print(f"| {who} | {digits(milliseconds)} | {evaluations or ''} | {excess} | {digits(milliseconds / reference)} |")
+        print(f"| {who} | {digits(milliseconds)} | {f'{evaluations:.0f}' if evaluations else ''} | {excess} | {digits(milliseconds / reference)} |")
 
 
 def verdicts(ours, theirs):
