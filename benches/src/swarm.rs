@@ -1,6 +1,6 @@
 //! Whole runs of the swarm optimizers, as a user starts them: 50 candidates, 300 iterations, history kept.
 
-use crate::timing::{median, median_seconds};
+use crate::timing::{median, median_cpu_seconds};
 use fluxfit::{
     error::Error,
     motor::{Motor, PARAMETERS},
@@ -34,7 +34,7 @@ pub(crate) fn measure(method: Method, bounds: &Bounds, objective: &VoltageError)
     Ok(Figures {
         key: method.key(),
         label: method.label(),
-        milliseconds_per_run: 1e3 * median_seconds(RUNS, run),
+        milliseconds_per_run: 1e3 * median_cpu_seconds(RUNS, run),
         evaluations: reports.iter().map(|report| report.evaluations).max().unwrap_or(0),
         cost_above_optimum: median(&mut above),
     })

@@ -5,6 +5,7 @@
 // The JSON on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
+use cpu_time::ProcessTime;
 use fluxfit::{
     log::Log,
     motor::PARAMETERS,
@@ -41,10 +42,18 @@ struct Figures {
     delayed: Times,
     centred: Times,
     /// With centred voltages, in the paper's box.
-    search_seconds: f64,
-    search_evaluations: u64,
+    search: Search,
 }
 
+#[derive(Serialize)]
+struct Search {
+    evaluations: u64,
+    wall_seconds: f64,
+    /// Of all threads together.
+    cpu_seconds: f64,
+}
+
+/// Of the processor, so that other work on the machine does not count.
 #[derive(Serialize)]
 struct Times {
     /// Of each candidate, A².
@@ -62,15 +71,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         (0..BATCH).map(|k| paper::MOTOR.to_array().map(|value| value * (1.0 + APART * k as f64))).collect();
     let centred = OutputError::of(&log, VoltageTiming::Centered)?;
     let delayed = VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Middle };
-    let (search_seconds, search_evaluations) = search(&centred)?;
     let figures = Figures {
         rows: centred.rows(),
         threads: rayon::current_num_threads(),
         delayed: times(&log, delayed, &candidates)?,
         centred: times(&log, VoltageTiming::Centered, &candidates)?,
         candidates,
-        search_seconds,
-        search_evaluations,
+        search: search(&centred)?,
     };
     println!("{}", serde_json::to_string_pretty(&figures)?);
     Ok(())
@@ -81,31 +88,32 @@ fn times(log: &Log, timing: VoltageTiming, candidates: &[[f64; PARAMETERS]]) -> 
     let objective = OutputError::of(log, timing)?;
     let candidates = candidates.as_flattened();
     let mut costs = vec![0.0; BATCH];
-    let batch = median_seconds(REPEATS, || objective.evaluate(black_box(candidates), black_box(&mut costs)));
-    let alone = median_seconds(REPEATS, || black_box(objective.cost(black_box(&paper::MOTOR))));
+    let (_, batch) = median_seconds(REPEATS, || objective.evaluate(black_box(candidates), black_box(&mut costs)));
+    let (_, alone) = median_seconds(REPEATS, || black_box(objective.cost(black_box(&paper::MOTOR))));
     Ok(Times { costs, in_batch: 1e6 * batch / BATCH as f64, alone: 1e6 * alone })
 }
 
-/// Seconds and evaluations of a run of the paper's method with its own settings.
-fn search(objective: &OutputError) -> Result<(f64, u64), Box<dyn Error>> {
+/// A run of the paper's method with its own settings.
+fn search(objective: &OutputError) -> Result<Search, Box<dyn Error>> {
     let bounds = Bounds::new(vec![0.0; PARAMETERS], paper::SEARCH_BOX.to_vec())?;
     let run = || -> Result<u64, fluxfit::error::Error> {
         let mut search = Optimizer::start(Method::default(), SearchSettings::default(), bounds.clone(), objective)?;
         Ok(search.run(objective).evaluations)
     };
     let evaluations = run()?;
-    Ok((median_seconds(RUNS, run), evaluations))
+    let (wall_seconds, cpu_seconds) = median_seconds(RUNS, run);
+    Ok(Search { evaluations, wall_seconds, cpu_seconds })
 }
 
-/// Median wall time of a call, s.
-fn median_seconds<T>(calls: usize, mut call: impl FnMut() -> T) -> f64 {
-    let mut seconds: Vec<f64> = (0..calls)
-        .map(|_| {
-            let start = Instant::now();
-            black_box(call());
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    seconds.sort_unstable_by(f64::total_cmp);
-    seconds[calls / 2]
+/// Median times of a call, s: that passes, and of the processor.
+fn median_seconds<T>(calls: usize, mut call: impl FnMut() -> T) -> (f64, f64) {
+    let times = (0..calls).map(|_| {
+        let (wall, cpu) = (Instant::now(), ProcessTime::now());
+        black_box(call());
+        (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64())
+    });
+    let (mut wall, mut cpu): (Vec<f64>, Vec<f64>) = times.unzip();
+    wall.sort_unstable_by(f64::total_cmp);
+    cpu.sort_unstable_by(f64::total_cmp);
+    (wall[calls / 2], cpu[calls / 2])
 }
