@@ -110,6 +110,18 @@ impl Turn {
     pub(crate) fn twice(self) -> Self {
         Self { cos: self.cos * self.cos - self.sin * self.sin, sin: 2.0 * self.sin * self.cos }
     }
+
+    /// Six times the turn.
+    pub(crate) fn sixfold(self) -> Self {
+        let two = self.twice();
+        let four = two.twice();
+        Self { cos: four.cos * two.cos - four.sin * two.sin, sin: four.sin * two.cos + four.cos * two.sin }
+    }
+
+    /// The turn from this to another.
+    pub(crate) fn until(self, other: Self) -> Self {
+        Self { cos: self.cos * other.cos + self.sin * other.sin, sin: self.cos * other.sin - self.sin * other.cos }
+    }
 }
 
 /// A vector turned forward by an angle with this cosine and sine.

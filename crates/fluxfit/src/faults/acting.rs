@@ -2,12 +2,15 @@
 //! cosines of fitted angles computed once, for many drives side by side.
 
 use super::{
-    Faults,
+    Faults, Place, angle_delay,
+    current_filter::filtered,
     current_gains::balanced,
     current_offset::removed,
-    dead_time::{PeriodTurns, reduced},
+    dead_time::reduced,
     disturbance::{corrected, remaining},
+    flux_harmonics, resistance_drift,
     saturation::extra_flux,
+    speed_lag,
 };
 use crate::{
     frames::{Dq, Turn, turned},
@@ -19,6 +22,8 @@ use crate::{
 pub(crate) struct Acting<V> {
     /// Voltage, width, ripple.
     dead_time: [V; 3],
+    /// Cosine and sine of the angle of phase a where the log does not have it.
+    phase: [V; 2],
     /// Alpha, beta.
     current_offset: [V; 2],
     imbalance: [V; 2],
@@ -26,6 +31,14 @@ pub(crate) struct Acting<V> {
     current_turn: [V; 2],
     /// Cosine and sine of the turn from the frame of the logged angle to the magnet's.
     angle: [V; 2],
+    /// By which the angle is late, s.
+    angle_delay: V,
+    /// Weights over a period.
+    current_filter: [V; 2],
+    speed_lag: V,
+    /// `d cos, d sin, q cos, q sin`.
+    flux_harmonics: [V; 4],
+    resistance_change: V,
     /// `s_d`, `s_q`, `c`.
     saturation: [V; 3],
     /// `d, q`.
@@ -37,19 +50,41 @@ pub(crate) struct Acting<V> {
 /// Kinds of faults, by what they take part in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct FaultKinds {
+    /// What the sensors of current do.
     pub(crate) sensors: bool,
+    /// A frame whose turn depends on the speed.
+    pub(crate) delay: bool,
+    /// A filter of the currents.
+    pub(crate) filter: bool,
+    /// Dead time, or a frame that is turned.
     pub(crate) voltages: bool,
+    /// Dead time without an angle.
+    pub(crate) phase: bool,
+    /// Voltages beside those of the equation (1).
+    pub(crate) beside: bool,
     pub(crate) flux: bool,
     pub(crate) observer: bool,
 }
 
 impl FaultKinds {
+    /// All kinds at once.
+    #[cfg(test)]
+    pub(crate) const ALL: Self =
+        Self { sensors: true, delay: true, filter: true, voltages: true, phase: true, beside: true, flux: true, observer: true };
+
     pub(crate) fn of(faults: &Faults) -> Self {
         let none = Faults::default();
-        let turns = faults.angle_offset != none.angle_offset;
+        let delay = faults.angle_delay != none.angle_delay;
+        let turns = faults.angle_offset != none.angle_offset || delay;
         Self {
             sensors: turns || faults.current_offset != none.current_offset || faults.current_gains != none.current_gains,
+            delay,
+            filter: faults.current_filter != none.current_filter,
             voltages: turns || faults.dead_time != none.dead_time,
+            phase: faults.dead_time.phase != 0.0,
+            beside: faults.speed_lag != none.speed_lag
+                || faults.flux_harmonics != none.flux_harmonics
+                || faults.resistance_drift != none.resistance_drift,
             flux: faults.saturation != none.saturation,
             observer: faults.disturbance != none.disturbance,
         }
@@ -59,7 +94,11 @@ impl FaultKinds {
     pub(crate) fn or(self, other: Self) -> Self {
         Self {
             sensors: self.sensors || other.sensors,
+            delay: self.delay || other.delay,
+            filter: self.filter || other.filter,
             voltages: self.voltages || other.voltages,
+            phase: self.phase || other.phase,
+            beside: self.beside || other.beside,
             flux: self.flux || other.flux,
             observer: self.observer || other.observer,
         }
@@ -71,20 +110,31 @@ impl FaultKinds {
 }
 
 impl<V> Acting<V> {
-    /// The numbers of all drives, `lanes` having been given how to find one.
+    /// The numbers of all drives, `lanes` having been given how to find one; `period` is the usual length of a period, s.
     #[inline(always)]
-    pub(crate) fn of(kinds: FaultKinds, lanes: impl Fn(fn(&Faults) -> f64) -> V) -> Self {
+    pub(crate) fn of(kinds: FaultKinds, period: f64, lanes: impl Fn(&dyn Fn(&Faults) -> f64) -> V) -> Self {
         Self {
-            dead_time: [lanes(|f| f.dead_time.voltage), lanes(|f| f.dead_time.width), lanes(|f| f.dead_time.ripple)],
-            current_offset: [lanes(|f| f.current_offset.current.alpha), lanes(|f| f.current_offset.current.beta)],
-            imbalance: [lanes(|f| f.current_gains.imbalance.alpha), lanes(|f| f.current_gains.imbalance.beta)],
+            dead_time: [lanes(&|f| f.dead_time.voltage), lanes(&|f| f.dead_time.width), lanes(&|f| f.dead_time.ripple)],
+            phase: [lanes(&|f| f.dead_time.phase.cos()), lanes(&|f| f.dead_time.phase.sin())],
+            current_offset: [lanes(&|f| f.current_offset.current.alpha), lanes(&|f| f.current_offset.current.beta)],
+            imbalance: [lanes(&|f| f.current_gains.imbalance.alpha), lanes(&|f| f.current_gains.imbalance.beta)],
             current_turn: [
-                lanes(|f| (f.angle_offset.angle - f.current_gains.turn).cos()),
-                lanes(|f| (f.angle_offset.angle - f.current_gains.turn).sin()),
+                lanes(&|f| (f.angle_offset.angle - f.current_gains.turn).cos()),
+                lanes(&|f| (f.angle_offset.angle - f.current_gains.turn).sin()),
             ],
-            angle: [lanes(|f| f.angle_offset.angle.cos()), lanes(|f| f.angle_offset.angle.sin())],
-            saturation: [lanes(|f| f.saturation.d), lanes(|f| f.saturation.q), lanes(|f| f.saturation.cross)],
-            observer_gain: [lanes(|f| f.disturbance.gain.d), lanes(|f| f.disturbance.gain.q)],
+            angle: [lanes(&|f| f.angle_offset.angle.cos()), lanes(&|f| f.angle_offset.angle.sin())],
+            angle_delay: lanes(&|f| f.angle_delay.time),
+            current_filter: [lanes(&|f| f.current_filter.weights(period)[0]), lanes(&|f| f.current_filter.weights(period)[1])],
+            speed_lag: lanes(&|f| f.speed_lag.time),
+            flux_harmonics: [
+                lanes(&|f| f.flux_harmonics.d[0]),
+                lanes(&|f| f.flux_harmonics.d[1]),
+                lanes(&|f| f.flux_harmonics.q[0]),
+                lanes(&|f| f.flux_harmonics.q[1]),
+            ],
+            resistance_change: lanes(&|f| f.resistance_drift.change),
+            saturation: [lanes(&|f| f.saturation.d), lanes(&|f| f.saturation.q), lanes(&|f| f.saturation.cross)],
+            observer_gain: [lanes(&|f| f.disturbance.gain.d), lanes(&|f| f.disturbance.gain.q)],
             kinds,
         }
     }
@@ -92,39 +142,77 @@ impl<V> Acting<V> {
 
 impl Acting<f64> {
     /// The faults of one drive.
-    pub(crate) fn of_one(faults: &Faults) -> Self {
-        Self::of(FaultKinds::of(faults), |number| number(faults))
+    pub(crate) fn of_one(faults: &Faults, period: f64) -> Self {
+        Self::of(FaultKinds::of(faults), period, |number| number(faults))
     }
 
-    /// The current in the motor, A, where `logged` was measured with the rotor there.
-    pub(crate) fn current(&self, logged: Dq, rotor: Turn) -> Dq {
-        let [d, q] = self.motor_current([logged.d, logged.q], rotor);
+    /// The current, A, that a perfect sensor would have logged for `logged`, measured with the rotor there at this speed.
+    pub(crate) fn current(&self, logged: Dq, rotor: Turn, omega_e: f64) -> Dq {
+        let [d, q] = self.motor_current([logged.d, logged.q], rotor, omega_e);
         Dq { d, q }
     }
 }
 
 impl<V: Number> Acting<V> {
-    /// The current in the motor, A, in the frame of its magnet, where `logged` was measured with the rotor there: the faults of the
-    /// sensors are undone.
+    /// The current, A, in the frame of the magnet, where `logged` was measured with the rotor there at this speed: the faults of the
+    /// sensors are undone, but for their filter.
     #[inline(always)]
-    pub(crate) fn motor_current(&self, logged: [V; 2], rotor: Turn) -> [V; 2] {
+    pub(crate) fn motor_current(&self, logged: [V; 2], rotor: Turn, omega_e: f64) -> [V; 2] {
         if !self.kinds.sensors {
             return logged;
         }
         let balanced = balanced(self.imbalance, removed(self.current_offset, logged, rotor), rotor);
         let [cos, sin] = self.current_turn;
-        turned(balanced, cos, sin)
+        self.undelayed(turned(balanced, cos, sin), omega_e, false)
+    }
+
+    /// Turned by what the angle is late: into the magnet's frame, or `out` of it.
+    #[inline(always)]
+    fn undelayed(&self, vector: [V; 2], omega_e: f64, out: bool) -> [V; 2] {
+        if !self.kinds.delay {
+            return vector;
+        }
+        let [cos, sin] = angle_delay::turn(self.angle_delay, if out { -omega_e } else { omega_e });
+        turned(vector, cos, sin)
+    }
+
+    /// What a filter makes of the motor's current at a period's end: given its output at the start, `y`, and the currents at both, A.
+    #[inline(always)]
+    pub(crate) fn filtered(&self, y: [V; 2], i: [[V; 2]; 2], place: &Place) -> [V; 2] {
+        if self.kinds.filter { filtered(self.current_filter, y, i, place) } else { i[1] }
     }
 
     /// The voltage that acts on the motor over a period, V, in the frame of its magnet, where `logged` was commanded, given the current
     /// `i`, A, in the motor at its start.
     #[inline(always)]
-    pub(crate) fn motor_voltage(&self, logged: [V; 2], i: [V; 2], turns: &PeriodTurns) -> [V; 2] {
+    pub(crate) fn motor_voltage(&self, logged: [V; 2], i: [V; 2], place: &Place) -> [V; 2] {
         if !self.kinds.voltages {
             return logged;
         }
         let [cos, sin] = self.angle;
-        turned(reduced(self.dead_time, logged, turned(i, cos, -sin), turns), cos, sin)
+        let i = self.undelayed(turned(i, cos, -sin), place.omega_e, true);
+        let reduced = if self.kinds.phase {
+            // In a stator that is turned by the phase's angle.
+            let [cos, sin] = self.phase;
+            let zero = [i[0].constant(0.0); 2];
+            let loss = turned(reduced(self.dead_time, zero, turned(i, cos, sin), place), cos, -sin);
+            [logged[0] + loss[0], logged[1] + loss[1]]
+        } else {
+            reduced(self.dead_time, logged, i, place)
+        };
+        self.undelayed(turned(reduced, cos, sin), place.omega_e, false)
+    }
+
+    /// The voltage `u`, V, less what a motor at current `i`, A, takes or induces beside its equation; `linear_flux` is `L i + psi_f`, Wb.
+    #[inline(always)]
+    pub(crate) fn beside(&self, u: [V; 2], i: [V; 2], linear_flux: [V; 2], place: &Place) -> [V; 2] {
+        if !self.kinds.beside {
+            return u;
+        }
+        let harmonics = flux_harmonics::induced(self.flux_harmonics, place);
+        let warmer = resistance_drift::taken(self.resistance_change, i, place);
+        let faster = speed_lag::induced(self.speed_lag, linear_flux, place);
+        [u[0] - harmonics[0] - warmer[0] - faster[0], u[1] - harmonics[1] - warmer[1] - faster[1]]
     }
 
     /// Flux, Wb, beyond `L i + psi_f` at current `i`, A.

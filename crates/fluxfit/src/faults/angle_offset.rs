@@ -3,7 +3,7 @@
 //! Voltages and currents are then written in a frame that leads the magnet's by that angle: both are turned forward by it to stand in the
 //! magnet's frame.
 
-use super::description::{Description, Names, NumberDescription, one, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state};
 
 /// An angle that is read wrongly.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -20,7 +20,7 @@ pub(super) static FAULT: Description<AngleOffset> = Description {
     label: "angle offset",
     family: "angle offset",
     // It is the same in every position of the rotor.
-    needs_angle: false,
+    angle: AngleNeed::Nothing,
     alters_measured_current: true,
     numbers: &[NumberDescription {
         names: Names { key: "angle_offset", label: "angle read too large by", unit: "rad" },

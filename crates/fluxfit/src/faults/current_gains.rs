@@ -4,7 +4,7 @@
 //! acts like a smaller impedance. Three sensors have any `s`. Where only two phases have a sensor and the third current is
 //! their negative sum, one number is all that there is, the gain of one over that of the other; it turns the current too.
 
-use super::description::{Description, Names, NumberDescription, one, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state};
 use crate::{
     frames::{AlphaBeta, Turn},
     lanes::Number,
@@ -30,7 +30,7 @@ pub(super) static THREE_SENSORS: Description<CurrentGains> = Description {
     key: "current_imbalance",
     label: "imbalance of three current sensors",
     family: FAMILY,
-    needs_angle: true,
+    angle: AngleNeed::Traced,
     alters_measured_current: true,
     numbers: &[
         NumberDescription {
@@ -55,7 +55,7 @@ pub(super) static SENSORS_A_B: Description<CurrentGains> = Description {
     key: "two_sensors_ab",
     label: "imbalance of current sensors a and b",
     family: FAMILY,
-    needs_angle: true,
+    angle: AngleNeed::Known,
     alters_measured_current: true,
     numbers: &[NumberDescription {
         names: Names { key: "current_gain_a_over_b", label: "gain of current sensor a over that of b, less one", unit: "1" },
@@ -72,7 +72,7 @@ pub(super) static SENSORS_B_C: Description<CurrentGains> = Description {
     key: "two_sensors_bc",
     label: "imbalance of current sensors b and c",
     family: FAMILY,
-    needs_angle: true,
+    angle: AngleNeed::Known,
     alters_measured_current: true,
     numbers: &[NumberDescription {
         names: Names { key: "current_gain_b_over_c", label: "gain of current sensor b over that of c, less one", unit: "1" },
@@ -89,7 +89,7 @@ pub(super) static SENSORS_C_A: Description<CurrentGains> = Description {
     key: "two_sensors_ca",
     label: "imbalance of current sensors c and a",
     family: FAMILY,
-    needs_angle: true,
+    angle: AngleNeed::Known,
     alters_measured_current: true,
     numbers: &[NumberDescription {
         names: Names { key: "current_gain_c_over_a", label: "gain of current sensor c over that of a, less one", unit: "1" },

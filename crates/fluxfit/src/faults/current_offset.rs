@@ -1,7 +1,7 @@
 //! Current sensor offset: what the current sensors read at zero. It is a constant vector in the stator's frame, so it turns in the
 //! rotor's.
 
-use super::description::{Description, Names, NumberDescription, peak_current, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, peak_current, present_state};
 use crate::{
     frames::{AlphaBeta, Turn},
     lanes::Number,
@@ -18,7 +18,7 @@ pub(super) static FAULT: Description<CurrentOffset> = Description {
     key: "current_offset",
     label: "current sensor offset",
     family: "sensor offset",
-    needs_angle: true,
+    angle: AngleNeed::Traced,
     alters_measured_current: true,
     numbers: &[
         NumberDescription {

@@ -19,9 +19,9 @@
 
 pub mod ripple;
 
-use super::description::{Description, Names, NumberDescription, peak_current};
+use super::{Place, description::{AngleNeed, Description, Names, NumberDescription, one, peak_current}};
 use crate::{
-    frames::{Turn, clarke, inverse_clarke},
+    frames::{clarke, inverse_clarke},
     lanes::Number,
 };
 
@@ -35,17 +35,9 @@ pub struct DeadTime {
     /// Ripple of a phase current between the carrier's rising and falling half, A: where each half is a row, the loss changes its sign at
     /// plus that current in one row and at minus it in the next. Its sign says which half comes first.
     pub ripple: f64,
-}
-
-/// Where in the log and in the stator a period lies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PeriodTurns {
-    /// Plus one or minus one from row to row of the log: the carrier's half, where each half is a row.
-    pub(crate) half: f64,
-    /// The rotor at its start, middle and end.
-    pub(crate) start: Turn,
-    pub(crate) middle: Turn,
-    pub(crate) end: Turn,
+    /// Where the angle is not known: the angle of phase a less the integral of the speed, electrical rad. It is only told up to a sixth
+    /// of a turn, because six turns of it give the same loss.
+    pub phase: f64,
 }
 
 /// The carrier's half in which a row of the log begins.
@@ -57,45 +49,87 @@ pub(crate) fn carrier_half(row: usize) -> f64 {
 /// current. The cost has a kink wherever the ramp's end passes a measured current, so one start does not find them all.
 const WIDTHS: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8];
 
+/// Angles of phase a from which a fit starts where the angle is not known, as fractions of the sixth of a turn after which the loss
+/// repeats: near enough to the right one for its harmonics to find it.
+const PHASES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+
+/// The sixth of a turn.
+const SIXTH: f64 = std::f64::consts::FRAC_PI_3;
+
+/// The same for the fewer widths that are tried with each.
+const WIDTHS_WITH_PHASE: [f64; 3] = [0.02, 0.1, 0.4];
+
+const VOLTAGE: NumberDescription<DeadTime> = NumberDescription {
+    names: Names { key: "dead_time_voltage", label: "dead-time voltage per phase", unit: "V" },
+    get: |state| state.voltage,
+    set: |state, value| state.voltage = value,
+    usual_size: |motor, peak| motor.rs.abs() * peak,
+};
+
+const WIDTH: NumberDescription<DeadTime> = NumberDescription {
+    names: Names { key: "dead_time_width", label: "phase current below which less is lost", unit: "A" },
+    get: |state| state.width,
+    set: |state, value| state.width = value,
+    usual_size: peak_current,
+};
+
+const RIPPLE: NumberDescription<DeadTime> = NumberDescription {
+    names: Names { key: "dead_time_ripple", label: "phase current's ripple between the carrier's halves", unit: "A" },
+    get: |state| state.ripple,
+    set: |state, value| state.ripple = value,
+    usual_size: peak_current,
+};
+
+const PHASE: NumberDescription<DeadTime> = NumberDescription {
+    names: Names { key: "dead_time_phase", label: "angle of phase a at the first row, up to a sixth of a turn", unit: "rad" },
+    get: |state| state.phase,
+    set: |state, value| state.phase = value,
+    usual_size: one,
+};
+
+const FAMILY: &str = "dead time";
+
 pub(super) static FAULT: Description<DeadTime> = Description {
     key: "dead_time",
     label: "dead time",
-    family: "dead time",
-    needs_angle: true,
+    family: FAMILY,
+    angle: AngleNeed::Known,
     alters_measured_current: false,
-    numbers: &[
-        NumberDescription {
-            names: Names { key: "dead_time_voltage", label: "dead-time voltage per phase", unit: "V" },
-            get: |state| state.voltage,
-            set: |state, value| state.voltage = value,
-            usual_size: |motor, peak| motor.rs.abs() * peak,
-        },
-        NumberDescription {
-            names: Names { key: "dead_time_width", label: "phase current below which less is lost", unit: "A" },
-            get: |state| state.width,
-            set: |state, value| state.width = value,
-            usual_size: peak_current,
-        },
-        NumberDescription {
-            names: Names { key: "dead_time_ripple", label: "phase current's ripple between the carrier's halves", unit: "A" },
-            get: |state| state.ripple,
-            set: |state, value| state.ripple = value,
-            usual_size: peak_current,
-        },
-    ],
+    numbers: &[VOLTAGE, WIDTH, RIPPLE],
     starts: |state, peak| WIDTHS.iter().map(|width| DeadTime { width: width * peak, ..*state }).collect(),
-    // An inverter takes voltage, it never adds any.
-    is_physical: |state, _, _| state.voltage > 0.0,
+    is_physical: |state, _, _| state.takes_voltage(),
 };
+
+/// The same where the angle is not known.
+pub(super) static WITHOUT_ANGLE: Description<DeadTime> = Description {
+    key: "dead_time_without_angle",
+    label: "dead time",
+    family: FAMILY,
+    angle: AngleNeed::OnlyTraced,
+    alters_measured_current: false,
+    numbers: &[VOLTAGE, WIDTH, RIPPLE, PHASE],
+    starts: |state, peak| {
+        let start = |width: &f64, phase: &f64| DeadTime { width: width * peak, phase: SIXTH * phase, ..*state };
+        WIDTHS_WITH_PHASE.iter().flat_map(|width| PHASES.iter().map(move |phase| start(width, phase))).collect()
+    },
+    is_physical: |state, _, _| state.takes_voltage(),
+};
+
+impl DeadTime {
+    /// An inverter takes voltage, it never adds any.
+    fn takes_voltage(&self) -> bool {
+        self.voltage > 0.0
+    }
+}
 
 /// What is left of a period's commanded voltage `u`, V, given the current `i`, A, both `d, q` in the frame of the logged angle. The first
 /// argument is voltage, width and ripple of the fault.
 #[inline(always)]
-pub(super) fn reduced<V: Number>([voltage, width, ripple]: [V; 3], u: [V; 2], i: [V; 2], turns: &PeriodTurns) -> [V; 2] {
+pub(super) fn reduced<V: Number>([voltage, width, ripple]: [V; 3], u: [V; 2], i: [V; 2], place: &Place) -> [V; 2] {
     // Over a period the current hardly moves against the rotor.
-    let (start, end) = (turns.start.forward(i), turns.end.forward(i));
-    let loss = mean_loss(start, end, voltage.constant(turns.half) * ripple, width);
-    let [d, q] = turns.middle.backward(loss);
+    let (start, end) = (place.start.forward(i), place.end.forward(i));
+    let loss = mean_loss(start, end, voltage.constant(place.half) * ripple, width);
+    let [d, q] = place.middle.backward(loss);
     [u[0] - voltage * d, u[1] - voltage * q]
 }
 
@@ -173,8 +207,8 @@ mod tests {
         let AlphaBeta { alpha, beta } = Abc { a: 3.0, b: -0.5, c: -2.5 }.to_alpha_beta();
         for (row, signs) in [(0, Abc { a: 1.0, b: -1.0, c: -1.0 }), (1, Abc { a: 1.0, b: 1.0, c: -1.0 })] {
             let still = Turn::by(0.0);
-            let turns = PeriodTurns { half: carrier_half(row), start: still, middle: still, end: still };
-            let left = reduced([2.0, 0.0, 1.0], [0.0; 2], [alpha, beta], &turns);
+            let place = Place { half: carrier_half(row), ..Place::still(still) };
+            let left = reduced([2.0, 0.0, 1.0], [0.0; 2], [alpha, beta], &place);
             let expected = signs.to_alpha_beta();
             assert!((left[0] + 2.0 * expected.alpha).hypot(left[1] + 2.0 * expected.beta) < 1e-15, "{row}: {left:?}");
         }

@@ -3,6 +3,34 @@
 
 use crate::motor::Motor;
 
+/// What a fault needs of the electrical angle, or what its numbers stand for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AngleNeed {
+    /// Nothing: it happens in the rotor's frame.
+    Nothing,
+    /// It happens in the stator's frame, whose orientation does not matter: the integral of the speed will do.
+    Traced,
+    /// It happens in the stator's phases: the angle must be known.
+    Known,
+    /// The same, with the orientation of the stator among its numbers: only where the angle is not known, but the integral of the speed is.
+    OnlyTraced,
+    /// It is in the speed column, which is only used where the angle is not known.
+    Unknown,
+}
+
+impl AngleNeed {
+    /// Whether a log meets it: whether its angle is known, and whether it is traced through all rows, up to a constant.
+    pub(crate) fn is_met(self, known: bool, traced: bool) -> bool {
+        match self {
+            Self::Nothing => true,
+            Self::Traced => traced,
+            Self::Known => known,
+            Self::OnlyTraced => traced && !known,
+            Self::Unknown => !known,
+        }
+    }
+}
+
 /// A fault of a drive, described.
 pub(super) struct Description<S: 'static> {
     /// Name in files.
@@ -11,8 +39,8 @@ pub(super) struct Description<S: 'static> {
     pub(super) label: &'static str,
     /// Short name of the fault, which it shares with faults that explain the same: of those at most one is part of an answer.
     pub(super) family: &'static str,
-    /// Whether it happens in the stator's frame, so that the electrical angle must be known.
-    pub(super) needs_angle: bool,
+    /// What must be known of the electrical angle.
+    pub(super) angle: AngleNeed,
     /// Whether it makes the logged currents differ from the motor's.
     pub(super) alters_measured_current: bool,
     /// The numbers that a fit may move.

@@ -5,7 +5,7 @@
 //! prediction problems", Journal of Basic Engineering 82, 1960, doi:10.1115/1.3662552; the gain is an unknown of the fit, as in L. Ljung,
 //! System Identification, 2nd edition, 1999, section 4.3 (innovations form).
 
-use super::description::{Description, Names, NumberDescription, one, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state};
 use crate::{frames::Dq, lanes::Number};
 
 /// The observer of a disturbed motor.
@@ -22,7 +22,7 @@ pub(super) static FAULT: Description<Disturbance> = Description {
     key: "process_noise",
     label: "disturbing voltages",
     family: "disturbances",
-    needs_angle: false,
+    angle: AngleNeed::Nothing,
     alters_measured_current: false,
     numbers: &[
         NumberDescription {

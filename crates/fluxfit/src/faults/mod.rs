@@ -6,25 +6,38 @@
 //! of the table, and a call where its effect belongs.
 
 mod acting;
+pub mod angle_delay;
 pub mod angle_offset;
+pub mod current_filter;
 pub mod current_gains;
 pub mod current_offset;
 pub mod dead_time;
 mod description;
 pub mod disturbance;
+pub mod flux_harmonics;
+mod place;
+pub mod resistance_drift;
 pub mod saturation;
+pub mod speed_lag;
 
 pub(crate) use acting::{Acting, FaultKinds};
-pub(crate) use dead_time::{PeriodTurns, carrier_half};
+pub(crate) use dead_time::carrier_half;
+pub(crate) use place::Place;
 
 use crate::motor::Motor;
+use angle_delay::AngleDelay;
 use angle_offset::AngleOffset;
+use current_filter::CurrentFilter;
 use current_gains::CurrentGains;
 use current_offset::CurrentOffset;
 use dead_time::DeadTime;
+pub(crate) use description::AngleNeed;
 use description::Names;
 use disturbance::Disturbance;
+use flux_harmonics::FluxHarmonics;
+use resistance_drift::ResistanceDrift;
 use saturation::Saturation;
+use speed_lag::SpeedLag;
 
 /// The state of all faults. The default is a perfect drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -33,10 +46,20 @@ pub struct Faults {
     pub dead_time: DeadTime,
     /// Angle that is read too large.
     pub angle_offset: AngleOffset,
+    /// Angle that is read late.
+    pub angle_delay: AngleDelay,
     /// What the current sensors read at zero.
     pub current_offset: CurrentOffset,
     /// Gains of the current sensors that differ.
     pub current_gains: CurrentGains,
+    /// Filter of the logged currents.
+    pub current_filter: CurrentFilter,
+    /// Speed that lags.
+    pub speed_lag: SpeedLag,
+    /// Harmonics of the flux.
+    pub flux_harmonics: FluxHarmonics,
+    /// A resistance that changes.
+    pub resistance_drift: ResistanceDrift,
     /// Inductances that depend on the current.
     pub saturation: Saturation,
     /// Unknown voltages.
@@ -49,8 +72,12 @@ pub struct Faults {
 pub enum Fault {
     /// Dead time and device drops.
     DeadTime,
+    /// The same where the angle is not known.
+    DeadTimeWithoutAngle,
     /// Angle that is read too large.
     AngleOffset,
+    /// Angle that is read late.
+    AngleDelay,
     /// What the current sensors read at zero.
     CurrentOffset,
     /// Gains of three current sensors that differ.
@@ -61,6 +88,14 @@ pub enum Fault {
     SensorsBc,
     /// The same in phases c and a.
     SensorsCa,
+    /// Filter of the logged currents.
+    CurrentFilter,
+    /// Speed that lags.
+    SpeedLag,
+    /// Harmonics of the flux.
+    FluxHarmonics,
+    /// A resistance that changes.
+    ResistanceDrift,
     /// Inductances that depend on the current.
     Saturation,
     /// Unknown voltages.
@@ -80,7 +115,7 @@ struct Row {
     key: &'static str,
     label: &'static str,
     family: &'static str,
-    needs_angle: bool,
+    angle: AngleNeed,
     alters_measured_current: bool,
     numbers: usize,
     names: fn(usize) -> Names,
@@ -98,7 +133,7 @@ macro_rules! row {
             key: $description.key,
             label: $description.label,
             family: $description.family,
-            needs_angle: $description.needs_angle,
+            angle: $description.angle,
             alters_measured_current: $description.alters_measured_current,
             numbers: $description.numbers.len(),
             names: |place| $description.numbers[place].names,
@@ -116,14 +151,20 @@ macro_rules! row {
 
 impl Fault {
     /// All of them, in the order in which they are tried where they promise alike.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 15] = [
         Self::DeadTime,
+        Self::DeadTimeWithoutAngle,
         Self::AngleOffset,
+        Self::AngleDelay,
         Self::CurrentOffset,
         Self::ThreeSensors,
         Self::SensorsAb,
         Self::SensorsBc,
         Self::SensorsCa,
+        Self::CurrentFilter,
+        Self::SpeedLag,
+        Self::FluxHarmonics,
+        Self::ResistanceDrift,
         Self::Saturation,
         Self::Disturbance,
     ];
@@ -132,12 +173,18 @@ impl Fault {
     fn row(self) -> Row {
         match self {
             Self::DeadTime => row!(dead_time::FAULT, dead_time),
+            Self::DeadTimeWithoutAngle => row!(dead_time::WITHOUT_ANGLE, dead_time),
             Self::AngleOffset => row!(angle_offset::FAULT, angle_offset),
+            Self::AngleDelay => row!(angle_delay::FAULT, angle_delay),
             Self::CurrentOffset => row!(current_offset::FAULT, current_offset),
             Self::ThreeSensors => row!(current_gains::THREE_SENSORS, current_gains),
             Self::SensorsAb => row!(current_gains::SENSORS_A_B, current_gains),
             Self::SensorsBc => row!(current_gains::SENSORS_B_C, current_gains),
             Self::SensorsCa => row!(current_gains::SENSORS_C_A, current_gains),
+            Self::CurrentFilter => row!(current_filter::FAULT, current_filter),
+            Self::SpeedLag => row!(speed_lag::FAULT, speed_lag),
+            Self::FluxHarmonics => row!(flux_harmonics::FAULT, flux_harmonics),
+            Self::ResistanceDrift => row!(resistance_drift::FAULT, resistance_drift),
             Self::Saturation => row!(saturation::FAULT, saturation),
             Self::Disturbance => row!(disturbance::FAULT, disturbance),
         }
@@ -158,9 +205,9 @@ impl Fault {
         self.row().family
     }
 
-    /// Whether it can only be found with the electrical angle, because it acts in the stator's frame.
-    pub fn needs_angle(self) -> bool {
-        self.row().needs_angle
+    /// What it needs of the electrical angle.
+    pub(crate) fn angle_need(self) -> AngleNeed {
+        self.row().angle
     }
 
     /// Whether the logged currents differ from the motor's by it.
@@ -248,7 +295,8 @@ mod tests {
     fn keys_are_unique() {
         let faults: HashSet<_> = Fault::ALL.into_iter().map(Fault::key).collect();
         assert_eq!(faults.len(), Fault::ALL.len());
-        let numbers = || Fault::ALL.into_iter().flat_map(Fault::numbers);
+        // Dead time is the same with and without an angle, but for one number more.
+        let numbers = || Fault::ALL.into_iter().filter(|fault| *fault != Fault::DeadTime).flat_map(Fault::numbers);
         assert_eq!(numbers().map(FaultNumber::key).collect::<HashSet<_>>().len(), numbers().count());
     }
 
@@ -257,13 +305,24 @@ mod tests {
     fn a_perfect_drive_is_left_alone() {
         let (motor, i, faults) = (Motor { rs: 1.0, ld: 5e-3, lq: 12e-3, psi_f: 0.1 }, [-2.0, 5.0], Faults::default());
         assert!(Fault::ALL.into_iter().flat_map(Fault::numbers).all(|number| number.usual_size(&motor, 10.0) > 0.0));
-        let turns = PeriodTurns { half: 1.0, start: Turn::by(0.1), middle: Turn::by(0.2), end: Turn::by(0.3) };
+        let place = Place {
+            half: 1.0,
+            start: Turn::by(0.1),
+            middle: Turn::by(0.2),
+            end: Turn::by(0.3),
+            length: 1e-4,
+            omega_e: 2000.0,
+            acceleration: 100.0,
+            time: 0.25,
+        };
         // Also where other lanes have faults of every kind.
-        let kinds = FaultKinds { sensors: true, voltages: true, flux: true, observer: true };
+        let kinds = FaultKinds::ALL;
         for kinds in [FaultKinds::of(&faults), kinds] {
-            let acting = Acting::of(kinds, |number| number(&faults));
-            assert_eq!(acting.motor_current(i, Turn::by(1.0)), i);
-            assert_eq!(acting.motor_voltage(i, i, &turns), i);
+            let acting = Acting::of(kinds, 1e-4, |number| number(&faults));
+            assert_eq!(acting.motor_current(i, place.start, place.omega_e), i);
+            assert_eq!(acting.motor_voltage(i, i, &place), i);
+            assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);
+            assert_eq!(acting.filtered(i, [i, i], &Place { end: place.start, ..place }), i);
             assert_eq!(acting.extra_flux(i), [0.0; 2]);
             assert_eq!((acting.corrected(i, [1.0; 2]), acting.remaining(i)), (i, i));
         }

@@ -93,6 +93,10 @@ pub(super) struct Period {
     pub(super) u: Dq,
     /// The stator seen from the rotor at its middle: the electrical angle, rad.
     pub(super) theta_e: f64,
+    /// What the logged speed gains in a second, electrical rad/s².
+    pub(super) acceleration: f64,
+    /// The time of its middle within the log: from minus one half to plus one half.
+    pub(super) time: f64,
 }
 
 /// The electrical angle at the rows of one stretch, rad, without jumps.
@@ -102,7 +106,7 @@ pub(super) struct Angles {
     pub(super) logged: Vec<f64>,
     /// As the rotor most likely was: without the steps of an encoder.
     pub(super) rotor: Vec<f64>,
-    /// Whether the log has it. Without, both are the speed, integrated from the first row on: still a frame that is fixed to the rotor, but
+    /// Whether the log has it. Without, both are the speed, integrated from the segment's first row on: still a frame that is fixed to the rotor, but
     /// at an unknown angle to the magnet's.
     pub(super) known: bool,
 }
@@ -117,6 +121,11 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
     // For centred columns: the voltage that acted over the period before, in the stator's frame. The first one is not in the log; the
     // mean at the first row stands in for it.
     let mut before = logged(rows.start).to_alpha_beta(frame(rows.start));
+    let (first_time, last_time) = (columns.t[0], columns.t[columns.t.len() - 1]);
+    let acceleration = |row: usize| {
+        let (before, after) = (row.saturating_sub(SMOOTHED).max(rows.start), (row + SMOOTHED).min(rows.end - 1));
+        (columns.omega_e[after] - columns.omega_e[before]) / (columns.t[after] - columns.t[before])
+    };
     (first..rows.end.saturating_sub(1))
         .map(|row| {
             let middle = 0.5 * (angles.rotor[row - rows.start] + angles.rotor[row + 1 - rows.start]);
@@ -135,7 +144,14 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => logged(row - delay).to_alpha_beta(frame(row - delay)),
             };
             let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
-            Period { length, omega_e: turn / length, u: stator.to_dq(middle), theta_e: middle }
+            Period {
+                length,
+                omega_e: turn / length,
+                u: stator.to_dq(middle),
+                theta_e: middle,
+                acceleration: acceleration(row),
+                time: (columns.t[row] + 0.5 * length - first_time) / (last_time - first_time) - 0.5,
+            }
         })
         .collect()
 }
@@ -163,7 +179,10 @@ pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
         *theta += turn(row);
         Some(*theta)
     });
-    let summed: Vec<f64> = std::iter::once(0.0).chain(turns).collect();
+    // From the first row of the log's segment on, so that all its stretches have one stator.
+    let segment = log.segment_of(rows.start).map_or(rows.start, |segment| segment.rows.start);
+    let before: f64 = (segment + 1..=rows.start).map(turn).sum();
+    let summed: Vec<f64> = std::iter::once(before).chain(turns.map(|later| before + later)).collect();
     if let Some(logged) = &columns.theta_e {
         let mut angles = vec![logged[rows.start]];
         let mut misfits = 0;

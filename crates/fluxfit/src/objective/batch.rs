@@ -28,6 +28,8 @@ const CANCELLED: f64 = 1e-8;
 pub(super) struct Rows {
     pub(super) segments: Vec<SimulatedSegment>,
     pub(super) plan: TransitionPlan,
+    /// The usual length of a period: their mean, s.
+    pub(super) period: f64,
 }
 
 /// What came of one drive.
@@ -43,7 +45,10 @@ impl Rows {
     pub(super) fn of(mut segments: Vec<SimulatedSegment>) -> Self {
         let plan = TransitionPlan::of(segments.iter().flat_map(|segment| &segment.periods));
         segments.iter_mut().for_each(|segment| segment.plan(&plan));
-        Self { segments, plan }
+        let lengths = segments.iter().flat_map(|segment| &segment.periods).map(|period| period.length);
+        let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
+        let period = if count > 0.0 { sum / count } else { 1.0 };
+        Self { segments, plan, period }
     }
 
     /// The costs of these drives, A².
@@ -254,7 +259,7 @@ fn lanes<'a, S: Simd, const K: usize, const C: usize>(
     drive: impl Fn(usize) -> &'a Adjustable,
 ) -> Drives<Lanes<S, K>, C> {
     let motors = MotorLanes::of(|number| Lanes::of(set, |lane| number(&drive(lane).motor)));
-    let faults = Acting::of(kinds, |number| Lanes::of(set, |lane| number(&drive(lane).faults)));
+    let faults = Acting::of(kinds, rows.period, |number| Lanes::of(set, |lane| number(&drive(lane).faults)));
     Drives::of(motors, faults, &rows.plan)
 }
 

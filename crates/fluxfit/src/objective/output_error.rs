@@ -96,6 +96,12 @@ impl OutputError {
         self.simulated.segments.iter().all(|segment| segment.angle_known)
     }
 
+    /// Whether the angle is known up to a constant that is the same for all stretches: it is in the log, or no gap lies between them.
+    pub fn angle_traced(&self) -> bool {
+        let segments = &self.simulated.segments;
+        self.angle_known() || segments.windows(2).all(|pair| pair[0].log_segment == pair[1].log_segment)
+    }
+
     /// Largest measured current vector, A.
     pub fn peak_current(&self) -> f64 {
         self.peak_current
@@ -125,10 +131,14 @@ impl OutputError {
     pub fn simulated(&self, drive: &Adjustable) -> Vec<Dq> {
         let residuals = self.residuals(drive);
         let (residuals, _) = residuals.as_chunks::<2>();
-        let acting = Acting::of_one(&drive.faults);
-        let rows = self.simulated.segments.iter().flat_map(|segment| segment.measured.iter().zip(&segment.turns));
-        let simulated = rows.zip(residuals).map(|((measured, turn), [d, q])| {
-            let measured = acting.current(*measured, *turn);
+        let acting = Acting::of_one(&drive.faults, self.simulated.period);
+        let speed = |segment: &SimulatedSegment, row: usize| segment.periods.get(row.saturating_sub(1)).map_or(0.0, |period| period.omega_e);
+        let rows = self.simulated.segments.iter().flat_map(|segment| {
+            let rows = segment.measured.iter().zip(&segment.turns).enumerate();
+            rows.map(move |(row, (measured, turn))| (*measured, *turn, speed(segment, row)))
+        });
+        let simulated = rows.zip(residuals).map(|((measured, turn, omega_e), [d, q])| {
+            let measured = acting.current(measured, turn, omega_e);
             Dq { d: measured.d - d, q: measured.q - q }
         });
         simulated.collect()

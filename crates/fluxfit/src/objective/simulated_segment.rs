@@ -5,7 +5,7 @@ use super::{
     transition_polynomials::TransitionPlan,
 };
 use crate::{
-    faults::carrier_half,
+    faults::{Place, carrier_half},
     frames::{Dq, Turn},
     log::Log,
 };
@@ -49,6 +49,8 @@ pub(super) struct SimulatedSegment {
     pub(super) middles: Vec<Turn>,
     /// Whether that angle is the logged one.
     pub(super) angle_known: bool,
+    /// The log's segment, through which the speed can be integrated.
+    pub(super) log_segment: Option<usize>,
     /// Whether the first vector is unknown, because the voltages are centred.
     pub(super) alternates: bool,
 }
@@ -69,6 +71,7 @@ impl SimulatedSegment {
             turns: angles.rotor[lost..].iter().map(|theta_e| Turn::by(*theta_e)).collect(),
             middles: periods.iter().map(|period| Turn::by(period.theta_e)).collect(),
             angle_known: angles.known,
+            log_segment: log.segments().iter().position(|segment| segment.rows.contains(&rows.start)),
             alternates: timing == VoltageTiming::Centered,
             rows_of_periods: Vec::new(),
             rows,
@@ -89,9 +92,19 @@ impl SimulatedSegment {
         self.rows_of_periods = rows.collect();
     }
 
-    /// The carrier's half of a period, where each half is a row.
+    /// Where a period lies.
     #[inline(always)]
-    pub(super) fn half(&self, period: usize) -> f64 {
-        carrier_half(self.rows.start + period)
+    pub(super) fn place(&self, row: usize) -> Place {
+        let Period { length, omega_e, acceleration, time, .. } = self.periods[row];
+        Place {
+            half: carrier_half(self.rows.start + row),
+            start: self.turns[row],
+            middle: self.middles[row],
+            end: self.turns[row + 1],
+            length,
+            omega_e,
+            acceleration,
+            time,
+        }
     }
 }

@@ -13,7 +13,7 @@ use super::{
     transition_polynomials::{TransitionPlan, TransitionPolynomials},
 };
 use crate::{
-    faults::{Acting, PeriodTurns},
+    faults::Acting,
     lanes::Number,
 };
 use pulp::NullaryFnOnce;
@@ -60,6 +60,9 @@ struct State<V> {
     error: [V; 2],
     /// Its response to each linear unknown.
     response: [[V; 2]; LINEAR_UNKNOWNS],
+    /// Where a filter lies between the motor and the log: its output; of the response above, which is the filter's, the motor's part.
+    filtered: [V; 2],
+    motor_response: [[V; 2]; LINEAR_UNKNOWNS],
 }
 
 /// Writes the lanes of d, then those of q.
@@ -138,8 +141,11 @@ impl<V: Number, const C: usize> Drives<V, C> {
     fn start(&self, segment: &SimulatedSegment) -> State<V> {
         let (zero, one) = (self.motors.rs.constant(0.0), self.motors.rs.constant(1.0));
         let measured = segment.measured[0];
-        let i = self.faults.motor_current([zero.constant(measured.d), zero.constant(measured.q)], segment.turns[0]);
-        State { i, error: [zero; 2], response: [[one, zero], [zero, one], [zero; 2], [zero; 2]] }
+        let omega_e = segment.periods.first().map_or(0.0, |period| period.omega_e);
+        let i = self.faults.motor_current([zero.constant(measured.d), zero.constant(measured.q)], segment.turns[0], omega_e);
+        let response = [[one, zero], [zero, one], [zero; 2], [zero; 2]];
+        // A filter is taken to have settled.
+        State { i, error: [zero; 2], response, filtered: i, motor_response: response }
     }
 
     /// All rows of drives with faults, or with periods of lengths of their own: block by block, the transitions first.
@@ -291,24 +297,36 @@ impl<V: Number> FaultyBlock<'_, '_, V> {
         let period = &segment.rows_of_periods[row];
         let zero = self.motors.rs.constant(0.0);
         let start = self.faults.corrected(state.i, state.error);
-        let turns =
-            PeriodTurns { half: segment.half(row), start: segment.turns[row], middle: segment.middles[row], end: segment.turns[row + 1] };
-        let u = self.faults.motor_voltage(zero.constants(period.u), start, &turns);
+        let place = segment.place(row);
+        let motors = self.motors;
+        let u = self.faults.motor_voltage(zero.constants(period.u), start, &place);
+        let linear_flux = [motors.ld.mul_add(start[0], motors.psi_f), motors.lq * start[1]];
+        let u = self.faults.beside(u, start, linear_flux, &place);
         state.i = if self.faults.kinds.flux {
-            self.saturated_step(transitions, zero.constant(segment.periods[row].omega_e), u, start)
+            self.saturated_step(transitions, zero.constant(place.omega_e), u, start)
         } else {
             transitions.after(start, u)
         };
         let [alpha_d, alpha_q] = zero.constants(period.alternating);
-        let [first_d, first_q, alpha, beta] = state.response;
-        state.response = [
+        let before = if self.faults.kinds.filter { state.motor_response } else { state.response };
+        let [first_d, first_q, alpha, beta] = before;
+        let after = [
             transitions.response(self.faults.remaining(first_d)),
             transitions.response(self.faults.remaining(first_q)),
             transitions.driven_response(self.faults.remaining(alpha), [alpha_d, alpha_q]),
             transitions.driven_response(self.faults.remaining(beta), [-alpha_q, alpha_d]),
         ];
-        let measured = self.faults.motor_current(zero.constants(period.measured), segment.turns[row + 1]);
-        state.error = [measured[0] - state.i[0], measured[1] - state.i[1]];
+        if self.faults.kinds.filter {
+            for k in 0..LINEAR_UNKNOWNS {
+                state.response[k] = self.faults.filtered(state.response[k], [before[k], after[k]], &place);
+            }
+            state.motor_response = after;
+        } else {
+            state.response = after;
+        }
+        state.filtered = self.faults.filtered(state.filtered, [start, state.i], &place);
+        let measured = self.faults.motor_current(zero.constants(period.measured), place.end, place.omega_e);
+        state.error = [measured[0] - state.filtered[0], measured[1] - state.filtered[1]];
     }
 
     /// A step whose flux is not only `L i + psi_f`: what is beyond takes a voltage as any flux does, by its turning and by its growth.

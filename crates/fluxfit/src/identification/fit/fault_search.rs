@@ -19,7 +19,7 @@ use super::{
     voltage_accuracy,
 };
 use crate::{
-    faults::{Fault, Faults},
+    faults::{AngleNeed, Fault, Faults},
     levenberg_marquardt::{PriorResidual, jacobian, polish_to_choose},
     objective::{
         acting_voltage::VoltageTiming,
@@ -108,7 +108,10 @@ impl FaultSearch<'_> {
         if observer.is_some() {
             self.choose_reading();
         }
-        let faults: Vec<Fault> = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance).collect();
+        // What stands in for a fault without the angle is no candidate beside it.
+        let stands_in = |fault: Fault| matches!(fault.angle_need(), AngleNeed::OnlyTraced | AngleNeed::Unknown) && self.objective().angle_known();
+        let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault));
+        let faults: Vec<Fault> = faults.collect();
         let mut taken = Vec::new();
         let not_taken = loop {
             let trials = self.take_best(&faults, &taken);
@@ -164,7 +167,7 @@ impl FaultSearch<'_> {
         let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = parallel::map(&left, |fault| {
             let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
                 FaultOutcome::Covered
-            } else if fault.needs_angle() && !this.objective().angle_known() {
+            } else if !fault.angle_need().is_met(this.objective().angle_known(), this.objective().angle_traced()) {
                 FaultOutcome::NeedsAngle
             } else {
                 FaultOutcome::NotNeeded

@@ -1,0 +1,30 @@
+//! Where in the log and in the stator a period lies: what faults depend on besides voltages and currents, the same for all drives.
+
+use crate::frames::Turn;
+
+/// A period of the log.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    /// Plus one or minus one from row to row of the log: the carrier's half, where each half is a row.
+    pub(crate) half: f64,
+    /// The rotor at its start, middle and end.
+    pub(crate) start: Turn,
+    pub(crate) middle: Turn,
+    pub(crate) end: Turn,
+    /// Its length, s.
+    pub(crate) length: f64,
+    /// Speed, electrical rad/s.
+    pub(crate) omega_e: f64,
+    /// What the speed column gains in a second, electrical rad/s².
+    pub(crate) acceleration: f64,
+    /// Its time within the log: from minus one half at the first row to plus one half at the last.
+    pub(crate) time: f64,
+}
+
+impl Place {
+    /// A period of a second at standstill.
+    #[cfg(test)]
+    pub(crate) fn still(rotor: Turn) -> Self {
+        Self { half: 1.0, start: rotor, middle: rotor, end: rotor, length: 1.0, omega_e: 0.0, acceleration: 0.0, time: 0.0 }
+    }
+}

@@ -1,0 +1,40 @@
+//! Resistance drift: the winding warms while the log is taken, and R_s grows. Linear in time; R_s itself is that at half the log's time.
+
+use super::{
+    Place,
+    description::{AngleNeed, Description, Names, NumberDescription, present_state},
+};
+use crate::lanes::Number;
+
+/// A resistance that changes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ResistanceDrift {
+    /// R_s at the log's end less that at its start, ohm.
+    pub change: f64,
+}
+
+/// Largest change, as a fraction of R_s: copper that warms by more than 250 K has burnt.
+const LARGEST: f64 = 1.0;
+
+pub(super) static FAULT: Description<ResistanceDrift> = Description {
+    key: "resistance_drift",
+    label: "drift of R_s",
+    family: "resistance drift",
+    angle: AngleNeed::Nothing,
+    alters_measured_current: false,
+    numbers: &[NumberDescription {
+        names: Names { key: "resistance_change", label: "R_s at the log's end less that at its start", unit: "ohm" },
+        get: |state| state.change,
+        set: |state, value| state.change = value,
+        usual_size: |motor, _| motor.rs.abs(),
+    }],
+    starts: present_state,
+    is_physical: |state, motor, _| state.change.abs() < LARGEST * motor.rs.abs(),
+};
+
+/// The voltage, V, that the change takes at current `i`, A.
+#[inline(always)]
+pub(super) fn taken<V: Number>(change: V, i: [V; 2], place: &Place) -> [V; 2] {
+    let more = change * change.constant(place.time);
+    [more * i[0], more * i[1]]
+}
