@@ -10,7 +10,7 @@ use super::{
     disturbance::{corrected, remaining},
     flux_harmonics, resistance_drift,
     saturation::extra_flux,
-    speed_lag,
+    speed_lag, voltage_filter,
 };
 use crate::{
     frames::{Dq, Turn, turned},
@@ -34,7 +34,8 @@ pub(crate) struct Acting<V> {
     /// By which the angle is late, s.
     angle_delay: V,
     /// Weights over a period.
-    current_filter: [V; 2],
+    current_filter: [V; 3],
+    voltage_filter: V,
     speed_lag: V,
     /// `d cos, d sin, q cos, q sin`.
     flux_harmonics: [V; 4],
@@ -56,7 +57,7 @@ pub(crate) struct FaultKinds {
     pub(crate) delay: bool,
     /// A filter of the currents.
     pub(crate) filter: bool,
-    /// Dead time, or a frame that is turned.
+    /// Dead time, a filter of the voltages, or a frame that is turned.
     pub(crate) voltages: bool,
     /// Dead time without an angle.
     pub(crate) phase: bool,
@@ -80,7 +81,7 @@ impl FaultKinds {
             sensors: turns || faults.current_offset != none.current_offset || faults.current_gains != none.current_gains,
             delay,
             filter: faults.current_filter != none.current_filter,
-            voltages: turns || faults.dead_time != none.dead_time,
+            voltages: turns || faults.dead_time != none.dead_time || faults.voltage_filter != none.voltage_filter,
             phase: faults.dead_time.phase != 0.0,
             beside: faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
@@ -124,7 +125,12 @@ impl<V> Acting<V> {
             ],
             angle: [lanes(&|f| f.angle_offset.angle.cos()), lanes(&|f| f.angle_offset.angle.sin())],
             angle_delay: lanes(&|f| f.angle_delay.time),
-            current_filter: [lanes(&|f| f.current_filter.weights(period)[0]), lanes(&|f| f.current_filter.weights(period)[1])],
+            current_filter: [
+                lanes(&|f| f.current_filter.weights(period)[0]),
+                lanes(&|f| f.current_filter.weights(period)[1]),
+                lanes(&|f| f.current_filter.weights(period)[2]),
+            ],
+            voltage_filter: lanes(&|f| f.voltage_filter.advance(period)),
             speed_lag: lanes(&|f| f.speed_lag.time),
             flux_harmonics: [
                 lanes(&|f| f.flux_harmonics.d[0]),
@@ -182,13 +188,14 @@ impl<V: Number> Acting<V> {
         if self.kinds.filter { filtered(self.current_filter, y, i, place) } else { i[1] }
     }
 
-    /// The voltage that acts on the motor over a period, V, in the frame of its magnet, where `logged` was commanded, given the current
-    /// `i`, A, in the motor at its start.
+    /// The voltage that acts on the motor over a period, V, in the frame of its magnet, where `logged` was logged, and `before` for the
+    /// period before, given the current `i`, A, in the motor at its start.
     #[inline(always)]
-    pub(crate) fn motor_voltage(&self, logged: [V; 2], i: [V; 2], place: &Place) -> [V; 2] {
+    pub(crate) fn motor_voltage(&self, logged: [V; 2], before: [V; 2], i: [V; 2], place: &Place) -> [V; 2] {
         if !self.kinds.voltages {
             return logged;
         }
+        let logged = voltage_filter::unfiltered(self.voltage_filter, logged, before);
         let [cos, sin] = self.angle;
         let i = self.undelayed(turned(i, cos, -sin), place.omega_e, true);
         let reduced = if self.kinds.phase {

@@ -19,7 +19,10 @@
 
 pub mod ripple;
 
-use super::{Place, description::{AngleNeed, Description, Names, NumberDescription, one, peak_current}};
+use super::{
+    Place,
+    description::{AngleNeed, Description, Names, NumberDescription, one, peak_current},
+};
 use crate::{
     frames::{clarke, inverse_clarke},
     lanes::Number,

@@ -19,6 +19,7 @@ mod place;
 pub mod resistance_drift;
 pub mod saturation;
 pub mod speed_lag;
+pub mod voltage_filter;
 
 pub(crate) use acting::{Acting, FaultKinds};
 pub(crate) use dead_time::carrier_half;
@@ -38,6 +39,7 @@ use flux_harmonics::FluxHarmonics;
 use resistance_drift::ResistanceDrift;
 use saturation::Saturation;
 use speed_lag::SpeedLag;
+use voltage_filter::VoltageFilter;
 
 /// The state of all faults. The default is a perfect drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -54,6 +56,8 @@ pub struct Faults {
     pub current_gains: CurrentGains,
     /// Filter of the logged currents.
     pub current_filter: CurrentFilter,
+    /// Filter of the logged voltages.
+    pub voltage_filter: VoltageFilter,
     /// Speed that lags.
     pub speed_lag: SpeedLag,
     /// Harmonics of the flux.
@@ -88,8 +92,12 @@ pub enum Fault {
     SensorsBc,
     /// The same in phases c and a.
     SensorsCa,
-    /// Filter of the logged currents.
+    /// Filter of the phase currents.
     CurrentFilter,
+    /// Filter of the logged d and q currents.
+    DqCurrentFilter,
+    /// Filter of the logged d and q voltages.
+    VoltageFilter,
     /// Speed that lags.
     SpeedLag,
     /// Harmonics of the flux.
@@ -151,7 +159,7 @@ macro_rules! row {
 
 impl Fault {
     /// All of them, in the order in which they are tried where they promise alike.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::DeadTime,
         Self::DeadTimeWithoutAngle,
         Self::AngleOffset,
@@ -162,6 +170,8 @@ impl Fault {
         Self::SensorsBc,
         Self::SensorsCa,
         Self::CurrentFilter,
+        Self::DqCurrentFilter,
+        Self::VoltageFilter,
         Self::SpeedLag,
         Self::FluxHarmonics,
         Self::ResistanceDrift,
@@ -181,7 +191,9 @@ impl Fault {
             Self::SensorsAb => row!(current_gains::SENSORS_A_B, current_gains),
             Self::SensorsBc => row!(current_gains::SENSORS_B_C, current_gains),
             Self::SensorsCa => row!(current_gains::SENSORS_C_A, current_gains),
-            Self::CurrentFilter => row!(current_filter::FAULT, current_filter),
+            Self::CurrentFilter => row!(current_filter::OF_PHASES, current_filter),
+            Self::DqCurrentFilter => row!(current_filter::OF_DQ, current_filter),
+            Self::VoltageFilter => row!(voltage_filter::FAULT, voltage_filter),
             Self::SpeedLag => row!(speed_lag::FAULT, speed_lag),
             Self::FluxHarmonics => row!(flux_harmonics::FAULT, flux_harmonics),
             Self::ResistanceDrift => row!(resistance_drift::FAULT, resistance_drift),
@@ -320,7 +332,7 @@ mod tests {
         for kinds in [FaultKinds::of(&faults), kinds] {
             let acting = Acting::of(kinds, 1e-4, |number| number(&faults));
             assert_eq!(acting.motor_current(i, place.start, place.omega_e), i);
-            assert_eq!(acting.motor_voltage(i, i, &place), i);
+            assert_eq!(acting.motor_voltage(i, i, i, &place), i);
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);
             assert_eq!(acting.filtered(i, [i, i], &Place { end: place.start, ..place }), i);
             assert_eq!(acting.extra_flux(i), [0.0; 2]);

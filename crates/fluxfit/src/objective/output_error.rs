@@ -132,7 +132,8 @@ impl OutputError {
         let residuals = self.residuals(drive);
         let (residuals, _) = residuals.as_chunks::<2>();
         let acting = Acting::of_one(&drive.faults, self.simulated.period);
-        let speed = |segment: &SimulatedSegment, row: usize| segment.periods.get(row.saturating_sub(1)).map_or(0.0, |period| period.omega_e);
+        let speed =
+            |segment: &SimulatedSegment, row: usize| segment.periods.get(row.saturating_sub(1)).map_or(0.0, |period| period.omega_e);
         let rows = self.simulated.segments.iter().flat_map(|segment| {
             let rows = segment.measured.iter().zip(&segment.turns).enumerate();
             rows.map(move |(row, (measured, turn))| (*measured, *turn, speed(segment, row)))

@@ -12,10 +12,7 @@ use super::{
     transition_lanes::{MotorLanes, TransitionLanes},
     transition_polynomials::{TransitionPlan, TransitionPolynomials},
 };
-use crate::{
-    faults::Acting,
-    lanes::Number,
-};
+use crate::{faults::Acting, lanes::Number};
 use pulp::NullaryFnOnce;
 
 /// Rows between two looks at what has died out.
@@ -298,8 +295,9 @@ impl<V: Number> FaultyBlock<'_, '_, V> {
         let zero = self.motors.rs.constant(0.0);
         let start = self.faults.corrected(state.i, state.error);
         let place = segment.place(row);
+        let before = segment.rows_of_periods[row.saturating_sub(1)].u;
         let motors = self.motors;
-        let u = self.faults.motor_voltage(zero.constants(period.u), start, &place);
+        let u = self.faults.motor_voltage(zero.constants(period.u), zero.constants(before), start, &place);
         let linear_flux = [motors.ld.mul_add(start[0], motors.psi_f), motors.lq * start[1]];
         let u = self.faults.beside(u, start, linear_flux, &place);
         state.i = if self.faults.kinds.flux {

@@ -109,7 +109,8 @@ impl FaultSearch<'_> {
             self.choose_reading();
         }
         // What stands in for a fault without the angle is no candidate beside it.
-        let stands_in = |fault: Fault| matches!(fault.angle_need(), AngleNeed::OnlyTraced | AngleNeed::Unknown) && self.objective().angle_known();
+        let stands_in =
+            |fault: Fault| matches!(fault.angle_need(), AngleNeed::OnlyTraced | AngleNeed::Unknown) && self.objective().angle_known();
         let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault));
         let faults: Vec<Fault> = faults.collect();
         let mut taken = Vec::new();

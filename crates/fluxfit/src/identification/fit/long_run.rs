@@ -49,6 +49,26 @@ pub(crate) fn covariance(scores: &[Vec<f64>], lengths: &[usize]) -> LongRun {
     LongRun { covariance, degrees_of_freedom: DEGREES * n as f64 / (lag + 1.0) }
 }
 
+/// Blocks of rows for residuals that are not noise: long enough that a block sees one part of the bench's work, and enough of them to
+/// estimate a variance (`t` of 15 degrees of freedom is 2.13).
+const BLOCKS: usize = 16;
+
+/// The same of scores whose residuals are not noise but what the model lacks: how much consecutive blocks of the log pull in different
+/// directions, whatever the correlation within them. R. Ibragimov and U. K. Müller, "t-statistic based correlation and heterogeneity robust
+/// inference", Journal of Business & Economic Statistics 28 (2010) 453, doi:10.1198/jbes.2009.08046, on why few blocks will do.
+pub(crate) fn covariance_of_blocks(scores: &[Vec<f64>]) -> LongRun {
+    let (n, size) = (scores.first().map_or(0, Vec::len), scores.len());
+    let blocks = BLOCKS.min(n).max(2);
+    let sums: Vec<Vec<f64>> = scores
+        .iter()
+        .map(|score| (0..blocks).map(|block| score[block * n / blocks..(block + 1) * n / blocks].iter().sum()).collect())
+        .collect();
+    let free = (blocks - 1) as f64;
+    let covariance =
+        DMatrix::from_fn(size, size, |p, q| sums[p].iter().zip(&sums[q]).map(|(a, b)| a * b).sum::<f64>() * blocks as f64 / free);
+    LongRun { covariance, degrees_of_freedom: free }
+}
+
 fn products(one: &[f64], other: &[f64], shift: usize, lengths: &[usize]) -> f64 {
     let mut start = 0;
     let mut sum = 0.0;

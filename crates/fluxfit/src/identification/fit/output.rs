@@ -15,7 +15,7 @@ use super::{
     finding::{Bench, Finding, Trust, covariance},
     long_run,
     output_choice::{Chosen, choose},
-    output_errors::{Errors, FaultEstimate, OutputShifts, sensors, without_observer},
+    output_errors::{CORRELATED, Errors, FaultEstimate, OutputShifts, correlation_of_neighbours, other_kind_of_fit, sensors},
     output_start,
     readings::{self, TimingTrial},
     steady::SteadyFit,
@@ -91,9 +91,10 @@ impl OutputFit {
         }
         let _ = progress(Step::Uncertainty);
         let residuals = objective.residuals(&drive);
+        let is_noise = correlation_of_neighbours(&residuals, &objective.rows_per_segment()) <= CORRELATED;
         let shifts = OutputShifts {
             timing: readings::doubt(&readings, independent),
-            process_noise: without_observer(objective, &drive, &unknowns, &priors),
+            process_noise: other_kind_of_fit(objective, &drive, &unknowns, &priors, is_noise),
             sensors: sensors(&drive),
         };
         let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, request.voltage_accuracy, &scale);
@@ -106,7 +107,7 @@ impl OutputFit {
             open: [false; 4],
             trust: Trust {
                 correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
-                disturbed_without_angle: is_taken(&terms, Fault::Disturbance) && !objective.angle_known(),
+                disturbed_without_angle: is_taken(&terms, Fault::Disturbance) && !objective.angle_traced(),
                 misses: rms / objective.peak_current(),
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),
@@ -139,6 +140,11 @@ impl OutputFit {
     /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.
     pub fn leaves_something(&self) -> bool {
         self.finding.trust.correlation_of_neighbours != 0.0
+    }
+
+    /// Whether what is left is noise.
+    pub(crate) fn is_explained(&self) -> bool {
+        self.correlation_of_neighbours <= CORRELATED
     }
 
     /// Root mean square of the residuals along d and q, A.

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     faults::{Fault, Faults, disturbance::Disturbance},
+    frames::Dq,
     levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_unknowns},
     motor::{Motor, PARAMETERS},
     objective::{
@@ -40,19 +41,26 @@ pub(super) struct OutputShifts {
     pub(super) sensors: [f64; PARAMETERS],
 }
 
-/// How far the motor lies from that of a drive without disturbance, if an observer was found: either may be right.
-pub(super) fn without_observer(
+/// Gain from which an observer is fitted where none was found.
+const GAIN: f64 = 0.3;
+
+/// How far the motor lies from that of the other kind of fit, with an observer or without: if one was found, either may be right, and if
+/// what is left is not noise, their difference is what the model lacks.
+pub(super) fn other_kind_of_fit(
     objective: &OutputError,
     drive: &Adjustable,
     unknowns: &[Unknown],
     priors: &[PriorResidual],
+    is_noise: bool,
 ) -> [f64; PARAMETERS] {
-    let rest: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| unknown.fault() != Some(Fault::Disturbance)).collect();
-    if rest.len() == unknowns.len() {
-        return [0.0; PARAMETERS];
-    }
-    let start = Adjustable { faults: Faults { disturbance: Disturbance::default(), ..drive.faults }, ..*drive };
-    let other = polish_unknowns(objective, &start, &rest, priors).drive.motor.to_array();
+    let has_observer = unknowns.iter().any(|unknown| unknown.is_observer_gain());
+    let (gain, unknowns): (Dq, Vec<Unknown>) = match (has_observer, is_noise) {
+        (true, _) => (Dq::default(), unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect()),
+        (false, false) => (Dq { d: GAIN, q: GAIN }, unknowns.iter().copied().chain(Unknown::of_fault(Fault::Disturbance)).collect()),
+        (false, true) => return [0.0; PARAMETERS],
+    };
+    let start = Adjustable { faults: Faults { disturbance: Disturbance { gain }, ..drive.faults }, ..*drive };
+    let other = polish_unknowns(objective, &start, &unknowns, priors).drive.motor.to_array();
     std::array::from_fn(|p| (drive.motor.to_array()[p] - other[p]).abs())
 }
 
@@ -61,6 +69,23 @@ pub(super) fn sensors(drive: &Adjustable) -> [f64; PARAMETERS] {
     let common = drive.faults.current_gains.magnitude();
     let Motor { rs, ld, lq, .. } = drive.motor;
     [common * rs, common * ld, common * lq, 0.0]
+}
+
+/// Correlation of neighbouring residuals from which on they are not noise: something is in the log that the model does not have.
+pub(crate) const CORRELATED: f64 = 0.3;
+
+/// Correlation of neighbouring residuals, `d, q` of each row in turn; the larger of both axes.
+pub(super) fn correlation_of_neighbours(residuals: &[f64], lengths: &[usize]) -> f64 {
+    let (rows, _) = residuals.as_chunks::<2>();
+    let axis = |axis: usize| rows.iter().map(|row| row[axis]).collect::<Vec<_>>();
+    [0, 1].map(|k| long_run::first_correlation(&axis(k), lengths)).into_iter().fold(f64::MIN, f64::max)
+}
+
+/// One covariance, made as large as the variances of another: each unknown with the larger of both, and its correlations kept.
+fn larger(one: DMatrix<f64>, other: DMatrix<f64>) -> DMatrix<f64> {
+    let scale: Vec<f64> =
+        (0..one.nrows()).map(|k| if one[(k, k)] > 0.0 { (other[(k, k)] / one[(k, k)]).sqrt().max(1.0) } else { 1.0 }).collect();
+    DMatrix::from_fn(one.nrows(), one.ncols(), |p, q| one[(p, q)] * scale[p] * scale[q])
 }
 
 /// Errors of everything that was fitted.
@@ -101,11 +126,18 @@ impl Errors {
             slope.iter().zip(rows).map(|(slope, residual)| slope[0] * residual[0] + slope[1] * residual[1]).collect()
         });
         let scores: Vec<Vec<f64>> = scores.collect();
-        let long_run = long_run::covariance(&scores, &lengths);
-        let axis = |axis: usize| rows.iter().map(|row| row[axis]).collect::<Vec<_>>();
+        let correlation_of_neighbours = correlation_of_neighbours(residuals, &lengths);
+        let noise = long_run::covariance(&scores, &lengths);
+        let (noise, mut degrees_of_freedom) = (&inverse * noise.covariance * &inverse, noise.degrees_of_freedom);
+        let mut covariance = noise;
+        if correlation_of_neighbours > CORRELATED {
+            let blocks = long_run::covariance_of_blocks(&scores);
+            degrees_of_freedom = degrees_of_freedom.min(blocks.degrees_of_freedom);
+            covariance = larger(covariance, &inverse * blocks.covariance * &inverse);
+        }
         Self {
-            covariance: &inverse * long_run.covariance * &inverse,
-            degrees_of_freedom: long_run.degrees_of_freedom,
+            covariance,
+            degrees_of_freedom,
             accuracy: voltage_accuracy::covariance(objective, drive, &inverse, &slopes, voltage_accuracy),
             priors: priors
                 .iter()
@@ -119,7 +151,7 @@ impl Errors {
                 })
                 .collect(),
             open: open(&with_priors, &inverse, unknowns, scale),
-            correlation_of_neighbours: [0, 1].map(|k| long_run::first_correlation(&axis(k), &lengths)).into_iter().fold(f64::MIN, f64::max),
+            correlation_of_neighbours,
         }
     }
 

@@ -7,6 +7,7 @@ use super::{
     super::{
         fit::{
             finding::{Finding, Trust},
+            output_errors::CORRELATED,
             saturation::SaturationFinding,
             uncertainty::ParameterUncertainty,
         },
@@ -48,10 +49,6 @@ impl Verdict {
 /// Simulated currents that miss by more than this part of the largest, and not by noise, are no motor's: voltages and currents do not
 /// belong together. Dead time that takes four times what R_s does leaves 0.005.
 const MISSES: f64 = 0.15;
-
-/// Correlation of neighbouring residuals from which on they are not noise: something is in the log that the model does not have, and
-/// an interval that comes from noise says nothing of it.
-const CORRELATED: f64 = 0.3;
 
 /// One parameter with its verdict and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,13 +106,10 @@ fn by_interval(parameter: Parameter, finding: &Finding, uncertainty: ParameterUn
 
 /// Where the residuals are not noise, an interval that comes from noise would be as sharp as it is wrong.
 fn distrust_sharp_intervals(judged: &mut [Judged], trust: &Trust) {
-    let why = if trust.correlation_of_neighbours > CORRELATED {
-        Reason::CorrelatedResiduals { correlation: trust.correlation_of_neighbours }
-    } else if trust.disturbed_without_angle {
-        Reason::DisturbedWithoutAngle
-    } else {
+    if !trust.disturbed_without_angle {
         return;
-    };
+    }
+    let why = Reason::DisturbedWithoutAngle;
     for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
         one.verdict = Verdict::Weak;
         one.uncertainty = one.uncertainty.with_min_half_width(IDENTIFIED * one.raw.abs());
