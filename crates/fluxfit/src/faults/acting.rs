@@ -35,6 +35,8 @@ pub(crate) struct Acting<V> {
     angle_delay: V,
     /// Weights over a period.
     current_filter: [V; 3],
+    /// What of a change of the current within a period the filter passes on, inverted.
+    before_filter: V,
     voltage_filter: V,
     speed_lag: V,
     /// `d cos, d sin, q cos, q sin`.
@@ -81,7 +83,10 @@ impl FaultKinds {
             sensors: turns || faults.current_offset != none.current_offset || faults.current_gains != none.current_gains,
             delay,
             filter: faults.current_filter != none.current_filter,
-            voltages: turns || faults.dead_time != none.dead_time || faults.voltage_filter != none.voltage_filter,
+            voltages: turns
+                || faults.speed_lag != none.speed_lag
+                || faults.dead_time != none.dead_time
+                || faults.voltage_filter != none.voltage_filter,
             phase: faults.dead_time.phase != 0.0,
             beside: faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
@@ -130,6 +135,7 @@ impl<V> Acting<V> {
                 lanes(&|f| f.current_filter.weights(period)[1]),
                 lanes(&|f| f.current_filter.weights(period)[2]),
             ],
+            before_filter: lanes(&|f| 1.0 / (1.0 - f.current_filter.weights(period)[1])),
             voltage_filter: lanes(&|f| f.voltage_filter.advance(period)),
             speed_lag: lanes(&|f| f.speed_lag.time),
             flux_harmonics: [
@@ -195,7 +201,7 @@ impl<V: Number> Acting<V> {
         if !self.kinds.voltages {
             return logged;
         }
-        let logged = voltage_filter::unfiltered(self.voltage_filter, logged, before);
+        let logged = speed_lag::advanced(self.speed_lag, voltage_filter::unfiltered(self.voltage_filter, logged, before), place);
         let [cos, sin] = self.angle;
         let i = self.undelayed(turned(i, cos, -sin), place.omega_e, true);
         let reduced = if self.kinds.phase {
@@ -228,15 +234,26 @@ impl<V: Number> Acting<V> {
         extra_flux(self.saturation, i)
     }
 
-    /// The simulated current `i`, corrected by the observer of a disturbed motor.
+    /// The current in the motor, `i`, and what its filter makes of it, `y`, corrected by the observer of a disturbed motor for the error of
+    /// `y`. A filter passes on a part of a change of the current within a period: the current is corrected by that much more.
     #[inline(always)]
-    pub(crate) fn corrected(&self, i: [V; 2], error: [V; 2]) -> [V; 2] {
-        if self.kinds.observer { corrected(self.observer_gain, i, error) } else { i }
+    pub(crate) fn corrected(&self, i: [V; 2], y: [V; 2], error: [V; 2]) -> [[V; 2]; 2] {
+        if !self.kinds.observer {
+            return [i, y];
+        }
+        let more = self.before_filter;
+        let gain = [more * self.observer_gain[0], more * self.observer_gain[1]];
+        [corrected(gain, i, error), corrected(self.observer_gain, y, error)]
     }
 
     /// What that correction leaves of a difference between two simulations.
     #[inline(always)]
-    pub(crate) fn remaining(&self, difference: [V; 2]) -> [V; 2] {
-        if self.kinds.observer { remaining(self.observer_gain, difference) } else { difference }
+    pub(crate) fn remaining(&self, i: [V; 2], y: [V; 2]) -> [[V; 2]; 2] {
+        if !self.kinds.observer {
+            return [i, y];
+        }
+        let more = self.before_filter;
+        let gain = [more * self.observer_gain[0], more * self.observer_gain[1]];
+        [remaining(gain, i, y), remaining(self.observer_gain, y, y)]
     }
 }

@@ -33,7 +33,7 @@ pub struct CurrentFilter {
 const TIME_CONSTANTS: [f64; 3] = [5e-4, 1.6e-4, 4e-5];
 
 /// Lowest corner frequency, Hz: below it, no drive controls a current.
-const LOWEST_CORNER: f64 = 20.0;
+const LOWEST_CORNER: f64 = 100.0;
 
 /// Usual time constant, s: of a corner at 1.6 kHz.
 const USUAL: f64 = 1e-4;

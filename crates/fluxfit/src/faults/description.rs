@@ -14,8 +14,6 @@ pub(crate) enum AngleNeed {
     Known,
     /// The same, with the orientation of the stator among its numbers: only where the angle is not known, but the integral of the speed is.
     OnlyTraced,
-    /// It is in the speed column, which is only used where the angle is not known.
-    Unknown,
 }
 
 impl AngleNeed {
@@ -26,7 +24,6 @@ impl AngleNeed {
             Self::Traced => traced,
             Self::Known => known,
             Self::OnlyTraced => traced && !known,
-            Self::Unknown => !known,
         }
     }
 }

@@ -45,17 +45,18 @@ pub(super) static FAULT: Description<Disturbance> = Description {
     },
 };
 
-/// The simulated current `i`, A, corrected by its `error`, measured less simulated, A; all of them, and the gain, `d, q`.
+/// The current that is compared with the log, `i`, A, corrected by its `error`, measured less simulated, A; all of them, and the gain,
+/// `d, q`.
 #[inline(always)]
 pub(super) fn corrected<V: Number>(gain: [V; 2], i: [V; 2], error: [V; 2]) -> [V; 2] {
     [i[0] + gain[0] * error[0], i[1] + gain[1] * error[1]]
 }
 
-/// What the correction leaves of a difference between two simulations of the same measurement.
+/// What the correction leaves of a difference between two simulations of the same measurement: of `i`, where that of the compared currents
+/// is `compared`.
 #[inline(always)]
-pub(super) fn remaining<V: Number>(gain: [V; 2], difference: [V; 2]) -> [V; 2] {
-    let one = gain[0].constant(1.0);
-    [(one - gain[0]) * difference[0], (one - gain[1]) * difference[1]]
+pub(super) fn remaining<V: Number>(gain: [V; 2], i: [V; 2], compared: [V; 2]) -> [V; 2] {
+    [i[0] - gain[0] * compared[0], i[1] - gain[1] * compared[1]]
 }
 
 #[cfg(test)]
@@ -67,7 +68,8 @@ mod tests {
         let gain = [0.25, -0.1];
         let (measured, one, other) = ([1.0, 2.0], [0.5, 2.5], [3.0, -1.0]);
         let after = |i: [f64; 2]| corrected(gain, i, [measured[0] - i[0], measured[1] - i[1]]);
-        let left = remaining(gain, [one[0] - other[0], one[1] - other[1]]);
+        let difference = [one[0] - other[0], one[1] - other[1]];
+        let left = remaining(gain, difference, difference);
         let (one, other) = (after(one), after(other));
         assert!((left[0] - (one[0] - other[0])).hypot(left[1] - (one[1] - other[1])) < 1e-15);
     }

@@ -325,6 +325,7 @@ mod tests {
             length: 1e-4,
             omega_e: 2000.0,
             acceleration: 100.0,
+            advance_per_lag: 0.1,
             time: 0.25,
         };
         // Also where other lanes have faults of every kind.
@@ -336,7 +337,7 @@ mod tests {
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);
             assert_eq!(acting.filtered(i, [i, i], &Place { end: place.start, ..place }), i);
             assert_eq!(acting.extra_flux(i), [0.0; 2]);
-            assert_eq!((acting.corrected(i, [1.0; 2]), acting.remaining(i)), (i, i));
+            assert_eq!((acting.corrected(i, i, [1.0; 2]), acting.remaining(i, i)), ([i, i], [i, i]));
         }
     }
 }

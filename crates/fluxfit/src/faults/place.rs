@@ -15,8 +15,10 @@ pub(crate) struct Place {
     pub(crate) length: f64,
     /// Speed, electrical rad/s.
     pub(crate) omega_e: f64,
-    /// What the speed column gains in a second, electrical rad/s².
+    /// What the speed gains in a second, electrical rad/s²; zero where it is from the angle.
     pub(crate) acceleration: f64,
+    /// By which the voltage would be turned further if the speed that advanced its angle lagged by a second, rad.
+    pub(crate) advance_per_lag: f64,
     /// Its time within the log: from minus one half at the first row to plus one half at the last.
     pub(crate) time: f64,
 }
@@ -25,6 +27,16 @@ impl Place {
     /// A period of a second at standstill.
     #[cfg(test)]
     pub(crate) fn still(rotor: Turn) -> Self {
-        Self { half: 1.0, start: rotor, middle: rotor, end: rotor, length: 1.0, omega_e: 0.0, acceleration: 0.0, time: 0.0 }
+        Self {
+            half: 1.0,
+            start: rotor,
+            middle: rotor,
+            end: rotor,
+            length: 1.0,
+            omega_e: 0.0,
+            acceleration: 0.0,
+            advance_per_lag: 0.0,
+            time: 0.0,
+        }
     }
 }

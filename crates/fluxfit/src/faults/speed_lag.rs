@@ -1,7 +1,8 @@
-//! Speed lag: the logged speed is filtered and lags behind the rotor's, which is then `omega_e + lag d omega_e / dt`. Where the angle is
-//! in the log the speed is taken from it, and nothing lags.
+//! Speed lag: the logged speed is filtered and lags behind the rotor's, which is then `omega_e + lag d omega_e / dt`.
 //!
-//! To first order, what the rotor turns faster induces a voltage with the flux.
+//! To first order, what the rotor turns faster induces a voltage with the flux; where the angle is in the log the speed is taken from it,
+//! and nothing lags there. But the angle of a delayed voltage was advanced by a speed, which may be another one than the log's: then the
+//! voltage is turned further.
 
 use super::{
     Place,
@@ -26,7 +27,7 @@ pub(super) static FAULT: Description<SpeedLag> = Description {
     key: "speed_lag",
     label: "lag of the logged speed",
     family: "speed lag",
-    angle: AngleNeed::Unknown,
+    angle: AngleNeed::Nothing,
     alters_measured_current: false,
     numbers: &[NumberDescription {
         names: Names { key: "speed_lag", label: "time by which the logged speed lags", unit: "s" },
@@ -43,4 +44,12 @@ pub(super) static FAULT: Description<SpeedLag> = Description {
 pub(super) fn induced<V: Number>(lag: V, flux: [V; 2], place: &Place) -> [V; 2] {
     let faster = lag * lag.constant(place.acceleration);
     [-faster * flux[1], faster * flux[0]]
+}
+
+/// The voltage `u`, V, whose angle was advanced by the true speed, not by the one that lags.
+#[inline(always)]
+pub(super) fn advanced<V: Number>(lag: V, u: [V; 2], place: &Place) -> [V; 2] {
+    // To first order: a fraction of a degree.
+    let by = lag * lag.constant(place.advance_per_lag);
+    [u[0] - by * u[1], u[1] + by * u[0]]
 }

@@ -16,7 +16,7 @@ pub struct VoltageFilter {
 const TIME_CONSTANTS: [f64; 3] = [5e-4, 1.6e-4, 4e-5];
 
 /// Lowest corner frequency, Hz: of what is slower, the digits of the log do not bring back the voltages.
-const LOWEST_CORNER: f64 = 20.0;
+const LOWEST_CORNER: f64 = 100.0;
 
 /// Usual time constant, s: of a corner at 1.6 kHz.
 const USUAL: f64 = 1e-4;

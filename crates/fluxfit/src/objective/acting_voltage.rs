@@ -93,8 +93,10 @@ pub(super) struct Period {
     pub(super) u: Dq,
     /// The stator seen from the rotor at its middle: the electrical angle, rad.
     pub(super) theta_e: f64,
-    /// What the logged speed gains in a second, electrical rad/s².
+    /// What the speed gains in a second, electrical rad/s²; zero where it is from the angle.
     pub(super) acceleration: f64,
+    /// By which the voltage would be turned further if the speed that advanced its angle lagged by a second, rad.
+    pub(super) advance_per_lag: f64,
     /// The time of its middle within the log: from minus one half to plus one half.
     pub(super) time: f64,
 }
@@ -149,7 +151,11 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 omega_e: turn / length,
                 u: stator.to_dq(middle),
                 theta_e: middle,
-                acceleration: acceleration(row),
+                acceleration: if angles.known { 0.0 } else { acceleration(row) },
+                advance_per_lag: match reading {
+                    VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
+                    VoltageTiming::Centered | VoltageTiming::Delayed { .. } => 0.0,
+                },
                 time: (columns.t[row] + 0.5 * length - first_time) / (last_time - first_time) - 0.5,
             }
         })

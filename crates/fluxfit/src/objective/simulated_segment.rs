@@ -95,7 +95,7 @@ impl SimulatedSegment {
     /// Where a period lies.
     #[inline(always)]
     pub(super) fn place(&self, row: usize) -> Place {
-        let Period { length, omega_e, acceleration, time, .. } = self.periods[row];
+        let Period { length, omega_e, acceleration, advance_per_lag, time, .. } = self.periods[row];
         Place {
             half: carrier_half(self.rows.start + row),
             start: self.turns[row],
@@ -104,6 +104,7 @@ impl SimulatedSegment {
             length,
             omega_e,
             acceleration,
+            advance_per_lag,
             time,
         }
     }

@@ -191,7 +191,8 @@ impl<V: Number, const C: usize> Drives<V, C> {
                 let TransitionLanes { fdd, fdq, fqd, fqq, gdd, gdq, gqd, gqq, .. } = *transition;
                 let own = weights(row + 1);
                 let (d, q) = (behind[0] + own[0], behind[1] + own[1]);
-                behind = self.faults.remaining([d * fdd + q * fqd, d * fdq + q * fqq]);
+                let before = [d * fdd + q * fqd, d * fdq + q * fqq];
+                [behind, _] = self.faults.remaining(before, before);
                 store([d * gdd + q * gqd, d * gdq + q * gqq], &mut effects[2 * lanes * row..2 * lanes * (row + 1)]);
             }
         }
@@ -293,7 +294,7 @@ impl<V: Number> FaultyBlock<'_, '_, V> {
         let segment = self.segment;
         let period = &segment.rows_of_periods[row];
         let zero = self.motors.rs.constant(0.0);
-        let start = self.faults.corrected(state.i, state.error);
+        let [start, filtered] = self.faults.corrected(state.i, state.filtered, state.error);
         let place = segment.place(row);
         let before = segment.rows_of_periods[row.saturating_sub(1)].u;
         let motors = self.motors;
@@ -306,23 +307,19 @@ impl<V: Number> FaultyBlock<'_, '_, V> {
             transitions.after(start, u)
         };
         let [alpha_d, alpha_q] = zero.constants(period.alternating);
-        let before = if self.faults.kinds.filter { state.motor_response } else { state.response };
-        let [first_d, first_q, alpha, beta] = before;
-        let after = [
-            transitions.response(self.faults.remaining(first_d)),
-            transitions.response(self.faults.remaining(first_q)),
-            transitions.driven_response(self.faults.remaining(alpha), [alpha_d, alpha_q]),
-            transitions.driven_response(self.faults.remaining(beta), [-alpha_q, alpha_d]),
-        ];
-        if self.faults.kinds.filter {
-            for k in 0..LINEAR_UNKNOWNS {
-                state.response[k] = self.faults.filtered(state.response[k], [before[k], after[k]], &place);
-            }
-            state.motor_response = after;
-        } else {
-            state.response = after;
+        for k in 0..LINEAR_UNKNOWNS {
+            let filter = self.faults.kinds.filter;
+            let [of_motor, compared] =
+                self.faults.remaining(if filter { state.motor_response[k] } else { state.response[k] }, state.response[k]);
+            let after = match k {
+                0 | 1 => transitions.response(of_motor),
+                2 => transitions.driven_response(of_motor, [alpha_d, alpha_q]),
+                _ => transitions.driven_response(of_motor, [-alpha_q, alpha_d]),
+            };
+            state.response[k] = self.faults.filtered(compared, [of_motor, after], &place);
+            state.motor_response[k] = after;
         }
-        state.filtered = self.faults.filtered(state.filtered, [start, state.i], &place);
+        state.filtered = self.faults.filtered(filtered, [start, state.i], &place);
         let measured = self.faults.motor_current(zero.constants(period.measured), place.end, place.omega_e);
         state.error = [measured[0] - state.filtered[0], measured[1] - state.filtered[1]];
     }

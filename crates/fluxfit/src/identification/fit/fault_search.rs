@@ -109,8 +109,7 @@ impl FaultSearch<'_> {
             self.choose_reading();
         }
         // What stands in for a fault without the angle is no candidate beside it.
-        let stands_in =
-            |fault: Fault| matches!(fault.angle_need(), AngleNeed::OnlyTraced | AngleNeed::Unknown) && self.objective().angle_known();
+        let stands_in = |fault: Fault| fault.angle_need() == AngleNeed::OnlyTraced && self.objective().angle_known();
         let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault));
         let faults: Vec<Fault> = faults.collect();
         let mut taken = Vec::new();
@@ -177,6 +176,20 @@ impl FaultSearch<'_> {
             (FaultTrial { fault: *fault, gain, outcome }, starts)
         });
         trials.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "-- reading {:?} cost {:.4e} unknowns {:?} motor {:?} independent {:.1} of {}",
+                self.objectives[self.reading].0.key(),
+                self.cost,
+                self.unknowns.iter().map(|u| (u.key(), self.drive.get(*u))).collect::<Vec<_>>(),
+                self.drive.motor,
+                test.independent,
+                test.residuals.len()
+            );
+            for (t, _) in &trials {
+                eprintln!("     {} gain {:.1}", t.fault.key(), t.gain);
+            }
+        }
         for place in 0..trials.len() {
             let (trial, starts) = &mut trials[place];
             if trial.gain <= VERY_STRONG {
@@ -184,6 +197,9 @@ impl FaultSearch<'_> {
             }
             let (outcome, fitted) = test.fit(self, trial.fault, starts);
             trial.outcome = outcome;
+            if std::env::var("DBG").is_ok() {
+                eprintln!("   fitted {} {:?} {:?}", trial.fault.key(), outcome, fitted.as_ref().map(|f| f.1));
+            }
             if let (FaultOutcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
                 (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
                 trials.swap(0, place);
