@@ -3,14 +3,14 @@
 
 use super::{
     Faults, Place, angle_delay,
-    current_filter::filtered,
     current_gains::balanced,
     current_offset::removed,
     dead_time::reduced,
     disturbance::{corrected, remaining},
+    filter::{filtered, unfiltered},
     flux_harmonics, resistance_drift,
     saturation::extra_flux,
-    speed_lag, voltage_filter,
+    speed_lag,
 };
 use crate::{
     frames::{Dq, Turn, turned},
@@ -82,11 +82,8 @@ impl FaultKinds {
         Self {
             sensors: turns || faults.current_offset != none.current_offset || faults.current_gains != none.current_gains,
             delay,
-            filter: faults.current_filter != none.current_filter,
-            voltages: turns
-                || faults.speed_lag != none.speed_lag
-                || faults.dead_time != none.dead_time
-                || faults.voltage_filter != none.voltage_filter,
+            filter: faults.filter.phases != 0.0 || faults.filter.currents != 0.0,
+            voltages: turns || faults.speed_lag != none.speed_lag || faults.dead_time != none.dead_time || faults.filter.voltages != 0.0,
             phase: faults.dead_time.phase != 0.0,
             beside: faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
@@ -131,12 +128,12 @@ impl<V> Acting<V> {
             angle: [lanes(&|f| f.angle_offset.angle.cos()), lanes(&|f| f.angle_offset.angle.sin())],
             angle_delay: lanes(&|f| f.angle_delay.time),
             current_filter: [
-                lanes(&|f| f.current_filter.weights(period)[0]),
-                lanes(&|f| f.current_filter.weights(period)[1]),
-                lanes(&|f| f.current_filter.weights(period)[2]),
+                lanes(&|f| f.filter.weights(period)[0]),
+                lanes(&|f| f.filter.weights(period)[1]),
+                lanes(&|f| f.filter.weights(period)[2]),
             ],
-            before_filter: lanes(&|f| 1.0 / (1.0 - f.current_filter.weights(period)[1])),
-            voltage_filter: lanes(&|f| f.voltage_filter.advance(period)),
+            before_filter: lanes(&|f| 1.0 / (1.0 - f.filter.weights(period)[1])),
+            voltage_filter: lanes(&|f| f.filter.advance(period)),
             speed_lag: lanes(&|f| f.speed_lag.time),
             flux_harmonics: [
                 lanes(&|f| f.flux_harmonics.d[0]),
@@ -201,7 +198,7 @@ impl<V: Number> Acting<V> {
         if !self.kinds.voltages {
             return logged;
         }
-        let logged = speed_lag::advanced(self.speed_lag, voltage_filter::unfiltered(self.voltage_filter, logged, before), place);
+        let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_filter, logged, before), place);
         let [cos, sin] = self.angle;
         let i = self.undelayed(turned(i, cos, -sin), place.omega_e, true);
         let reduced = if self.kinds.phase {

@@ -8,18 +8,17 @@
 mod acting;
 pub mod angle_delay;
 pub mod angle_offset;
-pub mod current_filter;
 pub mod current_gains;
 pub mod current_offset;
 pub mod dead_time;
 mod description;
 pub mod disturbance;
+pub mod filter;
 pub mod flux_harmonics;
 mod place;
 pub mod resistance_drift;
 pub mod saturation;
 pub mod speed_lag;
-pub mod voltage_filter;
 
 pub(crate) use acting::{Acting, FaultKinds};
 pub(crate) use dead_time::carrier_half;
@@ -28,18 +27,17 @@ pub(crate) use place::Place;
 use crate::motor::Motor;
 use angle_delay::AngleDelay;
 use angle_offset::AngleOffset;
-use current_filter::CurrentFilter;
 use current_gains::CurrentGains;
 use current_offset::CurrentOffset;
 use dead_time::DeadTime;
 pub(crate) use description::AngleNeed;
 use description::Names;
 use disturbance::Disturbance;
+use filter::Filter;
 use flux_harmonics::FluxHarmonics;
 use resistance_drift::ResistanceDrift;
 use saturation::Saturation;
 use speed_lag::SpeedLag;
-use voltage_filter::VoltageFilter;
 
 /// The state of all faults. The default is a perfect drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -54,10 +52,8 @@ pub struct Faults {
     pub current_offset: CurrentOffset,
     /// Gains of the current sensors that differ.
     pub current_gains: CurrentGains,
-    /// Filter of the logged currents.
-    pub current_filter: CurrentFilter,
-    /// Filter of the logged voltages.
-    pub voltage_filter: VoltageFilter,
+    /// Filters of what is logged.
+    pub filter: Filter,
     /// Speed that lags.
     pub speed_lag: SpeedLag,
     /// Harmonics of the flux.
@@ -97,7 +93,9 @@ pub enum Fault {
     /// Filter of the logged d and q currents.
     DqCurrentFilter,
     /// Filter of the logged d and q voltages.
-    VoltageFilter,
+    DqVoltageFilter,
+    /// The same filter of both.
+    DqFilter,
     /// Speed that lags.
     SpeedLag,
     /// Harmonics of the flux.
@@ -159,7 +157,7 @@ macro_rules! row {
 
 impl Fault {
     /// All of them, in the order in which they are tried where they promise alike.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::DeadTime,
         Self::DeadTimeWithoutAngle,
         Self::AngleOffset,
@@ -171,7 +169,8 @@ impl Fault {
         Self::SensorsCa,
         Self::CurrentFilter,
         Self::DqCurrentFilter,
-        Self::VoltageFilter,
+        Self::DqVoltageFilter,
+        Self::DqFilter,
         Self::SpeedLag,
         Self::FluxHarmonics,
         Self::ResistanceDrift,
@@ -191,9 +190,10 @@ impl Fault {
             Self::SensorsAb => row!(current_gains::SENSORS_A_B, current_gains),
             Self::SensorsBc => row!(current_gains::SENSORS_B_C, current_gains),
             Self::SensorsCa => row!(current_gains::SENSORS_C_A, current_gains),
-            Self::CurrentFilter => row!(current_filter::OF_PHASES, current_filter),
-            Self::DqCurrentFilter => row!(current_filter::OF_DQ, current_filter),
-            Self::VoltageFilter => row!(voltage_filter::FAULT, voltage_filter),
+            Self::CurrentFilter => row!(filter::OF_PHASES, filter),
+            Self::DqCurrentFilter => row!(filter::OF_CURRENTS, filter),
+            Self::DqVoltageFilter => row!(filter::OF_VOLTAGES, filter),
+            Self::DqFilter => row!(filter::OF_BOTH, filter),
             Self::SpeedLag => row!(speed_lag::FAULT, speed_lag),
             Self::FluxHarmonics => row!(flux_harmonics::FAULT, flux_harmonics),
             Self::ResistanceDrift => row!(resistance_drift::FAULT, resistance_drift),

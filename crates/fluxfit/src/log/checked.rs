@@ -101,6 +101,11 @@ impl Log {
         &self.source
     }
 
+    /// The same log with another speed, electrical rad/s.
+    pub(super) fn with_speed(&self, omega_e: Vec<f64>) -> Self {
+        Self { columns: Columns { omega_e, ..self.columns.clone() }, ..self.clone() }
+    }
+
     /// The same log without its rows.
     fn without_rows(&self) -> Self {
         Self {

@@ -12,6 +12,7 @@ mod checked;
 mod columns;
 mod segment;
 mod short_circuit;
+mod speed_lag;
 mod spikes;
 
 pub use builder::{LogBuilder, check_values};

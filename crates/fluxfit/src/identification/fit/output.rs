@@ -29,7 +29,11 @@ use crate::{
     levenberg_marquardt::{Polished, polish_with_progress},
     log::Log,
     motor::Motor,
-    objective::{acting_voltage::VoltageTiming, adjustable::Adjustable, output_error::OutputError},
+    objective::{
+        acting_voltage::VoltageTiming,
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
     optimizer::{Bounds, Method},
     steady::OperatingPoint,
 };
@@ -78,8 +82,9 @@ impl OutputFit {
         let whole = stretches::as_points(log, &stretches);
         let scale = Excitation::of(&whole, &request.known).scale;
         let start = output_start::start(log, &stretches, steady, request, &scale);
-        let Chosen { reading, drive, unknowns, priors, readings, terms, independent, .. } =
-            choose(log, &stretches, &start, request, progress)?;
+        let Advanced { log: advanced, lag, chosen } = with_speed_in_time(log, |log| choose(log, &stretches, &start, request, progress))?;
+        let Chosen { reading, drive, unknowns, priors, readings, terms, independent, .. } = chosen;
+        let log = advanced.as_ref().unwrap_or(log);
         let objective = &OutputError::of_rows(log, &stretches, reading)?;
         let usual = USUAL_STEPS * (1 + 2 * unknowns.len());
         let fitting = |simulations| {
@@ -120,7 +125,7 @@ impl OutputFit {
                 provenance: if request.voltage_timing.is_some() { Provenance::Stated } else { Provenance::Found },
             },
             fault_trials: terms,
-            fault_estimates: errors.nuisance(&drive, &unknowns),
+            fault_estimates: with_lag(errors.nuisance(&drive, &unknowns), lag),
             stretches: objective.stretches().collect(),
             angle_known: objective.angle_known(),
             redundancy: residuals.len().saturating_sub(unknowns.len()),
@@ -180,6 +185,46 @@ impl OutputFit {
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report })
     }
+}
+
+/// A log whose speed lags, in time again.
+struct Advanced {
+    /// The log with the speed in time; `None` if it always was.
+    log: Option<Log>,
+    /// By how much it was advanced, s.
+    lag: f64,
+    chosen: Chosen,
+}
+
+/// Times that a lag is looked for: it is found to first order, and again where it was undone.
+const LAG_ROUNDS: usize = 2;
+
+/// Where the angle is not known it comes from the speed, and a speed that lags spoils it: what was found of the lag is undone, and all is
+/// chosen again.
+fn with_speed_in_time(log: &Log, choose: impl Fn(&Log) -> Result<Chosen, Error>) -> Result<Advanced, Error> {
+    let mut found = Advanced { log: None, lag: 0.0, chosen: choose(log)? };
+    for _ in 0..LAG_ROUNDS {
+        if found.chosen.angle_known || !is_taken(&found.chosen.terms, Fault::SpeedLag) {
+            break;
+        }
+        let lag = found.lag + found.chosen.drive.faults.speed_lag.time;
+        let advanced = log.without_speed_lag(lag);
+        found = Advanced { chosen: choose(&advanced)?, lag, log: Some(advanced) };
+    }
+    let Chosen { unknowns, terms, .. } = &mut found.chosen;
+    if found.lag != 0.0 && !is_taken(terms, Fault::SpeedLag) {
+        // What is left of it stays unknown.
+        unknowns.extend(Unknown::of_fault(Fault::SpeedLag));
+        terms.iter_mut().filter(|trial| trial.fault == Fault::SpeedLag).for_each(|trial| trial.outcome = FaultOutcome::Taken);
+        terms.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);
+    }
+    Ok(found)
+}
+
+/// The lag as a whole, where a part of it was undone.
+fn with_lag(mut estimates: Vec<FaultEstimate>, lag: f64) -> Vec<FaultEstimate> {
+    estimates.iter_mut().filter(|estimate| estimate.unknown.fault() == Some(Fault::SpeedLag)).for_each(|estimate| estimate.value += lag);
+    estimates
 }
 
 fn is_taken(trials: &[FaultTrial], fault: Fault) -> bool {

@@ -33,6 +33,8 @@ pub(super) struct Chosen {
     /// Every reading with these unknowns, the best first.
     pub(super) readings: Vec<TimingTrial>,
     pub(super) terms: Vec<FaultTrial>,
+    /// Whether the angle is.
+    pub(super) angle_known: bool,
     /// Independent residuals of the rows by which it was chosen.
     pub(super) independent: f64,
     /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
@@ -94,6 +96,7 @@ fn with_faults(mut search: FaultSearch, objectives: &[(VoltageTiming, OutputErro
     Chosen {
         reading: *reading,
         readings: Vec::new(),
+        angle_known: objective.angle_known(),
         independent,
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
         explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()

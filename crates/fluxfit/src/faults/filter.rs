@@ -1,14 +1,15 @@
-//! Current filter: a low pass of first order between the motor's currents and the logged ones.
+//! Filters between the drive and its log, low passes of first order.
 //!
-//! Either it lies in the phases, as an RC filter before the converter. Over a period `T` in which the motor's current goes straight from
-//! `i_0` to `i_1` in the stator,
+//! One of the currents may lie in the phases, as an RC filter before the converter. Over a period `T` in which the motor's current goes
+//! straight from `i_0` to `i_1` in the stator,
 //!
 //! ```text
 //! y_1 = a y_0 + (c - a) i_0 + (1 - c) i_1,    a = exp(-T / tau),    c = (tau / T) (1 - a)
 //! ```
 //!
-//! which is the exact solution of `tau dy/dt = i - y`. Or the drive smooths the d and q currents from period to period before it logs
-//! them: `y_1 = a y_0 + (1 - a) i_1` in the rotor's frame.
+//! which is the exact solution of `tau dy/dt = i - y`. Or the drive smooths the d and q currents, or voltages, or both alike, from period
+//! to period before it logs them: `y_1 = a y_0 + (1 - a) i_1` in the rotor's frame. The voltage that acted is then
+//! `u_1 = y_1 + a / (1 - a) (y_1 - y_0)`.
 
 use super::{
     Place,
@@ -20,13 +21,15 @@ use crate::{
 };
 use std::f64::consts::TAU;
 
-/// A filter of the logged currents.
+/// Time constants of filters, s; zero without one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct CurrentFilter {
-    /// Time constant of a filter in the phases, s; zero without one.
+pub struct Filter {
+    /// Of the phase currents.
     pub phases: f64,
-    /// Time constant of a filter of the d and q currents, s; zero without one.
-    pub dq: f64,
+    /// Of the d and q currents.
+    pub currents: f64,
+    /// Of the d and q voltages.
+    pub voltages: f64,
 }
 
 /// Time constants, s, from which a fit starts: of corners between some hundred hertz and the switching frequency.
@@ -38,10 +41,10 @@ const LOWEST_CORNER: f64 = 100.0;
 /// Usual time constant, s: of a corner at 1.6 kHz.
 const USUAL: f64 = 1e-4;
 
-/// The family of both faults in this file.
+/// The family of filters of currents: there is one.
 const FAMILY: &str = "current filter";
 
-pub(super) static OF_PHASES: Description<CurrentFilter> = Description {
+pub(super) static OF_PHASES: Description<Filter> = Description {
     key: "current_filter",
     label: "filter of the phase currents",
     family: FAMILY,
@@ -53,11 +56,11 @@ pub(super) static OF_PHASES: Description<CurrentFilter> = Description {
         set: |state, value| state.phases = value,
         usual_size: |_, _| USUAL,
     }],
-    starts: |_, _| TIME_CONSTANTS.map(|phases| CurrentFilter { phases, dq: 0.0 }).to_vec(),
+    starts: |state, _| TIME_CONSTANTS.map(|phases| Filter { phases, ..*state }).to_vec(),
     is_physical: |state, _, _| is_physical(state.phases),
 };
 
-pub(super) static OF_DQ: Description<CurrentFilter> = Description {
+pub(super) static OF_CURRENTS: Description<Filter> = Description {
     key: "dq_current_filter",
     label: "filter of the logged d and q currents",
     family: FAMILY,
@@ -65,31 +68,68 @@ pub(super) static OF_DQ: Description<CurrentFilter> = Description {
     alters_measured_current: true,
     numbers: &[NumberDescription {
         names: Names { key: "dq_current_filter_time_constant", label: "time constant of the d and q currents' filter", unit: "s" },
-        get: |state| state.dq,
-        set: |state, value| state.dq = value,
+        get: |state| state.currents,
+        set: |state, value| state.currents = value,
         usual_size: |_, _| USUAL,
     }],
-    starts: |_, _| TIME_CONSTANTS.map(|dq| CurrentFilter { phases: 0.0, dq }).to_vec(),
-    is_physical: |state, _, _| is_physical(state.dq),
+    starts: |state, _| TIME_CONSTANTS.map(|currents| Filter { currents, ..*state }).to_vec(),
+    is_physical: |state, _, _| is_physical(state.currents),
+};
+
+pub(super) static OF_VOLTAGES: Description<Filter> = Description {
+    key: "dq_voltage_filter",
+    label: "filter of the logged d and q voltages",
+    family: "voltage filter",
+    angle: AngleNeed::Nothing,
+    alters_measured_current: false,
+    numbers: &[NumberDescription {
+        names: Names { key: "dq_voltage_filter_time_constant", label: "time constant of the d and q voltages' filter", unit: "s" },
+        get: |state| state.voltages,
+        set: |state, value| state.voltages = value,
+        usual_size: |_, _| USUAL,
+    }],
+    starts: |state, _| TIME_CONSTANTS.map(|voltages| Filter { voltages, ..*state }).to_vec(),
+    is_physical: |state, _, _| is_physical(state.voltages),
+};
+
+pub(super) static OF_BOTH: Description<Filter> = Description {
+    key: "dq_filter",
+    label: "filter of all logged d and q values",
+    family: FAMILY,
+    angle: AngleNeed::Nothing,
+    alters_measured_current: true,
+    numbers: &[NumberDescription {
+        names: Names { key: "dq_filter_time_constant", label: "time constant of the filter of all d and q values", unit: "s" },
+        get: |state| state.currents,
+        set: |state, value| (state.currents, state.voltages) = (value, value),
+        usual_size: |_, _| USUAL,
+    }],
+    starts: |_, _| TIME_CONSTANTS.map(|both| Filter { phases: 0.0, currents: both, voltages: both }).to_vec(),
+    is_physical: |state, _, _| is_physical(state.currents),
 };
 
 fn is_physical(time_constant: f64) -> bool {
     time_constant > 0.0 && time_constant < 1.0 / (TAU * LOWEST_CORNER)
 }
 
-impl CurrentFilter {
-    /// `a` and `c` over a period of this length, s, and 1 for a filter that turns with the stator, 0 for one that turns with the rotor: of
+impl Filter {
+    /// Of the currents: `a` and `c` over a period of this length, s, and 1 for a filter that turns with the stator, 0 for one that turns with the rotor: of
     /// that, `c` is `a`.
     pub(super) fn weights(self, period: f64) -> [f64; 3] {
         let decay = |periods: f64| if periods > 0.0 { (-1.0 / periods).exp() } else { 0.0 };
-        if self.dq != 0.0 {
-            let a = decay(self.dq / period);
+        if self.currents != 0.0 {
+            let a = decay(self.currents / period);
             return [a, a, 0.0];
         }
         // A time constant below zero, which a fit may try beside zero, advances the current.
         let periods = self.phases / period;
         let a = decay(periods);
         [a, periods * (1.0 - a), 1.0]
+    }
+
+    /// Of the voltages: `a / (1 - a)` over a period of this length, s.
+    pub(super) fn advance(self, period: f64) -> f64 {
+        if self.voltages > 0.0 { 1.0 / (period / self.voltages).exp_m1() } else { 0.0 }
     }
 }
 
@@ -105,6 +145,12 @@ pub(super) fn filtered<V: Number>([a, c, turns]: [V; 3], y: [V; 2], i: [[V; 2]; 
     [kept[0] + (one - c) * after[0], kept[1] + (one - c) * after[1]]
 }
 
+/// The voltage that was filtered into `logged`, V, given the logged one of the period before.
+#[inline(always)]
+pub(super) fn unfiltered<V: Number>(advance: V, logged: [V; 2], before: [V; 2]) -> [V; 2] {
+    [advance.mul_add(logged[0] - before[0], logged[0]), advance.mul_add(logged[1] - before[1], logged[1])]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,7 +160,7 @@ mod tests {
     fn a_step_rises_as_an_exponential() {
         const PERIOD: f64 = 1e-4;
         const TIME_CONSTANT: f64 = 3e-4;
-        let weights = CurrentFilter { phases: TIME_CONSTANT, dq: 0.0 }.weights(PERIOD);
+        let weights = Filter { phases: TIME_CONSTANT, ..Filter::default() }.weights(PERIOD);
         let mut y = [0.0; 2];
         for row in 0..10 {
             let turn = |row: usize| Turn::by(0.05 * row as f64);
@@ -130,7 +176,7 @@ mod tests {
     /// A current that stands still in the rotor's frame: `y = 1 - a^k` after k rows.
     #[test]
     fn a_step_in_the_rotors_frame_rises_as_an_exponential() {
-        let weights = CurrentFilter { phases: 0.0, dq: 3e-4 }.weights(1e-4);
+        let weights = Filter { currents: 3e-4, ..Filter::default() }.weights(1e-4);
         let mut y = [0.0; 2];
         for row in 1..10 {
             let place = Place { start: Turn::by(0.1), end: Turn::by(0.2), ..Place::still(Turn::by(0.15)) };
@@ -138,5 +184,15 @@ mod tests {
             let risen = 1.0 - (-f64::from(row) / 3.0).exp();
             assert!((y[0] - risen).hypot(y[1] - 0.5 * risen) < 1e-14, "{y:?}");
         }
+    }
+
+    #[test]
+    fn filtering_of_voltages_is_undone() {
+        let (filter, period) = (Filter { voltages: 3e-4, ..Filter::default() }, 1e-4);
+        let a = (-1.0_f64 / 3.0).exp();
+        let (before, u) = ([1.0, -2.0], [5.0, 3.0]);
+        let logged = [0, 1].map(|axis| a * before[axis] + (1.0 - a) * u[axis]);
+        let found = unfiltered(filter.advance(period), logged, before);
+        assert!((found[0] - u[0]).hypot(found[1] - u[1]) < 1e-14, "{found:?}");
     }
 }
