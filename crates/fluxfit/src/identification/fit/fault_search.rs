@@ -110,7 +110,8 @@ impl FaultSearch<'_> {
         }
         // What stands in for a fault without the angle is no candidate beside it.
         let stands_in = |fault: Fault| fault.angle_need() == AngleNeed::OnlyTraced && self.objective().angle_known();
-        let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault));
+        let is_there = |fault: Fault| self.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
+        let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault) && !is_there(*fault));
         let faults: Vec<Fault> = faults.collect();
         let mut taken = Vec::new();
         let not_taken = loop {

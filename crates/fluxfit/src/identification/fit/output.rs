@@ -82,7 +82,8 @@ impl OutputFit {
         let whole = stretches::as_points(log, &stretches);
         let scale = Excitation::of(&whole, &request.known).scale;
         let start = output_start::start(log, &stretches, steady, request, &scale);
-        let Advanced { log: advanced, lag, chosen } = with_speed_in_time(log, |log| choose(log, &stretches, &start, request, progress))?;
+        let Advanced { log: advanced, lag, chosen } =
+            with_speed_in_time(log, |log, beside| choose(log, &stretches, &start, beside, request, progress))?;
         let Chosen { reading, drive, unknowns, priors, readings, terms, independent, .. } = chosen;
         let log = advanced.as_ref().unwrap_or(log);
         let objective = &OutputError::of_rows(log, &stretches, reading)?;
@@ -199,25 +200,22 @@ struct Advanced {
 /// Times that a lag is looked for: it is found to first order, and again where it was undone.
 const LAG_ROUNDS: usize = 2;
 
-/// Where the angle is not known it comes from the speed, and a speed that lags spoils it: what was found of the lag is undone, and all is
-/// chosen again.
-fn with_speed_in_time(log: &Log, choose: impl Fn(&Log) -> Result<Chosen, Error>) -> Result<Advanced, Error> {
-    let mut found = Advanced { log: None, lag: 0.0, chosen: choose(log)? };
+/// A speed that lags spoils the angle, which comes from it or is made smooth by it: what was found of the lag is undone, and all is chosen
+/// again, with what is left of it unknown.
+fn with_speed_in_time(log: &Log, choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>) -> Result<Advanced, Error> {
+    let mut found = Advanced { log: None, lag: 0.0, chosen: choose(log, &[])? };
+    let Some(lags) =
+        found.chosen.terms.iter().find(|trial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken).cloned()
+    else {
+        return Ok(found);
+    };
+    let unknown: Vec<Unknown> = Unknown::of_fault(Fault::SpeedLag).collect();
     for _ in 0..LAG_ROUNDS {
-        if found.chosen.angle_known || !is_taken(&found.chosen.terms, Fault::SpeedLag) {
-            break;
-        }
         let lag = found.lag + found.chosen.drive.faults.speed_lag.time;
         let advanced = log.without_speed_lag(lag);
-        found = Advanced { chosen: choose(&advanced)?, lag, log: Some(advanced) };
+        found = Advanced { chosen: choose(&advanced, &unknown)?, lag, log: Some(advanced) };
     }
-    let Chosen { unknowns, terms, .. } = &mut found.chosen;
-    if found.lag != 0.0 && !is_taken(terms, Fault::SpeedLag) {
-        // What is left of it stays unknown.
-        unknowns.extend(Unknown::of_fault(Fault::SpeedLag));
-        terms.iter_mut().filter(|trial| trial.fault == Fault::SpeedLag).for_each(|trial| trial.outcome = FaultOutcome::Taken);
-        terms.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);
-    }
+    found.chosen.terms.insert(0, lags);
     Ok(found)
 }
 

@@ -33,8 +33,6 @@ pub(super) struct Chosen {
     /// Every reading with these unknowns, the best first.
     pub(super) readings: Vec<TimingTrial>,
     pub(super) terms: Vec<FaultTrial>,
-    /// Whether the angle is.
-    pub(super) angle_known: bool,
     /// Independent residuals of the rows by which it was chosen.
     pub(super) independent: f64,
     /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
@@ -49,16 +47,17 @@ const TRIED_READINGS: usize = 2;
 /// Correlation of neighbours below which residuals are white enough.
 const WHITE: f64 = 0.1;
 
-/// Chooses the reading of the voltages and the faults of the drive.
+/// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there.
 pub(super) fn choose(
     log: &Log,
     stretches: &[Range<usize>],
     start: &Adjustable,
+    beside: &[Unknown],
     request: &Request,
     progress: Progress,
 ) -> Result<Chosen, Error> {
     let _ = progress(Step::VoltageTiming);
-    let free = free(request);
+    let free = [free(request), beside.to_vec()].concat();
     let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
     let rough = readings::readings(&objectives, start, &free, &[]);
     let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
@@ -96,7 +95,6 @@ fn with_faults(mut search: FaultSearch, objectives: &[(VoltageTiming, OutputErro
     Chosen {
         reading: *reading,
         readings: Vec::new(),
-        angle_known: objective.angle_known(),
         independent,
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
         explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
