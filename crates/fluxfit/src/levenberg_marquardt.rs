@@ -28,6 +28,9 @@ const NO_STEP: f64 = 1e-9;
 /// The same for fits that are only compared with each other: of ten thousand residuals a thousandth of what noise changes in a cost.
 const NO_STEP_OF_CHOICE: f64 = 1e-7;
 
+/// The same for a fit that ends after its first step: any step is small beside it.
+const FIRST_STEP: f64 = 1.0;
+
 /// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
 const PATIENCE: usize = 4;
 
@@ -70,6 +73,11 @@ pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[
 /// [`polish_unknowns`] as far as a comparison of costs needs it.
 pub(crate) fn polish_to_choose(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
     minimize(objective, start, unknowns, priors, NO_STEP_OF_CHOICE, &|_| ())
+}
+
+/// The first step of a polish alone.
+pub(crate) fn step(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
+    minimize(objective, start, unknowns, priors, FIRST_STEP, &|_| ())
 }
 
 /// [`polish_unknowns`], which calls `progress` after each step with the number of simulations so far.

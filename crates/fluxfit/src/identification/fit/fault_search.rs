@@ -214,6 +214,9 @@ impl FaultSearch<'_> {
 /// Starts of a fault that are fitted: the most promising of all.
 const FITTED_STARTS: usize = 2;
 
+/// Cost of a start, over that without the fault, beyond which its derivatives say nothing of the fit: it is unstable.
+const TOO_FAR: f64 = 1e4;
+
 /// Schwarz's criterion for so many further unknowns, given how many independent residuals there are.
 fn schwarz(before: f64, after: f64, unknowns: usize, independent: f64) -> f64 {
     if before <= 0.0 || after >= before || after.is_nan() {
@@ -261,6 +264,10 @@ impl ScoreTest {
         let unknowns: Vec<Unknown> = Unknown::of_fault(fault).collect();
         let gain_from = |faults: &Faults| {
             let start = Adjustable { faults: *faults, ..search.drive };
+            let cost = search.objective().cost_of(&start);
+            if cost.is_nan() || cost > TOO_FAR * search.cost {
+                return (f64::NEG_INFINITY, start);
+            }
             let columns = jacobian(search.objective(), &start, &unknowns);
             let all = [self.jacobian.clone(), columns].concat();
             let right = DVector::from_iterator(all.len(), all.iter().map(|column| dot(column, &self.residuals)));

@@ -13,7 +13,6 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind},
-    faults::Fault,
     levenberg_marquardt::PriorResidual,
     log::Log,
     objective::{
@@ -37,7 +36,7 @@ pub(super) struct Chosen {
     pub(super) independent: f64,
     /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
     criterion: f64,
-    /// Whether what is left is noise, and no observer was needed to make it so.
+    /// Whether what is left is noise, and next to no observer was needed to make it so.
     explained: bool,
 }
 
@@ -46,6 +45,9 @@ const TRIED_READINGS: usize = 2;
 
 /// Correlation of neighbours below which residuals are white enough.
 const WHITE: f64 = 0.1;
+
+/// An observer's gain below which little is left for another reading of the voltages to explain.
+const SMALL_GAIN: f64 = 0.2;
 
 /// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there.
 pub(super) fn choose(
@@ -65,6 +67,10 @@ pub(super) fn choose(
     let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors) };
     let _ = progress(Step::Faults);
     for (place, tried) in tried.iter().copied().take(TRIED_READINGS) {
+        // The search from the reading before has compared all of them, and ended with this one.
+        if best.as_ref().is_some_and(|best| best.reading == tried.timing) {
+            break;
+        }
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
         let search =
             FaultSearch { objectives: &objectives, reading: place, priors: &priors, drive, unknowns: free.clone(), cost, voltage_accuracy };
@@ -98,8 +104,7 @@ fn with_faults(mut search: FaultSearch, objectives: &[(VoltageTiming, OutputErro
         independent,
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
         explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
-            || unknowns.iter().all(|unknown| unknown.fault() != Some(Fault::Disturbance))
-                && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+            || drive.faults.disturbance.gain.magnitude() < SMALL_GAIN && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
         drive,
         unknowns,
         priors: priors.to_vec(),

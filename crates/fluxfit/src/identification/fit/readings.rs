@@ -6,7 +6,7 @@
 use super::super::request::Request;
 use crate::{
     error::Error,
-    levenberg_marquardt::{Polished, PriorResidual, polish_to_choose},
+    levenberg_marquardt::{Polished, PriorResidual, polish_to_choose, step},
     log::Log,
     motor::PARAMETERS,
     objective::{
@@ -50,18 +50,28 @@ pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Reques
     readings.into_iter().map(|reading| Ok((reading, OutputError::of_rows(log, stretches, reading)?))).collect()
 }
 
-/// Tries every reading from the same start. The best one first, with its place among the objectives.
+/// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
+/// up for it.
+const HOPELESS: f64 = 10.0;
+
+/// Tries every reading from the same start. The best one first, with its place among the objectives. One step tells which are worth a
+/// whole fit.
 pub(crate) fn readings(
     objectives: &[(VoltageTiming, OutputError)],
     start: &Adjustable,
     unknowns: &[Unknown],
     priors: &[PriorResidual],
 ) -> Vec<(usize, TimingTrial)> {
-    let try_one = |(reading, objective): &(VoltageTiming, OutputError)| {
-        let polished = polish_to_choose(objective, start, unknowns, priors);
-        TimingTrial { timing: *reading, polished, rows: objective.rows() }
-    };
-    let mut tried: Vec<(usize, TimingTrial)> = parallel::map(objectives, try_one).into_iter().enumerate().collect();
+    let trial =
+        |(timing, objective): &(VoltageTiming, OutputError), polished| TimingTrial { timing: *timing, polished, rows: objective.rows() };
+    let stepped = parallel::map(objectives, |one| trial(one, step(&one.1, start, unknowns, priors)));
+    let least = stepped.iter().map(TimingTrial::mean_square).fold(f64::INFINITY, f64::min);
+    let places: Vec<usize> = (0..objectives.len()).collect();
+    let mut tried: Vec<(usize, TimingTrial)> = parallel::map(&places, |place| {
+        let (one, stepped) = (&objectives[*place], stepped[*place]);
+        let is_hopeless = stepped.mean_square() > HOPELESS * least && least > 0.0;
+        (*place, if is_hopeless { stepped } else { trial(one, polish_to_choose(&one.1, &stepped.polished.drive, unknowns, priors)) })
+    });
     tried.sort_by(|(_, one), (_, other)| one.mean_square().total_cmp(&other.mean_square()));
     tried
 }
