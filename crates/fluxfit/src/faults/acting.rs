@@ -37,6 +37,7 @@ pub(crate) struct Acting<V> {
     current_filter: [V; 3],
     /// What of a change of the current within a period the filter passes on, inverted.
     before_filter: V,
+    noise_before_filter: V,
     voltage_filter: V,
     speed_lag: V,
     /// `d cos, d sin, q cos, q sin`.
@@ -132,6 +133,7 @@ impl<V> Acting<V> {
                 lanes(&|f| f.filter.weights(period)[1]),
                 lanes(&|f| f.filter.weights(period)[2]),
             ],
+            noise_before_filter: lanes(&|f| f.filter.noise_before),
             before_filter: lanes(&|f| 1.0 / (1.0 - f.filter.weights(period)[1])),
             voltage_filter: lanes(&|f| f.filter.advance(period)),
             speed_lag: lanes(&|f| f.speed_lag.time),
@@ -231,26 +233,34 @@ impl<V: Number> Acting<V> {
         extra_flux(self.saturation, i)
     }
 
-    /// The current in the motor, `i`, and what its filter makes of it, `y`, corrected by the observer of a disturbed motor for the error of
-    /// `y`. A filter passes on a part of a change of the current within a period: the current is corrected by that much more.
+    /// The current in the motor, `i`, and what its filter makes of it, `y`, corrected for the error of `y` by the observer of a disturbed
+    /// motor. A filter passes on a part of a change of the current within a period: the current is corrected by that much more. And it holds
+    /// noise that came before it.
     #[inline(always)]
     pub(crate) fn corrected(&self, i: [V; 2], y: [V; 2], error: [V; 2]) -> [[V; 2]; 2] {
-        if !self.kinds.observer {
+        if !self.kinds.observer && !self.kinds.filter {
             return [i, y];
         }
-        let more = self.before_filter;
-        let gain = [more * self.observer_gain[0], more * self.observer_gain[1]];
-        [corrected(gain, i, error), corrected(self.observer_gain, y, error)]
+        let [of_motor, of_filter] = self.gains();
+        [corrected(of_motor, i, error), corrected(of_filter, y, error)]
     }
 
     /// What that correction leaves of a difference between two simulations.
     #[inline(always)]
     pub(crate) fn remaining(&self, i: [V; 2], y: [V; 2]) -> [[V; 2]; 2] {
-        if !self.kinds.observer {
+        if !self.kinds.observer && !self.kinds.filter {
             return [i, y];
         }
-        let more = self.before_filter;
-        let gain = [more * self.observer_gain[0], more * self.observer_gain[1]];
-        [remaining(gain, i, y), remaining(self.observer_gain, y, y)]
+        let [of_motor, of_filter] = self.gains();
+        [remaining(of_motor, i, y), remaining(of_filter, y, y)]
+    }
+
+    /// By which part of an error the motor's current is corrected, and by which the filter's.
+    #[inline(always)]
+    fn gains(&self) -> [[V; 2]; 2] {
+        let [d, q] = self.observer_gain;
+        let (more, noise) = (self.before_filter, self.noise_before_filter);
+        let left = noise.constant(1.0) - noise;
+        [[more * d, more * q], [left.mul_add(d, noise), left.mul_add(q, noise)]]
     }
 }

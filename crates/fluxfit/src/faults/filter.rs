@@ -13,7 +13,7 @@
 
 use super::{
     Place,
-    description::{AngleNeed, Description, Names, NumberDescription},
+    description::{AngleNeed, Description, Names, NumberDescription, one},
 };
 use crate::{
     frames::{Turn, turned},
@@ -21,7 +21,7 @@ use crate::{
 };
 use std::f64::consts::TAU;
 
-/// Time constants of filters, s; zero without one.
+/// Filters: their time constants, s, zero without one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Filter {
     /// Of the phase currents.
@@ -30,6 +30,9 @@ pub struct Filter {
     pub currents: f64,
     /// Of the d and q voltages.
     pub voltages: f64,
+    /// The part of the noise of the currents that lies before their filter and passes it: by so much, what the filter holds is corrected
+    /// to what it put out.
+    pub noise_before: f64,
 }
 
 /// Time constants, s, from which a fit starts: of corners between some hundred hertz and the switching frequency.
@@ -41,6 +44,25 @@ const LOWEST_CORNER: f64 = 100.0;
 /// Usual time constant, s: of a corner at 1.6 kHz.
 const USUAL: f64 = 1e-4;
 
+/// Parts of the noise before the filter from which a fit starts.
+const NOISE_BEFORE: [f64; 2] = [0.0, 0.9];
+
+/// Every time constant with every part of the noise.
+fn starts(filter: impl Fn(f64) -> Filter) -> Vec<Filter> {
+    let with = |noise_before| TIME_CONSTANTS.map(|time_constant| Filter { noise_before, ..filter(time_constant) });
+    NOISE_BEFORE.into_iter().flat_map(with).collect()
+}
+
+/// Most of the noise, with freedom for a fit whose other faults are not found yet.
+const MOST_NOISE: f64 = 3.0;
+
+const NOISE: NumberDescription<Filter> = NumberDescription {
+    names: Names { key: "noise_before_filter", label: "part of the currents' noise before the filter", unit: "1" },
+    get: |state| state.noise_before,
+    set: |state, value| state.noise_before = value,
+    usual_size: one,
+};
+
 /// The family of filters of currents: there is one.
 const FAMILY: &str = "current filter";
 
@@ -50,14 +72,17 @@ pub(super) static OF_PHASES: Description<Filter> = Description {
     family: FAMILY,
     angle: AngleNeed::Nothing,
     alters_measured_current: true,
-    numbers: &[NumberDescription {
-        names: Names { key: "current_filter_time_constant", label: "time constant of the phase currents' filter", unit: "s" },
-        get: |state| state.phases,
-        set: |state, value| state.phases = value,
-        usual_size: |_, _| USUAL,
-    }],
-    starts: |state, _| TIME_CONSTANTS.map(|phases| Filter { phases, ..*state }).to_vec(),
-    is_physical: |state, _, _| is_physical(state.phases),
+    numbers: &[
+        NumberDescription {
+            names: Names { key: "current_filter_time_constant", label: "time constant of the phase currents' filter", unit: "s" },
+            get: |state| state.phases,
+            set: |state, value| state.phases = value,
+            usual_size: |_, _| USUAL,
+        },
+        NOISE,
+    ],
+    starts: |state, _| starts(|phases| Filter { phases, ..*state }),
+    is_physical: |state, _, _| is_physical(state.phases) && state.noise_before.abs() < MOST_NOISE,
 };
 
 pub(super) static OF_CURRENTS: Description<Filter> = Description {
@@ -66,14 +91,17 @@ pub(super) static OF_CURRENTS: Description<Filter> = Description {
     family: FAMILY,
     angle: AngleNeed::Nothing,
     alters_measured_current: true,
-    numbers: &[NumberDescription {
-        names: Names { key: "dq_current_filter_time_constant", label: "time constant of the d and q currents' filter", unit: "s" },
-        get: |state| state.currents,
-        set: |state, value| state.currents = value,
-        usual_size: |_, _| USUAL,
-    }],
-    starts: |state, _| TIME_CONSTANTS.map(|currents| Filter { currents, ..*state }).to_vec(),
-    is_physical: |state, _, _| is_physical(state.currents),
+    numbers: &[
+        NumberDescription {
+            names: Names { key: "dq_current_filter_time_constant", label: "time constant of the d and q currents' filter", unit: "s" },
+            get: |state| state.currents,
+            set: |state, value| state.currents = value,
+            usual_size: |_, _| USUAL,
+        },
+        NOISE,
+    ],
+    starts: |state, _| starts(|currents| Filter { currents, ..*state }),
+    is_physical: |state, _, _| is_physical(state.currents) && state.noise_before.abs() < MOST_NOISE,
 };
 
 pub(super) static OF_VOLTAGES: Description<Filter> = Description {
@@ -98,14 +126,17 @@ pub(super) static OF_BOTH: Description<Filter> = Description {
     family: FAMILY,
     angle: AngleNeed::Nothing,
     alters_measured_current: true,
-    numbers: &[NumberDescription {
-        names: Names { key: "dq_filter_time_constant", label: "time constant of the filter of all d and q values", unit: "s" },
-        get: |state| state.currents,
-        set: |state, value| (state.currents, state.voltages) = (value, value),
-        usual_size: |_, _| USUAL,
-    }],
-    starts: |_, _| TIME_CONSTANTS.map(|both| Filter { phases: 0.0, currents: both, voltages: both }).to_vec(),
-    is_physical: |state, _, _| is_physical(state.currents),
+    numbers: &[
+        NumberDescription {
+            names: Names { key: "dq_filter_time_constant", label: "time constant of the filter of all d and q values", unit: "s" },
+            get: |state| state.currents,
+            set: |state, value| (state.currents, state.voltages) = (value, value),
+            usual_size: |_, _| USUAL,
+        },
+        NOISE,
+    ],
+    starts: |state, _| starts(|both| Filter { currents: both, voltages: both, ..*state }),
+    is_physical: |state, _, _| is_physical(state.currents) && state.noise_before.abs() < MOST_NOISE,
 };
 
 fn is_physical(time_constant: f64) -> bool {

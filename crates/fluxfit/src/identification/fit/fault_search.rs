@@ -177,20 +177,6 @@ impl FaultSearch<'_> {
             (FaultTrial { fault: *fault, gain, outcome }, starts)
         });
         trials.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "-- reading {:?} cost {:.4e} unknowns {:?} motor {:?} independent {:.1} of {}",
-                self.objectives[self.reading].0.key(),
-                self.cost,
-                self.unknowns.iter().map(|u| (u.key(), self.drive.get(*u))).collect::<Vec<_>>(),
-                self.drive.motor,
-                test.independent,
-                test.residuals.len()
-            );
-            for (t, _) in &trials {
-                eprintln!("     {} gain {:.1}", t.fault.key(), t.gain);
-            }
-        }
         for place in 0..trials.len() {
             let (trial, starts) = &mut trials[place];
             if trial.gain <= VERY_STRONG {
@@ -198,9 +184,6 @@ impl FaultSearch<'_> {
             }
             let (outcome, fitted) = test.fit(self, trial.fault, starts);
             trial.outcome = outcome;
-            if std::env::var("DBG").is_ok() {
-                eprintln!("   fitted {} {:?} {:?}", trial.fault.key(), outcome, fitted.as_ref().map(|f| f.1));
-            }
             if let (FaultOutcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
                 (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
                 trials.swap(0, place);
@@ -213,6 +196,16 @@ impl FaultSearch<'_> {
 
 /// Starts of a fault that are fitted: the most promising of all.
 const FITTED_STARTS: usize = 2;
+
+/// Largest gain of an observer that a fit starts with: above one it runs ahead of what a filter or a delay holds back, and leads away from
+/// them.
+const LARGEST_GAIN: f64 = 0.9;
+
+fn calmed(mut drive: Adjustable) -> Adjustable {
+    let gain = &mut drive.faults.disturbance.gain;
+    (gain.d, gain.q) = (gain.d.min(LARGEST_GAIN), gain.q.min(LARGEST_GAIN));
+    drive
+}
 
 /// Cost of a start, over that without the fault, beyond which its derivatives say nothing of the fit: it is unstable.
 const TOO_FAR: f64 = 1e4;
@@ -263,7 +256,7 @@ impl ScoreTest {
         }
         let unknowns: Vec<Unknown> = Unknown::of_fault(fault).collect();
         let gain_from = |faults: &Faults| {
-            let start = Adjustable { faults: *faults, ..search.drive };
+            let start = calmed(Adjustable { faults: *faults, ..search.drive });
             let cost = search.objective().cost_of(&start);
             if cost.is_nan() || cost > TOO_FAR * search.cost {
                 return (f64::NEG_INFINITY, start);
