@@ -174,7 +174,7 @@ fn integral_of_ramp<V: Number>(i: V, width: V) -> V {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frames::{Abc, AlphaBeta};
+    use crate::frames::{Abc, AlphaBeta, Turn};
     use proptest::prelude::*;
 
     proptest! {

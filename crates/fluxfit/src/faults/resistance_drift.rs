@@ -38,3 +38,18 @@ pub(super) fn taken<V: Number>(change: V, i: [V; 2], place: &Place) -> [V; 2] {
     let more = change * change.constant(place.time);
     [more * i[0], more * i[1]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frames::Turn;
+
+    /// A tenth of an ohm more over the whole log: half of that less at its start, none in its middle, half more at its end.
+    #[test]
+    fn the_change_is_linear_in_time() {
+        for (time, ohms) in [(-0.5, -0.05), (0.0, 0.0), (0.5, 0.05)] {
+            let found = taken(0.1, [3.0, -2.0], &Place { time, ..Place::still(Turn::by(0.3)) });
+            assert!((found[0] - 3.0 * ohms).hypot(found[1] + 2.0 * ohms) < 1e-15, "{found:?}");
+        }
+    }
+}

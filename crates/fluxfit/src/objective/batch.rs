@@ -288,8 +288,9 @@ mod tests {
     use super::*;
     use crate::{
         faults::{
-            Faults, angle_offset::AngleOffset, current_gains::CurrentGains, current_offset::CurrentOffset, dead_time::DeadTime,
-            disturbance::Disturbance, saturation::Saturation,
+            Faults, angle_delay::AngleDelay, angle_offset::AngleOffset, current_gains::CurrentGains, current_offset::CurrentOffset,
+            dead_time::DeadTime, disturbance::Disturbance, filter::Filter, flux_harmonics::FluxHarmonics,
+            resistance_drift::ResistanceDrift, saturation::Saturation, speed_lag::SpeedLag,
         },
         frames::AlphaBeta,
         log::{Columns, Log},
@@ -334,10 +335,15 @@ mod tests {
     /// Drives with every fault, one more than the other.
     fn faulty(count: usize) -> Vec<Adjustable> {
         let faults = |x: f64| Faults {
-            dead_time: DeadTime { voltage: 2.0 * x, width: 0.5, ripple: 0.1 * x },
+            dead_time: DeadTime { voltage: 2.0 * x, width: 0.5, ripple: 0.1 * x, phase: 0.1 },
             angle_offset: AngleOffset { angle: 0.05 * x },
             current_offset: CurrentOffset { current: AlphaBeta { alpha: 0.1 * x, beta: -0.05 } },
             current_gains: CurrentGains { imbalance: AlphaBeta { alpha: 0.01, beta: 0.02 * x }, turn: 0.01 },
+            angle_delay: AngleDelay { time: 1e-4 * x },
+            filter: Filter { currents: 2e-4 * x, voltages: 1e-4, noise_before: 0.3 * x, ..Filter::default() },
+            speed_lag: SpeedLag { time: 1e-3 * x },
+            flux_harmonics: FluxHarmonics { d: [0.001, 0.002 * x], q: [0.003 * x, -0.001] },
+            resistance_drift: ResistanceDrift { change: 0.1 * x },
             saturation: Saturation { d: -1e-5 * x, q: -1e-4 * x, cross: -1e-5 },
             disturbance: Disturbance { gain: Dq { d: 0.1 * x, q: 0.2 } },
         };
