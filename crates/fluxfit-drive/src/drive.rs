@@ -85,7 +85,7 @@ impl<'a> Drive<'a> {
         self.check_trip(t)?;
         let measured = self.sensors.measure(&self.plant, &self.bridge, t);
         let command = self.controller.command(&measured, &self.references(t), t);
-        if !command.u.magnitude().is_finite() {
+        if !(command.u.d.is_finite() && command.u.q.is_finite()) {
             return Err(Error::Diverged { t });
         }
         let row = self.row(t, &measured, &command);
@@ -141,10 +141,11 @@ impl<'a> Drive<'a> {
     }
 
     fn check_trip(&self, t: f64) -> Result<(), Error> {
-        let (current, limit) = (self.plant.current().magnitude(), self.scenario.control.trip_current);
-        if current <= limit {
+        let (i, limit) = (self.plant.current(), self.scenario.control.trip_current);
+        if i.d * i.d + i.q * i.q <= limit * limit {
             return Ok(());
         }
+        let current = i.magnitude();
         let rpm = self.plant.omega_m() * 60.0 / TAU;
         let modulation = self.acting.u.magnitude() / self.scenario.inverter.voltage_limit();
         Err(Error::Trip { t, current, limit, rpm, modulation })
@@ -156,8 +157,8 @@ impl<'a> Drive<'a> {
         let mean = AlphaBeta { alpha: 0.5 * (before.alpha + after.alpha), beta: 0.5 * (before.beta + after.beta) };
         RecordedRow {
             t,
-            u: mean.to_dq(measured.theta_e),
-            i: measured.i.to_dq(measured.theta_e),
+            u: measured.direction.to_rotor(mean),
+            i: measured.direction.to_rotor(measured.i),
             omega_e: measured.omega_e,
             theta_e: measured.theta_e,
             u_ref: command.u,

@@ -14,6 +14,7 @@
 //! | [`scenario`] | all settings of a simulation and what they require of each other; the paper's rig |
 //! | [`schedule`] | references and loads over time |
 //! | [`mod@drive`] | the simulation loop: sample, command, integrate |
+//! | [`direction`] | cosine and sine of an angle, computed once for several vectors |
 //! | [`plant`], [`flux_map`] | motor and mechanics in continuous time; measured saturation |
 //! | [`inverter`] | settings of the inverter; duty ratios to terminal voltages: modulation, dead time, voltage drops |
 //! | [`control`] | current loop, speed loop, field weakening |
@@ -24,6 +25,7 @@
 //! The same scenario and noise stream give the same bits on any thread; streams are independent and can be simulated in parallel.
 
 pub mod control;
+pub mod direction;
 pub mod drive;
 pub mod error;
 pub mod flux_map;

@@ -1,6 +1,7 @@
 //! The sensors, their settings and their faults: currents through current sensors and A/D converter, angle and speed through the encoder.
 
 use crate::{
+    direction::Direction,
     error::Error,
     inverter::Bridge,
     plant::Plant,
@@ -91,6 +92,8 @@ pub struct Sample {
     pub i: AlphaBeta,
     /// Electrical angle, rad, from -pi to pi.
     pub theta_e: f64,
+    /// Of that angle.
+    pub direction: Direction,
     /// Speed, electrical rad/s.
     pub omega_e: f64,
     /// DC voltage, V.
@@ -117,9 +120,11 @@ impl SensorModel {
     /// Samples the plant at time `t`, s.
     pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Sample {
         let (theta_m, omega_m) = self.rotor(plant);
+        let theta_e = wrapped(self.pole_pairs * theta_m + self.settings.angle_offset);
         Sample {
-            i: self.currents(plant.current().to_alpha_beta(plant.theta_e())),
-            theta_e: wrapped(self.pole_pairs * theta_m + self.settings.angle_offset),
+            i: self.currents(plant.stator_current()),
+            theta_e,
+            direction: Direction::of(theta_e),
             omega_e: self.pole_pairs * omega_m,
             u_dc: bridge.u_dc(t),
         }
