@@ -15,10 +15,11 @@
 //! | [`schedule`] | references and loads over time |
 //! | [`mod@drive`] | the simulation loop: sample, command, integrate |
 //! | [`direction`] | cosine and sine of an angle, computed once for several vectors |
-//! | [`plant`], [`flux_map`] | motor and mechanics in continuous time; measured saturation |
+//! | [`plant`], [`flux_map`], [`harmonics`] | motor and mechanics in continuous time; measured saturation; harmonics of the magnets' flux |
 //! | [`inverter`] | settings of the inverter; duty ratios to terminal voltages: modulation, dead time, voltage drops |
 //! | [`control`] | current loop, speed loop, field weakening |
 //! | [`sensors`] | settings of the sensors; noise, offsets, A/D converters, encoder |
+//! | [`logging`] | what the drive writes of its samples: filters, decimation, means, columns |
 //! | [`recording`] | the columns of the log |
 //! | [`error`] | why a scenario is refused, or its simulation stops |
 //!
@@ -29,7 +30,9 @@ pub mod direction;
 pub mod drive;
 pub mod error;
 pub mod flux_map;
+pub mod harmonics;
 pub mod inverter;
+pub mod logging;
 mod machine;
 pub mod plant;
 mod range;

@@ -8,12 +8,15 @@
 //! J d omega_m/dt = T - T_load - B omega_m,       d theta_e/dt = p omega_m
 //! ```
 //!
+//! Harmonics of the magnets' flux add to the flux linkages in (1) and in the torque what [`harmonics`](crate::harmonics) says.
+//!
 //! The integrator is the classical fourth-order Runge-Kutta method. Its step is at most [`MAX_STEP`] divided by the fastest rate of the
 //! state: the decay of the winding, the rotation and the oscillation of the rotor.
 
 use crate::{
     direction::Direction,
     flux_map::FluxMap,
+    harmonics::{Harmonics, PERIODS},
     machine::{Magnetics, Mechanics, SimulatedMotor},
 };
 use fluxfit::frames::{AlphaBeta, Dq};
@@ -27,6 +30,10 @@ pub const MAX_STEP: f64 = 0.017;
 pub struct Plant<'a> {
     motor: &'a SimulatedMotor,
     field: Field<'a>,
+    /// Harmonics of the magnets' flux and the flux linkage of their fundamental, Wb, if there are any.
+    harmonics: Option<(Harmonics, f64)>,
+    /// Stator resistance, ohm; the drive lets it drift.
+    pub(crate) rs: f64,
     /// The inverse of the inertia, and friction over inertia; zero for a dynamometer, whose speed no torque changes.
     per_inertia: f64,
     friction_rate: f64,
@@ -97,6 +104,8 @@ impl<'a> Plant<'a> {
         Self {
             motor,
             field,
+            harmonics: (motor.harmonics != Harmonics::default()).then(|| (motor.harmonics, motor.unsaturated().psi_f)),
+            rs: motor.rs,
             per_inertia,
             friction_rate,
             pole_pairs: f64::from(motor.pole_pairs),
@@ -170,39 +179,59 @@ impl<'a> Plant<'a> {
         let (psi, omega_e) = (flux.psi, self.omega_e());
         let psi_squared = psi.d * psi.d + psi.q * psi.q;
         let oscillation_squared = self.pole_pairs * self.pole_pairs * psi_squared * 1.5 * self.per_inertia / inductance;
-        self.motor.rs / inductance + self.friction_rate + (omega_e * omega_e + oscillation_squared).sqrt()
+        let periods = if self.harmonics.is_some() { PERIODS } else { 1.0 };
+        let rotation = periods * omega_e;
+        self.rs / inductance + self.friction_rate + (rotation * rotation + oscillation_squared).sqrt()
     }
 
     /// One integration step of `h` seconds with a voltage, V, that is constant in the stator frame. False, without a step, if the current
     /// leaves the flux map.
     #[must_use]
     pub fn step(&mut self, u: AlphaBeta, h: f64) -> bool {
-        let rs = self.motor.rs;
+        match self.harmonics {
+            None => self.step_with(u, h, |psi, _| psi),
+            Some((harmonics, psi_f)) => {
+                let theta_e = self.theta_e;
+                self.step_with(u, h, |psi, turn| {
+                    let induced = harmonics.induced(psi_f, theta_e + turn);
+                    Dq { d: psi.d + induced.d, q: psi.q + induced.q }
+                })
+            }
+        }
+    }
+
+    /// `with_harmonics` adds those of the magnets' flux to a flux linkage, Wb, when the rotor has turned by an electrical angle, rad, since
+    /// the start of the step.
+    #[inline(always)]
+    fn step_with(&mut self, u: AlphaBeta, h: f64, with_harmonics: impl Fn(Dq, f64) -> Dq) -> bool {
+        let rs = self.rs;
         // Equation (1).
         let rise = |i: Dq, psi: Dq, u: Dq, omega_e: f64| Dq { d: u.d - rs * i.d + omega_e * psi.q, q: u.q - rs * i.q - omega_e * psi.d };
         let stepped = match self.field {
             // Without the general inverse, for whose division every stage would wait.
-            Field::Constant { inductance, inverse, psi_f } => self.runge_kutta(u, h, |i, u, omega_e| {
-                let psi = Dq { d: inductance.d * i.d + psi_f, q: inductance.q * i.q };
+            Field::Constant { inductance, inverse, psi_f } => self.runge_kutta(u, h, |i, u, omega_e, turn| {
+                let psi = with_harmonics(Dq { d: inductance.d * i.d + psi_f, q: inductance.q * i.q }, turn);
                 let rise = rise(i, psi, u, omega_e);
                 Some((psi, Dq { d: rise.d * inverse.d, q: rise.q * inverse.q }))
             }),
-            Field::Map(map) => self.runge_kutta(u, h, |i, u, omega_e| {
+            Field::Map(map) => self.runge_kutta(u, h, |i, u, omega_e, turn| {
                 let flux = map.at(i)?;
-                let rise = rise(i, flux.psi, u, omega_e);
+                let psi = with_harmonics(flux.psi, turn);
+                let rise = rise(i, psi, u, omega_e);
                 let [[dd, dq], [qd, qq]] = flux.inductance;
                 let inverse = 1.0 / (dd * qq - dq * qd);
-                Some((flux.psi, Dq { d: (qq * rise.d - dq * rise.q) * inverse, q: (dd * rise.q - qd * rise.d) * inverse }))
+                Some((psi, Dq { d: (qq * rise.d - dq * rise.q) * inverse, q: (dd * rise.q - qd * rise.d) * inverse }))
             }),
         };
         stepped.is_some()
     }
 
-    /// `electrical` gives flux linkage and slope of the current from current, voltage and electrical speed; `None` outside of the map.
+    /// `electrical` gives flux linkage and slope of the current from current, voltage, electrical speed and the electrical angle since
+    /// the start of the step; `None` outside of the map.
     #[inline(always)]
-    fn runge_kutta(&mut self, u: AlphaBeta, h: f64, electrical: impl Fn(Dq, Dq, f64) -> Option<(Dq, Dq)>) -> Option<()> {
+    fn runge_kutta(&mut self, u: AlphaBeta, h: f64, electrical: impl Fn(Dq, Dq, f64, f64) -> Option<(Dq, Dq)>) -> Option<()> {
         let u = self.direction.to_rotor(u);
-        let k1 = self.slope(self.i, self.omega_m, u, &electrical)?;
+        let k1 = self.slope(self.i, self.omega_m, 0.0, u, &electrical)?;
         let k2 = self.slope_after(0.5 * h, &k1, u, &electrical)?;
         let k3 = self.slope_after(0.5 * h, &k2, u, &electrical)?;
         let k4 = self.slope_after(h, &k3, u, &electrical)?;
@@ -215,15 +244,16 @@ impl<'a> Plant<'a> {
         self.theta_e += turn;
         self.direction = self.direction.turned(Direction::of_small(turn));
         self.energies.electrical += 1.5 * change.electrical;
-        self.energies.copper += 1.5 * self.motor.rs * change.copper;
+        self.energies.copper += 1.5 * self.rs * change.copper;
         self.energies.mechanical += 1.5 * self.pole_pairs * change.mechanical;
         Some(())
     }
 
-    /// The slope at a state, with the voltage `u` in its rotor frame.
+    /// The slope at a state, with the voltage `u` in its rotor frame; the rotor has turned by `turn`, electrical rad, since the start of
+    /// the step.
     #[inline(always)]
-    fn slope(&self, i: Dq, omega_m: f64, u: Dq, electrical: &impl Fn(Dq, Dq, f64) -> Option<(Dq, Dq)>) -> Option<Slope> {
-        let (psi, slope) = electrical(i, u, self.pole_pairs * omega_m)?;
+    fn slope(&self, i: Dq, omega_m: f64, turn: f64, u: Dq, electrical: &impl Fn(Dq, Dq, f64, f64) -> Option<(Dq, Dq)>) -> Option<Slope> {
+        let (psi, slope) = electrical(i, u, self.pole_pairs * omega_m, turn)?;
         let product = psi.d * i.q - psi.q * i.d;
         let drag = self.friction_rate * omega_m + (self.load * self.per_inertia - self.acceleration);
         Some(Slope {
@@ -239,10 +269,11 @@ impl<'a> Plant<'a> {
     /// The slope at the state which is `by` seconds along slope `k`. The rotor has turned on by then, so in its frame the voltage `u` of
     /// the present one has turned back.
     #[inline(always)]
-    fn slope_after(&self, by: f64, k: &Slope, u: Dq, electrical: &impl Fn(Dq, Dq, f64) -> Option<(Dq, Dq)>) -> Option<Slope> {
+    fn slope_after(&self, by: f64, k: &Slope, u: Dq, electrical: &impl Fn(Dq, Dq, f64, f64) -> Option<(Dq, Dq)>) -> Option<Slope> {
         let i = Dq { d: self.i.d + by * k.i.d, q: self.i.q + by * k.i.q };
-        let u = Direction::of_small(by * self.pole_pairs * k.theta_m).to_rotor(AlphaBeta { alpha: u.d, beta: u.q });
-        self.slope(i, self.omega_m + by * k.omega_m, u, electrical)
+        let turn = by * self.pole_pairs * k.theta_m;
+        let u = Direction::of_small(turn).to_rotor(AlphaBeta { alpha: u.d, beta: u.q });
+        self.slope(i, self.omega_m + by * k.omega_m, turn, u, electrical)
     }
 }
 

@@ -16,7 +16,7 @@ use fluxfit::{
 };
 use fluxfit_drive::{
     Scenario,
-    scenario::{Control, Inverter, Mechanics, Schedule, Sensors, SimulatedMotor},
+    scenario::{Control, Inverter, Logging, Mechanics, Schedule, Sensors, SimulatedMotor},
     schedule::{Profile, Ramp},
     simulate,
 };
@@ -99,7 +99,7 @@ fn scenario(rated: &Rated) -> Scenario {
     Scenario {
         duration: END,
         seed: rated.row as u64,
-        motor: SimulatedMotor { rs: motor.rs, magnetics: (*motor).into(), pole_pairs: rated.pole_pairs },
+        motor: SimulatedMotor::new(motor.rs, (*motor).into(), rated.pole_pairs),
         mechanics: Mechanics::Free { inertia: 0.25 * torque * RUN_UP / speed, friction: 0.01 * torque / speed },
         inverter: Inverter::ideal(rated.u_dc, 0.5 * sample_rate),
         control: Control { trip_current: 3.0 * current, ..Control::new(200.0, 10.0, 1.5 * current) },
@@ -110,6 +110,7 @@ fn scenario(rated: &Rated) -> Scenario {
             ..Schedule::default()
         },
         sensors: Sensors { current_noise: NOISE * current, ..Sensors::IDEAL },
+        logging: Logging::COMPLETE,
     }
 }
 
