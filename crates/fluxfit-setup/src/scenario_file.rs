@@ -176,7 +176,7 @@ mod tests {
             u_dc_gain: 1.02,
         };
         expected.motor.rs_drift = 0.2;
-        expected.motor.harmonics = Harmonics { fifth: 0.03, seventh: 0.02 };
+        expected.motor.harmonics = Harmonics { fifth: 0.006, seventh: 0.003 };
         expected.logging = Logging {
             current_filter: Some(1000.0),
             voltage_filter: Some(1000.0),
@@ -245,9 +245,9 @@ mod tests {
               a, b and c, as in [1, 1, 1.02]; correct it",
             ),
             (
-                "# flux_harmonics = [0.03, 0.02]",
-                "flux_harmonics = 0.03",
-                "line 15, key 'flux_harmonics': this is not a list for the 5th and the 7th harmonic, as in [0.03, 0.02]; correct it",
+                "# flux_harmonics = [0.006, 0.003]",
+                "flux_harmonics = 0.006",
+                "line 15, key 'flux_harmonics': this is not a list for the 5th and the 7th harmonic, as in [0.006, 0.003]; correct it",
             ),
             ("# [log]", "[log]\nevery = 0", "line 64, key 'every': \"0\" is out of range; it must be a whole number above zero"),
             ("# [log]", "[log]\nrows = \"last\"", "line 64, key 'rows': \"last\" is not one of the values; it can be first or mean"),
@@ -263,7 +263,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_panics(text in "\\PC*|(\\[(motor|schedule|sensors|injection)\\]\n|id = |rs=|seed=|voltage = |[0-9.\"'\\[\\]{}=, \n]){0,20}") {
+        fn no_text_panics(text in "\\PC*|(\\[(motor|schedule|sensors|injection|log)\\]\n|id = |rs=|seed=|voltage = |[0-9.\"'\\[\\]{}=, \n]){0,20}") {
             if let Err(sentence) = read(&text) {
                 prop_assert_eq!(sentence.lines().count(), 1);
             }

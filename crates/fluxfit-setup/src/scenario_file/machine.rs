@@ -39,7 +39,7 @@ fn magnetics(table: &Table<'_>, folder: &Path) -> Result<Magnetics, FileError> {
 /// Amplitudes of the 5th and the 7th harmonic.
 fn harmonics(table: &Table<'_>) -> Result<Harmonics, FileError> {
     let Some(entry) = table.get("flux_harmonics") else { return Ok(Harmonics::default()) };
-    let wanted = || FileProblem::Value { wanted: "a list for the 5th and the 7th harmonic, as in [0.03, 0.02]".to_owned() };
+    let wanted = || FileProblem::Value { wanted: "a list for the 5th and the 7th harmonic, as in [0.006, 0.003]".to_owned() };
     match entry.items().as_deref() {
         Some([fifth, seventh]) => Ok(Harmonics { fifth: fifth.quantity(Dimension::Ratio)?, seventh: seventh.quantity(Dimension::Ratio)? }),
         _ => Err(entry.refuse(wanted())),
