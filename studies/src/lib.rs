@@ -1,3 +1,5 @@
-//! What a program of this crate shares with its test.
+//! What the programs of this crate share with each other and with its tests.
 
 pub mod coverage;
+pub mod drives;
+pub mod rated;

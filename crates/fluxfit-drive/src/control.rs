@@ -14,6 +14,7 @@
 //! A command that is computed at a sample acts over the period after the next sample: its vector is rotated by `1.5 omega_e T_s`.
 
 use crate::{
+    direction::Direction,
     inverter::duties,
     scenario::{Axis, Control, Injection, Mechanics, Scenario, SimulatedMotor, Waveform},
     sensors::Sample,
@@ -23,9 +24,6 @@ use fluxfit::{
     motor::Motor,
 };
 use std::f64::consts::TAU;
-
-/// Sample periods from the sample to the middle of the period in which its command acts.
-const DELAY_PERIODS: f64 = 1.5;
 
 /// Bandwidth of the field-weakening controller, rad/s: below that of any current loop, equal to that of the usual speed loop.
 const WEAKENING_BANDWIDTH: f64 = TAU * 20.0;
@@ -70,6 +68,8 @@ pub struct Controller<'a> {
     inertia: Option<f64>,
     injection: Option<&'a Injection>,
     sample_period: f64,
+    /// `e^(-alpha T_s)` of the current loop.
+    decay: f64,
     /// Integrator state `w` of the current loop, V.
     integral: Dq,
     /// Integrator state of the speed loop, N m.
@@ -92,6 +92,7 @@ impl<'a> Controller<'a> {
             },
             injection: scenario.schedule.injection.as_ref(),
             sample_period: scenario.inverter.sample_period(),
+            decay: (-TAU * scenario.control.current_bandwidth * scenario.inverter.sample_period()).exp(),
             integral: Dq::default(),
             speed_integral: 0.0,
             weakening_current: 0.0,
@@ -100,7 +101,7 @@ impl<'a> Controller<'a> {
 
     /// The command computed from a sample at time `t`, s.
     pub fn command(&mut self, measured: &Sample, references: &References, t: f64) -> VoltageCommand {
-        let i = measured.i.to_dq(measured.theta_e);
+        let i = measured.direction.to_rotor(measured.i);
         let reference = self.current_reference(measured, references, i);
         let alpha = TAU * self.settings.current_bandwidth;
         let (psi, reference_psi) = (self.current_flux(i), self.current_flux(reference));
@@ -108,12 +109,17 @@ impl<'a> Controller<'a> {
         let test = self.injection.map_or(Dq::default(), |injection| injection.at(t));
         let unlimited = Dq { d: alpha * (reference_psi.d - psi.d) + v.d + test.d, q: alpha * (reference_psi.q - psi.q) + v.q + test.q };
         let limit = measured.u_dc / 3.0_f64.sqrt();
-        let scale = (limit / unlimited.magnitude()).min(1.0);
+        // Not `hypot`: its care for numbers beyond 1e154 takes a library call in every sample.
+        let magnitude = (unlimited.d * unlimited.d + unlimited.q * unlimited.q).sqrt();
+        let scale = (limit / magnitude).min(1.0);
         let u = Dq { d: scale * unlimited.d, q: scale * unlimited.q };
-        self.weaken_field(unlimited.magnitude(), limit, measured.omega_e);
-        self.integrate(Dq { d: u.d - test.d - v.d, q: u.q - test.q - v.q }, alpha, measured.omega_e);
+        self.weaken_field(magnitude, limit, measured.omega_e);
+        let half_turn = Direction::of(0.5 * self.sample_period * measured.omega_e);
+        let turn = half_turn.turned(half_turn);
+        self.integrate(Dq { d: u.d - test.d - v.d, q: u.q - test.q - v.q }, turn);
 
-        let u_stator = u.to_alpha_beta(measured.theta_e + DELAY_PERIODS * self.sample_period * measured.omega_e);
+        // To the middle of the period in which the command acts.
+        let u_stator = measured.direction.turned(turn).turned(half_turn).to_stator(u);
         let duties = duties(u_stator, measured.u_dc);
         let [a, b, c] = duties.map(|duty| duty * measured.u_dc);
         VoltageCommand { u, u_stator: Abc { a, b, c }.to_alpha_beta(), duties }
@@ -126,10 +132,10 @@ impl<'a> Controller<'a> {
         Dq { d: psi.d - self.unsaturated.psi_f, q: psi.q }
     }
 
-    /// `w ← w + (1 - e^(-(alpha + j omega_e) T_s)) (u - v)`: the exact integral over a period, stable at any speed.
-    fn integrate(&mut self, difference: Dq, alpha: f64, omega_e: f64) {
-        let decay = (-alpha * self.sample_period).exp();
-        let (sin, cos) = (omega_e * self.sample_period).sin_cos();
+    /// `w ← w + (1 - e^(-(alpha + j omega_e) T_s)) (u - v)`: the exact integral over a period, stable at any speed. `turn` is that of
+    /// the rotor in the period.
+    fn integrate(&mut self, difference: Dq, turn: Direction) {
+        let (decay, Direction { cos, sin }) = (self.decay, turn);
         self.integral.d += (1.0 - decay * cos) * difference.d - decay * sin * difference.q;
         self.integral.q += (1.0 - decay * cos) * difference.q + decay * sin * difference.d;
     }

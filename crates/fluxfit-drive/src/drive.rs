@@ -4,6 +4,7 @@ use crate::{
     control::{Controller, References, VoltageCommand},
     error::Error,
     inverter::{Bridge, duties},
+    logging::{LogFilters, RowBuilder},
     plant::Plant,
     recording::{RecordedRow, Recording},
     scenario::{Mechanics, Scenario},
@@ -18,18 +19,27 @@ use std::f64::consts::TAU;
 /// Makes the seed of the disturbance differ from the sensors': hexadecimal digits of pi.
 const DISTURBANCE_SEED: u64 = 0x243f_6a88_85a3_08d3;
 
-/// Simulates a scenario with noise stream `draw`; `row_done` is called after each row.
+/// Simulates a scenario with noise stream `draw`; `sample_done` is called after each sample.
 ///
 /// # Errors
 /// If [`Scenario::check`] refuses the scenario, there is no memory for its rows, the drive trips, or the current leaves the flux map.
-pub fn simulate(scenario: &Scenario, draw: u64, mut row_done: impl FnMut()) -> Result<Recording, Error> {
+pub fn simulate(scenario: &Scenario, draw: u64, mut sample_done: impl FnMut()) -> Result<Recording, Error> {
     scenario.check()?;
     let mut drive = Drive::new(scenario, draw);
-    let rows = scenario.rows();
+    let rows = scenario.logged_rows();
     let mut recording = Recording::with_capacity(rows).ok_or(Error::Memory { rows })?;
-    for _ in 0..rows {
-        recording.push(&drive.step()?);
-        row_done();
+    let mut row = RowBuilder::new(&scenario.logging);
+    for _ in 0..scenario.rows() {
+        if let Some(row) = row.take(drive.step()?) {
+            recording.push(&row);
+        }
+        sample_done();
+    }
+    if !scenario.logging.theta_e {
+        recording.columns.theta_e = None;
+    }
+    if !scenario.logging.u_dc {
+        recording.columns.u_dc = None;
     }
     Ok(recording)
 }
@@ -41,6 +51,7 @@ pub struct Drive<'a> {
     plant: Plant<'a>,
     bridge: Bridge,
     sensors: SensorModel,
+    filters: LogFilters,
     controller: Controller<'a>,
     /// The command that acts over the period which begins now; it was computed at the previous sample.
     acting: VoltageCommand,
@@ -67,6 +78,7 @@ impl<'a> Drive<'a> {
             plant: Plant::new(&scenario.motor, scenario.mechanics, speed),
             bridge: Bridge::new(scenario.inverter),
             sensors: SensorModel::new(scenario.sensors, scenario.seed, draw, pole_pairs, sample_period),
+            filters: LogFilters::new(&scenario.logging, sample_period),
             controller: Controller::new(scenario),
             acting: VoltageCommand { u: Dq::default(), u_stator: zero, duties: duties(zero, scenario.inverter.u_dc) },
             acted: zero,
@@ -76,7 +88,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Samples, computes a command, and integrates one sample period. Returns the row of the sample.
+    /// Samples, computes a command, and integrates one sample period. Returns the row of the sample, filtered as it is logged.
     ///
     /// # Errors
     /// If the drive trips or the current leaves the flux map.
@@ -85,12 +97,13 @@ impl<'a> Drive<'a> {
         self.check_trip(t)?;
         let measured = self.sensors.measure(&self.plant, &self.bridge, t);
         let command = self.controller.command(&measured, &self.references(t), t);
-        if !command.u.magnitude().is_finite() {
+        if !(command.u.d.is_finite() && command.u.q.is_finite()) {
             return Err(Error::Diverged { t });
         }
         let row = self.row(t, &measured, &command);
 
         self.set_load(t);
+        self.plant.rs = self.scenario.motor.rs_after(t / self.scenario.duration);
         let duties = self.disturbed_duties();
         if !self.bridge.run(&mut self.plant, duties, t) {
             return Err(self.scenario.outside_map(t, self.plant.current()));
@@ -141,24 +154,25 @@ impl<'a> Drive<'a> {
     }
 
     fn check_trip(&self, t: f64) -> Result<(), Error> {
-        let (current, limit) = (self.plant.current().magnitude(), self.scenario.control.trip_current);
-        if current <= limit {
+        let (i, limit) = (self.plant.current(), self.scenario.control.trip_current);
+        if i.d * i.d + i.q * i.q <= limit * limit {
             return Ok(());
         }
+        let current = i.magnitude();
         let rpm = self.plant.omega_m() * 60.0 / TAU;
         let modulation = self.acting.u.magnitude() / self.scenario.inverter.voltage_limit();
         Err(Error::Trip { t, current, limit, rpm, modulation })
     }
 
     /// Voltages are the commanded ones, as in a real log: the mean of the periods before and after the sample.
-    fn row(&self, t: f64, measured: &Sample, command: &VoltageCommand) -> RecordedRow {
+    fn row(&mut self, t: f64, measured: &Sample, command: &VoltageCommand) -> RecordedRow {
         let (before, after) = (self.acted, self.acting.u_stator);
         let mean = AlphaBeta { alpha: 0.5 * (before.alpha + after.alpha), beta: 0.5 * (before.beta + after.beta) };
         RecordedRow {
             t,
-            u: mean.to_dq(measured.theta_e),
-            i: measured.i.to_dq(measured.theta_e),
-            omega_e: measured.omega_e,
+            u: measured.direction.to_rotor(self.filters.voltage(mean)),
+            i: measured.direction.to_rotor(self.filters.current(measured.i)),
+            omega_e: self.filters.speed(measured.omega_e),
             theta_e: measured.theta_e,
             u_ref: command.u,
             u_dc: measured.u_dc,

@@ -123,6 +123,8 @@ impl Inverter {
 #[derive(Debug, Clone)]
 pub struct Bridge {
     settings: Inverter,
+    /// Whether the voltages depend on the signs of the currents.
+    signs_matter: bool,
     legs: [Leg; 3],
     /// Whether legs switch from low to high in the next half of the carrier.
     rising: bool,
@@ -159,7 +161,9 @@ pub fn duties(u: AlphaBeta, u_dc: f64) -> [f64; 3] {
 impl Bridge {
     /// A bridge with all legs low.
     pub fn new(settings: Inverter) -> Self {
-        Self { settings, legs: [Leg::default(); 3], rising: true }
+        let Inverter { dead_time, switch_drop, diode_drop, .. } = settings;
+        let signs_matter = dead_time > 0.0 || switch_drop > 0.0 || diode_drop > 0.0;
+        Self { settings, signs_matter, legs: [Leg::default(); 3], rising: true }
     }
 
     /// DC voltage, V, at a time, s.
@@ -194,12 +198,13 @@ impl Bridge {
 
     fn run_switched(&mut self, plant: &mut Plant, duties: [f64; 3], start: f64) -> bool {
         let period = self.settings.sample_period();
-        let (edges, count) = self.edges(duties);
+        let mut edges = [Edge::default(); MAX_EDGES];
+        let count = self.edges(duties, &mut edges);
         let mut edges = edges[..count].iter().peekable();
         let mut now = 0.0;
         loop {
             let edge = edges.peek().map_or(f64::INFINITY, |edge| edge.at);
-            let delayed = self.legs.iter().filter_map(|leg| leg.delayed_until).fold(f64::INFINITY, f64::min);
+            let delayed = if self.settings.dead_time > 0.0 { self.next_delayed() } else { f64::INFINITY };
             let next = edge.min(delayed).min(period);
             let outputs = self.legs.map(|leg| leg.high);
             if !self.advance(plant, start + now, next - now, |i, u_dc| self.outputs(outputs, i, u_dc)) {
@@ -221,6 +226,11 @@ impl Bridge {
         true
     }
 
+    /// The time in the period, s, at which the first of the delayed outputs follows its command.
+    fn next_delayed(&self) -> f64 {
+        self.legs.iter().filter_map(|leg| leg.delayed_until).fold(f64::INFINITY, f64::min)
+    }
+
     /// Applies an edge to its leg: both switches are off for the dead time, and the diode that conducts determines whether the output
     /// changes at once or after the dead time.
     fn apply(&mut self, edge: &Edge, plant: &Plant) {
@@ -233,14 +243,14 @@ impl Bridge {
         (leg.high, leg.delayed_until) = (high, (high != edge.high).then_some(edge.at + dead_time));
     }
 
-    /// The edges of a sample period, in order, and their number.
-    fn edges(&mut self, duties: [f64; 3]) -> ([Edge; MAX_EDGES], usize) {
+    /// Writes the edges of a sample period, in order, and returns their number.
+    fn edges(&mut self, duties: [f64; 3], edges: &mut [Edge; MAX_EDGES]) -> usize {
         let half = 0.5 / self.settings.carrier;
         let halves = match self.settings.update {
             Update::Single => 2,
             Update::Double => 1,
         };
-        let (mut edges, mut count) = ([Edge::default(); MAX_EDGES], 0);
+        let mut count = 0;
         let mut commanded = self.legs.map(|leg| leg.commanded);
         for part in 0..halves {
             let start = f64::from(part) * half;
@@ -259,7 +269,7 @@ impl Bridge {
             self.rising = !self.rising;
         }
         edges[..count].sort_by(|a, b| a.at.total_cmp(&b.at));
-        (edges, count)
+        count
     }
 
     /// Output voltages of the legs, V, with the voltage drops of the conducting devices.
@@ -278,18 +288,21 @@ impl Bridge {
         }
         let steps = plant.steps(interval);
         let h = interval / steps as f64;
-        let signs_matter = self.settings.dead_time > 0.0 || self.settings.switch_drop > 0.0 || self.settings.diode_drop > 0.0;
+        let stator = |[a, b, c]: [f64; 3]| Abc { a, b, c }.to_alpha_beta();
+        if !self.signs_matter && self.settings.ripple == 0.0 {
+            let u = stator(u([0.0; 3], self.settings.u_dc));
+            return (0..steps).all(|_| plant.step(u, h));
+        }
         (0..steps).all(|step| {
-            let i = if signs_matter { phase_currents(plant) } else { [0.0; 3] };
-            let [a, b, c] = u(i, self.u_dc(start + (step as f64 + 0.5) * h));
-            plant.step(Abc { a, b, c }.to_alpha_beta(), h)
+            let i = if self.signs_matter { phase_currents(plant) } else { [0.0; 3] };
+            plant.step(stator(u(i, self.u_dc(start + (step as f64 + 0.5) * h))), h)
         })
     }
 }
 
 /// Currents out of the legs, A.
 fn phase_currents(plant: &Plant) -> [f64; 3] {
-    let Abc { a, b, c } = plant.current().to_alpha_beta(plant.theta_e()).to_abc();
+    let Abc { a, b, c } = plant.stator_current().to_abc();
     [a, b, c]
 }
 

@@ -1,6 +1,9 @@
 //! Settings of the simulated machine: motor and mechanics. `plant` has its equations.
 
-use crate::flux_map::{FluxLinkage, FluxMap};
+use crate::{
+    flux_map::{FluxLinkage, FluxMap},
+    harmonics::Harmonics,
+};
 use fluxfit::{frames::Dq, motor::Motor};
 
 /// The simulated motor, whose parameters are the log's true ones.
@@ -8,8 +11,12 @@ use fluxfit::{frames::Dq, motor::Motor};
 pub struct SimulatedMotor {
     /// Stator resistance, ohm.
     pub rs: f64,
+    /// By which fraction the resistance has grown at the end of the simulated time; it grows linearly.
+    pub rs_drift: f64,
     /// Flux linkage as a function of current.
     pub magnetics: Magnetics,
+    /// Harmonics of the magnets' flux; those of a motor without magnets have no effect.
+    pub harmonics: Harmonics,
     /// Pole pairs.
     pub pole_pairs: u32,
 }
@@ -45,6 +52,16 @@ pub enum Mechanics {
 }
 
 impl SimulatedMotor {
+    /// A motor with a constant resistance, ohm, and a sinusoidal flux of the magnets.
+    pub fn new(rs: f64, magnetics: Magnetics, pole_pairs: u32) -> Self {
+        Self { rs, rs_drift: 0.0, magnetics, harmonics: Harmonics::default(), pole_pairs }
+    }
+
+    /// Stator resistance, ohm, after a part of the simulated time, 0 to 1.
+    pub(crate) fn rs_after(&self, part: f64) -> f64 {
+        self.rs * (1.0 + self.rs_drift * part)
+    }
+
     /// The flux linkage at a current, A; `None` outside of a flux map.
     #[inline]
     pub(crate) fn flux(&self, i: Dq) -> Option<FluxLinkage> {

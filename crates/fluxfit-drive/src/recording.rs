@@ -7,7 +7,7 @@ use fluxfit::{
 };
 
 /// One row of the log.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RecordedRow {
     /// Time, s.
     pub t: f64,

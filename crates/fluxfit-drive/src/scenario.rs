@@ -1,6 +1,6 @@
 //! The scenario: all settings of a simulation, in SI units.
 //!
-//! The settings of a part of the drive stand in the file of that part, with their ranges: [`Inverter`], [`Sensors`].
+//! The settings of a part of the drive stand in the file of that part, with their ranges: [`Inverter`], [`Sensors`], [`Logging`].
 //! [`Scenario::paper`] is the paper's rig. [`Scenario::check`] refuses impossible settings; its errors name the keys of a scenario file.
 
 mod check;
@@ -8,7 +8,9 @@ mod feasibility;
 pub mod reference_cases;
 
 pub use crate::{
+    harmonics::Harmonics,
     inverter::{Inverter, Modulation, Update},
+    logging::{LoggedRows, Logging},
     machine::{Magnetics, Mechanics, SimulatedMotor},
     sensors::{Adc, CurrentSensors, Sensors},
 };
@@ -36,6 +38,8 @@ pub struct Scenario {
     pub schedule: Schedule,
     /// The sensors.
     pub sensors: Sensors,
+    /// What is logged.
+    pub logging: Logging,
 }
 
 /// The field-oriented control.
@@ -115,7 +119,7 @@ impl Scenario {
         Self {
             duration: 0.9,
             seed: 1,
-            motor: SimulatedMotor { rs: paper::MOTOR.rs, magnetics: paper::MOTOR.into(), pole_pairs: paper::POLE_PAIRS },
+            motor: SimulatedMotor::new(paper::MOTOR.rs, paper::MOTOR.into(), paper::POLE_PAIRS),
             mechanics: Mechanics::Free { inertia: paper::INERTIA, friction: paper::FRICTION },
             inverter: Inverter::ideal(310.0, 5e3),
             control: Control::new(200.0, 20.0, 20.0),
@@ -126,6 +130,7 @@ impl Scenario {
                 ..Schedule::default()
             },
             sensors: Sensors::IDEAL,
+            logging: Logging::COMPLETE,
         }
     }
 
@@ -134,5 +139,19 @@ impl Scenario {
         // The sample at the end belongs to the log, even if rounding puts it just behind the end.
         const ROUNDING: f64 = 1e-6;
         (self.duration * self.inverter.sample_rate() + ROUNDING) as usize + 1
+    }
+
+    /// Number of rows of the log: samples, or groups of [`Logging::every`] of them.
+    pub fn logged_rows(&self) -> usize {
+        let every = self.logging.every.max(1) as usize;
+        match self.logging.rows {
+            LoggedRows::First => self.rows().div_ceil(every),
+            LoggedRows::Mean => self.rows() / every,
+        }
+    }
+
+    /// Rows of the log per second.
+    pub fn row_rate(&self) -> f64 {
+        self.inverter.sample_rate() / f64::from(self.logging.every.max(1))
     }
 }

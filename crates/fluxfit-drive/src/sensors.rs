@@ -1,6 +1,7 @@
 //! The sensors, their settings and their faults: currents through current sensors and A/D converter, angle and speed through the encoder.
 
 use crate::{
+    direction::Direction,
     error::Error,
     inverter::Bridge,
     plant::Plant,
@@ -31,8 +32,12 @@ pub struct Sensors {
     pub adc: Option<Adc>,
     /// Error of the measured angle, electrical rad.
     pub angle_offset: f64,
+    /// Time by which the measured angle is late, s: at the speed `omega_e` it is too small by `omega_e` times this.
+    pub angle_delay: f64,
     /// Steps of the encoder per mechanical revolution; the angle is read as the middle of a step. `None`: angle and speed are exact.
     pub encoder_steps: Option<u32>,
+    /// Gain of the DC voltage's measurement.
+    pub u_dc_gain: f64,
 }
 
 /// How many phases have a current sensor.
@@ -62,7 +67,9 @@ impl Sensors {
         current_gain: [1.0; 3],
         adc: None,
         angle_offset: 0.0,
+        angle_delay: 0.0,
         encoder_steps: None,
+        u_dc_gain: 1.0,
     };
 
     /// Refuses settings out of their ranges.
@@ -71,6 +78,8 @@ impl Sensors {
         self.current_offset.iter().try_for_each(|offset| finite("sensors.current_offset", *offset))?;
         self.current_gain.iter().try_for_each(|gain| positive("sensors.current_gain", *gain))?;
         finite("sensors.angle_offset", self.angle_offset)?;
+        finite("sensors.angle_delay", self.angle_delay)?;
+        positive("sensors.u_dc_gain", self.u_dc_gain)?;
         if let Some(adc) = self.adc {
             positive("sensors.adc_range", adc.range)?;
             if !(2..=32).contains(&adc.bits) {
@@ -91,6 +100,8 @@ pub struct Sample {
     pub i: AlphaBeta,
     /// Electrical angle, rad, from -pi to pi.
     pub theta_e: f64,
+    /// Of that angle.
+    pub direction: Direction,
     /// Speed, electrical rad/s.
     pub omega_e: f64,
     /// DC voltage, V.
@@ -117,11 +128,13 @@ impl SensorModel {
     /// Samples the plant at time `t`, s.
     pub fn measure(&mut self, plant: &Plant, bridge: &Bridge, t: f64) -> Sample {
         let (theta_m, omega_m) = self.rotor(plant);
+        let theta_e = wrapped(self.pole_pairs * theta_m + self.settings.angle_offset);
         Sample {
-            i: self.currents(plant.current().to_alpha_beta(plant.theta_e())),
-            theta_e: wrapped(self.pole_pairs * theta_m + self.settings.angle_offset),
+            i: self.currents(plant.stator_current()),
+            theta_e,
+            direction: Direction::of(theta_e),
             omega_e: self.pole_pairs * omega_m,
-            u_dc: bridge.u_dc(t),
+            u_dc: self.settings.u_dc_gain * bridge.u_dc(t),
         }
     }
 
@@ -148,7 +161,7 @@ impl SensorModel {
 
     /// Mechanical angle, rad, and speed, rad/s.
     fn rotor(&mut self, plant: &Plant) -> (f64, f64) {
-        let theta_m = plant.theta_e() / self.pole_pairs;
+        let theta_m = plant.theta_e() / self.pole_pairs - self.settings.angle_delay * plant.omega_m();
         let Some(steps) = self.settings.encoder_steps else { return (theta_m, plant.omega_m()) };
         let step = TAU / f64::from(steps);
         // The middle of the step: a constant error belongs to the angle offset, which the drive's alignment determines.

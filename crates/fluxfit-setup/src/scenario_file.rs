@@ -4,6 +4,7 @@
 //! This file and its folder read the format. Whether the values make a valid drive is decided by [`Scenario::check`] alone; its errors
 //! get their line here.
 
+mod log;
 mod machine;
 mod schedule;
 mod sensors;
@@ -47,6 +48,7 @@ const SHAPE: Shape = Shape {
         ("schedule", schedule::SCHEDULE_KEYS),
         ("injection", schedule::INJECTION_KEYS),
         ("sensors", sensors::KEYS),
+        ("log", log::KEYS),
     ],
 };
 
@@ -94,6 +96,7 @@ fn parse(text: &str, folder: &Path) -> Result<ReadScenario, FileError> {
         control: supply::control(&document.table("control"), mechanics)?,
         schedule: schedule::schedule(&document.table("schedule"), &document.table("injection"))?,
         sensors: sensors::sensors(&document.table("sensors"))?,
+        logging: log::log(&document.table("log"))?,
     };
     scenario.check().map_err(|error| located(error, &document))?;
     let flux_map = document.table("motor").get("flux_map").and_then(|entry| entry.text().ok()).map(|name| folder.join(name));
@@ -114,7 +117,9 @@ fn located(error: Error, document: &Document<'_>) -> FileError {
 mod tests {
     use super::*;
     use fluxfit_drive::{
-        scenario::{Adc, Axis, CurrentSensors, Injection, Mechanics, Modulation, Sensors, Update, Waveform},
+        scenario::{
+            Adc, Axis, CurrentSensors, Harmonics, Injection, LoggedRows, Logging, Mechanics, Modulation, Sensors, Update, Waveform,
+        },
         schedule::{Profile, Ramp},
     };
     use proptest::prelude::*;
@@ -139,6 +144,17 @@ mod tests {
         let keys = ["# modulation", "# ripple", "# update", "# dead_time", "# switch_drop", "# diode_drop", "# trip_current"];
         let keys = keys.iter().chain(&["# field_weakening", "# current_", "# adc_", "# angle_", "# encoder_", "# [injection]"]);
         let keys = keys.chain(&["# axis", "# waveform", "# frequency", "# voltage"]);
+        let keys = keys.chain(&[
+            "# rs_drift",
+            "# flux_harmonics",
+            "# u_dc_gain",
+            "# [log]",
+            "# speed_filter",
+            "# every",
+            "# rows",
+            "# theta_e",
+            "# u_dc",
+        ]);
         let text = keys.fold(PAPER_RIG.to_owned(), |text, key| text.replace(key, &key[2..]));
         let mut expected = Scenario::paper();
         expected.inverter.modulation = Modulation::Averaged;
@@ -155,7 +171,20 @@ mod tests {
             current_gain: [1.0, 1.0, 1.02],
             adc: Some(Adc { bits: 12, range: 30.0 }),
             angle_offset: 3.0 * (PI / 180.0),
+            angle_delay: 40e-6,
             encoder_steps: Some(4096),
+            u_dc_gain: 1.02,
+        };
+        expected.motor.rs_drift = 0.2;
+        expected.motor.harmonics = Harmonics { fifth: 0.006, seventh: 0.003 };
+        expected.logging = Logging {
+            current_filter: Some(1000.0),
+            voltage_filter: Some(1000.0),
+            speed_filter: Some(20.0),
+            every: 10,
+            rows: LoggedRows::Mean,
+            theta_e: false,
+            u_dc: false,
         };
         // Half the samples are too few for the rig's current loop.
         let slower = "current_bandwidth = \"150 Hz\"";
@@ -182,27 +211,27 @@ mod tests {
             (
                 "u_dc = \"310 V\"",
                 "udc = 310",
-                "line 22, key 'udc': this key is not known; [inverter] can hold modulation, u_dc, ripple, \
+                "line 24, key 'udc': this key is not known; [inverter] can hold modulation, u_dc, ripple, \
               ripple_frequency, carrier, update, dead_time, switch_drop, diode_drop and voltage_noise; did you mean u_dc?",
             ),
-            ("u_dc = \"310 V\"", "max_current = 3", "line 22, key 'max_current': this key belongs to [control]; move it there"),
+            ("u_dc = \"310 V\"", "max_current = 3", "line 24, key 'max_current': this key belongs to [control]; move it there"),
             (
                 "[sensors]",
                 "[sensors]\nduration = 1",
-                "line 50, key 'duration': this key belongs above all tables; move it to the top of the file",
+                "line 52, key 'duration': this key belongs above all tables; move it to the top of the file",
             ),
-            ("at = \"0.2 s\", ", "", "line 40: the key at is missing; write at = \"0.5 s\""),
-            ("to = \"10 N m\"", "too = 10", "line 40, key 'too': this key is not known; a move can hold at, to and over; did you mean to?"),
+            ("at = \"0.2 s\", ", "", "line 42: the key at is missing; write at = \"0.5 s\""),
+            ("to = \"10 N m\"", "too = 10", "line 42, key 'too': this key is not known; a move can hold at, to and over; did you mean to?"),
             (
                 "to = \"10 N m\"",
                 "to = \"10 A\"",
-                "line 40, key 'to': \"10 A\" is not a torque; write a number, in N m or with its unit, \
+                "line 42, key 'to': \"10 A\" is not a torque; write a number, in N m or with its unit, \
               as in \"10 N m\"",
             ),
             (
                 "# kind = \"dyno\"",
                 "kind = \"dyna\"#",
-                "line 16, key 'kind': \"dyna\" is not one of the values; it can be free or dyno; did you mean dyno?",
+                "line 18, key 'kind': \"dyna\" is not one of the values; it can be free or dyno; did you mean dyno?",
             ),
             (
                 "# flux_map = \"map.csv\"",
@@ -212,10 +241,17 @@ mod tests {
             (
                 "# current_gain = [1, 1, 1.02]",
                 "current_gain = [1, 1]",
-                "line 53, key 'current_gain': this is not a list for the phases \
+                "line 55, key 'current_gain': this is not a list for the phases \
               a, b and c, as in [1, 1, 1.02]; correct it",
             ),
-            ("# adc_bits = 12", "adc_bits = 12", "line 49: the key adc_range is missing; write adc_range = \"20 A\" below [sensors]"),
+            (
+                "# flux_harmonics = [0.006, 0.003]",
+                "flux_harmonics = 0.006",
+                "line 15, key 'flux_harmonics': this is not a list for the 5th and the 7th harmonic, as in [0.006, 0.003]; correct it",
+            ),
+            ("# [log]", "[log]\nevery = 0", "line 64, key 'every': \"0\" is out of range; it must be a whole number above zero"),
+            ("# [log]", "[log]\nrows = \"last\"", "line 64, key 'rows': \"last\" is not one of the values; it can be first or mean"),
+            ("# adc_bits = 12", "adc_bits = 12", "line 51: the key adc_range is missing; write adc_range = \"20 A\" below [sensors]"),
             ("duration = \"0.9 s\"", "", "the key duration is missing; write duration = \"0.5 s\""),
         ];
         for (from, to, sentence) in cases {
@@ -227,7 +263,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_panics(text in "\\PC*|(\\[(motor|schedule|sensors|injection)\\]\n|id = |rs=|seed=|voltage = |[0-9.\"'\\[\\]{}=, \n]){0,20}") {
+        fn no_text_panics(text in "\\PC*|(\\[(motor|schedule|sensors|injection|log)\\]\n|id = |rs=|seed=|voltage = |[0-9.\"'\\[\\]{}=, \n]){0,20}") {
             if let Err(sentence) = read(&text) {
                 prop_assert_eq!(sentence.lines().count(), 1);
             }
@@ -235,7 +271,7 @@ mod tests {
 
         /// One value of the template replaced by anything.
         #[test]
-        fn no_value_panics(line in 0usize..60, value in "\\PC{0,12}|-?[0-9]{1,20}|\"-?[0-9.e]{1,9} ?(s|A|V|Hz|rpm|H)?\"|\\[[0-9,]{0,9}\\]|\\{[a-z=0-9]{0,9}\\}|nan|true") {
+        fn no_value_panics(line in 0usize..72, value in "\\PC{0,12}|-?[0-9]{1,20}|\"-?[0-9.e]{1,9} ?(s|A|V|Hz|rpm|H)?\"|\\[[0-9,]{0,9}\\]|\\{[a-z=0-9]{0,9}\\}|nan|true") {
             let change = |(at, text): (usize, &str)| match text.split_once(" = ") {
                 Some((key, _)) if at == line => format!("{} = {value}", key.trim_start_matches("# ")),
                 _ => text.to_owned(),

@@ -8,18 +8,14 @@
 // The table on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
-use fluxfit::{
-    Model, Request, Verdict,
-    evidence::Identification,
-    identify,
-    motor::{Motor, Parameter},
-};
+use fluxfit::{Model, Request, Verdict, evidence::Identification, identify, motor::Parameter};
 use fluxfit_drive::{
     Scenario,
-    scenario::{Control, Inverter, Mechanics, Schedule, Sensors, SimulatedMotor},
+    scenario::{Control, Inverter, Logging, Mechanics, Schedule, Sensors, SimulatedMotor},
     schedule::{Profile, Ramp},
     simulate,
 };
+use fluxfit_studies::rated::{Rated, read};
 use rayon::prelude::*;
 use std::{collections::BTreeMap, error::Error, path::Path};
 
@@ -42,16 +38,6 @@ const END: f64 = 1.5;
 /// What counts as covered, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
 
-/// A motor and its rating.
-struct Rated {
-    row: usize,
-    motor: Motor,
-    pole_pairs: u32,
-    u_dc: f64,
-    current: f64,
-    omega_e: f64,
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (path, model) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
@@ -59,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         [path, "--model", "steady"] => (Path::new(path), Model::Steady),
         _ => return Err("give a file of motors: fleet MOTORS.csv [--model steady|output-error]".into()),
     };
-    let motors = read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let motors = read(path)?;
     let found: Vec<(&Rated, Result<Identification, String>)> = motors.par_iter().map(|rated| (rated, find(rated, model))).collect();
     let answered: Vec<(&Rated, &Identification)> = found.iter().filter_map(|(rated, found)| Some((*rated, found.as_ref().ok()?))).collect();
     println!("{} motors, {} simulated and identified with {}\n", motors.len(), answered.len(), model.label());
@@ -73,23 +59,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn read(path: &Path) -> Result<Vec<Rated>, Box<dyn Error>> {
-    let mut rows = Vec::new();
-    for (row, record) in csv::Reader::from_path(path)?.deserialize().enumerate() {
-        let record: BTreeMap<String, f64> = record?;
-        let get = |key: &str| record.get(key).copied().ok_or_else(|| format!("no column {key}"));
-        rows.push(Rated {
-            row: row + 1,
-            motor: Motor { rs: get("Rs_ohm")?, ld: get("Ld_H")?, lq: get("Lq_H")?, psi_f: get("psi_pm_Wb")? },
-            pole_pairs: get("pole_pairs")? as u32,
-            u_dc: get("Udc_V")?,
-            current: get("I_nom_A")?,
-            omega_e: get("omega_e_nom_rad_s")?,
-        });
-    }
-    Ok(rows)
-}
-
 /// The rig, scaled.
 fn scenario(rated: &Rated) -> Scenario {
     let Rated { motor, current, .. } = rated;
@@ -99,7 +68,7 @@ fn scenario(rated: &Rated) -> Scenario {
     Scenario {
         duration: END,
         seed: rated.row as u64,
-        motor: SimulatedMotor { rs: motor.rs, magnetics: (*motor).into(), pole_pairs: rated.pole_pairs },
+        motor: SimulatedMotor::new(motor.rs, (*motor).into(), rated.pole_pairs),
         mechanics: Mechanics::Free { inertia: 0.25 * torque * RUN_UP / speed, friction: 0.01 * torque / speed },
         inverter: Inverter::ideal(rated.u_dc, 0.5 * sample_rate),
         control: Control { trip_current: 3.0 * current, ..Control::new(200.0, 10.0, 1.5 * current) },
@@ -110,6 +79,7 @@ fn scenario(rated: &Rated) -> Scenario {
             ..Schedule::default()
         },
         sensors: Sensors { current_noise: NOISE * current, ..Sensors::IDEAL },
+        logging: Logging::COMPLETE,
     }
 }
 

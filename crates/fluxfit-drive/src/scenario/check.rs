@@ -39,14 +39,19 @@ impl Scenario {
     pub fn check(&self) -> Result<(), Error> {
         self.check_numbers()?;
         self.sensors.check()?;
+        self.motor.harmonics.check()?;
         self.check_compatibility()?;
         self.check_sampling()?;
+        self.logging.check(self.rows(), self.inverter.sample_rate())?;
         self.check_feasibility()
     }
 
     fn check_numbers(&self) -> Result<(), Error> {
         positive("duration", self.duration)?;
         positive("motor.rs", self.motor.rs)?;
+        if !(self.motor.rs_drift > -1.0 && self.motor.rs_drift.is_finite()) {
+            return Err(setting("motor.rs_drift", self.motor.rs_drift, "a finite number above -1"));
+        }
         if let Magnetics::Constant { ld, lq, psi_f } = self.motor.magnetics {
             positive("motor.ld", ld)?;
             positive("motor.lq", lq)?;
@@ -116,7 +121,7 @@ impl Scenario {
             return Err(setting("duration", self.duration, "at least the time from one sample to the next"));
         }
         let motor = self.motor.unsaturated();
-        let time_constant = motor.ld.min(motor.lq) / motor.rs;
+        let time_constant = motor.ld.min(motor.lq) / motor.rs.max(self.motor.rs_after(1.0));
         if sample_period > time_constant {
             let carrier = self.inverter.carrier * sample_period / time_constant;
             return Err(Error::SlowSampling { sample_period, time_constant, carrier: carrier.ceil() });

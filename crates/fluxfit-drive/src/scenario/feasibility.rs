@@ -105,7 +105,8 @@ impl Scenario {
         if let Some(adc) = self.sensors.adc.filter(|adc| i.magnitude() > adc.range) {
             return Err(Error::ConverterRange { t, needed: i.magnitude(), range: adc.range });
         }
-        let u = Dq { d: self.motor.rs * i.d - omega_e * flux.psi.q, q: self.motor.rs * i.q + omega_e * flux.psi.d };
+        let rs = self.motor.rs_after(t / self.duration);
+        let u = Dq { d: rs * i.d - omega_e * flux.psi.q, q: rs * i.q + omega_e * flux.psi.d };
         let available = self.available_voltage();
         if u.magnitude() <= available {
             return Ok(());

@@ -44,7 +44,7 @@ pub fn small_motor() -> Scenario {
     let motor = Motor { rs: 0.05, ld: 19e-6, lq: 23e-6, psi_f: 2e-3 };
     Scenario {
         duration: 0.1,
-        motor: SimulatedMotor { rs: motor.rs, magnetics: motor.into(), pole_pairs: paper::POLE_PAIRS },
+        motor: SimulatedMotor::new(motor.rs, motor.into(), paper::POLE_PAIRS),
         mechanics: Mechanics::Dyno,
         inverter: Inverter { modulation: Modulation::Averaged, ..Inverter::ideal(24.0, 10e3) },
         control: Control::new(500.0, 20.0, 30.0),

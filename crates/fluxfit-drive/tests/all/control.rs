@@ -105,7 +105,7 @@ fn a_step_along_one_axis_leaves_the_other_at_any_speed() {
 fn a_loop_that_was_at_its_limit_recovers_at_any_speed() {
     for (turn, bandwidth) in [(0.2, 20.0), (0.2, 50.0), (0.3, 20.0), (0.4, 20.0), (0.4, 50.0), (-0.4, 50.0)] {
         let mut scenario = on_a_dyno(0.6, turn / SAMPLE_PERIOD);
-        scenario.motor = SimulatedMotor { rs: 0.2, magnetics: Magnetics::Constant { ld: 0.5e-3, lq: 1e-3, psi_f: 5e-3 }, pole_pairs: 4 };
+        scenario.motor = SimulatedMotor::new(0.2, Magnetics::Constant { ld: 0.5e-3, lq: 1e-3, psi_f: 5e-3 }, 4);
         scenario.inverter.u_dc = 60.0;
         scenario.control = Control { trip_current: 1e3, ..Control::new(bandwidth, 1.0, 100.0) };
         scenario.schedule.id = Profile::constant(-2.0);
@@ -250,7 +250,7 @@ fn a_saturated_motor_settles_on_its_references() {
     let map = FluxMap::new(&text.lines().skip(1).map(row).collect::<Vec<_>>()).unwrap();
     for iq in [10.0, 15.0, 20.0] {
         let mut scenario = on_a_dyno(0.5, 0.0);
-        scenario.motor = SimulatedMotor { rs: 0.63, magnetics: Magnetics::Map(map.clone()), pole_pairs: 2 };
+        scenario.motor = SimulatedMotor::new(0.63, Magnetics::Map(map.clone()), 2);
         scenario.inverter.u_dc = 540.0;
         scenario.control = Control::new(200.0, 1.0, 24.0);
         scenario.schedule.speed = Profile::constant(40.0);

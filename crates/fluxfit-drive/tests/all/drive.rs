@@ -173,7 +173,7 @@ fn current_of(psi: Dq, guess: Dq) -> Dq {
 fn a_cross_saturated_map_moves_as_its_fluxes_do() {
     let grid = [-20.0, -9.0, 0.0, 8.0, 20.0];
     let points: Vec<_> = grid.iter().flat_map(|d| grid.map(|q| Dq { d: *d, q })).map(|i| (i, saturated(i).0)).collect();
-    let motor = SimulatedMotor { rs: 0.6, magnetics: Magnetics::Map(FluxMap::new(&points).unwrap()), pole_pairs: 2 };
+    let motor = SimulatedMotor::new(0.6, Magnetics::Map(FluxMap::new(&points).unwrap()), 2);
     let (speed, u_dc) = (100.0, 100.0);
     let mut plant = Plant::new(&motor, Mechanics::Dyno, speed);
     let mut bridge = Bridge::new(Inverter { modulation: Modulation::Averaged, ..Inverter::ideal(u_dc, 5e3) });

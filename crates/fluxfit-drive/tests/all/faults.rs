@@ -156,7 +156,7 @@ const TRACTION: Motor = Motor { rs: 18e-3, ld: 175e-6, lq: 250e-6, psi_f: 0.0515
 /// What is found in its log with so much dead time, s.
 fn traction(dead_time: f64) -> Identification {
     let scenario = Scenario {
-        motor: SimulatedMotor { rs: TRACTION.rs, magnetics: TRACTION.into(), pole_pairs: 10 },
+        motor: SimulatedMotor::new(TRACTION.rs, TRACTION.into(), 10),
         inverter: Inverter { dead_time, ..Inverter::ideal(300.0, 10e3) },
         mechanics: Mechanics::Dyno,
         control: Control::new(200.0, 10.0, 150.0),

@@ -17,7 +17,7 @@ const RATE: f64 = 1e4;
 
 /// Without a magnet and without saliency: at standstill nothing but `R` and `L` in each phase, alpha along phase a.
 fn coil() -> SimulatedMotor {
-    SimulatedMotor { rs: RS, magnetics: Magnetics::Constant { ld: L, lq: L, psi_f: 0.0 }, pole_pairs: 1 }
+    SimulatedMotor::new(RS, Magnetics::Constant { ld: L, lq: L, psi_f: 0.0 }, 1)
 }
 
 fn inverter(modulation: Modulation) -> Inverter {

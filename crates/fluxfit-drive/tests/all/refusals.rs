@@ -53,6 +53,8 @@ fn every_number_out_of_its_range_is_refused_with_its_key() {
     let rows: &[(&str, &[Change])] = &[
         ("duration", &[|s| s.duration = 0.0, |s| s.duration = f64::INFINITY, |s| s.duration = 1e9, |s| s.duration = 0.5e-4]),
         ("motor.rs", &[|s| s.motor.rs = 0.0, |s| s.motor.rs = f64::NAN]),
+        ("motor.rs_drift", &[|s| s.motor.rs_drift = -1.0, |s| s.motor.rs_drift = f64::NAN]),
+        ("motor.flux_harmonics", &[|s| s.motor.harmonics.fifth = 0.21, |s| s.motor.harmonics.seventh = f64::NAN]),
         ("motor.ld", &[|s| motor(s, 0.0, 1e-2, 0.1)]),
         ("motor.lq", &[|s| motor(s, 5e-3, -1e-2, 0.1)]),
         ("motor.psi_f", &[|s| motor(s, 5e-3, 1e-2, -0.1), |s| motor(s, 5e-3, 1e-2, f64::NAN)]),
@@ -98,6 +100,14 @@ fn every_number_out_of_its_range_is_refused_with_its_key() {
             &[|s| s.sensors.adc = Some(Adc { bits: 1, range: 50.0 }), |s| s.sensors.adc = Some(Adc { bits: 33, range: 50.0 })],
         ),
         ("sensors.encoder_steps", &[|s| s.sensors.encoder_steps = Some(15)]),
+        ("sensors.angle_delay", &[|s| s.sensors.angle_delay = f64::NAN]),
+        ("sensors.u_dc_gain", &[|s| s.sensors.u_dc_gain = 0.0]),
+        // Half the sample rate is 5 kHz.
+        ("log.current_filter", &[|s| s.logging.current_filter = Some(0.0), |s| s.logging.current_filter = Some(5001.0)]),
+        ("log.voltage_filter", &[|s| s.logging.voltage_filter = Some(f64::NAN)]),
+        ("log.speed_filter", &[|s| s.logging.speed_filter = Some(-20.0)]),
+        // 9001 samples.
+        ("log.every", &[|s| s.logging.every = 0, |s| s.logging.every = 9002]),
     ];
     for (key, changes) in rows {
         for (index, change) in changes.iter().enumerate() {
@@ -124,6 +134,9 @@ fn what_is_just_within_its_range_is_accepted() {
         |s| s.sensors.adc = Some(Adc { bits: 2, range: 20.0 }),
         |s| s.sensors.adc = Some(Adc { bits: 32, range: 20.0 }),
         |s| dyno(s, 100.0),
+        |s| s.motor.rs_drift = -0.9,
+        |s| s.motor.harmonics.seventh = -0.2,
+        |s| s.logging.speed_filter = Some(5000.0),
     ];
     for (index, change) in changes.iter().enumerate() {
         // The dead time costs voltage, which is not the question here.

@@ -35,7 +35,7 @@ fn bench(points: &[(f64, f64)], hold: f64, carrier: f64, settings: &Request) -> 
     };
     let mut scenario = Scenario {
         duration: points.len() as f64 * hold,
-        motor: SimulatedMotor { rs: RS, magnetics: Magnetics::Map(map()), pole_pairs: 2 },
+        motor: SimulatedMotor::new(RS, Magnetics::Map(map()), 2),
         mechanics: Mechanics::Dyno,
         inverter: Inverter { modulation: Modulation::Averaged, ..Inverter::ideal(540.0, carrier) },
         control: Control::new(40.0, 1.0, 25.0),

@@ -4,10 +4,13 @@
 
 use fluxfit::frames::{Abc, AlphaBeta, Dq};
 use fluxfit_drive::{
+    Drive, Scenario,
     inverter::Bridge,
     plant::Plant,
     scenario::{Adc, CurrentSensors, Inverter, Magnetics, Mechanics, Modulation, Sensors, SimulatedMotor},
+    schedule::Profile,
     sensors::{Sample, SensorModel},
+    simulate,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -15,7 +18,7 @@ const POLE_PAIRS: u32 = 3;
 const SAMPLE_PERIOD: f64 = 1e-4;
 
 fn motor() -> SimulatedMotor {
-    SimulatedMotor { rs: 0.5, magnetics: Magnetics::Constant { ld: 2e-3, lq: 3e-3, psi_f: 0.05 }, pole_pairs: POLE_PAIRS }
+    SimulatedMotor::new(0.5, Magnetics::Constant { ld: 2e-3, lq: 3e-3, psi_f: 0.05 }, POLE_PAIRS)
 }
 
 fn bridge() -> Bridge {
@@ -141,5 +144,57 @@ fn the_speed_of_an_encoder_follows_with_the_observers_double_pole() {
         // Sampling shifts it by about a sample, 0.6 % of the time constant; the step's steepest slope is 1/e.
         assert!((found - expected).abs() < 0.05, "sample {k}: {found} {expected}");
         assert!(bridge.run(&mut plant, [0.5; 3], 0.0));
+    }
+}
+
+/// Late by 40 us at 300 rad/s: 12 mrad behind, whatever the sampling.
+#[test]
+fn a_late_angle_is_behind_by_the_speed_times_its_delay() {
+    let motor = motor();
+    for speed in [100.0, -100.0] {
+        let plant = Plant::new(&motor, Mechanics::Dyno, speed);
+        let found = measured(Sensors { angle_delay: 40e-6, ..Sensors::IDEAL }, &plant);
+        assert!((found.theta_e + 3.0 * speed * 40e-6).abs() < 1e-15, "{}", found.theta_e);
+        assert_eq!(found.omega_e, 3.0 * speed);
+    }
+}
+
+/// The drive controls and logs the currents in the late frame: the true ones are turned back by `omega_e tau`.
+#[test]
+fn a_late_angle_turns_currents_by_the_speed_times_its_delay() {
+    let mut scenario = Scenario { duration: 0.3, ..Scenario::paper() };
+    scenario.inverter.modulation = Modulation::Averaged;
+    scenario.mechanics = Mechanics::Dyno;
+    (scenario.schedule.speed, scenario.schedule.load) = (Profile::constant(100.0), Profile::default());
+    (scenario.schedule.id, scenario.schedule.iq) = (Profile::constant(-2.0), Profile::constant(6.0));
+    scenario.sensors.angle_delay = 200e-6;
+    let mut drive = Drive::new(&scenario, 0);
+    let (mut before, mut logged) = (Dq::default(), Dq::default());
+    for _ in 0..scenario.rows() {
+        before = drive.plant().current();
+        logged = drive.step().unwrap().i;
+    }
+    let (sin, cos) = (400.0_f64 * 200e-6).sin_cos();
+    for (found, expected) in [(before.d, cos * logged.d + sin * logged.q), (before.q, cos * logged.q - sin * logged.d)] {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
+    assert!((logged.d + 2.0).abs() < 1e-6 && (logged.q - 6.0).abs() < 1e-6, "{logged:?}");
+}
+
+/// The drive takes its duty ratios from the DC voltage that it measures: it logs voltages that are too large by the gain.
+#[test]
+fn voltages_are_logged_with_the_gain_of_the_dc_voltage() {
+    let last_row = |u_dc_gain: f64| {
+        let mut scenario = Scenario { duration: 0.3, ..Scenario::paper() };
+        scenario.inverter.modulation = Modulation::Averaged;
+        scenario.mechanics = Mechanics::Dyno;
+        (scenario.schedule.speed, scenario.schedule.load) = (Profile::constant(50.0), Profile::default());
+        (scenario.schedule.id, scenario.schedule.iq) = (Profile::constant(-2.0), Profile::constant(6.0));
+        scenario.sensors.u_dc_gain = u_dc_gain;
+        let log = simulate(&scenario, 0, || ()).unwrap().columns;
+        [log.ud[3000], log.uq[3000], log.u_dc.unwrap()[3000]]
+    };
+    for (found, truth) in last_row(1.03).into_iter().zip(last_row(1.0)) {
+        assert!((found / truth - 1.03).abs() < 1e-6, "{found} {truth}");
     }
 }

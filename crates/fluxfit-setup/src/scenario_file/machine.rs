@@ -3,19 +3,21 @@
 use crate::{flux_map::read_flux_map, problem::Problem};
 use fluxfit_drive::{
     Error,
-    scenario::{Magnetics, Mechanics, SimulatedMotor},
+    scenario::{Harmonics, Magnetics, Mechanics, SimulatedMotor},
 };
-use fluxfit_files::{FileError, toml_table::Table};
+use fluxfit_files::{FileError, Problem as FileProblem, toml_table::Table};
 use fluxfit_units::Dimension;
 use std::path::Path;
 
 /// Keys of `[motor]`.
-pub(super) const MOTOR_KEYS: &[&str] = &["rs", "ld", "lq", "psi_f", "flux_map", "pole_pairs"];
+pub(super) const MOTOR_KEYS: &[&str] = &["rs", "rs_drift", "ld", "lq", "psi_f", "flux_map", "flux_harmonics", "pole_pairs"];
 
 pub(super) fn motor(table: &Table<'_>, folder: &Path) -> Result<SimulatedMotor, FileError> {
     Ok(SimulatedMotor {
         rs: table.needed("rs", Dimension::Resistance)?,
+        rs_drift: table.quantity("rs_drift", Dimension::Ratio)?.unwrap_or(0.0),
         magnetics: magnetics(table, folder)?,
+        harmonics: harmonics(table)?,
         pole_pairs: match table.get("pole_pairs") {
             Some(entry) => entry.whole(1, "a whole number above zero")?,
             None => return Err(table.missing("pole_pairs", "4")),
@@ -32,6 +34,16 @@ fn magnetics(table: &Table<'_>, folder: &Path) -> Result<Magnetics, FileError> {
         return Err(constant.refuse(Problem::Excluded { by: "flux_map" }));
     }
     read_flux_map(&folder.join(entry.text()?)).map(Magnetics::Map)
+}
+
+/// Amplitudes of the 5th and the 7th harmonic.
+fn harmonics(table: &Table<'_>) -> Result<Harmonics, FileError> {
+    let Some(entry) = table.get("flux_harmonics") else { return Ok(Harmonics::default()) };
+    let wanted = || FileProblem::Value { wanted: "a list for the 5th and the 7th harmonic, as in [0.006, 0.003]".to_owned() };
+    match entry.items().as_deref() {
+        Some([fifth, seventh]) => Ok(Harmonics { fifth: fifth.quantity(Dimension::Ratio)?, seventh: seventh.quantity(Dimension::Ratio)? }),
+        _ => Err(entry.refuse(wanted())),
+    }
 }
 
 /// Keys of `[mechanics]`.

@@ -5,8 +5,18 @@ use fluxfit_files::{FileError, Problem as FileProblem, toml_table::Table};
 use fluxfit_units::Dimension;
 
 /// Keys of `[sensors]`.
-pub(super) const KEYS: &[&str] =
-    &["current_sensors", "current_noise", "current_offset", "current_gain", "adc_bits", "adc_range", "angle_offset", "encoder_steps"];
+pub(super) const KEYS: &[&str] = &[
+    "current_sensors",
+    "current_noise",
+    "current_offset",
+    "current_gain",
+    "adc_bits",
+    "adc_range",
+    "angle_offset",
+    "angle_delay",
+    "encoder_steps",
+    "u_dc_gain",
+];
 
 pub(super) fn sensors(table: &Table<'_>) -> Result<Sensors, FileError> {
     let ideal = Sensors::IDEAL;
@@ -18,7 +28,9 @@ pub(super) fn sensors(table: &Table<'_>) -> Result<Sensors, FileError> {
         current_gain: of_phases(table, "current_gain", Dimension::Ratio, "[1, 1, 1.02]", ideal.current_gain)?,
         adc: adc(table)?,
         angle_offset: table.quantity("angle_offset", Dimension::Angle)?.unwrap_or(ideal.angle_offset),
+        angle_delay: table.quantity("angle_delay", Dimension::Time)?.unwrap_or(ideal.angle_delay),
         encoder_steps: table.get("encoder_steps").map(|entry| entry.whole(0, "a whole number, at least 16")).transpose()?,
+        u_dc_gain: table.quantity("u_dc_gain", Dimension::Ratio)?.unwrap_or(ideal.u_dc_gain),
     })
 }
 

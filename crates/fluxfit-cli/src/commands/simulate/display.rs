@@ -9,7 +9,7 @@ use std::{io::Write, path::Path};
 /// Shows the files of a simulation.
 pub(crate) fn show(name: &str, scenario: &Scenario, recording: &Recording, log: &Path, truth: Option<&Path>) -> std::io::Result<()> {
     let mut out = anstream::stdout().lock();
-    let (rows, rate) = (recording.columns.t.len(), scenario.inverter.sample_rate());
+    let (rows, rate) = (recording.columns.t.len(), scenario.row_rate());
     writeln!(out, "{HEADING}{name}{HEADING:#}")?;
     writeln!(out, "{rows} rows at {:.1} kHz, {} s", rate * 1e-3, significant(scenario.duration, 3))?;
     let log = shell::word(log.as_os_str());

@@ -1,0 +1,49 @@
+//! Logs as drives make them, identified, and how many of the numbers are wrong, as tables.
+//!
+//! `drives [LOGS] [--motors MOTORS.csv]` draws logs over motors, faults, courses and kinds of logs; 200 logs and a dozen motors of our
+//! own unless told otherwise. `drives --show N [--motors MOTORS.csv]` writes log number N as CSV, and its scenario to standard error.
+// Tables on standard output are what this program is for.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use fluxfit_setup::write_recording;
+use fluxfit_studies::{
+    drives::{Drawn, survey, table::tables},
+    rated::{Rated, read, typical},
+};
+use std::{error::Error, path::Path};
+
+/// Logs unless told otherwise: a few minutes.
+const LOGS: u64 = 200;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (words, motors): (&[&str], Vec<Rated>) = match &words[..] {
+        [rest @ .., "--motors", path] => (rest, read(Path::new(path))?),
+        all => (all, typical()),
+    };
+    match words {
+        [] => print(LOGS, &motors),
+        ["--show", index] => show(number(index)?, &motors)?,
+        [logs] => print(number(logs)?, &motors),
+        _ => return Err("give a number of logs: drives [LOGS] [--motors MOTORS.csv], or drives --show N [--motors MOTORS.csv]".into()),
+    }
+    Ok(())
+}
+
+fn number(word: &str) -> Result<u64, String> {
+    word.parse().map_err(|_| format!("{word} is not a number of logs; give a whole number"))
+}
+
+fn print(logs: u64, motors: &[Rated]) {
+    println!("{logs} logs of {} motors", motors.len());
+    print!("{}", tables(&survey(logs, motors)));
+}
+
+/// For a closer look at one log.
+fn show(index: u64, motors: &[Rated]) -> Result<(), Box<dyn Error>> {
+    let drawn = Drawn::new(index, motors).ok_or("the file has no motors")?;
+    eprintln!("{drawn:#?}");
+    write_recording(&mut std::io::stdout().lock(), &drawn.record()?)?;
+    Ok(())
+}
