@@ -170,8 +170,8 @@ impl<'a> Drive<'a> {
         let mean = AlphaBeta { alpha: 0.5 * (before.alpha + after.alpha), beta: 0.5 * (before.beta + after.beta) };
         RecordedRow {
             t,
-            u: measured.direction.to_rotor(self.filters.voltage(mean)),
-            i: measured.direction.to_rotor(self.filters.current(measured.i)),
+            u: self.filters.voltage(mean, measured.direction),
+            i: self.filters.current(measured.i, measured.direction),
             omega_e: self.filters.speed(measured.omega_e),
             theta_e: measured.theta_e,
             u_ref: command.u,

@@ -6,9 +6,11 @@
 //! y[k] = y[k-1] + (1 - e^(-2 pi f T)) (x[k] - y[k-1]),    y[0] = x[0]
 //! ```
 //!
-//! Currents and voltages are filtered as phase quantities, in the stator frame, and then turned into the rotor frame of their row.
+//! Currents and voltages are filtered as phase quantities, in the stator frame, and then turned into the rotor frame of their row; or as
+//! the d and q quantities that a drive streams.
 
 use crate::{
+    direction::Direction,
     error::Error,
     range::{positive, setting},
     recording::RecordedRow,
@@ -19,9 +21,11 @@ use std::f64::consts::TAU;
 /// What is logged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Logging {
-    /// Pole of the filter of the logged phase currents, Hz.
+    /// What the filters of currents and voltages act on.
+    pub filter_frame: FilterFrame,
+    /// Pole of the filter of the logged currents, Hz.
     pub current_filter: Option<f64>,
-    /// Pole of the filter of the logged phase voltages, Hz; commands are not filtered.
+    /// Pole of the filter of the logged voltages, Hz; commands are not filtered.
     pub voltage_filter: Option<f64>,
     /// Pole of the filter of the logged speed, Hz.
     pub speed_filter: Option<f64>,
@@ -33,6 +37,15 @@ pub struct Logging {
     pub theta_e: bool,
     /// Whether the DC voltage is logged.
     pub u_dc: bool,
+}
+
+/// What the filters of currents and voltages act on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FilterFrame {
+    /// Phase quantities, in the stator's frame.
+    Phases,
+    /// d and q quantities, in the rotor's frame.
+    Dq,
 }
 
 /// How a row is made of its samples.
@@ -47,6 +60,7 @@ pub enum LoggedRows {
 impl Logging {
     /// Every sample, unfiltered, with all columns.
     pub const COMPLETE: Self = Self {
+        filter_frame: FilterFrame::Phases,
         current_filter: None,
         voltage_filter: None,
         speed_filter: None,
@@ -79,6 +93,7 @@ impl Logging {
 /// The filters with their state.
 #[derive(Debug, Clone)]
 pub(crate) struct LogFilters {
+    frame: FilterFrame,
     current: Option<LowPass<2>>,
     voltage: Option<LowPass<2>>,
     speed: Option<LowPass<1>>,
@@ -87,20 +102,21 @@ pub(crate) struct LogFilters {
 impl LogFilters {
     pub(crate) fn new(settings: &Logging, sample_period: f64) -> Self {
         Self {
+            frame: settings.filter_frame,
             current: settings.current_filter.map(|pole| LowPass::new(pole, sample_period)),
             voltage: settings.voltage_filter.map(|pole| LowPass::new(pole, sample_period)),
             speed: settings.speed_filter.map(|pole| LowPass::new(pole, sample_period)),
         }
     }
 
-    /// The logged current, A, of a sampled one.
-    pub(crate) fn current(&mut self, i: AlphaBeta) -> AlphaBeta {
-        of_stator(&mut self.current, i)
+    /// The logged current, A, of a sampled one, in the rotor's frame.
+    pub(crate) fn current(&mut self, i: AlphaBeta, rotor: Direction) -> Dq {
+        filtered(&mut self.current, self.frame, i, rotor)
     }
 
     /// The logged voltage, V.
-    pub(crate) fn voltage(&mut self, u: AlphaBeta) -> AlphaBeta {
-        of_stator(&mut self.voltage, u)
+    pub(crate) fn voltage(&mut self, u: AlphaBeta, rotor: Direction) -> Dq {
+        filtered(&mut self.voltage, self.frame, u, rotor)
     }
 
     /// The logged speed, electrical rad/s.
@@ -112,9 +128,19 @@ impl LogFilters {
     }
 }
 
-fn of_stator(filter: &mut Option<LowPass<2>>, AlphaBeta { alpha, beta }: AlphaBeta) -> AlphaBeta {
-    let [alpha, beta] = filter.as_mut().map_or([alpha, beta], |filter| filter.next([alpha, beta]));
-    AlphaBeta { alpha, beta }
+fn filtered(filter: &mut Option<LowPass<2>>, frame: FilterFrame, vector: AlphaBeta, rotor: Direction) -> Dq {
+    let Some(filter) = filter else { return rotor.to_rotor(vector) };
+    match frame {
+        FilterFrame::Phases => {
+            let [alpha, beta] = filter.next([vector.alpha, vector.beta]);
+            rotor.to_rotor(AlphaBeta { alpha, beta })
+        }
+        FilterFrame::Dq => {
+            let Dq { d, q } = rotor.to_rotor(vector);
+            let [d, q] = filter.next([d, q]);
+            Dq { d, q }
+        }
+    }
 }
 
 /// A filter of the first order, of several quantities.

@@ -10,7 +10,7 @@ pub mod reference_cases;
 pub use crate::{
     harmonics::Harmonics,
     inverter::{Inverter, Modulation, Update},
-    logging::{LoggedRows, Logging},
+    logging::{FilterFrame, LoggedRows, Logging},
     machine::{Magnetics, Mechanics, SimulatedMotor},
     sensors::{Adc, CurrentSensors, Sensors},
 };

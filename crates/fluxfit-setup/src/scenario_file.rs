@@ -118,7 +118,8 @@ mod tests {
     use super::*;
     use fluxfit_drive::{
         scenario::{
-            Adc, Axis, CurrentSensors, Harmonics, Injection, LoggedRows, Logging, Mechanics, Modulation, Sensors, Update, Waveform,
+            Adc, Axis, CurrentSensors, FilterFrame, Harmonics, Injection, LoggedRows, Logging, Mechanics, Modulation, Sensors, Update,
+            Waveform,
         },
         schedule::{Profile, Ramp},
     };
@@ -153,6 +154,7 @@ mod tests {
             "# every",
             "# rows",
             "# theta_e",
+            "# filter_frame",
             "# u_dc",
         ]);
         let text = keys.fold(PAPER_RIG.to_owned(), |text, key| text.replace(key, &key[2..]));
@@ -178,6 +180,7 @@ mod tests {
         expected.motor.rs_drift = 0.2;
         expected.motor.harmonics = Harmonics { fifth: 0.006, seventh: 0.003 };
         expected.logging = Logging {
+            filter_frame: FilterFrame::Dq,
             current_filter: Some(1000.0),
             voltage_filter: Some(1000.0),
             speed_filter: Some(20.0),

@@ -77,6 +77,7 @@ pub use identification::{
         judgement::Judgement,
         measurement::{Measurement, Place, Promised},
         remedy::{Also, Remedy},
+        unseen::{Unseen, UnseenError},
         warning::Warning,
     },
     judge::{reason::Reason, verdict::Verdict},

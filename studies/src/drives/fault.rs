@@ -2,7 +2,10 @@
 
 use super::{between, between_decades};
 use fluxfit::optimizer::Draws;
-use fluxfit_drive::{Scenario, scenario::Harmonics};
+use fluxfit_drive::{
+    Scenario,
+    scenario::{FilterFrame, Harmonics},
+};
 
 /// Dead time, s; and the largest part of a carrier period that it takes.
 const DEAD_TIME: [f64; 2] = [0.3e-6, 3e-6];
@@ -97,8 +100,8 @@ impl Fault {
                 let drop = between(draws, DROP).min(MOST_DROP * inverter.u_dc);
                 (inverter.switch_drop, inverter.diode_drop) = (drop, drop);
             }
-            Self::CurrentFilter => logging.current_filter = filter(draws),
-            Self::VoltageFilter => logging.voltage_filter = filter(draws),
+            Self::CurrentFilter => (logging.filter_frame, logging.current_filter) = (FilterFrame::Dq, filter(draws)),
+            Self::VoltageFilter => (logging.filter_frame, logging.voltage_filter) = (FilterFrame::Dq, filter(draws)),
             Self::SpeedFilter => logging.speed_filter = Some(between_decades(draws, SPEED_FILTER)),
             Self::Harmonics => {
                 let mut amplitude = || either_sign(draws, HARMONIC);

@@ -5,7 +5,7 @@
 use fluxfit::frames::Dq;
 use fluxfit_drive::{
     Recording, Scenario,
-    scenario::{LoggedRows, Logging, Mechanics, Modulation},
+    scenario::{FilterFrame, LoggedRows, Logging, Mechanics, Modulation},
     schedule::{Profile, Ramp},
     simulate,
 };
@@ -157,5 +157,20 @@ fn the_number_of_rows_is_told_before() {
         let scenario = rig(Profile::constant(SPEED / 4.0), Logging { every, rows, ..Logging::COMPLETE });
         assert_eq!(recorded(&scenario).columns.t.len(), scenario.logged_rows(), "{every}");
         assert!((scenario.row_rate() * f64::from(every) - 1e4).abs() < 1e-9);
+    }
+}
+
+/// In the rotor's frame the filter works on d and on q: `y[k] = y[k-1] + g (x[k] - y[k-1])`.
+#[test]
+fn a_filter_of_d_and_q_follows_its_recursion() {
+    let complete = restless(Logging::COMPLETE).columns;
+    let logged = restless(Logging { filter_frame: FilterFrame::Dq, current_filter: Some(POLE), ..Logging::COMPLETE }).columns;
+    let gain = 1.0 - (-TAU * POLE * SAMPLE_PERIOD).exp();
+    for (logged, complete) in [(&logged.id, &complete.id), (&logged.iq, &complete.iq)] {
+        let mut y = complete[0];
+        for (logged, x) in logged.iter().zip(complete) {
+            y += gain * (x - y);
+            assert!((logged - y).abs() < 1e-9);
+        }
     }
 }

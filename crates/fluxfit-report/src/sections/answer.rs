@@ -24,6 +24,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
         (model(found))
         (explanations(found))
         (warnings(found))
+        (unseen(found))
         (parts(found))
     };
     Some(Section { anchor: "answer", heading: "Parameters", content })
@@ -148,6 +149,22 @@ fn warnings(found: &Identification) -> Markup {
                 @for warning in &found.warnings {
                     p { strong { "Warning: " (warning.code()) } br; (prose(&sentence(&warning.to_string()))) }
                 }
+            }
+        }
+    }
+}
+
+/// What no log shows, and no interval counts.
+fn unseen(found: &Identification) -> Markup {
+    html! {
+        @if !found.unseen.is_empty() {
+            p {
+                "Not in the intervals, because no log shows it: "
+                @for (place, error) in found.unseen.iter().enumerate() {
+                    @if place > 0 { "; " }
+                    (prose(&error.to_string()))
+                }
+                "."
             }
         }
     }

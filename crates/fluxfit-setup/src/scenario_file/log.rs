@@ -1,16 +1,18 @@
 //! The table `[log]`.
 
-use fluxfit_drive::scenario::{LoggedRows, Logging};
+use fluxfit_drive::scenario::{FilterFrame, LoggedRows, Logging};
 use fluxfit_files::{FileError, toml_table::Table};
 use fluxfit_units::Dimension;
 
 /// Keys of `[log]`.
-pub(super) const KEYS: &[&str] = &["current_filter", "voltage_filter", "speed_filter", "every", "rows", "theta_e", "u_dc"];
+pub(super) const KEYS: &[&str] = &["filter_frame", "current_filter", "voltage_filter", "speed_filter", "every", "rows", "theta_e", "u_dc"];
 
 pub(super) fn log(table: &Table<'_>) -> Result<Logging, FileError> {
     let complete = Logging::COMPLETE;
     let rows = [("first", LoggedRows::First), ("mean", LoggedRows::Mean)];
+    let frames = [("phases", FilterFrame::Phases), ("dq", FilterFrame::Dq)];
     Ok(Logging {
+        filter_frame: table.get("filter_frame").map_or(Ok(complete.filter_frame), |entry| entry.word(&frames))?,
         current_filter: table.quantity("current_filter", Dimension::Frequency)?,
         voltage_filter: table.quantity("voltage_filter", Dimension::Frequency)?,
         speed_filter: table.quantity("speed_filter", Dimension::Frequency)?,

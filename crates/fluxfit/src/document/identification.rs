@@ -10,7 +10,7 @@ use super::{
     log::LogDocument,
     nuisance::NuisanceEntries,
     validation::ValidationDocument,
-    warning::WarningEntry,
+    warning::{UnseenEntry, WarningEntry},
 };
 use crate::{
     Answer, Judgement,
@@ -58,6 +58,8 @@ pub struct IdentificationDocument {
     pub fit: FitEntry,
     /// What limits the whole answer, whatever the verdicts.
     pub warnings: Vec<WarningEntry>,
+    /// Errors that no log shows, and that no interval counts; empty where nothing was identified.
+    pub not_counted: Vec<UnseenEntry>,
     /// Raw numbers, whatever the verdicts.
     pub diagnostics: Diagnostics,
     /// Gains of the current controllers; absent unless asked for.
@@ -88,6 +90,7 @@ impl IdentificationDocument {
             search: answer.search.as_ref().map(|search| SearchEntry::of(search, answer)),
             fit: FitEntry::of(answer),
             warnings: answer.warnings.iter().map(WarningEntry::of).collect(),
+            not_counted: answer.unseen.iter().map(UnseenEntry::of).collect(),
             diagnostics: Diagnostics::of(answer, ConventionEntry::of(convention)),
             current_loop: current_loop.as_ref().map(CurrentLoopEntry::of),
             validation: held_out

@@ -60,7 +60,7 @@ pub use steady::{ExcitationEntry, MisfitEntry, SteadyEntry};
 pub use study::{ConvergenceEntry, CostAboveOptimum, MethodEntry, QuartileEntry, STUDY, StudyDocument};
 pub use truth::{TRUTH, TruthDocument};
 pub use validation::{ChannelEntry, DifferenceEntry, LimitsEntry, TestEntry, VALIDATION, ValidationDocument};
-pub use warning::WarningEntry;
+pub use warning::{UnseenEntry, WarningEntry};
 
 /// The name and the schema of each document of this crate.
 #[cfg(feature = "schema")]

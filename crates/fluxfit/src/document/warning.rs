@@ -1,6 +1,7 @@
 //! Warnings, as the documents list them.
 
-use crate::Warning;
+use super::by_parameter::ByParameter;
+use crate::{Unseen, Warning};
 use serde::Serialize;
 
 /// What limits an answer.
@@ -17,5 +18,24 @@ pub struct WarningEntry {
 impl WarningEntry {
     pub(super) fn of(warning: &Warning) -> Self {
         Self { code: warning.code(), message: warning.to_string() }
+    }
+}
+
+/// An error that no log shows, because the motor of another one fits as well.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct UnseenEntry {
+    /// The name of its kind, such as `current-gain`.
+    pub code: &'static str,
+    /// What it is, and what it does to the parameters.
+    pub message: String,
+    /// The fraction by which it moves each parameter.
+    pub moves: ByParameter<f64>,
+}
+
+impl UnseenEntry {
+    pub(super) fn of(unseen: &Unseen) -> Self {
+        Self { code: unseen.error.key(), message: unseen.to_string(), moves: unseen.moves.into() }
     }
 }

@@ -3,6 +3,7 @@
 use super::{
     explain::{
         judgement::{Judgement, explained},
+        unseen::{self, Unseen},
         warning::{self, Evidence, Warning},
     },
     fit::{
@@ -51,6 +52,8 @@ pub struct Identification {
     pub search: Option<Search>,
     /// What the reader should know.
     pub warnings: Vec<Warning>,
+    /// Errors that no log shows and no interval counts.
+    pub unseen: Vec<Unseen>,
 }
 
 impl Identification {
@@ -105,7 +108,8 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     };
     let warnings = warning::all(&evidence);
     let correlation = finding.uncertainty.correlation;
-    Ok(Identification { parameters, model, steady, output, saturation, correlation, method, search, warnings })
+    let unseen = unseen::all(log, finding, parameters.each_ref().map(|judgement| judgement.verdict));
+    Ok(Identification { parameters, model, steady, output, saturation, correlation, method, search, warnings, unseen })
 }
 
 /// The finding of the model that answers.

@@ -8,5 +8,6 @@ mod names;
 mod reason;
 mod remedy;
 mod spikes;
+mod unseen;
 mod validation;
 mod warning;

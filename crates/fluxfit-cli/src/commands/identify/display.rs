@@ -15,6 +15,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(&answer.log, found));
     text += &parameters(found);
     text += &explanations(found);
+    text += &unseen(found);
     text += &format!("\n{}\n", model(found));
     if let Some(fit) = &found.steady {
         let what = if found.output.is_some() {
@@ -121,6 +122,15 @@ fn explanations(found: &Identification) -> String {
         }
     }
     text
+}
+
+/// What no log shows, and no interval counts.
+fn unseen(found: &Identification) -> String {
+    if found.unseen.is_empty() {
+        return String::new();
+    }
+    let errors: Vec<String> = found.unseen.iter().map(ToString::to_string).collect();
+    format!("\n{}", wrapped("", &format!("Not in the intervals, because no log shows it: {}.", errors.join("; "))))
 }
 
 /// Columns that a line of words may have.

@@ -5,4 +5,5 @@ pub(crate) mod conventions;
 pub(crate) mod judgement;
 pub(crate) mod measurement;
 pub(crate) mod remedy;
+pub(crate) mod unseen;
 pub(crate) mod warning;

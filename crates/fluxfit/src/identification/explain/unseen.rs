@@ -1,0 +1,88 @@
+//! Errors that no log shows, because currents, voltages and speed stay consistent with another motor: what they would do.
+
+use super::super::{fit::finding::Finding, judge::verdict::Verdict};
+use crate::{
+    log::Log,
+    motor::{Motor, PARAMETERS, Parameter},
+};
+
+/// An error that no log shows, and by which fraction a unit of it moves each parameter, in the order of [`Parameter::ALL`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Unseen {
+    /// The error.
+    pub error: UnseenError,
+    /// Fractions of the parameters.
+    pub moves: [f64; PARAMETERS],
+}
+
+/// What no log shows, in units of what drives have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum UnseenError {
+    /// A gain common to all current sensors: read 1 % too large.
+    CurrentGain,
+    /// The DC voltage: read 1 % too large, and with it all commanded voltages.
+    BusVoltage,
+    /// An angle that errs in proportion to the load: one electrical degree too large at the largest i_q.
+    AngleWithLoad,
+    /// The winding's temperature, which the log does not hold: 10 K warmer than it was.
+    Temperature,
+}
+
+/// The part of a percent.
+const PERCENT: f64 = 0.01;
+
+/// Kelvin that a winding's temperature is easily wrong by.
+const KELVIN: f64 = 10.0;
+
+/// What copper's resistance gains per kelvin, IEC 60034-1 (from 235 K at 20 degrees: 1/255).
+const COPPER: f64 = 1.0 / 255.0;
+
+/// One degree, rad.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// All of them, for the parameters that were found.
+pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS]) -> Vec<Unseen> {
+    if verdicts.iter().all(|verdict| *verdict == Verdict::NotIdentifiable) {
+        return Vec::new();
+    }
+    let Motor { lq, psi_f, .. } = finding.motor;
+    let iq = log.columns().iq.iter().fold(0.0, |most: f64, iq| most.max(iq.abs()));
+    // Along q the flux seems smaller by what of psi_f is turned there; in proportion to the current, that is an inductance.
+    let of_angle =
+        if verdicts[Parameter::Lq as usize] == Verdict::NotIdentifiable || iq * lq == 0.0 { 0.0 } else { -DEGREE * psi_f / (lq * iq) };
+    let unseen = [
+        Unseen { error: UnseenError::CurrentGain, moves: [-PERCENT, -PERCENT, -PERCENT, 0.0] },
+        Unseen { error: UnseenError::BusVoltage, moves: [PERCENT; PARAMETERS] },
+        Unseen { error: UnseenError::AngleWithLoad, moves: [0.0, 0.0, of_angle, 0.0] },
+        Unseen { error: UnseenError::Temperature, moves: [KELVIN * COPPER, 0.0, 0.0, 0.0] },
+    ];
+    unseen.into_iter().filter(|unseen| unseen.moves.iter().any(|moves| *moves != 0.0)).collect()
+}
+
+impl UnseenError {
+    /// Name in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::CurrentGain => "current-gain",
+            Self::BusVoltage => "bus-voltage",
+            Self::AngleWithLoad => "angle-with-load",
+            Self::Temperature => "temperature",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The logs of ebike_07_angle_load: 1.6 mrad per ampere on 11 mWb and 120 uH take 0.0016 * 0.011 / 120e-6 = 14.7 % from L_q.
+    #[test]
+    fn an_angle_that_errs_with_the_load_passes_for_inductance() {
+        let (psi_f, lq, iq) = (0.011, 120e-6, 40.0);
+        let degrees = 0.0016 * iq / DEGREE;
+        let per_degree = -DEGREE * psi_f / (lq * iq);
+        assert!((degrees * per_degree + 0.1467).abs() < 1e-3);
+    }
+}

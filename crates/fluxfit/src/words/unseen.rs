@@ -1,0 +1,36 @@
+//! What no log shows, as half a sentence: the error, and what it does.
+
+use super::digits::{list, percent};
+use crate::{
+    identification::explain::unseen::{Unseen, UnseenError},
+    motor::Parameter,
+};
+use std::fmt::{Display, Formatter, Result};
+
+impl Display for UnseenError {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        f.pad(match self {
+            Self::CurrentGain => "all currents read 1 % too large",
+            Self::BusVoltage => "the DC voltage read 1 % too large",
+            Self::AngleWithLoad => "an angle 1 degree too large at full load, in proportion to it",
+            Self::Temperature => "a winding 10 K warmer in the log than in use",
+        })
+    }
+}
+
+impl Display for Unseen {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let mut moved: Vec<(f64, Vec<&str>)> = Vec::new();
+        for (parameter, fraction) in Parameter::ALL.into_iter().zip(self.moves).filter(|(_, fraction)| *fraction != 0.0) {
+            match moved.iter_mut().find(|(other, _)| *other == fraction) {
+                Some((_, symbols)) => symbols.push(parameter.symbol()),
+                None => moved.push((fraction, vec![parameter.symbol()])),
+            }
+        }
+        let effects: Vec<String> = moved
+            .iter()
+            .map(|(fraction, symbols)| format!("{} {}{}", list(symbols), if *fraction < 0.0 { "-" } else { "+" }, percent(fraction.abs())))
+            .collect();
+        write!(f, "{}: {}", self.error, effects.join(", "))
+    }
+}
