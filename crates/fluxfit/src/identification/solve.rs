@@ -12,9 +12,12 @@ use super::{
         steady::SteadyFit,
         swarm::{self, Search},
     },
-    judge::verdict::{Verdict, judge},
+    judge::{
+        points_tell_more::points_tell_more,
+        verdict::{Verdict, judge},
+    },
     prepare::{
-        model::{self, Model, ModelChoice},
+        model::{self, Model, ModelChoice, ModelReason},
         search_box, stretches,
     },
     progress::{Progress, Step},
@@ -88,6 +91,12 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
             let output = OutputFit::of(log, steady.as_ref(), request, progress)?;
             (steady, Some(output))
         }
+    };
+    let (model, output) = match (&steady, &output) {
+        (Some(points), Some(currents)) if request.model.is_none() && points_tell_more(points, currents, request) => {
+            (ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore }, None)
+        }
+        _ => (model, output),
     };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
     let finding = finding(steady.as_ref(), output.as_ref())?;

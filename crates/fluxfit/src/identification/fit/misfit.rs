@@ -6,7 +6,7 @@
 //! widened to the scatter of the points instead of the error of their mean. A point may still lie outside it. R. C. Paule and J.
 //! Mandel, "Consensus values and weighting factors", J. Res. Natl. Bur. Stand. 87 (1982) 377, doi:10.6028/jres.087.022.
 
-use super::{super::request::Request, estimate::Estimate, excitation::Excitation};
+use super::{super::request::Request, estimate::Estimate, excitation::Excitation, voltage_loss::Loss};
 use crate::steady::OperatingPoint;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -32,9 +32,10 @@ pub(crate) fn admit(
     excitation: &Excitation,
     estimate: Estimate,
     request: &Request,
+    losses: &[Loss],
 ) -> (Estimate, Option<Misfit>) {
     let Some(ratio) = significant_ratio(points, &estimate) else { return (estimate, None) };
-    let solve = |fraction: f64| Estimate::solve_with(points, excitation, request, fraction);
+    let solve = |fraction: f64| Estimate::solve_with(points, excitation, request, losses, fraction);
     // At an accuracy of the whole voltage nothing contradicts anything.
     let (mut low, mut high) = (request.voltage_accuracy.max(f64::EPSILON), 1.0_f64);
     for _ in 0..BISECTIONS {

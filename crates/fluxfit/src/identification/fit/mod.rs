@@ -18,3 +18,4 @@ pub(crate) mod steady;
 pub(crate) mod swarm;
 pub(crate) mod uncertainty;
 mod voltage_accuracy;
+pub(crate) mod voltage_loss;

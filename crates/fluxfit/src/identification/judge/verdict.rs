@@ -51,7 +51,7 @@ const MISSES: f64 = 0.15;
 
 /// Correlation of neighbouring residuals from which on they are not noise: something is in the log that the model does not have, and
 /// an interval that comes from noise says nothing of it.
-const CORRELATED: f64 = 0.3;
+pub(super) const CORRELATED: f64 = 0.3;
 
 /// One parameter with its verdict and the reason for it.
 #[derive(Debug, Clone, PartialEq)]

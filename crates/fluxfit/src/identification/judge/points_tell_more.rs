@@ -1,0 +1,30 @@
+//! Whether the operating points tell more than the simulated currents do.
+//!
+//! Rows that are every n-th of a drive's periods, filtered columns, or a fault that no term describes leave residuals of the simulated
+//! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals are
+//! not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals answers.
+
+use super::{
+    super::{
+        fit::{finding::Finding, output::OutputFit, steady::SteadyFit},
+        request::{Known, Request},
+    },
+    verdict::{CORRELATED, judge},
+};
+use crate::faults::Fault;
+
+/// Whether they do.
+pub(crate) fn points_tell_more(points: &SteadyFit, currents: &OutputFit, request: &Request) -> bool {
+    let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
+    let agree = points.misfit.is_none() && points.estimate.redundancy > 0;
+    !is_explained && agree && width(&points.finding, request) < width(&currents.finding, request)
+}
+
+/// Mean logarithm of the intervals' half-widths as parts of the values. What is wider than its value, or not positive, is not told: one.
+fn width(finding: &Finding, request: &Request) -> f64 {
+    let judged = judge(finding, None, request, false);
+    let told = judged.iter().filter(|one| !matches!(request.known[one.parameter as usize], Known::Fixed(_)));
+    let widths = told.map(|one| if one.raw > 0.0 { (one.uncertainty.half_width / one.raw).min(1.0) } else { 1.0 });
+    // A width of zero would outweigh all others.
+    widths.map(|width| width.max(f64::EPSILON).ln()).sum()
+}
