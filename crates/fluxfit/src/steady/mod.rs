@@ -43,8 +43,8 @@ const DRIFT_ROWS: usize = 8;
 /// the speed changes, it is wrong by its slope times that.
 const SPEED_LAG: f64 = 5e-3;
 
-/// An angle column whose slope differs from the speed by more than this part of it is not the electrical angle, or turns too far from row to
-/// row: it says nothing of the speed.
+/// An angle column whose slope differs from the speed by more than this part of it is not the electrical angle, or turns too far from row
+/// to row: it says nothing of the speed.
 const SPEED_OF_ANGLE: f64 = 0.05;
 
 /// Means of one steady window.
@@ -235,7 +235,8 @@ fn add_error(covariance: &mut [[f64; CHANNELS]; CHANNELS], error: &[f64; CHANNEL
     }
 }
 
-/// Slope of a current (or of the speed) over its window, per second, and its variance, from the deviations from the straight line and their autocorrelation.
+/// Slope of a current (or of the speed) over its window, per second, and its variance, from the deviations from the straight line and
+/// their autocorrelation.
 fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let n = current.len();
     let rows = DRIFT_ROWS.min(n / 4).max(1);

@@ -100,6 +100,16 @@ impl Display for Warning {
                     highest.floor()
                 )
             }
+            Self::PriorContradicted { parameter, prior, log } => {
+                let [prior, of_prior, log, of_log] = [prior.0, prior.1, log.0, log.1].map(|value| three_digits(1e3 * value));
+                let (symbol, unit) = (parameter.symbol(), parameter.unit());
+                write!(
+                    f,
+                    "the log contradicts the prior of {symbol}: {prior} ± {of_prior} m{unit} was given, the log alone says {log} ± {of_log} \
+                     m{unit} (standard errors); the answer is a compromise between two numbers of which one is wrong: check the prior \
+                     (temperature, cable, line to line or per phase), and the columns"
+                )
+            }
             Self::Interrupted { iterations, limit } => {
                 write!(f, "the swarm made {iterations} of {limit} iterations; the answer beside it is whole")
             }

@@ -10,6 +10,7 @@ mod normal_matrix;
 pub(crate) mod output;
 mod output_choice;
 pub(crate) mod output_errors;
+pub(crate) mod output_excitation;
 mod output_start;
 pub(crate) mod readings;
 pub(crate) mod saturation;

@@ -12,7 +12,7 @@ use super::{
     saturation::SaturationFinding,
     swarm::{self, Search},
     uncertainty::Uncertainty,
-    voltage_loss::{Loss, LossPrior, is_control_rate},
+    voltage_loss::{Loss, LossPrior, is_control_rate, slowest_period},
 };
 use crate::{
     error::Error,
@@ -183,30 +183,40 @@ pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoi
 }
 
 /// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
-/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it. Rows that are slower than
-/// most drives control may be every n-th of a drive's periods, or its own: then the doubt is the whole correction, and nothing is corrected.
+/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it. Where the rows may be every
+/// n-th of a drive's periods nothing is corrected, and the doubt is the correction that the drive's own period would need.
 fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
-    let with = |timing: Option<SteadyVoltageTiming>| -> Vec<OperatingPoint> {
-        let preliminary = preliminary_estimates(log, rough, timing.unwrap_or(SteadyVoltageTiming::Centered), request);
-        let hold = |hold: ZeroOrderHold| if timing.is_some() { hold } else { ZeroOrderHold::NONE };
-        rough
-            .iter()
-            .zip(&preliminary)
-            .map(|(point, one)| {
-                OperatingPoint::measure(log, point.rows.clone(), Some(&PreliminaryEstimate { hold: hold(one.hold), ..*one }))
-            })
-            .collect()
+    let with = |timing: SteadyVoltageTiming, change: &dyn Fn(ZeroOrderHold) -> ZeroOrderHold| -> Vec<OperatingPoint> {
+        let preliminary = preliminary_estimates(log, rough, timing, request);
+        let measured = rough.iter().zip(&preliminary).map(|(point, one)| {
+            OperatingPoint::measure(log, point.rows.clone(), Some(&PreliminaryEstimate { hold: change(one.hold), ..*one }))
+        });
+        measured.collect()
+    };
+    let as_it_is = |hold: ZeroOrderHold| hold;
+    if let Some(stated) = request.voltage_timing {
+        return (with(stated.into(), &as_it_is), [0.0; PARAMETERS]);
+    }
+    let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    let period = slowest_period(log);
+    let (points, other) = if is_control_rate(log) && fastest * period <= MAX_ANGLE_PER_SAMPLE {
+        (with(SteadyVoltageTiming::Centered, &as_it_is), with(SteadyVoltageTiming::Compensated, &as_it_is))
+    } else {
+        let may_be_own = period * SLOWEST_PERIODS <= 1.0 && fastest * period <= MAX_ANGLE_PER_SAMPLE;
+        let sample_period = if may_be_own { period } else { period.min(1.0 / USUAL_PERIODS) };
+        let timing = SteadyVoltageTiming::Centered;
+        (with(timing, &|_| ZeroOrderHold::NONE), with(timing, &|_| ZeroOrderHold { timing, sample_period, ..ZeroOrderHold::NONE }))
     };
     let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request, &[]).motor;
-    let (assumed, possible) = match request.voltage_timing {
-        Some(stated) => return (with(Some(stated.into())), [0.0; PARAMETERS]),
-        None if is_control_rate(log) => (Some(SteadyVoltageTiming::Centered), SteadyVoltageTiming::Compensated),
-        None => (None, SteadyVoltageTiming::Centered),
-    };
-    let points = with(assumed);
-    let (one, other) = (solve(&points).to_array(), solve(&with(Some(possible))).to_array());
+    let (one, other) = (solve(&points).to_array(), solve(&other).to_array());
     (points, std::array::from_fn(|p| (one[p] - other[p]).abs()))
 }
+
+/// Hardly a drive controls its currents more slowly than this, Hz.
+const SLOWEST_PERIODS: f64 = 2e3;
+
+/// The periods of a drive whose log has only every n-th of them, Hz.
+const USUAL_PERIODS: f64 = 1e4;
 
 /// What a first look at the operating points tells of each: the motor, and the held-vector correction of its window.
 pub(crate) fn preliminary_estimates(

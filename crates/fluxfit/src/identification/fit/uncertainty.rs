@@ -105,6 +105,11 @@ impl ParameterUncertainty {
         Self::of(statistical, degrees_of_freedom, systematic)
     }
 
+    /// The interval anew, after a part has changed.
+    pub(crate) fn anew(&self) -> Self {
+        Self::of(self.statistical, self.degrees_of_freedom, self.systematic)
+    }
+
     /// Both parts in quadrature.
     pub fn standard_error(&self) -> f64 {
         self.statistical.hypot(self.systematic.total())
@@ -188,7 +193,8 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Of an estimate, given how far the timing of the voltage columns moves each parameter, SI, and whether its points contradict each other.
+    /// Of an estimate, given how far the timing of the voltage columns moves each parameter, SI, and whether its points contradict each
+    /// other.
     pub(crate) fn of(
         points: &[OperatingPoint],
         excitation: &Excitation,

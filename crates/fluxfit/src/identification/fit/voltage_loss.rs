@@ -44,10 +44,6 @@ const RIPPLE: f64 = 1.0 / 8.0;
 /// the harmonic is not known well, the harmonic says more than there is. Of simulated drives: 0.4 to 1.1.
 const OF_HARMONIC: (f64, f64) = (0.75, 0.35);
 
-/// A harmonic that does not show bounds the loss by this many times what the noise alone would make of it: a filter or a gradual change
-/// of sign weakens the harmonic.
-const OF_NOISE: f64 = 2.0;
-
 /// An unknown beside the motor, with its prior.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Loss {
@@ -92,8 +88,9 @@ impl LossPrior {
         let seen: Vec<f64> = harmonics.iter().flatten().filter(|harmonic| harmonic.stands_out).map(|harmonic| harmonic.loss).collect();
         let (expected, standard_error) = match seen.len() {
             0 => {
-                let bound = harmonics.iter().flatten().map(|harmonic| OF_NOISE * harmonic.loss.hypot(harmonic.noise));
-                (0.0, bound.fold(f64::INFINITY, f64::min))
+                // A harmonic that does not show bounds the loss, the more points the better.
+                let weight = harmonics.iter().flatten().map(|harmonic| harmonic.loss.hypot(harmonic.noise).powi(-2)).sum::<f64>();
+                (0.0, weight.sqrt().recip())
             }
             count => {
                 let mean = seen.iter().sum::<f64>() / count as f64;
@@ -138,7 +135,7 @@ pub(crate) fn is_control_rate(log: &Log) -> bool {
 }
 
 /// The longest sample period, s.
-fn slowest_period(log: &Log) -> f64 {
+pub(crate) fn slowest_period(log: &Log) -> f64 {
     log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max)
 }
 

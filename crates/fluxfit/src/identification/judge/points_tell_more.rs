@@ -2,25 +2,38 @@
 //!
 //! Rows that are every n-th of a drive's periods, filtered columns, or a fault that no term describes leave residuals of the simulated
 //! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals are
-//! not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals answers.
+//! not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
+//! answers.
+//!
+//! Where the simulated currents leave a whole combination of parameters open, or all that they leave is rounding, their parameters were
+//! fitted to what no parameter explains. Operating points leave such directions at zero, so they answer if they leave nothing else open.
 
 use super::{
     super::{
-        fit::{finding::Finding, output::OutputFit, steady::SteadyFit},
+        fit::{fault_search::LEAST_RESIDUAL, finding::Finding, output::OutputFit, steady::SteadyFit},
         request::{Known, Request},
     },
     verdict::{CORRELATED, judge},
 };
-use crate::faults::Fault;
+use crate::{faults::Fault, motor::PARAMETERS};
 
-/// Whether they do.
-pub(crate) fn points_tell_more(points: &SteadyFit, currents: &OutputFit, request: &Request) -> bool {
+/// Whether they do; `open`: what the simulated currents leave open.
+pub(crate) fn points_tell_more(points: &SteadyFit, currents: &OutputFit, open: &[bool; PARAMETERS], request: &Request) -> bool {
+    if points.misfit.is_some() {
+        return false;
+    }
+    let combined = open.iter().filter(|open| **open).count() > 1;
+    let is_rounding = currents.finding.trust.misses <= LEAST_RESIDUAL;
+    if combined || is_rounding && open.contains(&true) {
+        return points.finding.open.iter().zip(open).all(|(of_points, of_currents)| !of_points || *of_currents);
+    }
     let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
-    let agree = points.misfit.is_none() && points.estimate.redundancy > 0;
-    !is_explained && agree && width(&points.finding, request) < width(&currents.finding, request)
+    let can_contradict = points.estimate.redundancy > 0;
+    !is_explained && can_contradict && width(&points.finding, request) < width(&currents.finding, request)
 }
 
-/// Mean logarithm of the intervals' half-widths as parts of the values. What is wider than its value, or not positive, is not told: one.
+/// Sum of the logarithms of the intervals' half-widths as parts of the values. What is wider than its value, or not positive, is not told:
+/// one.
 fn width(finding: &Finding, request: &Request) -> f64 {
     let judged = judge(finding, None, request, false);
     let told = judged.iter().filter(|one| !matches!(request.known[one.parameter as usize], Known::Fixed(_)));
