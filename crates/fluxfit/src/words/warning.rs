@@ -31,7 +31,8 @@ impl Display for Warning {
             Self::DeadTime { voltage } => write!(
                 f,
                 "voltages and currents ripple at six times the electrical frequency, as dead time or device drops make them that take \
-                 about {voltage:.2} V along the current; the model cannot tell that from resistance, and counts it as uncertainty"
+                 about {voltage:.2} V along the current; that is solved for beside the motor, and what the currents do not tell from resistance \
+                 counts as uncertainty"
             ),
             Self::NoCurrent { rows, of } => write!(f, "{rows} of {of} rows carry no current and were not used: {COASTING}"),
             Self::NoCurrentInWindows { windows } => {

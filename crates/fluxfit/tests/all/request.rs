@@ -54,7 +54,8 @@ fn the_standard_error_of_a_known_value_is_above_zero() {
     }
 }
 
-/// The two points tell L_q to some 1e-4 of it, so a prior of 1 % is contradicted from 3 % on; the value by the log alone is the motor's.
+/// The two points tell L_q to some 0.4 % (the period of the drive is not known), so a prior of 1 % is contradicted from 3.3 % on; the value
+/// by the log alone is the motor's.
 #[test]
 fn a_prior_that_the_log_contradicts_is_named_with_both_numbers() {
     for (value, contradicts) in [(1.05 * MOTOR.lq, true), (0.96 * MOTOR.lq, true), (1.02 * MOTOR.lq, false)] {
@@ -69,7 +70,7 @@ fn a_prior_that_the_log_contradicts_is_named_with_both_numbers() {
             assert_eq!(found.is_some(), contradicts, "{model:?} {value}: {:?}", answer.warnings());
             if let Some((prior, (alone, error))) = found {
                 assert_eq!(prior, (value, 0.01 * MOTOR.lq));
-                assert!((alone - MOTOR.lq).abs() < 3.0 * error && error < 0.002 * MOTOR.lq, "{model:?}: {alone} ± {error}");
+                assert!((alone - MOTOR.lq).abs() < 3.0 * error && error < 0.006 * MOTOR.lq, "{model:?}: {alone} ± {error}");
             }
         }
     }

@@ -34,7 +34,7 @@ pub enum Warning {
         /// The fraction of the voltage to which they agree: 0.01 is 1 %.
         voltage_accuracy: f64,
     },
-    /// The ripple of dead time or device drops is in the log, and the model cannot tell their voltage from resistance.
+    /// The ripple of dead time or device drops is in the log.
     DeadTime {
         /// The voltage lost along the current, V: the largest over the operating points.
         voltage: f64,

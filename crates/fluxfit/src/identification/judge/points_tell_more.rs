@@ -13,7 +13,7 @@ use super::{
         fit::{fault_search::LEAST_RESIDUAL, finding::Finding, output::OutputFit, steady::SteadyFit},
         request::{Known, Request},
     },
-    verdict::{CORRELATED, judge},
+    verdict::{CORRELATED, Verdict, judge},
 };
 use crate::{faults::Fault, motor::PARAMETERS};
 
@@ -22,10 +22,12 @@ pub(crate) fn points_tell_more(points: &SteadyFit, currents: &OutputFit, open: &
     if points.misfit.is_some() {
         return false;
     }
+    let judged = judge(&currents.finding, None, request, false);
+    let told: [bool; PARAMETERS] = std::array::from_fn(|p| !open[p] && judged[p].verdict != Verdict::NotIdentifiable);
     let combined = open.iter().filter(|open| **open).count() > 1;
     let is_rounding = currents.finding.trust.misses <= LEAST_RESIDUAL;
-    if combined || is_rounding && open.contains(&true) {
-        return points.finding.open.iter().zip(open).all(|(of_points, of_currents)| !of_points || *of_currents);
+    if (combined || is_rounding) && told.contains(&false) {
+        return points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told));
     }
     let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
     let can_contradict = points.estimate.redundancy > 0;
