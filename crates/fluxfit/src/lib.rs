@@ -7,11 +7,11 @@
 //! ```
 //! use fluxfit::{Columns, Log, Motor, Request, frames::Dq, identify};
 //!
-//! // A log of 200 rows at two operating points; yours comes from a drive.
+//! // A log of 300 rows at three operating points; yours comes from a drive.
 //! let motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 //! let mut columns = Columns::default();
-//! for row in 0..200 {
-//!     let i = if row < 100 { Dq { d: 0.0, q: 9.0 } } else { Dq { d: -2.0, q: 8.5 } };
+//! for row in 0..300 {
+//!     let i = [Dq { d: 0.0, q: 9.0 }, Dq { d: -2.0, q: 8.5 }, Dq { d: 0.0, q: 4.0 }][row / 100];
 //!     let u = motor.steady_voltage(i, 400.0);
 //!     columns.t.push(row as f64 * 1e-3);
 //!     (columns.ud.push(u.d), columns.uq.push(u.q), columns.id.push(i.d), columns.iq.push(i.q));

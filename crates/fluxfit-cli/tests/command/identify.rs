@@ -190,8 +190,8 @@ fn a_person_sees_values_verdicts_reasons_and_remedies() {
     assert_eq!(run.status, 1);
     for expected in [
         "R_s",
-        "0.9598",
-        "±1.3 %",
+        "0.960",
+        "±3.8 %",
         "identified",
         "not identifiable",
         "L_d: i_d stays at zero",

@@ -2,10 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use fluxfit::{Model, Request, Swarm, Verdict, evidence::Identification, identify, motor::Parameter, paper};
+use fluxfit::{
+    Columns, Known, Log, Model, Motor, Parameter, Request, Swarm, TimeWindow, Verdict, evidence::Identification, identify, paper,
+};
 use fluxfit_drive::{
     Scenario,
-    scenario::{Inverter, Modulation},
+    scenario::{Control, Inverter, Mechanics, Modulation, Schedule, Sensors, SimulatedMotor},
+    schedule::{Profile, Ramp},
     simulate,
 };
 use std::f64::consts::PI;
@@ -65,4 +68,86 @@ fn an_inverter_without_losses_is_not_suspected() {
             found.steady.as_ref().unwrap().voltage_losses
         );
     }
+}
+
+/// Every tenth row of a 48 V drive at 16 kHz that is held at these currents, A, 0.25 s each, at 300 r/min.
+fn decimated(points: &[(f64, f64)], dead_time: f64) -> Log {
+    let profile = |current: fn(&(f64, f64)) -> f64| {
+        let ramps = points.iter().zip(0..).map(|(point, k)| Ramp { at: 0.25 * f64::from(k), to: current(point), over: 0.0 });
+        Profile::new(ramps.collect())
+    };
+    let scenario = Scenario {
+        duration: 0.25 * points.len() as f64,
+        motor: SimulatedMotor { rs: EBIKE.rs, magnetics: EBIKE.into(), pole_pairs: 15 },
+        mechanics: Mechanics::Dyno,
+        inverter: Inverter { dead_time, ..Inverter::ideal(48.0, 8e3) },
+        control: Control::new(300.0, 20.0, 60.0),
+        schedule: Schedule {
+            id: profile(|point| point.0),
+            iq: profile(|point| point.1),
+            speed: Profile::constant(10.0 * PI),
+            ..Schedule::default()
+        },
+        sensors: Sensors { current_noise: 0.1, ..Sensors::IDEAL },
+        ..Scenario::paper()
+    };
+    let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
+    let columns = log.columns();
+    let every = |column: &[f64]| column.iter().copied().step_by(10).collect();
+    Log::new(Columns {
+        t: every(&columns.t),
+        ud: every(&columns.ud),
+        uq: every(&columns.uq),
+        id: every(&columns.id),
+        iq: every(&columns.iq),
+        omega_e: every(&columns.omega_e),
+        ..Columns::default()
+    })
+    .unwrap()
+}
+
+const EBIKE: Motor = Motor { rs: 0.045, ld: 90e-6, lq: 120e-6, psi_f: 0.011 };
+
+/// 0.8 us take 4/pi 48 V 0.8 us 8 kHz, 0.39 V, which look like 11 mohm at 35 A. Holds at two magnitudes of current tell them from
+/// resistance; at one magnitude they do not, and R_s has no confident value.
+#[test]
+fn dead_time_of_a_decimated_log_is_found_or_doubted() {
+    for (points, is_told) in [(&[(0.0, 15.0), (-20.0, 15.0), (-20.0, 35.0), (0.0, 35.0)][..], true), (&[(0.0, 35.0), (-15.0, 31.6)], false)]
+    {
+        for dead_time in [0.0, 0.8e-6] {
+            let request = Request { model: Some(Model::Steady), swarm: Swarm::Off, ..Request::default() };
+            let found = identify(&decimated(points, dead_time), &request).unwrap().identification;
+            let rs = found.parameter(Parameter::Rs).verdict;
+            assert_eq!(rs == Verdict::Identified, is_told, "{dead_time}: {rs:?}");
+            for judgement in &found.parameters {
+                let truth = EBIKE.get(judgement.parameter);
+                let half = judgement.uncertainty.half_width;
+                assert!((judgement.raw - truth).abs() <= 1.5 * half, "{dead_time}, {:?}: {} ± {half}", judgement.parameter, judgement.raw);
+            }
+        }
+    }
+}
+
+/// The paper's rig without its step of i_d and without noise: one speed and load. L_q alone is told; with a prior of R_s also psi_f, as far as
+/// R_s goes.
+#[test]
+fn one_operating_point_without_noise_tells_lq_alone() {
+    let mut scenario = Scenario::paper();
+    scenario.schedule.id = Profile::constant(0.0);
+    let log = simulate(&scenario, 0, || ()).unwrap().log().unwrap();
+    let window = TimeWindow { from: 0.3, to: 0.9 };
+    let request = Request { windows: vec![window], swarm: Swarm::Off, ..Request::default() };
+    let values = |request: &Request| {
+        let found = identify(&log, request).unwrap().identification;
+        Parameter::ALL.map(|parameter| found.parameter(parameter).value())
+    };
+    let [rs, ld, lq, psi_f] = values(&request);
+    assert_eq!((rs, ld, psi_f), (None, None, None));
+    assert!((lq.unwrap() / paper::MOTOR.lq - 1.0).abs() < 5e-4, "{lq:?}");
+    let prior = Known::Prior { value: 1.0, standard_error: 0.1 };
+    let [rs, ld, lq, psi_f] = values(&request.with_known(Parameter::Rs, prior));
+    assert!((rs.unwrap() - 1.0).abs() < 1e-3 && ld.is_none(), "{rs:?} {ld:?}");
+    assert!((lq.unwrap() / paper::MOTOR.lq - 1.0).abs() < 5e-4, "{lq:?}");
+    // u_q = R_s i_q + omega psi_f: 42 mohm at 9.89 A and 418.9 rad/s are 1 mWb.
+    assert!((psi_f.unwrap() - (paper::MOTOR.psi_f - (1.0 - paper::MOTOR.rs) * 9.886 / 418.87)).abs() < 1e-4, "{psi_f:?}");
 }

@@ -27,8 +27,23 @@ const OTHERS_CHANGE: f64 = 0.5;
 /// and changes by at least this share of its largest value, peak to peak: more than the last digits of a settled simulation.
 const OTHERS_MOVE: f64 = 1e-3;
 
-/// An angle is constant at standstill. It is frozen only if phase quantities change by at least this share of their largest value.
-const PHASES_TURN: f64 = 0.5;
+/// An angle is constant at standstill. Where no speed says whether it should turn, it is frozen only if a phase quantity swings to either
+/// side of zero by at least this share of its largest value.
+const PHASES_TURN: f64 = 0.25;
+
+/// An angle is not frozen if, by the speed, the rotor turns less than this meanwhile, rad: a locked or standing rotor.
+const LEAST_TURN: f64 = 0.2;
+
+/// A channel that has settled changes by less than this share of its largest value from row to row before it stands still: a simulation
+/// without noise. A channel that freezes was moving.
+const SETTLED: f64 = 1e-3;
+
+/// Rows beside a run that show whether the channel moves: a few, since a transient is short.
+const BESIDE: usize = 10;
+
+/// At the start of a log nothing is known of the rows before. There, a channel was frozen if it begins with a jump that is this many times
+/// as large as what follows.
+const JUMP: f64 = 10.0;
 
 /// Removes such rows. Returns notes.
 pub(super) fn repair(channels: &mut Channels) -> Vec<String> {
@@ -63,17 +78,23 @@ fn frozen(channels: &mut Channels) -> Option<String> {
         let mut lengths: Vec<usize> = runs.iter().map(|(from, to)| to - from).collect();
         lengths.sort_unstable();
         let usual = usual_length(&lengths);
-        let least_move = if *channel == ThetaE { PHASES_TURN } else { OTHERS_MOVE };
         for (from, to) in runs {
             let length = to - from;
             if length < FROZEN || length < LONGER * usual {
                 continue;
             }
+            let may_stand_still = match channel {
+                ThetaE => turn(t, channels.get(OmegaE), from..to).is_some_and(|turn| turn < LEAST_TURN),
+                _ => has_settled(live[place].1, from, to),
+            };
             let changes_meanwhile = |other: usize| {
                 let changed = changes[other].partition_point(|row| *row < to) - changes[other].partition_point(|row| *row <= from);
-                changed as f64 >= OTHERS_CHANGE * length as f64 && moves(live[other].1, from..to, least_move)
+                let (name, values) = live[other];
+                changed as f64 >= OTHERS_CHANGE * length as f64 && is_evidence(*channel, name) && {
+                    if *channel == ThetaE { swings(values, from..to) } else { moves(values, from..to, OTHERS_MOVE) }
+                }
             };
-            if (0..live.len()).any(|other| other != place && changes_meanwhile(other)) {
+            if !may_stand_still && (0..live.len()).any(|other| other != place && changes_meanwhile(other)) {
                 kept[from..to].fill(false);
                 let until = t[to.min(t.len() - 1)];
                 found.push(format!("{} from {} s to {} s", channel.name(), significant(t[from], 6), significant(until, 6)));
@@ -89,6 +110,38 @@ fn frozen(channels: &mut Channels) -> Option<String> {
     }
     channels.retain(&kept);
     Some(note)
+}
+
+/// Whether what another channel does shows that this one is frozen. A drive that is told a duty holds both its voltages whatever the currents
+/// do; so only the other voltage shows that one is frozen. An angle is shown by the phases that turn with it.
+fn is_evidence(channel: Channel, other: Channel) -> bool {
+    match channel {
+        Ud | Uq => matches!(other, Ud | Uq),
+        ThetaE => matches!(other, UA | UB | UC | IA | IB | IC),
+        _ => true,
+    }
+}
+
+/// How far the rotor turns in these rows by the speed, electrical rad; none without a speed.
+fn turn(t: &[f64], omega_e: Option<&[f64]>, rows: Range<usize>) -> Option<f64> {
+    let omega_e = omega_e?;
+    let last = rows.end.min(t.len()) - 1;
+    Some((rows.start..last).map(|row| omega_e[row].abs() * (t[row + 1] - t[row])).sum())
+}
+
+/// Whether a channel that stands still in the rows from `from` to `to` came to rest rather than froze.
+fn has_settled(values: &[f64], from: usize, to: usize) -> bool {
+    let median = |rows: Range<usize>| {
+        let mut steps: Vec<f64> = values[rows].windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+        let middle = steps.len() / 2;
+        (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+    };
+    if from > 0 {
+        let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        return median(from.saturating_sub(BESIDE)..from + 1).is_some_and(|step| step < SETTLED * largest);
+    }
+    let end = (to + BESIDE).min(values.len());
+    to >= end || median(to..end).is_some_and(|step| (values[to] - values[to - 1]).abs() < JUMP * step)
 }
 
 /// Whether a value repeats for at least this many rows.
@@ -120,6 +173,14 @@ fn moves(values: &[f64], rows: Range<usize>, least: f64) -> bool {
         values[rows].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
     let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
     high - low >= least * largest
+}
+
+/// Whether a phase quantity swings to either side of zero.
+fn swings(values: &[f64], rows: Range<usize>) -> bool {
+    let (low, high) =
+        values[rows].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let least = PHASES_TURN * values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    low < -least && high > least
 }
 
 /// The first row of each run of one value, and the number of rows.
@@ -184,6 +245,44 @@ mod tests {
         };
         let (notes, rows) = repaired(turning);
         assert!(notes[0].contains("theta_e from 0.300000 s to 0.400000 s") && rows == 900, "{notes:?}");
+    }
+
+    /// A locked rotor: constant angle, no speed, i_d steps.
+    #[test]
+    fn an_angle_that_stands_with_the_rotor_is_kept() {
+        let locked = |channels: &mut Channels| {
+            fill(channels, OmegaE, 0..1000, 0.0);
+            let steps = (0..1000).map(|row| if row % 200 < 100 { 5.0 } else { -5.0 } + 0.01 * (f64::from(row) * 0.7).sin());
+            channels.set(IA, steps.collect());
+            channels.set(ThetaE, (0..1000).map(|row| if row < 300 { 0.5 } else { 0.6 }).collect());
+        };
+        assert_eq!(repaired(locked), (vec![], 1000));
+    }
+
+    /// Without noise i_d settles to a value, to the last digit of the file, while i_q moves on; then it goes to the next value.
+    #[test]
+    fn a_current_that_settles_is_kept() {
+        let settling = |channels: &mut Channels| {
+            let value = |row: i32| if row < 500 { 1.0 - (-f64::from(row) / 5.0).exp() } else { 1.0 + (-f64::from(row - 500) / 5.0).exp() };
+            channels.set(Id, (0..1000).map(|row| (1e6 * value(row)).round() * 1e-6).collect());
+        };
+        assert_eq!(repaired(settling), (vec![], 1000));
+        // From the first row on, and then a step that takes many rows.
+        let zero = |channels: &mut Channels| {
+            let value = |row: i32| if row < 500 { 0.0 } else { 1.0 - (-f64::from(row - 499) / 5.0).exp() };
+            channels.set(Id, (0..1000).map(|row| (1e6 * value(row)).round() * 1e-6).collect());
+        };
+        assert_eq!(repaired(zero), (vec![], 1000));
+    }
+
+    /// A drive that is told a duty holds both voltages, and the currents follow the load.
+    #[test]
+    fn voltages_that_are_held_are_kept() {
+        let held = |channels: &mut Channels| [Ud, Uq].iter().for_each(|channel| fill(channels, *channel, 400..700, 3.0));
+        assert_eq!(repaired(held), (vec![], 1000));
+        // One alone is frozen, and so is a current that starts with a jump.
+        assert_eq!(repaired(|channels| fill(channels, Uq, 400..700, 3.0)).1, 700);
+        assert_eq!(repaired(|channels| fill(channels, Iq, 0..200, 0.0)).1, 800);
     }
 
     #[test]

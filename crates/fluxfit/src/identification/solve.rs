@@ -9,13 +9,17 @@ use super::{
     fit::{
         finding::Finding,
         output::OutputFit,
+        output_excitation,
         saturation::SaturationFinding,
         steady::SteadyFit,
         swarm::{self, Search},
     },
-    judge::verdict::{Verdict, judge},
+    judge::{
+        points_tell_more::points_tell_more,
+        verdict::{Verdict, judge},
+    },
     prepare::{
-        model::{self, Model, ModelChoice},
+        model::{self, Model, ModelChoice, ModelReason},
         search_box, stretches,
     },
     progress::{Progress, Step},
@@ -92,6 +96,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
             (steady, Some(output))
         }
     };
+    let (model, output) = by_excitation(log, steady.as_ref(), output, model, request)?;
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
     let finding = finding(steady.as_ref(), output.as_ref())?;
     let parameters = explained(judge(finding, saturation.as_ref(), request, log.is_short_circuit()), finding);
@@ -110,6 +115,26 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let correlation = finding.uncertainty.correlation;
     let unseen = unseen::all(log, finding, parameters.each_ref().map(|judgement| judgement.verdict));
     Ok(Identification { parameters, model, steady, output, saturation, correlation, method, search, warnings, unseen })
+}
+
+/// The simulated currents' fit without what they leave open, or the operating points where those tell more and no model is stated.
+fn by_excitation(
+    log: &Log,
+    steady: Option<&SteadyFit>,
+    output: Option<OutputFit>,
+    model: ModelChoice,
+    request: &Request,
+) -> Result<(ModelChoice, Option<OutputFit>), Error> {
+    let Some(mut output) = output else { return Ok((model, None)) };
+    let of_points = steady.map_or([false; PARAMETERS], |points| points.finding.open);
+    // Operating points that tell all parameters excite the currents as well.
+    let is_doubtful = steady.is_none() || of_points.contains(&true);
+    let open = if is_doubtful { output_excitation::open(log, &output, &of_points, request)? } else { [false; PARAMETERS] };
+    if request.model.is_none() && steady.is_some_and(|points| points_tell_more(points, &output, &open, request)) {
+        return Ok((ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore }, None));
+    }
+    output.finding.leave_open(&open, &output_excitation::reach(log, &output, request));
+    Ok((model, Some(output)))
 }
 
 /// The finding of the model that answers.

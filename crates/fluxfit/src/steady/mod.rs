@@ -18,9 +18,18 @@ mod stale;
 pub mod windows;
 pub mod zero_order_hold;
 
-use crate::{frames::Dq, least_squares::Equation, log::Log, motor::Motor, quantization};
+use crate::{
+    frames::Dq,
+    least_squares::Equation,
+    log::{Columns, Log},
+    motor::Motor,
+    quantization,
+};
 use autocorrelation::{CosineTransform, MIN_COSINES, cosines_for, lag_one_autocorrelation, variance_of_short_mean};
-use std::ops::Range;
+use std::{
+    f64::consts::{PI, TAU},
+    ops::Range,
+};
 use zero_order_hold::ZeroOrderHold;
 
 /// Channels whose means enter the steady equations: u_d, u_q, i_d, i_q, omega_e i_d, omega_e i_q, omega_e.
@@ -29,6 +38,14 @@ pub const CHANNELS: usize = 7;
 /// The drift of a current is the difference of its means over this many rows at either end of a window: few enough to be close to
 /// the ends, enough to average noise.
 const DRIFT_ROWS: usize = 8;
+
+/// A speed column may come late by this, s, one standard deviation: a filter of some 30 Hz on a speed from an encoder or an observer. While
+/// the speed changes, it is wrong by its slope times that.
+const SPEED_LAG: f64 = 5e-3;
+
+/// An angle column whose slope differs from the speed by more than this part of it is not the electrical angle, or turns too far from row
+/// to row: it says nothing of the speed.
+const SPEED_OF_ANGLE: f64 = 0.05;
 
 /// Means of one steady window.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,8 +111,10 @@ impl OperatingPoint {
             transform.push(&deviation);
         }
         let mut covariance = transform.covariance_of_mean(rho.unwrap_or(0.0));
-        add_quantization(&mut covariance, log, &rows, means[6]);
         let time = (columns.t[rows.start], columns.t[rows.end - 1]);
+        let late = speed_error(columns, &rows, means[6]);
+        add_error(&mut covariance, &[0.0, 0.0, 0.0, 0.0, late * means[2], late * means[3], late]);
+        add_quantization(&mut covariance, log, &rows, means[6]);
         let [(drift_d, variance_d), (drift_q, variance_q)] = [&columns.id, &columns.iq].map(|current| drift(&current[rows.clone()], time));
         Self {
             rows,
@@ -174,6 +193,18 @@ fn dot(one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
+/// What the mean of the speed column may be wrong by, rad/s: its difference to the slope of the angle, where that is logged; else what a
+/// usual lag makes of a change of the speed.
+fn speed_error(columns: &Columns, rows: &Range<usize>, mean: f64) -> f64 {
+    let (first, last) = (rows.start, rows.end - 1);
+    let by_angle = columns.theta_e.as_ref().map(|theta| {
+        let turn: f64 = theta[rows.clone()].windows(2).map(|pair| (pair[1] - pair[0] + PI).rem_euclid(TAU) - PI).sum();
+        (turn / (columns.t[last] - columns.t[first]) - mean).abs()
+    });
+    let by_lag = || SPEED_LAG * drift(&columns.omega_e[rows.clone()], (columns.t[first], columns.t[last])).0;
+    by_angle.filter(|error| *error <= SPEED_OF_ANGLE * mean.abs()).unwrap_or_else(by_lag)
+}
+
 /// Adds the uncertainty from quantization: a channel has the same error in every product that it enters.
 fn add_quantization(covariance: &mut [[f64; CHANNELS]; CHANNELS], log: &Log, rows: &Range<usize>, omega_e: f64) {
     let Some(segment) = log.segment_of(rows.start) else { return };
@@ -193,13 +224,19 @@ fn add_quantization(covariance: &mut [[f64; CHANNELS]; CHANNELS], log: &Log, row
         [0.0, 0.0, 0.0, iq, 0.0, omega_e * iq, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, omega],
     ] {
-        for (row, one) in covariance.iter_mut().zip(error) {
-            row.iter_mut().zip(error).for_each(|(entry, other)| *entry += one * other);
-        }
+        add_error(covariance, &error);
     }
 }
 
-/// Slope of a current over its window, A/s, and its variance, from the deviations from the straight line and their autocorrelation.
+/// Adds the covariance of an error that several channels have in common.
+fn add_error(covariance: &mut [[f64; CHANNELS]; CHANNELS], error: &[f64; CHANNELS]) {
+    for (row, one) in covariance.iter_mut().zip(error) {
+        row.iter_mut().zip(error).for_each(|(entry, other)| *entry += one * other);
+    }
+}
+
+/// Slope of a current (or of the speed) over its window, per second, and its variance, from the deviations from the straight line and
+/// their autocorrelation.
 fn drift(current: &[f64], (start, end): (f64, f64)) -> (f64, f64) {
     let n = current.len();
     let rows = DRIFT_ROWS.min(n / 4).max(1);

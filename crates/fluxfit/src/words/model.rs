@@ -13,6 +13,11 @@ impl Display for ModelReason {
             Self::TurnsTooFar { turn } => {
                 write!(f, "the rotor turns up to {turn:.2} rad from row to row, too far for the inverter's own periods")
             }
+            Self::PointsTellMore => write!(
+                f,
+                "simulated currents differ from the measured ones by more than noise, while the operating points agree with each other and \
+                 tell the parameters better"
+            ),
             Self::FastRows { rate, turn } => {
                 write!(f, "rows come at {:.1} kHz and the rotor turns at most {turn:.3} rad between them", 1e-3 * rate)
             }

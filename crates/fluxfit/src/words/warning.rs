@@ -31,7 +31,8 @@ impl Display for Warning {
             Self::DeadTime { voltage } => write!(
                 f,
                 "voltages and currents ripple at six times the electrical frequency, as dead time or device drops make them that take \
-                 about {voltage:.2} V along the current; the model cannot tell that from resistance, and counts it as uncertainty"
+                 about {voltage:.2} V along the current; that is solved for beside the motor, and what the currents do not tell from resistance \
+                 counts as uncertainty"
             ),
             Self::NoCurrent { rows, of } => write!(f, "{rows} of {of} rows carry no current and were not used: {COASTING}"),
             Self::NoCurrentInWindows { windows } => {
@@ -98,6 +99,16 @@ impl Display for Warning {
                     "a bandwidth of {bandwidth:.0} Hz {outcome}, with {DELAY_PERIODS} periods of delay at {control_rate:.0} Hz{assumed}; ask for \
                      at most {:.0} Hz",
                     highest.floor()
+                )
+            }
+            Self::PriorContradicted { parameter, prior, log } => {
+                let [prior, of_prior, log, of_log] = [prior.0, prior.1, log.0, log.1].map(|value| three_digits(1e3 * value));
+                let (symbol, unit) = (parameter.symbol(), parameter.unit());
+                write!(
+                    f,
+                    "the log contradicts the prior of {symbol}: {prior} ± {of_prior} m{unit} was given, the log alone says {log} ± {of_log} \
+                     m{unit} (standard errors); the answer is a compromise between two numbers of which one is wrong: check the prior \
+                     (temperature, cable, line to line or per phase), and the columns"
                 )
             }
             Self::Interrupted { iterations, limit } => {

@@ -3,7 +3,7 @@
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use fluxfit::{Columns, ErrorKind, Known, Log, Motor, Nameplate, Parameter, Request, TimeWindow, Warning, frames::Dq, identify};
+use fluxfit::{Columns, ErrorKind, Known, Log, Model, Motor, Nameplate, Parameter, Request, TimeWindow, Warning, frames::Dq, identify};
 
 const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
@@ -51,6 +51,28 @@ fn the_standard_error_of_a_known_value_is_above_zero() {
         let request = Request::default().with_known(Parameter::Rs, Known::Prior { value: 0.958, standard_error });
         let error = identify(&log(1.0), &request).unwrap_err();
         assert!(matches!(error.kind(), ErrorKind::KnownError { parameter: Parameter::Rs, .. }), "{error}");
+    }
+}
+
+/// The two points tell L_q to some 0.4 % (the period of the drive is not known), so a prior of 1 % is contradicted from 3.3 % on; the value
+/// by the log alone is the motor's.
+#[test]
+fn a_prior_that_the_log_contradicts_is_named_with_both_numbers() {
+    for (value, contradicts) in [(1.05 * MOTOR.lq, true), (0.96 * MOTOR.lq, true), (1.02 * MOTOR.lq, false)] {
+        let given = Known::Prior { value, standard_error: 0.01 * MOTOR.lq };
+        for model in [Model::Steady, Model::OutputError] {
+            let request = Request { model: Some(model), ..Request::default() }.with_known(Parameter::Lq, given);
+            let answer = identify(&log(1.0), &request).unwrap();
+            let found = answer.warnings().iter().find_map(|warning| match warning {
+                Warning::PriorContradicted { parameter: Parameter::Lq, prior, log } => Some((*prior, *log)),
+                _ => None,
+            });
+            assert_eq!(found.is_some(), contradicts, "{model:?} {value}: {:?}", answer.warnings());
+            if let Some((prior, (alone, error))) = found {
+                assert_eq!(prior, (value, 0.01 * MOTOR.lq));
+                assert!((alone - MOTOR.lq).abs() < 3.0 * error && error < 0.006 * MOTOR.lq, "{model:?}: {alone} ± {error}");
+            }
+        }
     }
 }
 

@@ -88,12 +88,18 @@ fn a_saturating_motor_is_named_with_its_range_and_its_flux() {
     }
 }
 
-/// A voltage along the current follows the current as well, and is no saturation.
+/// A voltage along the current follows the current as well: it is found beside the motor, and is no saturation.
 #[test]
-fn a_loss_along_the_current_contradicts_and_is_not_called_saturation() {
+fn a_loss_along_the_current_is_found_and_is_not_called_saturation() {
     let found = found(columns(&POINTS, constant, 2.0, 0.05, 2), &settings());
-    assert!(found.steady.as_ref().unwrap().misfit.is_some());
-    assert_eq!(found.saturation, None);
+    let steady = found.steady.as_ref().unwrap();
+    let (volts, error) = steady.estimate.loss.unwrap();
+    assert!((volts - 2.0).abs() < 4.0 * error && error < 0.5, "{volts} ± {error} V");
+    assert_eq!((steady.misfit, &found.saturation), (None, &None));
+    for judgement in &found.parameters {
+        let truth = MOTOR.get(judgement.parameter);
+        assert!((judgement.raw - truth).abs() <= 1.5 * judgement.uncertainty.half_width, "{judgement:?}");
+    }
 }
 
 /// Contradiction is proven at one in a thousand: of 100 draws at most two, whose probability is above 0.9998 if that holds.

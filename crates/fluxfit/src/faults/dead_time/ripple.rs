@@ -3,7 +3,7 @@
 //! Both take a voltage of constant size from each phase, against its current: a square wave, whose fundamental of amplitude `V_1`
 //! looks like resistance and whose fifth and seventh harmonics, `V_1 / 5` and `V_1 / 7`, turn in the rotor's frame at six times its
 //! speed, backward and forward. The means of a window do not distinguish the fundamental from resistance, but its rows show the
-//! harmonics. So `V_1` is estimated from the backward one and counted as a systematic error along the current.
+//! harmonics. So `V_1` is estimated from the backward one.
 //!
 //! The backward harmonic is looked for in the residual of equation (1) at every row; the power at frequencies between the harmonics is
 //! the noise that it is compared with.
@@ -11,12 +11,7 @@
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, doi:10.1109/41.88903, has the loss of the fundamental and the low harmonics.
 
-use crate::{
-    frames::Dq,
-    log::Log,
-    motor::{Motor, PARAMETERS},
-    steady::OperatingPoint,
-};
+use crate::{frames::Dq, log::Log, motor::Motor, steady::OperatingPoint};
 
 /// The harmonic in the rotor's frame, as a multiple of its speed; the fifth of the stator.
 const HARMONIC: f64 = -6.0;
@@ -37,30 +32,24 @@ const MIN_TURNS: f64 = 5.0;
 /// Most rad per row at the harmonic: beyond, the difference of neighbouring rows is no derivative.
 const MAX_ANGLE: f64 = 1.0;
 
-/// The voltage, V, that each operating point loses along its current, estimated from its ripple; zero where no ripple stands out of the
-/// noise, or where it is below `voltage_accuracy`, a fraction of the voltage. Equation (1) takes the parameters of `motor`; an inductance
-/// that the points do not determine may be a guess, or infinite: then no loss is found.
-pub fn losses(log: &Log, points: &[OperatingPoint], motor: &Motor, voltage_accuracy: f64) -> Vec<f64> {
-    points.iter().map(|point| loss(log, point, motor, voltage_accuracy).unwrap_or(0.0)).collect()
+/// What the rows of a window say of the voltage that is lost along its current.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Harmonic {
+    /// The voltage lost, V, if all of the harmonic's amplitude comes from it.
+    pub(crate) loss: f64,
+    /// The same of the noise beside the harmonic, V.
+    pub(crate) noise: f64,
+    /// Whether the harmonic stands out of the noise, and of `voltage_accuracy`, a fraction of the voltage.
+    pub(crate) stands_out: bool,
 }
 
-/// How far such losses move each parameter, SI, given per point what an error of its two voltages, V, does to each: along the current,
-/// and across it by the turn of a row, because it is not known at which instant of its period a current decides.
-pub fn parameter_errors(log: &Log, points: &[OperatingPoint], gains: &[[[f64; 2]; PARAMETERS]], losses: &[f64]) -> [f64; PARAMETERS] {
-    std::array::from_fn(|p| {
-        let (mut along, mut across) = (0.0, 0.0);
-        for ((point, gain), loss) in points.iter().zip(gains).zip(losses) {
-            let (i, gain) = (point.current(), gain[p]);
-            let turn = log.segment_of(point.rows.start).map_or(0.0, |segment| point.omega_e() * segment.sample_period);
-            let volts_per_ampere = loss / i.magnitude().max(f64::MIN_POSITIVE);
-            along += volts_per_ampere * (gain[0] * i.d + gain[1] * i.q);
-            across += volts_per_ampere * turn * (gain[1] * i.d - gain[0] * i.q);
-        }
-        along.hypot(across)
-    })
+/// The harmonic of each operating point; none where the rows cannot show it. Equation (1) takes the parameters of `motor`; an inductance
+/// that the points do not determine may be a guess, or infinite: then nothing is seen.
+pub(crate) fn harmonics(log: &Log, points: &[OperatingPoint], motor: &Motor, voltage_accuracy: f64) -> Vec<Option<Harmonic>> {
+    points.iter().map(|point| harmonic(log, point, motor, voltage_accuracy)).collect()
 }
 
-fn loss(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: f64) -> Option<f64> {
+fn harmonic(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: f64) -> Option<Harmonic> {
     let columns = log.columns();
     let rows = point.rows.start + 1..point.rows.end.saturating_sub(1);
     let turn = |row: usize| 0.5 * (columns.omega_e[row] + columns.omega_e[row - 1]) * (columns.t[row] - columns.t[row - 1]);
@@ -95,5 +84,6 @@ fn loss(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: f64)
     let power = |sum: &Dq| sum.d * sum.d + sum.q * sum.q;
     let noise = sums[1..].iter().map(power).sum::<f64>() / BETWEEN.len() as f64;
     let found = power(&sums[0]);
-    (found > STANDS_OUT * noise && found.sqrt() > voltage_accuracy * point.voltage().magnitude()).then(|| found.sqrt() / PART)
+    let stands_out = found > STANDS_OUT * noise && found.sqrt() > voltage_accuracy * point.voltage().magnitude();
+    Some(Harmonic { loss: found.sqrt() / PART, noise: noise.sqrt() / PART, stands_out })
 }

@@ -9,7 +9,7 @@ use super::{
             steady::SteadyFit,
             swarm::Search,
         },
-        request::Request,
+        request::{Known, Request},
     },
     conventions::Convention,
     judgement::Judgement,
@@ -34,7 +34,7 @@ pub enum Warning {
         /// The fraction of the voltage to which they agree: 0.01 is 1 %.
         voltage_accuracy: f64,
     },
-    /// The ripple of dead time or device drops is in the log, and the model cannot tell their voltage from resistance.
+    /// The ripple of dead time or device drops is in the log.
     DeadTime {
         /// The voltage lost along the current, V: the largest over the operating points.
         voltage: f64,
@@ -103,6 +103,15 @@ pub enum Warning {
         /// Largest bandwidth without this warning, Hz.
         highest: f64,
     },
+    /// What the log alone tells of a parameter contradicts the prior that was given.
+    PriorContradicted {
+        /// Which parameter.
+        parameter: Parameter,
+        /// The prior and its standard error, SI.
+        prior: (f64, f64),
+        /// The value by the log alone and its standard error, SI.
+        log: (f64, f64),
+    },
     /// The swarm's search was stopped before its end.
     Interrupted {
         /// Iterations done.
@@ -130,6 +139,7 @@ impl Warning {
             Self::OutsideBox { .. } => "outside-box",
             Self::Convention(_) => "convention",
             Self::PhaseMargin { .. } => "phase-margin",
+            Self::PriorContradicted { .. } => "prior",
             Self::Interrupted { .. } => "interrupted",
         }
     }
@@ -164,7 +174,34 @@ pub(crate) fn all(evidence: &Evidence) -> Vec<Warning> {
     });
     let of_currents = evidence.output.map(|fit| [process_noise(fit), angle(log, fit)]);
     let of_either = [evidence.saturation.map(saturated), evidence.low_speed(), voltage_limit(log), evidence.outside_box()];
-    of_points.into_iter().flatten().chain(of_currents.into_iter().flatten()).chain(of_either).flatten().collect()
+    let of_priors = evidence.parameters.iter().map(|judgement| contradicted_prior(judgement, request));
+    of_points.into_iter().flatten().chain(of_currents.into_iter().flatten()).chain(of_either).chain(of_priors).flatten().collect()
+}
+
+/// Standard errors of both together by which a log contradicts a prior.
+const CONTRADICTION: f64 = 3.0;
+
+/// Least part that the log must have in the answer: with less, the log's own value is lost in rounding.
+const LEAST_PART: f64 = 1e-3;
+
+/// The answer is the prior and the value by the log alone, weighted; so that value follows from the answer and the prior's weight. What
+/// else is uncertain of the answer comes from the log.
+fn contradicted_prior(judgement: &Judgement, request: &Request) -> Option<Warning> {
+    let Known::Prior { value: prior, standard_error } = request.known[judgement.parameter as usize] else { return None };
+    let total = judgement.uncertainty.standard_error();
+    let of_prior = judgement.uncertainty.systematic.prior;
+    let part_of_log = 1.0 - of_prior / standard_error;
+    if part_of_log < LEAST_PART || !total.is_finite() {
+        return None;
+    }
+    let value = prior + (judgement.raw - prior) / part_of_log;
+    let error = (total * total - of_prior * of_prior).max(0.0).sqrt() / part_of_log;
+    let contradicts = (value - prior).abs() > CONTRADICTION * standard_error.hypot(error);
+    contradicts.then_some(Warning::PriorContradicted {
+        parameter: judgement.parameter,
+        prior: (prior, standard_error),
+        log: (value, error),
+    })
 }
 
 /// Part of the rows used that is worth calling a transient.

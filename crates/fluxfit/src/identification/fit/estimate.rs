@@ -8,11 +8,13 @@
 //! few degrees of freedom: weighting by it would chase its luck and make the answer look better than it is. The uncertainty is
 //! computed from the points' own covariances all the same, so it holds where the noise differs between them. The noise of
 //! currents and speed counts in `N` as it moves `r`, at the motor found, so the weights follow from the answer and are iterated.
-//! Parameters that are fixed move to the right-hand side; a prior is one more equation.
+//! Parameters that are fixed move to the right-hand side; a prior is one more equation. The inverter's [losses](super::voltage_loss) are
+//! unknowns with a prior each; they enter linearly and are eliminated.
 
 use super::{
     super::request::{Known, Request},
     excitation::Excitation,
+    voltage_loss::Loss,
 };
 use crate::{
     least_squares::Equation,
@@ -49,6 +51,10 @@ pub struct Estimate {
     pub accuracy: Vec<f64>,
     /// Per prior, what its standard error does to the parameters (SI).
     pub prior_gains: Vec<[f64; PARAMETERS]>,
+    /// The voltage, V, that every point is found to lose along its current, with its standard error; none where no loss is possible.
+    pub loss: Option<(f64, f64)>,
+    /// Per unknown of the losses, what the standard error of its prior does to the parameters (SI).
+    pub(crate) loss_gains: Vec<[f64; PARAMETERS]>,
     /// Sum of squares at the motor in units of the points' own covariances and accuracies, priors included.
     pub chi_squared: f64,
     /// Equations and priors, less the directions found.
@@ -59,39 +65,57 @@ pub struct Estimate {
 
 impl Estimate {
     /// Solves the points.
-    pub fn solve(points: &[OperatingPoint], excitation: &Excitation, request: &Request) -> Self {
-        Self::solve_with(points, excitation, request, request.voltage_accuracy)
+    pub(crate) fn solve(points: &[OperatingPoint], excitation: &Excitation, request: &Request, losses: &[Loss]) -> Self {
+        Self::solve_with(points, excitation, request, losses, request.voltage_accuracy)
     }
 
     /// Solves the points with voltages trusted to another fraction than the request'.
-    pub(crate) fn solve_with(points: &[OperatingPoint], excitation: &Excitation, request: &Request, voltage_accuracy: f64) -> Self {
+    pub(crate) fn solve_with(
+        points: &[OperatingPoint],
+        excitation: &Excitation,
+        request: &Request,
+        losses: &[Loss],
+        voltage_accuracy: f64,
+    ) -> Self {
         let accuracy = voltage_uncertainty(points, voltage_accuracy);
         let mut motor = Motor::from(request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
-        let mut system = System::of(points, &motor, &accuracy, request);
+        let mut system = System::of(points, &motor, &accuracy, request, losses);
         let mut solved = system.solve(excitation, request);
         for _ in 1..ROUNDS {
-            motor = solved.0;
-            system = System::of(points, &motor, &accuracy, request);
+            motor = solved.motor;
+            system = System::of(points, &motor, &accuracy, request, losses);
             solved = system.solve(excitation, request);
         }
-        let (motor, gain) = solved;
+        let Solved { motor, gain, losses: found } = solved;
         let x = motor.to_array();
         let of_points = gain.chunks_exact(2).zip(&system.whiteners);
         let gains = of_points.map(|(gain, whitener)| {
             std::array::from_fn(|p| [0, 1].map(|axis| gain[0][p] * whitener[(0, axis)] + gain[1][p] * whitener[(1, axis)]))
         });
-        let chi_squared = chi_squared(points, excitation, &motor, &accuracy, request);
+        let residuals = points.iter().enumerate().map(|(w, point)| {
+            let lost = |axis: usize| losses.iter().zip(&found).map(|(loss, (volts, _))| loss.voltages[w][axis] * volts).sum::<f64>();
+            let [d, q] = point.equations().map(|equation| equation.residual(&x));
+            [d - lost(0), q - lost(1)]
+        });
+        let residuals: Vec<[f64; 2]> = residuals.collect();
+        let of_priors = losses.iter().zip(&found).map(|(loss, (volts, _))| ((volts - loss.expected) / loss.standard_error).powi(2));
+        let chi_squared = chi_squared(points, excitation, &motor, &residuals, &accuracy, request) + of_priors.sum::<f64>();
         let kinds_count = kinds(points).into_iter().enumerate().filter(|(w, kind)| w == kind).count();
-        let prior_gains = gain[2 * points.len()..].to_vec();
+        // A loss that the points tell, rather than its prior, has used up an equation.
+        let told = losses.iter().zip(&found).filter(|(loss, (_, error))| *error < TOLD * loss.standard_error).count();
+        let unknowns = excitation.excited().count() + told;
+        let (prior_gains, loss_gains) = gain[2 * points.len()..].split_at(gain.len() - 2 * points.len() - losses.len());
         Self {
             motor,
             gains: gains.collect(),
-            residuals: points.iter().map(|point| point.equations().map(|equation| equation.residual(&x))).collect(),
+            residuals,
             accuracy,
             chi_squared,
-            degrees_of_freedom: (2 * points.len() + prior_gains.len()).saturating_sub(excitation.excited().count()),
-            redundancy: (2 * kinds_count + prior_gains.len()).saturating_sub(excitation.excited().count()),
-            prior_gains,
+            degrees_of_freedom: (2 * points.len() + prior_gains.len() + losses.len()).saturating_sub(unknowns),
+            redundancy: (2 * kinds_count + prior_gains.len()).saturating_sub(unknowns),
+            prior_gains: prior_gains.to_vec(),
+            loss: found.first().copied(),
+            loss_gains: loss_gains.to_vec(),
             objective: VoltageError::of_equations(system.equations.into_iter().map(|equation| excitation.excited_equation(equation))),
         }
     }
@@ -102,18 +126,38 @@ impl Estimate {
     }
 }
 
-/// Whitened equations: two per point, then one per prior. Their values' errors have unit variance.
+/// A loss is told by the points where they leave less than this part of its prior's standard error.
+const TOLD: f64 = 0.7;
+
+/// Whitened equations: two per point, then one per prior, then one per prior of a loss; without their part along the losses. Their values'
+/// errors have unit variance.
 struct System {
     equations: Vec<Equation>,
     whiteners: Vec<Matrix2<f64>>,
+    /// What a volt of each loss does to each value.
+    by_loss: DMatrix<f64>,
+    /// The losses, V, that least squares asks for, given what the motor leaves.
+    losses: DMatrix<f64>,
+    /// The equations with that part.
+    with_losses: Vec<Equation>,
+}
+
+/// What comes out of a system.
+struct Solved {
+    motor: Motor,
+    /// What a unit error of each whitened value does to the motor.
+    gain: Vec<[f64; PARAMETERS]>,
+    /// Each loss, V, and its standard error.
+    losses: Vec<(f64, f64)>,
 }
 
 impl System {
-    fn of(points: &[OperatingPoint], motor: &Motor, accuracy: &[f64], request: &Request) -> Self {
+    fn of(points: &[OperatingPoint], motor: &Motor, accuracy: &[f64], request: &Request, losses: &[Loss]) -> Self {
         let mut equations = Vec::new();
         let mut whiteners = Vec::new();
+        let mut columns: Vec<Vec<f64>> = vec![Vec::new(); losses.len()];
         let pooled = pooled_noise(points, motor);
-        for (point, accuracy) in points.iter().zip(accuracy) {
+        for (w, (point, accuracy)) in points.iter().zip(accuracy).enumerate() {
             let whitener = whitener(pooled / point.rows.len() as f64, *accuracy);
             let [d, q] = point.equations().map(|equation| move_fixed(equation, request));
             for row in 0..2 {
@@ -123,32 +167,59 @@ impl System {
                     coefficients: std::array::from_fn(|p| d.coefficients[p] + q.coefficients[p]),
                     value: d.value + q.value,
                 });
+                columns.iter_mut().zip(losses).for_each(|(column, loss)| column.push(a * loss.voltages[w][0] + b * loss.voltages[w][1]));
             }
             whiteners.push(whitener);
         }
         equations.extend(priors(request));
-        Self { equations, whiteners }
+        columns.iter_mut().for_each(|column| column.resize(equations.len(), 0.0));
+        for (k, loss) in losses.iter().enumerate() {
+            equations.push(Equation { coefficients: [0.0; PARAMETERS], value: loss.expected / loss.standard_error });
+            columns.iter_mut().enumerate().for_each(|(l, column)| column.push(if k == l { 1.0 / loss.standard_error } else { 0.0 }));
+        }
+        let columns = DMatrix::from_fn(equations.len(), losses.len(), |row, loss| columns[loss][row]);
+        // The priors make the columns independent.
+        let inverse = SingularValueDecomposition::of(columns.clone()).pseudo_inverse(0.0);
+        let (coefficients, values) = matrix(&equations);
+        let coefficients = &coefficients - &columns * (&inverse * &coefficients);
+        let values = &values - &columns * (&inverse * &values);
+        let eliminated =
+            (0..equations.len()).map(|row| Equation { coefficients: std::array::from_fn(|p| coefficients[(row, p)]), value: values[row] });
+        Self { whiteners, equations: eliminated.collect(), with_losses: equations, losses: inverse, by_loss: columns }
     }
 
-    /// The motor, and what a unit error of each whitened value does to it.
-    fn solve(&self, excitation: &Excitation, request: &Request) -> (Motor, Vec<[f64; PARAMETERS]>) {
+    fn solve(&self, excitation: &Excitation, request: &Request) -> Solved {
         let scale = Vector4::from(excitation.scale);
         let excited: Vec<Vector4<f64>> =
             excitation.excited().map(|direction| Vector4::from(direction.components).component_mul(&scale)).collect();
         let mut x = Vector4::from(request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
-        let mut gain = vec![[0.0; PARAMETERS]; self.equations.len()];
+        let mut product = DMatrix::zeros(PARAMETERS, self.equations.len());
         if !excited.is_empty() {
             let basis = DMatrix::from_fn(PARAMETERS, excited.len(), |p, direction| excited[direction][p]);
-            let coefficients = DMatrix::from_fn(self.equations.len(), PARAMETERS, |row, p| self.equations[row].coefficients[p]);
-            let values = DVector::from_iterator(self.equations.len(), self.equations.iter().map(|equation| equation.value));
+            let (coefficients, values) = matrix(&self.equations);
             // The columns are excited, so the pseudo-inverse needs no cut-off of its own.
             let inverse = SingularValueDecomposition::of(coefficients * &basis).pseudo_inverse(0.0);
-            let product = basis * inverse;
+            product = basis * inverse;
             x += Vector4::from_iterator((&product * values).iter().copied());
-            gain = product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect();
+            product -= (&product * &self.by_loss) * &self.losses;
         }
-        (Motor::from(<[f64; PARAMETERS]>::from(x)), gain)
+        let (coefficients, values) = matrix(&self.with_losses);
+        let of_losses = &self.losses - (&self.losses * coefficients) * &product;
+        let found = &of_losses * values;
+        Solved {
+            motor: Motor::from(<[f64; PARAMETERS]>::from(x)),
+            gain: product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect(),
+            losses: found.iter().zip(of_losses.row_iter()).map(|(volts, gain)| (*volts, gain.norm())).collect(),
+        }
     }
+}
+
+/// Coefficients and values of equations.
+fn matrix(equations: &[Equation]) -> (DMatrix<f64>, DVector<f64>) {
+    (
+        DMatrix::from_fn(equations.len(), PARAMETERS, |row, p| equations[row].coefficients[p]),
+        DVector::from_iterator(equations.len(), equations.iter().map(|equation| equation.value)),
+    )
 }
 
 /// Long-run variances of the two residuals' noise, V² times rows, as a diagonal matrix: the points' own, weighted by what is
@@ -180,10 +251,17 @@ fn priors(request: &Request) -> impl Iterator<Item = Equation> + '_ {
 }
 
 /// What directions that are not excited could do to the residuals is no contradiction: it counts as noise here.
-fn chi_squared(points: &[OperatingPoint], excitation: &Excitation, motor: &Motor, accuracy: &[f64], request: &Request) -> f64 {
+fn chi_squared(
+    points: &[OperatingPoint],
+    excitation: &Excitation,
+    motor: &Motor,
+    residuals: &[[f64; 2]],
+    accuracy: &[f64],
+    request: &Request,
+) -> f64 {
     let x = motor.to_array();
-    let of_points = points.iter().zip(accuracy).map(|(point, accuracy)| {
-        let residual = Vector2::from(point.equations().map(|equation| equation.residual(&x)));
+    let of_points = points.iter().zip(residuals).zip(accuracy).map(|((point, residual), accuracy)| {
+        let residual = Vector2::from(*residual);
         let noise = Matrix2::from(point.residual_covariance(motor)) + Matrix2::from(excitation.unexcited_covariance(&point.equations()));
         (whitener(noise, *accuracy) * residual).norm_squared()
     });

@@ -23,6 +23,18 @@ pub struct Finding {
     pub(crate) bench: Bench,
 }
 
+impl Finding {
+    /// Marks what the fit leaves open: such a parameter lies anywhere within its reach, SI.
+    pub(crate) fn leave_open(&mut self, open: &[bool; PARAMETERS], reach: &[f64; PARAMETERS]) {
+        for p in (0..PARAMETERS).filter(|p| open[*p]) {
+            self.open[p] = true;
+            let uncertainty = &mut self.uncertainty.parameters[p];
+            uncertainty.systematic.excitation = uncertainty.systematic.excitation.max(reach[p] / 3.0_f64.sqrt());
+            *uncertainty = uncertainty.anew();
+        }
+    }
+}
+
 /// What speaks against a fit of simulated currents, whatever its intervals say. The default is nothing, as for operating points, whose
 /// contradictions are part of the uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

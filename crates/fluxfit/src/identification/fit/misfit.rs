@@ -6,7 +6,12 @@
 //! widened to the scatter of the points instead of the error of their mean. A point may still lie outside it. R. C. Paule and J.
 //! Mandel, "Consensus values and weighting factors", J. Res. Natl. Bur. Stand. 87 (1982) 377, doi:10.6028/jres.087.022.
 
-use super::{super::request::Request, estimate::Estimate, excitation::Excitation};
+use super::{
+    super::request::{Known, Request},
+    estimate::Estimate,
+    excitation::Excitation,
+    voltage_loss::Loss,
+};
 use crate::steady::OperatingPoint;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -26,15 +31,20 @@ pub struct Misfit {
     pub voltage_accuracy: f64,
 }
 
-/// Looks for contradiction; if there is any, solves the points again at the accuracy to which they agree.
+/// Looks for contradiction; if there is any, solves the points again at the accuracy to which they agree. Priors have no part in it: one that
+/// the points contradict must not make the voltages look worse.
 pub(crate) fn admit(
     points: &[OperatingPoint],
     excitation: &Excitation,
     estimate: Estimate,
     request: &Request,
+    losses: &[Loss],
 ) -> (Estimate, Option<Misfit>) {
-    let Some(ratio) = significant_ratio(points, &estimate) else { return (estimate, None) };
-    let solve = |fraction: f64| Estimate::solve_with(points, excitation, request, fraction);
+    let without = |known| if matches!(known, Known::Prior { .. }) { Known::Nothing } else { known };
+    let alone = Request { known: request.known.map(without), ..request.clone() };
+    let of_points = Excitation::of(points, &alone.known);
+    let solve = |fraction: f64| Estimate::solve_with(points, &of_points, &alone, losses, fraction);
+    let Some(ratio) = significant_ratio(points, &solve(request.voltage_accuracy)) else { return (estimate, None) };
     // At an accuracy of the whole voltage nothing contradicts anything.
     let (mut low, mut high) = (request.voltage_accuracy.max(f64::EPSILON), 1.0_f64);
     for _ in 0..BISECTIONS {
@@ -46,7 +56,7 @@ pub(crate) fn admit(
             high = middle;
         }
     }
-    (solve(high), Some(Misfit { ratio, voltage_accuracy: high }))
+    (Estimate::solve_with(points, excitation, request, losses, high), Some(Misfit { ratio, voltage_accuracy: high }))
 }
 
 /// Root of chi squared per degree of freedom, if an F test finds it too large.

@@ -17,6 +17,7 @@ use super::{
     excitation::Excitation,
     misfit::Misfit,
     saturation_equations::{self, peak},
+    voltage_loss::{self, Loss},
 };
 use crate::{
     frames::Dq,
@@ -25,7 +26,7 @@ use crate::{
     objective::adjustable::Adjustable,
     steady::OperatingPoint,
 };
-use std::ops::Range;
+use std::{f64::consts::PI, ops::Range};
 
 /// Saturation, and what the flux is instead of an inductance times the current.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,15 +89,15 @@ const QUANTILE: f64 = 1.95;
 impl SaturationFinding {
     /// Looks for it among operating points that contradict each other.
     pub(crate) fn of_points(
-        points: &[OperatingPoint],
+        (points, losses): (&[OperatingPoint], &[Loss]),
         excitation: &Excitation,
         motor: &Motor,
         misfit: Option<&Misfit>,
         request: &Request,
     ) -> Option<Self> {
         misfit?;
-        let best = saturation_equations::explain(points, excitation, motor, request)?;
-        Some(Self::at(points, best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
+        let best = saturation_equations::explain(points, losses, excitation, motor, request)?;
+        Some(Self::at((points, &best.lost), best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
     }
 
     /// What simulated currents with terms of saturation say of it, over these rows; `of_points` is what the operating points say.
@@ -109,7 +110,11 @@ impl SaturationFinding {
         request: &Request,
     ) -> Self {
         let (motor, terms) = (drive.motor, drive.faults.saturation);
-        let mut found = of_points.unwrap_or_else(|| Self::at(points, motor, (motor.rs, rs_uncertainty), request));
+        // The fundamental of what each phase loses.
+        let loss = 4.0 / PI * drive.faults.dead_time.voltage;
+        let lost: Vec<[f64; 2]> =
+            points.iter().map(|point| voltage_loss::along(point.current())).map(|i| [loss * i.d, loss * i.q]).collect();
+        let mut found = of_points.unwrap_or_else(|| Self::at((points, &lost), motor, (motor.rs, rs_uncertainty), request));
         let (mut least, mut most) = (Apparent { current: f64::INFINITY, inductance: 0.0 }, Apparent { current: 0.0, inductance: 0.0 });
         for row in stretches.iter().cloned().flatten() {
             let i = Dq { d: log.columns().id[row], q: log.columns().iq[row] };
@@ -127,22 +132,27 @@ impl SaturationFinding {
         found
     }
 
-    /// The fluxes at the operating points.
-    fn at(points: &[OperatingPoint], small_currents: Motor, (rs, rs_uncertainty): (f64, f64), request: &Request) -> Self {
+    /// The fluxes at the operating points, of whose voltages so much is lost, V.
+    fn at(
+        (points, lost): (&[OperatingPoint], &[[f64; 2]]),
+        small_currents: Motor,
+        (rs, rs_uncertainty): (f64, f64),
+        request: &Request,
+    ) -> Self {
         let psi_f = match request.known[Parameter::PsiF as usize] {
             Known::Fixed(value) | Known::Prior { value, .. } => Some(value),
             Known::Nothing => None,
         };
         let least = LEAST_CURRENT * peak(points);
-        let flux = |point: &OperatingPoint| {
+        let flux = |(point, lost): (&OperatingPoint, &[f64; 2])| {
             let (omega_e, u, i) = (point.omega_e(), point.voltage(), point.current());
             let noise = point.residual_covariance(&small_currents);
             let accuracy = request.voltage_accuracy * u.magnitude();
             let own = [0, 1].map(|axis: usize| noise[axis][axis].max(0.0).sqrt().hypot(accuracy) / omega_e.abs());
             let of_rs = |i: f64| rs_uncertainty * i / omega_e;
             let psi = Dq {
-                d: (u.q - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
-                q: (rs * i.d + small_currents.ld * point.drift.d - u.d) / omega_e,
+                d: (u.q - lost[1] - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
+                q: (rs * i.d + small_currents.ld * point.drift.d - (u.d - lost[0])) / omega_e,
             };
             let own = Dq { d: own[1], q: own[0] };
             let flux = Flux {
@@ -155,7 +165,7 @@ impl SaturationFinding {
             };
             [psi.d, psi.q, flux.uncertainty.d, flux.uncertainty.q].iter().all(|value| value.is_finite()).then_some(flux)
         };
-        let fluxes: Vec<Option<Flux>> = points.iter().map(flux).collect();
+        let fluxes: Vec<Option<Flux>> = points.iter().zip(lost).map(flux).collect();
         let told = || fluxes.iter().flatten().filter_map(|flux| Some(Apparent { current: flux.current.q, inductance: flux.apparent_lq? }));
         let by_current = |one: &Apparent, other: &Apparent| one.current.abs().total_cmp(&other.current.abs());
         let lq = told().min_by(by_current).zip(told().max_by(by_current)).map(|(least, most)| [least, most]);

@@ -7,12 +7,13 @@
 //! psi_d = L_d i_d + psi_f + s_d i_d |i_d| + c i_q²,     psi_q = L_q i_q + s_q i_q |i_q| + 2 c i_d i_q
 //! ```
 //!
-//! and beside what else follows the current, a voltage of constant size along it (dead time, device drops). Saturation it is if its terms
-//! explain the contradiction best by Schwarz's criterion, and iron takes flux away.
+//! in both cases beside what else follows the current, the [losses](super::voltage_loss) of dead time and devices. Saturation it is if its
+//! terms explain the contradiction best by Schwarz's criterion, and iron takes flux away.
 
 use super::{
     super::request::{Known, Request},
     excitation::Excitation,
+    voltage_loss::Loss,
 };
 use crate::{
     frames::Dq,
@@ -29,13 +30,18 @@ const DISTINCT: f64 = 0.02;
 const LEAST_CURRENTS: usize = 3;
 
 /// The constants beside the terms of saturation, if those explain the contradiction between the points.
-pub(super) fn explain(points: &[OperatingPoint], excitation: &Excitation, motor: &Motor, request: &Request) -> Option<Solved> {
+pub(super) fn explain(
+    points: &[OperatingPoint],
+    losses: &[Loss],
+    excitation: &Excitation,
+    motor: &Motor,
+    request: &Request,
+) -> Option<Solved> {
     if distinct_currents(points) < LEAST_CURRENTS {
         return None;
     }
-    let equations = Equations { points, excitation, motor, request, peak: peak(points) };
-    let loss = Some(equations.solve(&[Cause::Loss])).filter(|solved| solved.loses_less_than(LARGEST_LOSS * least_voltage(points)));
-    let rival = equations.solve(&[]).criterion.min(loss.map_or(f64::INFINITY, |solved| solved.criterion));
+    let equations = Equations { points, losses, excitation, motor, request, peak: peak(points) };
+    let rival = equations.solve(&[]).criterion;
     let best = SATURATIONS
         .iter()
         .map(|causes| equations.solve(causes))
@@ -47,14 +53,6 @@ pub(super) fn explain(points: &[OperatingPoint], excitation: &Excitation, motor:
 /// The largest current, A.
 pub(super) fn peak(points: &[OperatingPoint]) -> f64 {
     points.iter().map(|point| point.current().magnitude()).fold(f64::MIN_POSITIVE, f64::max)
-}
-
-/// Most that dead time and devices take of any point's voltage: what takes more is no loss but a formula that bends to the data.
-const LARGEST_LOSS: f64 = 0.5;
-
-/// The smallest voltage, V.
-fn least_voltage(points: &[OperatingPoint]) -> f64 {
-    points.iter().map(|point| point.voltage().magnitude()).fold(f64::INFINITY, f64::min)
 }
 
 /// How many operating points differ in their current.
@@ -78,8 +76,6 @@ enum Cause {
     D,
     /// `c`.
     Cross,
-    /// A voltage of constant size along the current.
-    Loss,
 }
 
 /// Saturation, from the simplest kind on.
@@ -93,10 +89,6 @@ impl Cause {
             Self::Q => [-omega_e * i.q * i.q.abs() / peak, 0.0],
             Self::D => [0.0, omega_e * i.d * i.d.abs() / peak],
             Self::Cross => [-omega_e * 2.0 * i.d * i.q / peak, omega_e * i.q * i.q / peak],
-            Self::Loss => {
-                let magnitude = i.magnitude().max(f64::MIN_POSITIVE);
-                [i.d / magnitude, i.q / magnitude]
-            }
         }
     }
 }
@@ -104,6 +96,7 @@ impl Cause {
 /// The equations, to be solved with one cause or another.
 struct Equations<'a> {
     points: &'a [OperatingPoint],
+    losses: &'a [Loss],
     excitation: &'a Excitation,
     /// The motor that tells what noise does to the equations.
     motor: &'a Motor,
@@ -117,17 +110,14 @@ pub(super) struct Solved {
     pub(super) motor: Motor,
     /// Standard uncertainty of R_s, ohm.
     pub(super) rs_uncertainty: f64,
+    /// Per point, the voltages that dead time and devices take, V.
+    pub(super) lost: Vec<[f64; 2]>,
     causes: Vec<(Cause, f64)>,
     /// Schwarz's, lowest is best.
     criterion: f64,
 }
 
 impl Solved {
-    /// Whether the voltage lost along the current is less than so many volts.
-    fn loses_less_than(&self, limit: f64) -> bool {
-        self.causes.iter().all(|(_, value)| value.abs() < limit)
-    }
-
     /// Whether it is what iron does: flux along q is lost; or the magnet's, where it is that alone.
     fn takes_flux_away(&self) -> bool {
         let of = |cause: Cause| self.causes.iter().find(|(other, _)| *other == cause).map(|(_, value)| *value);
@@ -144,12 +134,12 @@ const RANK_TOLERANCE: f64 = 1e-9;
 
 impl Equations<'_> {
     fn solve(&self, causes: &[Cause]) -> Solved {
-        let Self { points, excitation, motor: noisy, request, peak } = self;
+        let Self { points, losses, excitation, motor: noisy, request, peak } = self;
         let directions: Vec<[f64; PARAMETERS]> =
             excitation.excited().map(|direction| std::array::from_fn(|p| direction.components[p] * excitation.scale[p])).collect();
         let fixed: [f64; PARAMETERS] = request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 });
         let mut rows: Vec<Vec<f64>> = Vec::new();
-        for point in *points {
+        for (w, point) in points.iter().enumerate() {
             let equations = point.equations();
             let noise = point.residual_covariance(noisy);
             let open = excitation.unexcited_covariance(&equations);
@@ -160,16 +150,23 @@ impl Equations<'_> {
                 let known =
                     directions.iter().map(|direction| (0..PARAMETERS).map(|p| equation.coefficients[p] * direction[p]).sum::<f64>());
                 let beside = causes.iter().map(|cause| cause.voltage(point, *peak)[axis]);
-                rows.push(known.chain(beside).chain([equation.residual(&fixed)]).map(|entry| weight * entry).collect());
+                let lost = losses.iter().map(|loss| loss.voltages[w][axis]);
+                rows.push(known.chain(beside).chain(lost).chain([equation.residual(&fixed)]).map(|entry| weight * entry).collect());
             }
         }
         for (p, known) in request.known.iter().enumerate() {
             if let Known::Prior { value, standard_error } = known {
-                let entries = directions.iter().map(|direction| direction[p]).chain(causes.iter().map(|_| 0.0)).chain([*value]);
+                let entries = directions.iter().map(|direction| direction[p]).chain(vec![0.0; causes.len() + losses.len()]).chain([*value]);
                 rows.push(entries.map(|entry| entry / standard_error).collect());
             }
         }
-        let unknowns = directions.len() + causes.len();
+        let unknowns = directions.len() + causes.len() + losses.len();
+        for (k, loss) in losses.iter().enumerate() {
+            let mut row = vec![0.0; unknowns];
+            row[directions.len() + causes.len() + k] = 1.0 / loss.standard_error;
+            row.push(loss.expected / loss.standard_error);
+            rows.push(row);
+        }
         let mut matrix = DMatrix::from_fn(rows.len(), unknowns, |row, column| rows[row][column]);
         let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).map(|norm| if norm > 0.0 { norm } else { 1.0 }).collect();
         matrix.column_iter_mut().zip(&lengths).for_each(|(mut column, length)| column.unscale_mut(*length));
@@ -197,9 +194,12 @@ impl Equations<'_> {
             Known::Prior { standard_error, .. } => standard_error,
             Known::Nothing => range,
         };
+        let volts = &x[directions.len() + causes.len()..];
+        let lost = |w: usize, axis: usize| losses.iter().zip(volts).map(|(loss, volts)| volts * loss.voltages[w][axis]).sum::<f64>();
         Solved {
             motor,
             rs_uncertainty,
+            lost: (0..points.len()).map(|w| [lost(w, 0), lost(w, 1)]).collect(),
             causes: causes.iter().copied().zip(x[directions.len()..].iter().copied()).collect(),
             // One is what noise alone leaves of each equation.
             criterion: count * (1.0 + chi_squared / count).ln() + unknowns as f64 * count.ln(),

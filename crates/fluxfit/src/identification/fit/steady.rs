@@ -11,11 +11,12 @@ use super::{
     misfit::{self, Misfit},
     saturation::SaturationFinding,
     swarm::{self, Search},
-    uncertainty::{SteadyShifts, Uncertainty},
+    uncertainty::Uncertainty,
+    voltage_loss::{Loss, LossPrior, is_control_rate, slowest_period},
 };
 use crate::{
     error::Error,
-    faults::dead_time::ripple,
+    faults::dead_time::ripple::{self, Harmonic},
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
@@ -44,6 +45,8 @@ pub struct SteadyFit {
     pub voltage_losses: Vec<f64>,
     /// What it comes to.
     pub finding: Finding,
+    /// What dead time and devices may take, as it was fitted beside the motor.
+    pub(crate) losses: Vec<Loss>,
     /// The operating points before any correction.
     pub(crate) as_measured: Vec<OperatingPoint>,
 }
@@ -57,13 +60,12 @@ impl SteadyFit {
         let as_measured = operating_points(log, request)?;
         let (points, timing_doubt) = measure(log, &as_measured, request);
         let excitation = Excitation::of(&points, &request.known);
-        let estimate = Estimate::solve(&points, &excitation, request);
-        let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, request);
-        let Dq { d: ld, q: lq } = excitation.inductances(&estimate.motor);
-        let losses = ripple::losses(log, &points, &Motor { ld, lq, ..estimate.motor }, VOLTAGE_ACCURACY);
-        let dead_time = ripple::parameter_errors(log, &points, &estimate.gains, &losses);
-        let shifts = SteadyShifts { timing: timing_doubt, dead_time };
-        let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &shifts);
+        let possible = LossPrior::possible(log, request);
+        let harmonics = harmonics(log, &points, &excitation, &possible, request);
+        let losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
+        let estimate = Estimate::solve(&points, &excitation, request, &losses);
+        let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, request, &losses);
+        let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
         let finding = Finding {
             motor: estimate.motor,
             open: Parameter::ALL.map(|parameter| excitation.is_open(parameter)),
@@ -77,7 +79,8 @@ impl SteadyFit {
             excitation,
             voltage_timing: voltage_timing(request),
             misfit,
-            voltage_losses: losses,
+            voltage_losses: harmonics.iter().map(|harmonic| harmonic.filter(|one| one.stands_out).map_or(0.0, |one| one.loss)).collect(),
+            losses,
             finding,
             as_measured,
         })
@@ -85,7 +88,13 @@ impl SteadyFit {
 
     /// Saturation, if it explains a contradiction between the operating points.
     pub(crate) fn saturation(&self, request: &Request) -> Option<SaturationFinding> {
-        SaturationFinding::of_points(&self.operating_points, &self.excitation, &self.estimate.motor, self.misfit.as_ref(), request)
+        SaturationFinding::of_points(
+            (&self.operating_points, &self.losses),
+            &self.excitation,
+            &self.estimate.motor,
+            self.misfit.as_ref(),
+            request,
+        )
     }
 
     /// Lets the swarm minimize the same weighted equations that least squares solved.
@@ -105,6 +114,30 @@ impl SteadyFit {
         let motor = Motor::from(found);
         Ok(Search { cost_above_optimum: self.estimate.cost_above_optimum(&motor), motor, bounds, report })
     }
+}
+
+/// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.
+fn harmonics(
+    log: &Log,
+    points: &[OperatingPoint],
+    excitation: &Excitation,
+    possible: &LossPrior,
+    request: &Request,
+) -> Vec<Option<Harmonic>> {
+    let rough = Estimate::solve(points, excitation, request, &losses(points, excitation, possible, request)).motor;
+    let Dq { d: ld, q: lq } = excitation.inductances(&rough);
+    ripple::harmonics(log, points, &Motor { ld, lq, ..rough }, VOLTAGE_ACCURACY)
+}
+
+/// The unknowns of the losses: how much the near-zero currents and the instant of the decision matter follows from the loss along the
+/// current, so that is solved first.
+fn losses(points: &[OperatingPoint], excitation: &Excitation, prior: &LossPrior, request: &Request) -> Vec<Loss> {
+    let along_current = prior.losses(points, 0.0, Dq { d: f64::INFINITY, q: f64::INFINITY });
+    let rough = Estimate::solve(points, excitation, request, &along_current);
+    let inductance = excitation.inductances(&rough.motor);
+    // At least what the points leave open of it.
+    let loss = rough.loss.map_or(0.0, |(volts, error)| volts.hypot(error));
+    prior.losses(points, loss, inductance)
 }
 
 /// What is known from noise, accuracy and excitation: what more operating points would improve.
@@ -150,27 +183,40 @@ pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoi
 }
 
 /// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
-/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it.
+/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it. Where the rows may be every
+/// n-th of a drive's periods nothing is corrected, and the doubt is the correction that the drive's own period would need.
 fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
-    let with = |timing: SteadyVoltageTiming| -> Vec<OperatingPoint> {
+    let with = |timing: SteadyVoltageTiming, change: &dyn Fn(ZeroOrderHold) -> ZeroOrderHold| -> Vec<OperatingPoint> {
         let preliminary = preliminary_estimates(log, rough, timing, request);
-        rough
-            .iter()
-            .zip(&preliminary)
-            .map(|(point, preliminary)| OperatingPoint::measure(log, point.rows.clone(), Some(preliminary)))
-            .collect()
+        let measured = rough.iter().zip(&preliminary).map(|(point, one)| {
+            OperatingPoint::measure(log, point.rows.clone(), Some(&PreliminaryEstimate { hold: change(one.hold), ..*one }))
+        });
+        measured.collect()
     };
-    let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request).motor;
-    let points = with(voltage_timing(request).value);
-    let doubt = match request.voltage_timing {
-        Some(_) => [0.0; PARAMETERS],
-        None => {
-            let (one, other) = (solve(&points).to_array(), solve(&with(SteadyVoltageTiming::Compensated)).to_array());
-            std::array::from_fn(|p| (one[p] - other[p]).abs())
-        }
+    let as_it_is = |hold: ZeroOrderHold| hold;
+    if let Some(stated) = request.voltage_timing {
+        return (with(stated.into(), &as_it_is), [0.0; PARAMETERS]);
+    }
+    let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    let period = slowest_period(log);
+    let (points, other) = if is_control_rate(log) && fastest * period <= MAX_ANGLE_PER_SAMPLE {
+        (with(SteadyVoltageTiming::Centered, &as_it_is), with(SteadyVoltageTiming::Compensated, &as_it_is))
+    } else {
+        let may_be_own = period * SLOWEST_PERIODS <= 1.0 && fastest * period <= MAX_ANGLE_PER_SAMPLE;
+        let sample_period = if may_be_own { period } else { period.min(1.0 / USUAL_PERIODS) };
+        let timing = SteadyVoltageTiming::Centered;
+        (with(timing, &|_| ZeroOrderHold::NONE), with(timing, &|_| ZeroOrderHold { timing, sample_period, ..ZeroOrderHold::NONE }))
     };
-    (points, doubt)
+    let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request, &[]).motor;
+    let (one, other) = (solve(&points).to_array(), solve(&other).to_array());
+    (points, std::array::from_fn(|p| (one[p] - other[p]).abs()))
 }
+
+/// Hardly a drive controls its currents more slowly than this, Hz.
+const SLOWEST_PERIODS: f64 = 2e3;
+
+/// The periods of a drive whose log has only every n-th of them, Hz.
+const USUAL_PERIODS: f64 = 1e4;
 
 /// What a first look at the operating points tells of each: the motor, and the held-vector correction of its window.
 pub(crate) fn preliminary_estimates(
@@ -180,7 +226,7 @@ pub(crate) fn preliminary_estimates(
     request: &Request,
 ) -> Vec<PreliminaryEstimate> {
     let excitation = Excitation::of(rough, &request.known);
-    let motor = Estimate::solve(rough, &excitation, request).motor;
+    let motor = Estimate::solve(rough, &excitation, request, &[]).motor;
     let inductance = excitation.inductances(&motor);
     let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     rough

@@ -6,7 +6,7 @@
 //! - the voltages' accuracy, independent between windows and axes;
 //! - priors;
 //! - the timing of the voltage columns, where nobody stated it;
-//! - dead time or device drops, where their [ripple](crate::faults::dead_time::ripple) shows;
+//! - what the [losses](super::voltage_loss) of dead time and devices may be, as far as the points do not tell them;
 //! - directions that the log does not excite, a uniform distribution over their reach;
 //! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
 //! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is
@@ -105,6 +105,11 @@ impl ParameterUncertainty {
         Self::of(statistical, degrees_of_freedom, systematic)
     }
 
+    /// The interval anew, after a part has changed.
+    pub(crate) fn anew(&self) -> Self {
+        Self::of(self.statistical, self.degrees_of_freedom, self.systematic)
+    }
+
     /// Both parts in quadrature.
     pub fn standard_error(&self) -> f64 {
         self.statistical.hypot(self.systematic.total())
@@ -177,15 +182,6 @@ impl Part {
     }
 }
 
-/// How far each parameter moves with what nobody stated, SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SteadyShifts {
-    /// The timing of the voltage columns.
-    pub timing: [f64; PARAMETERS],
-    /// Dead time or device drops.
-    pub dead_time: [f64; PARAMETERS],
-}
-
 /// The uncertainty of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -197,19 +193,19 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Of an estimate, given what moves it besides noise, and whether its points contradict each other.
+    /// Of an estimate, given how far the timing of the voltage columns moves each parameter, SI, and whether its points contradict each
+    /// other.
     pub(crate) fn of(
         points: &[OperatingPoint],
         excitation: &Excitation,
         estimate: &Estimate,
         misfit: Option<&Misfit>,
-        shifts: &SteadyShifts,
+        timing: &[f64; PARAMETERS],
     ) -> Self {
         let mut parameters = [ParameterUncertainty::default(); PARAMETERS];
         for (p, parameter) in parameters.iter_mut().enumerate() {
             let (statistical, degrees_of_freedom, mut systematic) = of_parameter(p, points, estimate, misfit.is_some());
-            systematic.timing = shifts.timing[p];
-            systematic.dead_time = shifts.dead_time[p];
+            systematic.timing = timing[p];
             // A uniform distribution's standard deviation.
             systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
             *parameter = ParameterUncertainty::of(statistical, degrees_of_freedom, systematic);
@@ -249,6 +245,7 @@ fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit
     let systematic = Systematic {
         accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
         prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
+        dead_time: estimate.loss_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
         misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
         ..Systematic::default()
     };

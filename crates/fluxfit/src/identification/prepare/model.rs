@@ -67,6 +67,9 @@ pub enum ModelReason {
         /// Largest electrical angle from row to row, rad.
         turn: f64,
     },
+    /// Rows come as fast as a drive controls, but the simulated currents leave more than noise, and the operating points, which agree with
+    /// each other, have the narrower intervals.
+    PointsTellMore,
     /// Rows come as fast as a drive controls.
     FastRows {
         /// Rate of the rows, Hz.

@@ -1,0 +1,117 @@
+//! Excitation of the simulated currents: which combinations of the parameters they tell, given what they leave unexplained.
+//!
+//! Parameters are counted in fractions of what the voltage allows, as for [operating points](super::excitation). The singular vectors of the
+//! currents' derivatives are directions in parameter space, each with the change of the currents that it makes over its whole range. A
+//! direction is excited only if this change stands above the residuals, as far as these do not average out: white residuals do, correlated
+//! ones count by their independent number. And it stands above what the model itself is worth: a simulation without any noise has an
+//! inverter's ripple in its rows, to which anything can be fitted. What the faults could explain as well does not count.
+
+use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit};
+use crate::{
+    error::Error,
+    identification::{
+        prepare::stretches,
+        request::{Known, Request},
+    },
+    levenberg_marquardt::{MOTOR, jacobian},
+    log::Log,
+    motor::{PARAMETERS, Parameter},
+    objective::{adjustable::Unknown, output_error::OutputError},
+    singular_values::SingularValueDecomposition,
+};
+use nalgebra::DMatrix;
+
+/// An excited direction moves the currents by at least this many times what is not explained, as at operating points.
+const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
+
+/// A parameter is open if this part of its axis, or more, lies in directions that are not excited, as at operating points.
+const OPEN_PART: f64 = 0.1;
+
+/// Whether the simulated currents leave a parameter open: in the order of the parameters. An inductance that the operating points leave open,
+/// `of_points`, may have come out anywhere, and the smaller it is the more the currents depend on it: it counts as equal to the other.
+///
+/// # Errors
+/// If the rows are too few to be simulated.
+pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], request: &Request) -> Result<[bool; PARAMETERS], Error> {
+    let objective = OutputError::of_rows(log, &fit.stretches, fit.voltage_timing.value)?;
+    let scale = reach(log, fit, request);
+    let free: Vec<usize> = (0..PARAMETERS).filter(|p| !matches!(request.known[*p], Known::Fixed(_))).collect();
+    let faults: Vec<Unknown> = fit.fault_estimates.iter().map(|estimate| estimate.unknown).collect();
+    let unknowns: Vec<Unknown> = faults.iter().copied().chain(free.iter().map(|p| MOTOR[*p])).collect();
+    let mut drive = fit.drive;
+    match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
+        [true, false] => drive.motor.ld = drive.motor.lq,
+        [false, true] => drive.motor.lq = drive.motor.ld,
+        _ => {}
+    }
+    let mut columns = without_first(jacobian(&objective, &drive, &unknowns), faults.len());
+    columns.iter_mut().zip(&free).for_each(|(column, p)| column.iter_mut().for_each(|slope| *slope *= scale[*p]));
+
+    let count = fit.residuals.len() as f64;
+    let independent = long_run::effective_sample_size(&fit.residuals).clamp(1.0, count);
+    let unexplained = (fit.cost / independent).sqrt().max(LEAST_RESIDUAL * objective.peak_current() * count.sqrt());
+    let least = MIN_SIGNAL_TO_NOISE * unexplained;
+    // A prior pins its parameter.
+    for (k, p) in free.iter().enumerate() {
+        let pinned = matches!(request.known[*p], Known::Prior { .. });
+        columns.iter_mut().enumerate().for_each(|(l, column)| column.push(if pinned && k == l { PINNED * least } else { 0.0 }));
+    }
+    let matrix = DMatrix::from_fn(columns.first().map_or(0, Vec::len), free.len(), |row, column| columns[column][row]);
+    let SingularValueDecomposition { values, right, .. } = SingularValueDecomposition::of(matrix);
+    let mut part = [0.0; PARAMETERS];
+    for (value, direction) in values.iter().zip(right.column_iter()) {
+        if *value < least {
+            free.iter().zip(&direction).for_each(|(p, component)| part[*p] += component * component);
+        }
+    }
+    Ok(part.map(|part: f64| part.sqrt() > OPEN_PART))
+}
+
+/// How far a parameter reaches that is open: what the voltage allows, SI.
+pub(crate) fn reach(log: &Log, fit: &OutputFit, request: &Request) -> [f64; PARAMETERS] {
+    Excitation::of(&stretches::as_points(log, &fit.stretches), &request.known).scale
+}
+
+/// A prior counts as so many times the least signal.
+const PINNED: f64 = 10.0;
+
+/// The other columns without their part along the first ones.
+fn without_first(columns: Vec<Vec<f64>>, first: usize) -> Vec<Vec<f64>> {
+    let dot = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let mut rest = Vec::new();
+    for (k, mut column) in columns.into_iter().enumerate() {
+        let before = dot(&column, &column).sqrt();
+        // Twice: the first time leaves rounding errors of the length before.
+        for _ in 0..2 {
+            for direction in &basis {
+                let along = dot(&column, direction);
+                column.iter_mut().zip(direction).for_each(|(entry, part)| *entry -= along * part);
+            }
+        }
+        let length = dot(&column, &column).sqrt();
+        if k >= first {
+            rest.push(column);
+        } else if length > DEPENDENT * before {
+            column.iter_mut().for_each(|entry| *entry /= length);
+            basis.push(column);
+        }
+    }
+    rest
+}
+
+/// A column of which less than this part is left depends on those before, as far as derivatives by differences tell.
+const DEPENDENT: f64 = 1e-8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_first_columns_explain_is_taken_away() {
+        let columns = vec![vec![1.0, 1.0, 0.0], vec![2.0, 2.0, 0.0], vec![3.0, 1.0, 5.0], vec![4.0, 4.0, 0.0]];
+        let rest = without_first(columns, 2);
+        let expected = [[1.0, -1.0, 5.0], [0.0; 3]];
+        assert!(rest.iter().flatten().zip(expected.as_flattened()).all(|(entry, expected)| (entry - expected).abs() < 1e-12), "{rest:?}");
+    }
+}

@@ -1,0 +1,45 @@
+//! Whether the operating points tell more than the simulated currents do.
+//!
+//! Rows that are every n-th of a drive's periods, filtered columns, or a fault that no term describes leave residuals of the simulated
+//! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals are
+//! not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
+//! answers.
+//!
+//! Where the simulated currents leave a whole combination of parameters open, or all that they leave is rounding, their parameters were
+//! fitted to what no parameter explains. Operating points leave such directions at zero, so they answer if they leave nothing else open.
+
+use super::{
+    super::{
+        fit::{fault_search::LEAST_RESIDUAL, finding::Finding, output::OutputFit, output_errors::CORRELATED, steady::SteadyFit},
+        request::{Known, Request},
+    },
+    verdict::{Verdict, judge},
+};
+use crate::{faults::Fault, motor::PARAMETERS};
+
+/// Whether they do; `open`: what the simulated currents leave open.
+pub(crate) fn points_tell_more(points: &SteadyFit, currents: &OutputFit, open: &[bool; PARAMETERS], request: &Request) -> bool {
+    if points.misfit.is_some() {
+        return false;
+    }
+    let judged = judge(&currents.finding, None, request, false);
+    let told: [bool; PARAMETERS] = std::array::from_fn(|p| !open[p] && judged[p].verdict != Verdict::NotIdentifiable);
+    let combined = open.iter().filter(|open| **open).count() > 1;
+    let is_rounding = currents.finding.trust.misses <= LEAST_RESIDUAL;
+    if (combined || is_rounding) && told.contains(&false) {
+        return points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told));
+    }
+    let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
+    let can_contradict = points.estimate.redundancy > 0;
+    !is_explained && can_contradict && width(&points.finding, request) < width(&currents.finding, request)
+}
+
+/// Sum of the logarithms of the intervals' half-widths as parts of the values. What is wider than its value, or not positive, is not told:
+/// one.
+fn width(finding: &Finding, request: &Request) -> f64 {
+    let judged = judge(finding, None, request, false);
+    let told = judged.iter().filter(|one| !matches!(request.known[one.parameter as usize], Known::Fixed(_)));
+    let widths = told.map(|one| if one.raw > 0.0 { (one.uncertainty.half_width / one.raw).min(1.0) } else { 1.0 });
+    // A width of zero would outweigh all others.
+    widths.map(|width| width.max(f64::EPSILON).ln()).sum()
+}
