@@ -78,7 +78,7 @@ fn decimated(points: &[(f64, f64)], dead_time: f64) -> Log {
     };
     let scenario = Scenario {
         duration: 0.25 * points.len() as f64,
-        motor: SimulatedMotor { rs: EBIKE.rs, magnetics: EBIKE.into(), pole_pairs: 15 },
+        motor: SimulatedMotor::new(EBIKE.rs, EBIKE.into(), 15),
         mechanics: Mechanics::Dyno,
         inverter: Inverter { dead_time, ..Inverter::ideal(48.0, 8e3) },
         control: Control::new(300.0, 20.0, 60.0),

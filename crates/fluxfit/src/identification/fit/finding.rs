@@ -44,7 +44,7 @@ pub struct Trust {
     pub correlation_of_neighbours: f64,
     /// Whether an observer follows disturbances which, without the electrical angle, cannot be told from faults of the drive.
     pub disturbed_without_angle: bool,
-    /// Root mean square of the residuals as a fraction of the largest current.
+    /// Root mean square of what a simulation without any correction misses, as a fraction of the largest current.
     pub misses: f64,
 }
 

@@ -114,7 +114,7 @@ impl OutputFit {
             trust: Trust {
                 correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
                 disturbed_without_angle: is_taken(&terms, Fault::Disturbance) && !objective.angle_traced(),
-                misses: rms / objective.peak_current(),
+                misses: missed(objective, &drive) / objective.peak_current(),
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),
             uncertainty,
@@ -186,6 +186,14 @@ impl OutputFit {
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report })
     }
+}
+
+/// Root mean square of what a simulation misses that no measured current corrects, A: an observer follows anything.
+fn missed(objective: &OutputError, drive: &Adjustable) -> f64 {
+    let mut alone = drive.without_observer();
+    alone.faults.filter.noise_before = 0.0;
+    let cost = if alone == *drive { objective.cost_of(drive) } else { objective.cost_of(&alone).min(f64::MAX) };
+    (cost / (2.0 * objective.rows() as f64)).sqrt()
 }
 
 /// A log whose speed lags, in time again.
