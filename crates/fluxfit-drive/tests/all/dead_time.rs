@@ -128,8 +128,8 @@ fn dead_time_of_a_decimated_log_is_found_or_doubted() {
     }
 }
 
-/// The paper's rig without its step of i_d and without noise: one speed and load. L_q alone is told; with a prior of R_s also psi_f, as far as
-/// R_s goes.
+/// The paper's rig without its step of i_d and without noise: one speed and load. L_q alone is told; with a prior of R_s also psi_f, as
+/// far as R_s goes.
 #[test]
 fn one_operating_point_without_noise_tells_lq_alone() {
     let mut scenario = Scenario::paper();

@@ -43,7 +43,7 @@ const BESIDE: usize = 10;
 
 /// At the start of a log nothing is known of the rows before. There, a channel was frozen if it begins with a jump that is this many times
 /// as large as what follows.
-const JUMP: f64 = 10.0;
+const JUMP: f64 = 5.0;
 
 /// Removes such rows. Returns notes.
 pub(super) fn repair(channels: &mut Channels) -> Vec<String> {
@@ -112,8 +112,8 @@ fn frozen(channels: &mut Channels) -> Option<String> {
     Some(note)
 }
 
-/// Whether what another channel does shows that this one is frozen. A drive that is told a duty holds both its voltages whatever the currents
-/// do; so only the other voltage shows that one is frozen. An angle is shown by the phases that turn with it.
+/// Whether what another channel does shows that this one is frozen. A drive that is told a duty holds both its voltages whatever the
+/// currents do; so only the other voltage shows that one is frozen. An angle is shown by the phases that turn with it.
 fn is_evidence(channel: Channel, other: Channel) -> bool {
     match channel {
         Ud | Uq => matches!(other, Ud | Uq),

@@ -31,8 +31,8 @@ pub struct Misfit {
     pub voltage_accuracy: f64,
 }
 
-/// Looks for contradiction; if there is any, solves the points again at the accuracy to which they agree. Priors have no part in it: one that
-/// the points contradict must not make the voltages look worse.
+/// Looks for contradiction; if there is any, solves the points again at the accuracy to which they agree. Priors have no part in it: one
+/// that the points contradict must not make the voltages look worse.
 pub(crate) fn admit(
     points: &[OperatingPoint],
     excitation: &Excitation,

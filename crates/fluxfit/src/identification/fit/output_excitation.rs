@@ -1,7 +1,7 @@
 //! Excitation of the simulated currents: which combinations of the parameters they tell, given what they leave unexplained.
 //!
-//! Parameters are counted in fractions of what the voltage allows, as for [operating points](super::excitation). The singular vectors of the
-//! currents' derivatives are directions in parameter space, each with the change of the currents that it makes over its whole range. A
+//! Parameters are counted in fractions of what the voltage allows, as for [operating points](super::excitation). The singular vectors of
+//! the currents' derivatives are directions in parameter space, each with the change of the currents that it makes over its whole range. A
 //! direction is excited only if this change stands above the residuals, as far as these do not average out: white residuals do, correlated
 //! ones count by their independent number. And it stands above what the model itself is worth: a simulation without any noise has an
 //! inverter's ripple in its rows, to which anything can be fitted. What the faults could explain as well does not count.
@@ -27,8 +27,9 @@ const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
 /// A parameter is open if this part of its axis, or more, lies in directions that are not excited, as at operating points.
 const OPEN_PART: f64 = 0.1;
 
-/// Whether the simulated currents leave a parameter open: in the order of the parameters. An inductance that the operating points leave open,
-/// `of_points`, may have come out anywhere, and the smaller it is the more the currents depend on it: it counts as equal to the other.
+/// Whether the simulated currents leave a parameter open: in the order of the parameters. An inductance that the operating points leave
+/// open, `of_points`, may have come out anywhere, and the smaller it is the more the currents depend on it: it counts as equal to the
+/// other.
 ///
 /// # Errors
 /// If the rows are too few to be simulated.

@@ -97,7 +97,9 @@ impl SaturationFinding {
     ) -> Option<Self> {
         misfit?;
         let best = saturation_equations::explain(points, losses, excitation, motor, request)?;
-        Some(Self::at((points, &best.lost), best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
+        // A loss beside terms of saturation bends to what these cannot describe: no voltage is taken off the fluxes for it.
+        let none = vec![[0.0; 2]; points.len()];
+        Some(Self::at((points, &none), best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
     }
 
     /// What simulated currents with terms of saturation say of it, over these rows; `of_points` is what the operating points say.

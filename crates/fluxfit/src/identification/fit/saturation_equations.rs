@@ -110,8 +110,6 @@ pub(super) struct Solved {
     pub(super) motor: Motor,
     /// Standard uncertainty of R_s, ohm.
     pub(super) rs_uncertainty: f64,
-    /// Per point, the voltages that dead time and devices take, V.
-    pub(super) lost: Vec<[f64; 2]>,
     causes: Vec<(Cause, f64)>,
     /// Schwarz's, lowest is best.
     criterion: f64,
@@ -194,12 +192,9 @@ impl Equations<'_> {
             Known::Prior { standard_error, .. } => standard_error,
             Known::Nothing => range,
         };
-        let volts = &x[directions.len() + causes.len()..];
-        let lost = |w: usize, axis: usize| losses.iter().zip(volts).map(|(loss, volts)| volts * loss.voltages[w][axis]).sum::<f64>();
         Solved {
             motor,
             rs_uncertainty,
-            lost: (0..points.len()).map(|w| [lost(w, 0), lost(w, 1)]).collect(),
             causes: causes.iter().copied().zip(x[directions.len()..].iter().copied()).collect(),
             // One is what noise alone leaves of each equation.
             criterion: count * (1.0 + chi_squared / count).ln() + unknowns as f64 * count.ln(),

@@ -64,7 +64,15 @@ impl SteadyFit {
         let harmonics = harmonics(log, &points, &excitation, &possible, request);
         let losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
         let estimate = Estimate::solve(&points, &excitation, request, &losses);
-        let (estimate, misfit) = misfit::admit(&points, &excitation, estimate, request, &losses);
+        let (mut estimate, mut misfit) = misfit::admit(&points, &excitation, estimate, request, &losses);
+        let mut losses = losses;
+        // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
+        // saturation.
+        if misfit.is_some() && estimate.motor.rs < 0.0 && !losses.is_empty() {
+            losses.clear();
+            let without = Estimate::solve(&points, &excitation, request, &losses);
+            (estimate, misfit) = misfit::admit(&points, &excitation, without, request, &losses);
+        }
         let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
         let finding = Finding {
             motor: estimate.motor,

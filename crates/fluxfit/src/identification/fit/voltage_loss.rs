@@ -36,9 +36,9 @@ const USUAL_CARRIER: f64 = 20e3;
 /// Bus voltage over the largest phase voltage of a log that says nothing else of it. It is at least sqrt 3; most drives keep a reserve.
 const BUS_OVER_VOLTAGE: f64 = 2.0;
 
-/// Ripple of a phase current to either side, as a part of `U_dc T / L` with the time `T` of a row: an eighth for a carrier period at a duty of
-/// one half, and two rows to a carrier period, as in drives that update twice.
-const RIPPLE: f64 = 1.0 / 4.0;
+/// Ripple of a phase current to either side, as a part of `U_dc / (L f_carrier)`: an eighth at a duty of one half with the star point
+/// fixed, about that over a turn.
+const RIPPLE: f64 = 1.0 / 8.0;
 
 /// The fundamental over what the harmonic says, and its uncertainty: where the current's sign changes gradually, or the inductance behind
 /// the harmonic is not known well, the harmonic says more than there is. Of simulated drives: 0.4 to 1.1.

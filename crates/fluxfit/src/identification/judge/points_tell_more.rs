@@ -1,8 +1,8 @@
 //! Whether the operating points tell more than the simulated currents do.
 //!
 //! Rows that are every n-th of a drive's periods, filtered columns, or a fault that no term describes leave residuals of the simulated
-//! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals are
-//! not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
+//! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals
+//! are not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
 //! answers.
 //!
 //! Where the simulated currents leave a whole combination of parameters open, or all that they leave is rounding, their parameters were
