@@ -195,7 +195,7 @@ fn without_dead_time_none_is_found() {
 /// Device drops in a log without the angle: their harmonics tell them, and R_s, which they would make 30 % too large, is right.
 #[test]
 fn losses_without_an_angle_are_found() {
-    let mut recording = rig(|scenario| (scenario.inverter.switch_drop, scenario.inverter.diode_drop) = (1.5, 1.0));
+    let mut recording = rig(|scenario| (scenario.inverter.switch_drop, scenario.inverter.diode_drop) = (1.2, 1.2));
     recording.columns.theta_e = None;
     let found = found(&recording);
     assert!(found.output.as_ref().unwrap().has(Fault::DeadTimeWithoutAngle));

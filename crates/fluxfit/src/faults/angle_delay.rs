@@ -11,7 +11,7 @@ pub struct AngleDelay {
     pub time: f64,
 }
 
-/// Longest delay, s: a drive whose angle is older does not run at speed.
+/// Longest delay, s: a drive whose angle is older does not run at speed. An angle that was advanced is early by a period at most.
 const LONGEST: f64 = 5e-3;
 
 /// Usual delay, s: a period of a drive.
@@ -31,7 +31,7 @@ pub(super) static FAULT: Description<AngleDelay> = Description {
         usual_size: |_, _| USUAL,
     }],
     starts: present_state,
-    is_physical: |state, _, _| state.time.abs() < LONGEST,
+    is_physical: |state, _, _| state.time > -USUAL && state.time < LONGEST,
 };
 
 /// Cosine and sine of the turn from the frame of the late angle to the magnet's, which lies ahead of it: backward by `omega_e` times the

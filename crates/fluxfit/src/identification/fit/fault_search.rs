@@ -82,6 +82,7 @@ const NOTICEABLE: f64 = 0.02;
 pub(crate) const LEAST_RESIDUAL: f64 = 1e-4;
 
 /// The search, and where it stands.
+#[derive(Clone)]
 pub(crate) struct FaultSearch<'a> {
     /// The output error under each reading of the voltages.
     pub(crate) objectives: &'a [(VoltageTiming, OutputError)],
@@ -92,9 +93,18 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) unknowns: Vec<Unknown>,
     pub(crate) cost: f64,
     pub(crate) voltage_accuracy: f64,
+    /// Faults that were taken in a search before, and whose values lost their meaning beside others.
+    pub(crate) ruled_out: Vec<Fault>,
 }
 
 impl FaultSearch<'_> {
+    /// The first of these faults whose values have no physical meaning any more.
+    pub(crate) fn unphysical(&self, trials: &[FaultTrial]) -> Option<Fault> {
+        let mut taken = trials.iter().filter(|trial| trial.outcome == FaultOutcome::Taken && trial.fault != Fault::Disturbance);
+        let peak = self.objective().peak_current();
+        taken.find(|trial| !trial.fault.is_physical(&self.drive.faults, &self.drive.motor, peak)).map(|trial| trial.fault)
+    }
+
     /// The output error under the reading that fits best now.
     fn objective(&self) -> &OutputError {
         &self.objectives[self.reading].1
@@ -168,6 +178,8 @@ impl FaultSearch<'_> {
         let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = parallel::map(&left, |fault| {
             let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
                 FaultOutcome::Covered
+            } else if this.ruled_out.contains(fault) {
+                FaultOutcome::NotPhysical
             } else if !fault.angle_need().is_met(this.objective().angle_known(), this.objective().angle_traced()) {
                 FaultOutcome::NeedsAngle
             } else {

@@ -49,6 +49,9 @@ const WHITE: f64 = 0.1;
 /// An observer's gain below which little is left for another reading of the voltages to explain.
 const SMALL_GAIN: f64 = 0.2;
 
+/// Faults that are ruled out one after the other because their values run away beside others: each costs a search.
+const MOST_RULED_OUT: usize = 3;
+
 /// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there.
 pub(super) fn choose(
     log: &Log,
@@ -72,8 +75,16 @@ pub(super) fn choose(
             break;
         }
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
-        let search =
-            FaultSearch { objectives: &objectives, reading: place, priors: &priors, drive, unknowns: free.clone(), cost, voltage_accuracy };
+        let search = FaultSearch {
+            objectives: &objectives,
+            reading: place,
+            priors: &priors,
+            drive,
+            unknowns: free.clone(),
+            cost,
+            voltage_accuracy,
+            ruled_out: Vec::new(),
+        };
         let one = with_faults(search, &objectives, &priors);
         let explained = one.explained;
         if best.as_ref().is_none_or(|best| one.criterion < best.criterion) {
@@ -91,8 +102,15 @@ pub(super) fn choose(
 }
 
 /// The faults that a log carries under a reading, and the reading that suits them.
-fn with_faults(mut search: FaultSearch, objectives: &[(VoltageTiming, OutputError)], priors: &[PriorResidual]) -> Chosen {
-    let terms = search.run();
+fn with_faults(start: FaultSearch, objectives: &[(VoltageTiming, OutputError)], priors: &[PriorResidual]) -> Chosen {
+    let mut search = start.clone();
+    let mut terms = search.run();
+    for _ in 0..MOST_RULED_OUT {
+        let Some(fault) = search.unphysical(&terms) else { break };
+        let ruled_out = [search.ruled_out, vec![fault]].concat();
+        search = FaultSearch { ruled_out, ..start.clone() };
+        terms = search.run();
+    }
     let FaultSearch { drive, unknowns, cost, reading, .. } = search;
     let (reading, objective) = &objectives[reading];
     let residuals = objective.residuals(&drive);
