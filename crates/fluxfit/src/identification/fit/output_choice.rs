@@ -49,8 +49,8 @@ const WHITE: f64 = 0.1;
 /// An observer's gain below which little is left for another reading of the voltages to explain.
 const SMALL_GAIN: f64 = 0.2;
 
-/// Faults that are ruled out one after the other because their values run away beside others: each costs a search.
-const MOST_RULED_OUT: usize = 3;
+/// Faults that are ruled out because their values run away beside others: each costs a search.
+const MOST_RULED_OUT: usize = 1;
 
 /// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there.
 pub(super) fn choose(
