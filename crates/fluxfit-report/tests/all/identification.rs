@@ -18,9 +18,10 @@ pub(crate) fn page(title: &str, log: &Log, found: &Identification, method: Optio
     html(&Report { title, notes: &notes, identification: Some((found, method)), ..report(log, found, &origin()) })
 }
 
+/// Of voltages at the terminals, of which no inverter takes any.
 fn identified(currents: &[(f64, f64)], settings: &Request) -> (Identification, String) {
     let log = log(currents, 0.1);
-    let found = identify(&log, settings).unwrap().identification;
+    let found = identify(&log, &Request { voltage_accuracy: 0.0, ..settings.clone() }).unwrap().identification;
     let page = page("drive.csv", &log, &found, found.method);
     (found, page)
 }

@@ -234,8 +234,8 @@ impl<V: Number> Acting<V> {
     }
 
     /// The current in the motor, `i`, and what its filter makes of it, `y`, corrected for the error of `y` by the observer of a disturbed
-    /// motor. A filter passes on a part of a change of the current within a period: the current is corrected by that much more. And it holds
-    /// noise that came before it.
+    /// motor. A filter passes on a part of a change of the current within a period: the current is corrected by that much more. And it
+    /// holds noise that came before it.
     #[inline(always)]
     pub(crate) fn corrected(&self, i: [V; 2], y: [V; 2], error: [V; 2]) -> [[V; 2]; 2] {
         if !self.kinds.observer && !self.kinds.filter {

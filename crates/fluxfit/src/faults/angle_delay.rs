@@ -61,8 +61,8 @@ mod tests {
 
     #[test]
     fn the_turn_is_that_of_the_angle() {
-        for (delay, omega_e) in [(1e-4, 3000.0), (-2e-4, 5000.0), (0.0, 100.0)] {
-            let (sin, cos) = (-delay * omega_e as f64).sin_cos();
+        for (delay, omega_e) in [(1e-4_f64, 3000.0), (-2e-4, 5000.0), (0.0, 100.0)] {
+            let (sin, cos) = (-delay * omega_e).sin_cos();
             let found = turn(delay, omega_e);
             assert!((found[0] - cos).hypot(found[1] - sin) < 1e-10, "{found:?}");
         }

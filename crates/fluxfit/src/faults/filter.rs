@@ -144,7 +144,7 @@ fn is_physical(time_constant: f64) -> bool {
 }
 
 impl Filter {
-    /// Of the currents: `a` and `c` over a period of this length, s, and 1 for a filter that turns with the stator, 0 for one that turns with the rotor: of
+    /// Of the currents: `a` and `c` over a period of this length, s, and 1 for a filter in the stator's frame, 0 for one in the rotor's: of
     /// that, `c` is `a`.
     pub(super) fn weights(self, period: f64) -> [f64; 3] {
         let decay = |periods: f64| if periods > 0.0 { (-1.0 / periods).exp() } else { 0.0 };

@@ -108,8 +108,8 @@ pub(super) struct Angles {
     pub(super) logged: Vec<f64>,
     /// As the rotor most likely was: without the steps of an encoder.
     pub(super) rotor: Vec<f64>,
-    /// Whether the log has it. Without, both are the speed, integrated from the segment's first row on: still a frame that is fixed to the rotor, but
-    /// at an unknown angle to the magnet's.
+    /// Whether the log has it. Without, both are the speed, integrated from the segment's first row on: still a frame that is fixed to the
+    /// rotor, but at an unknown angle to the stator.
     pub(super) known: bool,
 }
 

@@ -38,7 +38,7 @@ pub struct OutputError {
     /// Largest measured current vector, A.
     peak_current: f64,
     /// The faults of the drive whose motor a search looks for.
-    held: Faults,
+    held: Box<Faults>,
 }
 
 impl OutputError {
@@ -67,12 +67,12 @@ impl OutputError {
             return Err(ErrorKind::TooShort { rows: log.rows(), least }.into());
         }
         let peak_current = segments.iter().flat_map(|segment| &segment.measured).map(|i| i.magnitude()).fold(0.0, f64::max);
-        Ok(Self { simulated: Rows::of(segments), rows, peak_current, held: Faults::default() })
+        Ok(Self { simulated: Rows::of(segments), rows, peak_current, held: Box::default() })
     }
 
     /// The same fitness of motors in a drive with these faults.
     pub fn holding(self, held: Faults) -> Self {
-        Self { held, ..self }
+        Self { held: Box::new(held), ..self }
     }
 
     /// Rows whose currents are compared.
@@ -109,7 +109,7 @@ impl OutputError {
 
     /// Cost of one motor, A².
     pub fn cost(&self, motor: &Motor) -> f64 {
-        self.cost_of(&Adjustable { motor: *motor, faults: self.held })
+        self.cost_of(&Adjustable { motor: *motor, faults: *self.held })
     }
 
     /// Cost of one motor in an imperfect drive, A².
@@ -167,7 +167,7 @@ impl Objective for OutputError {
 
     fn evaluate(&self, candidates: &[f64], costs: &mut [f64]) {
         let (candidates, _) = candidates.as_chunks::<PARAMETERS>();
-        let drives = candidates.iter().map(|candidate| Adjustable { motor: Motor::from(*candidate), faults: self.held });
+        let drives = candidates.iter().map(|candidate| Adjustable { motor: Motor::from(*candidate), faults: *self.held });
         costs.copy_from_slice(&self.simulated.costs(&drives.collect::<Vec<_>>()));
     }
 }
