@@ -13,6 +13,7 @@ use super::{
         saturation::SaturationFinding,
         steady::SteadyFit,
         swarm::{self, Search},
+        voltage_loss::is_control_rate,
     },
     judge::{
         points_tell_more::points_tell_more,
@@ -130,7 +131,7 @@ fn by_excitation(
     // Operating points that tell all parameters excite the currents as well.
     let is_doubtful = steady.is_none() || of_points.contains(&true);
     let open = if is_doubtful { output_excitation::open(log, &output, &of_points, request)? } else { [false; PARAMETERS] };
-    if request.model.is_none() && steady.is_some_and(|points| points_tell_more(points, &output, &open, request)) {
+    if request.model.is_none() && steady.is_some_and(|points| points_tell_more(points, &output, &open, !is_control_rate(log), request)) {
         return Ok((ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore }, None));
     }
     output.finding.leave_open(&open, &output_excitation::reach(log, &output, request));

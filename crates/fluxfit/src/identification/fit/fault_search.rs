@@ -93,7 +93,7 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) unknowns: Vec<Unknown>,
     pub(crate) cost: f64,
     pub(crate) voltage_accuracy: f64,
-    /// Faults that were taken in a search before, and whose values lost their meaning beside others.
+    /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
     pub(crate) ruled_out: Vec<Fault>,
 }
 
@@ -178,7 +178,7 @@ impl FaultSearch<'_> {
         let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = parallel::map(&left, |fault| {
             let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
                 FaultOutcome::Covered
-            } else if this.ruled_out.contains(fault) {
+            } else if this.ruled_out.iter().any(|ruled_out| ruled_out.family() == fault.family()) {
                 FaultOutcome::NotPhysical
             } else if !fault.angle_need().is_met(this.objective().angle_known(), this.objective().angle_traced()) {
                 FaultOutcome::NeedsAngle

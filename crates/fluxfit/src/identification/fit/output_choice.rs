@@ -50,7 +50,7 @@ const WHITE: f64 = 0.1;
 const SMALL_GAIN: f64 = 0.2;
 
 /// Faults that are ruled out because their values run away beside others: each costs a search.
-const MOST_RULED_OUT: usize = 1;
+const MOST_RULED_OUT: usize = 2;
 
 /// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there.
 pub(super) fn choose(

@@ -3,7 +3,8 @@
 //! Rows that are every n-th of a drive's periods, filtered columns, or a fault that no term describes leave residuals of the simulated
 //! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals
 //! are not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
-//! answers.
+//! answers. Where rows come slower than drives control currents, the points answer even if they cannot contradict each other: the voltage
+//! between the rows is not in the log.
 //!
 //! Where the simulated currents leave a whole combination of parameters open, or all that they leave is rounding, their parameters were
 //! fitted to what no parameter explains. Operating points leave such directions at zero, so they answer if they leave nothing else open.
@@ -17,8 +18,18 @@ use super::{
 };
 use crate::{faults::Fault, motor::PARAMETERS};
 
-/// Whether they do; `open`: what the simulated currents leave open.
-pub(crate) fn points_tell_more(points: &SteadyFit, currents: &OutputFit, open: &[bool; PARAMETERS], request: &Request) -> bool {
+/// Filters of what is logged.
+const FILTERS: [Fault; 4] = [Fault::CurrentFilter, Fault::DqCurrentFilter, Fault::DqVoltageFilter, Fault::DqFilter];
+
+/// Whether they do; `open`: what the simulated currents leave open; `may_be_decimated`: whether rows come slower than drives control
+/// currents.
+pub(crate) fn points_tell_more(
+    points: &SteadyFit,
+    currents: &OutputFit,
+    open: &[bool; PARAMETERS],
+    may_be_decimated: bool,
+    request: &Request,
+) -> bool {
     if points.misfit.is_some() {
         return false;
     }
@@ -30,6 +41,11 @@ pub(crate) fn points_tell_more(points: &SteadyFit, currents: &OutputFit, open: &
         return points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told));
     }
     let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
+    if may_be_decimated {
+        // What passes for a filter there is the voltage between the rows.
+        let is_filtered = FILTERS.into_iter().any(|filter| currents.has(filter));
+        return (!is_explained || is_filtered) && points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told));
+    }
     let can_contradict = points.estimate.redundancy > 0;
     !is_explained && can_contradict && width(&points.finding, request) < width(&currents.finding, request)
 }
