@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::{path::Path, process::Command};
 
 #[test]
-fn the_saturating_example_has_no_constant_parameters() {
+fn no_constant_of_the_saturating_example_is_identified() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("rig.csv").display().to_string();
@@ -17,6 +17,11 @@ fn the_saturating_example_has_no_constant_parameters() {
     assert_eq!(run.status.code(), Some(1));
     let document: Value = serde_json::from_slice(&run.stdout).unwrap();
     for (key, parameter) in document["parameters"].as_object().unwrap() {
-        assert!(parameter["verdict"] == "not-identifiable" && parameter["value"].is_null(), "{key}: {parameter}");
+        assert!(parameter["verdict"] != "identified", "{key}: {parameter}");
     }
+    // psi_f may have a wide interval; the inductances fall to half, and have no value.
+    for key in ["ld", "lq"] {
+        assert!(document["parameters"][key]["value"].is_null(), "{key}");
+    }
+    assert!(document["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "saturation"));
 }
