@@ -36,11 +36,6 @@ impl Display for Reason {
                 "unknown voltages disturb the motor, and without the electrical angle they cannot be told from dead time or unequal \
                  current sensors, which move every parameter"
             ),
-            Self::CorrelatedResiduals { correlation } => write!(
-                f,
-                "the residuals of the simulated currents are not noise (neighbouring rows are correlated by {correlation:.2}): \
-                 something is in the log that the model does not have"
-            ),
             Self::CurrentsMissed { fraction } => write!(
                 f,
                 "the simulated currents miss the measured ones by {:.0} % of the largest current, and not by noise: no motor makes \

@@ -52,10 +52,6 @@ impl Display for Remedy {
             Self::LogAngle => {
                 write!(f, "log theta_e too (electrical, as the drive uses it), or hold the drive still and use the steady model")
             }
-            Self::InspectResiduals => write!(
-                f,
-                "compare with the steady model, look at the residuals in the report, and log theta_e and u_dc too if the drive has them"
-            ),
             Self::CheckSigns { units } => write!(
                 f,
                 "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of \

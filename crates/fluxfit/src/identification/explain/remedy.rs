@@ -59,8 +59,6 @@ pub enum Remedy {
     /// Log the electrical angle too ([`Columns::theta_e`](crate::Columns::theta_e)), or hold currents and speed constant and use the steady
     /// model.
     LogAngle,
-    /// Compare with the steady model, look at the residuals, and log electrical angle and DC voltage too.
-    InspectResiduals,
     /// Check signs and order of the columns: motor convention, q leading d by 90 degrees.
     CheckSigns {
         /// Whether units and pole pairs should be checked too.
@@ -93,7 +91,6 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding) -> Op
         Reason::ShortCircuit => Remedy::FixOne,
         Reason::Negative | Reason::OtherNegative { .. } => Remedy::CheckSigns { units: false },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
-        Reason::CorrelatedResiduals { .. } => Remedy::InspectResiduals,
         Reason::DisturbedWithoutAngle => Remedy::LogAngle,
         Reason::Wide { part, half_width } => narrower(*part, *half_width, || measure().unwrap_or(Remedy::SpreadPoints { parameter })),
     })

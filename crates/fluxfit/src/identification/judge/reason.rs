@@ -48,11 +48,6 @@ pub enum Reason {
     },
     /// Unknown voltages disturb the motor, and without the electrical angle they cannot be told from faults of the drive.
     DisturbedWithoutAngle,
-    /// Neighbouring residuals are correlated: the model lacks something that is in the log.
-    CorrelatedResiduals {
-        /// Correlation of residuals of neighbouring rows, from 0 to 1.
-        correlation: f64,
-    },
     /// The simulated currents differ from the measured ones by far more than noise: voltages and currents do not belong together.
     CurrentsMissed {
         /// Root mean square of the difference, as a fraction of the largest current.
