@@ -138,6 +138,14 @@ pub(crate) enum Timing {
     /// As 2, with the vector given in the dq frame at the row
     #[value(name = "2-row")]
     TwoRow,
+    /// As 0, held in the rotor's frame
+    #[value(name = "0-rotor")]
+    ZeroRotor,
+    /// As 1, held in the rotor's frame
+    #[value(name = "1-rotor")]
+    OneRotor,
+    /// Mean over the row's own span, as the currents
+    Averaged,
 }
 
 impl Timing {
@@ -145,6 +153,7 @@ impl Timing {
     pub(crate) fn stated(self) -> Option<VoltageTiming> {
         let delayed = |delay| Some(VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle });
         let at_row = |delay| Some(VoltageTiming::Delayed { delay, frame: VoltageFrame::Row });
+        let in_rotor = |delay| Some(VoltageTiming::Delayed { delay, frame: VoltageFrame::Rotor });
         match self {
             Self::Auto => None,
             Self::Centered => Some(VoltageTiming::Centered),
@@ -154,6 +163,9 @@ impl Timing {
             Self::ZeroRow => at_row(0),
             Self::OneRow => at_row(1),
             Self::TwoRow => at_row(2),
+            Self::ZeroRotor => in_rotor(0),
+            Self::OneRotor => in_rotor(1),
+            Self::Averaged => Some(VoltageTiming::Averaged),
         }
     }
 }

@@ -118,7 +118,11 @@ impl<V> Acting<V> {
     #[inline(always)]
     pub(crate) fn of(kinds: FaultKinds, period: f64, lanes: impl Fn(&dyn Fn(&Faults) -> f64) -> V) -> Self {
         Self {
-            dead_time: [lanes(&|f| f.dead_time.voltage), lanes(&|f| f.dead_time.width), lanes(&|f| f.dead_time.ripple)],
+            dead_time: [
+                lanes(&|f| f.dead_time.voltage),
+                lanes(&|f| f.dead_time.width.hypot(f.dead_time.least_width)),
+                lanes(&|f| f.dead_time.ripple),
+            ],
             phase: [lanes(&|f| f.dead_time.phase.cos()), lanes(&|f| f.dead_time.phase.sin())],
             current_offset: [lanes(&|f| f.current_offset.current.alpha), lanes(&|f| f.current_offset.current.beta)],
             imbalance: [lanes(&|f| f.current_gains.imbalance.alpha), lanes(&|f| f.current_gains.imbalance.beta)],

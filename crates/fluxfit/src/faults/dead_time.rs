@@ -41,6 +41,9 @@ pub struct DeadTime {
     /// Where the angle is not known: the angle of phase a less the integral of the speed, electrical rad. It is only told up to a sixth
     /// of a turn, because six turns of it give the same loss.
     pub phase: f64,
+    /// What the width is at least, A, in a fit: below it simulated currents near zero would go their own ways at the least change of
+    /// anything.
+    pub least_width: f64,
 }
 
 /// The carrier's half in which a row of the log begins.
@@ -51,6 +54,9 @@ pub(crate) fn carrier_half(row: usize) -> f64 {
 /// Widths of the ramp from which a fit starts, as fractions of the largest current: from almost none to a ripple nearly as large as the
 /// current. The cost has a kink wherever the ramp's end passes a measured current, so one start does not find them all.
 const WIDTHS: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8];
+
+/// The least width as a fraction of the largest current: half the narrowest one that a fit starts from.
+const LEAST_WIDTH: f64 = 0.005;
 
 /// Angles of phase a from which a fit starts where the angle is not known, as fractions of the sixth of a turn after which the loss
 /// repeats: near enough to the right one for its harmonics to find it.
@@ -71,7 +77,8 @@ const VOLTAGE: NumberDescription<DeadTime> = NumberDescription {
 
 const WIDTH: NumberDescription<DeadTime> = NumberDescription {
     names: Names { key: "dead_time_width", label: "phase current below which less is lost", unit: "A" },
-    get: |state| state.width,
+    // Its sign means nothing: a fit that steps across zero comes back on the other side instead of losing its way where the loss is a step.
+    get: |state| state.width.abs(),
     set: |state, value| state.width = value,
     usual_size: peak_current,
 };
@@ -99,7 +106,7 @@ pub(super) static FAULT: Description<DeadTime> = Description {
     angle: AngleNeed::Known,
     alters_measured_current: false,
     numbers: &[VOLTAGE, WIDTH, RIPPLE],
-    starts: |state, peak| WIDTHS.iter().map(|width| DeadTime { width: width * peak, ..*state }).collect(),
+    starts: |state, peak| WIDTHS.iter().map(|width| DeadTime { width: width * peak, least_width: LEAST_WIDTH * peak, ..*state }).collect(),
     is_physical: |state, _, _| state.takes_voltage(),
 };
 
@@ -112,7 +119,8 @@ pub(super) static WITHOUT_ANGLE: Description<DeadTime> = Description {
     alters_measured_current: false,
     numbers: &[VOLTAGE, WIDTH, RIPPLE, PHASE],
     starts: |state, peak| {
-        let start = |width: &f64, phase: &f64| DeadTime { width: width * peak, phase: SIXTH * phase, ..*state };
+        let start =
+            |width: &f64, phase: &f64| DeadTime { width: width * peak, phase: SIXTH * phase, least_width: LEAST_WIDTH * peak, ..*state };
         WIDTHS_WITH_PHASE.iter().flat_map(|width| PHASES.iter().map(move |phase| start(width, phase))).collect()
     },
     is_physical: |state, _, _| state.takes_voltage(),

@@ -3,6 +3,10 @@
 //! The columns hold either the commands of a drive, `delay` periods before they act, or *centred* voltages: the mean of the two periods
 //! around the row, in the frame at the row. Centred voltages are converted in the stator's frame, `V_k = 2 U_k - V_(k-1)`; the first
 //! vector is not in the log, and its error alternates in sign from period to period.
+//!
+//! An inverter holds its voltage in the stator. Some simulators, and logs whose rows lie many of the drive's periods apart, hold it in the
+//! rotor's frame. Rows that are means over their own span hold the means of the voltage as of the current: the moving mean of the current
+//! obeys the motor's equation with the moving mean of the voltage, which goes about straight from row to row.
 
 use crate::{
     frames::{AlphaBeta, Dq},
@@ -22,6 +26,8 @@ pub enum VoltageTiming {
         /// The frame of its numbers.
         frame: VoltageFrame,
     },
+    /// The mean over the row's own span, as the currents are.
+    Averaged,
 }
 
 /// The frame in which a delayed voltage is written.
@@ -31,11 +37,22 @@ pub enum VoltageFrame {
     Middle,
     /// At the row.
     Row,
+    /// At every instant: the voltage stands still in the rotor's frame.
+    Rotor,
+}
+
+/// Where a voltage stands still over a period.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Held {
+    /// In the stator, as an inverter's.
+    InStator,
+    /// In the rotor's frame.
+    InRotor,
 }
 
 impl VoltageTiming {
     /// All timings that are known from drives.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
         Self::Delayed { delay: 1, frame: VoltageFrame::Middle },
@@ -43,6 +60,9 @@ impl VoltageTiming {
         Self::Delayed { delay: 0, frame: VoltageFrame::Row },
         Self::Delayed { delay: 1, frame: VoltageFrame::Row },
         Self::Delayed { delay: 2, frame: VoltageFrame::Row },
+        Self::Delayed { delay: 0, frame: VoltageFrame::Rotor },
+        Self::Delayed { delay: 1, frame: VoltageFrame::Rotor },
+        Self::Averaged,
     ];
 
     /// Name in files and on the command line.
@@ -55,6 +75,9 @@ impl VoltageTiming {
             Self::Delayed { delay: 0, frame: VoltageFrame::Row } => "0-row",
             Self::Delayed { delay: 1, frame: VoltageFrame::Row } => "1-row",
             Self::Delayed { frame: VoltageFrame::Row, .. } => "2-row",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Rotor } => "0-rotor",
+            Self::Delayed { frame: VoltageFrame::Rotor, .. } => "1-rotor",
+            Self::Averaged => "averaged",
         }
     }
 
@@ -70,15 +93,33 @@ impl VoltageTiming {
             }
             Self::Delayed { delay: 1, frame: VoltageFrame::Row } => "what acts one period later, in the frame at the row",
             Self::Delayed { frame: VoltageFrame::Row, .. } => "what acts two periods later, in the frame at the row",
+            Self::Delayed { delay: 0, frame: VoltageFrame::Rotor } => {
+                "what acts over the period that begins at the row, held in the rotor's frame"
+            }
+            Self::Delayed { frame: VoltageFrame::Rotor, .. } => "what acts one period later, held in the rotor's frame",
+            Self::Averaged => "the mean over the row's own span, as the currents",
         }
     }
 
     /// Rows at a segment's start whose acting voltage is not in the log.
     pub(super) fn lost_rows(self) -> usize {
         match self {
-            Self::Centered => 0,
+            Self::Centered | Self::Averaged => 0,
             Self::Delayed { delay, .. } => delay,
         }
+    }
+
+    /// Where its voltages stand still.
+    pub(super) fn held(self) -> Held {
+        match self {
+            Self::Averaged | Self::Delayed { frame: VoltageFrame::Rotor, .. } => Held::InRotor,
+            Self::Centered | Self::Delayed { .. } => Held::InStator,
+        }
+    }
+
+    /// Whether no inverter that logs each of its periods does so.
+    pub(crate) fn is_unusual(self) -> bool {
+        self.held() == Held::InRotor
     }
 }
 
@@ -89,7 +130,7 @@ pub(super) struct Period {
     pub(super) length: f64,
     /// Mean speed, electrical rad/s.
     pub(super) omega_e: f64,
-    /// The voltage that acts, V, in the frame at its middle.
+    /// The voltage that acts, V, in the frame at its middle, or in the rotor's where it is held there.
     pub(super) u: Dq,
     /// The stator seen from the rotor at its middle: the electrical angle, rad.
     pub(super) theta_e: f64,
@@ -120,6 +161,7 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
     let first = rows.start + reading.lost_rows();
     let frame = |row: usize| angles.logged[row - rows.start];
     let logged = |row: usize| Dq { d: columns.ud[row], q: columns.uq[row] };
+    let in_rotor_frame = |row: usize| logged(row).turned(frame(row) - angles.rotor[row - rows.start]);
     // For centred columns: the voltage that acted over the period before, in the stator's frame. The first one is not in the log; the
     // mean at the first row stands in for it.
     let mut before = logged(rows.start).to_alpha_beta(frame(rows.start));
@@ -132,29 +174,36 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
         .map(|row| {
             let middle = 0.5 * (angles.rotor[row - rows.start] + angles.rotor[row + 1 - rows.start]);
             let length = columns.t[row + 1] - columns.t[row];
-            let stator = match reading {
+            let u = match reading {
                 VoltageTiming::Centered => {
                     let mean = logged(row).to_alpha_beta(frame(row));
                     before = AlphaBeta { alpha: 2.0 * mean.alpha - before.alpha, beta: 2.0 * mean.beta - before.beta };
-                    before
+                    before.to_dq(middle)
                 }
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => {
                     // The drive advanced the angle by its speed times the delay.
                     let ahead = columns.omega_e[row - delay] * (delay as f64 + 0.5) * length;
-                    logged(row - delay).to_alpha_beta(frame(row - delay) + ahead)
+                    logged(row - delay).to_alpha_beta(frame(row - delay) + ahead).to_dq(middle)
                 }
-                VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => logged(row - delay).to_alpha_beta(frame(row - delay)),
+                VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => {
+                    logged(row - delay).to_alpha_beta(frame(row - delay)).to_dq(middle)
+                }
+                VoltageTiming::Delayed { delay, frame: VoltageFrame::Rotor } => in_rotor_frame(row - delay),
+                VoltageTiming::Averaged => {
+                    let (start, end) = (in_rotor_frame(row), in_rotor_frame(row + 1));
+                    Dq { d: 0.5 * (start.d + end.d), q: 0.5 * (start.q + end.q) }
+                }
             };
             let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
             Period {
                 length,
                 omega_e: turn / length,
-                u: stator.to_dq(middle),
+                u,
                 theta_e: middle,
                 acceleration: if angles.known { 0.0 } else { acceleration(row) },
                 advance_per_lag: match reading {
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
-                    VoltageTiming::Centered | VoltageTiming::Delayed { .. } => 0.0,
+                    VoltageTiming::Centered | VoltageTiming::Delayed { .. } | VoltageTiming::Averaged => 0.0,
                 },
                 time: (columns.t[row] + 0.5 * length - first_time) / (last_time - first_time) - 0.5,
             }

@@ -4,6 +4,7 @@
 //! operation alike, the fused multiplication and addition too. A processor without that operation computes it by a slow function.
 
 use super::{
+    acting_voltage::Held,
     adjustable::Adjustable,
     simulated_segment::{LINEAR_UNKNOWNS, SimulatedSegment},
     simulation::{Drives, Sums},
@@ -42,8 +43,8 @@ pub(super) struct Simulated {
 }
 
 impl Rows {
-    pub(super) fn of(mut segments: Vec<SimulatedSegment>) -> Self {
-        let plan = TransitionPlan::of(segments.iter().flat_map(|segment| &segment.periods));
+    pub(super) fn of(mut segments: Vec<SimulatedSegment>, held: Held) -> Self {
+        let plan = TransitionPlan::of(segments.iter().flat_map(|segment| &segment.periods), held);
         segments.iter_mut().for_each(|segment| segment.plan(&plan));
         let lengths = segments.iter().flat_map(|segment| &segment.periods).map(|period| period.length);
         let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
@@ -295,7 +296,11 @@ mod tests {
         frames::AlphaBeta,
         log::{Columns, Log},
         motor::Motor,
-        objective::{acting_voltage::VoltageTiming, output_error::OutputError, transition::Transition},
+        objective::{
+            acting_voltage::{VoltageFrame, VoltageTiming},
+            output_error::OutputError,
+            transition::Transition,
+        },
         optimizer::Draws,
     };
 
@@ -323,7 +328,7 @@ mod tests {
     }
 
     fn rows(log: &Log, timing: VoltageTiming) -> Rows {
-        Rows::of(vec![SimulatedSegment::of(log, &(0..log.rows()), timing)])
+        Rows::of(vec![SimulatedSegment::of(log, &(0..log.rows()), timing)], timing.held())
     }
 
     fn motors(count: usize) -> Vec<Adjustable> {
@@ -335,7 +340,7 @@ mod tests {
     /// Drives with every fault, one more than the other.
     fn faulty(count: usize) -> Vec<Adjustable> {
         let faults = |x: f64| Faults {
-            dead_time: DeadTime { voltage: 2.0 * x, width: 0.5, ripple: 0.1 * x, phase: 0.1 },
+            dead_time: DeadTime { voltage: 2.0 * x, width: 0.5, ripple: 0.1 * x, phase: 0.1, least_width: 0.02 },
             angle_offset: AngleOffset { angle: 0.05 * x },
             current_offset: CurrentOffset { current: AlphaBeta { alpha: 0.1 * x, beta: -0.05 } },
             current_gains: CurrentGains { imbalance: AlphaBeta { alpha: 0.01, beta: 0.02 * x }, turn: 0.01 },
@@ -362,6 +367,34 @@ mod tests {
             errors.extend([measured.d - i.d, measured.q - i.q]);
         }
         errors
+    }
+
+    /// Voltages that stand still in the rotor's frame and hold a current there: it stays, whatever the rows' lengths.
+    #[test]
+    fn a_motor_in_its_steady_state_stays_there() {
+        let hundred: Vec<f64> = (0..100).map(|k| 1e-4 * (1.0 + 0.003 * f64::from(k))).collect();
+        let (i, omega_e) = (Dq { d: -3.0, q: 8.0 }, 4000.0);
+        let u = MOTOR.steady_voltage(i, omega_e);
+        for lengths in [vec![1e-4], hundred] {
+            let mut columns = log(300, 0.1, &lengths).columns().clone();
+            for (column, value) in [
+                (&mut columns.ud, u.d),
+                (&mut columns.uq, u.q),
+                (&mut columns.id, i.d),
+                (&mut columns.iq, i.q),
+                (&mut columns.omega_e, omega_e),
+            ] {
+                column.fill(value);
+            }
+            columns.theta_e = None;
+            let log = Log::new(columns).unwrap();
+            let frame = VoltageFrame::Rotor;
+            for timing in [VoltageTiming::Delayed { delay: 0, frame }, VoltageTiming::Delayed { delay: 1, frame }, VoltageTiming::Averaged]
+            {
+                let cost = rows(&log, timing).costs(&[Adjustable::from(MOTOR)])[0];
+                assert!(cost < 1e-18, "{timing:?}: {cost}");
+            }
+        }
     }
 
     /// Over a whole log, from standstill to a sixth of a turn per row, with one length of a period, three, and a hundred.

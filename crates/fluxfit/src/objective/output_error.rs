@@ -67,7 +67,7 @@ impl OutputError {
             return Err(ErrorKind::TooShort { rows: log.rows(), least }.into());
         }
         let peak_current = segments.iter().flat_map(|segment| &segment.measured).map(|i| i.magnitude()).fold(0.0, f64::max);
-        Ok(Self { simulated: Rows::of(segments), rows, peak_current, held: Box::default() })
+        Ok(Self { simulated: Rows::of(segments, timing.held()), rows, peak_current, held: Box::default() })
     }
 
     /// The same fitness of motors in a drive with these faults.

@@ -8,6 +8,7 @@
 //! bits of a candidate depend on nothing beside it.
 
 use super::{
+    acting_voltage::Held,
     simulated_segment::{LINEAR_UNKNOWNS, PeriodRow, SimulatedSegment},
     transition_lanes::{MotorLanes, TransitionLanes},
     transition_polynomials::{TransitionPlan, TransitionPolynomials},
@@ -76,6 +77,8 @@ pub(super) struct Drives<V, const C: usize> {
     faults: Acting<V>,
     /// Per length of a period; none if each period is computed exactly.
     polynomials: Vec<TransitionPolynomials<V, C>>,
+    /// Where the voltage stands still over a period.
+    held: Held,
 }
 
 impl<V: Number, const C: usize> Drives<V, C> {
@@ -83,9 +86,9 @@ impl<V: Number, const C: usize> Drives<V, C> {
     pub(super) fn of(motors: MotorLanes<V>, faults: Acting<V>, plan: &TransitionPlan) -> Self {
         let mut polynomials = Vec::with_capacity(plan.classes.len());
         for class in &plan.classes {
-            polynomials.push(TransitionPolynomials::of(&motors, class));
+            polynomials.push(TransitionPolynomials::of(&motors, class, plan.held));
         }
-        Self { motors, faults, polynomials }
+        Self { motors, faults, polynomials, held: plan.held }
     }
 
     /// Simulates a segment and sums its squares and products.
@@ -170,7 +173,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
         let last = (first + BLOCK).min(segment.periods.len());
         for (row, period) in segment.rows_of_periods[first..last].iter().zip(&segment.periods[first..last]) {
             transitions.push(if self.polynomials.is_empty() {
-                TransitionLanes::exact(&self.motors, row.turn, period.length)
+                TransitionLanes::exact(&self.motors, row.turn, period.length, self.held)
             } else {
                 self.polynomials[row.class].at(row.turn, row.place)
             });

@@ -6,6 +6,7 @@
 //! (2003) 3, doi:10.1137/S00361445024180, method 3. What is doubled is `F - I`, so that a part much shorter than a time constant keeps
 //! its digits.
 
+use super::acting_voltage::Held;
 use crate::{lanes::Number, motor::Motor};
 use pulp::NullaryFnOnce;
 
@@ -26,7 +27,8 @@ impl<V> MotorLanes<V> {
     }
 }
 
-/// One period: `F = [dd dq; qd qq]`, `G` likewise, `h`. The voltage `u` is in the frame at the middle of the period.
+/// One period: `F = [dd dq; qd qq]`, `G` likewise, `h`. The voltage `u` is in the frame at the middle of the period, or stands still in
+/// the rotor's.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TransitionLanes<V> {
     pub(super) fdd: V,
@@ -65,8 +67,8 @@ impl<V: Number> TransitionLanes<V> {
 
     /// A period of `length` seconds in which the rotor turns by `turn` electrical radians. Not finite where a motor has no inductance.
     #[inline(always)]
-    pub(super) fn exact(motors: &MotorLanes<V>, turn: f64, length: f64) -> Self {
-        motors.rs.call(Exact { motors, turn, length })
+    pub(super) fn exact(motors: &MotorLanes<V>, turn: f64, length: f64, held: Held) -> Self {
+        motors.rs.call(Exact { motors, turn, length, held })
     }
 }
 
@@ -75,6 +77,7 @@ struct Exact<'a, V> {
     motors: &'a MotorLanes<V>,
     turn: f64,
     length: f64,
+    held: Held,
 }
 
 impl<V: Number> NullaryFnOnce for Exact<'_, V> {
@@ -82,12 +85,17 @@ impl<V: Number> NullaryFnOnce for Exact<'_, V> {
 
     #[inline(always)]
     fn call(self) -> TransitionLanes<V> {
-        let (mut series, most) = Series::of(self.motors, self.turn, self.length);
+        // How far the voltage turns backward against the rotor.
+        let turn = match self.held {
+            Held::InStator => self.turn,
+            Held::InRotor => 0.0,
+        };
+        let (mut series, most) = Series::of(self.motors, self.turn, turn, self.length);
         for doubled in 0..most {
             series.double(doubled);
         }
         // The voltage at the period's start is the middle's, half a turn ahead.
-        let (sin, cos) = (0.5 * self.turn).sin_cos();
+        let (sin, cos) = (0.5 * turn).sin_cos();
         series.turned_to_middle(sin, cos)
     }
 }
@@ -129,10 +137,10 @@ fn product<V: Number>(a: [V; 4], b: [V; 4]) -> [V; 4] {
 impl<V: Number> Series<V> {
     /// Over a part of the period, and the most doublings of any lane.
     #[inline(always)]
-    fn of(motors: &MotorLanes<V>, turn: f64, length: f64) -> (Self, u32) {
+    fn of(motors: &MotorLanes<V>, turn: f64, voltage_turn: f64, length: f64) -> (Self, u32) {
         let MotorLanes { rs, ld, lq, psi_f } = *motors;
         let (zero, one) = (rs.constant(0.0), rs.constant(1.0));
-        let (turn, length) = (rs.constant(turn), rs.constant(length));
+        let (turn, voltage_turn, length) = (rs.constant(turn), rs.constant(voltage_turn), rs.constant(length));
         // Rates times the period: of the currents, row by row; of a volt along either axis; of the magnet.
         let (volt_d, volt_q, ratio) = (length / ld, length / lq, ld / lq);
         let rates = [-(rs * volt_d), turn * (lq / ld), -(turn * ratio), -(rs * volt_q)];
@@ -147,7 +155,7 @@ impl<V: Number> Series<V> {
             most += 1;
         }
         let m = [rates[0] * part, rates[1] * part, rates[2] * part, rates[3] * part];
-        let (volt_d, volt_q, w) = (volt_d * part, volt_q * part, turn * part);
+        let (volt_d, volt_q, w, backward) = (volt_d * part, volt_q * part, turn * part, voltage_turn * part);
         // The present terms: of the current after a unit current along d and q, after a unit voltage along d and q, after the magnet; and
         // the voltage's own vector along d. Along q it is the same, a right angle ahead.
         let (mut f, mut g, mut h, mut u) = ([one, zero, zero, one], [zero; 4], [zero; 2], [one, zero]);
@@ -158,7 +166,7 @@ impl<V: Number> Series<V> {
             let (grown, moved) = (product(m, f), product(m, g));
             let magnet = if term == 1 { -(w * psi_f / lq) } else { zero };
             h = [by * m[0].mul_add(h[0], m[1] * h[1]), by.mul_add(m[2].mul_add(h[0], m[3] * h[1]), magnet)];
-            u = [by * w * u[1], -(by * w * u[0])];
+            u = [by * backward * u[1], -(by * backward * u[0])];
             for k in 0..4 {
                 f[k] = by * grown[k];
                 g[k] = by * (moved[k] + driven[k]);

@@ -7,7 +7,7 @@
 //! rates `M` (Cayley and Hamilton), which gives two of its numbers from the other two.
 
 use super::{
-    acting_voltage::Period,
+    acting_voltage::{Held, Period},
     transition_lanes::{MotorLanes, TransitionLanes},
 };
 use crate::lanes::Number;
@@ -51,12 +51,14 @@ pub(super) struct TransitionPlan {
     pub(super) classes: Vec<PeriodClass>,
     /// Coefficients of each polynomial, one of [`COEFFICIENTS`].
     pub(super) coefficients: usize,
+    /// Where the voltage stands still over a period.
+    pub(super) held: Held,
 }
 
 impl TransitionPlan {
     /// For all periods of a log.
-    pub(super) fn of<'a>(periods: impl Iterator<Item = &'a Period> + Clone) -> Self {
-        let exact = Self { classes: Vec::new(), coefficients: COEFFICIENTS[0] };
+    pub(super) fn of<'a>(periods: impl Iterator<Item = &'a Period> + Clone, held: Held) -> Self {
+        let exact = Self { classes: Vec::new(), coefficients: COEFFICIENTS[0], held };
         let mut gathered: Vec<Gathered> = Vec::new();
         for period in periods {
             let square = period.omega_e * period.omega_e;
@@ -73,7 +75,7 @@ impl TransitionPlan {
         let classes: Vec<PeriodClass> = gathered.iter().map(Gathered::class).collect();
         let needed = classes.iter().map(|class| needed(class.middle - class.reach, class.middle + class.reach)).max().unwrap_or(0);
         match COEFFICIENTS.into_iter().find(|coefficients| *coefficients >= needed) {
-            Some(coefficients) => Self { classes, coefficients },
+            Some(coefficients) => Self { classes, coefficients, held },
             None => exact,
         }
     }
@@ -192,7 +194,7 @@ fn horner<V: Number, const C: usize>(of: &[V; C], coefficients: usize, place: V)
 
 impl<V: Number, const C: usize> TransitionPolynomials<V, C> {
     #[inline(always)]
-    pub(super) fn of(motors: &MotorLanes<V>, class: &PeriodClass) -> Self {
+    pub(super) fn of(motors: &MotorLanes<V>, class: &PeriodClass, held: Held) -> Self {
         let interpolation = Interpolation::<C>::new();
         let zero = motors.rs.constant(0.0);
         let ratio = motors.ld / motors.lq;
@@ -202,7 +204,7 @@ impl<V: Number, const C: usize> TransitionPolynomials<V, C> {
         let mut whole = Self { fdd, fdq, gdd, gdq, gqd, gqq, hd, hq, qq, qd: -(ratio * ratio) };
         for (j, node) in interpolation.nodes.iter().enumerate() {
             let turn = (class.middle + node * class.reach).max(LEAST_TURN * LEAST_TURN).sqrt();
-            let at = TransitionLanes::exact(motors, turn, class.length);
+            let at = TransitionLanes::exact(motors, turn, class.length, held);
             for k in 0..C {
                 let (even, odd) = (zero.constant(interpolation.even[k][j]), zero.constant(interpolation.odd[k][j] / turn));
                 whole.fdd[k] = even.mul_add(at.fdd, whole.fdd[k]);

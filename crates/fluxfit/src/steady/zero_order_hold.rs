@@ -36,7 +36,7 @@ impl From<VoltageTiming> for SteadyVoltageTiming {
     fn from(timing: VoltageTiming) -> Self {
         match timing {
             VoltageTiming::Centered => Self::Centered,
-            VoltageTiming::Delayed { .. } => Self::Compensated,
+            VoltageTiming::Delayed { .. } | VoltageTiming::Averaged => Self::Compensated,
         }
     }
 }

@@ -11,7 +11,7 @@ impl Display for ModelReason {
             Self::ShortCircuit => write!(f, "the voltages are zero in every row: the motor turned with shorted terminals"),
             Self::SlowRows { rate } => write!(f, "rows come at {rate:.3} Hz, slower than any drive's own sampling"),
             Self::TurnsTooFar { turn } => {
-                write!(f, "the rotor turns up to {turn:.2} rad from row to row, too far for the inverter's own periods")
+                write!(f, "the rotor turns up to {turn:.2} rad from row to row, too far to simulate what happened between them")
             }
             Self::PointsTellMore => write!(
                 f,

@@ -15,12 +15,12 @@
 use super::{
     long_run::effective_sample_size,
     normal_matrix::{dot, inverse_normal},
-    readings::{VERY_STRONG, readings},
+    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, VERY_STRONG, readings},
     voltage_accuracy,
 };
 use crate::{
     faults::{AngleNeed, Fault, Faults},
-    levenberg_marquardt::{PriorResidual, jacobian, polish_to_choose},
+    levenberg_marquardt::{PriorResidual, polish_to_choose, rough_jacobian},
     objective::{
         acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
@@ -81,6 +81,9 @@ const NOTICEABLE: f64 = 0.02;
 /// Residuals below this fraction of the largest current are rounding and the model's own discretization: nothing to explain.
 pub(crate) const LEAST_RESIDUAL: f64 = 1e-4;
 
+/// Faults that are taken at most: a drive with more is not what this log is about, and each costs as much as all before it.
+const MOST_TAKEN: usize = 6;
+
 /// The search, and where it stands.
 #[derive(Clone)]
 pub(crate) struct FaultSearch<'a> {
@@ -125,6 +128,9 @@ impl FaultSearch<'_> {
         let faults: Vec<Fault> = faults.collect();
         let mut taken = Vec::new();
         let not_taken = loop {
+            if taken.len() == MOST_TAKEN {
+                break Vec::new();
+            }
             let trials = self.take_best(&faults, &taken);
             match trials.iter().find(|trial| trial.outcome == FaultOutcome::Taken) {
                 Some(best) => taken.push(best.clone()),
@@ -143,7 +149,9 @@ impl FaultSearch<'_> {
 
     /// Chooses the reading of the voltages again: with the faults found, another one may fit better.
     fn choose_reading(&mut self) {
-        if let Some((place, best)) = readings(self.objectives, &self.drive, &self.unknowns, self.priors).into_iter().next() {
+        if let Some((place, best)) =
+            readings(self.objectives, &self.drive, &self.unknowns, self.priors, HOPELESS_AFTER_A_FIT).into_iter().next()
+        {
             (self.reading, self.drive, self.cost) = (place, best.polished.drive, best.polished.cost);
         }
     }
@@ -152,7 +160,8 @@ impl FaultSearch<'_> {
     fn drop_observer(&mut self) -> FaultTrial {
         let trial = |gain, outcome| FaultTrial { fault: Fault::Disturbance, gain, outcome };
         let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect();
-        let Some((place, without)) = readings(self.objectives, &self.drive.without_observer(), &unknowns, self.priors).into_iter().next()
+        let Some((place, without)) =
+            readings(self.objectives, &self.drive.without_observer(), &unknowns, self.priors, HOPELESS).into_iter().next()
         else {
             return trial(0.0, FaultOutcome::Taken);
         };
@@ -251,7 +260,7 @@ impl ScoreTest {
         let FaultSearch { drive, unknowns, cost, .. } = search;
         let objective = search.objective();
         let residuals = objective.residuals(drive);
-        let jacobian = jacobian(objective, drive, unknowns);
+        let jacobian = rough_jacobian(objective, drive, unknowns);
         // An observer takes away the correlation of the residuals: where it is judged, every row counts.
         let independent = if faults.contains(&Fault::Disturbance) { residuals.len() as f64 } else { effective_sample_size(&residuals) };
         let inverse = inverse_normal(&jacobian);
@@ -273,7 +282,7 @@ impl ScoreTest {
             if cost.is_nan() || cost > TOO_FAR * search.cost {
                 return (f64::NEG_INFINITY, start);
             }
-            let columns = jacobian(search.objective(), &start, &unknowns);
+            let columns = rough_jacobian(search.objective(), &start, &unknowns);
             let all = [self.jacobian.clone(), columns].concat();
             let right = DVector::from_iterator(all.len(), all.iter().map(|column| dot(column, &self.residuals)));
             let explained = right.dot(&(inverse_normal(&all) * &right)).min(search.cost);

@@ -9,7 +9,7 @@ use super::{
     fault_search::{FaultSearch, FaultTrial, LEAST_RESIDUAL},
     long_run,
     output_start::{self, free},
-    readings::{self, TimingTrial},
+    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, TimingTrial},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -64,10 +64,10 @@ pub(super) fn choose(
     let _ = progress(Step::VoltageTiming);
     let free = [free(request), beside.to_vec()].concat();
     let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
-    let rough = readings::readings(&objectives, start, &free, &[]);
+    let rough = readings::readings(&objectives, start, &free, &[], HOPELESS);
     let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut best: Option<Chosen> = None;
-    let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors) };
+    let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };
     let _ = progress(Step::Faults);
     for (place, tried) in tried.iter().copied().take(TRIED_READINGS) {
         // The search from the reading before has compared all of them, and ended with this one.
@@ -96,7 +96,11 @@ pub(super) fn choose(
     }
     let mut best = best.ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
     // Without a fault they were tried with these unknowns already.
-    let readings = if best.unknowns == free { tried } else { readings::readings(&objectives, &best.drive, &best.unknowns, &priors) };
+    let readings = if best.unknowns == free {
+        tried
+    } else {
+        readings::readings(&objectives, &best.drive, &best.unknowns, &priors, HOPELESS_AFTER_A_FIT)
+    };
     best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
     Ok(best)
 }

@@ -5,6 +5,10 @@
 //! direction is excited only if this change stands above the residuals, as far as these do not average out: white residuals do, correlated
 //! ones count by their independent number. And it stands above what the model itself is worth: a simulation without any noise has an
 //! inverter's ripple in its rows, to which anything can be fitted. What the faults could explain as well does not count.
+//!
+//! Where the voltage between the rows is not in the log, as of means, it is as wrong as the residuals show, and what the currents answer to
+//! it comes out too small however many rows there are, as of any regressor with errors (W. A. Fuller, Measurement Error Models, 1987,
+//! section 1.1): there residuals do not average out.
 
 use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit};
 use crate::{
@@ -16,7 +20,7 @@ use crate::{
     levenberg_marquardt::{MOTOR, jacobian},
     log::Log,
     motor::{PARAMETERS, Parameter},
-    objective::{adjustable::Unknown, output_error::OutputError},
+    objective::{acting_voltage::VoltageTiming, adjustable::Unknown, output_error::OutputError},
     singular_values::SingularValueDecomposition,
 };
 use nalgebra::DMatrix;
@@ -49,7 +53,11 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     columns.iter_mut().zip(&free).for_each(|(column, p)| column.iter_mut().for_each(|slope| *slope *= scale[*p]));
 
     let count = fit.residuals.len() as f64;
-    let independent = long_run::effective_sample_size(&fit.residuals).clamp(1.0, count);
+    let independent = if fit.voltage_timing.value == VoltageTiming::Averaged {
+        1.0
+    } else {
+        long_run::effective_sample_size(&fit.residuals).clamp(1.0, count)
+    };
     let unexplained = (fit.cost / independent).sqrt().max(LEAST_RESIDUAL * objective.peak_current() * count.sqrt());
     let least = MIN_SIGNAL_TO_NOISE * unexplained;
     // A prior pins its parameter.

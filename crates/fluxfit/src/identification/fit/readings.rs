@@ -3,7 +3,7 @@
 //! A period's delay that is wrong shows wherever the voltage moves. In a log that stands still at one speed it does not show; then the
 //! readings that fit about as well as the best one tell how much it matters.
 
-use super::super::request::Request;
+use super::{super::request::Request, voltage_loss::is_control_rate};
 use crate::{
     error::Error,
     levenberg_marquardt::{Polished, PriorResidual, polish_to_choose, step},
@@ -39,20 +39,34 @@ impl TimingTrial {
     pub fn mean_square(&self) -> f64 {
         self.polished.cost / (2 * self.rows) as f64
     }
+
+    /// The mean square with a handicap for readings that are rare.
+    fn rank(&self) -> f64 {
+        self.mean_square() * if self.timing.is_unusual() { 1.0 + UNUSUAL } else { 1.0 }
+    }
 }
+
+/// By which part a reading that is no inverter's must fit better than all others: in a log that stands still it would fit as well, and
+/// scale all voltages by what a rotor that turns through a held voltage makes of it.
+const UNUSUAL: f64 = 0.01;
 
 /// The fitness under every reading, or under the one that is stated.
 ///
 /// # Errors
 /// If no stretch is long enough.
 pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Vec<(VoltageTiming, OutputError)>, Error> {
-    let readings = request.voltage_timing.map_or(VoltageTiming::ALL.to_vec(), |stated| vec![stated]);
+    // A drive that logs each of its periods has no means of several.
+    let known = VoltageTiming::ALL.into_iter().filter(|timing| *timing != VoltageTiming::Averaged || !is_control_rate(log));
+    let readings = request.voltage_timing.map_or_else(|| known.collect(), |stated| vec![stated]);
     readings.into_iter().map(|reading| Ok((reading, OutputError::of_rows(log, stretches, reading)?))).collect()
 }
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
 /// up for it.
-const HOPELESS: f64 = 10.0;
+pub(crate) const HOPELESS: f64 = 10.0;
+
+/// The same where the start is a fit of one of the readings: what others miss is the reading's own.
+pub(crate) const HOPELESS_AFTER_A_FIT: f64 = 3.0;
 
 /// Tries every reading from the same start. The best one first, with its place among the objectives. One step tells which are worth a
 /// whole fit.
@@ -61,6 +75,7 @@ pub(crate) fn readings(
     start: &Adjustable,
     unknowns: &[Unknown],
     priors: &[PriorResidual],
+    hopeless: f64,
 ) -> Vec<(usize, TimingTrial)> {
     let trial =
         |(timing, objective): &(VoltageTiming, OutputError), polished| TimingTrial { timing: *timing, polished, rows: objective.rows() };
@@ -69,18 +84,21 @@ pub(crate) fn readings(
     let places: Vec<usize> = (0..objectives.len()).collect();
     let mut tried: Vec<(usize, TimingTrial)> = parallel::map(&places, |place| {
         let (one, stepped) = (&objectives[*place], stepped[*place]);
-        let is_hopeless = stepped.mean_square() > HOPELESS * least && least > 0.0;
+        let is_hopeless = stepped.mean_square() > hopeless * least && least > 0.0;
         (*place, if is_hopeless { stepped } else { trial(one, polish_to_choose(&one.1, &stepped.polished.drive, unknowns, priors)) })
     });
-    tried.sort_by(|(_, one), (_, other)| one.mean_square().total_cmp(&other.mean_square()));
+    tried.sort_by(|(_, one), (_, other)| one.rank().total_cmp(&other.rank()));
     tried
 }
 
 /// The readings that are not ruled out, given how many independent residuals there are. The best one first.
 pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
     let least = tried.first().map_or(0.0, TimingTrial::mean_square);
+    let is_unusual = tried.first().is_some_and(|best| best.timing.is_unusual());
     // Where the best is perfect, so is every other one that is possible.
-    tried.iter().filter(move |other| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG)
+    let is_possible =
+        move |other: &TimingTrial| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG;
+    tried.iter().filter(move |other| is_possible(other) && (is_unusual || !other.timing.is_unusual()))
 }
 
 /// How far each parameter moves between them.

@@ -3,8 +3,8 @@
 //! Rows that are every n-th of a drive's periods, filtered columns, or a fault that no term describes leave residuals of the simulated
 //! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals
 //! are not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
-//! answers. Where rows come slower than drives control currents, the points answer even if they cannot contradict each other: the voltage
-//! between the rows is not in the log.
+//! answers. Where rows come slower than drives control currents, the points answer even if they cannot contradict each other, unless they
+//! leave out a parameter that the currents tell: the voltage between the rows is not in the log.
 //!
 //! Where the simulated currents leave a whole combination of parameters open, or all that they leave is rounding, their parameters were
 //! fitted to what no parameter explains. Operating points leave such directions at zero, so they answer if they leave nothing else open.
@@ -16,7 +16,7 @@ use super::{
     },
     verdict::{Verdict, judge},
 };
-use crate::{faults::Fault, motor::PARAMETERS};
+use crate::{faults::Fault, motor::PARAMETERS, objective::acting_voltage::VoltageTiming};
 
 /// Filters of what is logged.
 const FILTERS: [Fault; 4] = [Fault::CurrentFilter, Fault::DqCurrentFilter, Fault::DqVoltageFilter, Fault::DqFilter];
@@ -42,9 +42,11 @@ pub(crate) fn points_tell_more(
     }
     let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
     if may_be_decimated {
-        // What passes for a filter there is the voltage between the rows.
-        let is_filtered = FILTERS.into_iter().any(|filter| currents.has(filter));
-        return (!is_explained || is_filtered) && points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told));
+        // What passes for a filter there is the voltage between the rows; of means it is only known to go about straight.
+        let is_filtered =
+            FILTERS.into_iter().any(|filter| currents.has(filter)) || currents.voltage_timing.value == VoltageTiming::Averaged;
+        let of_points = judge(&points.finding, None, request, false).map(|one| one.verdict != Verdict::NotIdentifiable);
+        return (!is_explained || is_filtered) && of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told);
     }
     let can_contradict = points.estimate.redundancy > 0;
     !is_explained && can_contradict && width(&points.finding, request) < width(&currents.finding, request)

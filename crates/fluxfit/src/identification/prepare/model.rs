@@ -1,9 +1,9 @@
 //! Which model answers.
 //!
-//! The output error uses every row and knows the inverter's own periods, so it wants them: rows that follow each other as fast as the
-//! drive's samples. A decimated or filtered log has lost them; its operating points are what it still tells.
+//! The output error uses every row and wants to know what acted between them: rows that follow each other about as fast as the drive's
+//! samples. A log that is slower has lost it; its operating points are what it still tells.
 
-use crate::{log::Log, steady::zero_order_hold::MAX_ANGLE_PER_SAMPLE};
+use crate::log::Log;
 
 /// How the log is modelled. Steady operating points need currents and speed held constant for a while; the output error also uses
 /// transients, but needs rows as fast as the drive's own sampling. [`evidence::choose_model`](crate::evidence::choose_model) chooses.
@@ -37,6 +37,10 @@ impl Model {
 /// Lowest rate of rows, Hz, that counts as a drive's own sampling; slower rows count as a recorder's.
 pub const SLOWEST_CONTROL: f64 = 1000.0;
 
+/// Largest angle from row to row, rad, at which rows are simulated: the mean over a row of what stands still in the stator, as dead time
+/// and offsets do, is smaller by a twentieth there.
+const FARTHEST_TURN: f64 = 1.0;
+
 /// A model, and why it answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -62,7 +66,7 @@ pub enum ModelReason {
         /// Rate of the rows, Hz.
         rate: f64,
     },
-    /// The rotor turns too far from row to row for the inverter's own periods.
+    /// The rotor turns so far from row to row that what happened between them is lost.
     TurnsTooFar {
         /// Largest electrical angle from row to row, rad.
         turn: f64,
@@ -92,7 +96,7 @@ pub fn choose(log: &Log, stated: Option<Model>) -> ModelChoice {
         (Model::Steady, ModelReason::Interpolated)
     } else if slowest > 1.0 / SLOWEST_CONTROL {
         (Model::Steady, ModelReason::SlowRows { rate: 1.0 / slowest })
-    } else if turn > MAX_ANGLE_PER_SAMPLE {
+    } else if turn > FARTHEST_TURN {
         (Model::Steady, ModelReason::TurnsTooFar { turn })
     } else {
         (Model::OutputError, ModelReason::FastRows { rate: 1.0 / slowest, turn })

@@ -1,0 +1,108 @@
+//! Readings of the voltages that no inverter's own log has: held in the rotor's frame, and means over each row's span. The logs are equation
+//! (1), integrated by Runge and Kutta in fine steps; nothing of the program makes them.
+
+// Helpers of tests fail as tests do.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+use fluxfit::{
+    Request, Verdict,
+    frames::Dq,
+    identify,
+    log::{Columns, Log},
+    motor::{Motor, Parameter},
+    objective::acting_voltage::{VoltageFrame, VoltageTiming},
+    optimizer::Draws,
+};
+
+const TRUTH: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
+
+/// Fine steps of the integration, s, and how many of them a voltage lasts.
+const STEP: f64 = 1e-5;
+const HELD: usize = 10;
+
+/// Electrical rad/s.
+const OMEGA_E: f64 = 420.0;
+
+/// Standard deviation of each measured current, A.
+const NOISE: f64 = 0.02;
+
+/// Instants and the currents, A, and the voltages, V, there.
+struct Course {
+    currents: Vec<Dq>,
+    voltages: Vec<Dq>,
+}
+
+/// Voltages in the rotor's frame, held for some steps each: those of a current that steps between four values, and noise.
+fn course(steps: usize) -> Course {
+    let mut draws = Draws::seeded(5, 0);
+    let (mut i, mut u) = (Dq::default(), Dq::default());
+    let mut course = Course { currents: Vec::new(), voltages: Vec::new() };
+    let slope = |i: Dq, u: Dq| Dq {
+        d: (u.d - TRUTH.rs * i.d + OMEGA_E * TRUTH.lq * i.q) / TRUTH.ld,
+        q: (u.q - TRUTH.rs * i.q - OMEGA_E * (TRUTH.ld * i.d + TRUTH.psi_f)) / TRUTH.lq,
+    };
+    let moved = |i: Dq, k: Dq, by: f64| Dq { d: i.d + by * k.d, q: i.q + by * k.q };
+    for step in 0..steps {
+        if step % HELD == 0 {
+            let targets = [(0.0, 3.0), (0.0, 8.0), (-3.0, 8.0), (-3.0, 3.0)];
+            let (d, q) = targets[4 * step / steps];
+            let steady = TRUTH.steady_voltage(Dq { d, q }, OMEGA_E);
+            // A proportional controller on top, so that a step takes some milliseconds and not the winding's.
+            u = Dq { d: steady.d + 2.0 * (d - i.d) + 0.5 * draws.normal(), q: steady.q + 4.0 * (q - i.q) + 0.5 * draws.normal() };
+        }
+        course.currents.push(i);
+        course.voltages.push(u);
+        let k1 = slope(i, u);
+        let k2 = slope(moved(i, k1, 0.5 * STEP), u);
+        let k3 = slope(moved(i, k2, 0.5 * STEP), u);
+        let k4 = slope(moved(i, k3, STEP), u);
+        i = Dq { d: i.d + STEP / 6.0 * (k1.d + 2.0 * (k2.d + k3.d) + k4.d), q: i.q + STEP / 6.0 * (k1.q + 2.0 * (k2.q + k3.q) + k4.q) };
+    }
+    course
+}
+
+/// A log of rows this many steps apart, of what these steps come to.
+fn log(course: &Course, steps: usize, value: impl Fn(&[Dq]) -> Dq) -> Log {
+    let mut draws = Draws::seeded(6, 0);
+    let mut columns = Columns::default();
+    for (row, (i, u)) in course.currents.chunks_exact(steps).zip(course.voltages.chunks_exact(steps)).enumerate() {
+        let (i, u) = (value(i), value(u));
+        columns.t.push(row as f64 * steps as f64 * STEP);
+        columns.id.push(i.d + NOISE * draws.normal());
+        columns.iq.push(i.q + NOISE * draws.normal());
+        columns.ud.push(u.d);
+        columns.uq.push(u.q);
+        columns.omega_e.push(OMEGA_E);
+    }
+    Log::new(columns).unwrap()
+}
+
+/// The reading, and every parameter identified, within this percentage of the truth and one and a half of its 95 % half-widths.
+fn holds(log: &Log, timing: VoltageTiming, percent: f64) {
+    let found = identify(log, &Request::default()).unwrap().identification;
+    assert_eq!(found.output.as_ref().unwrap().voltage_timing.value, timing);
+    for parameter in Parameter::ALL {
+        let (judgement, truth) = (found.parameter(parameter), TRUTH.get(parameter));
+        let error = judgement.raw - truth;
+        println!("{}: {:+.3} %, {:?}", parameter.key(), 100.0 * error / truth, judgement.verdict);
+        assert_eq!(judgement.verdict, Verdict::Identified);
+        assert!(error.abs() < 0.01 * percent * truth && error.abs() < 1.5 * judgement.uncertainty.half_width, "{judgement:?}");
+    }
+}
+
+#[test]
+fn voltages_held_in_the_rotors_frame_are_read() {
+    let log = log(&course(40_000), HELD, |values| values[0]);
+    holds(&log, VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Rotor }, 0.3);
+}
+
+/// Rows are means of four of the drive's periods.
+#[test]
+fn means_over_each_rows_span_are_read() {
+    let mean = |values: &[Dq]| {
+        let sum = values.iter().fold(Dq::default(), |sum, one| Dq { d: sum.d + one.d, q: sum.q + one.q });
+        Dq { d: sum.d / values.len() as f64, q: sum.q / values.len() as f64 }
+    };
+    let log = log(&course(160_000), 4 * HELD, mean);
+    holds(&log, VoltageTiming::Averaged, 1.0);
+}
