@@ -77,7 +77,7 @@ pub use identification::{
         judgement::Judgement,
         measurement::{Measurement, Place, Promised},
         remedy::{Also, Remedy},
-        unseen::{Unseen, UnseenError},
+        unseen::{Counted, Unseen, UnseenError},
         warning::Warning,
     },
     judge::{reason::Reason, verdict::Verdict},

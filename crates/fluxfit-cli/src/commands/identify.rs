@@ -7,7 +7,7 @@ mod export;
 
 use super::{Status, input, report};
 use crate::{
-    arguments::{LogArguments, ModelArgument, by_parameter, method_keys},
+    arguments::{AccuracyArguments, LogArguments, ModelArgument, by_parameter, method_keys},
     error::CommandError,
     interrupt, json, terminal,
 };
@@ -32,9 +32,8 @@ pub(crate) struct Identify {
     #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method,
           help = help_of_search_method(), long_help = long_help_of_search_method())]
     method: SearchMethod,
-    /// Standard uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
-    voltage_accuracy: f64,
+    #[command(flatten)]
+    accuracy: AccuracyArguments,
     /// A parameter known exactly, e.g. rs=0.96 or ld=5.25mH; a bare number is SI
     #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
     fix: Vec<(Parameter, f64)>,
@@ -148,7 +147,7 @@ fn identified(input: &input::Input, request: &Request) -> Result<Answer, Command
 fn request(arguments: &Identify, input: &input::Input) -> Result<Request, CommandError> {
     let mut request = input::request(&arguments.log, input)?;
     request.model = arguments.model.stated();
-    request.voltage_accuracy = arguments.voltage_accuracy;
+    arguments.accuracy.apply(input.motor.sensors, &mut request);
     request.known = known(arguments)?;
     request.swarm = match arguments.method {
         SearchMethod::Auto => Swarm::Auto,

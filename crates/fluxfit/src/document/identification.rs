@@ -10,7 +10,7 @@ use super::{
     log::LogDocument,
     nuisance::NuisanceEntries,
     validation::ValidationDocument,
-    warning::{UnseenEntry, WarningEntry},
+    warning::{CountedEntry, UnseenEntry, WarningEntry},
 };
 use crate::{
     Answer, Judgement,
@@ -60,6 +60,8 @@ pub struct IdentificationDocument {
     pub warnings: Vec<WarningEntry>,
     /// Errors that no log shows, and that no interval counts; empty where nothing was identified.
     pub not_counted: Vec<UnseenEntry>,
+    /// Errors that no log shows either, and that the intervals count, because their size was stated; empty where nothing was identified.
+    pub counted: Vec<CountedEntry>,
     /// Raw numbers, whatever the verdicts.
     pub diagnostics: Diagnostics,
     /// Gains of the current controllers; absent unless asked for.
@@ -91,6 +93,7 @@ impl IdentificationDocument {
             fit: FitEntry::of(answer),
             warnings: answer.warnings.iter().map(WarningEntry::of).collect(),
             not_counted: answer.unseen.iter().map(UnseenEntry::of).collect(),
+            counted: answer.counted.iter().map(CountedEntry::of).collect(),
             diagnostics: Diagnostics::of(answer, ConventionEntry::of(convention)),
             current_loop: current_loop.as_ref().map(CurrentLoopEntry::of),
             validation: held_out

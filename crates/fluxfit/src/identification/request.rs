@@ -36,6 +36,11 @@ pub struct Request {
     pub voltage_timing: Option<VoltageTiming>,
     /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
     pub voltage_accuracy: f64,
+    /// Largest error of a gain common to all current sensors, as a fraction, to either side: the limit of a data sheet. It is taken as half
+    /// of a 95 % interval (two standard deviations, unlike `voltage_accuracy`) and widens the intervals. `None`: it is not counted.
+    pub current_accuracy: Option<f64>,
+    /// The same of the DC voltage's measurement, and with it of all voltages that the drive computes.
+    pub bus_accuracy: Option<f64>,
     /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL);
     /// [`with_known`](Self::with_known) sets one.
     pub known: [Known; PARAMETERS],
@@ -126,6 +131,8 @@ impl Default for Request {
             windows: Vec::new(),
             voltage_timing: None,
             voltage_accuracy: VOLTAGE_ACCURACY,
+            current_accuracy: None,
+            bus_accuracy: None,
             known: [Known::Nothing; PARAMETERS],
             swarm: Swarm::Auto,
             search: SearchSettings::default(),
@@ -164,9 +171,15 @@ impl Request {
     /// # Errors
     /// If a value is out of its range, or nothing is left to be identified.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        let accuracy = self.voltage_accuracy;
-        if !(0.0..1.0).contains(&accuracy) {
-            return Err(ErrorKind::Setting { setting: "the voltage accuracy", value: accuracy, range: "a fraction from 0 up to 1" }.into());
+        let accuracies = [
+            ("the voltage accuracy", Some(self.voltage_accuracy)),
+            ("the accuracy of the current sensors", self.current_accuracy),
+            ("the accuracy of the bus voltage", self.bus_accuracy),
+        ];
+        for (setting, value) in accuracies.into_iter().filter_map(|(setting, accuracy)| Some((setting, accuracy?))) {
+            if !(0.0..1.0).contains(&value) {
+                return Err(ErrorKind::Setting { setting, value, range: "a fraction from 0 up to 1" }.into());
+            }
         }
         self.search.check()?;
         for (parameter, known) in Parameter::ALL.into_iter().zip(self.known) {

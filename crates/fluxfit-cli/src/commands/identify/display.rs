@@ -124,13 +124,14 @@ fn explanations(found: &Identification) -> String {
     text
 }
 
-/// What no log shows, and no interval counts.
+/// What no log shows: what the intervals count of it as stated, and what they do not.
 fn unseen(found: &Identification) -> String {
-    if found.unseen.is_empty() {
-        return String::new();
-    }
-    let errors: Vec<String> = found.unseen.iter().map(ToString::to_string).collect();
-    format!("\n{}", wrapped("", &format!("Not in the intervals, because no log shows it: {}.", errors.join("; "))))
+    let line = |what: &str, errors: Vec<String>| {
+        if errors.is_empty() { String::new() } else { wrapped("", &format!("{what}: {}.", errors.join("; "))) }
+    };
+    let counted = line("In the intervals, as stated", found.counted.iter().map(ToString::to_string).collect());
+    let unseen = line("Not in the intervals, because no log shows it", found.unseen.iter().map(ToString::to_string).collect());
+    if counted.is_empty() && unseen.is_empty() { String::new() } else { format!("\n{counted}{unseen}") }
 }
 
 /// Columns that a line of words may have.
