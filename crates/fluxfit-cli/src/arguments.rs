@@ -28,7 +28,7 @@ pub(crate) struct LogArguments {
     /// after the row.
     #[arg(long, value_enum, default_value_t = Timing::Auto)]
     pub(crate) voltage_timing: Timing,
-    /// Motor file: pole pairs, nameplate values, rating, accuracy of the sensors
+    /// Motor file: pole pairs, nameplate values, rating, accuracy of the sensors, magnets' coefficient
     ///
     /// fluxfit identify compares its result with the nameplate values. The rating widens the search box of the swarms.
     #[arg(long, value_name = "MOTOR.toml", help_heading = "Prior knowledge")]
@@ -95,8 +95,8 @@ impl AccuracyArguments {
 pub(crate) struct ColumnArguments {
     /// Columns with other names, e.g. ud=motor_vd_V,omega_e=speed
     ///
-    /// The standard names are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc. Phase quantities ia, ib, ic, ua, ub, uc with
-    /// theta_e may replace id, iq, ud, uq. [default: the standard names, or a known layout]
+    /// The standard names are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc, temperature. Phase quantities ia, ib, ic, ua, ub,
+    /// uc with theta_e may replace id, iq, ud, uq. [default: the standard names, or a known layout]
     #[arg(long, value_name = "NAME=COLUMN,..", value_parser = parse_columns)]
     pub(crate) map: Vec<MappedColumns>,
     /// Units of columns, e.g. omega=rpm-mech,t=ms

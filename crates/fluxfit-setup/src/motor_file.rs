@@ -7,6 +7,7 @@
 //! lq = "12 mH"
 //! psi_f = "0.1827 Wb"
 //! pole_pairs = 4
+//! magnet_coefficient = "-0.12 %/K"    # of psi_f, for logs with a temperature
 //! [rating]
 //! current = "20 A"      # phase peak
 //! voltage = "180 V"     # phase peak
@@ -23,10 +24,10 @@ use fluxfit_files::{
 use fluxfit_units::Dimension;
 use std::path::Path;
 
-/// What is known about a motor and its drive; every number of the motor is above zero.
+/// What is known about a motor and its drive.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MotorFile {
-    /// Stator resistance, ohm.
+    /// Stator resistance, ohm; as all parameters above zero.
     pub rs: Option<f64>,
     /// Inductance along d, H.
     pub ld: Option<f64>,
@@ -36,6 +37,8 @@ pub struct MotorFile {
     pub psi_f: Option<f64>,
     /// Number of pole pairs.
     pub pole_pairs: Option<u32>,
+    /// By which part of itself the magnets' flux changes per kelvin; of either sign.
+    pub magnet_coefficient: Option<f64>,
     /// Rated values.
     pub rating: RatedValues,
     /// Accuracy of the drive's sensors.
@@ -66,7 +69,7 @@ const SHAPE: Shape = Shape {
     noun: "a motor file",
     keys: &[],
     tables: &[
-        ("motor", &["rs", "ld", "lq", "psi_f", "pole_pairs"]),
+        ("motor", &["rs", "ld", "lq", "psi_f", "pole_pairs", "magnet_coefficient"]),
         ("rating", &["current", "voltage", "speed"]),
         ("sensors", &["current_accuracy", "bus_accuracy"]),
     ],
@@ -106,6 +109,7 @@ fn parse(text: &str) -> Result<MotorFile, FileError> {
         lq: above_zero(&motor, "lq", Dimension::Inductance)?,
         psi_f: above_zero(&motor, "psi_f", Dimension::FluxLinkage)?,
         pole_pairs: motor.get("pole_pairs").map(|entry| entry.whole(1, "a whole number above zero")).transpose()?,
+        magnet_coefficient: motor.get("magnet_coefficient").map(|entry| entry.coefficient()).transpose()?,
         rating: RatedValues {
             current: above_zero(&rating, "current", Dimension::Current)?,
             voltage: above_zero(&rating, "voltage", Dimension::Voltage)?,
@@ -147,11 +151,13 @@ mod tests {
             lq: Some(12e-3),
             psi_f: Some(0.1827),
             pole_pairs: Some(4),
+            magnet_coefficient: None,
             rating: RatedValues { current: Some(20.0), voltage: Some(180.0), speed: Some(3000.0 * (TAU / 60.0)) },
             sensors: SensorAccuracy::default(),
         };
         assert_eq!(read(text), Ok(expected));
         assert_eq!(read(""), Ok(MotorFile::default()));
+        assert_eq!(read("motor.magnet_coefficient = \"-0.12 %/K\"").map(|motor| motor.magnet_coefficient), Ok(Some(-0.0012)));
         assert_eq!(read("motor.ld = \"5.25mH\"").map(|motor| motor.ld), Ok(Some(5.25e-3)));
     }
 
@@ -169,7 +175,7 @@ mod tests {
         let cases = [
             (
                 "[motor]\n\nl_d = 1",
-                "line 3, key 'l_d': this key is not known; [motor] can hold rs, ld, lq, psi_f and pole_pairs; did you mean ld?",
+                "line 3, key 'l_d': this key is not known; [motor] can hold rs, ld, lq, psi_f, pole_pairs and magnet_coefficient; did you mean ld?",
             ),
             ("rs = 1", "line 1, key 'rs': this key is outside of its table; put it below a line [motor]"),
             (

@@ -69,6 +69,20 @@ pub fn parse_fraction(text: &str) -> Result<f64, ValueError> {
     if number < 0.0 { Err(out_of_range(text, "zero or more")) } else { Ok(number) }
 }
 
+/// `-0.12%/K` or `-0.0012`: by which part of itself something changes per kelvin.
+///
+/// # Errors
+/// If the text is not such a number.
+pub fn parse_coefficient(text: &str) -> Result<f64, ValueError> {
+    let trimmed = text.trim();
+    let size = trimmed.strip_suffix('K').and_then(|rest| rest.trim().strip_suffix('/')).unwrap_or(trimmed).trim();
+    let number = match size.strip_suffix('%') {
+        Some(percent) => plain(percent).map(|percent| percent / 100.0),
+        None => plain(size),
+    };
+    number.ok_or_else(|| form(trimmed, "a part per kelvin", "-0.12%/K"))
+}
+
 /// `ld=0:50mH`: a parameter, and its lower and upper bound in the search, in SI units.
 ///
 /// # Errors
@@ -188,6 +202,18 @@ mod tests {
     }
 
     #[test]
+    fn a_coefficient_is_a_part_per_kelvin() {
+        for text in ["-0.12%/K", "-0.12 %/K", "-0.12 % / K", "-0.12%", "-0.0012", "-1.2e-3/K"] {
+            assert_eq!(parse_coefficient(text), Ok(-0.0012), "{text}");
+        }
+        assert_eq!(parse_coefficient("+0.4%/K"), Ok(0.004));
+        for text in ["", "K", "-0.12%/C", "nan", "-0.12%/K/K"] {
+            let sentence = format!("\"{text}\" is not understood; write a part per kelvin, as in -0.12%/K");
+            assert_eq!(parse_coefficient(text).unwrap_err().to_string(), sentence);
+        }
+    }
+
+    #[test]
     fn intervals_need_a_lower_and_an_upper_end() {
         assert_eq!(parse_bounds("ld=0:50mH"), Ok((Parameter::Ld, 0.0, 50e-3)));
         assert_eq!(parse_bounds("psi_f=-0.1:1"), Ok((Parameter::PsiF, -0.1, 1.0)));
@@ -205,7 +231,7 @@ mod tests {
         fn no_text_panics(text in "\\PC*|(rs|ld|omega|t)=[0-9e.+\\-/±%:muH ]{0,14}") {
             let sentences = [
                 parse_fix(&text).err(), parse_prior(&text).err(), parse_bounds(&text).err(), parse_window(&text).err(),
-                parse_fraction(&text).err(),
+                parse_fraction(&text).err(), parse_coefficient(&text).err(),
             ];
             for sentence in sentences.into_iter().flatten() {
                 prop_assert_eq!(sentence.to_string().lines().count(), 1);

@@ -77,6 +77,7 @@ pub use identification::{
         judgement::Judgement,
         measurement::{Measurement, Place, Promised},
         remedy::{Also, Remedy},
+        temperature::{AtTemperature, REFERENCE_TEMPERATURE, Referred},
         unseen::{Counted, Unseen, UnseenError},
         warning::Warning,
     },

@@ -40,6 +40,11 @@ pub(crate) struct Identify {
     /// A parameter known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
     #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_units::parse_prior, allow_hyphen_values = true)]
     prior: Vec<(Parameter, f64, f64)>,
+    /// Change of the magnets' flux with temperature, e.g. -0.12%/K, for psi_f at 20 degC
+    ///
+    /// It is used where the log has the winding's temperature; the magnets are taken to be as warm. [default: that of the motor file]
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION/K", allow_hyphen_values = true, value_parser = fluxfit_units::parse_coefficient)]
+    magnet_coefficient: Option<f64>,
     /// Identify without the last log (of one log: the last segment), and validate on it
     #[arg(long, help_heading = "Output")]
     hold_out: bool,
@@ -148,6 +153,10 @@ fn request(arguments: &Identify, input: &input::Input) -> Result<Request, Comman
     let mut request = input::request(&arguments.log, input)?;
     request.model = arguments.model.stated();
     arguments.accuracy.apply(input.motor.sensors, &mut request);
+    request.magnet_coefficient = arguments.magnet_coefficient.or(input.motor.magnet_coefficient);
+    if arguments.magnet_coefficient.is_some() && input.log.columns().temperature.is_none() {
+        terminal::note("--magnet-coefficient is not used: the log has no temperature");
+    }
     request.known = known(arguments)?;
     request.swarm = match arguments.method {
         SearchMethod::Auto => Swarm::Auto,

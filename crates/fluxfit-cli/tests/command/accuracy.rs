@@ -1,4 +1,4 @@
-//! Accuracies of the drive's sensors: as options, in the motor file, and on the page.
+//! What is known of the drive's sensors and of the winding's temperature: as options, in the motor file, and on the page.
 
 use super::{fluxfit, json};
 use serde_json::Value;
@@ -68,4 +68,31 @@ fn a_validation_counts_the_accuracy_too() {
     assert_eq!((status, document["outcome"].as_str()), (1, Some("contradicts")));
     let (status, document) = json(&["validate", NOISY, "--motor", motor, "--current-accuracy", "5%"]);
     assert_eq!((status, document["outcome"].as_str()), (0, Some("agrees")));
+}
+
+/// The log with a column of the winding's temperature, 60 degC; R_s at 20 degC is 255/295 of that at 60.
+#[test]
+fn a_log_with_temperature_tells_the_resistance_at_20_degrees() {
+    let directory = tempfile::tempdir().unwrap();
+    let (log, page) = (directory.path().join("log.csv"), directory.path().join("page.html"));
+    let text = std::fs::read_to_string(super::root().join(NOISY)).unwrap();
+    let warm: String =
+        text.lines().enumerate().map(|(row, line)| format!("{line},{}\n", if row == 0 { "temperature_C" } else { "60" })).collect();
+    std::fs::write(&log, warm).unwrap();
+    let (log, page) = (log.to_str().unwrap(), page.to_str().unwrap());
+    let (status, document) = json(&["identify", log, "--magnet-coefficient", "-0.12%/K"]);
+    assert_eq!(status, 0);
+    let ratio = |key: &str, of: &str| {
+        document["temperature"][key]["value"].as_f64().unwrap() / document["parameters"][of]["value"].as_f64().unwrap()
+    };
+    assert!((ratio("rs_at_20", "rs") * 295.0 / 255.0 - 1.0).abs() < 1e-9);
+    assert!((ratio("psi_f_at_20", "psi_f") * (1.0 - 40.0 * 0.0012) - 1.0).abs() < 1e-9);
+    let left: Vec<&str> = document["not_counted"].as_array().unwrap().iter().map(|entry| entry["code"].as_str().unwrap()).collect();
+    assert!(!left.contains(&"temperature"), "{left:?}");
+    let run = fluxfit(&["identify", log, "--report", page]);
+    // R_s is 0.957 ohm, and 0.957 * 255 / 295 = 0.827.
+    assert!(run.out.contains("The winding was at 60 degC in the rows used; at 20 degC R_s = 0.827 ohm"), "{}", run.out);
+    assert!(std::fs::read_to_string(page).unwrap().contains("The winding was at 60 degC in the rows used"));
+    let run = fluxfit(&["identify", NOISY, "--magnet-coefficient", "-0.12%/K"]);
+    assert!(run.err.contains("--magnet-coefficient is not used: the log has no temperature"), "{}", run.err);
 }

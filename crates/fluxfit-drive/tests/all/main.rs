@@ -19,4 +19,5 @@ mod refusals;
 mod saturation;
 mod sensors;
 mod study;
+mod temperature;
 mod validate;

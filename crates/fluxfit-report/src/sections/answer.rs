@@ -24,6 +24,9 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
         (model(found))
         (explanations(found))
         (warnings(found))
+        @if let Some(temperature) = &found.temperature {
+            p { (prose(&sentence(&temperature.to_string()))) }
+        }
         (unseen(found))
         (parts(found))
     };

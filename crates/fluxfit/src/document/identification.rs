@@ -9,6 +9,7 @@ use super::{
     finite::finite,
     log::LogDocument,
     nuisance::NuisanceEntries,
+    temperature::TemperatureEntry,
     validation::ValidationDocument,
     warning::{CountedEntry, UnseenEntry, WarningEntry},
 };
@@ -47,6 +48,8 @@ pub struct IdentificationDocument {
     pub method: &'static str,
     /// The answer.
     pub parameters: ByParameter<ParameterEntry>,
+    /// The winding's temperature, and parameters at 20 degC; null where the log has none.
+    pub temperature: Option<TemperatureEntry>,
     /// The voltage timing and the faults of the drive.
     pub nuisance: NuisanceEntries,
     /// The exact answer of the steady operating points, and its cost, V²; null where there is no operating point. A parameter is null if
@@ -84,6 +87,7 @@ impl IdentificationDocument {
             model_reason: answer.model.reason.to_string(),
             method: answer.method.map_or(LEAST_SQUARES, |method| method.key()),
             parameters: answer.parameters.each_ref().map(ParameterEntry::of).into(),
+            temperature: answer.temperature.as_ref().map(TemperatureEntry::of),
             nuisance: NuisanceEntries::of(answer),
             least_squares: answer.steady.as_ref().map(|fit| {
                 let (motor, objective) = (&fit.estimate.motor, &fit.estimate.objective);

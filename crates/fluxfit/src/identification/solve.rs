@@ -3,6 +3,7 @@
 use super::{
     explain::{
         judgement::{Judgement, explained},
+        temperature::AtTemperature,
         unseen::{self, Counted, Unseen},
         warning::{self, Evidence, Warning},
     },
@@ -56,6 +57,8 @@ pub struct Identification {
     pub method: Option<Method>,
     /// The swarm's own answer, for comparison; `None` if no swarm searched.
     pub search: Option<Search>,
+    /// The winding's temperature, and what R_s and psi_f are at 20 degrees; `None` where the log has no temperature.
+    pub temperature: Option<AtTemperature>,
     /// What the reader should know.
     pub warnings: Vec<Warning>,
     /// Errors that no log shows and no interval counts.
@@ -122,7 +125,21 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let correlation = finding.uncertainty.correlation;
     let verdicts = parameters.each_ref().map(|judgement| judgement.verdict);
     let (unseen, counted) = (unseen::all(log, finding, verdicts, request), unseen::counted(verdicts, request));
-    Ok(Identification { parameters, model, steady, output, saturation, correlation, method, search, warnings, unseen, counted })
+    let temperature = AtTemperature::of(log, &parameters, steady.as_ref(), output.as_ref(), request);
+    Ok(Identification {
+        parameters,
+        model,
+        steady,
+        output,
+        saturation,
+        correlation,
+        method,
+        search,
+        temperature,
+        warnings,
+        unseen,
+        counted,
+    })
 }
 
 /// The simulated currents' fit without what they leave open, or the operating points where those tell more and no model is stated.

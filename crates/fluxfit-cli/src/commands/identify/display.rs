@@ -15,6 +15,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(&answer.log, found));
     text += &parameters(found);
     text += &explanations(found);
+    text += &found.temperature.map(|temperature| format!("\n{}", wrapped("", &sentence(&temperature.to_string())))).unwrap_or_default();
     text += &unseen(found);
     text += &format!("\n{}\n", model(found));
     if let Some(fit) = &found.steady {
@@ -132,6 +133,13 @@ fn unseen(found: &Identification) -> String {
     let counted = line("In the intervals, as stated", found.counted.iter().map(ToString::to_string).collect());
     let unseen = line("Not in the intervals, because no log shows it", found.unseen.iter().map(ToString::to_string).collect());
     if counted.is_empty() && unseen.is_empty() { String::new() } else { format!("\n{counted}{unseen}") }
+}
+
+/// Half a sentence as a whole one.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
 }
 
 /// Columns that a line of words may have.

@@ -8,6 +8,7 @@ use super::super::{
     judge::verdict::Verdict,
     request::Request,
 };
+use super::temperature::COPPER;
 use crate::{
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
@@ -33,7 +34,7 @@ pub enum UnseenError {
     BusVoltage,
     /// An angle that errs in proportion to the load: one electrical degree too large at the largest i_q.
     AngleWithLoad,
-    /// The winding's temperature, which the log does not hold: 10 K warmer than it was.
+    /// The winding's temperature, where the log does not hold it: 10 K warmer than it was.
     Temperature,
 }
 
@@ -52,9 +53,6 @@ const PERCENT: f64 = 0.01;
 
 /// Kelvin that a winding's temperature is easily wrong by.
 const KELVIN: f64 = 10.0;
-
-/// What copper's resistance gains per kelvin, IEC 60034-1 (from 235 K at 20 degrees: 1/255).
-const COPPER: f64 = 1.0 / 255.0;
 
 /// One degree, rad.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -88,7 +86,10 @@ pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS],
         Unseen { error: UnseenError::AngleWithLoad, moves: [0.0, 0.0, of_angle, 0.0] },
         Unseen { error: UnseenError::Temperature, moves: [KELVIN * COPPER, 0.0, 0.0, 0.0] },
     ];
-    let is_left = |unseen: &Unseen| unseen.moves.iter().any(|moves| *moves != 0.0) && unseen.error.accuracy(request).is_none();
+    let is_logged = |error| error == UnseenError::Temperature && log.columns().temperature.is_some();
+    let is_left = |unseen: &Unseen| {
+        unseen.moves.iter().any(|moves| *moves != 0.0) && unseen.error.accuracy(request).is_none() && !is_logged(unseen.error)
+    };
     unseen.into_iter().filter(is_left).collect()
 }
 
