@@ -41,7 +41,8 @@ fn same(value: f64, expected: f64) -> bool {
     (value / expected - 1.0).abs() < 1e-9
 }
 
-/// Copper: R_20 = R (235 + 20) / (235 + 75). Magnets that lose 0.12 % per kelvin of what they have at 20 degrees: psi_20 = psi / (1 - 0.066).
+/// Copper: R_20 = R (235 + 20) / (235 + 75). Magnets that lose 0.12 % per kelvin of what they have at 20 degrees:
+/// psi_20 = psi / (1 - 0.066).
 #[test]
 fn parameters_at_20_degrees_follow_from_the_materials() {
     let request = Request { magnet_coefficient: Some(-0.0012), ..Request::default() };
@@ -55,8 +56,8 @@ fn parameters_at_20_degrees_follow_from_the_materials() {
         let [low, high] = judgement.interval().unwrap().map(|end| factor * end);
         assert!(same(referred.interval[0], low) && same(referred.interval[1], high), "the same part of the value");
     }
-    let rest = format!("the winding was at 75 degC in the rows used; at 20 degC R_s = 0.788 ohm ±");
-    assert!(found.to_string().starts_with(&rest), "{found}");
+    let words = "the winding was at 75 degC in the rows used; at 20 degC R_s = 0.788 ohm ±";
+    assert!(found.to_string().starts_with(words), "{found}");
 }
 
 /// R_s is told by the rows with current, by its square: 81 at the first point, 16 + 36 at the second, 4 + 9 at the third.

@@ -327,3 +327,33 @@ fn correlation(points: &[OperatingPoint], estimate: &Estimate) -> [[f64; PARAMET
         std::array::from_fn(|q| if deviation[p] * deviation[q] > 0.0 { covariance[p][q] / (deviation[p] * deviation[q]) } else { 0.0 })
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise of 3 and a spread of 5 are 5 together, since what is doubtful at the answer is within the spread. A gain of 12 moves the
+    /// spread as a whole: 13.
+    #[test]
+    fn a_common_gain_comes_on_top_of_the_spread_by_saturation() {
+        let noise = ParameterUncertainty::of(3.0, 10.0, Systematic::default());
+        let mut uncertainty = Uncertainty { parameters: [noise; PARAMETERS], correlation: [[0.0; PARAMETERS]; PARAMETERS] };
+        uncertainty.count_common_gains(&[-12.0; PARAMETERS], &[0.0; PARAMETERS]);
+        let spread = uncertainty.with_saturation([5.0; PARAMETERS]).parameters[0];
+        assert!((spread.standard_error() - 13.0).abs() < 1e-12, "{spread:?}");
+        assert!((spread.systematic.saturation - 4.0).abs() < 1e-12, "{spread:?}");
+    }
+
+    /// Two parameters of noise 3 that a gain moves by 4 to opposite sides: 25 of variance each, -16 in common.
+    #[test]
+    fn a_common_gain_is_a_term_of_rank_one() {
+        let noise = ParameterUncertainty::of(3.0, 10.0, Systematic::default());
+        let one = std::array::from_fn(|p| std::array::from_fn(|q| f64::from(u8::from(p == q))));
+        let mut uncertainty = Uncertainty { parameters: [noise; PARAMETERS], correlation: one };
+        uncertainty.count_common_gains(&[4.0, -4.0, 0.0, 0.0], &[0.0; PARAMETERS]);
+        assert!((uncertainty.correlation[0][1] + 16.0 / 25.0).abs() < 1e-12 && uncertainty.correlation[0][2] == 0.0);
+        assert!((uncertainty.correlation[0][0] - 1.0).abs() < 1e-12 && uncertainty.parameters[2].half_width == noise.half_width);
+        // Of the variance, 9 of 25 has ten degrees of freedom, so that the whole has 10 (25 / 9)².
+        assert!((uncertainty.parameters[0].degrees_of_freedom - 10.0 * (25.0_f64 / 9.0).powi(2)).abs() < 1e-9);
+    }
+}
