@@ -2,8 +2,9 @@
 //! stand in its own file.
 
 use clap::{Args, ValueEnum, builder::Resettable};
-use fluxfit::{Model, TimeWindow, VoltageFrame, VoltageTiming, motor::Parameter, optimizer::METHODS};
+use fluxfit::{Model, Request, TimeWindow, VoltageFrame, VoltageTiming, motor::Parameter, optimizer::METHODS};
 use fluxfit_log::CONTAINERS;
+use fluxfit_setup::SensorAccuracy;
 use fluxfit_units::{Unit, wording::choice};
 use std::path::PathBuf;
 
@@ -27,7 +28,7 @@ pub(crate) struct LogArguments {
     /// after the row.
     #[arg(long, value_enum, default_value_t = Timing::Auto)]
     pub(crate) voltage_timing: Timing,
-    /// Motor file: pole pairs, nameplate values, rating
+    /// Motor file: pole pairs, nameplate values, rating, accuracy of the sensors, magnets' coefficient
     ///
     /// fluxfit identify compares its result with the nameplate values. The rating widens the search box of the swarms.
     #[arg(long, value_name = "MOTOR.toml", help_heading = "Prior knowledge")]
@@ -58,14 +59,44 @@ fn help_of_logs() -> String {
     format!("Logs of one motor: {}; - is standard input", choice(&formats))
 }
 
+/// How accurate the drive's measurements are.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Prior knowledge")]
+pub(crate) struct AccuracyArguments {
+    /// Standard uncertainty of the voltages, as a part of the vector, e.g. 0.1%
+    #[arg(long, value_name = "FRACTION", allow_hyphen_values = true, value_parser = fluxfit_units::parse_fraction, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
+    pub(crate) voltage_accuracy: f64,
+    /// Largest error that all current sensors have in common, e.g. 1%
+    ///
+    /// The limit in their data sheet, to either side. It is half of a 95 % interval. R_s, L_d and L_q are uncertain by it.
+    /// [default: that of the motor file, else not counted]
+    #[arg(long, value_name = "FRACTION", allow_hyphen_values = true, value_parser = fluxfit_units::parse_fraction)]
+    pub(crate) current_accuracy: Option<f64>,
+    /// Largest error of the DC voltage, e.g. 0.5%
+    ///
+    /// The same for the voltage from which the drive computes its voltages. All four parameters are uncertain by it.
+    /// [default: that of the motor file, else not counted]
+    #[arg(long, value_name = "FRACTION", allow_hyphen_values = true, value_parser = fluxfit_units::parse_fraction)]
+    pub(crate) bus_accuracy: Option<f64>,
+}
+
+impl AccuracyArguments {
+    /// Writes them into a request, with those of the motor file where the arguments state none.
+    pub(crate) fn apply(&self, sensors: SensorAccuracy, request: &mut Request) {
+        request.voltage_accuracy = self.voltage_accuracy;
+        request.current_accuracy = self.current_accuracy.or(sensors.current);
+        request.bus_accuracy = self.bus_accuracy.or(sensors.bus);
+    }
+}
+
 /// What a log's columns mean.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Log")]
 pub(crate) struct ColumnArguments {
     /// Columns with other names, e.g. ud=motor_vd_V,omega_e=speed
     ///
-    /// The standard names are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc. Phase quantities ia, ib, ic, ua, ub, uc with
-    /// theta_e may replace id, iq, ud, uq. [default: the standard names, or a known layout]
+    /// The standard names are t, ud, uq, id, iq, omega_e, and optionally theta_e, u_dc, temperature. Phase quantities ia, ib, ic, ua, ub,
+    /// uc with theta_e may replace id, iq, ud, uq. [default: the standard names, or a known layout]
     #[arg(long, value_name = "NAME=COLUMN,..", value_parser = parse_columns)]
     pub(crate) map: Vec<MappedColumns>,
     /// Units of columns, e.g. omega=rpm-mech,t=ms

@@ -3,6 +3,8 @@
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
+#[path = "command/accuracy.rs"]
+mod accuracy;
 #[path = "command/bad_input.rs"]
 mod bad_input;
 #[path = "command/bad_scenario.rs"]

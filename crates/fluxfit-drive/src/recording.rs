@@ -54,6 +54,7 @@ impl Recording {
                 omega_e: column()?,
                 theta_e: Some(column()?),
                 u_dc: Some(column()?),
+                temperature: None,
             },
             ud_ref: column()?,
             uq_ref: column()?,

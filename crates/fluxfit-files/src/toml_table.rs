@@ -3,7 +3,7 @@
 //! A document is first checked against its [`Shape`], in the order of its lines; then each reader takes the keys that it needs.
 
 use crate::{error::FileError, input, problem::Problem};
-use fluxfit_units::{Dimension, parse_quantity, wording::nearest};
+use fluxfit_units::{Dimension, parse_coefficient, parse_fraction, parse_quantity, wording::nearest};
 use serde_json::{Map, Value};
 use toml::{
     Spanned,
@@ -189,6 +189,24 @@ impl<'d> Entry<'d> {
     pub fn quantity(&self, dimension: Dimension) -> Result<f64, FileError> {
         let wanted = || self.refuse(Problem::Value { wanted: "a number, or one with its unit in quotes".to_owned() });
         parse_quantity(&self.as_written().ok_or_else(wanted)?, dimension).map_err(|error| self.refuse(error))
+    }
+
+    /// A fraction: a number, or a percentage in quotes.
+    ///
+    /// # Errors
+    /// If the value is neither, or it is negative.
+    pub fn fraction(&self) -> Result<f64, FileError> {
+        let wanted = || self.refuse(Problem::Value { wanted: "a number, or a percentage in quotes".to_owned() });
+        parse_fraction(&self.as_written().ok_or_else(wanted)?).map_err(|error| self.refuse(error))
+    }
+
+    /// A part per kelvin: a number, or text such as `-0.12 %/K`.
+    ///
+    /// # Errors
+    /// If the value is neither.
+    pub fn coefficient(&self) -> Result<f64, FileError> {
+        let wanted = || self.refuse(Problem::Value { wanted: "a part per kelvin, as in \"-0.12 %/K\"".to_owned() });
+        parse_coefficient(&self.as_written().ok_or_else(wanted)?).map_err(|error| self.refuse(error))
     }
 
     /// A whole number of at least `least`.

@@ -15,6 +15,8 @@ pub(crate) enum Channel {
     OmegaE,
     ThetaE,
     UDc,
+    /// Of the winding.
+    Temperature,
     IA,
     IB,
     IC,
@@ -30,7 +32,7 @@ impl Channel {
     pub(crate) const NEEDED: [Self; 6] = [Self::T, Self::Ud, Self::Uq, Self::Id, Self::Iq, Self::OmegaE];
 
     /// The optional channels.
-    pub(crate) const OPTIONAL: [Self; 2] = [Self::ThetaE, Self::UDc];
+    pub(crate) const OPTIONAL: [Self; 3] = [Self::ThetaE, Self::UDc, Self::Temperature];
 
     /// Phase quantities, from which dq quantities are computed with the angle.
     pub(crate) const PHASES: [Self; 6] = [Self::UA, Self::UB, Self::UC, Self::IA, Self::IB, Self::IC];
@@ -51,6 +53,7 @@ impl Channel {
             Self::OmegaE => "omega_e",
             Self::ThetaE => "theta_e",
             Self::UDc => "u_dc",
+            Self::Temperature => "temperature",
             Self::IA => "ia",
             Self::IB => "ib",
             Self::IC => "ic",
@@ -61,7 +64,7 @@ impl Channel {
         }
     }
 
-    /// Its SI unit.
+    /// Its SI unit; of temperatures degC.
     pub(crate) fn unit(self) -> Unit {
         match self {
             Self::T => Unit::Second,
@@ -70,7 +73,13 @@ impl Channel {
             Self::Run => Unit::Number,
             Self::OmegaE => Unit::RadianPerSecond,
             Self::ThetaE => Unit::Radian,
+            Self::Temperature => Unit::Celsius,
         }
+    }
+
+    /// Whether it changes so slowly that it may be held between its values, however rare they are.
+    pub(crate) fn is_slow(self) -> bool {
+        self == Self::Temperature
     }
 
     pub(crate) fn dimension(self) -> Dimension {
@@ -88,6 +97,7 @@ impl Channel {
             Self::OmegaE => &["omega", "omegae", "omegael", "omegam", "speed", "velocity", "rpm", "erpm"],
             Self::ThetaE => &["theta", "thetae", "thetael", "thetam", "angle", "electricalangle", "rotorangle"],
             Self::UDc => &["udc", "vdc", "dcvoltage", "dclinkvoltage", "busvoltage", "vbus", "inputvoltage"],
+            Self::Temperature => &["temperature", "windingtemperature", "motortemperature", "tempmotor", "motortemp"],
             Self::IA => &["ia", "iu", "i1", "currenta", "phaseacurrent"],
             Self::IB => &["ib", "iv", "i2", "currentb", "phasebcurrent"],
             Self::IC => &["ic", "iw", "i3", "currentc", "phaseccurrent"],
@@ -128,15 +138,15 @@ mod tests {
         let message = |name| Channel::from_name(name).unwrap_err().to_string();
         assert_eq!(
             message("speed"),
-            "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+            "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
         );
         assert_eq!(
             message("time"),
-            "\"time\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean t?"
+            "\"time\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run; did you mean t?"
         );
         assert_eq!(
             message("flux_density"),
-            "\"flux_density\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run"
+            "\"flux_density\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run"
         );
     }
 
@@ -144,7 +154,8 @@ mod tests {
     fn the_order_is_that_of_the_log() {
         let names = fluxfit::log::Columns::default().named().map(|(name, _)| name);
         assert_eq!(names, Channel::NEEDED.map(Channel::name));
-        let both = fluxfit::log::Columns { theta_e: Some(Vec::new()), u_dc: Some(Vec::new()), ..Default::default() };
-        assert_eq!(both.optional().map(|(name, _)| name).collect::<Vec<_>>(), Channel::OPTIONAL.map(Channel::name));
+        let all = || Some(Vec::new());
+        let columns = fluxfit::log::Columns { theta_e: all(), u_dc: all(), temperature: all(), ..Default::default() };
+        assert_eq!(columns.optional().map(|(name, _)| name).collect::<Vec<_>>(), Channel::OPTIONAL.map(Channel::name));
     }
 }

@@ -47,6 +47,8 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         "hz" => by_rotation(Unit::HertzElectrical, Unit::HertzMechanical, Unit::HertzElectrical),
         "rad" => by_rotation(Unit::Radian, Unit::RadianMechanical, Unit::Radian),
         "deg" | "degree" | "degrees" | "°" => by_rotation(Unit::Degree, Unit::DegreeMechanical, Unit::Degree),
+        // Lower case: the unit may be °C or C.
+        "degc" | "°c" | "c" | "celsius" => Unit::Celsius,
         _ => return Unit::from_name(&text, dimension),
     };
     (unit.dimension() == dimension).then_some(unit)
@@ -137,6 +139,9 @@ mod tests {
             ("theta_e [°]", Angle, ("theta_e", HeaderUnit::Known(Unit::Degree))),
             ("mech_angle_deg", Angle, ("mech_angle", HeaderUnit::Known(Unit::DegreeMechanical))),
             ("theta_mech (rad)", Angle, ("theta_mech", HeaderUnit::Known(Unit::RadianMechanical))),
+            ("temperature [°C]", Temperature, ("temperature", HeaderUnit::Known(Unit::Celsius))),
+            ("temperature_degC", Temperature, ("temperature", HeaderUnit::Known(Unit::Celsius))),
+            ("temperature (K)", Temperature, ("temperature", HeaderUnit::Unknown("K"))),
             ("theta_e_rad", Angle, ("theta_e", HeaderUnit::Known(Unit::Radian))),
             ("speed_rad", Speed, ("speed_rad", HeaderUnit::None)),
             ("ü)", Speed, ("ü)", HeaderUnit::None)),

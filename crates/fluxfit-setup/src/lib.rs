@@ -19,7 +19,7 @@ pub mod scenario_file;
 pub mod truth;
 
 pub use given_motor::{GivenMotor, read_given_motor};
-pub use motor_file::{MotorFile, RatedValues, read_motor};
+pub use motor_file::{MotorFile, RatedValues, SensorAccuracy, read_motor};
 pub use recording::write_recording;
 pub use scenario_file::{ReadScenario, paper_scenario, read_scenario};
 pub use truth::{Truth, read_truth, truth_of, truth_path};

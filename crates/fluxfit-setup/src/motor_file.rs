@@ -7,10 +7,14 @@
 //! lq = "12 mH"
 //! psi_f = "0.1827 Wb"
 //! pole_pairs = 4
+//! magnet_coefficient = "-0.12 %/K"    # of psi_f, for logs with a temperature
 //! [rating]
 //! current = "20 A"      # phase peak
 //! voltage = "180 V"     # phase peak
 //! speed = "3000 rpm"    # mechanical
+//! [sensors]
+//! current_accuracy = "1 %"     # of all current sensors together; the limit of their data sheet
+//! bus_accuracy = "0.5 %"       # of the DC voltage
 //! ```
 
 use fluxfit_files::{
@@ -20,10 +24,10 @@ use fluxfit_files::{
 use fluxfit_units::Dimension;
 use std::path::Path;
 
-/// What is known about a motor; every number is above zero.
+/// What is known about a motor and its drive.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MotorFile {
-    /// Stator resistance, ohm.
+    /// Stator resistance, ohm; as all parameters above zero.
     pub rs: Option<f64>,
     /// Inductance along d, H.
     pub ld: Option<f64>,
@@ -33,8 +37,21 @@ pub struct MotorFile {
     pub psi_f: Option<f64>,
     /// Number of pole pairs.
     pub pole_pairs: Option<u32>,
+    /// By which part of itself the magnets' flux changes per kelvin; of either sign.
+    pub magnet_coefficient: Option<f64>,
     /// Rated values.
     pub rating: RatedValues,
+    /// Accuracy of the drive's sensors.
+    pub sensors: SensorAccuracy,
+}
+
+/// Limits of the errors of the drive's sensors, as fractions from 0 up to 1.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SensorAccuracy {
+    /// Of a gain common to all current sensors.
+    pub current: Option<f64>,
+    /// Of the DC voltage.
+    pub bus: Option<f64>,
 }
 
 /// Rated values of a motor; every number is above zero.
@@ -51,7 +68,11 @@ pub struct RatedValues {
 const SHAPE: Shape = Shape {
     noun: "a motor file",
     keys: &[],
-    tables: &[("motor", &["rs", "ld", "lq", "psi_f", "pole_pairs"]), ("rating", &["current", "voltage", "speed"])],
+    tables: &[
+        ("motor", &["rs", "ld", "lq", "psi_f", "pole_pairs", "magnet_coefficient"]),
+        ("rating", &["current", "voltage", "speed"]),
+        ("sensors", &["current_accuracy", "bus_accuracy"]),
+    ],
 };
 
 const ABOVE_ZERO: &str = "a finite number above zero";
@@ -81,19 +102,27 @@ impl MotorFile {
 
 fn parse(text: &str) -> Result<MotorFile, FileError> {
     let document = Document::parse(text, &SHAPE)?;
-    let (motor, rating) = (document.table("motor"), document.table("rating"));
+    let (motor, rating, sensors) = (document.table("motor"), document.table("rating"), document.table("sensors"));
     Ok(MotorFile {
         rs: above_zero(&motor, "rs", Dimension::Resistance)?,
         ld: above_zero(&motor, "ld", Dimension::Inductance)?,
         lq: above_zero(&motor, "lq", Dimension::Inductance)?,
         psi_f: above_zero(&motor, "psi_f", Dimension::FluxLinkage)?,
         pole_pairs: motor.get("pole_pairs").map(|entry| entry.whole(1, "a whole number above zero")).transpose()?,
+        magnet_coefficient: motor.get("magnet_coefficient").map(|entry| entry.coefficient()).transpose()?,
         rating: RatedValues {
             current: above_zero(&rating, "current", Dimension::Current)?,
             voltage: above_zero(&rating, "voltage", Dimension::Voltage)?,
             speed: above_zero(&rating, "speed", Dimension::Speed)?,
         },
+        sensors: SensorAccuracy { current: accuracy(&sensors, "current_accuracy")?, bus: accuracy(&sensors, "bus_accuracy")? },
     })
+}
+
+fn accuracy(table: &Table<'_>, key: &str) -> Result<Option<f64>, FileError> {
+    let Some(entry) = table.get(key) else { return Ok(None) };
+    let fraction = entry.fraction()?;
+    if fraction < 1.0 { Ok(Some(fraction)) } else { Err(entry.out_of_range("a fraction from 0 up to 1")) }
 }
 
 fn above_zero(table: &Table<'_>, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
@@ -122,11 +151,23 @@ mod tests {
             lq: Some(12e-3),
             psi_f: Some(0.1827),
             pole_pairs: Some(4),
+            magnet_coefficient: None,
             rating: RatedValues { current: Some(20.0), voltage: Some(180.0), speed: Some(3000.0 * (TAU / 60.0)) },
+            sensors: SensorAccuracy::default(),
         };
         assert_eq!(read(text), Ok(expected));
         assert_eq!(read(""), Ok(MotorFile::default()));
+        assert_eq!(read("motor.magnet_coefficient = \"-0.12 %/K\"").map(|motor| motor.magnet_coefficient), Ok(Some(-0.0012)));
         assert_eq!(read("motor.ld = \"5.25mH\"").map(|motor| motor.ld), Ok(Some(5.25e-3)));
+    }
+
+    #[test]
+    fn the_accuracy_of_sensors_is_a_number_or_a_percentage() {
+        let sensors = |text: &str| read(text).map(|motor| motor.sensors);
+        let both = Ok(SensorAccuracy { current: Some(0.01), bus: Some(0.005) });
+        assert_eq!(sensors("[sensors]\ncurrent_accuracy = \"±1 %\"\nbus_accuracy = 0.005\n"), both);
+        assert_eq!(sensors("[sensors]\ncurrent_accuracy = 0.01\nbus_accuracy = \"0.5%\"\n"), both);
+        assert_eq!(sensors("[motor]\n"), Ok(SensorAccuracy::default()));
     }
 
     #[test]
@@ -134,10 +175,13 @@ mod tests {
         let cases = [
             (
                 "[motor]\n\nl_d = 1",
-                "line 3, key 'l_d': this key is not known; [motor] can hold rs, ld, lq, psi_f and pole_pairs; did you mean ld?",
+                "line 3, key 'l_d': this key is not known; [motor] can hold rs, ld, lq, psi_f, pole_pairs and magnet_coefficient; did you mean ld?",
             ),
             ("rs = 1", "line 1, key 'rs': this key is outside of its table; put it below a line [motor]"),
-            ("[ratings]", "line 1, key 'ratings': this key is not known; a motor file can hold motor and rating; did you mean rating?"),
+            (
+                "[ratings]",
+                "line 1, key 'ratings': this key is not known; a motor file can hold motor, rating and sensors; did you mean rating?",
+            ),
             ("motor = 1", "line 1, key 'motor': this is not a table, as in [motor]; correct it"),
             (
                 "[motor]\nrs = \"1 H\"",
@@ -150,6 +194,12 @@ mod tests {
                 "line 2, key 'rs': \"nan\" is not a resistance; write a number, in ohm or with its unit, as in \"0.958 ohm\"",
             ),
             ("[motor]\nrs = [1]", "line 2, key 'rs': this is not a number, or one with its unit in quotes; correct it"),
+            ("[sensors]\nbus_accuracy = 1", "line 2, key 'bus_accuracy': \"1\" is out of range; it must be a fraction from 0 up to 1"),
+            ("[sensors]\nbus_accuracy = -0.1", "line 2, key 'bus_accuracy': \"-0.1\" is out of range; it must be zero or more"),
+            (
+                "[sensors]\ncurrent_accuracy = \"1 A\"",
+                "line 2, key 'current_accuracy': \"1 A\" is not a fraction; write a number or a percentage, as in 0.01 or 1%",
+            ),
             ("[motor]\npole_pairs = 0", "line 2, key 'pole_pairs': \"0\" is out of range; it must be a whole number above zero"),
             ("[motor]\npole_pairs = 4.0", "line 2, key 'pole_pairs': this is not a whole number, as in pole_pairs = 4; correct it"),
             ("[motor]\nrs = 1\nrs = 2", "line 3: this is not TOML: duplicate key; correct it"),

@@ -25,16 +25,13 @@ pub fn parse_fix(text: &str) -> Result<(Parameter, f64), ValueError> {
 pub fn parse_prior(text: &str) -> Result<(Parameter, f64, f64), ValueError> {
     const FORM: (&str, &str) = ("PARAMETER=VALUE±UNCERTAINTY", "rs=0.96±1%");
     let (parameter, value) = parameter_and_value(text, FORM.0, FORM.1)?;
-    let sides = ["±", "+/-", "+-"].into_iter().find_map(|sign| value.split_once(sign));
+    let sides = PLUS_MINUS.into_iter().find_map(|sign| value.split_once(sign));
     let (left, right) = sides.ok_or_else(|| form(text, FORM.0, FORM.1))?;
     let dimension = Dimension::of(parameter);
     let (number, standard_error) = match right.trim().strip_suffix('%') {
         Some(percent) => {
             let number = parse_quantity(left, dimension)?;
-            let (percent, rest) = split(percent).ok_or_else(|| dimension.refusal(right))?;
-            if !rest.is_empty() {
-                return Err(dimension.refusal(right));
-            }
+            let percent = plain(percent).ok_or_else(|| dimension.refusal(right))?;
             // The sign stays with the percentage: a negative one is refused below.
             (number, number.abs() * percent / 100.0)
         }
@@ -48,6 +45,42 @@ pub fn parse_prior(text: &str) -> Result<(Parameter, f64, f64), ValueError> {
     } else {
         Err(out_of_range(value, "a value with an uncertainty above zero"))
     }
+}
+
+/// How an uncertainty to either side begins.
+const PLUS_MINUS: [&str; 3] = ["±", "+/-", "+-"];
+
+/// A number without a unit.
+fn plain(text: &str) -> Option<f64> {
+    split(text).filter(|(_, rest)| rest.is_empty()).map(|(number, _)| number)
+}
+
+/// `1%`, `±1 %` or `0.01`: a fraction, zero or more.
+///
+/// # Errors
+/// If the text is not a fraction, or it is negative.
+pub fn parse_fraction(text: &str) -> Result<f64, ValueError> {
+    let size = PLUS_MINUS.into_iter().find_map(|sign| text.trim().strip_prefix(sign)).unwrap_or(text).trim();
+    let number = match size.strip_suffix('%') {
+        Some(percent) => plain(percent).map(|percent| percent / 100.0),
+        None => plain(size),
+    };
+    let number = number.ok_or_else(|| Problem::Fraction { text: text.trim().to_owned() })?;
+    if number < 0.0 { Err(out_of_range(text, "zero or more")) } else { Ok(number) }
+}
+
+/// `-0.12%/K` or `-0.0012`: by which part of itself something changes per kelvin.
+///
+/// # Errors
+/// If the text is not such a number.
+pub fn parse_coefficient(text: &str) -> Result<f64, ValueError> {
+    let trimmed = text.trim();
+    let size = trimmed.strip_suffix('K').and_then(|rest| rest.trim().strip_suffix('/')).unwrap_or(trimmed).trim();
+    let number = match size.strip_suffix('%') {
+        Some(percent) => plain(percent).map(|percent| percent / 100.0),
+        None => plain(size),
+    };
+    number.ok_or_else(|| form(trimmed, "a part per kelvin", "-0.12%/K"))
 }
 
 /// `ld=0:50mH`: a parameter, and its lower and upper bound in the search, in SI units.
@@ -154,6 +187,33 @@ mod tests {
     }
 
     #[test]
+    fn fractions_may_be_percentages() {
+        for text in ["1%", "1 %", "±1%", "± 1 %", "+-1%", "+/-1%", "0.01", "±0.01", " 1e-2 "] {
+            assert_eq!(parse_fraction(text), Ok(0.01), "{text}");
+        }
+        assert_eq!(parse_fraction("0"), Ok(0.0));
+        let refusal = |text| parse_fraction(text).unwrap_err().to_string();
+        for text in ["", "%", "one", "1 A", "1%%", "nan", "inf", "±"] {
+            assert_eq!(refusal(text), format!("\"{text}\" is not a fraction; write a number or a percentage, as in 0.01 or 1%"), "{text}");
+        }
+        for text in ["-1", "±-1%"] {
+            assert_eq!(refusal(text), format!("\"{text}\" is out of range; it must be zero or more"));
+        }
+    }
+
+    #[test]
+    fn a_coefficient_is_a_part_per_kelvin() {
+        for text in ["-0.12%/K", "-0.12 %/K", "-0.12 % / K", "-0.12%", "-0.0012", "-1.2e-3/K"] {
+            assert_eq!(parse_coefficient(text), Ok(-0.0012), "{text}");
+        }
+        assert_eq!(parse_coefficient("+0.4%/K"), Ok(0.004));
+        for text in ["", "K", "-0.12%/C", "nan", "-0.12%/K/K"] {
+            let sentence = format!("\"{text}\" is not understood; write a part per kelvin, as in -0.12%/K");
+            assert_eq!(parse_coefficient(text).unwrap_err().to_string(), sentence);
+        }
+    }
+
+    #[test]
     fn intervals_need_a_lower_and_an_upper_end() {
         assert_eq!(parse_bounds("ld=0:50mH"), Ok((Parameter::Ld, 0.0, 50e-3)));
         assert_eq!(parse_bounds("psi_f=-0.1:1"), Ok((Parameter::PsiF, -0.1, 1.0)));
@@ -171,6 +231,7 @@ mod tests {
         fn no_text_panics(text in "\\PC*|(rs|ld|omega|t)=[0-9e.+\\-/±%:muH ]{0,14}") {
             let sentences = [
                 parse_fix(&text).err(), parse_prior(&text).err(), parse_bounds(&text).err(), parse_window(&text).err(),
+                parse_fraction(&text).err(), parse_coefficient(&text).err(),
             ];
             for sentence in sentences.into_iter().flatten() {
                 prop_assert_eq!(sentence.to_string().lines().count(), 1);

@@ -32,6 +32,8 @@ pub(crate) enum Problem {
     Quantity { text: String, noun: &'static str, si: &'static str, example: &'static str },
     #[error("{} is not a ratio; write a number without a unit, as in {example}", quote(.text))]
     Ratio { text: String, example: &'static str },
+    #[error("{} is not a fraction; write a number or a percentage, as in 0.01 or 1%", quote(.text))]
+    Fraction { text: String },
     #[error("{} is out of range; it must be {range}", quote(.text))]
     Range { text: String, range: &'static str },
     #[error("{} has a unit on one number only; write it on both", quote(.text))]

@@ -24,7 +24,7 @@ pub mod quantity;
 pub mod unit;
 pub mod wording;
 
-pub use argument::{key_value, parse_bounds, parse_fix, parse_frequency, parse_prior, parse_window};
+pub use argument::{key_value, parse_bounds, parse_coefficient, parse_fix, parse_fraction, parse_frequency, parse_prior, parse_window};
 pub use error::ValueError;
 pub use number::{Scale, format_unknown, significant, small};
 pub use quantity::{Dimension, parse_quantity};

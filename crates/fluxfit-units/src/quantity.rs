@@ -34,6 +34,8 @@ pub enum Dimension {
     Inertia,
     /// N m s.
     Friction,
+    /// degC.
+    Temperature,
     /// Without a unit.
     Ratio,
 }
@@ -63,7 +65,7 @@ impl Dimension {
         }
     }
 
-    /// SI unit.
+    /// SI unit; of temperatures degC.
     pub fn si(self) -> &'static str {
         self.words().1
     }
@@ -88,6 +90,7 @@ impl Dimension {
             Self::Torque => ("a torque", "N m", "\"10 N m\""),
             Self::Inertia => ("an inertia", "kg m2", "\"0.003 kg m2\""),
             Self::Friction => ("a friction", "N m s", "\"0.008 N m s\""),
+            Self::Temperature => ("a temperature", "degC", "\"60 degC\""),
             Self::Ratio => ("a ratio", "1", "1.02"),
         }
     }
@@ -121,6 +124,7 @@ impl Dimension {
                 }
             }
             Self::Friction => const { &[si("N m s"), si("Nm s"), si("Nms")] },
+            Self::Temperature => const { &[scaled("degC", 1.0), scaled("°C", 1.0)] },
             Self::Ratio => &[],
         }
     }

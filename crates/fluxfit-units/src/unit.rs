@@ -40,13 +40,15 @@ pub enum Unit {
     RadianMechanical,
     /// Mechanical degrees.
     DegreeMechanical,
+    /// degC.
+    Celsius,
     /// No unit: a plain number.
     Number,
 }
 
 impl Unit {
     /// All of them; of each dimension the SI unit first.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Second,
         Self::Millisecond,
         Self::Microsecond,
@@ -64,6 +66,7 @@ impl Unit {
         Self::Degree,
         Self::RadianMechanical,
         Self::DegreeMechanical,
+        Self::Celsius,
         Self::Number,
     ];
 
@@ -87,6 +90,7 @@ impl Unit {
             Self::Degree => ("deg", "electrical degrees", Dimension::Angle, PI / 180.0),
             Self::RadianMechanical => ("rad-mech", "mechanical rad", Dimension::Angle, 1.0),
             Self::DegreeMechanical => ("deg-mech", "mechanical degrees", Dimension::Angle, PI / 180.0),
+            Self::Celsius => ("degC", "degC", Dimension::Temperature, 1.0),
             Self::Number => ("1", "1", Dimension::Ratio, 1.0),
         }
     }

@@ -58,6 +58,9 @@ fn promised_nulls(document: &Value) -> Vec<String> {
     if document["search"].is_null() {
         promised.push(".search".to_owned());
     }
+    if document["temperature"].is_null() {
+        promised.push(".temperature".to_owned());
+    }
     promised.sort();
     promised
 }
@@ -80,6 +83,7 @@ fn check(log: &Log, settings: &Request) -> Option<Vec<String>> {
     nulls("", &read, &mut found);
     found.sort();
     assert_eq!(found, promised_nulls(&read));
+    assert_eq!(read["temperature"].is_null(), log.columns().temperature.is_none());
     for key in KEYS {
         let parameter = &read["parameters"][key];
         if let Some(value) = parameter["value"].as_f64() {

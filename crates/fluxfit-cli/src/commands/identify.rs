@@ -7,7 +7,7 @@ mod export;
 
 use super::{Status, input, report};
 use crate::{
-    arguments::{LogArguments, ModelArgument, by_parameter, method_keys},
+    arguments::{AccuracyArguments, LogArguments, ModelArgument, by_parameter, method_keys},
     error::CommandError,
     interrupt, json, terminal,
 };
@@ -32,15 +32,19 @@ pub(crate) struct Identify {
     #[arg(long, help_heading = "Search", default_value = "auto", value_parser = parse_search_method,
           help = help_of_search_method(), long_help = long_help_of_search_method())]
     method: SearchMethod,
-    /// Standard uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
-    voltage_accuracy: f64,
+    #[command(flatten)]
+    accuracy: AccuracyArguments,
     /// A parameter known exactly, e.g. rs=0.96 or ld=5.25mH; a bare number is SI
     #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
     fix: Vec<(Parameter, f64)>,
     /// A parameter known with a standard error, e.g. rs=0.96±1% or rs=0.96+-0.01
     #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_units::parse_prior, allow_hyphen_values = true)]
     prior: Vec<(Parameter, f64, f64)>,
+    /// Change of the magnets' flux with temperature, e.g. -0.12%/K, for psi_f at 20 degC
+    ///
+    /// It is used where the log has the winding's temperature; the magnets are taken to be as warm. [default: that of the motor file]
+    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION/K", allow_hyphen_values = true, value_parser = fluxfit_units::parse_coefficient)]
+    magnet_coefficient: Option<f64>,
     /// Identify without the last log (of one log: the last segment), and validate on it
     #[arg(long, help_heading = "Output")]
     hold_out: bool,
@@ -148,7 +152,11 @@ fn identified(input: &input::Input, request: &Request) -> Result<Answer, Command
 fn request(arguments: &Identify, input: &input::Input) -> Result<Request, CommandError> {
     let mut request = input::request(&arguments.log, input)?;
     request.model = arguments.model.stated();
-    request.voltage_accuracy = arguments.voltage_accuracy;
+    arguments.accuracy.apply(input.motor.sensors, &mut request);
+    request.magnet_coefficient = arguments.magnet_coefficient.or(input.motor.magnet_coefficient);
+    if arguments.magnet_coefficient.is_some() && input.log.columns().temperature.is_none() {
+        terminal::note("--magnet-coefficient is not used: the log has no temperature");
+    }
     request.known = known(arguments)?;
     request.swarm = match arguments.method {
         SearchMethod::Auto => Swarm::Auto,

@@ -4,7 +4,7 @@ pub(crate) mod display;
 
 use super::{Status, input, report};
 use crate::{
-    arguments::{LogArguments, ModelArgument},
+    arguments::{AccuracyArguments, LogArguments, ModelArgument},
     error::CommandError,
     json, terminal,
 };
@@ -24,9 +24,8 @@ pub(crate) struct Validate {
     /// Model that predicts the log
     #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
     model: ModelArgument,
-    /// Standard uncertainty of the voltages, as a fraction of the vector
-    #[arg(long, help_heading = "Prior knowledge", value_name = "FRACTION", allow_negative_numbers = true, default_value_t = fluxfit::evidence::VOLTAGE_ACCURACY)]
-    voltage_accuracy: f64,
+    #[command(flatten)]
+    accuracy: AccuracyArguments,
 }
 
 const VALIDATED: &str = "The parameters to validate: a motor file with all four, the JSON document of fluxfit identify (with its standard errors), or a file of true parameters";
@@ -42,11 +41,8 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     }
     let motor = read_given_motor(path)?;
     let input = input::read_beside(&arguments.log, motor.file)?;
-    let request = Request {
-        model: arguments.model.stated(),
-        voltage_accuracy: arguments.voltage_accuracy,
-        ..input::request(&arguments.log, &input)?
-    };
+    let mut request = Request { model: arguments.model.stated(), ..input::request(&arguments.log, &input)? };
+    arguments.accuracy.apply(input.motor.sensors, &mut request);
     let found = terminal::working(format!("fitting {} rows", input.log.rows()), || validate(&input.log, &motor.given, &request));
     let found = found.map_err(|error| input::of_log(&input.name, error))?;
     let name = path.display().to_string();

@@ -100,7 +100,7 @@ fn what_is_no_motor_is_refused_in_a_sentence() {
     let run = fluxfit(&["validate", "-", "--motor", "-"]);
     assert!(run.status == 2 && run.err.contains("standard input can be read only once"), "{}", run.err);
     let run = fluxfit(&["validate", NOISY, "--motor", MOTOR, "--voltage-accuracy", "-1"]);
-    assert!(run.status == 2 && run.err.contains("the voltage accuracy is -1"), "{}", run.err);
+    assert!(run.status == 2 && run.err.contains("\"-1\" is out of range; it must be zero or more"), "{}", run.err);
     let run = fluxfit(&["validate", NOISY, "--motor", MOTOR, "--window", "5:6"]);
     assert!(run.status == 2 && run.err.contains("the window 5:6 s holds 0 consecutive rows"), "{}", run.err);
 }

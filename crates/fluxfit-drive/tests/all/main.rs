@@ -2,6 +2,7 @@
 //!
 //! `cargo test -p fluxfit-drive --test all faults -- --nocapture` runs one topic and prints what it found.
 
+mod common_gains;
 mod control;
 mod conventions;
 mod dead_time;
@@ -18,4 +19,5 @@ mod refusals;
 mod saturation;
 mod sensors;
 mod study;
+mod temperature;
 mod validate;

@@ -39,10 +39,10 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     for (channel, _) in counts.iter().filter(|(channel, _)| *channel != T) {
         let Some(values) = channels.get(*channel) else { continue };
         let (at, values): (Vec<f64>, Vec<f64>) = present(&t, values).unzip();
-        if at != instants {
+        if at != instants && !channel.is_slow() {
             moved.push(*channel);
         }
-        let on_common = interpolated(&at, &values, &instants);
+        let on_common = if channel.is_slow() { held(&at, &values, &instants) } else { interpolated(&at, &values, &instants) };
         channels.set(*channel, on_common);
     }
     channels.set(T, instants);
@@ -82,7 +82,7 @@ pub(super) fn note(moved: &[Channel], base: Channel) -> String {
 }
 
 /// The values that are present, with their times.
-fn present<'a>(t: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+pub(super) fn present<'a>(t: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     t.iter().copied().zip(values.iter().copied()).filter(|(_, value)| !value.is_nan())
 }
 
@@ -108,9 +108,30 @@ pub(super) fn interpolated(at: &[f64], values: &[f64], instants: &[f64]) -> Vec<
     instants.iter().map(value).collect()
 }
 
+/// Values of a channel that changes slowly, at other instants: linear between two values however far apart, and beyond the ends as there.
+pub(super) fn held(at: &[f64], values: &[f64], instants: &[f64]) -> Vec<f64> {
+    let value = |instant: &f64| {
+        let after = at.partition_point(|at| at < instant);
+        match (after.checked_sub(1), at.get(after)) {
+            (Some(before), Some(right)) => {
+                let part = (instant - at[before]) / (right - at[before]);
+                values[before] + part * (values[after] - values[before])
+            }
+            (before, _) => values.get(before.unwrap_or(after)).copied().unwrap_or(f64::NAN),
+        }
+    };
+    instants.iter().map(value).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_slow_channel_is_held_across_gaps_and_beyond_its_ends() {
+        let found = held(&[0.0, 1.0, 5.0], &[20.0, 22.0, 30.0], &[-1.0, 0.0, 0.5, 1.0, 3.0, 5.0, 9.0]);
+        assert_eq!(found, [20.0, 20.0, 21.0, 22.0, 26.0, 30.0, 30.0]);
+    }
 
     #[test]
     fn values_are_interpolated_linearly_except_in_gaps() {

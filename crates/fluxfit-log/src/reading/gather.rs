@@ -133,6 +133,7 @@ fn one_group(
     if let Some(counted) = counted {
         notes.push(format!("the rows have no time: one row every {} s is assumed", counted.period).into());
     }
+    hold_slow(&mut channels);
     drop_unreadable(&mut channels, columns, refused, &lines, notes);
     Ok(Gathered { channels, lines, is_interpolated: false })
 }
@@ -174,6 +175,20 @@ impl Counted {
     }
 }
 
+/// Fills the missing values of channels that change slowly: a logger writes a temperature now and then.
+fn hold_slow(channels: &mut Channels) {
+    let Some(t) = channels.get(T).map(<[f64]>::to_vec) else { return };
+    let slow: Vec<Channel> = channels.iter().map(|(channel, _)| channel).filter(|channel| channel.is_slow()).collect();
+    for channel in slow {
+        let values = channels.get(channel).unwrap_or_default();
+        let (at, present): (Vec<f64>, Vec<f64>) = align::present(&t, values).unzip();
+        if !present.is_empty() && present.len() < values.len() {
+            let filled = align::held(&at, &present, &t);
+            channels.set(channel, filled);
+        }
+    }
+}
+
 /// Leaves out optional columns that cannot be read, or that lack values where the others have them.
 fn drop_unreadable(
     channels: &mut Channels,
@@ -200,13 +215,18 @@ fn drop_unreadable(
 fn join(mut base: Gathered, other: Gathered, notes: &mut Vec<Note>) -> Result<Gathered, FileError> {
     let (Some(instants), Some(at)) = (base.channels.get(T).map(<[f64]>::to_vec), other.channels.get(T)) else { return Ok(base) };
     let is_same = at == instants;
-    let moved: Vec<Channel> = other.channels.iter().map(|(channel, _)| channel).filter(|channel| *channel != T).collect();
+    let is_moved = |channel: &Channel| *channel != T && !channel.is_slow();
+    let moved: Vec<Channel> = other.channels.iter().map(|(channel, _)| channel).filter(is_moved).collect();
     for (channel, values) in other.channels.iter().filter(|(channel, _)| *channel != T) {
-        let on_common = if is_same { values.to_vec() } else { align::interpolated(at, values, &instants) };
+        let on_common = match (is_same, channel.is_slow()) {
+            (true, _) => values.to_vec(),
+            (false, true) => align::held(at, values, &instants),
+            (false, false) => align::interpolated(at, values, &instants),
+        };
         base.channels.set(channel, on_common);
     }
     base.channels.headers.extend(other.channels.headers.iter().filter(|(channel, _)| *channel != T).cloned());
-    if !is_same {
+    if !is_same && !moved.is_empty() {
         let kept: Vec<bool> = (0..instants.len()).map(|row| base.channels.iter().all(|(_, values)| !values[row].is_nan())).collect();
         align::refuse_turning(&mut base.channels, &moved)?;
         let currents = if base.channels.get(Iq).is_some() { Id } else { IA };

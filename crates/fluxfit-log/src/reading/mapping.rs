@@ -81,7 +81,10 @@ const EXAMPLE: &str = "ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit =
 const SHAPE: Shape = Shape {
     noun: "a mapping file",
     keys: &["pole_pairs", "sample_period", "park"],
-    tables: &[("columns", &["t", "ud", "uq", "id", "iq", "omega_e", "theta_e", "u_dc", "ua", "ub", "uc", "ia", "ib", "ic", "run"])],
+    tables: &[(
+        "columns",
+        &["t", "ud", "uq", "id", "iq", "omega_e", "theta_e", "u_dc", "temperature", "ua", "ub", "uc", "ia", "ib", "ic", "run"],
+    )],
 };
 
 /// Reads a mapping file; the path `-` is standard input.

@@ -141,7 +141,7 @@ fn recognize(heads: &[ColumnHead], notes: &mut Vec<Note>) -> Result<Option<&'sta
 /// The checked log. An optional column that was not asked for is left out where the check would refuse the log because of it.
 fn log(mut channels: Channels, chosen: &[ChosenColumn], lines: &Lines, notes: &mut Vec<Note>) -> Result<Log, FileError> {
     let locator = channels.locator(lines);
-    let mut optional = [Channel::ThetaE, Channel::UDc].map(|channel| {
+    let optional = Channel::OPTIONAL.map(|channel| {
         let values = channels.take(channel)?;
         let is_optional = chosen.iter().any(|column| column.channel == channel && column.is_optional);
         match check_values(channel.name(), &values) {
@@ -152,9 +152,9 @@ fn log(mut channels: Channels, chosen: &[ChosenColumn], lines: &Lines, notes: &m
             _ => Some(values),
         }
     });
-    let [theta_e, u_dc] = [0, 1].map(|k| optional[k].take());
+    let [theta_e, u_dc, temperature] = optional;
     let [t, ud, uq, id, iq, omega_e] = Channel::NEEDED.map(|channel| channels.take(channel).unwrap_or_default());
-    Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e, u_dc }).map_err(|error| locator.locate(error))
+    Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e, u_dc, temperature }).map_err(|error| locator.locate(error))
 }
 
 /// A note on gaps in time; those of rows that were left out have theirs.

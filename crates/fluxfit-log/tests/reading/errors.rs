@@ -91,7 +91,7 @@ fn maps_and_units_that_do_not_fit_the_file_are_refused() {
     );
     assert_eq!(
         error("omega_e", &LogOptions { map: vec![("speed".into(), "omega_e".into())], ..LogOptions::default() }),
-        "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+        "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
     );
     assert_eq!(
         error("speed [km/h]", &map(&["omega=speed [km/h]"])),

@@ -143,3 +143,43 @@ fn an_optional_column_does_not_determine_the_decimal_mark() {
     let (columns, notes) = read(own, &LogOptions::default());
     assert_eq!((columns.u_dc, notes.len()), (None, 1), "{notes:?}");
 }
+
+#[test]
+fn the_windings_temperature_is_read_in_degrees_celsius() {
+    let none = LogOptions::default;
+    for (header, expected) in
+        [("temperature", &[][..]), ("temperature [°C]", &[]), ("Temperature_degC", &["temperature: column 'Temperature_degC' used"])]
+    {
+        let (columns, notes) = read(&with_columns(header, ["61.5", "62"]), &none());
+        assert_eq!(
+            (columns.temperature, &notes[..]),
+            (Some(vec![61.5, 62.0]), &expected.iter().map(|note| (*note).to_owned()).collect::<Vec<_>>()[..])
+        );
+    }
+    let (columns, _) = read(&with_columns("temp_motor", ["61.5", "62"]), &map(&["temperature=temp_motor"]));
+    assert_eq!(columns.temperature, Some(vec![61.5, 62.0]));
+    // A sensor that is not connected is no reason to refuse the log; a unit that is not known makes another column of it.
+    for (header, cells, expected) in [("temperature", ["-273", "-273"], 1), ("temperature [K]", ["330", "331"], 0)] {
+        let (columns, notes) = read(&with_columns(header, cells), &none());
+        assert!(columns.temperature.is_none() && notes.len() == expected, "{notes:?}");
+        assert!(notes.iter().all(|note| note.starts_with("temperature is left out: ")), "{notes:?}");
+    }
+    // One that the user named is.
+    let mapped = refusal(with_columns("x", ["999", "20"]).as_bytes(), &map(&["temperature=x"]));
+    assert!(mapped.contains("temperature is 9.99e2, beyond the 2.3e2"), "{mapped}");
+}
+
+#[test]
+fn a_temperature_that_is_written_now_and_then_is_held_between() {
+    // Beside rows that are complete otherwise.
+    let cells = ["", "50", "", "", "53", ""];
+    let rows: String = cells.iter().enumerate().map(|(k, cell)| format!("{k},1,2,3,4,5,{cell}\n")).collect();
+    let text = format!("t,ud,uq,id,iq,omega_e,temperature\n{rows}");
+    let read = parse_log("drive.csv", text.as_bytes(), &LogOptions::default()).unwrap();
+    assert_eq!(read.log.columns().temperature, Some(vec![50.0, 50.0, 51.0, 52.0, 53.0, 53.0]));
+    assert!(!read.log.is_interpolated() && read.log.source().notes.is_empty(), "{:?}", read.log.source());
+    // A column that is always empty is none.
+    let empty = text.replace("50", "").replace("53", "");
+    let read = parse_log("drive.csv", empty.as_bytes(), &LogOptions::default()).unwrap();
+    assert_eq!((&read.log.columns().temperature, read.log.source().notes.len()), (&None, 1));
+}

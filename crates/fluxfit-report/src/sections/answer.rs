@@ -24,6 +24,9 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
         (model(found))
         (explanations(found))
         (warnings(found))
+        @if let Some(temperature) = &found.temperature {
+            p { (prose(&sentence(&temperature.to_string()))) }
+        }
         (unseen(found))
         (parts(found))
     };
@@ -154,17 +157,21 @@ fn warnings(found: &Identification) -> Markup {
     }
 }
 
-/// What no log shows, and no interval counts.
+/// What no log shows: what the intervals count of it as stated, and what they do not.
 fn unseen(found: &Identification) -> Markup {
+    let counted: Vec<String> = found.counted.iter().map(ToString::to_string).collect();
+    let unseen: Vec<String> = found.unseen.iter().map(ToString::to_string).collect();
     html! {
-        @if !found.unseen.is_empty() {
-            p {
-                "Not in the intervals, because no log shows it: "
-                @for (place, error) in found.unseen.iter().enumerate() {
-                    @if place > 0 { "; " }
-                    (prose(&error.to_string()))
+        @for (what, errors) in [("In the intervals, as stated: ", counted), ("Not in the intervals, because no log shows it: ", unseen)] {
+            @if !errors.is_empty() {
+                p {
+                    (what)
+                    @for (place, error) in errors.iter().enumerate() {
+                        @if place > 0 { "; " }
+                        (prose(error))
+                    }
+                    "."
                 }
-                "."
             }
         }
     }

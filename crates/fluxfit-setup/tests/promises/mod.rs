@@ -18,10 +18,12 @@ pub(crate) const READERS: [(&str, Promise); 5] =
 /// A motor file.
 fn motor_file(bytes: &[u8]) {
     if let Some(file) = one_line(MotorFile::parse(NAME, bytes)) {
-        let MotorFile { rs, ld, lq, psi_f, pole_pairs, rating } = file;
+        let MotorFile { rs, ld, lq, psi_f, pole_pairs, magnet_coefficient, rating, sensors } = file;
         let numbers = [rs, ld, lq, psi_f, rating.current, rating.voltage, rating.speed];
         assert!(numbers.into_iter().flatten().all(|number| number.is_finite() && number > 0.0), "{file:?}");
         assert_ne!(pole_pairs, Some(0));
+        assert!(magnet_coefficient.is_none_or(f64::is_finite));
+        assert!([sensors.current, sensors.bus].into_iter().flatten().all(|fraction| (0.0..1.0).contains(&fraction)), "{file:?}");
     }
 }
 

@@ -72,6 +72,10 @@ pub struct SystematicEntry {
     pub process_noise: Option<f64>,
     /// From current sensors whose gains differ.
     pub sensors: Option<f64>,
+    /// From the stated accuracy of a gain common to all current sensors.
+    pub current_gain: Option<f64>,
+    /// From the stated accuracy of the DC voltage.
+    pub bus_voltage: Option<f64>,
     /// From inductances that depend on the current.
     pub saturation: Option<f64>,
     /// From combinations of the parameters that the log does not excite.
@@ -90,6 +94,8 @@ impl SystematicEntry {
             dead_time: finite(parts.dead_time),
             process_noise: finite(parts.process_noise),
             sensors: finite(parts.sensors),
+            current_gain: finite(parts.current_gain),
+            bus_voltage: finite(parts.bus_voltage),
             saturation: finite(parts.saturation),
             excitation: finite(parts.excitation),
             misfit: finite(parts.misfit),

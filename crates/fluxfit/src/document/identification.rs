@@ -9,8 +9,9 @@ use super::{
     finite::finite,
     log::LogDocument,
     nuisance::NuisanceEntries,
+    temperature::TemperatureEntry,
     validation::ValidationDocument,
-    warning::{UnseenEntry, WarningEntry},
+    warning::{CountedEntry, UnseenEntry, WarningEntry},
 };
 use crate::{
     Answer, Judgement,
@@ -47,6 +48,8 @@ pub struct IdentificationDocument {
     pub method: &'static str,
     /// The answer.
     pub parameters: ByParameter<ParameterEntry>,
+    /// The winding's temperature, and parameters at 20 degC; null where the log has none.
+    pub temperature: Option<TemperatureEntry>,
     /// The voltage timing and the faults of the drive.
     pub nuisance: NuisanceEntries,
     /// The exact answer of the steady operating points, and its cost, V²; null where there is no operating point. A parameter is null if
@@ -60,6 +63,8 @@ pub struct IdentificationDocument {
     pub warnings: Vec<WarningEntry>,
     /// Errors that no log shows, and that no interval counts; empty where nothing was identified.
     pub not_counted: Vec<UnseenEntry>,
+    /// Errors that no log shows either, and that the intervals count, because their size was stated; empty where nothing was identified.
+    pub counted: Vec<CountedEntry>,
     /// Raw numbers, whatever the verdicts.
     pub diagnostics: Diagnostics,
     /// Gains of the current controllers; absent unless asked for.
@@ -82,6 +87,7 @@ impl IdentificationDocument {
             model_reason: answer.model.reason.to_string(),
             method: answer.method.map_or(LEAST_SQUARES, |method| method.key()),
             parameters: answer.parameters.each_ref().map(ParameterEntry::of).into(),
+            temperature: answer.temperature.as_ref().map(TemperatureEntry::of),
             nuisance: NuisanceEntries::of(answer),
             least_squares: answer.steady.as_ref().map(|fit| {
                 let (motor, objective) = (&fit.estimate.motor, &fit.estimate.objective);
@@ -91,6 +97,7 @@ impl IdentificationDocument {
             fit: FitEntry::of(answer),
             warnings: answer.warnings.iter().map(WarningEntry::of).collect(),
             not_counted: answer.unseen.iter().map(UnseenEntry::of).collect(),
+            counted: answer.counted.iter().map(CountedEntry::of).collect(),
             diagnostics: Diagnostics::of(answer, ConventionEntry::of(convention)),
             current_loop: current_loop.as_ref().map(CurrentLoopEntry::of),
             validation: held_out

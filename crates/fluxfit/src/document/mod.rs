@@ -39,6 +39,7 @@ mod saturation;
 mod schema;
 mod steady;
 mod study;
+mod temperature;
 mod truth;
 mod validation;
 mod warning;
@@ -58,9 +59,10 @@ pub use saturation::{ApparentEntry, FluxEntry, SaturationEntry};
 pub use schema::schema_of;
 pub use steady::{ExcitationEntry, MisfitEntry, SteadyEntry};
 pub use study::{ConvergenceEntry, CostAboveOptimum, MethodEntry, QuartileEntry, STUDY, StudyDocument};
+pub use temperature::{ReferredEntry, TemperatureEntry};
 pub use truth::{TRUTH, TruthDocument};
 pub use validation::{ChannelEntry, DifferenceEntry, LimitsEntry, TestEntry, VALIDATION, ValidationDocument};
-pub use warning::{UnseenEntry, WarningEntry};
+pub use warning::{CountedEntry, UnseenEntry, WarningEntry};
 
 /// The name and the schema of each document of this crate.
 #[cfg(feature = "schema")]

@@ -15,6 +15,10 @@ use crate::{
 /// Systematic uncertainty of the voltages, as a fraction of their vector, unless stated otherwise: no drive's are known better.
 pub const VOLTAGE_ACCURACY: f64 = 1e-4;
 
+/// Largest magnitude of a magnet's coefficient, 1/K: twice that of ferrites (-0.002), the largest of usual magnets; and no flux reverses
+/// within the temperatures that a log may have.
+const LARGEST_COEFFICIENT: f64 = 4e-3;
+
 /// What is asked of an identification. The default asks for the four parameters, with everything found from the log.
 ///
 /// ```
@@ -36,6 +40,14 @@ pub struct Request {
     pub voltage_timing: Option<VoltageTiming>,
     /// Systematic uncertainty of the voltages as a fraction of the vector, one standard deviation, independent between windows and axes.
     pub voltage_accuracy: f64,
+    /// Largest error of a gain common to all current sensors, as a fraction, to either side: the limit of a data sheet. It is taken as half
+    /// of a 95 % interval (two standard deviations, unlike `voltage_accuracy`) and widens the intervals. `None`: it is not counted.
+    pub current_accuracy: Option<f64>,
+    /// The same of the DC voltage's measurement, and with it of all voltages that the drive computes.
+    pub bus_accuracy: Option<f64>,
+    /// By which part of itself at 20 degC the magnets' flux changes per kelvin, below zero for all usual magnets: -0.0012 of NdFeB. With it
+    /// and a logged [temperature](crate::Columns::temperature) psi_f is also told at 20 degC.
+    pub magnet_coefficient: Option<f64>,
     /// What is known of each parameter beforehand, in the order of [`Parameter::ALL`](crate::motor::Parameter::ALL);
     /// [`with_known`](Self::with_known) sets one.
     pub known: [Known; PARAMETERS],
@@ -126,6 +138,9 @@ impl Default for Request {
             windows: Vec::new(),
             voltage_timing: None,
             voltage_accuracy: VOLTAGE_ACCURACY,
+            current_accuracy: None,
+            bus_accuracy: None,
+            magnet_coefficient: None,
             known: [Known::Nothing; PARAMETERS],
             swarm: Swarm::Auto,
             search: SearchSettings::default(),
@@ -164,9 +179,19 @@ impl Request {
     /// # Errors
     /// If a value is out of its range, or nothing is left to be identified.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        let accuracy = self.voltage_accuracy;
-        if !(0.0..1.0).contains(&accuracy) {
-            return Err(ErrorKind::Setting { setting: "the voltage accuracy", value: accuracy, range: "a fraction from 0 up to 1" }.into());
+        let accuracies = [
+            ("the voltage accuracy", Some(self.voltage_accuracy)),
+            ("the accuracy of the current sensors", self.current_accuracy),
+            ("the accuracy of the bus voltage", self.bus_accuracy),
+        ];
+        for (setting, value) in accuracies.into_iter().filter_map(|(setting, accuracy)| Some((setting, accuracy?))) {
+            if !(0.0..1.0).contains(&value) {
+                return Err(ErrorKind::Setting { setting, value, range: "a fraction from 0 up to 1" }.into());
+            }
+        }
+        if let Some(value) = self.magnet_coefficient.filter(|value| value.is_nan() || value.abs() > LARGEST_COEFFICIENT) {
+            let range = "a fraction per kelvin from -0.004 to 0.004";
+            return Err(ErrorKind::Setting { setting: "the magnets' coefficient", value, range }.into());
         }
         self.search.check()?;
         for (parameter, known) in Parameter::ALL.into_iter().zip(self.known) {

@@ -3,10 +3,12 @@
 use super::{
     explain::{
         judgement::{Judgement, explained},
-        unseen::{self, Unseen},
+        temperature::AtTemperature,
+        unseen::{self, Counted, Unseen},
         warning::{self, Evidence, Warning},
     },
     fit::{
+        common_gains,
         finding::Finding,
         output::OutputFit,
         output_excitation,
@@ -55,10 +57,14 @@ pub struct Identification {
     pub method: Option<Method>,
     /// The swarm's own answer, for comparison; `None` if no swarm searched.
     pub search: Option<Search>,
+    /// The winding's temperature, and what R_s and psi_f are at 20 degrees; `None` where the log has no temperature.
+    pub temperature: Option<AtTemperature>,
     /// What the reader should know.
     pub warnings: Vec<Warning>,
     /// Errors that no log shows and no interval counts.
     pub unseen: Vec<Unseen>,
+    /// Errors that no log shows either, and that the intervals count, because their size is stated.
+    pub counted: Vec<Counted>,
 }
 
 impl Identification {
@@ -97,8 +103,11 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
             (steady, Some(output))
         }
     };
-    let (model, output) = by_excitation(log, steady.as_ref(), output, model, request)?;
+    let (model, mut output) = by_excitation(log, steady.as_ref(), output, model, request)?;
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
+    let mut steady = steady;
+    // Only now: what all sensors share decides neither the model nor the value.
+    common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
     let finding = finding(steady.as_ref(), output.as_ref())?;
     let parameters = explained(judge(finding, saturation.as_ref(), request, log.is_short_circuit()), finding);
     let method = swarm::method(request, model.model);
@@ -114,8 +123,23 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     };
     let warnings = warning::all(&evidence);
     let correlation = finding.uncertainty.correlation;
-    let unseen = unseen::all(log, finding, parameters.each_ref().map(|judgement| judgement.verdict));
-    Ok(Identification { parameters, model, steady, output, saturation, correlation, method, search, warnings, unseen })
+    let verdicts = parameters.each_ref().map(|judgement| judgement.verdict);
+    let (unseen, counted) = (unseen::all(log, finding, verdicts, request), unseen::counted(verdicts, request));
+    let temperature = AtTemperature::of(log, &parameters, steady.as_ref(), output.as_ref(), request);
+    Ok(Identification {
+        parameters,
+        model,
+        steady,
+        output,
+        saturation,
+        correlation,
+        method,
+        search,
+        temperature,
+        warnings,
+        unseen,
+        counted,
+    })
 }
 
 /// The simulated currents' fit without what they leave open, or the operating points where those tell more and no model is stated.

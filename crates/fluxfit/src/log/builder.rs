@@ -14,6 +14,10 @@ use crate::{
 /// Largest magnitude of any value. No drive has a gigavolt; squares and sums of such numbers stay far from overflow.
 const MAX_MAGNITUDE: f64 = 1e9;
 
+/// Largest magnitude of a winding's temperature, degC: more than insulation bears, and less than the 235 K below zero at which copper's
+/// resistance would vanish.
+const MAX_TEMPERATURE: f64 = 230.0;
+
 /// Times may be this much larger: they may be seconds since 1970.
 const TIME_FACTOR: f64 = 1e3;
 
@@ -59,16 +63,18 @@ impl LogBuilder {
     /// If a value is not finite or implausibly large, the time is not after that of the row before, or the row lacks an optional
     /// column that the others have, or has one that they lack.
     pub fn push(&mut self, row: Row) -> Result<(), Error> {
-        let Row { t, ud, uq, id, iq, omega_e, theta_e, u_dc } = row;
+        let Row { t, ud, uq, id, iq, omega_e, theta_e, u_dc, temperature } = row;
         if self.rows() == 0 {
             return self.take(row.into());
         }
         let at = self.rows();
-        for (column, held, given) in [("theta_e", &self.columns.theta_e, theta_e), ("u_dc", &self.columns.u_dc, u_dc)] {
+        let Columns { theta_e: angles, u_dc: voltages, temperature: temperatures, .. } = &self.columns;
+        for (column, held, given) in [("theta_e", angles, theta_e), ("u_dc", voltages, u_dc), ("temperature", temperatures, temperature)] {
             check_presence(column, held.is_some(), given.is_some(), at, 1)?;
         }
         let needed = [("t", t), ("ud", ud), ("uq", uq), ("id", id), ("iq", iq), ("omega_e", omega_e)];
-        let optional = [("theta_e", theta_e), ("u_dc", u_dc)].into_iter().filter_map(|(column, value)| Some((column, value?)));
+        let optional = [("theta_e", theta_e), ("u_dc", u_dc), ("temperature", temperature)];
+        let optional = optional.into_iter().filter_map(|(column, value)| Some((column, value?)));
         needed.into_iter().chain(optional).try_for_each(|(column, value)| check_value(column, at, value))?;
         check_order(self.columns.t[at - 1], t, at)?;
         let columns = &mut self.columns;
@@ -78,7 +84,8 @@ impl LogBuilder {
         columns.id.push(id);
         columns.iq.push(iq);
         columns.omega_e.push(omega_e);
-        for (column, value) in [(&mut columns.theta_e, theta_e), (&mut columns.u_dc, u_dc)] {
+        let optional = [(&mut columns.theta_e, theta_e), (&mut columns.u_dc, u_dc), (&mut columns.temperature, temperature)];
+        for (column, value) in optional {
             if let Some((column, value)) = column.as_mut().zip(value) {
                 column.push(value);
             }
@@ -146,6 +153,7 @@ impl LogBuilder {
             let optional = [
                 ("theta_e", self.columns.theta_e.is_some(), block.theta_e.is_some()),
                 ("u_dc", self.columns.u_dc.is_some(), block.u_dc.is_some()),
+                ("temperature", self.columns.temperature.is_some(), block.temperature.is_some()),
             ];
             optional.into_iter().try_for_each(|(column, held, given)| check_presence(column, held, given, first, block.t.len()))?;
         }
@@ -214,7 +222,11 @@ fn check_value(column: &'static str, row: usize, value: f64) -> Result<(), Error
     if !value.is_finite() {
         return Err(ErrorKind::NotFinite { column, row, value }.into());
     }
-    let limit = if column == "t" { MAX_MAGNITUDE * TIME_FACTOR } else { MAX_MAGNITUDE };
+    let limit = match column {
+        "t" => MAX_MAGNITUDE * TIME_FACTOR,
+        "temperature" => MAX_TEMPERATURE,
+        _ => MAX_MAGNITUDE,
+    };
     if value.abs() > limit {
         return Err(ErrorKind::Implausible { column, row, value, limit }.into());
     }
@@ -266,7 +278,7 @@ mod tests {
     }
 
     fn row(t: f64) -> Row {
-        Row { t, ud: 1.0, uq: 1.0, id: 1.0, iq: 1.0, omega_e: 1.0, theta_e: None, u_dc: None }
+        Row { t, ud: 1.0, uq: 1.0, id: 1.0, iq: 1.0, omega_e: 1.0, theta_e: None, u_dc: None, temperature: None }
     }
 
     #[test]

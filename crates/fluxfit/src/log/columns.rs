@@ -5,7 +5,8 @@ use std::ops::Range;
 /// Fewest rows of a log: two make a sample period.
 pub(super) const MIN_ROWS: usize = 2;
 
-/// The columns of a log, row by row in SI units, all of one length. The field names are the canonical names in messages and files.
+/// The columns of a log, row by row in SI units (temperatures in degC), all of one length. The field names are the canonical names in
+/// messages and files.
 ///
 /// Voltages and currents are in the amplitude-invariant dq frame of [`frames`](crate::frames) (peak values per phase), currents counted
 /// into the motor. Voltages are those at the terminals, or the drive's commands for them; when they act relative to their row is
@@ -30,6 +31,8 @@ pub struct Columns {
     pub theta_e: Option<Vec<f64>>,
     /// DC link voltage, V; optional. With it, rows at the inverter's voltage limit are noticed.
     pub u_dc: Option<Vec<f64>>,
+    /// Temperature of the winding, degC; optional. With it, R_s is also told at 20 degC.
+    pub temperature: Option<Vec<f64>>,
 }
 
 /// One row of a log, in SI units; the names are those of [`Columns`].
@@ -51,6 +54,8 @@ pub struct Row {
     pub theta_e: Option<f64>,
     /// DC link voltage, V; optional.
     pub u_dc: Option<f64>,
+    /// Temperature of the winding, degC; optional.
+    pub temperature: Option<f64>,
 }
 
 impl Columns {
@@ -61,7 +66,9 @@ impl Columns {
 
     /// The optional columns that are present.
     pub fn optional(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
-        [("theta_e", &self.theta_e), ("u_dc", &self.u_dc)].into_iter().filter_map(|(name, column)| Some((name, column.as_ref()?)))
+        [("theta_e", &self.theta_e), ("u_dc", &self.u_dc), ("temperature", &self.temperature)]
+            .into_iter()
+            .filter_map(|(name, column)| Some((name, column.as_ref()?)))
     }
 
     /// All columns that are present.
@@ -81,13 +88,15 @@ impl Columns {
             omega_e: of(&self.omega_e),
             theta_e: self.theta_e.as_ref().map(of),
             u_dc: self.u_dc.as_ref().map(of),
+            temperature: self.temperature.as_ref().map(of),
         }
     }
 
     /// Leaves out the rows that are not marked.
     pub(super) fn retain(&mut self, kept: &[bool]) {
-        let Self { t, ud, uq, id, iq, omega_e, theta_e, u_dc } = self;
-        for column in [t, ud, uq, id, iq, omega_e].into_iter().chain(theta_e.as_mut()).chain(u_dc.as_mut()) {
+        let Self { t, ud, uq, id, iq, omega_e, theta_e, u_dc, temperature } = self;
+        let optional = [theta_e, u_dc, temperature].into_iter().filter_map(Option::as_mut);
+        for column in [t, ud, uq, id, iq, omega_e].into_iter().chain(optional) {
             let mut marks = kept.iter();
             column.retain(|_| marks.next().is_some_and(|kept| *kept));
         }
@@ -101,7 +110,8 @@ impl Columns {
         self.id.extend(other.id);
         self.iq.extend(other.iq);
         self.omega_e.extend(other.omega_e);
-        for (to, from) in [(&mut self.theta_e, other.theta_e), (&mut self.u_dc, other.u_dc)] {
+        let optional = [(&mut self.theta_e, other.theta_e), (&mut self.u_dc, other.u_dc), (&mut self.temperature, other.temperature)];
+        for (to, from) in optional {
             *to = to.take().zip(from).map(|(mut to, from)| {
                 to.extend(from);
                 to
@@ -121,6 +131,7 @@ impl From<Row> for Columns {
             omega_e: vec![row.omega_e],
             theta_e: row.theta_e.map(|value| vec![value]),
             u_dc: row.u_dc.map(|value| vec![value]),
+            temperature: row.temperature.map(|value| vec![value]),
         }
     }
 }

@@ -53,12 +53,9 @@ pub(super) struct Covariance {
 impl Covariance {
     pub(super) fn of(own: &Identification, given: &Given, tested: &[Parameter]) -> Self {
         let size = tested.len();
-        // What noise, voltages and priors do is correlated between parameters; of the other parts nobody knows, and they are taken apart.
-        let correlated = |p: usize| {
-            let uncertainty = &own.parameters[p].uncertainty;
-            let systematic = &uncertainty.systematic;
-            [systematic.accuracy, systematic.prior, systematic.misfit].into_iter().fold(uncertainty.statistical, f64::hypot)
-        };
+        // What noise, voltages, priors and common gains do is correlated between parameters; of the other parts nobody knows, and they are
+        // taken apart.
+        let correlated = |p: usize| own.parameters[p].uncertainty.correlated();
         let covariance = DMatrix::from_fn(size, size, |k, l| {
             let (p, q) = (tested[k] as usize, tested[l] as usize);
             if k == l {

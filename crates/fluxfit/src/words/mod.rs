@@ -8,6 +8,7 @@ mod names;
 mod reason;
 mod remedy;
 mod spikes;
+mod temperature;
 mod unseen;
 mod validation;
 mod warning;

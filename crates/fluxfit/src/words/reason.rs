@@ -64,6 +64,8 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
             write!(f, "unknown voltages disturb the motor, and the answers with and without a model of them differ, which {leaves}")
         }
         Part::Sensors => write!(f, "the current sensors differ, and it is not known which of them is right, which {leaves}"),
+        Part::CurrentGain => write!(f, "the stated accuracy of the current sensors {leaves}"),
+        Part::BusVoltage => write!(f, "the stated accuracy of the DC voltage {leaves}"),
         Part::Saturation => write!(f, "the inductances depend on the current, and one number for all of the log {leaves}"),
         Part::Misfit => write!(
             f,

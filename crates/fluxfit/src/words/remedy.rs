@@ -38,6 +38,7 @@ impl Display for Remedy {
                  with the steady model"
             ),
             Self::CalibrateSensors => write!(f, "calibrate the current sensors"),
+            Self::CalibrateBusVoltage => write!(f, "calibrate the measurement of the DC voltage"),
             Self::NarrowCurrents => write!(f, "identify from a window in time at nearly the same currents"),
             Self::SimilarWindows => write!(
                 f,

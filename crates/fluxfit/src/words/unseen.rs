@@ -2,7 +2,7 @@
 
 use super::digits::{list, percent};
 use crate::{
-    identification::explain::unseen::{Unseen, UnseenError},
+    identification::explain::unseen::{Counted, Unseen, UnseenError},
     motor::Parameter,
 };
 use std::fmt::{Display, Formatter, Result};
@@ -32,5 +32,16 @@ impl Display for Unseen {
             .map(|(fraction, symbols)| format!("{} {}{}", list(symbols), if *fraction < 0.0 { "-" } else { "+" }, percent(fraction.abs())))
             .collect();
         write!(f, "{}: {}", self.error, effects.join(", "))
+    }
+}
+
+impl Display for Counted {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let accuracy = percent(self.accuracy);
+        match self.error {
+            UnseenError::CurrentGain => write!(f, "all currents read up to {accuracy} too large or too small"),
+            UnseenError::BusVoltage => write!(f, "the DC voltage read up to {accuracy} too large or too small"),
+            UnseenError::AngleWithLoad | UnseenError::Temperature => write!(f, "{}", self.error),
+        }
     }
 }

@@ -8,3 +8,4 @@ mod request;
 mod saturation;
 mod short_circuit;
 mod steady_statistics;
+mod temperature;

@@ -37,6 +37,13 @@ fn identification(bytes: &[u8]) {
         judgement.remedy.iter().for_each(|remedy| is_one_line(&remedy.to_string()));
     }
     answer.identification.warnings.iter().for_each(|warning| is_one_line(&warning.to_string()));
+    answer.identification.unseen.iter().for_each(|unseen| is_one_line(&unseen.to_string()));
+    answer.identification.counted.iter().for_each(|counted| is_one_line(&counted.to_string()));
+    if let Some(temperature) = &answer.identification.temperature {
+        let referred = [temperature.rs, temperature.psi_f].into_iter().flatten();
+        assert!(referred.flat_map(|one| [one.value, one.interval[0], one.interval[1]]).all(f64::is_finite), "{temperature:?}");
+        is_one_line(&temperature.to_string());
+    }
 }
 
 /// Rows of the log that these bytes make.
@@ -74,13 +81,17 @@ fn request(bytes: &mut Bytes) -> Request {
     if flags & 16 != 0 {
         request.known[Parameter::PsiF as usize] = Known::Prior { value: MOTOR.psi_f, standard_error: 0.01 };
     }
+    request.current_accuracy = (flags & 32 != 0).then_some(0.02);
+    request.bus_accuracy = (flags & 64 != 0).then_some(0.9);
+    request.magnet_coefficient = (flags & 128 != 0).then_some(0.004);
     request
 }
 
 /// Five columns of a kind and a size each; then single rows that are changed, to the end of the bytes.
 fn columns(bytes: &mut Bytes, rows: usize) -> Columns {
     let period = 1e-6 * 10.0_f64.powf(f64::from(bytes.next()) / 50.0);
-    let of_equation = bytes.next() & 1 != 0;
+    let shape = bytes.next();
+    let (of_equation, has_temperature) = (shape & 1 != 0, shape & 2 != 0);
     let mut draws = Draws::seeded(u64::from(bytes.next()), 0);
     let mut column = || {
         let (kind, size) = (bytes.next() % 8, bytes.number());
@@ -125,7 +136,9 @@ fn columns(bytes: &mut Bytes, rows: usize) -> Columns {
         now += step;
         now
     };
-    Columns { t: steps.iter().map(&mut time).collect(), ud, uq, id, iq, omega_e, ..Columns::default() }
+    // From the lowest to the highest that a log may have.
+    let temperature = has_temperature.then(|| (0..rows).map(|k| -230.0 + 460.0 * k as f64 / rows as f64).collect());
+    Columns { t: steps.iter().map(&mut time).collect(), ud, uq, id, iq, omega_e, temperature, ..Columns::default() }
 }
 
 /// What came out; an error must be one line.

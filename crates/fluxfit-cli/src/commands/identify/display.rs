@@ -15,6 +15,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(&answer.log, found));
     text += &parameters(found);
     text += &explanations(found);
+    text += &found.temperature.map(|temperature| format!("\n{}", wrapped("", &sentence(&temperature.to_string())))).unwrap_or_default();
     text += &unseen(found);
     text += &format!("\n{}\n", model(found));
     if let Some(fit) = &found.steady {
@@ -124,13 +125,21 @@ fn explanations(found: &Identification) -> String {
     text
 }
 
-/// What no log shows, and no interval counts.
+/// What no log shows: what the intervals count of it as stated, and what they do not.
 fn unseen(found: &Identification) -> String {
-    if found.unseen.is_empty() {
-        return String::new();
-    }
-    let errors: Vec<String> = found.unseen.iter().map(ToString::to_string).collect();
-    format!("\n{}", wrapped("", &format!("Not in the intervals, because no log shows it: {}.", errors.join("; "))))
+    let line = |what: &str, errors: Vec<String>| {
+        if errors.is_empty() { String::new() } else { wrapped("", &format!("{what}: {}.", errors.join("; "))) }
+    };
+    let counted = line("In the intervals, as stated", found.counted.iter().map(ToString::to_string).collect());
+    let unseen = line("Not in the intervals, because no log shows it", found.unseen.iter().map(ToString::to_string).collect());
+    if counted.is_empty() && unseen.is_empty() { String::new() } else { format!("\n{counted}{unseen}") }
+}
+
+/// Half a sentence as a whole one.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
 }
 
 /// Columns that a line of words may have.

@@ -8,6 +8,8 @@
 //! ```
 //!
 //! (R. E. Kalman, "A new approach to linear filtering and prediction problems", J. Basic Eng. 82 (1960) 35, doi:10.1115/1.3662552).
+//! Gains common to all sensors stay: whatever is measured with them has them too. R_s of a multimeter has them only in part, and counts
+//! like the others.
 //! The first proposal, in the order of how easy they are at the bench, that would make the parameter identified is chosen; else
 //! the best.
 
@@ -88,10 +90,12 @@ enum Proposal {
 }
 
 /// What to measure for a parameter, and what it would bring; nothing, where nothing proposed would help.
-pub(super) fn best(bench: &Bench, parameter: Parameter) -> Option<Promised> {
+/// `of_gains`: what remains whatever is measured, as a standard error, SI.
+pub(super) fn best(bench: &Bench, of_gains: f64, parameter: Parameter) -> Option<Promised> {
+    let width = |covariance: &Matrix4<f64>| width(bench, covariance, of_gains, parameter);
     let best = proposals(bench, parameter)
         .iter()
-        .flat_map(|proposal| outcomes(bench, proposal, parameter))
+        .flat_map(|proposal| outcomes(bench, proposal, parameter, &width))
         .filter(|promised| promised.half_width.is_finite())
         .fold(None, |best: Option<Promised>, one| match best {
             // An easier one that suffices stands; of those that do not, the better.
@@ -99,31 +103,31 @@ pub(super) fn best(bench: &Bench, parameter: Parameter) -> Option<Promised> {
             _ => Some(one),
         })?;
     // What leaves more than half of what there is now, or no value at all, is not worth proposing.
-    (best.half_width < (0.5 * width(bench, &bench.covariance, parameter)).min(WEAK)).then_some(best)
+    (best.half_width < (0.5 * width(&bench.covariance)).min(WEAK)).then_some(best)
 }
 
 /// Relative half-width of a parameter's interval.
-fn width(bench: &Bench, covariance: &Matrix4<f64>, parameter: Parameter) -> f64 {
+fn width(bench: &Bench, covariance: &Matrix4<f64>, of_gains: f64, parameter: Parameter) -> f64 {
     let p = parameter as usize;
-    HALF_WIDTH * covariance[(p, p)].max(0.0).sqrt() / bench.motor.get(parameter).abs()
+    HALF_WIDTH * covariance[(p, p)].max(0.0).sqrt().hypot(of_gains) / bench.motor.get(parameter).abs()
 }
 
 /// What a proposal makes of a parameter's interval, longer and longer.
-fn outcomes(bench: &Bench, proposal: &Proposal, parameter: Parameter) -> Vec<Promised> {
+fn outcomes(bench: &Bench, proposal: &Proposal, parameter: Parameter, width: &impl Fn(&Matrix4<f64>) -> f64) -> Vec<Promised> {
     match proposal {
         Proposal::Multimeter => {
             let equation = Vector4::new(1.0, 0.0, 0.0, 0.0);
             let rs = if bench.motor.rs.is_nan() { bench.voltage / bench.current() } else { bench.motor.rs };
             let after = shrunk(bench.covariance, &equation, (MULTIMETER * rs).powi(2));
             let measurement = Measurement::Resistance { accuracy: MULTIMETER };
-            vec![Promised { measurement, parameter, half_width: width(bench, &after, parameter) }]
+            vec![Promised { measurement, parameter, half_width: width(&after) }]
         }
         Proposal::Hold { i, omega_e, place } => {
             let lengths = LENGTHS.into_iter().filter(|length| length / bench.sample_period >= MIN_ROWS);
             let promised = lengths.map(|seconds| Promised {
                 measurement: Measurement::Stretch { seconds, place: *place },
                 parameter,
-                half_width: width(bench, &after_hold(bench, *i, *omega_e, seconds), parameter),
+                half_width: width(&after_hold(bench, *i, *omega_e, seconds)),
             });
             promised.collect()
         }
@@ -184,19 +188,19 @@ mod tests {
     #[test]
     fn the_promise_is_what_the_equations_say() {
         let bench = bench(Matrix4::from_diagonal(&Vector4::new(0.0, 1.0, 0.0, 0.0)), 10.0, 1.0, 0.0);
-        let best = best(&bench, Parameter::Ld).unwrap();
+        let best = best(&bench, 0.0, Parameter::Ld).unwrap();
         assert_eq!(best.measurement, Measurement::Stretch { seconds: 0.2, place: Place::Id(-2.0) });
         assert!((best.half_width - 0.011).abs() < 0.0005, "{best:?}");
         assert_eq!(best.to_string(), "add 0.2 s at i_d = -2 A, same speed: L_d to about ±1.1 %");
         // Nothing is to be gained for what is known.
-        assert_eq!(super::best(&bench, Parameter::Lq), None);
+        assert_eq!(super::best(&bench, 0.0, Parameter::Lq), None);
     }
 
     #[test]
     fn a_multimeter_tells_the_flux_that_hides_behind_the_resistance() {
         // One point at i_d = 0: R_s 8 A + 400 rad/s psi_f is known, neither of them is.
         let direction = Vector4::new(1.0, 0.0, 0.0, -8.0 / 400.0);
-        let best = best(&bench(direction * direction.transpose(), 8.0, 1e-6, 1e-6), Parameter::PsiF).unwrap();
+        let best = best(&bench(direction * direction.transpose(), 8.0, 1e-6, 1e-6), 0.0, Parameter::PsiF).unwrap();
         assert_eq!(best.measurement, Measurement::Resistance { accuracy: 0.01 });
         // 1 % of 1 ohm moves psi_f by 8/400 of 10 mohm, 0.2 mWb of 200: 0.1 %, and 1.96 times that.
         assert!((best.half_width - 0.00196).abs() < 1e-5, "{best:?}");

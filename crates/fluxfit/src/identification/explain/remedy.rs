@@ -48,6 +48,8 @@ pub enum Remedy {
     RemoveDisturbances,
     /// Calibrate the current sensors.
     CalibrateSensors,
+    /// Calibrate the measurement of the DC voltage.
+    CalibrateBusVoltage,
     /// The motor saturates: identify from a part of the log at nearly the same currents ([`Request::windows`](crate::Request::windows)).
     NarrowCurrents,
     /// Identify from three or more windows at nearly the same currents, so that saturation is alike in them.
@@ -81,7 +83,8 @@ const MUCH_LONGER: f64 = 100.0;
 
 /// What to do about a reason; nothing about a value that was given.
 pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding) -> Option<Remedy> {
-    let measure = || measurement::best(&finding.bench, parameter).map(Remedy::Measure);
+    let of_gains = finding.uncertainty.parameters[parameter as usize].systematic.common_gains();
+    let measure = || measurement::best(&finding.bench, of_gains, parameter).map(Remedy::Measure);
     let or_stretch = |also: Option<Also>| measure().unwrap_or_else(|| Remedy::AddStretch { id: step(finding), also });
     Some(match reason {
         Reason::Given => return None,
@@ -108,7 +111,8 @@ fn narrower(part: Part, half_width: f64, measure: impl Fn() -> Remedy) -> Remedy
         Part::Timing => Remedy::StateVoltageTiming,
         Part::DeadTime => Remedy::CompensateDeadTime,
         Part::ProcessNoise => Remedy::RemoveDisturbances,
-        Part::Sensors => Remedy::CalibrateSensors,
+        Part::Sensors | Part::CurrentGain => Remedy::CalibrateSensors,
+        Part::BusVoltage => Remedy::CalibrateBusVoltage,
         Part::Saturation => Remedy::NarrowCurrents,
         Part::Misfit => Remedy::SimilarWindows,
         Part::Prior => Remedy::SharperPrior,

@@ -1,6 +1,14 @@
 //! Errors that no log shows, because currents, voltages and speed stay consistent with another motor: what they would do.
 
-use super::super::{fit::finding::Finding, judge::verdict::Verdict};
+use super::super::{
+    fit::{
+        common_gains::{BY_CURRENTS, BY_VOLTAGES},
+        finding::Finding,
+    },
+    judge::verdict::Verdict,
+    request::Request,
+};
+use super::temperature::COPPER;
 use crate::{
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
@@ -26,8 +34,18 @@ pub enum UnseenError {
     BusVoltage,
     /// An angle that errs in proportion to the load: one electrical degree too large at the largest i_q.
     AngleWithLoad,
-    /// The winding's temperature, which the log does not hold: 10 K warmer than it was.
+    /// The winding's temperature, where the log does not hold it: 10 K warmer than it was.
     Temperature,
+}
+
+/// An error that no log shows, but whose size is stated: the intervals count it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Counted {
+    /// The error.
+    pub error: UnseenError,
+    /// Its largest size, as a fraction, to either side.
+    pub accuracy: f64,
 }
 
 /// The part of a percent.
@@ -36,15 +54,25 @@ const PERCENT: f64 = 0.01;
 /// Kelvin that a winding's temperature is easily wrong by.
 const KELVIN: f64 = 10.0;
 
-/// What copper's resistance gains per kelvin, IEC 60034-1 (from 235 K at 20 degrees: 1/255).
-const COPPER: f64 = 1.0 / 255.0;
-
 /// One degree, rad.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// All of them, for the parameters that were found.
-pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS]) -> Vec<Unseen> {
-    if verdicts.iter().all(|verdict| *verdict == Verdict::NotIdentifiable) {
+/// Those that a request states, where anything was found.
+pub(crate) fn counted(verdicts: [Verdict; PARAMETERS], request: &Request) -> Vec<Counted> {
+    let stated = [UnseenError::CurrentGain, UnseenError::BusVoltage].into_iter().filter_map(|error| {
+        let accuracy = error.accuracy(request)?;
+        Some(Counted { error, accuracy })
+    });
+    stated.filter(|_| !nothing_found(verdicts)).collect()
+}
+
+fn nothing_found(verdicts: [Verdict; PARAMETERS]) -> bool {
+    verdicts.iter().all(|verdict| *verdict == Verdict::NotIdentifiable)
+}
+
+/// All others, for the parameters that were found.
+pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS], request: &Request) -> Vec<Unseen> {
+    if nothing_found(verdicts) {
         return Vec::new();
     }
     let Motor { lq, psi_f, .. } = finding.motor;
@@ -53,12 +81,16 @@ pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS])
     let of_angle =
         if verdicts[Parameter::Lq as usize] == Verdict::NotIdentifiable || iq * lq == 0.0 { 0.0 } else { -DEGREE * psi_f / (lq * iq) };
     let unseen = [
-        Unseen { error: UnseenError::CurrentGain, moves: [-PERCENT, -PERCENT, -PERCENT, 0.0] },
-        Unseen { error: UnseenError::BusVoltage, moves: [PERCENT; PARAMETERS] },
+        Unseen { error: UnseenError::CurrentGain, moves: BY_CURRENTS.map(|sign| PERCENT * sign) },
+        Unseen { error: UnseenError::BusVoltage, moves: BY_VOLTAGES.map(|sign| PERCENT * sign) },
         Unseen { error: UnseenError::AngleWithLoad, moves: [0.0, 0.0, of_angle, 0.0] },
         Unseen { error: UnseenError::Temperature, moves: [KELVIN * COPPER, 0.0, 0.0, 0.0] },
     ];
-    unseen.into_iter().filter(|unseen| unseen.moves.iter().any(|moves| *moves != 0.0)).collect()
+    let is_logged = |error| error == UnseenError::Temperature && log.columns().temperature.is_some();
+    let is_left = |unseen: &Unseen| {
+        unseen.moves.iter().any(|moves| *moves != 0.0) && unseen.error.accuracy(request).is_none() && !is_logged(unseen.error)
+    };
+    unseen.into_iter().filter(is_left).collect()
 }
 
 impl UnseenError {
@@ -69,6 +101,15 @@ impl UnseenError {
             Self::BusVoltage => "bus-voltage",
             Self::AngleWithLoad => "angle-with-load",
             Self::Temperature => "temperature",
+        }
+    }
+
+    /// Its largest size, as a fraction, where the request states it.
+    fn accuracy(self, request: &Request) -> Option<f64> {
+        match self {
+            Self::CurrentGain => request.current_accuracy,
+            Self::BusVoltage => request.bus_accuracy,
+            Self::AngleWithLoad | Self::Temperature => None,
         }
     }
 }

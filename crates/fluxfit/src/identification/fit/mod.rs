@@ -1,5 +1,6 @@
 //! Fits: a motor and its uncertainty, from steady operating points or from simulated currents.
 
+pub(crate) mod common_gains;
 pub(crate) mod estimate;
 pub(crate) mod excitation;
 pub(crate) mod fault_search;

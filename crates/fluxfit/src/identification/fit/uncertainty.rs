@@ -9,6 +9,7 @@
 //! - what the [losses](super::voltage_loss) of dead time and devices may be, as far as the points do not tell them;
 //! - directions that the log does not excite, a uniform distribution over their reach;
 //! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
+//! - [gains](super::common_gains) common to all current sensors and to all voltages, where their accuracy is stated;
 //! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is
 //!   widened to their scatter.
 //!
@@ -40,6 +41,10 @@ pub struct Systematic {
     pub process_noise: f64,
     /// Of current sensors whose gains differ: it is not known which of them is right.
     pub sensors: f64,
+    /// Of a gain common to all current sensors, where its accuracy is [stated](crate::Request::current_accuracy).
+    pub current_gain: f64,
+    /// Of the DC voltage's measurement, where its accuracy is [stated](crate::Request::bus_accuracy).
+    pub bus_voltage: f64,
     /// Of inductances that depend on the current.
     pub saturation: f64,
     /// Of directions that are not excited.
@@ -56,18 +61,25 @@ impl Systematic {
     }
 
     /// Every part, with its name.
-    pub fn parts(&self) -> [(f64, Part); 9] {
+    pub fn parts(&self) -> [(f64, Part); 11] {
         [
             (self.prior, Part::Prior),
             (self.timing, Part::Timing),
             (self.dead_time, Part::DeadTime),
             (self.process_noise, Part::ProcessNoise),
             (self.sensors, Part::Sensors),
+            (self.current_gain, Part::CurrentGain),
+            (self.bus_voltage, Part::BusVoltage),
             (self.saturation, Part::Saturation),
             (self.excitation, Part::Excitation),
             (self.misfit, Part::Misfit),
             (self.accuracy, Part::Accuracy),
         ]
+    }
+
+    /// Both common gains in quadrature: what no further measurement with the same sensors would cure.
+    pub(crate) fn common_gains(&self) -> f64 {
+        self.current_gain.hypot(self.bus_voltage)
     }
 }
 
@@ -115,6 +127,12 @@ impl ParameterUncertainty {
         self.statistical.hypot(self.systematic.total())
     }
 
+    /// The parts that come with a correlation between the parameters; of the others nobody knows it.
+    pub(crate) fn correlated(&self) -> f64 {
+        let Systematic { accuracy, prior, misfit, .. } = self.systematic;
+        [accuracy, prior, misfit, self.systematic.common_gains()].into_iter().fold(self.statistical, f64::hypot)
+    }
+
     /// The largest part.
     pub fn largest_part(&self) -> Part {
         let rest = self.systematic.parts();
@@ -140,6 +158,10 @@ pub enum Part {
     ProcessNoise,
     /// Current sensors whose gains differ.
     Sensors,
+    /// A gain common to all current sensors.
+    CurrentGain,
+    /// The DC voltage's measurement.
+    BusVoltage,
     /// Inductances that depend on the current.
     Saturation,
     /// Combinations of the parameters that the log does not excite.
@@ -159,6 +181,8 @@ impl Part {
             Self::DeadTime => "dead_time",
             Self::ProcessNoise => "process_noise",
             Self::Sensors => "sensors",
+            Self::CurrentGain => "current_gain",
+            Self::BusVoltage => "bus_voltage",
             Self::Saturation => "saturation",
             Self::Excitation => "excitation",
             Self::Misfit => "misfit",
@@ -175,6 +199,8 @@ impl Part {
             Self::DeadTime => "dead time",
             Self::ProcessNoise => "disturbances",
             Self::Sensors => "current sensors",
+            Self::CurrentGain => "current accuracy",
+            Self::BusVoltage => "bus accuracy",
             Self::Saturation => "saturation",
             Self::Excitation => "excitation",
             Self::Misfit => "misfit",
@@ -220,14 +246,35 @@ impl Uncertainty {
             // Degrees of freedom of both parts together, back to those of the statistical one.
             let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
             // Saturation is why the points contradict each other: one doubt, told twice. And its spread is about this very answer, so that
-            // what else is doubtful there is within it.
+            // what else is doubtful there is within it. A gain is not: it moves the spread as a whole.
             let needed = part.max(systematic.misfit);
             systematic.misfit = 0.0;
-            let rest = statistical.hypot(systematic.total());
-            systematic.saturation = (needed * needed - rest * rest).max(0.0).sqrt();
+            let (rest, gains) = (statistical.hypot(systematic.total()), systematic.common_gains());
+            systematic.saturation = (needed * needed - (rest * rest - gains * gains)).max(0.0).sqrt();
             *parameter = ParameterUncertainty::of(statistical, behind, systematic);
         }
         self
+    }
+
+    /// Adds gains common to all current sensors and to all voltages, a term of rank one each: what a standard uncertainty of either does to
+    /// the parameters, SI, with its sign.
+    pub(super) fn count_common_gains(&mut self, currents: &[f64; PARAMETERS], voltages: &[f64; PARAMETERS]) {
+        let before = self.parameters.map(|parameter| parameter.correlated());
+        for (p, parameter) in self.parameters.iter_mut().enumerate() {
+            let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
+            let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
+            (systematic.current_gain, systematic.bus_voltage) = (currents[p].abs(), voltages[p].abs());
+            *parameter = ParameterUncertainty::of(statistical, behind, systematic);
+        }
+        let after = self.parameters.map(|parameter| parameter.correlated());
+        let by_gains = |p: usize, q: usize| currents[p] * currents[q] + voltages[p] * voltages[q];
+        let correlation = self.correlation;
+        self.correlation = std::array::from_fn(|p| {
+            std::array::from_fn(|q| {
+                let scale = after[p] * after[q];
+                if scale > 0.0 { (correlation[p][q] * before[p] * before[q] + by_gains(p, q)) / scale } else { 0.0 }
+            })
+        });
     }
 }
 
@@ -279,4 +326,34 @@ fn correlation(points: &[OperatingPoint], estimate: &Estimate) -> [[f64; PARAMET
     std::array::from_fn(|p| {
         std::array::from_fn(|q| if deviation[p] * deviation[q] > 0.0 { covariance[p][q] / (deviation[p] * deviation[q]) } else { 0.0 })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise of 3 and a spread of 5 are 5 together, since what is doubtful at the answer is within the spread. A gain of 12 moves the
+    /// spread as a whole: 13.
+    #[test]
+    fn a_common_gain_comes_on_top_of_the_spread_by_saturation() {
+        let noise = ParameterUncertainty::of(3.0, 10.0, Systematic::default());
+        let mut uncertainty = Uncertainty { parameters: [noise; PARAMETERS], correlation: [[0.0; PARAMETERS]; PARAMETERS] };
+        uncertainty.count_common_gains(&[-12.0; PARAMETERS], &[0.0; PARAMETERS]);
+        let spread = uncertainty.with_saturation([5.0; PARAMETERS]).parameters[0];
+        assert!((spread.standard_error() - 13.0).abs() < 1e-12, "{spread:?}");
+        assert!((spread.systematic.saturation - 4.0).abs() < 1e-12, "{spread:?}");
+    }
+
+    /// Two parameters of noise 3 that a gain moves by 4 to opposite sides: 25 of variance each, -16 in common.
+    #[test]
+    fn a_common_gain_is_a_term_of_rank_one() {
+        let noise = ParameterUncertainty::of(3.0, 10.0, Systematic::default());
+        let one = std::array::from_fn(|p| std::array::from_fn(|q| f64::from(u8::from(p == q))));
+        let mut uncertainty = Uncertainty { parameters: [noise; PARAMETERS], correlation: one };
+        uncertainty.count_common_gains(&[4.0, -4.0, 0.0, 0.0], &[0.0; PARAMETERS]);
+        assert!((uncertainty.correlation[0][1] + 16.0 / 25.0).abs() < 1e-12 && uncertainty.correlation[0][2] == 0.0);
+        assert!((uncertainty.correlation[0][0] - 1.0).abs() < 1e-12 && uncertainty.parameters[2].half_width == noise.half_width);
+        // Of the variance, 9 of 25 has ten degrees of freedom, so that the whole has 10 (25 / 9)².
+        assert!((uncertainty.parameters[0].degrees_of_freedom - 10.0 * (25.0_f64 / 9.0).powi(2)).abs() < 1e-9);
+    }
 }

@@ -205,7 +205,7 @@ mod tests {
                 iq: each(5.0),
                 omega_e: each(100.0),
                 u_dc: u_dc.map(each),
-                theta_e: None,
+                ..crate::log::Columns::default()
             }
         };
         let request = Request::default();
