@@ -19,5 +19,6 @@ mod saturation_equations;
 pub(crate) mod steady;
 pub(crate) mod swarm;
 pub(crate) mod uncertainty;
+mod undetected_loss;
 mod voltage_accuracy;
 pub(crate) mod voltage_loss;

@@ -21,6 +21,7 @@ use super::{
     steady::SteadyFit,
     swarm::{self, Search},
     uncertainty::{Systematic, Uncertainty},
+    undetected_loss,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -102,6 +103,7 @@ impl OutputFit {
             timing: readings::doubt(&readings, independent),
             process_noise: other_kind_of_fit(objective, &drive, &unknowns, &priors, is_noise),
             sensors: sensors(&drive),
+            dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };
         let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, request.voltage_accuracy, &scale);
         let uncertainty = errors.uncertainty(&unknowns, &shifts);

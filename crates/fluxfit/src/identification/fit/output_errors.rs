@@ -39,6 +39,7 @@ pub(super) struct OutputShifts {
     pub(super) timing: [f64; PARAMETERS],
     pub(super) process_noise: [f64; PARAMETERS],
     pub(super) sensors: [f64; PARAMETERS],
+    pub(super) dead_time: [f64; PARAMETERS],
 }
 
 /// Gain from which an observer is fitted where none was found.
@@ -176,6 +177,7 @@ impl Errors {
                 timing: shifts.timing[p],
                 process_noise: shifts.process_noise[p],
                 sensors: shifts.sensors[p],
+                dead_time: shifts.dead_time[p],
                 excitation: self.open[k],
                 ..Systematic::default()
             };
