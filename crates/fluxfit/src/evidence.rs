@@ -7,6 +7,7 @@ pub use crate::identification::{
         excitation::{Direction, Excitation},
         fault_search::{FaultOutcome, FaultTrial},
         finding::{Finding, Trust},
+        frame_lag::FrameLag,
         misfit::Misfit,
         output::OutputFit,
         output_errors::FaultEstimate,

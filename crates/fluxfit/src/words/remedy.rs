@@ -32,6 +32,11 @@ impl Display for Remedy {
             Self::CompensateDeadTime => {
                 write!(f, "log with the drive's dead-time compensation on, or give R_s as measured at the terminals")
             }
+            Self::TellFrameLag => write!(
+                f,
+                "hold two clearly different loads at one high speed, or coast from it with a drive that measures its terminals; if \
+                 voltages and currents are known to be of one instant and one frame, state the timing of the voltage columns"
+            ),
             Self::RemoveDisturbances => write!(
                 f,
                 "log with the test bench at rest (no torque ripple, no supply ripple), or add a stretch held still and identify from it \

@@ -43,6 +43,8 @@ pub enum Remedy {
     /// Log with the drive's dead-time compensation on, or give R_s as measured at the terminals:
     /// [`Request::known`](crate::Request::known).
     CompensateDeadTime,
+    /// Log what tells a recorder's lag: different loads at one speed; or state [`Request::voltage_timing`](crate::Request::voltage_timing).
+    TellFrameLag,
     /// Log without disturbances (torque ripple, supply ripple), or identify by the steady model from a stretch of constant currents and
     /// speed.
     RemoveDisturbances,
@@ -107,6 +109,7 @@ fn narrower(part: Part, half_width: f64, measure: impl Fn() -> Remedy) -> Remedy
         Part::Accuracy | Part::Excitation => measure(),
         Part::Timing => Remedy::StateVoltageTiming,
         Part::DeadTime => Remedy::CompensateDeadTime,
+        Part::FrameLag => Remedy::TellFrameLag,
         Part::ProcessNoise => Remedy::RemoveDisturbances,
         Part::Sensors => Remedy::CalibrateSensors,
         Part::Saturation => Remedy::NarrowCurrents,

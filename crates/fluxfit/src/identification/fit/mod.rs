@@ -1,12 +1,15 @@
 //! Fits: a motor and its uncertainty, from steady operating points or from simulated currents.
 
+mod coasting;
 pub(crate) mod estimate;
 pub(crate) mod excitation;
 pub(crate) mod fault_search;
 pub(crate) mod finding;
+pub(crate) mod frame_lag;
 pub(crate) mod long_run;
 pub(crate) mod misfit;
 mod normal_matrix;
+mod open_loop;
 pub(crate) mod output;
 mod output_choice;
 pub(crate) mod output_errors;

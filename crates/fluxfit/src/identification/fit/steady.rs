@@ -5,10 +5,13 @@ use super::{
         progress::Progress,
         request::{Known, Provenance, Request, Resolved, VOLTAGE_ACCURACY},
     },
+    coasting,
     estimate::Estimate,
     excitation::Excitation,
     finding::{Bench, Finding, Trust, covariance},
+    frame_lag::{self, FrameLag},
     misfit::{self, Misfit},
+    open_loop,
     saturation::SaturationFinding,
     swarm::{self, Search},
     uncertainty::Uncertainty,
@@ -22,7 +25,7 @@ use crate::{
     motor::{Motor, PARAMETERS, Parameter},
     optimizer::{Bounds, Method},
     steady::{
-        OperatingPoint, PreliminaryEstimate, windows,
+        OperatingPoint, PreliminaryEstimate, recorder, windows,
         zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, SteadyVoltageTiming, ZeroOrderHold},
     },
 };
@@ -43,6 +46,8 @@ pub struct SteadyFit {
     pub misfit: Option<Misfit>,
     /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
     pub voltage_losses: Vec<f64>,
+    /// The lag of the voltages' frame behind that of the currents; none but in a recorder's log whose voltage timing is not stated.
+    pub frame_lag: Option<FrameLag>,
     /// What it comes to.
     pub finding: Finding,
     /// What dead time and devices may take, as it was fitted beside the motor.
@@ -57,22 +62,12 @@ impl SteadyFit {
     /// # Errors
     /// If there is none.
     pub fn of(log: &Log, request: &Request) -> Result<Self, Error> {
-        let as_measured = operating_points(log, request)?;
-        let (points, timing_doubt) = measure(log, &as_measured, request);
-        let excitation = Excitation::of(&points, &request.known);
-        let possible = LossPrior::possible(log, request);
-        let harmonics = harmonics(log, &points, &excitation, &possible, request);
-        let losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
-        let estimate = Estimate::solve(&points, &excitation, request, &losses);
-        let (mut estimate, mut misfit) = misfit::admit(&points, &excitation, estimate, request, &losses);
-        let mut losses = losses;
-        // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
-        // saturation.
-        if misfit.is_some() && estimate.motor.rs < 0.0 && !losses.is_empty() {
-            losses.clear();
-            let without = Estimate::solve(&points, &excitation, request, &losses);
-            (estimate, misfit) = misfit::admit(&points, &excitation, without, request, &losses);
+        let (as_measured, lag) = lagging_points(log, operating_points(log, request)?, request);
+        let (mut unturned, timing_doubt) = measure(log, &as_measured, request);
+        if recorder::is_recorders(log) {
+            recorder::pool_noise(&mut unturned, windows::least_current(log));
         }
+        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solve(log, &unturned, lag, request);
         let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
         let finding = Finding {
             motor: estimate.motor,
@@ -89,6 +84,7 @@ impl SteadyFit {
             misfit,
             voltage_losses: harmonics.iter().map(|harmonic| harmonic.filter(|one| one.stands_out).map_or(0.0, |one| one.loss)).collect(),
             losses,
+            frame_lag: lag,
             finding,
             as_measured,
         })
@@ -122,6 +118,65 @@ impl SteadyFit {
         let motor = Motor::from(found);
         Ok(Search { cost_above_optimum: self.estimate.cost_above_optimum(&motor), motor, bounds, report })
     }
+}
+
+/// The operating points of a recorder's log without those in open-loop operation, and with those of a coasting drive that measures its
+/// terminals; with what is known of its lag. Those of another log as they are.
+fn lagging_points(log: &Log, points: Vec<OperatingPoint>, request: &Request) -> (Vec<OperatingPoint>, Option<FrameLag>) {
+    let Some(lag) = FrameLag::possible(log, request) else { return (points, None) };
+    let mut points = open_loop::without(log, points, &lag, request);
+    let coasting = coasting::at_terminals(log, &points, &lag, request);
+    let coasting_rows = coasting.iter().map(|point| point.rows.len()).sum();
+    points.extend(coasting);
+    points.sort_by_key(|point| point.rows.start);
+    (points, Some(FrameLag { coasting_rows, ..lag }))
+}
+
+/// What solving the points gives.
+struct Solved {
+    /// With their voltages turned back by the lag.
+    points: Vec<OperatingPoint>,
+    excitation: Excitation,
+    harmonics: Vec<Option<Harmonic>>,
+    losses: Vec<Loss>,
+    estimate: Estimate,
+    misfit: Option<Misfit>,
+    lag: Option<FrameLag>,
+}
+
+/// Solves the points beside the losses; where there may be a lag, again with the voltages turned back by what was found of it.
+fn solve(log: &Log, unturned: &[OperatingPoint], lag: Option<FrameLag>, request: &Request) -> Solved {
+    let Some(mut lag) = lag else { return solve_turned(log, unturned.to_vec(), None, request) };
+    let fastest = unturned.iter().max_by(|one, other| one.omega_e().abs().total_cmp(&other.omega_e().abs()));
+    let mut psi_f = fastest.map_or(0.0, |point| point.voltage().q / point.omega_e());
+    for _ in 1..frame_lag::ROUNDS {
+        let solved = solve_turned(log, lag.turned_back(unturned), Some((lag, psi_f)), request);
+        (lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
+    }
+    let solved = solve_turned(log, lag.turned_back(unturned), Some((lag, psi_f)), request);
+    Solved { lag: Some(lag.with(&solved.estimate)), ..solved }
+}
+
+/// Solves points whose voltages are turned back by a lag, with the flux, Wb, as far as it is known.
+fn solve_turned(log: &Log, points: Vec<OperatingPoint>, lag: Option<(FrameLag, f64)>, request: &Request) -> Solved {
+    let lags = lag.map_or_else(Vec::new, |(lag, psi_f)| lag.unknowns(&points, psi_f, log).to_vec());
+    let excitation = Excitation::of(&points, &request.known);
+    let possible = LossPrior::possible(log, request);
+    let harmonics = harmonics(log, &points, &excitation, &possible, request);
+    let mut losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
+    let with_lags = |losses: &[Loss]| losses.iter().chain(&lags).cloned().collect::<Vec<_>>();
+    let admit =
+        |losses: &[Loss]| misfit::admit(&points, &excitation, Estimate::solve(&points, &excitation, request, losses), request, losses);
+    let mut all = with_lags(&losses);
+    let (mut estimate, mut misfit) = admit(&all);
+    // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
+    // saturation.
+    if misfit.is_some() && estimate.motor.rs < 0.0 && !losses.is_empty() {
+        losses.clear();
+        all = with_lags(&losses);
+        (estimate, misfit) = admit(&all);
+    }
+    Solved { excitation, harmonics, losses: all, estimate, misfit, lag: None, points }
 }
 
 /// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.
@@ -185,7 +240,7 @@ pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoi
         windows.extend(windows::between(log, *times)?);
     }
     if windows.is_empty() {
-        windows = windows::find(log)?;
+        windows = if recorder::is_recorders(log) { recorder::loaded(log)? } else { windows::find(log)? };
     }
     Ok(windows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect())
 }

@@ -6,7 +6,8 @@
 //! - the voltages' accuracy, independent between windows and axes;
 //! - priors;
 //! - the timing of the voltage columns, where nobody stated it;
-//! - what the [losses](super::voltage_loss) of dead time and devices may be, as far as the points do not tell them;
+//! - what the [losses](super::voltage_loss) of dead time and devices may be, as far as the points do not tell them, and the
+//!   [lags](super::frame_lag) of a recorder;
 //! - directions that the log does not excite, a uniform distribution over their reach;
 //! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
 //! - misfit: where the points [contradict each other](super::misfit), the accuracy is that to which they agree, and the interval is
@@ -36,6 +37,8 @@ pub struct Systematic {
     pub timing: f64,
     /// Of dead time or device drops.
     pub dead_time: f64,
+    /// Of a recorder's voltages that may turn with speed against its currents.
+    pub frame_lag: f64,
     /// Of unknown voltages that disturb the motor.
     pub process_noise: f64,
     /// Of current sensors whose gains differ: it is not known which of them is right.
@@ -56,11 +59,12 @@ impl Systematic {
     }
 
     /// Every part, with its name.
-    pub fn parts(&self) -> [(f64, Part); 9] {
+    pub fn parts(&self) -> [(f64, Part); 10] {
         [
             (self.prior, Part::Prior),
             (self.timing, Part::Timing),
             (self.dead_time, Part::DeadTime),
+            (self.frame_lag, Part::FrameLag),
             (self.process_noise, Part::ProcessNoise),
             (self.sensors, Part::Sensors),
             (self.saturation, Part::Saturation),
@@ -136,6 +140,8 @@ pub enum Part {
     Timing,
     /// Dead time or device drops.
     DeadTime,
+    /// A recorder's voltages that may turn with speed against its currents.
+    FrameLag,
     /// Unknown voltages that disturb the motor.
     ProcessNoise,
     /// Current sensors whose gains differ.
@@ -157,6 +163,7 @@ impl Part {
             Self::Prior => "prior",
             Self::Timing => "timing",
             Self::DeadTime => "dead_time",
+            Self::FrameLag => "frame_lag",
             Self::ProcessNoise => "process_noise",
             Self::Sensors => "sensors",
             Self::Saturation => "saturation",
@@ -173,6 +180,7 @@ impl Part {
             Self::Prior => "prior",
             Self::Timing => "voltage timing",
             Self::DeadTime => "dead time",
+            Self::FrameLag => "frame lag",
             Self::ProcessNoise => "disturbances",
             Self::Sensors => "current sensors",
             Self::Saturation => "saturation",
@@ -242,10 +250,13 @@ fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit
         variance_of_variance += part * part / point.degrees_of_freedom as f64;
         accuracy += (gain[0] * gain[0] + gain[1] * gain[1]) * estimate.accuracy[w].powi(2);
     }
+    let of_losses =
+        |part: Part| estimate.loss_gains.iter().filter(|(of, _)| *of == part).map(|(_, gain)| gain[p].powi(2)).sum::<f64>().sqrt();
     let systematic = Systematic {
         accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
         prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
-        dead_time: estimate.loss_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
+        dead_time: of_losses(Part::DeadTime),
+        frame_lag: of_losses(Part::FrameLag),
         misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
         ..Systematic::default()
     };

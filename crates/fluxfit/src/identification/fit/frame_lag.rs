@@ -1,0 +1,81 @@
+//! The lags of a recorder: its voltages may turn with speed against its currents, and its speed may be of another instant than its means.
+//!
+//! A recorder's rows hold what the drive computed or measured at different instants of its period: the voltages' frame is that of an angle
+//! that is late by a time `T`, a filter's or a period's. With it the voltages are `u exp(-j omega_e T)`, of which the magnet makes
+//! `u_d = psi_f omega_e² T`: like `-omega_e L_q i_q` wherever the current follows the speed. So `T` is an unknown beside the motor, with a
+//! prior of the size that drives have. Different loads at one speed tell it, and so do rows [without current](super::coasting), where the
+//! terminals are measured; where nothing does, its doubt is `psi_f omega_e T / i_q` of `L_q`.
+//!
+//! ```text
+//! u exp(j omega_e T) = (steady equations) + j omega_e dT u + j psi_f (domega_e/dt) tau
+//! ```
+//!
+//! `T` is what the voltages are turned back by already, `dT` what is still missing, `tau` the time by which the speed column is old. The
+//! means of a row are of the middle of its period, but many recorders write the speed of its end.
+
+use super::{super::request::Request, estimate::Estimate, uncertainty::Part, voltage_loss::Loss, voltage_loss::slowest_period};
+use crate::{
+    log::Log,
+    steady::{OperatingPoint, recorder},
+};
+
+/// Standard error of what is known of the lag beforehand, s: one and a half periods of a drive that controls at 15 kHz, from the sampling
+/// of the current to the middle of the period in which the voltage acts. Measured: 43 us in the log of a VESC.
+const USUAL_LAG: f64 = 100e-6;
+
+/// Rounds of turning the voltages: the second leaves the square of what the first did not know, a millionth.
+pub(super) const ROUNDS: usize = 4;
+
+/// A lag is found if it is this many standard errors.
+const FOUND: f64 = 3.0;
+
+/// The time by which the voltages' frame lags the currents'.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct FrameLag {
+    /// s; positive: the voltages are turned backwards at positive speed.
+    pub seconds: f64,
+    /// s.
+    pub standard_error: f64,
+    /// Rows without current that helped to tell it; zero where the drive does not measure its terminals, or never coasts.
+    pub coasting_rows: usize,
+}
+
+impl FrameLag {
+    /// What is known of it beforehand; none of a log that is no recorder's, or whose voltages are known.
+    pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
+        let is_known = request.voltage_timing.is_some() || request.voltage_accuracy == 0.0 || log.is_short_circuit();
+        (recorder::is_recorders(log) && !is_known).then_some(Self { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 })
+    }
+
+    /// Points whose voltages are turned back by it.
+    pub(super) fn turned_back(&self, points: &[OperatingPoint]) -> Vec<OperatingPoint> {
+        points.iter().map(|point| point.turned(point.omega_e() * self.seconds)).collect()
+    }
+
+    /// What is still unknown at points that are turned back by it, given the flux, Wb: what is missing of the lag, and the age of the speed,
+    /// both in seconds.
+    pub(super) fn unknowns(&self, points: &[OperatingPoint], psi_f: f64, log: &Log) -> [Loss; 2] {
+        let part = Part::FrameLag;
+        let missing = points.iter().map(|point| {
+            let u = point.voltage();
+            [u.q, -u.d].map(|part| part * point.omega_e())
+        });
+        let old = points.iter().map(|point| [0.0, psi_f * point.acceleration]);
+        [
+            Loss { voltages: missing.collect(), expected: -self.seconds, standard_error: USUAL_LAG, part },
+            Loss { voltages: old.collect(), expected: 0.0, standard_error: slowest_period(log), part },
+        ]
+    }
+
+    /// The same with what an estimate found missing: its last two unknowns are those of [`Self::unknowns`].
+    pub(super) fn with(&self, estimate: &Estimate) -> Self {
+        let Some([.., (missing, standard_error), _]) = estimate.found.get(..) else { return *self };
+        Self { seconds: self.seconds + missing, standard_error: *standard_error, ..*self }
+    }
+
+    /// Whether there is one, beyond doubt.
+    pub fn is_found(&self) -> bool {
+        self.seconds.abs() > FOUND * self.standard_error
+    }
+}
