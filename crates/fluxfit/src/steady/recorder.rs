@@ -89,8 +89,8 @@ pub(crate) fn coasting(log: &Log) -> Vec<Range<usize>> {
     pieces.into_iter().step_by(every).collect()
 }
 
-/// Gives windows of a few rows the noise that they have on average, those with current and those without: the scatter of a few rows is a
-/// poor estimate of their own.
+/// Gives windows of a few rows the noise that they have on average, those with current, those without and the slow ones: the scatter of a
+/// few rows is a poor estimate of their own.
 pub(crate) fn pool_noise(points: &mut [OperatingPoint], least_current: f64) {
     for with_current in [true, false] {
         let is_one = |point: &OperatingPoint| point.rows.len() < MIN_ROWS && (point.current().magnitude() >= least_current) == with_current;

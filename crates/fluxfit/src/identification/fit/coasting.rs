@@ -73,13 +73,12 @@ fn turn_with_speed(pieces: &[OperatingPoint]) -> bool {
 fn have_the_same_flux(log: &Log, loaded: &[OperatingPoint], pieces: &[OperatingPoint], lag: &FrameLag, request: &Request) -> bool {
     let points: Vec<OperatingPoint> = loaded.iter().chain(pieces).cloned().collect();
     let excitation = Excitation::of(&points, &request.known);
-    let psi_f = pieces.iter().map(|piece| piece.voltage().q / piece.omega_e()).sum::<f64>() / pieces.len() as f64;
     let of_pieces =
         points.iter().enumerate().map(|(w, point)| if w < loaded.len() { [0.0; 2] } else { [point.voltage().d, point.voltage().q] });
     let gain = Loss { voltages: of_pieces.collect(), expected: 0.0, standard_error: 1.0, part: Part::FrameLag };
     let inductances = Dq { d: f64::INFINITY, q: f64::INFINITY };
     let losses = LossPrior::possible(log, request).losses(&points, 0.0, inductances);
-    let unknowns: Vec<Loss> = [gain].into_iter().chain(losses).chain(lag.unknowns(&points, psi_f, log)).collect();
+    let unknowns: Vec<Loss> = [gain].into_iter().chain(losses).chain(lag.rough_unknowns(&points, log)).collect();
     let estimate = Estimate::solve_with(&points, &excitation, request, &unknowns, ACCURACY);
     estimate.found.first().is_some_and(|(gain, error)| gain.abs() <= SAME_FLUX && *error <= GAIN_ERROR)
 }

@@ -16,12 +16,16 @@
 use super::{super::request::Request, estimate::Estimate, uncertainty::Part, voltage_loss::Loss, voltage_loss::slowest_period};
 use crate::{
     log::Log,
-    steady::{OperatingPoint, recorder},
+    steady::{OperatingPoint, recorder, windows},
 };
 
 /// Standard error of what is known of the lag beforehand, s: one and a half periods of a drive that controls at 15 kHz, from the sampling
 /// of the current to the middle of the period in which the voltage acts. Measured: 43 us in the log of a VESC.
 const USUAL_LAG: f64 = 100e-6;
+
+/// Standard error of the difference between the lags of rows with and without current, s: the drive measures the ones through the filters of
+/// its dividers, and computes the others.
+const OTHER_LAG: f64 = 5e-6;
 
 /// Rounds of turning the voltages: the second leaves the square of what the first did not know, a millionth.
 pub(super) const ROUNDS: usize = 4;
@@ -53,19 +57,27 @@ impl FrameLag {
         points.iter().map(|point| point.turned(point.omega_e() * self.seconds)).collect()
     }
 
-    /// What is still unknown at points that are turned back by it, given the flux, Wb: what is missing of the lag, and the age of the speed,
-    /// both in seconds.
-    pub(super) fn unknowns(&self, points: &[OperatingPoint], psi_f: f64, log: &Log) -> [Loss; 2] {
+    /// What is still unknown at points that are turned back by it, given the flux, Wb: how much more it is without current, what is missing
+    /// of it, and the age of the speed, all in seconds.
+    pub(super) fn unknowns(&self, points: &[OperatingPoint], psi_f: f64, log: &Log) -> [Loss; 3] {
         let part = Part::FrameLag;
-        let missing = points.iter().map(|point| {
+        let missing = |point: &OperatingPoint| {
             let u = point.voltage();
             [u.q, -u.d].map(|part| part * point.omega_e())
-        });
+        };
+        let least_current = windows::least_current(log);
+        let other = points.iter().map(|point| if point.current().magnitude() < least_current { missing(point) } else { [0.0; 2] });
         let old = points.iter().map(|point| [0.0, psi_f * point.acceleration]);
         [
-            Loss { voltages: missing.collect(), expected: -self.seconds, standard_error: USUAL_LAG, part },
+            Loss { voltages: other.collect(), expected: 0.0, standard_error: OTHER_LAG, part },
+            Loss { voltages: points.iter().map(missing).collect(), expected: -self.seconds, standard_error: USUAL_LAG, part },
             Loss { voltages: old.collect(), expected: 0.0, standard_error: slowest_period(log), part },
         ]
+    }
+
+    /// The same before any flux is known: that of the fastest point will do.
+    pub(super) fn rough_unknowns(&self, points: &[OperatingPoint], log: &Log) -> [Loss; 3] {
+        self.unknowns(points, rough_flux(points), log)
     }
 
     /// The same with what an estimate found missing: its last two unknowns are those of [`Self::unknowns`].
@@ -78,4 +90,10 @@ impl FrameLag {
     pub fn is_found(&self) -> bool {
         self.seconds.abs() > FOUND * self.standard_error
     }
+}
+
+/// The flux, Wb, as the fastest point's voltage over its speed.
+pub(super) fn rough_flux(points: &[OperatingPoint]) -> f64 {
+    let fastest = points.iter().max_by(|one, other| one.omega_e().abs().total_cmp(&other.omega_e().abs()));
+    fastest.filter(|point| point.omega_e() != 0.0).map_or(0.0, |point| point.voltage().q / point.omega_e())
 }

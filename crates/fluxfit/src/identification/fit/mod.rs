@@ -5,6 +5,7 @@ pub(crate) mod estimate;
 pub(crate) mod excitation;
 pub(crate) mod fault_search;
 pub(crate) mod finding;
+mod frame_free;
 pub(crate) mod frame_lag;
 pub(crate) mod long_run;
 pub(crate) mod misfit;

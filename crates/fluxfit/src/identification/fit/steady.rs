@@ -9,6 +9,7 @@ use super::{
     estimate::Estimate,
     excitation::Excitation,
     finding::{Bench, Finding, Trust, covariance},
+    frame_free,
     frame_lag::{self, FrameLag},
     misfit::{self, Misfit},
     open_loop,
@@ -29,6 +30,9 @@ use crate::{
         zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, SteadyVoltageTiming, ZeroOrderHold},
     },
 };
+
+/// An inductance whose interval is wider than this part of it is not told.
+const TOLD: f64 = 0.5;
 
 /// The operating points, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,13 +66,24 @@ impl SteadyFit {
     /// # Errors
     /// If there is none.
     pub fn of(log: &Log, request: &Request) -> Result<Self, Error> {
-        let (as_measured, lag) = lagging_points(log, operating_points(log, request)?, request);
-        let (mut unturned, timing_doubt) = measure(log, &as_measured, request);
+        let (as_measured, frames) = frames(log, operating_points(log, request)?, request);
+        let (mut unturned, mut other_timing) = measure(log, &as_measured, request);
         if recorder::is_recorders(log) {
-            recorder::pool_noise(&mut unturned, windows::least_current(log));
+            for points in [Some(&mut unturned), other_timing.as_mut()].into_iter().flatten() {
+                recorder::pool_noise(points, windows::least_current(log));
+            }
         }
-        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solve(log, &unturned, lag, request);
-        let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
+        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solve(log, &unturned, frames.as_ref(), request);
+        let timing_doubt = match (&other_timing, lag) {
+            (None, _) => [0.0; PARAMETERS],
+            (Some(other), None) => timing_doubt(&unturned, other, request),
+            (Some(other), Some(lag)) => estimate.moved_by(&lag.turned_back(&unturned), &lag.turned_back(other)),
+        };
+        let mut uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
+        if lag.is_some() {
+            let psi_f = &mut uncertainty.parameters[Parameter::PsiF as usize];
+            *psi_f = psi_f.with_min_half_width(frame_free::scatter(&points, &estimate.motor));
+        }
         let finding = Finding {
             motor: estimate.motor,
             open: Parameter::ALL.map(|parameter| excitation.is_open(parameter)),
@@ -92,6 +107,14 @@ impl SteadyFit {
 
     /// Saturation, if it explains a contradiction between the operating points.
     pub(crate) fn saturation(&self, request: &Request) -> Option<SaturationFinding> {
+        // Where a recorder's lag and the age of its speed leave no inductance, none can be seen to change.
+        let is_told = |parameter| {
+            let half_width = self.finding.uncertainty.parameters[parameter as usize].half_width;
+            half_width < TOLD * self.estimate.motor.get(parameter)
+        };
+        if self.frame_lag.is_some() && !is_told(Parameter::Ld) && !is_told(Parameter::Lq) {
+            return None;
+        }
         SaturationFinding::of_points(
             (&self.operating_points, &self.losses),
             &self.excitation,
@@ -120,16 +143,24 @@ impl SteadyFit {
     }
 }
 
-/// The operating points of a recorder's log without those in open-loop operation, and with those of a coasting drive that measures its
-/// terminals; with what is known of its lag. Those of another log as they are.
-fn lagging_points(log: &Log, points: Vec<OperatingPoint>, request: &Request) -> (Vec<OperatingPoint>, Option<FrameLag>) {
+/// What is in doubt of the frames of a recorder's columns.
+struct Frames {
+    lag: FrameLag,
+    /// First rows of the points in open-loop operation.
+    open_loop: Vec<usize>,
+}
+
+/// The operating points of a recorder's log with those of a coasting drive that measures its terminals, and what is known of the frames.
+/// Those of another log as they are.
+fn frames(log: &Log, mut points: Vec<OperatingPoint>, request: &Request) -> (Vec<OperatingPoint>, Option<Frames>) {
     let Some(lag) = FrameLag::possible(log, request) else { return (points, None) };
-    let mut points = open_loop::without(log, points, &lag, request);
-    let coasting = coasting::at_terminals(log, &points, &lag, request);
+    let open_loop = open_loop::find(log, &points, &lag, request);
+    let in_frame: Vec<OperatingPoint> = points.iter().filter(|point| !open_loop.contains(&point.rows.start)).cloned().collect();
+    let coasting = coasting::at_terminals(log, &in_frame, &lag, request);
     let coasting_rows = coasting.iter().map(|point| point.rows.len()).sum();
     points.extend(coasting);
     points.sort_by_key(|point| point.rows.start);
-    (points, Some(FrameLag { coasting_rows, ..lag }))
+    (points, Some(Frames { lag: FrameLag { coasting_rows, ..lag }, open_loop }))
 }
 
 /// What solving the points gives.
@@ -145,38 +176,40 @@ struct Solved {
 }
 
 /// Solves the points beside the losses; where there may be a lag, again with the voltages turned back by what was found of it.
-fn solve(log: &Log, unturned: &[OperatingPoint], lag: Option<FrameLag>, request: &Request) -> Solved {
-    let Some(mut lag) = lag else { return solve_turned(log, unturned.to_vec(), None, request) };
-    let fastest = unturned.iter().max_by(|one, other| one.omega_e().abs().total_cmp(&other.omega_e().abs()));
-    let mut psi_f = fastest.map_or(0.0, |point| point.voltage().q / point.omega_e());
+fn solve(log: &Log, unturned: &[OperatingPoint], frames: Option<&Frames>, request: &Request) -> Solved {
+    let Some(Frames { lag, open_loop }) = frames else { return solve_beside(log, unturned.to_vec(), &[], request) };
+    let (mut lag, mut psi_f) = (*lag, frame_lag::rough_flux(unturned));
+    let mut round = |lag: &mut FrameLag| {
+        let points = lag.turned_back(unturned);
+        let unknowns: Vec<Loss> =
+            open_loop::unknowns(&points, open_loop, psi_f).into_iter().chain(lag.unknowns(&points, psi_f, log)).collect();
+        let solved = solve_beside(log, points, &unknowns, request);
+        (*lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
+        solved
+    };
     for _ in 1..frame_lag::ROUNDS {
-        let solved = solve_turned(log, lag.turned_back(unturned), Some((lag, psi_f)), request);
-        (lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
+        round(&mut lag);
     }
-    let solved = solve_turned(log, lag.turned_back(unturned), Some((lag, psi_f)), request);
-    Solved { lag: Some(lag.with(&solved.estimate)), ..solved }
+    let solved = round(&mut lag);
+    Solved { lag: Some(lag), ..solved }
 }
 
-/// Solves points whose voltages are turned back by a lag, with the flux, Wb, as far as it is known.
-fn solve_turned(log: &Log, points: Vec<OperatingPoint>, lag: Option<(FrameLag, f64)>, request: &Request) -> Solved {
-    let lags = lag.map_or_else(Vec::new, |(lag, psi_f)| lag.unknowns(&points, psi_f, log).to_vec());
+/// Solves points beside the losses and these unknowns of their frames.
+fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], request: &Request) -> Solved {
     let excitation = Excitation::of(&points, &request.known);
     let possible = LossPrior::possible(log, request);
     let harmonics = harmonics(log, &points, &excitation, &possible, request);
     let mut losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
-    let with_lags = |losses: &[Loss]| losses.iter().chain(&lags).cloned().collect::<Vec<_>>();
-    let admit =
-        |losses: &[Loss]| misfit::admit(&points, &excitation, Estimate::solve(&points, &excitation, request, losses), request, losses);
-    let mut all = with_lags(&losses);
-    let (mut estimate, mut misfit) = admit(&all);
+    let all = |losses: &[Loss]| losses.iter().chain(of_frames).cloned().collect::<Vec<_>>();
+    let admit = |all: &[Loss]| misfit::admit(&points, &excitation, Estimate::solve(&points, &excitation, request, all), request, all);
+    let (mut estimate, mut misfit) = admit(&all(&losses));
     // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
     // saturation.
     if misfit.is_some() && estimate.motor.rs < 0.0 && !losses.is_empty() {
         losses.clear();
-        all = with_lags(&losses);
-        (estimate, misfit) = admit(&all);
+        (estimate, misfit) = admit(&all(&losses));
     }
-    Solved { excitation, harmonics, losses: all, estimate, misfit, lag: None, points }
+    Solved { losses: all(&losses), excitation, harmonics, estimate, misfit, lag: None, points }
 }
 
 /// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.
@@ -246,9 +279,9 @@ pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoi
 }
 
 /// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
-/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it. Where the rows may be every
-/// n-th of a drive's periods nothing is corrected, and the doubt is the correction that the drive's own period would need.
-fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
+/// Beside the points: the same with another timing of the voltage columns, where nobody stated it. Where the rows may be every n-th of a
+/// drive's periods nothing is corrected, and the others have the correction that the drive's own period would need.
+fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, Option<Vec<OperatingPoint>>) {
     let with = |timing: SteadyVoltageTiming, change: &dyn Fn(ZeroOrderHold) -> ZeroOrderHold| -> Vec<OperatingPoint> {
         let preliminary = preliminary_estimates(log, rough, timing, request);
         let measured = rough.iter().zip(&preliminary).map(|(point, one)| {
@@ -258,7 +291,7 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
     };
     let as_it_is = |hold: ZeroOrderHold| hold;
     if let Some(stated) = request.voltage_timing {
-        return (with(stated.into(), &as_it_is), [0.0; PARAMETERS]);
+        return (with(stated.into(), &as_it_is), None);
     }
     let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let period = slowest_period(log);
@@ -270,9 +303,14 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
         let timing = SteadyVoltageTiming::Centered;
         (with(timing, &|_| ZeroOrderHold::NONE), with(timing, &|_| ZeroOrderHold { timing, sample_period, ..ZeroOrderHold::NONE }))
     };
+    (points, Some(other))
+}
+
+/// How far the answer moves between two timings of the voltage columns.
+fn timing_doubt(one: &[OperatingPoint], other: &[OperatingPoint], request: &Request) -> [f64; PARAMETERS] {
     let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request, &[]).motor;
-    let (one, other) = (solve(&points).to_array(), solve(&other).to_array());
-    (points, std::array::from_fn(|p| (one[p] - other[p]).abs()))
+    let (one, other) = (solve(one).to_array(), solve(other).to_array());
+    std::array::from_fn(|p| (one[p] - other[p]).abs())
 }
 
 /// Hardly a drive controls its currents more slowly than this, Hz.
