@@ -7,10 +7,11 @@
 //! terminals are measured; where nothing does, its doubt is `psi_f omega_e T / i_q` of `L_q`.
 //!
 //! ```text
-//! u exp(j omega_e T) = (steady equations) + j omega_e dT u + j psi_f (domega_e/dt) tau
+//! u exp(j omega_e T) = (steady equations) - j omega_e dT u - j theta u + j psi_f (domega_e/dt) tau
 //! ```
 //!
-//! `T` is what the voltages are turned back by already, `dT` what is still missing, `tau` the time by which the speed column is old. The
+//! `T` is what the voltages are turned back by already, `dT` what is still missing, `theta` an angle that is the same at all speeds, as an
+//! observer's may be off by a degree, `tau` the time by which the speed column is old. The
 //! means of a row are of the middle of its period, but many recorders write the speed of its end.
 
 use super::{super::request::Request, estimate::Estimate, uncertainty::Part, voltage_loss::Loss, voltage_loss::slowest_period};
@@ -26,6 +27,10 @@ const USUAL_LAG: f64 = 100e-6;
 /// Standard error of the difference between the lags of rows with and without current, s: the drive measures the ones through the filters of
 /// its dividers, and computes the others.
 const OTHER_LAG: f64 = 5e-6;
+
+/// Standard error of an angle, rad, by which the voltages may be turned at any speed: a degree, what an observer or a calibrated encoder is
+/// off by.
+const USUAL_OFFSET: f64 = 0.017;
 
 /// Rounds of turning the voltages: the second leaves the square of what the first did not know, a millionth.
 pub(super) const ROUNDS: usize = 4;
@@ -57,18 +62,17 @@ impl FrameLag {
         points.iter().map(|point| point.turned(point.omega_e() * self.seconds)).collect()
     }
 
-    /// What is still unknown at points that are turned back by it, given the flux, Wb: how much more it is without current, what is missing
-    /// of it, and the age of the speed, all in seconds.
-    pub(super) fn unknowns(&self, points: &[OperatingPoint], psi_f: f64, log: &Log) -> [Loss; 3] {
+    /// What is still unknown at points that are turned back by it, given the flux, Wb: an angle at any speed, rad, how much more the lag is
+    /// without current, what is missing of it, and the age of the speed, s.
+    pub(super) fn unknowns(&self, points: &[OperatingPoint], psi_f: f64, log: &Log) -> [Loss; 4] {
         let part = Part::FrameLag;
-        let missing = |point: &OperatingPoint| {
-            let u = point.voltage();
-            [u.q, -u.d].map(|part| part * point.omega_e())
-        };
+        let turned = |point: &OperatingPoint| [point.voltage().q, -point.voltage().d];
+        let missing = |point: &OperatingPoint| turned(point).map(|part| part * point.omega_e());
         let least_current = windows::least_current(log);
         let other = points.iter().map(|point| if point.current().magnitude() < least_current { missing(point) } else { [0.0; 2] });
         let old = points.iter().map(|point| [0.0, psi_f * point.acceleration]);
         [
+            Loss { voltages: points.iter().map(turned).collect(), expected: 0.0, standard_error: USUAL_OFFSET, part },
             Loss { voltages: other.collect(), expected: 0.0, standard_error: OTHER_LAG, part },
             Loss { voltages: points.iter().map(missing).collect(), expected: -self.seconds, standard_error: USUAL_LAG, part },
             Loss { voltages: old.collect(), expected: 0.0, standard_error: slowest_period(log), part },
@@ -76,7 +80,7 @@ impl FrameLag {
     }
 
     /// The same before any flux is known: that of the fastest point will do.
-    pub(super) fn rough_unknowns(&self, points: &[OperatingPoint], log: &Log) -> [Loss; 3] {
+    pub(super) fn rough_unknowns(&self, points: &[OperatingPoint], log: &Log) -> [Loss; 4] {
         self.unknowns(points, rough_flux(points), log)
     }
 
