@@ -2,7 +2,8 @@
 //!
 //! A coasting rotor shows `psi_f` and the [lag](super::frame_lag) of the frame, if the drive measures its terminals. Many do not: they write
 //! zero, the last command, or what a controller would apply that is not switching. The log tells: voltages that are the magnet's turn with
-//! the speed and not by a constant angle, they have noise along d, and they are those of the same magnet that acts under load.
+//! the speed and not by a constant angle, they have a part along d, and they are those of the same magnet that acts under load, with the
+//! same lag.
 //!
 //! Measured: under load, the voltages of a VESC are 5 % above those without current, which it measures by dividers; those of a Tritium are
 //! 11 % apart, and their angle is 4 degrees at every speed.
@@ -27,6 +28,18 @@ const SAME_FLUX: f64 = 0.08;
 /// The load tells the gain of the other voltages if it leaves this standard error.
 const GAIN_ERROR: f64 = 0.03;
 
+/// A gain of this many standard errors is one.
+const GAIN_FOUND: f64 = 2.0;
+
+/// Largest difference, s, between the lag with and without current, where the load tells the one: twice what filters of dividers make.
+const SAME_LAG: f64 = 10e-6;
+
+/// What is known of that difference here, s: nothing.
+const ANY_LAG: f64 = 1e-3;
+
+/// Standard errors of that difference beyond which it is real.
+const LAG_FOUND: f64 = 3.0;
+
 /// Voltages are trusted to this here: a gain is wanted to a few percent.
 const ACCURACY: f64 = 0.01;
 
@@ -39,29 +52,40 @@ const COMPUTED: f64 = 1e-6;
 /// Fewest pieces from which anything is concluded.
 const FEWEST: usize = 3;
 
+/// Voltages at the terminals of a coasting drive.
+pub(super) struct Terminals {
+    pub(super) points: Vec<OperatingPoint>,
+    /// By which part their voltages differ from those under load; zero where that is not certain.
+    pub(super) gain: f64,
+}
+
 /// The points without current, if their voltages are the terminals': judged by the points with current.
-pub(super) fn at_terminals(log: &Log, loaded: &[OperatingPoint], lag: &FrameLag, request: &Request) -> Vec<OperatingPoint> {
+pub(super) fn at_terminals(log: &Log, loaded: &[OperatingPoint], lag: &FrameLag, request: &Request) -> Option<Terminals> {
     if !request.windows.is_empty() {
-        return Vec::new();
+        return None;
     }
-    let pieces: Vec<OperatingPoint> = recorder::coasting(log).into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect();
-    let are_theirs = pieces.len() >= FEWEST
-        && pieces.iter().any(|piece| piece.voltage().d.abs() > COMPUTED * piece.voltage().magnitude())
-        && turn_with_speed(&pieces)
-        && have_the_same_flux(log, loaded, &pieces, lag, request);
-    if are_theirs { pieces } else { Vec::new() }
+    let points: Vec<OperatingPoint> = recorder::coasting(log).into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect();
+    let computed = points.iter().filter(|point| point.voltage().d.abs() <= COMPUTED * point.voltage().magnitude()).count();
+    if points.len() < FEWEST || 2 * computed > points.len() || !turn_with_speed(&points) {
+        return None;
+    }
+    let gain = gain_of_same_flux(log, loaded, &points, lag, request)?;
+    Some(Terminals { points, gain })
+}
+
+/// The unknown gain of these voltages: none at other points.
+pub(super) fn gain_unknown(points: &[OperatingPoint], is_coasting: impl Fn(usize) -> bool, standard_error: f64) -> Loss {
+    let voltages = points.iter().enumerate().map(|(w, point)| {
+        let Dq { d, q } = point.voltage();
+        if is_coasting(w) { [d, q] } else { [0.0; 2] }
+    });
+    Loss { voltages: voltages.collect(), expected: 0.0, standard_error, part: Part::FrameLag }
 }
 
 /// Whether the voltages' angle from the q axis is in proportion to the speed, rather than the same at all speeds.
-fn turn_with_speed(pieces: &[OperatingPoint]) -> bool {
-    let angles: Vec<(f64, f64)> = pieces
-        .iter()
-        .map(|piece| {
-            // From the axis, whichever way it points: a column with the wrong sign is none of this matter.
-            let Dq { d, q } = piece.voltage();
-            ((d / q).atan(), piece.omega_e())
-        })
-        .collect();
+fn turn_with_speed(points: &[OperatingPoint]) -> bool {
+    // From the axis, whichever way it points: a column with the wrong sign is none of this matter.
+    let angles: Vec<(f64, f64)> = points.iter().map(|point| ((point.voltage().d / point.voltage().q).atan(), point.omega_e())).collect();
     let sum = |of: &dyn Fn(f64, f64) -> f64| angles.iter().map(|(angle, omega_e)| of(*angle, *omega_e)).sum::<f64>();
     let slope = sum(&|angle, omega_e| angle * omega_e) / sum(&|_, omega_e| omega_e * omega_e);
     let constant = sum(&|angle, _| angle) / angles.len() as f64;
@@ -69,16 +93,19 @@ fn turn_with_speed(pieces: &[OperatingPoint]) -> bool {
     turning <= sum(&|angle, _| (angle - constant).powi(2)) || turning <= angles.len() as f64 * NO_ANGLE.powi(2)
 }
 
-/// Whether they are those of the magnet that acts under load: a gain of theirs, solved for beside the motor, is near one.
-fn have_the_same_flux(log: &Log, loaded: &[OperatingPoint], pieces: &[OperatingPoint], lag: &FrameLag, request: &Request) -> bool {
-    let points: Vec<OperatingPoint> = loaded.iter().chain(pieces).cloned().collect();
+/// The gain of voltages without current against those under load, if it is near one and told, and if the lags of both may be the same.
+fn gain_of_same_flux(log: &Log, loaded: &[OperatingPoint], coasting: &[OperatingPoint], lag: &FrameLag, request: &Request) -> Option<f64> {
+    let points: Vec<OperatingPoint> = loaded.iter().chain(coasting).cloned().collect();
     let excitation = Excitation::of(&points, &request.known);
-    let of_pieces =
-        points.iter().enumerate().map(|(w, point)| if w < loaded.len() { [0.0; 2] } else { [point.voltage().d, point.voltage().q] });
-    let gain = Loss { voltages: of_pieces.collect(), expected: 0.0, standard_error: 1.0, part: Part::FrameLag };
     let inductances = Dq { d: f64::INFINITY, q: f64::INFINITY };
     let losses = LossPrior::possible(log, request).losses(&points, 0.0, inductances);
-    let unknowns: Vec<Loss> = [gain].into_iter().chain(losses).chain(lag.rough_unknowns(&points, log)).collect();
+    let mut of_frames = lag.rough_unknowns(&points, log);
+    of_frames[FrameLag::OTHER].standard_error = ANY_LAG;
+    let gain = gain_unknown(&points, |w| w >= loaded.len(), 1.0);
+    let unknowns: Vec<Loss> = [gain].into_iter().chain(of_frames).chain(losses).collect();
     let estimate = Estimate::solve_with(&points, &excitation, request, &unknowns, ACCURACY);
-    estimate.found.first().is_some_and(|(gain, error)| gain.abs() <= SAME_FLUX && *error <= GAIN_ERROR)
+    let (gain, error) = *estimate.found.first()?;
+    let (other, of_other) = *estimate.found.get(1 + FrameLag::OTHER)?;
+    let is_same = gain.abs() <= SAME_FLUX && error <= GAIN_ERROR && other.abs() <= SAME_LAG + LAG_FOUND * of_other;
+    is_same.then_some(if gain.abs() > GAIN_FOUND * error { gain } else { 0.0 })
 }

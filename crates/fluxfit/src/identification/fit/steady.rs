@@ -83,6 +83,9 @@ impl SteadyFit {
         if lag.is_some() {
             let psi_f = &mut uncertainty.parameters[Parameter::PsiF as usize];
             *psi_f = psi_f.with_min_half_width(frame_free::scatter(&points, &estimate.motor));
+            let lq = &mut uncertainty.parameters[Parameter::Lq as usize];
+            lq.systematic.frame_lag = lq.systematic.frame_lag.hypot(FrameLag::spread(&points, estimate.motor.psi_f));
+            *lq = lq.anew();
         }
         let finding = Finding {
             motor: estimate.motor,
@@ -148,6 +151,19 @@ struct Frames {
     lag: FrameLag,
     /// First rows of the points in open-loop operation.
     open_loop: Vec<usize>,
+    /// Those of the points without current.
+    coasting: Vec<usize>,
+    /// By which part the voltages without current seem to differ from those under load.
+    gain: f64,
+}
+
+impl Frames {
+    /// The unknowns beside the motor at points that are turned back by a lag, given the flux, Wb.
+    fn unknowns(&self, points: &[OperatingPoint], lag: &FrameLag, psi_f: f64, log: &Log) -> Vec<Loss> {
+        let gain =
+            (self.gain != 0.0).then(|| coasting::gain_unknown(points, |w| self.coasting.contains(&points[w].rows.start), self.gain.abs()));
+        open_loop::unknowns(points, &self.open_loop, psi_f).into_iter().chain(gain).chain(lag.unknowns(points, psi_f, log)).collect()
+    }
 }
 
 /// The operating points of a recorder's log with those of a coasting drive that measures its terminals, and what is known of the frames.
@@ -156,11 +172,13 @@ fn frames(log: &Log, mut points: Vec<OperatingPoint>, request: &Request) -> (Vec
     let Some(lag) = FrameLag::possible(log, request) else { return (points, None) };
     let open_loop = open_loop::find(log, &points, &lag, request);
     let in_frame: Vec<OperatingPoint> = points.iter().filter(|point| !open_loop.contains(&point.rows.start)).cloned().collect();
-    let coasting = coasting::at_terminals(log, &in_frame, &lag, request);
+    let terminals = coasting::at_terminals(log, &in_frame, &lag, request);
+    let (coasting, gain) = terminals.map_or_else(Default::default, |terminals| (terminals.points, terminals.gain));
     let coasting_rows = coasting.iter().map(|point| point.rows.len()).sum();
+    let first_rows = coasting.iter().map(|point| point.rows.start).collect();
     points.extend(coasting);
     points.sort_by_key(|point| point.rows.start);
-    (points, Some(Frames { lag: FrameLag { coasting_rows, ..lag }, open_loop }))
+    (points, Some(Frames { lag: FrameLag { coasting_rows, ..lag }, open_loop, coasting: first_rows, gain }))
 }
 
 /// What solving the points gives.
@@ -177,12 +195,11 @@ struct Solved {
 
 /// Solves the points beside the losses; where there may be a lag, again with the voltages turned back by what was found of it.
 fn solve(log: &Log, unturned: &[OperatingPoint], frames: Option<&Frames>, request: &Request) -> Solved {
-    let Some(Frames { lag, open_loop }) = frames else { return solve_beside(log, unturned.to_vec(), &[], request) };
-    let (mut lag, mut psi_f) = (*lag, frame_lag::rough_flux(unturned));
+    let Some(frames) = frames else { return solve_beside(log, unturned.to_vec(), &[], request) };
+    let (mut lag, mut psi_f) = (frames.lag, frame_lag::rough_flux(unturned));
     let mut round = |lag: &mut FrameLag| {
         let points = lag.turned_back(unturned);
-        let unknowns: Vec<Loss> =
-            open_loop::unknowns(&points, open_loop, psi_f).into_iter().chain(lag.unknowns(&points, psi_f, log)).collect();
+        let unknowns = frames.unknowns(&points, lag, psi_f, log);
         let solved = solve_beside(log, points, &unknowns, request);
         (*lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
         solved
