@@ -9,7 +9,7 @@ pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
         Remedy::AddStretch { also: Some(_), .. } => Some("--fix rs=VALUE"),
         Remedy::HoldLonger { or, .. } => of_remedy(or),
         Remedy::SpreadPoints { parameter: fluxfit::Parameter::Rs } => Some("--prior rs=VALUE±1%"),
-        Remedy::StateVoltageTiming | Remedy::TellFrameLag => Some("--voltage-timing"),
+        Remedy::StateVoltageTiming => Some("--voltage-timing"),
         Remedy::CompensateDeadTime | Remedy::FixOne => Some("--fix rs=VALUE"),
         Remedy::RemoveDisturbances => Some("--window T0:T1 --model steady"),
         Remedy::NarrowCurrents | Remedy::SimilarWindows => Some("--window T0:T1"),

@@ -46,7 +46,12 @@ const LEAST_SPEED: f64 = 0.1;
 
 /// Whether the rows are a recorder's.
 pub(crate) fn is_recorders(log: &Log) -> bool {
-    log.segments().iter().all(|segment| segment.sample_period * FASTEST >= 1.0)
+    log.segments().iter().all(|segment| is_period_of_recorder(segment.sample_period))
+}
+
+/// Whether a recorder's rows come this far apart, s.
+pub(crate) fn is_period_of_recorder(sample_period: f64) -> bool {
+    sample_period * FASTEST >= 1.0
 }
 
 /// The windows with current, in order.

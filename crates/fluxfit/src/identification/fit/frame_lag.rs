@@ -58,10 +58,11 @@ impl FrameLag {
     /// The place of the other lag, that without current, among the [unknowns](Self::unknowns).
     pub(super) const OTHER: usize = 1;
 
-    /// What is known of it beforehand; none of a log that is no recorder's, or whose voltages are known.
+    /// What is known of it beforehand; none of a log that is no recorder's, or whose voltages are exact. Which period of the drive the voltages
+    /// are of, if that is stated, says nothing of the frame of a recorder's means.
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
-        let is_known = request.voltage_timing.is_some() || request.voltage_accuracy == 0.0 || log.is_short_circuit();
-        (recorder::is_recorders(log) && !is_known).then_some(Self { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 })
+        let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
+        (recorder::is_recorders(log) && !are_exact).then_some(Self { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 })
     }
 
     /// Points whose voltages are turned back by it.

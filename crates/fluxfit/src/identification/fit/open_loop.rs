@@ -18,6 +18,7 @@ use super::{
     voltage_loss::Loss,
 };
 use crate::{log::Log, steady::OperatingPoint};
+use std::ops::Range;
 
 /// Drives leave open-loop operation at a few percent of their speed; above this part of the largest, nothing is suspected.
 const SLOW: f64 = 0.2;
@@ -28,8 +29,8 @@ const FRAME_TOLERANCE: f64 = 0.5;
 /// Magnet's voltages below this part of the log's largest voltage are too small to say which way they point.
 const SMALLEST: f64 = 2e-3;
 
-/// The first rows of the points of this operation.
-pub(super) fn find(log: &Log, points: &[OperatingPoint], lag: &FrameLag, request: &Request) -> Vec<usize> {
+/// The rows of the points of this operation.
+pub(super) fn find(log: &Log, points: &[OperatingPoint], lag: &FrameLag, request: &Request) -> Vec<Range<usize>> {
     let fastest = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let is_slow = |point: &OperatingPoint| point.omega_e().abs() < SLOW * fastest;
     let fast: Vec<OperatingPoint> = points.iter().filter(|point| !is_slow(point)).cloned().collect();
@@ -44,12 +45,12 @@ pub(super) fn find(log: &Log, points: &[OperatingPoint], lag: &FrameLag, request
         let own = psi_f * omega_e.abs();
         own > SMALLEST * largest && (across - expected).abs() > FRAME_TOLERANCE * own
     };
-    points.iter().filter(|point| is_slow(point) && is_open_loop(point)).map(|point| point.rows.start).collect()
+    points.iter().filter(|point| is_slow(point) && is_open_loop(point)).map(|point| point.rows.clone()).collect()
 }
 
 /// What is unknown of these points beside the motor: the magnet's voltage may point anywhere, so that it counts for nothing. What is left is
 /// the resistance.
-pub(super) fn unknowns(points: &[OperatingPoint], first_rows: &[usize], psi_f: f64) -> Vec<Loss> {
+pub(super) fn unknowns(points: &[OperatingPoint], open_loop: &[Range<usize>], psi_f: f64) -> Vec<Loss> {
     let of_point = |w: usize| {
         let standard_error = (points[w].omega_e() * psi_f).abs().max(f64::MIN_POSITIVE);
         [[1.0, 0.0], [0.0, 1.0]].map(|voltage| {
@@ -57,5 +58,5 @@ pub(super) fn unknowns(points: &[OperatingPoint], first_rows: &[usize], psi_f: f
             Loss { voltages: voltages.collect(), expected: 0.0, standard_error, part: Part::FrameLag }
         })
     };
-    (0..points.len()).filter(|w| first_rows.contains(&points[*w].rows.start)).flat_map(of_point).collect()
+    (0..points.len()).filter(|w| open_loop.contains(&points[*w].rows)).flat_map(of_point).collect()
 }

@@ -31,6 +31,8 @@ use crate::{
     },
 };
 
+use std::ops::Range;
+
 /// An inductance whose interval is wider than this part of it is not told.
 const TOLD: f64 = 0.5;
 
@@ -52,6 +54,8 @@ pub struct SteadyFit {
     pub voltage_losses: Vec<f64>,
     /// The lag of the voltages' frame behind that of the currents; none but in a recorder's log whose voltage timing is not stated.
     pub frame_lag: Option<FrameLag>,
+    /// Rows of the operating points in open-loop operation, which tell the resistance only.
+    pub open_loop: Vec<Range<usize>>,
     /// What it comes to.
     pub finding: Finding,
     /// What dead time and devices may take, as it was fitted beside the motor.
@@ -103,6 +107,7 @@ impl SteadyFit {
             voltage_losses: harmonics.iter().map(|harmonic| harmonic.filter(|one| one.stands_out).map_or(0.0, |one| one.loss)).collect(),
             losses,
             frame_lag: lag,
+            open_loop: frames.map_or_else(Vec::new, |frames| frames.open_loop),
             finding,
             as_measured,
         })
@@ -149,10 +154,10 @@ impl SteadyFit {
 /// What is in doubt of the frames of a recorder's columns.
 struct Frames {
     lag: FrameLag,
-    /// First rows of the points in open-loop operation.
-    open_loop: Vec<usize>,
+    /// Rows of the points in open-loop operation.
+    open_loop: Vec<Range<usize>>,
     /// Those of the points without current.
-    coasting: Vec<usize>,
+    coasting: Vec<Range<usize>>,
     /// By which part the voltages without current seem to differ from those under load.
     gain: f64,
 }
@@ -160,8 +165,7 @@ struct Frames {
 impl Frames {
     /// The unknowns beside the motor at points that are turned back by a lag, given the flux, Wb.
     fn unknowns(&self, points: &[OperatingPoint], lag: &FrameLag, psi_f: f64, log: &Log) -> Vec<Loss> {
-        let gain =
-            (self.gain != 0.0).then(|| coasting::gain_unknown(points, |w| self.coasting.contains(&points[w].rows.start), self.gain.abs()));
+        let gain = (self.gain != 0.0).then(|| coasting::gain_unknown(points, |w| self.coasting.contains(&points[w].rows), self.gain.abs()));
         open_loop::unknowns(points, &self.open_loop, psi_f).into_iter().chain(gain).chain(lag.unknowns(points, psi_f, log)).collect()
     }
 }
@@ -171,14 +175,14 @@ impl Frames {
 fn frames(log: &Log, mut points: Vec<OperatingPoint>, request: &Request) -> (Vec<OperatingPoint>, Option<Frames>) {
     let Some(lag) = FrameLag::possible(log, request) else { return (points, None) };
     let open_loop = open_loop::find(log, &points, &lag, request);
-    let in_frame: Vec<OperatingPoint> = points.iter().filter(|point| !open_loop.contains(&point.rows.start)).cloned().collect();
+    let in_frame: Vec<OperatingPoint> = points.iter().filter(|point| !open_loop.contains(&point.rows)).cloned().collect();
     let terminals = coasting::at_terminals(log, &in_frame, &lag, request);
     let (coasting, gain) = terminals.map_or_else(Default::default, |terminals| (terminals.points, terminals.gain));
     let coasting_rows = coasting.iter().map(|point| point.rows.len()).sum();
-    let first_rows = coasting.iter().map(|point| point.rows.start).collect();
+    let rows = coasting.iter().map(|point| point.rows.clone()).collect();
     points.extend(coasting);
     points.sort_by_key(|point| point.rows.start);
-    (points, Some(Frames { lag: FrameLag { coasting_rows, ..lag }, open_loop, coasting: first_rows, gain }))
+    (points, Some(Frames { lag: FrameLag { coasting_rows, ..lag }, open_loop, coasting: rows, gain }))
 }
 
 /// What solving the points gives.
