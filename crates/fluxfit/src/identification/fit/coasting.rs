@@ -28,9 +28,6 @@ const SAME_FLUX: f64 = 0.08;
 /// The load tells the gain of the other voltages if it leaves this standard error.
 const GAIN_ERROR: f64 = 0.03;
 
-/// A gain of this many standard errors is one.
-const GAIN_FOUND: f64 = 2.0;
-
 /// Largest difference, s, between the lag with and without current, where the load tells the one: twice what filters of dividers make.
 const SAME_LAG: f64 = 10e-6;
 
@@ -55,7 +52,7 @@ const FEWEST: usize = 3;
 /// Voltages at the terminals of a coasting drive.
 pub(super) struct Terminals {
     pub(super) points: Vec<OperatingPoint>,
-    /// By which part their voltages differ from those under load; zero where that is not certain.
+    /// By which part their voltages seem to differ from those under load.
     pub(super) gain: f64,
 }
 
@@ -107,5 +104,5 @@ fn gain_of_same_flux(log: &Log, loaded: &[OperatingPoint], coasting: &[Operating
     let (gain, error) = *estimate.found.first()?;
     let (other, of_other) = *estimate.found.get(1 + FrameLag::OTHER)?;
     let is_same = gain.abs() <= SAME_FLUX && error <= GAIN_ERROR && other.abs() <= SAME_LAG + LAG_FOUND * of_other;
-    is_same.then_some(if gain.abs() > GAIN_FOUND * error { gain } else { 0.0 })
+    is_same.then_some(gain)
 }

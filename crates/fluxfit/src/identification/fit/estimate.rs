@@ -124,18 +124,6 @@ impl Estimate {
         }
     }
 
-    /// How far other readings of the same points move each parameter, to first order.
-    pub(crate) fn moved_by(&self, points: &[OperatingPoint], other: &[OperatingPoint]) -> [f64; PARAMETERS] {
-        let x = self.motor.to_array();
-        let left = |point: &OperatingPoint| point.equations().map(|equation| equation.residual(&x));
-        let changes = points.iter().zip(other).map(|(one, other)| {
-            let (one, other) = (left(one), left(other));
-            [other[0] - one[0], other[1] - one[1]]
-        });
-        let moved = changes.zip(&self.gains).map(|(change, gain)| gain.map(|[d, q]| d * change[0] + q * change[1]));
-        moved.fold([0.0; PARAMETERS], |sum, part| std::array::from_fn(|p| sum[p] + part[p])).map(f64::abs)
-    }
-
     /// How far a motor's cost lies above the lowest that there is.
     pub fn cost_above_optimum(&self, motor: &Motor) -> f64 {
         self.objective.cost_above_optimum(motor)

@@ -111,6 +111,16 @@ impl FrameLag {
     }
 }
 
+/// The unknown part, in the `other` reading of the voltages by a drive that controls at a usual rate, of what it changes: none where the
+/// voltages are means already, all at that rate, less at a faster one.
+pub(super) fn hold_unknown(points: &[OperatingPoint], other: &[OperatingPoint]) -> Loss {
+    let change = |(one, other): (&OperatingPoint, &OperatingPoint)| {
+        let (one, other) = (one.voltage(), other.voltage());
+        [one.d - other.d, one.q - other.q]
+    };
+    Loss { voltages: points.iter().zip(other).map(change).collect(), expected: 0.0, standard_error: 1.0, part: Part::Timing }
+}
+
 /// The flux, Wb, as the fastest point's voltage over its speed.
 pub(super) fn rough_flux(points: &[OperatingPoint]) -> f64 {
     let fastest = points.iter().max_by(|one, other| one.omega_e().abs().total_cmp(&other.omega_e().abs()));

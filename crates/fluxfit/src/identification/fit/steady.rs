@@ -77,11 +77,12 @@ impl SteadyFit {
                 recorder::pool_noise(points, windows::least_current(log));
             }
         }
-        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solve(log, &unturned, frames.as_ref(), request);
-        let timing_doubt = match (&other_timing, lag) {
-            (None, _) => [0.0; PARAMETERS],
-            (Some(other), None) => timing_doubt(&unturned, other, request),
-            (Some(other), Some(lag)) => estimate.moved_by(&lag.turned_back(&unturned), &lag.turned_back(other)),
+        let solved = solve(log, (&unturned, other_timing.as_deref()), frames.as_ref(), request);
+        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solved;
+        let timing_doubt = match &other_timing {
+            // Of a recorder's log it is one of the unknowns.
+            Some(other) if lag.is_none() => timing_doubt(&unturned, other, request),
+            _ => [0.0; PARAMETERS],
         };
         let mut uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
         if lag.is_some() {
@@ -198,12 +199,18 @@ struct Solved {
 }
 
 /// Solves the points beside the losses; where there may be a lag, again with the voltages turned back by what was found of it.
-fn solve(log: &Log, unturned: &[OperatingPoint], frames: Option<&Frames>, request: &Request) -> Solved {
+fn solve(
+    log: &Log,
+    (unturned, other): (&[OperatingPoint], Option<&[OperatingPoint]>),
+    frames: Option<&Frames>,
+    request: &Request,
+) -> Solved {
     let Some(frames) = frames else { return solve_beside(log, unturned.to_vec(), &[], request) };
     let (mut lag, mut psi_f) = (frames.lag, frame_lag::rough_flux(unturned));
     let mut round = |lag: &mut FrameLag| {
         let points = lag.turned_back(unturned);
-        let unknowns = frames.unknowns(&points, lag, psi_f, log);
+        let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other)));
+        let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, lag, psi_f, log)).collect();
         let solved = solve_beside(log, points, &unknowns, request);
         (*lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
         solved

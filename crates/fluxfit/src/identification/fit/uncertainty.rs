@@ -213,7 +213,7 @@ impl Uncertainty {
         let mut parameters = [ParameterUncertainty::default(); PARAMETERS];
         for (p, parameter) in parameters.iter_mut().enumerate() {
             let (statistical, degrees_of_freedom, mut systematic) = of_parameter(p, points, estimate, misfit.is_some());
-            systematic.timing = timing[p];
+            systematic.timing = systematic.timing.hypot(timing[p]);
             // A uniform distribution's standard deviation.
             systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
             *parameter = ParameterUncertainty::of(statistical, degrees_of_freedom, systematic);
@@ -255,6 +255,7 @@ fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit
     let systematic = Systematic {
         accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
         prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
+        timing: of_losses(Part::Timing),
         dead_time: of_losses(Part::DeadTime),
         frame_lag: of_losses(Part::FrameLag),
         misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
