@@ -98,9 +98,9 @@ fn one_operating_point_tells_only_lq() {
     }
 }
 
-/// A real dynamometer log at 34 Hz. Without a lag its loads seem to have an L_q from 327 to 187 uH; 100 us of it leave a tenth of the residuals
-/// and the nameplate's 180 uH. So no saturation is claimed. The drive's own back-EMF constant is 55.15 mWb; while it coasts, its voltages are
-/// 11 % below that, and not used.
+/// A real dynamometer log at 34 Hz. Without a lag its loads seem to have an L_q from 327 to 187 uH; 100 us of it leave a tenth of the
+/// residuals and the nameplate's 180 uH. So no saturation is claimed. The drive's own back-EMF constant is 55.15 mWb; while it coasts, its
+/// voltages are 11 % below that, and not used.
 #[test]
 fn real_log_of_a_dynamometer_takes_no_lag_for_saturation() {
     let Some(log) = shared("emrax228hv_coastdown_dyno.csv") else { return };

@@ -1,5 +1,5 @@
-//! Recorder logs: a few averaged rows a second, with voltages that turn with speed against the currents. The truth is that of the simulator,
-//! whose rows are changed here as a recorder changes them; and a real log.
+//! Recorder logs: a few averaged rows a second, with voltages that turn with speed against the currents. The truth is that of the
+//! simulator, whose rows are changed here as a recorder changes them; and a real log.
 
 use super::{fluxfit, json, shared};
 use serde_json::Value;
@@ -179,8 +179,8 @@ theta_e = false
     }
 }
 
-/// A drive measured without a lag, too: 12 rows a second for a skateboard's motor of 46 V. Coasting rows alone say 8.3 mWb with a scatter of
-/// 2.5 %, loaded ones 8.7 mWb; 43 us turn the voltages of both. With any sign of any column no L_q is sold, for none is told.
+/// A drive measured without a lag, too: 12 rows a second for a skateboard's motor of 46 V. Coasting rows alone say 8.3 mWb with a scatter
+/// of 2.5 %, loaded ones 8.7 mWb; 43 us turn the voltages of both. With any sign of any column no L_q is sold, for none is told.
 #[test]
 fn real_log_of_a_skateboard_names_its_lag_and_sells_no_inductance() {
     let Some(log) = shared("real/vesc_tool_dkertson_short_log.csv") else { return };

@@ -210,7 +210,8 @@ fn residual_weights(motor: &Motor) -> [[f64; CHANNELS]; 2] {
     [[1.0, 0.0, -rs, 0.0, 0.0, lq, 0.0], [0.0, 1.0, 0.0, -rs, -ld, 0.0, -psi_f]]
 }
 
-/// Covariance of the means of so many rows by cosines, and its degrees of freedom; for a residual's lag-one autocorrelation, if it is known.
+/// Covariance of the means of so many rows by cosines, and its degrees of freedom; for a residual's lag-one autocorrelation, if it is
+/// known.
 fn long_run(
     rows: impl Iterator<Item = [f64; CHANNELS]>,
     n: usize,

@@ -184,3 +184,51 @@ fn different(kinds: Vec<Vec<Range<usize>>>) -> Vec<Range<usize>> {
     windows.sort_by_key(|rows| rows.start);
     windows
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Columns;
+
+    /// Ten rows a second of (i_q, omega_e).
+    fn log(rows: impl IntoIterator<Item = (f64, f64)>) -> Log {
+        let mut columns = Columns::default();
+        for (k, (iq, omega_e)) in rows.into_iter().enumerate() {
+            columns.t.push(k as f64 * 0.1);
+            columns.id.push(0.0);
+            columns.iq.push(iq);
+            columns.omega_e.push(omega_e);
+            // A voltage that changes from row to row, as no stale sample's does.
+            columns.ud.push(k as f64);
+            columns.uq.push(1.0);
+        }
+        Log::new(columns).unwrap()
+    }
+
+    /// Half a second at each load, and three rows that are too short for a window.
+    #[test]
+    fn a_few_rows_are_a_window() {
+        let loads = [(5, 10.0), (3, 4.0), (6, 20.0), (4, 15.0), (5, 8.0)];
+        let log = log(loads.into_iter().flat_map(|(rows, iq)| vec![(iq, 300.0); rows]));
+        assert!(is_recorders(&log));
+        assert_eq!(loaded(&log).unwrap(), [0..5, 8..14, 14..18, 18..23]);
+    }
+
+    /// i_q rises by 0.1 A a row: 1 % of 20 A are two rows, 5 % ten. The four loads stand still, so that the ramp is not needed.
+    #[test]
+    fn what_moves_is_taken_where_too_little_stands_still() {
+        let ramp = || (0..11).map(|k| (10.0 + 0.1 * f64::from(k), 300.0));
+        let two = [(5, 5.0), (5, 20.0)].into_iter().flat_map(|(rows, iq)| vec![(iq, 300.0); rows]);
+        assert_eq!(loaded(&log(two.chain(ramp()))).unwrap(), [0..5, 5..10, 10..21]);
+        let four = [(5, 5.0), (5, 20.0), (5, 15.0), (5, 7.0)].into_iter().flat_map(|(rows, iq)| vec![(iq, 300.0); rows]);
+        assert_eq!(loaded(&log(four.chain(ramp()))).unwrap(), [0..5, 5..10, 10..15, 15..20]);
+    }
+
+    /// Twelve rows without current at speed are two pieces; three rows are none, nor are those at less than a tenth of the speed.
+    #[test]
+    fn stretches_without_current_are_cut_in_pieces() {
+        let rows = vec![(9.0, 500.0); 5].into_iter().chain((0..12).map(|k| (0.0, 500.0 - 10.0 * f64::from(k))));
+        let rows = rows.chain(vec![(9.0, 400.0); 5]).chain(vec![(0.0, 300.0); 3]).chain(vec![(9.0, 300.0); 5]).chain(vec![(0.0, 30.0); 9]);
+        assert_eq!(coasting(&log(rows)), [5..11, 11..17]);
+    }
+}

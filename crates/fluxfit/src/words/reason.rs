@@ -2,7 +2,7 @@
 
 use super::digits::one_digit;
 use crate::{
-    identification::{fit::uncertainty::Part, judge::reason::Reason},
+    identification::{fit::part::Part, judge::reason::Reason},
     motor::Parameter,
 };
 use std::fmt::{Display, Formatter, Result};

@@ -2,7 +2,7 @@
 
 use super::{
     super::{
-        fit::{finding::Finding, uncertainty::Part},
+        fit::{finding::Finding, part::Part},
         judge::{
             reason::{Common, Reason},
             verdict::IDENTIFIED,
@@ -148,4 +148,44 @@ fn lag_instead_of_sign(finding: &Finding) -> Option<f64> {
 fn step(finding: &Finding) -> f64 {
     let current = finding.bench.current();
     if Common::of(&finding.bench).id_is_zero(current) { -STEP * current } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        frames::Dq,
+        identification::fit::{
+            finding::{Bench, Trust},
+            uncertainty::Uncertainty,
+        },
+    };
+
+    fn finding(motor: Motor, sample_period: f64) -> Finding {
+        let bench = Bench {
+            motor,
+            covariance: nalgebra::Matrix4::zeros(),
+            held: vec![(Dq { d: 0.0, q: 5.0 }, 2000.0)],
+            row_variance: 0.0,
+            sample_period,
+            voltage: 20.0,
+            voltage_accuracy: 1e-4,
+        };
+        let uncertainty = Uncertainty { parameters: Default::default(), correlation: [[0.0; 4]; 4] };
+        Finding { motor, uncertainty, open: [false, true, false, false], trust: Trust::default(), bench }
+    }
+
+    /// By hand: 100 uH at 5 A are the flux of 9 mWb turned by 0.0556 rad, 27.8 us at 2000 rad/s. A hundred times the inductance, a resistance
+    /// that is negative too, and a recorder's log, whose lag is solved for, leave the signs.
+    #[test]
+    fn a_sign_is_not_suspected_where_a_lag_explains_it() {
+        let motor = Motor { rs: 0.03, ld: 0.0, lq: -100e-6, psi_f: 9e-3 };
+        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period));
+        let Some(Remedy::CheckFrame { lag }) = remedy(motor, 1e-3) else { panic!("a lag explains it") };
+        assert!((lag / 27.8e-6 - 1.0).abs() < 0.01, "{lag}");
+        let signs = Some(Remedy::CheckSigns { units: false });
+        assert_eq!(remedy(Motor { lq: -10e-3, ..motor }, 1e-3), signs);
+        assert_eq!(remedy(Motor { rs: -0.03, ..motor }, 1e-3), signs);
+        assert_eq!(remedy(motor, 0.1), signs);
+    }
 }

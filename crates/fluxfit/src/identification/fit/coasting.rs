@@ -1,9 +1,9 @@
 //! Rows without current: whether their voltages are those at the terminals.
 //!
-//! A coasting rotor shows `psi_f` and the [lag](super::frame_lag) of the frame, if the drive measures its terminals. Many do not: they write
-//! zero, the last command, or what a controller would apply that is not switching. The log tells: voltages that are the magnet's turn with
-//! the speed and not by a constant angle, they have a part along d, and they are those of the same magnet that acts under load, with the
-//! same lag.
+//! A coasting rotor shows `psi_f` and the [lag](super::frame_lag) of the frame, if the drive measures its terminals. Many do not: they
+//! write zero, the last command, or what a controller would apply that is not switching. The log tells: voltages that are the magnet's turn
+//! with the speed and not by a constant angle, they have a part along d, and they are those of the same magnet that acts under load, with
+//! the same lag.
 //!
 //! Measured: under load, the voltages of a VESC are 5 % above those without current, which it measures by dividers; those of a Tritium are
 //! 11 % apart, and their angle is 4 degrees at every speed.
@@ -13,7 +13,7 @@ use super::{
     estimate::Estimate,
     excitation::Excitation,
     frame_lag::FrameLag,
-    uncertainty::Part,
+    part::Part,
     voltage_loss::{Loss, LossPrior},
 };
 use crate::{

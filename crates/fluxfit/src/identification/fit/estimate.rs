@@ -14,7 +14,7 @@
 use super::{
     super::request::{Known, Request},
     excitation::Excitation,
-    uncertainty::Part,
+    part::Part,
     voltage_loss::Loss,
 };
 use crate::{

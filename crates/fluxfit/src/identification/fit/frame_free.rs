@@ -4,8 +4,8 @@
 //! |u - (R_s + j omega_e L) i| = |omega_e| psi_f
 //! ```
 //!
-//! A recorder's points differ in this by more than noise: means of different periods, a speed of another instant, a voltage that is measured
-//! while the drive coasts and computed while it drives. No interval of `psi_f` is narrower than their scatter.
+//! A recorder's points differ in this by more than noise: means of different periods, a speed of another instant, a voltage that is
+//! measured while the drive coasts and computed while it drives. No interval of `psi_f` is narrower than their scatter.
 
 use crate::{frames::Dq, motor::Motor, steady::OperatingPoint};
 

@@ -14,7 +14,7 @@
 //! observer's may be off by a degree, `tau` the time by which the speed column is old. The
 //! means of a row are of the middle of its period, but many recorders write the speed of its end.
 
-use super::{super::request::Request, estimate::Estimate, uncertainty::Part, voltage_loss::Loss, voltage_loss::slowest_period};
+use super::{super::request::Request, estimate::Estimate, part::Part, voltage_loss::Loss, voltage_loss::slowest_period};
 use crate::{
     log::Log,
     steady::{OperatingPoint, recorder, windows},
@@ -24,16 +24,16 @@ use crate::{
 /// of the current to the middle of the period in which the voltage acts. Measured: 43 us in the log of a VESC.
 const USUAL_LAG: f64 = 100e-6;
 
-/// Standard error of the difference between the lags of rows with and without current, s: the drive measures the ones through the filters of
-/// its dividers, and computes the others.
+/// Standard error of the difference between the lags of rows with and without current, s: the drive measures the ones through the filters
+/// of its dividers, and computes the others.
 const OTHER_LAG: f64 = 5e-6;
 
 /// Standard error of an angle, rad, by which the voltages may be turned at any speed: a degree, what an observer or a calibrated encoder is
 /// off by.
 const USUAL_OFFSET: f64 = 0.017;
 
-/// What the lag of one row differs from that of another, s, one standard deviation: in the log of a VESC it is 43 us at one speed and 46 us at
-/// another. A part of it that follows the load acts like `L_q`.
+/// What the lag of one row differs from that of another, s, one standard deviation: in the log of a VESC it is 43 us at one speed and 46 us
+/// at another. A part of it that follows the load acts like `L_q`.
 const SPREAD: f64 = 2e-6;
 
 /// Rounds of turning the voltages: the second leaves the square of what the first did not know, a millionth.
@@ -58,8 +58,8 @@ impl FrameLag {
     /// The place of the other lag, that without current, among the [unknowns](Self::unknowns).
     pub(super) const OTHER: usize = 1;
 
-    /// What is known of it beforehand; none of a log that is no recorder's, or whose voltages are exact. Which period of the drive the voltages
-    /// are of, if that is stated, says nothing of the frame of a recorder's means.
+    /// What is known of it beforehand; none of a log that is no recorder's, or whose voltages are exact. Which period of the drive the
+    /// voltages are of, if that is stated, says nothing of the frame of a recorder's means.
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
         (recorder::is_recorders(log) && !are_exact).then_some(Self { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 })
@@ -125,4 +125,81 @@ pub(super) fn hold_unknown(points: &[OperatingPoint], other: &[OperatingPoint]) 
 pub(super) fn rough_flux(points: &[OperatingPoint]) -> f64 {
     let fastest = points.iter().max_by(|one, other| one.omega_e().abs().total_cmp(&other.omega_e().abs()));
     fastest.filter(|point| point.omega_e() != 0.0).map_or(0.0, |point| point.voltage().q / point.omega_e())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{frames::Dq, identification::fit::frame_free, log::Columns, motor::Motor};
+
+    const MOTOR: Motor = Motor { rs: 0.03, ld: 20e-6, lq: 30e-6, psi_f: 9e-3 };
+
+    /// Points of ten rows at (i_d, i_q, omega_e), ten rows a second, in a frame that is late by a time, s.
+    fn points(modes: &[(f64, f64, f64)], lag: f64) -> (Log, Vec<OperatingPoint>) {
+        let mut columns = Columns::default();
+        for (k, &(d, q, omega_e)) in modes.iter().flat_map(|mode| [mode; 10]).enumerate() {
+            let u = MOTOR.steady_voltage(Dq { d, q }, omega_e);
+            let (sin, cos) = (omega_e * lag).sin_cos();
+            columns.t.push(k as f64 * 0.1);
+            columns.ud.push(cos * u.d + sin * u.q);
+            columns.uq.push(cos * u.q - sin * u.d);
+            columns.id.push(d);
+            columns.iq.push(q);
+            columns.omega_e.push(omega_e);
+        }
+        let log = Log::new(columns).unwrap();
+        let points = (0..modes.len()).map(|w| OperatingPoint::measure(&log, 10 * w..10 * (w + 1), None)).collect();
+        (log, points)
+    }
+
+    const MODES: [(f64, f64, f64); 3] = [(0.0, 5.0, 2000.0), (-2.0, 12.0, 2500.0), (0.0, 8.0, -1500.0)];
+
+    #[test]
+    fn points_turned_back_obey_the_steady_equations() {
+        let (_, late) = points(&MODES, 50e-6);
+        let lag = FrameLag { seconds: 50e-6, standard_error: 0.0, coasting_rows: 0 };
+        for point in lag.turned_back(&late) {
+            let [d, q] = point.equations().map(|equation| equation.residual(&MOTOR.to_array()));
+            assert!(d.abs().max(q.abs()) < 1e-12 * point.voltage().magnitude(), "{d} {q}");
+        }
+    }
+
+    /// A microsecond of what is missing, and a milliradian, against the difference that they make.
+    #[test]
+    fn the_unknowns_are_the_derivatives_of_the_voltage() {
+        let (log, exact) = points(&MODES, 0.0);
+        let lag = FrameLag { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 };
+        let [angle, _, missing, _] = lag.unknowns(&exact, MOTOR.psi_f, &log);
+        let (_, late) = points(&MODES, 1e-6);
+        for (w, (one, other)) in exact.iter().zip(&late).enumerate() {
+            let change = [other.voltage().d - one.voltage().d, other.voltage().q - one.voltage().q];
+            let turned = one.turned(-1e-3);
+            let by_angle = [turned.voltage().d - one.voltage().d, turned.voltage().q - one.voltage().q];
+            for axis in 0..2 {
+                let most = one.voltage().magnitude();
+                assert!((change[axis] - 1e-6 * missing.voltages[w][axis]).abs() < 1e-5 * most);
+                assert!((by_angle[axis] - 1e-3 * angle.voltages[w][axis]).abs() < 1e-6 * most);
+            }
+        }
+    }
+
+    /// By hand: one point of voltage psi_f omega T at 5 A per 2000 rad/s is `psi_f omega T / i_q`, 9 mWb 2000 rad/s 2 us / 5 A.
+    #[test]
+    fn a_lag_that_follows_the_load_is_an_inductance() {
+        let (_, one) = points(&MODES[..1], 0.0);
+        assert!((FrameLag::spread(&one, MOTOR.psi_f) / 7.2e-6 - 1.0).abs() < 1e-9);
+    }
+
+    /// The length of the magnet's voltage is the same in any frame; a hundredth more at one of two points is sqrt 1/2 of that as scatter.
+    #[test]
+    fn the_flux_without_a_frame_scatters_by_what_the_voltages_differ() {
+        let coasting = [(0.0, 0.0, 2000.0), (0.0, 0.0, 1000.0)];
+        for lag in [0.0, 80e-6] {
+            let (_, mut points) = points(&coasting, lag);
+            assert!(frame_free::scatter(&points, &MOTOR) < 1e-9 * MOTOR.psi_f);
+            points[0].means[0] *= 1.01;
+            points[0].means[1] *= 1.01;
+            assert!((frame_free::scatter(&points, &MOTOR) / (0.01 * 0.5_f64.sqrt() * MOTOR.psi_f) - 1.0).abs() < 1e-6);
+        }
+    }
 }

@@ -16,6 +16,7 @@ mod output_choice;
 pub(crate) mod output_errors;
 pub(crate) mod output_excitation;
 mod output_start;
+pub(crate) mod part;
 pub(crate) mod readings;
 pub(crate) mod saturation;
 mod saturation_equations;

@@ -1,8 +1,9 @@
 //! Rows in open-loop operation: at the start, before a drive without an encoder knows the rotor's angle, it turns a current at will, and
 //! the rotor follows with its d axis on that current. The columns are in a frame that is not the rotor's.
 //!
-//! Such points tell the resistance to the magnet's voltage, which is small at their speed, and nothing else. There it is at right angles to the current, whatever the columns call it. In the rotor's frame the voltage at right
-//! angles to the current is known up to small things: resistance, dead time and devices act along the current.
+//! Such points tell the resistance, but for the magnet's voltage, which is small at their speed; and nothing else. There, the magnet's
+//! voltage is at right angles to the current, whatever the columns call it. In the rotor's frame, the voltage at right angles to the current
+//! is known up to small things: resistance, dead time and devices act along the current.
 //!
 //! ```text
 //! u x i / |i| = omega_e (psi_f i_d + L_d i_d² + L_q i_q²) / |i|      in the rotor's frame
@@ -14,7 +15,7 @@ use super::{
     estimate::Estimate,
     excitation::Excitation,
     frame_lag::{FrameLag, rough_flux},
-    uncertainty::Part,
+    part::Part,
     voltage_loss::Loss,
 };
 use crate::{log::Log, steady::OperatingPoint};
@@ -48,8 +49,8 @@ pub(super) fn find(log: &Log, points: &[OperatingPoint], lag: &FrameLag, request
     points.iter().filter(|point| is_slow(point) && is_open_loop(point)).map(|point| point.rows.clone()).collect()
 }
 
-/// What is unknown of these points beside the motor: the magnet's voltage may point anywhere, so that it counts for nothing. What is left is
-/// the resistance.
+/// What is unknown of these points beside the motor: the magnet's voltage may point anywhere, so that it counts for nothing. What is left
+/// is the resistance.
 pub(super) fn unknowns(points: &[OperatingPoint], open_loop: &[Range<usize>], psi_f: f64) -> Vec<Loss> {
     let of_point = |w: usize| {
         let standard_error = (points[w].omega_e() * psi_f).abs().max(f64::MIN_POSITIVE);

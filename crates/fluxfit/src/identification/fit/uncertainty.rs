@@ -15,7 +15,7 @@
 //!
 //! JCGM 100:2008 (GUM), sections 4 and 5 and G.4.
 
-use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit};
+use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit, part::Part};
 use crate::{motor::PARAMETERS, steady::OperatingPoint};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -123,70 +123,6 @@ impl ParameterUncertainty {
     pub fn largest_part(&self) -> Part {
         let rest = self.systematic.parts();
         rest.into_iter().fold((self.statistical, Part::Noise), |largest, part| if part.0 > largest.0 { part } else { largest }).1
-    }
-}
-
-/// A contribution to an uncertainty; the systematic ones are the fields of [`Systematic`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Part {
-    /// Noise.
-    Noise,
-    /// Accuracy of the voltages.
-    Accuracy,
-    /// Priors.
-    Prior,
-    /// Timing of the voltage columns.
-    Timing,
-    /// Dead time or device drops.
-    DeadTime,
-    /// A recorder's voltages that may turn with speed against its currents.
-    FrameLag,
-    /// Unknown voltages that disturb the motor.
-    ProcessNoise,
-    /// Current sensors whose gains differ.
-    Sensors,
-    /// Inductances that depend on the current.
-    Saturation,
-    /// Combinations of the parameters that the log does not excite.
-    Excitation,
-    /// Contradiction between the operating points.
-    Misfit,
-}
-
-impl Part {
-    /// Name in files.
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::Noise => "noise",
-            Self::Accuracy => "accuracy",
-            Self::Prior => "prior",
-            Self::Timing => "timing",
-            Self::DeadTime => "dead_time",
-            Self::FrameLag => "frame_lag",
-            Self::ProcessNoise => "process_noise",
-            Self::Sensors => "sensors",
-            Self::Saturation => "saturation",
-            Self::Excitation => "excitation",
-            Self::Misfit => "misfit",
-        }
-    }
-
-    /// Name in a table.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Noise => "noise",
-            Self::Accuracy => "voltage accuracy",
-            Self::Prior => "prior",
-            Self::Timing => "voltage timing",
-            Self::DeadTime => "dead time",
-            Self::FrameLag => "frame lag",
-            Self::ProcessNoise => "disturbances",
-            Self::Sensors => "current sensors",
-            Self::Saturation => "saturation",
-            Self::Excitation => "excitation",
-            Self::Misfit => "misfit",
-        }
     }
 }
 

@@ -16,7 +16,7 @@
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, doi:10.1109/41.88903.
 
-use super::{super::request::Request, uncertainty::Part};
+use super::{super::request::Request, part::Part};
 use crate::{faults::dead_time::ripple::Harmonic, frames::Dq, log::Log, steady::OperatingPoint};
 use std::f64::consts::{FRAC_PI_4, PI};
 
