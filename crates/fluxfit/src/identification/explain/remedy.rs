@@ -175,8 +175,8 @@ mod tests {
         Finding { motor, uncertainty, open: [false, true, false, false], trust: Trust::default(), bench }
     }
 
-    /// By hand: 100 uH at 5 A are the flux of 9 mWb turned by 0.0556 rad, 27.8 us at 2000 rad/s. A hundred times the inductance, a resistance
-    /// that is negative too, and a recorder's log, whose lag is solved for, leave the signs.
+    /// By hand: 100 uH at 5 A are the flux of 9 mWb turned by 0.0556 rad, 27.8 us at 2000 rad/s. A hundred times the inductance, a
+    /// resistance that is negative too, and a recorder's log, whose lag is solved for, leave the signs.
     #[test]
     fn a_sign_is_not_suspected_where_a_lag_explains_it() {
         let motor = Motor { rs: 0.03, ld: 0.0, lq: -100e-6, psi_f: 9e-3 };

@@ -2,8 +2,8 @@
 //! the rotor follows with its d axis on that current. The columns are in a frame that is not the rotor's.
 //!
 //! Such points tell the resistance, but for the magnet's voltage, which is small at their speed; and nothing else. There, the magnet's
-//! voltage is at right angles to the current, whatever the columns call it. In the rotor's frame, the voltage at right angles to the current
-//! is known up to small things: resistance, dead time and devices act along the current.
+//! voltage is at right angles to the current, whatever the columns call it. In the rotor's frame, the voltage at right angles to the
+//! current is known up to small things: resistance, dead time and devices act along the current.
 //!
 //! ```text
 //! u x i / |i| = omega_e (psi_f i_d + L_d i_d² + L_q i_q²) / |i|      in the rotor's frame
