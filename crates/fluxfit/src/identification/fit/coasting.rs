@@ -28,6 +28,19 @@ const SAME_FLUX: f64 = 0.08;
 /// The load tells the gain of the other voltages if it leaves this standard error.
 const GAIN_ERROR: f64 = 0.03;
 
+/// Where the load does not tell the gain, the flux without current may lie below the least voltage over speed under load by this part: a
+/// motor takes more voltage than its magnet makes. That of a drive that does not measure lay 14 % below.
+const BELOW_LOAD: f64 = 0.08;
+
+/// And above it by this part: noise, or a little field weakening.
+const ABOVE_LOAD: f64 = 0.01;
+
+/// Standard error of the gain there, at least: the tolerance of dividers.
+const DIVIDERS: f64 = 0.02;
+
+/// Slower loads, as a part of the fastest, say nothing of the flux.
+const LEAST_SPEED: f64 = 0.5;
+
 /// Largest difference, s, between the lag with and without current, where the load tells the one: twice what filters of dividers make.
 const SAME_LAG: f64 = 10e-6;
 
@@ -52,7 +65,7 @@ const FEWEST: usize = 3;
 /// Voltages at the terminals of a coasting drive.
 pub(super) struct Terminals {
     pub(super) points: Vec<OperatingPoint>,
-    /// By which part their voltages seem to differ from those under load.
+    /// By which part their voltages may differ from those under load, one standard deviation.
     pub(super) gain: f64,
 }
 
@@ -90,7 +103,7 @@ fn turn_with_speed(points: &[OperatingPoint]) -> bool {
     turning <= sum(&|angle, _| (angle - constant).powi(2)) || turning <= angles.len() as f64 * NO_ANGLE.powi(2)
 }
 
-/// The gain of voltages without current against those under load, if it is near one and told, and if the lags of both may be the same.
+/// By which part voltages without current may differ from those under load; nothing if they are not of one flux and one lag.
 fn gain_of_same_flux(log: &Log, loaded: &[OperatingPoint], coasting: &[OperatingPoint], lag: &FrameLag, request: &Request) -> Option<f64> {
     let points: Vec<OperatingPoint> = loaded.iter().chain(coasting).cloned().collect();
     let excitation = Excitation::of(&points, &request.known);
@@ -103,6 +116,21 @@ fn gain_of_same_flux(log: &Log, loaded: &[OperatingPoint], coasting: &[Operating
     let estimate = Estimate::solve_with(&points, &excitation, request, &unknowns, ACCURACY);
     let (gain, error) = *estimate.found.first()?;
     let (other, of_other) = *estimate.found.get(1 + FrameLag::OTHER)?;
-    let is_same = gain.abs() <= SAME_FLUX && error <= GAIN_ERROR && other.abs() <= SAME_LAG + LAG_FOUND * of_other;
-    is_same.then_some(gain)
+    if other.abs() > SAME_LAG + LAG_FOUND * of_other {
+        return None;
+    }
+    if error > GAIN_ERROR {
+        return gain_by_bound(loaded, coasting);
+    }
+    (gain.abs() <= SAME_FLUX).then_some(gain.hypot(error))
+}
+
+/// How large the gain may be by the lightest load alone.
+fn gain_by_bound(loaded: &[OperatingPoint], coasting: &[OperatingPoint]) -> Option<f64> {
+    let fastest = loaded.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    let flux = |point: &OperatingPoint| point.voltage().magnitude() / point.omega_e().abs();
+    let fast = loaded.iter().filter(|point| point.omega_e().abs() > LEAST_SPEED * fastest);
+    let lightest = fast.map(flux).fold(f64::INFINITY, f64::min);
+    let below = 1.0 - coasting.iter().map(flux).sum::<f64>() / coasting.len() as f64 / lightest;
+    (-ABOVE_LOAD..=BELOW_LOAD).contains(&below).then_some(below.abs().max(DIVIDERS))
 }

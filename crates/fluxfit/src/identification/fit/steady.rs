@@ -159,7 +159,7 @@ struct Frames {
     open_loop: Vec<Range<usize>>,
     /// Those of the points without current.
     coasting: Vec<Range<usize>>,
-    /// By which part the voltages without current seem to differ from those under load.
+    /// By which part the voltages without current may differ from those under load, one standard deviation.
     gain: f64,
 }
 
