@@ -24,6 +24,8 @@ mod interrupt;
 mod pages;
 #[path = "command/reading.rs"]
 mod reading;
+#[path = "command/recorder.rs"]
+mod recorder;
 #[path = "command/report.rs"]
 mod report;
 #[path = "command/schema.rs"]

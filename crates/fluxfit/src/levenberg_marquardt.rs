@@ -1,9 +1,9 @@
 //! The polish: from near a minimum of the output error into it.
 //!
-//! Levenberg's and Marquardt's method on the residuals, with derivatives by central differences (fits that are only compared with each other
-//! take forward ones, which cost half); J. J. Moré, "The Levenberg-Marquardt
-//! algorithm: implementation and theory", 1978, doi:10.1007/BFb0067700, as the crate of that name has it. Unknowns are counted in
-//! units of their usual size, so that ohms and henries weigh alike; one that enters linearly is solved in one step.
+//! Levenberg's and Marquardt's method on the residuals, with derivatives by central differences (fits that are only compared with each
+//! other take forward ones, which cost half); J. J. Moré, "The Levenberg-Marquardt algorithm: implementation and theory", 1978,
+//! doi:10.1007/BFb0067700, as the crate of that name has it. Unknowns are counted in units of their usual size, so that ohms and henries
+//! weigh alike; one that enters linearly is solved in one step.
 
 use crate::{
     motor::{Motor, Parameter},

@@ -98,33 +98,28 @@ fn one_operating_point_tells_only_lq() {
     }
 }
 
-/// A real log of a saturating machine whose drive coasts for most of it. R 18 mohm, L_d 175 and L_q 180 uH by its nameplate, and the
-/// drive's own back-EMF constant is 55.15 mWb; apparent L_q from 327 to 187 uH in the log.
+/// A real dynamometer log at 34 Hz. Without a lag its loads seem to have an L_q from 327 to 187 uH; 100 us of it leave a tenth of the
+/// residuals and the nameplate's 180 uH. So no saturation is claimed. The drive's own back-EMF constant is 55.15 mWb; while it coasts, its
+/// voltages are 11 % below that, and not used.
 #[test]
-fn real_log_of_a_saturating_machine_names_it() {
+fn real_log_of_a_dynamometer_takes_no_lag_for_saturation() {
     let Some(log) = shared("emrax228hv_coastdown_dyno.csv") else { return };
     let map = "t=time_s,ud=motor_vd_V,uq=motor_vq_V,id=motor_id_A,iq=motor_iq_A,omega_e=motor_velocity_rpm";
     let arguments = ["identify", &log, "--map", map, "--pole-pairs", "10"];
     let (status, document) = json(&arguments);
     assert_eq!(status, 1);
     let codes: Vec<&str> = document["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap()).collect();
-    assert!(codes.contains(&"saturation") && codes.contains(&"no-current"), "{codes:?}");
-    // Nothing that depends on the current is sold as a number to five percent.
+    assert!(codes.contains(&"no-current") && !codes.contains(&"saturation"), "{codes:?}");
     for (key, verdict) in ["rs", "ld", "lq", "psi_f"].iter().zip(verdicts(&document)) {
         assert_ne!(verdict, "identified", "{key}");
     }
-    let raw = document["diagnostics"]["raw"]["psi_f"].as_f64().unwrap();
-    assert!((raw / 55.15e-3 - 1.0).abs() < 0.05, "{raw}");
+    for (key, truth) in [("lq", 180e-6), ("psi_f", 55.15e-3)] {
+        let raw = document["diagnostics"]["raw"][key].as_f64().unwrap();
+        assert!((raw / truth - 1.0).abs() < 0.1, "{key}: {raw}");
+    }
     for point in document["log"]["operating_points"].as_array().unwrap() {
         assert!(point["iq"].as_f64().unwrap() < -10.0, "a coasting drive: {point}");
     }
-    let saturation = &document["diagnostics"]["saturation"];
-    let [low, high] = [1, 0].map(|end| saturation["apparent_lq"][end]["value"].as_f64().unwrap());
-    assert!((180e-6..200e-6).contains(&low) && (310e-6..350e-6).contains(&high), "{low} {high}");
-    assert_eq!(saturation["flux"].as_array().unwrap().len(), document["log"]["operating_points"].as_array().unwrap().len());
-    let run = fluxfit(&arguments);
-    assert!(run.err.contains("warning [saturation]: the motor saturates: apparent L_q falls from 3"), "{}", run.err);
-    assert!(run.out.contains("Flux from voltage, with R_s"), "{}", run.out);
 }
 
 #[test]

@@ -68,6 +68,8 @@ pub struct SystematicEntry {
     pub timing: Option<f64>,
     /// From dead time and device drops.
     pub dead_time: Option<f64>,
+    /// From a recorder's voltages that may turn with speed against its currents.
+    pub frame_lag: Option<f64>,
     /// From unknown voltages that disturb the motor.
     pub process_noise: Option<f64>,
     /// From current sensors whose gains differ.
@@ -92,6 +94,7 @@ impl SystematicEntry {
             prior: finite(parts.prior),
             timing: finite(parts.timing),
             dead_time: finite(parts.dead_time),
+            frame_lag: finite(parts.frame_lag),
             process_noise: finite(parts.process_noise),
             sensors: finite(parts.sensors),
             current_gain: finite(parts.current_gain),

@@ -24,7 +24,12 @@ impl NuisanceEntries {
         let found = if let Some(fit) = &answer.output {
             fit.fault_estimates.iter().map(|found| (found.unknown.key(), NuisanceEntry::of(found))).collect()
         } else if let Some(fit) = &answer.steady {
-            vec![("dead_time_voltage", NuisanceEntry::AlongCurrent { along_current: fit.voltage_losses.clone() })]
+            let loss = ("dead_time_voltage", NuisanceEntry::AlongCurrent { along_current: fit.voltage_losses.clone() });
+            let lag = fit.frame_lag.map(|lag| {
+                let standard_error = finite(lag.standard_error);
+                ("frame_lag", NuisanceEntry::Number { value: lag.seconds, unit: "s", standard_error })
+            });
+            [loss].into_iter().chain(lag).collect()
         } else {
             Vec::new()
         };
@@ -38,7 +43,7 @@ impl NuisanceEntries {
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum NuisanceEntry {
-    /// One number, found by the output error.
+    /// One number, found by the output error; or the lag of a recorder's voltages, found by the steady model.
     Number {
         /// SI units.
         value: f64,

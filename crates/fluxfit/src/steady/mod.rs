@@ -13,6 +13,7 @@
 
 pub mod autocorrelation;
 mod block;
+pub(crate) mod recorder;
 mod ripple;
 mod stale;
 pub mod windows;
@@ -61,6 +62,8 @@ pub struct OperatingPoint {
     pub drift: Dq,
     /// Variance of those slopes, (A/s)².
     pub drift_variance: Dq,
+    /// Slope of the speed, electrical rad/s².
+    pub acceleration: f64,
     /// Covariance of the means.
     pub covariance: [[f64; CHANNELS]; CHANNELS],
     /// Degrees of freedom of the covariance.
@@ -97,39 +100,57 @@ impl OperatingPoint {
                 *mean += value / n as f64;
             }
         }
-        // The larger autocorrelation of the two residuals is used for both.
-        let rho = preliminary.map(|preliminary| {
-            let residuals =
-                residual_weights(&preliminary.motor).map(|weights| rows.clone().map(|k| dot(&weights, &row(k))).collect::<Vec<_>>());
-            residuals.iter().map(|residual| lag_one_autocorrelation(residual)).fold(0.0, f64::max)
-        });
-        let cosines = rho.map_or(MIN_COSINES, |rho| cosines_for(rho, n));
-        let mut transform = CosineTransform::<CHANNELS>::new(n, cosines);
-        for k in rows.clone() {
-            let mut deviation = row(k);
-            deviation.iter_mut().zip(&means).for_each(|(value, mean)| *value -= mean);
-            transform.push(&deviation);
-        }
-        let mut covariance = transform.covariance_of_mean(rho.unwrap_or(0.0));
+        let (mut covariance, degrees_of_freedom) = match preliminary {
+            _ if n < windows::MIN_ROWS => {
+                let values: Vec<[f64; CHANNELS]> = rows.clone().map(row).collect();
+                scatter_about_lines(&values)
+            }
+            None => long_run(rows.clone().map(row), n, &means, None),
+            Some(preliminary) => {
+                // The larger autocorrelation of the two residuals is used for both.
+                let residuals =
+                    residual_weights(&preliminary.motor).map(|weights| rows.clone().map(|k| dot(&weights, &row(k))).collect::<Vec<_>>());
+                let rho = residuals.iter().map(|residual| lag_one_autocorrelation(residual)).fold(0.0, f64::max);
+                long_run(rows.clone().map(row), n, &means, Some(rho))
+            }
+        };
         let time = (columns.t[rows.start], columns.t[rows.end - 1]);
         let late = speed_error(columns, &rows, means[6]);
         add_error(&mut covariance, &[0.0, 0.0, 0.0, 0.0, late * means[2], late * means[3], late]);
         add_quantization(&mut covariance, log, &rows, means[6]);
         let [(drift_d, variance_d), (drift_q, variance_q)] = [&columns.id, &columns.iq].map(|current| drift(&current[rows.clone()], time));
         Self {
-            rows,
+            rows: rows.clone(),
             time,
             means,
             drift: Dq { d: drift_d, q: drift_q },
             drift_variance: Dq { d: variance_d, q: variance_q },
+            acceleration: drift(&columns.omega_e[rows], time).0,
             covariance,
-            degrees_of_freedom: cosines,
+            degrees_of_freedom,
         }
     }
 
     /// Mean voltage, V.
     pub fn voltage(&self) -> Dq {
         Dq { d: self.means[0], q: self.means[1] }
+    }
+
+    /// The point with its voltage turned forward by an angle, rad: seen in a frame that lags by it.
+    pub(crate) fn turned(&self, angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let turn = |d: f64, q: f64| (cos * d - sin * q, sin * d + cos * q);
+        let mut turned = self.clone();
+        let [ud, uq, ..] = &mut turned.means;
+        (*ud, *uq) = turn(*ud, *uq);
+        for row in &mut turned.covariance {
+            (row[0], row[1]) = turn(row[0], row[1]);
+        }
+        for channel in 0..CHANNELS {
+            let (d, q) = turn(turned.covariance[0][channel], turned.covariance[1][channel]);
+            (turned.covariance[0][channel], turned.covariance[1][channel]) = (d, q);
+        }
+        turned
     }
 
     /// Mean current, A.
@@ -187,6 +208,45 @@ impl OperatingPoint {
 fn residual_weights(motor: &Motor) -> [[f64; CHANNELS]; 2] {
     let Motor { rs, ld, lq, psi_f } = *motor;
     [[1.0, 0.0, -rs, 0.0, 0.0, lq, 0.0], [0.0, 1.0, 0.0, -rs, -ld, 0.0, -psi_f]]
+}
+
+/// Covariance of the means of so many rows by cosines, and its degrees of freedom; for a residual's lag-one autocorrelation, if it is
+/// known.
+fn long_run(
+    rows: impl Iterator<Item = [f64; CHANNELS]>,
+    n: usize,
+    means: &[f64; CHANNELS],
+    rho: Option<f64>,
+) -> ([[f64; CHANNELS]; CHANNELS], usize) {
+    let cosines = rho.map_or(MIN_COSINES, |rho| cosines_for(rho, n));
+    let mut transform = CosineTransform::<CHANNELS>::new(n, cosines);
+    for mut deviation in rows {
+        deviation.iter_mut().zip(means).for_each(|(value, mean)| *value -= mean);
+        transform.push(&deviation);
+    }
+    (transform.covariance_of_mean(rho.unwrap_or(0.0)), cosines)
+}
+
+/// Covariance of the means of a few rows, and its degrees of freedom: of the deviations from the straight lines through each channel, for
+/// a drift of the speed is no noise of its mean.
+fn scatter_about_lines(rows: &[[f64; CHANNELS]]) -> ([[f64; CHANNELS]; CHANNELS], usize) {
+    let n = rows.len() as f64;
+    let middle = 0.5 * (n - 1.0);
+    let spread: f64 = (0..rows.len()).map(|k| (k as f64 - middle).powi(2)).sum();
+    let lines: [[f64; 2]; CHANNELS] = std::array::from_fn(|c| {
+        let mean = rows.iter().map(|row| row[c]).sum::<f64>() / n;
+        let slope = rows.iter().enumerate().map(|(k, row)| (k as f64 - middle) * row[c]).sum::<f64>() / spread.max(f64::MIN_POSITIVE);
+        [mean, slope]
+    });
+    let degrees_of_freedom = rows.len().saturating_sub(2).max(1);
+    let mut covariance = [[0.0; CHANNELS]; CHANNELS];
+    for (k, row) in rows.iter().enumerate() {
+        let deviation: [f64; CHANNELS] = std::array::from_fn(|c| row[c] - lines[c][0] - lines[c][1] * (k as f64 - middle));
+        for (entries, one) in covariance.iter_mut().zip(deviation) {
+            entries.iter_mut().zip(deviation).for_each(|(entry, other)| *entry += one * other / (degrees_of_freedom as f64 * n));
+        }
+    }
+    (covariance, degrees_of_freedom)
 }
 
 fn dot(one: &[f64; CHANNELS], other: &[f64; CHANNELS]) -> f64 {
@@ -270,6 +330,7 @@ mod tests {
                 means: [1.0; CHANNELS],
                 drift: Dq::default(),
                 drift_variance: Dq::default(),
+                acceleration: 0.0,
                 covariance: moves.map(|one| moves.map(|other| one * other)),
                 degrees_of_freedom: 3,
             };

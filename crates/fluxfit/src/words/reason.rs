@@ -2,7 +2,7 @@
 
 use super::digits::one_digit;
 use crate::{
-    identification::{fit::uncertainty::Part, judge::reason::Reason},
+    identification::{fit::part::Part, judge::reason::Reason},
     motor::Parameter,
 };
 use std::fmt::{Display, Formatter, Result};
@@ -59,6 +59,11 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         Part::DeadTime => write!(
             f,
             "the currents ripple as dead time or device drops make them, and the voltage these take looks like resistance, which {leaves}"
+        ),
+        Part::FrameLag => write!(
+            f,
+            "a recorder's voltages may turn with speed against its currents, by a lag that acts like inductance where the current follows \
+             the speed, which {leaves}"
         ),
         Part::ProcessNoise => {
             write!(f, "unknown voltages disturb the motor, and the answers with and without a model of them differ, which {leaves}")

@@ -1,6 +1,6 @@
 //! What to do about a verdict.
 
-use super::digits::{one_digit, percent};
+use super::digits::{one_digit, percent, three_digits};
 use crate::{
     identification::explain::{
         measurement::{Measurement, Place, Promised},
@@ -32,6 +32,10 @@ impl Display for Remedy {
             Self::CompensateDeadTime => {
                 write!(f, "log with the drive's dead-time compensation on, or give R_s as measured at the terminals")
             }
+            Self::TellFrameLag => write!(
+                f,
+                "hold two clearly different loads at one high speed, or coast from there with a drive that measures its terminals"
+            ),
             Self::RemoveDisturbances => write!(
                 f,
                 "log with the test bench at rest (no torque ripple, no supply ripple), or add a stretch held still and identify from it \
@@ -53,6 +57,12 @@ impl Display for Remedy {
             Self::LogAngle => {
                 write!(f, "log theta_e too (electrical, as the drive uses it), or hold the drive still and use the steady model")
             }
+            Self::CheckFrame { lag } => write!(
+                f,
+                "check that voltages and currents are of one instant and one frame: voltages whose frame is late by {} us explain it, and a \
+                 wrong sign does not",
+                three_digits(1e6 * lag)
+            ),
             Self::CheckSigns { units } => write!(
                 f,
                 "check signs and order of the columns: motor convention (are the currents reversed?), q 90 degrees ahead of d, one sign of \

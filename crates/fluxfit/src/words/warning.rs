@@ -1,12 +1,15 @@
 //! What the reader should know of the whole.
 
-use super::digits::three_digits;
+use super::digits::{one_digit, three_digits};
 use crate::{
     current_loop::{DELAY_PERIODS, MIN_PHASE_MARGIN},
     identification::{explain::warning::Warning, fit::saturation::Apparent},
     motor::Parameter,
 };
 use std::fmt::{Display, Formatter, Result};
+
+/// Half of a 95 % interval, in standard errors.
+const HALF_WIDTH: f64 = 1.96;
 
 /// Stretches that are named in a warning; more would hide what it says.
 const NAMED: usize = 3;
@@ -53,6 +56,31 @@ impl Display for Warning {
                 "the rotor turns too far between rows for them to be the inverter's own periods: the log is taken as decimated, and the \
                  held voltage vector is not corrected"
             ),
+            Self::FrameLag { seconds, standard_error, angle, coasting_rows } => {
+                let (micro, error) = (1e6 * seconds.abs(), HALF_WIDTH * 1e6 * standard_error);
+                let (late, show) = (
+                    if *seconds > 0.0 { "late" } else { "early" },
+                    if *coasting_rows > 0 { format!(", as {coasting_rows} rows without current show too") } else { String::new() },
+                );
+                write!(
+                    f,
+                    "the voltages turn with speed against the currents: their frame is {late} by {} ± {} us, {:.1} degrees at the highest \
+                     speed{show}; that is solved for beside the motor; the wrong sign of a column is not the cause",
+                    three_digits(micro),
+                    one_digit(error),
+                    angle.abs().to_degrees()
+                )
+            }
+            Self::OpenLoop { times } => {
+                let named: Vec<String> = times.iter().take(NAMED).map(|(start, end)| format!("{start:.2}:{end:.2}")).collect();
+                let more = if times.len() > NAMED { " and more" } else { "" };
+                write!(
+                    f,
+                    "at {} s{more} the magnet's voltage is at right angles to the current: the drive turned the current without knowing the \
+                     rotor's angle (open loop), and its columns are not in the rotor's frame; only the resistance is taken from there",
+                    named.join(", ")
+                )
+            }
             Self::ProcessNoise => write!(
                 f,
                 "voltages that the log does not hold disturb the motor: the residuals of the simulated currents depend on those before; \

@@ -36,7 +36,7 @@ fn columns(points: &[(f64, f64, f64)], flux: impl Fn(Dq) -> Dq, loss: f64, noise
         let (psi, i) = (flux(Dq { d, q }), d.hypot(q));
         let u = Dq { d: MOTOR.rs * d - omega_e * psi.q + loss * d / i, q: MOTOR.rs * q + omega_e * psi.d + loss * q / i };
         for k in 0..ROWS {
-            columns.t.push((2 * w * ROWS + k) as f64 * 0.01);
+            columns.t.push((2 * w * ROWS + k) as f64 * 0.002);
             columns.ud.push(u.d + noise * draws.normal());
             columns.uq.push(u.q + noise * draws.normal());
             columns.id.push(d + 0.02 * noise * draws.normal());

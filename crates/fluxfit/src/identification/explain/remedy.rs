@@ -2,7 +2,7 @@
 
 use super::{
     super::{
-        fit::{finding::Finding, uncertainty::Part},
+        fit::{finding::Finding, part::Part},
         judge::{
             reason::{Common, Reason},
             verdict::IDENTIFIED,
@@ -10,7 +10,10 @@ use super::{
     },
     measurement::{self, Promised, STEP},
 };
-use crate::motor::Parameter;
+use crate::{
+    motor::{Motor, Parameter},
+    steady::recorder,
+};
 
 /// What to do for a better verdict. It prints as a sentence; who writes their own matches the variants, and prints those that they do
 /// not know.
@@ -43,6 +46,8 @@ pub enum Remedy {
     /// Log with the drive's dead-time compensation on, or give R_s as measured at the terminals:
     /// [`Request::known`](crate::Request::known).
     CompensateDeadTime,
+    /// Log what tells a recorder's lag: different loads at one speed, or rows without current.
+    TellFrameLag,
     /// Log without disturbances (torque ripple, supply ripple), or identify by the steady model from a stretch of constant currents and
     /// speed.
     RemoveDisturbances,
@@ -61,6 +66,11 @@ pub enum Remedy {
     /// Log the electrical angle too ([`Columns::theta_e`](crate::Columns::theta_e)), or hold currents and speed constant and use the steady
     /// model.
     LogAngle,
+    /// Check that voltages and currents are of one instant and one frame: a lag explains what else looks like a wrong sign.
+    CheckFrame {
+        /// The lag that would, s.
+        lag: f64,
+    },
     /// Check signs and order of the columns: motor convention, q leading d by 90 degrees.
     CheckSigns {
         /// Whether units and pole pairs should be checked too.
@@ -92,7 +102,10 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding) -> Op
         Reason::OnePoint => or_stretch(Some(Also::OrSecondPoint)),
         Reason::TooSimilar { .. } => or_stretch(Some(Also::AndSecondPoint)),
         Reason::ShortCircuit => Remedy::FixOne,
-        Reason::Negative | Reason::OtherNegative { .. } => Remedy::CheckSigns { units: false },
+        Reason::Negative | Reason::OtherNegative { .. } => match lag_instead_of_sign(finding) {
+            Some(lag) => Remedy::CheckFrame { lag },
+            None => Remedy::CheckSigns { units: false },
+        },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
         Reason::DisturbedWithoutAngle => Remedy::LogAngle,
         Reason::Wide { part, half_width } => narrower(*part, *half_width, || measure().unwrap_or(Remedy::SpreadPoints { parameter })),
@@ -110,6 +123,7 @@ fn narrower(part: Part, half_width: f64, measure: impl Fn() -> Remedy) -> Remedy
         Part::Accuracy | Part::Excitation => measure(),
         Part::Timing => Remedy::StateVoltageTiming,
         Part::DeadTime => Remedy::CompensateDeadTime,
+        Part::FrameLag => Remedy::TellFrameLag,
         Part::ProcessNoise => Remedy::RemoveDisturbances,
         Part::Sensors | Part::CurrentGain => Remedy::CalibrateSensors,
         Part::BusVoltage => Remedy::CalibrateBusVoltage,
@@ -119,8 +133,63 @@ fn narrower(part: Part, half_width: f64, measure: impl Fn() -> Remedy) -> Remedy
     }
 }
 
+/// Longest lag, s, of voltages behind currents that is ordinary: two periods of a drive that controls at 10 kHz.
+const LONGEST_LAG: f64 = 2e-4;
+
+/// The lag of the voltages' frame, s, that makes an L_q come out as it is and a sign does not explain: L_q alone is negative, and
+/// `psi_f omega_e lag` is what it seems to take of the voltage. A recorder's lag is solved for already.
+fn lag_instead_of_sign(finding: &Finding) -> Option<f64> {
+    let Motor { rs, ld, lq, psi_f } = finding.motor;
+    let is_negative = |parameter: Parameter, value: f64| !finding.open[parameter as usize] && value < 0.0;
+    let others = [(Parameter::Rs, rs), (Parameter::Ld, ld), (Parameter::PsiF, psi_f)];
+    let fastest = finding.bench.held.iter().max_by(|(_, one), (_, other)| one.abs().total_cmp(&other.abs()));
+    let (i, omega_e) = fastest.filter(|_| lq < 0.0 && !others.into_iter().any(|(parameter, value)| is_negative(parameter, value)))?;
+    let lag = (lq * i.q / (psi_f * omega_e)).abs();
+    (lag <= LONGEST_LAG && !recorder::is_period_of_recorder(finding.bench.sample_period)).then_some(lag)
+}
+
 /// The i_d, A, that the log has not: a step down from zero, or zero.
 fn step(finding: &Finding) -> f64 {
     let current = finding.bench.current();
     if Common::of(&finding.bench).id_is_zero(current) { -STEP * current } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        frames::Dq,
+        identification::fit::{
+            finding::{Bench, Trust},
+            uncertainty::Uncertainty,
+        },
+    };
+
+    fn finding(motor: Motor, sample_period: f64) -> Finding {
+        let bench = Bench {
+            motor,
+            covariance: nalgebra::Matrix4::zeros(),
+            held: vec![(Dq { d: 0.0, q: 5.0 }, 2000.0)],
+            row_variance: 0.0,
+            sample_period,
+            voltage: 20.0,
+            voltage_accuracy: 1e-4,
+        };
+        let uncertainty = Uncertainty { parameters: Default::default(), correlation: [[0.0; 4]; 4] };
+        Finding { motor, uncertainty, open: [false, true, false, false], trust: Trust::default(), bench }
+    }
+
+    /// By hand: 100 uH at 5 A are the flux of 9 mWb turned by 0.0556 rad, 27.8 us at 2000 rad/s. A hundred times the inductance, a
+    /// resistance that is negative too, and a recorder's log, whose lag is solved for, leave the signs.
+    #[test]
+    fn a_sign_is_not_suspected_where_a_lag_explains_it() {
+        let motor = Motor { rs: 0.03, ld: 0.0, lq: -100e-6, psi_f: 9e-3 };
+        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period));
+        let Some(Remedy::CheckFrame { lag }) = remedy(motor, 1e-3) else { panic!("a lag explains it") };
+        assert!((lag / 27.8e-6 - 1.0).abs() < 0.01, "{lag}");
+        let signs = Some(Remedy::CheckSigns { units: false });
+        assert_eq!(remedy(Motor { lq: -10e-3, ..motor }, 1e-3), signs);
+        assert_eq!(remedy(Motor { rs: -0.03, ..motor }, 1e-3), signs);
+        assert_eq!(remedy(motor, 0.1), signs);
+    }
 }

@@ -4,6 +4,7 @@
 use super::{
     super::{
         fit::{
+            frame_lag::FrameLag,
             output::OutputFit,
             saturation::{Apparent, SaturationFinding},
             steady::SteadyFit,
@@ -18,7 +19,7 @@ use crate::{
     faults::Fault,
     log::Log,
     motor::{PARAMETERS, Parameter},
-    steady::{OperatingPoint, windows, zero_order_hold::MAX_ANGLE_PER_SAMPLE},
+    steady::{OperatingPoint, recorder, windows, zero_order_hold::MAX_ANGLE_PER_SAMPLE},
 };
 
 /// Something that the reader should know of the log or the answer as a whole. It prints as a sentence; [`code`](Self::code) names it.
@@ -58,6 +59,22 @@ pub enum Warning {
     },
     /// The rotor turns too far between rows for the held voltage vector to be corrected.
     CoarseSampling,
+    /// A recorder's voltages turn with speed against the frame of its currents; that is solved for beside the motor.
+    FrameLag {
+        /// The time by which they are late, s; negative: early.
+        seconds: f64,
+        /// Its standard error, s.
+        standard_error: f64,
+        /// The angle that it makes at the highest speed, electrical rad.
+        angle: f64,
+        /// Rows without current that show it too.
+        coasting_rows: usize,
+    },
+    /// Windows in open-loop operation, whose columns are not in the rotor's frame: only the resistance is taken from them.
+    OpenLoop {
+        /// Start and end, s, in order.
+        times: Vec<(f64, f64)>,
+    },
     /// Voltages that the log does not hold disturb the motor; an observer follows them in the fit.
     ProcessNoise,
     /// The logged angle does not turn with the speed, so it was not used.
@@ -131,6 +148,8 @@ impl Warning {
             Self::NoCurrent { .. } | Self::NoCurrentInWindows { .. } => "no-current",
             Self::ShortStretches { .. } => "short-stretches",
             Self::CoarseSampling => "coarse-sampling",
+            Self::FrameLag { .. } => "frame-lag",
+            Self::OpenLoop { .. } => "open-loop",
             Self::ProcessNoise => "process-noise",
             Self::Angle => "angle",
             Self::Saturation { .. } => "saturation",
@@ -167,6 +186,8 @@ pub(crate) fn all(evidence: &Evidence) -> Vec<Warning> {
             no_redundancy(fit).filter(|_| answered || !evidence.has_transients()),
             misfit(fit),
             dead_time(fit).filter(|_| answered),
+            frame_lag(fit).filter(|_| answered),
+            open_loop(log, fit).filter(|_| answered),
             no_current(log, fit, request).filter(|_| answered),
             short_stretches(log, request).filter(|_| answered),
             coarse_sampling(log, fit),
@@ -302,10 +323,30 @@ fn angle(log: &Log, found: &OutputFit) -> Option<Warning> {
     (log.columns().theta_e.is_some() && !found.angle_known).then_some(Warning::Angle)
 }
 
+/// A lag that turns by less than this at the highest speed, rad, moves nothing: a fifth of a degree.
+const VISIBLE_ANGLE: f64 = 0.0035;
+
+fn frame_lag(found: &SteadyFit) -> Option<Warning> {
+    let lag = found.frame_lag.filter(FrameLag::is_found)?;
+    let fastest = found.operating_points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
+    let angle = fastest * lag.seconds;
+    let FrameLag { seconds, standard_error, coasting_rows, .. } = lag;
+    (angle.abs() >= VISIBLE_ANGLE).then_some(Warning::FrameLag { seconds, standard_error, angle, coasting_rows })
+}
+
+fn open_loop(log: &Log, found: &SteadyFit) -> Option<Warning> {
+    let t = &log.columns().t;
+    let times: Vec<(f64, f64)> = found.open_loop.iter().map(|rows| (t[rows.start], t[rows.end - 1])).collect();
+    (!times.is_empty()).then_some(Warning::OpenLoop { times })
+}
+
 /// Share of rows that is worth a warning.
 const MANY_ROWS: f64 = 0.01;
 
 fn no_current(log: &Log, found: &SteadyFit, request: &Request) -> Option<Warning> {
+    if found.frame_lag.is_some_and(|lag| lag.coasting_rows > 0) {
+        return None;
+    }
     if request.windows.is_empty() {
         let (rows, of) = (windows::rows_without_current(log), log.rows());
         return (rows as f64 > MANY_ROWS * of as f64).then_some(Warning::NoCurrent { rows, of });
@@ -317,7 +358,8 @@ fn no_current(log: &Log, found: &SteadyFit, request: &Request) -> Option<Warning
 fn short_stretches(log: &Log, request: &Request) -> Option<Warning> {
     let (_, mut short) = windows::find_all(log);
     short.sort_by_key(|rows| std::cmp::Reverse(rows.len()));
-    if short.is_empty() || !request.windows.is_empty() {
+    // In a recorder's log short stretches are windows.
+    if short.is_empty() || !request.windows.is_empty() || recorder::is_recorders(log) {
         return None;
     }
     let t = &log.columns().t;

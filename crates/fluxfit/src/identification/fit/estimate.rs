@@ -14,6 +14,7 @@
 use super::{
     super::request::{Known, Request},
     excitation::Excitation,
+    part::Part,
     voltage_loss::Loss,
 };
 use crate::{
@@ -54,7 +55,9 @@ pub struct Estimate {
     /// The voltage, V, that every point is found to lose along its current, with its standard error; none where no loss is possible.
     pub loss: Option<(f64, f64)>,
     /// Per unknown of the losses, what the standard error of its prior does to the parameters (SI).
-    pub(crate) loss_gains: Vec<[f64; PARAMETERS]>,
+    pub(crate) loss_gains: Vec<(Part, [f64; PARAMETERS])>,
+    /// Each unknown of the losses, in its unit, and its standard error.
+    pub(crate) found: Vec<(f64, f64)>,
     /// Sum of squares at the motor in units of the points' own covariances and accuracies, priors included.
     pub chi_squared: f64,
     /// Equations and priors, less the directions found.
@@ -114,8 +117,9 @@ impl Estimate {
             degrees_of_freedom: (2 * points.len() + prior_gains.len() + losses.len()).saturating_sub(unknowns),
             redundancy: (2 * kinds_count + prior_gains.len()).saturating_sub(unknowns),
             prior_gains: prior_gains.to_vec(),
-            loss: found.first().copied(),
-            loss_gains: loss_gains.to_vec(),
+            loss: losses.iter().zip(&found).find(|(loss, _)| loss.part == Part::DeadTime).map(|(_, found)| *found),
+            loss_gains: losses.iter().map(|loss| loss.part).zip(loss_gains.iter().copied()).collect(),
+            found,
             objective: VoltageError::of_equations(system.equations.into_iter().map(|equation| excitation.excited_equation(equation))),
         }
     }

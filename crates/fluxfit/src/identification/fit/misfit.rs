@@ -94,7 +94,7 @@ mod tests {
         for (mode, (d, q)) in [(0.0, 9.0), (-2.0, 7.0), (-1.0, 5.0)].into_iter().enumerate() {
             let u = Motor { lq: lq[mode], ..MOTOR }.steady_voltage(Dq { d, q }, 400.0);
             for k in 0..ROWS {
-                columns.t.push((2 * mode * ROWS + k) as f64);
+                columns.t.push((2 * mode * ROWS + k) as f64 * 1e-3);
                 columns.ud.push(u.d + 0.2 * draws.normal());
                 columns.uq.push(u.q + 0.2 * draws.normal());
                 columns.id.push(d);

@@ -5,10 +5,14 @@ use super::{
         progress::Progress,
         request::{Known, Provenance, Request, Resolved, VOLTAGE_ACCURACY},
     },
+    coasting,
     estimate::Estimate,
     excitation::Excitation,
     finding::{Bench, Finding, Trust, covariance},
+    frame_free,
+    frame_lag::{self, FrameLag},
     misfit::{self, Misfit},
+    open_loop,
     saturation::SaturationFinding,
     swarm::{self, Search},
     uncertainty::Uncertainty,
@@ -22,10 +26,15 @@ use crate::{
     motor::{Motor, PARAMETERS, Parameter},
     optimizer::{Bounds, Method},
     steady::{
-        OperatingPoint, PreliminaryEstimate, windows,
+        OperatingPoint, PreliminaryEstimate, recorder, windows,
         zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, SteadyVoltageTiming, ZeroOrderHold},
     },
 };
+
+use std::ops::Range;
+
+/// An inductance whose interval is wider than this part of it is not told.
+const TOLD: f64 = 0.5;
 
 /// The operating points, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +52,10 @@ pub struct SteadyFit {
     pub misfit: Option<Misfit>,
     /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
     pub voltage_losses: Vec<f64>,
+    /// The lag of the voltages' frame behind that of the currents; none but in a recorder's log whose voltage timing is not stated.
+    pub frame_lag: Option<FrameLag>,
+    /// Rows of the operating points in open-loop operation, which tell the resistance only.
+    pub open_loop: Vec<Range<usize>>,
     /// What it comes to.
     pub finding: Finding,
     /// What dead time and devices may take, as it was fitted beside the motor.
@@ -57,23 +70,28 @@ impl SteadyFit {
     /// # Errors
     /// If there is none.
     pub fn of(log: &Log, request: &Request) -> Result<Self, Error> {
-        let as_measured = operating_points(log, request)?;
-        let (points, timing_doubt) = measure(log, &as_measured, request);
-        let excitation = Excitation::of(&points, &request.known);
-        let possible = LossPrior::possible(log, request);
-        let harmonics = harmonics(log, &points, &excitation, &possible, request);
-        let losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
-        let estimate = Estimate::solve(&points, &excitation, request, &losses);
-        let (mut estimate, mut misfit) = misfit::admit(&points, &excitation, estimate, request, &losses);
-        let mut losses = losses;
-        // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
-        // saturation.
-        if misfit.is_some() && estimate.motor.rs < 0.0 && !losses.is_empty() {
-            losses.clear();
-            let without = Estimate::solve(&points, &excitation, request, &losses);
-            (estimate, misfit) = misfit::admit(&points, &excitation, without, request, &losses);
+        let (as_measured, frames) = frames(log, operating_points(log, request)?, request);
+        let (mut unturned, mut other_timing) = measure(log, &as_measured, request);
+        if recorder::is_recorders(log) {
+            for points in [Some(&mut unturned), other_timing.as_mut()].into_iter().flatten() {
+                recorder::pool_noise(points, windows::least_current(log));
+            }
         }
-        let uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
+        let solved = solve(log, (&unturned, other_timing.as_deref()), frames.as_ref(), request);
+        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solved;
+        let timing_doubt = match &other_timing {
+            // Of a recorder's log it is one of the unknowns.
+            Some(other) if lag.is_none() => timing_doubt(&unturned, other, request),
+            _ => [0.0; PARAMETERS],
+        };
+        let mut uncertainty = Uncertainty::of(&points, &excitation, &estimate, misfit.as_ref(), &timing_doubt);
+        if lag.is_some() {
+            let psi_f = &mut uncertainty.parameters[Parameter::PsiF as usize];
+            *psi_f = psi_f.with_min_half_width(frame_free::scatter(&points, &estimate.motor));
+            let lq = &mut uncertainty.parameters[Parameter::Lq as usize];
+            lq.systematic.frame_lag = lq.systematic.frame_lag.hypot(FrameLag::spread(&points, estimate.motor.psi_f));
+            *lq = lq.anew();
+        }
         let finding = Finding {
             motor: estimate.motor,
             open: Parameter::ALL.map(|parameter| excitation.is_open(parameter)),
@@ -89,6 +107,8 @@ impl SteadyFit {
             misfit,
             voltage_losses: harmonics.iter().map(|harmonic| harmonic.filter(|one| one.stands_out).map_or(0.0, |one| one.loss)).collect(),
             losses,
+            frame_lag: lag,
+            open_loop: frames.map_or_else(Vec::new, |frames| frames.open_loop),
             finding,
             as_measured,
         })
@@ -96,6 +116,14 @@ impl SteadyFit {
 
     /// Saturation, if it explains a contradiction between the operating points.
     pub(crate) fn saturation(&self, request: &Request) -> Option<SaturationFinding> {
+        // Where a recorder's lag and the age of its speed leave no inductance, none can be seen to change.
+        let is_told = |parameter| {
+            let half_width = self.finding.uncertainty.parameters[parameter as usize].half_width;
+            half_width < TOLD * self.estimate.motor.get(parameter)
+        };
+        if self.frame_lag.is_some() && !is_told(Parameter::Ld) && !is_told(Parameter::Lq) {
+            return None;
+        }
         SaturationFinding::of_points(
             (&self.operating_points, &self.losses),
             &self.excitation,
@@ -122,6 +150,94 @@ impl SteadyFit {
         let motor = Motor::from(found);
         Ok(Search { cost_above_optimum: self.estimate.cost_above_optimum(&motor), motor, bounds, report })
     }
+}
+
+/// What is in doubt of the frames of a recorder's columns.
+struct Frames {
+    lag: FrameLag,
+    /// Rows of the points in open-loop operation.
+    open_loop: Vec<Range<usize>>,
+    /// Those of the points without current.
+    coasting: Vec<Range<usize>>,
+    /// By which part the voltages without current may differ from those under load, one standard deviation.
+    gain: f64,
+}
+
+impl Frames {
+    /// The unknowns beside the motor at points that are turned back by a lag, given the flux, Wb.
+    fn unknowns(&self, points: &[OperatingPoint], lag: &FrameLag, psi_f: f64, log: &Log) -> Vec<Loss> {
+        let gain = (self.gain != 0.0).then(|| coasting::gain_unknown(points, |w| self.coasting.contains(&points[w].rows), self.gain.abs()));
+        open_loop::unknowns(points, &self.open_loop, psi_f).into_iter().chain(gain).chain(lag.unknowns(points, psi_f, log)).collect()
+    }
+}
+
+/// The operating points of a recorder's log with those of a coasting drive that measures its terminals, and what is known of the frames.
+/// Those of another log as they are.
+fn frames(log: &Log, mut points: Vec<OperatingPoint>, request: &Request) -> (Vec<OperatingPoint>, Option<Frames>) {
+    let Some(lag) = FrameLag::possible(log, request) else { return (points, None) };
+    let open_loop = open_loop::find(log, &points, &lag, request);
+    let in_frame: Vec<OperatingPoint> = points.iter().filter(|point| !open_loop.contains(&point.rows)).cloned().collect();
+    let terminals = coasting::at_terminals(log, &in_frame, &lag, request);
+    let (coasting, gain) = terminals.map_or_else(Default::default, |terminals| (terminals.points, terminals.gain));
+    let coasting_rows = coasting.iter().map(|point| point.rows.len()).sum();
+    let rows = coasting.iter().map(|point| point.rows.clone()).collect();
+    points.extend(coasting);
+    points.sort_by_key(|point| point.rows.start);
+    (points, Some(Frames { lag: FrameLag { coasting_rows, ..lag }, open_loop, coasting: rows, gain }))
+}
+
+/// What solving the points gives.
+struct Solved {
+    /// With their voltages turned back by the lag.
+    points: Vec<OperatingPoint>,
+    excitation: Excitation,
+    harmonics: Vec<Option<Harmonic>>,
+    losses: Vec<Loss>,
+    estimate: Estimate,
+    misfit: Option<Misfit>,
+    lag: Option<FrameLag>,
+}
+
+/// Solves the points beside the losses; where there may be a lag, again with the voltages turned back by what was found of it.
+fn solve(
+    log: &Log,
+    (unturned, other): (&[OperatingPoint], Option<&[OperatingPoint]>),
+    frames: Option<&Frames>,
+    request: &Request,
+) -> Solved {
+    let Some(frames) = frames else { return solve_beside(log, unturned.to_vec(), &[], request) };
+    let (mut lag, mut psi_f) = (frames.lag, frame_lag::rough_flux(unturned));
+    let mut round = |lag: &mut FrameLag| {
+        let points = lag.turned_back(unturned);
+        let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other)));
+        let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, lag, psi_f, log)).collect();
+        let solved = solve_beside(log, points, &unknowns, request);
+        (*lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
+        solved
+    };
+    for _ in 1..frame_lag::ROUNDS {
+        round(&mut lag);
+    }
+    let solved = round(&mut lag);
+    Solved { lag: Some(lag), ..solved }
+}
+
+/// Solves points beside the losses and these unknowns of their frames.
+fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], request: &Request) -> Solved {
+    let excitation = Excitation::of(&points, &request.known);
+    let possible = LossPrior::possible(log, request);
+    let harmonics = harmonics(log, &points, &excitation, &possible, request);
+    let mut losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
+    let all = |losses: &[Loss]| losses.iter().chain(of_frames).cloned().collect::<Vec<_>>();
+    let admit = |all: &[Loss]| misfit::admit(&points, &excitation, Estimate::solve(&points, &excitation, request, all), request, all);
+    let (mut estimate, mut misfit) = admit(&all(&losses));
+    // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
+    // saturation.
+    if misfit.is_some() && estimate.motor.rs < 0.0 && !losses.is_empty() {
+        losses.clear();
+        (estimate, misfit) = admit(&all(&losses));
+    }
+    Solved { losses: all(&losses), excitation, harmonics, estimate, misfit, lag: None, points }
 }
 
 /// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.
@@ -185,15 +301,15 @@ pub fn operating_points(log: &Log, request: &Request) -> Result<Vec<OperatingPoi
         windows.extend(windows::between(log, *times)?);
     }
     if windows.is_empty() {
-        windows = windows::find(log)?;
+        windows = if recorder::is_recorders(log) { recorder::loaded(log)? } else { windows::find(log)? };
     }
     Ok(windows.into_iter().map(|rows| OperatingPoint::measure(log, rows, None)).collect())
 }
 
 /// Measures the points again: now the motor is known roughly, and the corrections and the covariance that need it are possible.
-/// Beside the points: how far the answer moves with the timing of the voltage columns, where nobody stated it. Where the rows may be every
-/// n-th of a drive's periods nothing is corrected, and the doubt is the correction that the drive's own period would need.
-fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, [f64; PARAMETERS]) {
+/// Beside the points: the same with another timing of the voltage columns, where nobody stated it. Where the rows may be every n-th of a
+/// drive's periods nothing is corrected, and the others have the correction that the drive's own period would need.
+fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<OperatingPoint>, Option<Vec<OperatingPoint>>) {
     let with = |timing: SteadyVoltageTiming, change: &dyn Fn(ZeroOrderHold) -> ZeroOrderHold| -> Vec<OperatingPoint> {
         let preliminary = preliminary_estimates(log, rough, timing, request);
         let measured = rough.iter().zip(&preliminary).map(|(point, one)| {
@@ -203,7 +319,7 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
     };
     let as_it_is = |hold: ZeroOrderHold| hold;
     if let Some(stated) = request.voltage_timing {
-        return (with(stated.into(), &as_it_is), [0.0; PARAMETERS]);
+        return (with(stated.into(), &as_it_is), None);
     }
     let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
     let period = slowest_period(log);
@@ -215,9 +331,14 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
         let timing = SteadyVoltageTiming::Centered;
         (with(timing, &|_| ZeroOrderHold::NONE), with(timing, &|_| ZeroOrderHold { timing, sample_period, ..ZeroOrderHold::NONE }))
     };
+    (points, Some(other))
+}
+
+/// How far the answer moves between two timings of the voltage columns.
+fn timing_doubt(one: &[OperatingPoint], other: &[OperatingPoint], request: &Request) -> [f64; PARAMETERS] {
     let solve = |points: &[OperatingPoint]| Estimate::solve(points, &Excitation::of(points, &request.known), request, &[]).motor;
-    let (one, other) = (solve(&points).to_array(), solve(&other).to_array());
-    (points, std::array::from_fn(|p| (one[p] - other[p]).abs()))
+    let (one, other) = (solve(one).to_array(), solve(other).to_array());
+    std::array::from_fn(|p| (one[p] - other[p]).abs())
 }
 
 /// Hardly a drive controls its currents more slowly than this, Hz.

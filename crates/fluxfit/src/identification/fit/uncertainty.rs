@@ -6,7 +6,8 @@
 //! - the voltages' accuracy, independent between windows and axes;
 //! - priors;
 //! - the timing of the voltage columns, where nobody stated it;
-//! - what the [losses](super::voltage_loss) of dead time and devices may be, as far as the points do not tell them;
+//! - what the [losses](super::voltage_loss) of dead time and devices may be, as far as the points do not tell them, and the
+//!   [lags](super::frame_lag) of a recorder;
 //! - directions that the log does not excite, a uniform distribution over their reach;
 //! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
 //! - [gains](super::common_gains) common to all current sensors and to all voltages, where their accuracy is stated;
@@ -15,7 +16,7 @@
 //!
 //! JCGM 100:2008 (GUM), sections 4 and 5 and G.4.
 
-use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit};
+use super::{estimate::Estimate, excitation::Excitation, misfit::Misfit, part::Part};
 use crate::{motor::PARAMETERS, steady::OperatingPoint};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -37,6 +38,8 @@ pub struct Systematic {
     pub timing: f64,
     /// Of dead time or device drops.
     pub dead_time: f64,
+    /// Of a recorder's voltages that may turn with speed against its currents.
+    pub frame_lag: f64,
     /// Of unknown voltages that disturb the motor.
     pub process_noise: f64,
     /// Of current sensors whose gains differ: it is not known which of them is right.
@@ -61,11 +64,12 @@ impl Systematic {
     }
 
     /// Every part, with its name.
-    pub fn parts(&self) -> [(f64, Part); 11] {
+    pub fn parts(&self) -> [(f64, Part); 12] {
         [
             (self.prior, Part::Prior),
             (self.timing, Part::Timing),
             (self.dead_time, Part::DeadTime),
+            (self.frame_lag, Part::FrameLag),
             (self.process_noise, Part::ProcessNoise),
             (self.sensors, Part::Sensors),
             (self.current_gain, Part::CurrentGain),
@@ -140,74 +144,6 @@ impl ParameterUncertainty {
     }
 }
 
-/// A contribution to an uncertainty; the systematic ones are the fields of [`Systematic`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Part {
-    /// Noise.
-    Noise,
-    /// Accuracy of the voltages.
-    Accuracy,
-    /// Priors.
-    Prior,
-    /// Timing of the voltage columns.
-    Timing,
-    /// Dead time or device drops.
-    DeadTime,
-    /// Unknown voltages that disturb the motor.
-    ProcessNoise,
-    /// Current sensors whose gains differ.
-    Sensors,
-    /// A gain common to all current sensors.
-    CurrentGain,
-    /// The DC voltage's measurement.
-    BusVoltage,
-    /// Inductances that depend on the current.
-    Saturation,
-    /// Combinations of the parameters that the log does not excite.
-    Excitation,
-    /// Contradiction between the operating points.
-    Misfit,
-}
-
-impl Part {
-    /// Name in files.
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::Noise => "noise",
-            Self::Accuracy => "accuracy",
-            Self::Prior => "prior",
-            Self::Timing => "timing",
-            Self::DeadTime => "dead_time",
-            Self::ProcessNoise => "process_noise",
-            Self::Sensors => "sensors",
-            Self::CurrentGain => "current_gain",
-            Self::BusVoltage => "bus_voltage",
-            Self::Saturation => "saturation",
-            Self::Excitation => "excitation",
-            Self::Misfit => "misfit",
-        }
-    }
-
-    /// Name in a table.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Noise => "noise",
-            Self::Accuracy => "voltage accuracy",
-            Self::Prior => "prior",
-            Self::Timing => "voltage timing",
-            Self::DeadTime => "dead time",
-            Self::ProcessNoise => "disturbances",
-            Self::Sensors => "current sensors",
-            Self::CurrentGain => "current accuracy",
-            Self::BusVoltage => "bus accuracy",
-            Self::Saturation => "saturation",
-            Self::Excitation => "excitation",
-            Self::Misfit => "misfit",
-        }
-    }
-}
-
 /// The uncertainty of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -231,7 +167,7 @@ impl Uncertainty {
         let mut parameters = [ParameterUncertainty::default(); PARAMETERS];
         for (p, parameter) in parameters.iter_mut().enumerate() {
             let (statistical, degrees_of_freedom, mut systematic) = of_parameter(p, points, estimate, misfit.is_some());
-            systematic.timing = timing[p];
+            systematic.timing = systematic.timing.hypot(timing[p]);
             // A uniform distribution's standard deviation.
             systematic.excitation = excitation.unexcited_reach[p] / 3.0_f64.sqrt();
             *parameter = ParameterUncertainty::of(statistical, degrees_of_freedom, systematic);
@@ -289,10 +225,14 @@ fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit
         variance_of_variance += part * part / point.degrees_of_freedom as f64;
         accuracy += (gain[0] * gain[0] + gain[1] * gain[1]) * estimate.accuracy[w].powi(2);
     }
+    let of_losses =
+        |part: Part| estimate.loss_gains.iter().filter(|(of, _)| *of == part).map(|(_, gain)| gain[p].powi(2)).sum::<f64>().sqrt();
     let systematic = Systematic {
         accuracy: if misfit { 0.0 } else { accuracy.sqrt() },
         prior: estimate.prior_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
-        dead_time: estimate.loss_gains.iter().map(|gain| gain[p].powi(2)).sum::<f64>().sqrt(),
+        timing: of_losses(Part::Timing),
+        dead_time: of_losses(Part::DeadTime),
+        frame_lag: of_losses(Part::FrameLag),
         misfit: if misfit { (points.len() as f64 * accuracy).sqrt() } else { 0.0 },
         ..Systematic::default()
     };

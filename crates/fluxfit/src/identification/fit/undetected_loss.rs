@@ -8,8 +8,8 @@
 //! s^-2 = V_possible^-2 + c'c / sigma²,     c: the currents' derivative by it, without what the unknowns explain
 //! ```
 //!
-//! and each parameter moves by its share of `s`. Rows far apart take the harmonics for something else; there it is what the operating points
-//! make of the same limit, if there are any.
+//! and each parameter moves by its share of `s`. Rows far apart take the harmonics for something else; there it is what the operating
+//! points make of the same limit, if there are any.
 
 use super::{
     long_run::effective_sample_size,

@@ -16,7 +16,7 @@
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, doi:10.1109/41.88903.
 
-use super::super::request::Request;
+use super::{super::request::Request, part::Part};
 use crate::{faults::dead_time::ripple::Harmonic, frames::Dq, log::Log, steady::OperatingPoint};
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -44,6 +44,9 @@ const RIPPLE: f64 = 1.0 / 8.0;
 /// the harmonic is not known well, the harmonic says more than there is. Of simulated drives: 0.4 to 1.1.
 const OF_HARMONIC: (f64, f64) = (0.75, 0.35);
 
+/// Currents below this part of the largest are none.
+const NO_CURRENT: f64 = 0.01;
+
 /// An unknown beside the motor, with its prior.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Loss {
@@ -53,6 +56,8 @@ pub(crate) struct Loss {
     pub(crate) expected: f64,
     /// V.
     pub(crate) standard_error: f64,
+    /// The part of the uncertainty that it makes.
+    pub(crate) part: Part,
 }
 
 /// What is known of the drive's losses before the points are solved.
@@ -108,20 +113,26 @@ impl LossPrior {
         }
         let inductance = 0.5 * (inductance.d + inductance.q);
         let width = RIPPLE * bus / (inductance * carrier);
+        let largest = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
+        // Noise around no current has no direction along which a voltage could be lost.
+        let direction = |i: Dq| if i.magnitude() < NO_CURRENT * largest { Dq::default() } else { along(i) };
         let each = |voltage: &dyn Fn(Dq, &OperatingPoint) -> [f64; 2]| {
-            points.iter().map(|point| voltage(along(point.current()), point)).collect::<Vec<_>>()
+            points.iter().map(|point| voltage(direction(point.current()), point)).collect::<Vec<_>>()
         };
+        let part = Part::DeadTime;
         let losses = [
-            Loss { voltages: each(&|along, _| [along.d, along.q]), expected, standard_error },
+            Loss { voltages: each(&|along, _| [along.d, along.q]), expected, standard_error, part },
             Loss {
                 voltages: each(&|along, point| [-along.q, along.d].map(|part| part * point.omega_e() / carrier)),
                 expected: 0.0,
                 standard_error: loss,
+                part,
             },
             Loss {
                 voltages: each(&|along, point| [along.d, along.q].map(|part| -part * lacking(width, point.current().magnitude()))),
                 expected: 0.0,
                 standard_error: loss,
+                part,
             },
         ];
         losses.into_iter().filter(|one| one.standard_error > 0.0).collect()

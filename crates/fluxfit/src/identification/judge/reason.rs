@@ -3,7 +3,8 @@
 
 use super::super::fit::{
     finding::{Bench, Finding},
-    uncertainty::{ParameterUncertainty, Part},
+    part::Part,
+    uncertainty::ParameterUncertainty,
 };
 use crate::{
     frames::Dq,
