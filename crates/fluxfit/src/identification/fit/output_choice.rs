@@ -10,6 +10,7 @@ use super::{
     long_run,
     output_start::{self, free},
     readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, TimingTrial},
+    voltage_loss::is_control_rate,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -40,7 +41,8 @@ pub(super) struct Chosen {
     explained: bool,
 }
 
-/// Readings from which faults are looked for, where the first one leaves something unexplained: a fault may pass for a delay.
+/// Readings from which faults are looked for, where the first one leaves something unexplained: a fault may pass for a delay. Rows far apart
+/// always leave something.
 const TRIED_READINGS: usize = 2;
 
 /// Correlation of neighbours below which residuals are white enough.
@@ -69,7 +71,8 @@ pub(super) fn choose(
     let mut best: Option<Chosen> = None;
     let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };
     let _ = progress(Step::Faults);
-    for (place, tried) in tried.iter().copied().take(TRIED_READINGS) {
+    let most = if is_control_rate(log) { TRIED_READINGS } else { 1 };
+    for (place, tried) in tried.iter().copied().take(most) {
         // The search from the reading before has compared all of them, and ended with this one.
         if best.as_ref().is_some_and(|best| best.reading == tried.timing) {
             break;
