@@ -3,7 +3,7 @@
 //! A period's delay that is wrong shows wherever the voltage moves. In a log that stands still at one speed it does not show; then the
 //! readings that fit about as well as the best one tell how much it matters.
 
-use super::{super::request::Request, voltage_loss::is_control_rate};
+use super::super::request::Request;
 use crate::{
     error::Error,
     levenberg_marquardt::{Polished, PriorResidual, polish_to_choose, step},
@@ -42,7 +42,12 @@ impl TimingTrial {
 
     /// The mean square with a handicap for readings that are rare.
     fn rank(&self) -> f64 {
-        self.mean_square() * if self.timing.is_unusual() { 1.0 + UNUSUAL } else { 1.0 }
+        let handicap = match self.timing {
+            VoltageTiming::Averaged => AVERAGED,
+            timing if timing.is_unusual() => UNUSUAL,
+            _ => 0.0,
+        };
+        self.mean_square() * (1.0 + handicap)
     }
 }
 
@@ -50,14 +55,15 @@ impl TimingTrial {
 /// scale all voltages by what a rotor that turns through a held voltage makes of it.
 const UNUSUAL: f64 = 0.01;
 
+/// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
+const AVERAGED: f64 = 0.1;
+
 /// The fitness under every reading, or under the one that is stated.
 ///
 /// # Errors
 /// If no stretch is long enough.
 pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Vec<(VoltageTiming, OutputError)>, Error> {
-    // A drive that logs each of its periods has no means of several.
-    let known = VoltageTiming::ALL.into_iter().filter(|timing| *timing != VoltageTiming::Averaged || !is_control_rate(log));
-    let readings = request.voltage_timing.map_or_else(|| known.collect(), |stated| vec![stated]);
+    let readings = request.voltage_timing.map_or(VoltageTiming::ALL.to_vec(), |stated| vec![stated]);
     readings.into_iter().map(|reading| Ok((reading, OutputError::of_rows(log, stretches, reading)?))).collect()
 }
 
