@@ -14,12 +14,7 @@
 //! observer's may be off by a degree, `tau` the time by which the speed column is old. The
 //! means of a row are of the middle of its period, but many recorders write the speed of its end.
 
-use super::{
-    super::request::Request,
-    estimate::Estimate,
-    part::Part,
-    voltage_loss::{Loss, is_control_rate, slowest_period},
-};
+use super::{super::request::Request, estimate::Estimate, part::Part, voltage_loss::Loss, voltage_loss::slowest_period};
 use crate::{
     log::Log,
     steady::{OperatingPoint, recorder, windows},
@@ -114,19 +109,6 @@ impl FrameLag {
     pub fn is_found(&self) -> bool {
         self.seconds.abs() > FOUND * self.standard_error
     }
-}
-
-/// The angle by which all voltages of a drive may be turned, as an unknown, where rows are a drive's own but too far apart to simulate what
-/// shows it; none where the steady model is what was asked for.
-pub(super) fn angle_unknown(log: &Log, points: &[OperatingPoint], request: &Request) -> Option<Loss> {
-    let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
-    let turned = points.iter().map(|point| [point.voltage().q, -point.voltage().d]).collect();
-    (!are_exact && !is_control_rate(log) && request.model.is_none()).then_some(Loss {
-        voltages: turned,
-        expected: 0.0,
-        standard_error: USUAL_OFFSET,
-        part: Part::FrameLag,
-    })
 }
 
 /// The unknown part, in the `other` reading of the voltages by a drive that controls at a usual rate, of what it changes: none where the

@@ -205,10 +205,7 @@ fn solve(
     frames: Option<&Frames>,
     request: &Request,
 ) -> Solved {
-    let Some(frames) = frames else {
-        let angle: Vec<Loss> = frame_lag::angle_unknown(log, unturned, request).into_iter().collect();
-        return solve_beside(log, unturned.to_vec(), &angle, request);
-    };
+    let Some(frames) = frames else { return solve_beside(log, unturned.to_vec(), &[], request) };
     let (mut lag, mut psi_f) = (frames.lag, frame_lag::rough_flux(unturned));
     let mut round = |lag: &mut FrameLag| {
         let points = lag.turned_back(unturned);
