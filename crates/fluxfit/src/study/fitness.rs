@@ -235,9 +235,9 @@ impl Objective for Fitness {
     }
 }
 
-/// The voltage timings to try: the one stated, or all that drives are known to have.
+/// The voltage timings to try: the one stated, or all that inverters have.
 fn voltage_timings(stated: Option<VoltageTiming>) -> Vec<VoltageTiming> {
-    stated.map_or_else(|| VoltageTiming::ALL.to_vec(), |stated| vec![stated])
+    stated.map_or_else(|| VoltageTiming::ALL.into_iter().filter(|timing| !timing.is_unusual()).collect(), |stated| vec![stated])
 }
 
 /// The best motor of a coarse search.

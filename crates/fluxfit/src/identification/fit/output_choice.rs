@@ -41,8 +41,8 @@ pub(super) struct Chosen {
     explained: bool,
 }
 
-/// Readings from which faults are looked for, where the first one leaves something unexplained: a fault may pass for a delay. Rows far apart
-/// always leave something.
+/// Readings from which faults are looked for, where the first one leaves something unexplained: a fault may pass for a delay. Rows far
+/// apart always leave something.
 const TRIED_READINGS: usize = 2;
 
 /// Correlation of neighbours below which residuals are white enough.
