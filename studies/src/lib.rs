@@ -2,4 +2,5 @@
 
 pub mod coverage;
 pub mod drives;
+pub mod known;
 pub mod rated;
