@@ -30,7 +30,6 @@ use crate::{
         zero_order_hold::{MAX_ANGLE_PER_SAMPLE, MAX_DECAY_PER_SAMPLE, SteadyVoltageTiming, ZeroOrderHold},
     },
 };
-
 use std::ops::Range;
 
 /// An inductance whose interval is wider than this part of it is not told.
@@ -52,7 +51,7 @@ pub struct SteadyFit {
     pub misfit: Option<Misfit>,
     /// What dead time or device drops seem to take from each operating point's voltage along its current, V; zero where nothing is seen.
     pub voltage_losses: Vec<f64>,
-    /// The lag of the voltages' frame behind that of the currents; none but in a recorder's log whose voltage timing is not stated.
+    /// The lag of the voltages' frame behind that of the currents; none but in a recorder's log.
     pub frame_lag: Option<FrameLag>,
     /// Rows of the operating points in open-loop operation, which tell the resistance only.
     pub open_loop: Vec<Range<usize>>,

@@ -19,7 +19,7 @@ use super::{
     voltage_loss::{LossPrior, is_control_rate},
 };
 use crate::{
-    faults::{Fault, Faults},
+    faults::Fault,
     identification::request::Request,
     levenberg_marquardt::jacobian,
     log::Log,
@@ -46,15 +46,16 @@ pub(super) fn doubt(
     let is_disturbed = unknowns.iter().any(|unknown| unknown.is_observer_gain());
     // A fundamental of 4/pi V per volt of each phase.
     let possible = LossPrior::possible(log, request).standard_error * PI / 4.0;
-    let Some(faults) = narrow(&drive.faults, objective.peak_current()) else { return [0.0; PARAMETERS] };
     if was_found || possible == 0.0 || is_control_rate(log) && is_noise && !is_disturbed {
         return [0.0; PARAMETERS];
     }
     if let Some(points) = steady.filter(|_| !is_control_rate(log)) {
         return points.finding.uncertainty.parameters.map(|parameter| parameter.systematic.dead_time);
     }
+    // A loss of nothing yet, whose ramp is that of the first start of a fit.
+    let start = Fault::DeadTime.starts(&drive.faults, objective.peak_current()).into_iter().next();
+    let (Some(faults), Some(voltage)) = (start, Unknown::of_fault(Fault::DeadTime).next()) else { return [0.0; PARAMETERS] };
     let with_loss = Adjustable { faults, ..*drive };
-    let Some(voltage) = Unknown::of_fault(Fault::DeadTime).next() else { return [0.0; PARAMETERS] };
     let columns = jacobian(objective, drive, unknowns);
     let Some(loss) = jacobian(objective, &with_loss, &[voltage]).pop() else { return [0.0; PARAMETERS] };
     // Residuals are measured less simulated: what an unknown takes up of a volt of the loss.
@@ -69,9 +70,4 @@ pub(super) fn doubt(
         let place = unknowns.iter().position(|unknown| *unknown == Unknown::Motor(parameter));
         place.map_or(0.0, |place| (share[place] * standard_error).abs())
     })
-}
-
-/// The drive with a loss of nothing yet, whose ramp is that of the first start of a fit.
-fn narrow(faults: &Faults, peak: f64) -> Option<Faults> {
-    Fault::DeadTime.starts(faults, peak).into_iter().next()
 }
