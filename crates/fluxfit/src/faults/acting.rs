@@ -5,7 +5,7 @@ use super::{
     Faults, Place, angle_delay,
     current_gains::balanced,
     current_offset::removed,
-    dead_time::reduced,
+    dead_time::switched_period::{LossKinds, SwitchedLoss},
     disturbance::{corrected, remaining},
     filter::{filtered, unfiltered},
     flux_harmonics, resistance_drift,
@@ -20,8 +20,7 @@ use crate::{
 /// The faults of one drive, or of one drive per lane, ready to act.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Acting<V> {
-    /// Voltage, width, ripple.
-    dead_time: [V; 3],
+    dead_time: SwitchedLoss<V>,
     /// Cosine and sine of the angle of phase a where the log does not have it.
     phase: [V; 2],
     /// Alpha, beta.
@@ -60,8 +59,10 @@ pub(crate) struct FaultKinds {
     pub(crate) delay: bool,
     /// A filter of the currents.
     pub(crate) filter: bool,
-    /// Dead time, a filter of the voltages, or a frame that is turned.
+    /// A filter of the voltages, or a frame that is turned.
     pub(crate) voltages: bool,
+    /// What dead time and devices take.
+    pub(crate) loss: LossKinds,
     /// Dead time without an angle.
     pub(crate) phase: bool,
     /// Voltages beside those of the equation (1).
@@ -74,7 +75,7 @@ impl FaultKinds {
     /// All kinds at once.
     #[cfg(test)]
     pub(crate) const ALL: Self =
-        Self { sensors: true, delay: true, filter: true, voltages: true, phase: true, beside: true, flux: true, observer: true };
+        Self { sensors: true, delay: true, filter: true, voltages: true, loss: LossKinds { edges: true, lasting: true }, phase: true, beside: true, flux: true, observer: true };
 
     pub(crate) fn of(faults: &Faults) -> Self {
         let none = Faults::default();
@@ -84,7 +85,11 @@ impl FaultKinds {
             sensors: turns || faults.current_offset != none.current_offset || faults.current_gains != none.current_gains,
             delay,
             filter: faults.filter.phases != 0.0 || faults.filter.currents != 0.0,
-            voltages: turns || faults.speed_lag != none.speed_lag || faults.dead_time != none.dead_time || faults.filter.voltages != 0.0,
+            voltages: turns || faults.speed_lag != none.speed_lag || faults.filter.voltages != 0.0,
+            loss: LossKinds {
+                edges: faults.dead_time.voltage != 0.0 && faults.dead_time.lasting != 1.0,
+                lasting: faults.dead_time.voltage != 0.0 && faults.dead_time.lasting != 0.0,
+            },
             phase: faults.dead_time.phase != 0.0,
             beside: faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
@@ -101,6 +106,7 @@ impl FaultKinds {
             delay: self.delay || other.delay,
             filter: self.filter || other.filter,
             voltages: self.voltages || other.voltages,
+            loss: LossKinds { edges: self.loss.edges || other.loss.edges, lasting: self.loss.lasting || other.loss.lasting },
             phase: self.phase || other.phase,
             beside: self.beside || other.beside,
             flux: self.flux || other.flux,
@@ -118,11 +124,13 @@ impl<V> Acting<V> {
     #[inline(always)]
     pub(crate) fn of(kinds: FaultKinds, period: f64, lanes: impl Fn(&dyn Fn(&Faults) -> f64) -> V) -> Self {
         Self {
-            dead_time: [
-                lanes(&|f| f.dead_time.voltage),
-                lanes(&|f| f.dead_time.width.hypot(f.dead_time.least_width)),
-                lanes(&|f| f.dead_time.ripple),
-            ],
+            dead_time: SwitchedLoss {
+                voltage: lanes(&|f| f.dead_time.voltage),
+                lasting: lanes(&|f| f.dead_time.lasting),
+                width: lanes(&|f| f.dead_time.width.hypot(f.dead_time.least_width)),
+                ripple: lanes(&|f| f.dead_time.ripple),
+                halves: lanes(&|f| f.dead_time.halves),
+            },
             phase: [lanes(&|f| f.dead_time.phase.cos()), lanes(&|f| f.dead_time.phase.sin())],
             current_offset: [lanes(&|f| f.current_offset.current.alpha), lanes(&|f| f.current_offset.current.beta)],
             imbalance: [lanes(&|f| f.current_gains.imbalance.alpha), lanes(&|f| f.current_gains.imbalance.beta)],
@@ -197,26 +205,43 @@ impl<V: Number> Acting<V> {
         if self.kinds.filter { filtered(self.current_filter, y, i, place) } else { i[1] }
     }
 
-    /// The voltage that acts on the motor over a period, V, in the frame of its magnet, where `logged` was logged, and `before` for the
-    /// period before, given the current `i`, A, in the motor at its start.
+    /// The voltage that the drive means to act on the motor over a period, V, in the frame of its magnet, where `logged` was logged, and
+    /// `before` for the period before.
     #[inline(always)]
-    pub(crate) fn motor_voltage(&self, logged: [V; 2], before: [V; 2], i: [V; 2], place: &Place) -> [V; 2] {
+    pub(crate) fn commanded_voltage(&self, logged: [V; 2], before: [V; 2], place: &Place) -> [V; 2] {
         if !self.kinds.voltages {
             return logged;
         }
         let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_filter, logged, before), place);
-        let [cos, sin] = self.angle;
-        let i = self.undelayed(turned(i, cos, -sin), place.omega_e, true);
-        let reduced = if self.kinds.phase {
+        self.into_magnets_frame(logged, place)
+    }
+
+    /// What the inverter loses of a commanded voltage, V, given the currents in the motor at the start of the period, and at its end if
+    /// nothing were lost, A; all in the frame of its magnet. `per_henry` are its inverse inductances.
+    #[inline(always)]
+    pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
+        let [u, start, end] = [self.into_logged_frame(commanded, place), self.into_logged_frame(start, place), self.into_logged_frame(end, place)];
+        let lost = if self.kinds.phase {
             // In a stator that is turned by the phase's angle.
             let [cos, sin] = self.phase;
-            let zero = [i[0].constant(0.0); 2];
-            let loss = turned(reduced(self.dead_time, zero, turned(i, cos, sin), place), cos, -sin);
-            [logged[0] + loss[0], logged[1] + loss[1]]
+            let (u, i) = (turned(u, cos, sin), [turned(start, cos, sin), turned(end, cos, sin)]);
+            turned(self.dead_time.over(self.kinds.loss, u, i, per_henry, place), cos, -sin)
         } else {
-            reduced(self.dead_time, logged, i, place)
+            self.dead_time.over(self.kinds.loss, u, [start, end], per_henry, place)
         };
-        self.undelayed(turned(reduced, cos, sin), place.omega_e, false)
+        self.into_magnets_frame(lost, place)
+    }
+
+    #[inline(always)]
+    fn into_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+        let [cos, sin] = self.angle;
+        self.undelayed(turned(vector, cos, sin), place.omega_e, false)
+    }
+
+    #[inline(always)]
+    fn into_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+        let [cos, sin] = self.angle;
+        self.undelayed(turned(vector, cos, -sin), place.omega_e, true)
     }
 
     /// The voltage `u`, V, less what a motor at current `i`, A, takes or induces beside its equation; `linear_flux` is `L i + psi_f`, Wb.

@@ -18,14 +18,10 @@
 //! Electronics 38, 1991, doi:10.1109/41.88903.
 
 pub mod ripple;
+pub(super) mod switched_period;
 
 use super::{
-    Place,
-    description::{AngleNeed, Description, Names, NumberDescription, one, peak_current},
-};
-use crate::{
-    frames::{clarke, inverse_clarke},
-    lanes::Number,
+    description::{AngleNeed, Description, Names, NumberDescription, one, peak_current, present_state},
 };
 
 /// What dead time and devices take.
@@ -35,12 +31,15 @@ pub struct DeadTime {
     pub voltage: f64,
     /// Phase current, A, from which on it loses all of that; below, in proportion.
     pub width: f64,
-    /// Ripple of a phase current between the carrier's rising and falling half, A: where each half is a row, the loss changes its sign at
-    /// plus that current in one row and at minus it in the next. Its sign says which half comes first.
+    /// Ripple of the currents over what voltages and inductances make of it if a row is a period of the carrier, or half of one.
     pub ripple: f64,
     /// Where the angle is not known: the angle of phase a less the integral of the speed, electrical rad. It is only told up to a sixth
     /// of a turn, because six turns of it give the same loss.
     pub phase: f64,
+    /// The part of the voltage that is lost all the time, by the drops of devices; the rest is lost at switching instants.
+    pub lasting: f64,
+    /// Zero if a row is a whole carrier period; plus one if it is half of one, and even rows have the edges up; minus one if odd rows do.
+    pub halves: f64,
     /// What the width is at least, A, in a fit: below it simulated currents near zero would go their own ways at the least change of
     /// anything.
     pub least_width: f64,
@@ -50,10 +49,6 @@ pub struct DeadTime {
 pub(crate) fn carrier_half(row: usize) -> f64 {
     if row.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
-
-/// Widths of the ramp from which a fit starts, as fractions of the largest current: from almost none to a ripple nearly as large as the
-/// current. The cost has a kink wherever the ramp's end passes a measured current, so one start does not find them all.
-const WIDTHS: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8];
 
 /// The least width as a fraction of the largest current: half the narrowest one that a fit starts from.
 const LEAST_WIDTH: f64 = 0.005;
@@ -65,8 +60,33 @@ const PHASES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 /// The sixth of a turn.
 const SIXTH: f64 = std::f64::consts::FRAC_PI_3;
 
-/// The same for the fewer widths that are tried with each.
-const WIDTHS_WITH_PHASE: [f64; 3] = [0.02, 0.1, 0.4];
+/// What a fit starts from. The cost has kinks, and the carrier's halves are not smooth at all, so one start does not find them all.
+struct Start {
+    lasting: f64,
+    halves: f64,
+    /// Width as a fraction of the largest current.
+    width: f64,
+    ripple: f64,
+}
+
+/// Dead time where rows are carrier periods, or either half of one; device drops; and three widths where rows are of other lengths or
+/// the ripple is hidden.
+const SWITCHING: [Start; 7] = [
+    Start { lasting: 0.0, halves: 0.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 0.0, halves: 1.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 0.0, halves: -1.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 1.0, halves: 0.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 1.0, halves: 0.0, width: 0.02, ripple: 0.0 },
+    Start { lasting: 1.0, halves: 0.0, width: 0.1, ripple: 0.0 },
+    Start { lasting: 1.0, halves: 0.0, width: 0.4, ripple: 0.0 },
+];
+
+impl Start {
+    fn of(&self, state: &DeadTime, peak: f64) -> DeadTime {
+        let Self { lasting, halves, width, ripple } = *self;
+        DeadTime { width: width * peak, ripple, lasting, halves, least_width: LEAST_WIDTH * peak, ..*state }
+    }
+}
 
 const VOLTAGE: NumberDescription<DeadTime> = NumberDescription {
     names: Names { key: "dead_time_voltage", label: "dead-time voltage per phase", unit: "V" },
@@ -83,11 +103,11 @@ const WIDTH: NumberDescription<DeadTime> = NumberDescription {
     usual_size: peak_current,
 };
 
-const RIPPLE: NumberDescription<DeadTime> = NumberDescription {
-    names: Names { key: "dead_time_ripple", label: "phase current's ripple between the carrier's halves", unit: "A" },
-    get: |state| state.ripple,
-    set: |state, value| state.ripple = value,
-    usual_size: peak_current,
+const LASTING: NumberDescription<DeadTime> = NumberDescription {
+    names: Names { key: "device_drop_part", label: "part of the dead-time voltage that is lost all the time", unit: "1" },
+    get: |state| state.lasting,
+    set: |state, value| state.lasting = value,
+    usual_size: one,
 };
 
 const PHASE: NumberDescription<DeadTime> = NumberDescription {
@@ -105,8 +125,8 @@ pub(super) static FAULT: Description<DeadTime> = Description {
     family: FAMILY,
     angle: AngleNeed::Known,
     alters_measured_current: false,
-    numbers: &[VOLTAGE, WIDTH, RIPPLE],
-    starts: |state, peak| WIDTHS.iter().map(|width| DeadTime { width: width * peak, least_width: LEAST_WIDTH * peak, ..*state }).collect(),
+    numbers: &[VOLTAGE, WIDTH],
+    starts: |state, peak| SWITCHING.map(|start| DeadTime { phase: state.phase, ..start.of(state, peak) }).to_vec(),
     is_physical: |state, _, _| state.takes_voltage(),
 };
 
@@ -117,13 +137,25 @@ pub(super) static WITHOUT_ANGLE: Description<DeadTime> = Description {
     family: FAMILY,
     angle: AngleNeed::OnlyTraced,
     alters_measured_current: false,
-    numbers: &[VOLTAGE, WIDTH, RIPPLE, PHASE],
+    numbers: &[VOLTAGE, WIDTH, PHASE],
     starts: |state, peak| {
-        let start =
-            |width: &f64, phase: &f64| DeadTime { width: width * peak, phase: SIXTH * phase, least_width: LEAST_WIDTH * peak, ..*state };
-        WIDTHS_WITH_PHASE.iter().flat_map(|width| PHASES.iter().map(move |phase| start(width, phase))).collect()
+        let at = |start: &Start, phase: f64| DeadTime { phase, ..start.of(state, peak) };
+        let phases: Vec<f64> = if state.voltage == 0.0 { PHASES.map(|phase| SIXTH * phase).to_vec() } else { vec![state.phase] };
+        SWITCHING.iter().flat_map(|start| phases.iter().map(move |phase| at(start, *phase))).collect()
     },
     is_physical: |state, _, _| state.takes_voltage(),
+};
+
+/// Both dead time and device drops, where dead time was found first.
+pub(super) static DEVICE_DROPS: Description<DeadTime> = Description {
+    key: "device_drops",
+    label: "device drops beside dead time",
+    family: "device drops",
+    angle: AngleNeed::Traced,
+    alters_measured_current: false,
+    numbers: &[LASTING],
+    starts: present_state,
+    is_physical: |state, _, _| (0.0..=1.0).contains(&state.lasting),
 };
 
 impl DeadTime {
@@ -131,52 +163,6 @@ impl DeadTime {
     fn takes_voltage(&self) -> bool {
         self.voltage > 0.0
     }
-}
-
-/// What is left of a period's commanded voltage `u`, V, given the current `i`, A, both `d, q` in the frame of the logged angle. The first
-/// argument is voltage, width and ripple of the fault.
-#[inline(always)]
-pub(super) fn reduced<V: Number>([voltage, width, ripple]: [V; 3], u: [V; 2], i: [V; 2], place: &Place) -> [V; 2] {
-    // Over a period the current hardly moves against the rotor.
-    let (start, end) = (place.start.forward(i), place.end.forward(i));
-    let loss = mean_loss(start, end, voltage.constant(place.half) * ripple, width);
-    let [d, q] = place.middle.backward(loss);
-    [u[0] - voltage * d, u[1] - voltage * q]
-}
-
-/// Mean loss over a period, per volt, in the stator, of a current that goes straight from `start` to `end`, A.
-#[inline(always)]
-fn mean_loss<V: Number>(start: [V; 2], end: [V; 2], shift: V, width: V) -> [V; 2] {
-    let (start, end) = (inverse_clarke(start), inverse_clarke(end));
-    clarke([
-        mean_of_ramp(start[0] - shift, end[0] - shift, width),
-        mean_of_ramp(start[1] - shift, end[1] - shift, width),
-        mean_of_ramp(start[2] - shift, end[2] - shift, width),
-    ])
-}
-
-/// A way this short, as a fraction of its ends, leaves no digits in a difference of integrals.
-const SHORT: f64 = 1e-6;
-
-/// Mean of the ramp while its argument goes from one value to another.
-#[inline(always)]
-fn mean_of_ramp<V: Number>(from: V, to: V, width: V) -> V {
-    let (zero, half, one) = (from.constant(0.0), from.constant(0.5), from.constant(1.0));
-    let middle = half * (from + to);
-    let sign = zero.if_less(middle, one, middle.if_less(zero, -one, zero));
-    let ramp = middle.abs().if_less(width, middle / width, sign);
-    let way = to - from;
-    // Over a short way the ramp is straight, or about to be.
-    let long = from.constant(SHORT) * (from.abs() + to.abs());
-    long.if_less(way.abs(), (integral_of_ramp(to, width) - integral_of_ramp(from, width)) / way, ramp)
-}
-
-/// The ramp's integral: a parabola up to the width, straight from there on.
-#[inline(always)]
-fn integral_of_ramp<V: Number>(i: V, width: V) -> V {
-    let (zero, half) = (i.constant(0.0), i.constant(0.5));
-    let beyond = zero.if_less(width, half * width, zero);
-    i.abs().if_less(width, half * i * i / width, i.abs() - beyond)
 }
 
 #[cfg(test)]

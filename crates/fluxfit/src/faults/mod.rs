@@ -74,6 +74,8 @@ pub enum Fault {
     DeadTime,
     /// The same where the angle is not known.
     DeadTimeWithoutAngle,
+    /// Device drops beside dead time.
+    DeviceDrops,
     /// Angle that is read too large.
     AngleOffset,
     /// Angle that is read late.
@@ -157,9 +159,10 @@ macro_rules! row {
 
 impl Fault {
     /// All of them, in the order in which they are tried where they promise alike.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::DeadTime,
         Self::DeadTimeWithoutAngle,
+        Self::DeviceDrops,
         Self::AngleOffset,
         Self::AngleDelay,
         Self::CurrentOffset,
@@ -183,6 +186,7 @@ impl Fault {
         match self {
             Self::DeadTime => row!(dead_time::FAULT, dead_time),
             Self::DeadTimeWithoutAngle => row!(dead_time::WITHOUT_ANGLE, dead_time),
+            Self::DeviceDrops => row!(dead_time::DEVICE_DROPS, dead_time),
             Self::AngleOffset => row!(angle_offset::FAULT, angle_offset),
             Self::AngleDelay => row!(angle_delay::FAULT, angle_delay),
             Self::CurrentOffset => row!(current_offset::FAULT, current_offset),

@@ -19,6 +19,8 @@ pub(crate) struct Place {
     pub(crate) acceleration: f64,
     /// By which the voltage would be turned further if the speed that advanced its angle lagged by a second, rad.
     pub(crate) advance_per_lag: f64,
+    /// One over the DC voltage, 1/V; zero where it is not logged.
+    pub(crate) per_bus: f64,
     /// Its time within the log: from minus one half at the first row to plus one half at the last.
     pub(crate) time: f64,
 }
@@ -36,6 +38,7 @@ impl Place {
             omega_e: 0.0,
             acceleration: 0.0,
             advance_per_lag: 0.0,
+            per_bus: 0.0,
             time: 0.0,
         }
     }

@@ -53,6 +53,7 @@ pub(super) struct SimulatedSegment {
     pub(super) log_segment: Option<usize>,
     /// Whether the first vector is unknown, because the voltages are centred.
     pub(super) alternates: bool,
+    pub(super) per_bus: f64,
 }
 
 impl SimulatedSegment {
@@ -72,6 +73,12 @@ impl SimulatedSegment {
             middles: periods.iter().map(|period| Turn::by(period.theta_e)).collect(),
             angle_known: angles.known,
             log_segment: log.segments().iter().position(|segment| segment.rows.contains(&rows.start)),
+            per_bus: {
+                let u = &columns.u_dc.as_ref().map(|u| u[rows.clone()].iter().sum::<f64>() / rows.len() as f64);
+                let most = rows.clone().map(|row| columns.ud[row].hypot(columns.uq[row])).fold(0.0, f64::max);
+                let bus = u.unwrap_or(3.0_f64.sqrt() * most / 0.8);
+                if bus > 0.0 { 1.0 / bus } else { 0.0 }
+            },
             alternates: timing == VoltageTiming::Centered,
             rows_of_periods: Vec::new(),
             rows,
@@ -105,6 +112,7 @@ impl SimulatedSegment {
             omega_e,
             acceleration,
             advance_per_lag,
+            per_bus: self.per_bus,
             time,
         }
     }

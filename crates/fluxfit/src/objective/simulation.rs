@@ -160,6 +160,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
                 segment,
                 first,
                 transitions: &transitions,
+                per_henry: [self.motors.rs.constant(1.0) / self.motors.ld, self.motors.rs.constant(1.0) / self.motors.lq],
                 state,
                 into: &mut into,
             });
@@ -265,6 +266,7 @@ struct FaultyBlock<'a, 'b, V> {
     segment: &'a SimulatedSegment,
     first: usize,
     transitions: &'a [TransitionLanes<V>],
+    per_henry: [V; 2],
     state: &'a mut State<V>,
     into: &'a mut Into<'b, V>,
 }
@@ -301,9 +303,13 @@ impl<V: Number> FaultyBlock<'_, '_, V> {
         let place = segment.place(row);
         let before = segment.rows_of_periods[row.saturating_sub(1)].u;
         let motors = self.motors;
-        let u = self.faults.motor_voltage(zero.constants(period.u), zero.constants(before), start, &place);
         let linear_flux = [motors.ld.mul_add(start[0], motors.psi_f), motors.lq * start[1]];
-        let u = self.faults.beside(u, start, linear_flux, &place);
+        let commanded = self.faults.commanded_voltage(zero.constants(period.u), zero.constants(before), &place);
+        let mut u = self.faults.beside(commanded, start, linear_flux, &place);
+        if self.faults.kinds.loss.any() {
+            let lost = self.faults.lost(commanded, [start, transitions.after(start, u)], self.per_henry, &place);
+            u = [u[0] - lost[0], u[1] - lost[1]];
+        }
         state.i = if self.faults.kinds.flux {
             self.saturated_step(transitions, zero.constant(place.omega_e), u, start)
         } else {

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     faults::{AngleNeed, Fault, Faults},
-    levenberg_marquardt::{PriorResidual, polish_to_choose, rough_jacobian},
+    levenberg_marquardt::{Polished, PriorResidual, polish_to_choose, rough_jacobian},
     objective::{
         acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
@@ -136,6 +136,7 @@ impl FaultSearch<'_> {
                 Some(best) => taken.push(best.clone()),
                 None => break trials,
             }
+            self.choose_kinds(&taken);
             self.choose_reading();
         };
         let observer = match observer {
@@ -153,6 +154,33 @@ impl FaultSearch<'_> {
             readings(self.objectives, &self.drive, &self.unknowns, self.priors, HOPELESS_AFTER_A_FIT).into_iter().next()
         {
             (self.reading, self.drive, self.cost) = (place, best.polished.drive, best.polished.cost);
+        }
+    }
+
+    /// Some faults have kinds that no fit leads from one to the other: with what was found since, another kind may fit better.
+    fn choose_kinds(&mut self, taken: &[FaultTrial]) {
+        let objective = self.objective();
+        let peak = objective.peak_current();
+        let mut best: Option<Polished> = None;
+        for trial in taken {
+            let kinds = trial.fault.starts(&self.drive.faults, peak);
+            if kinds.len() < 2 {
+                continue;
+            }
+            let costs = parallel::map(&kinds, |faults| objective.cost_of(&Adjustable { faults: *faults, ..self.drive }));
+            let mut order: Vec<usize> = (0..kinds.len()).collect();
+            order.sort_by(|one, other| costs[*one].total_cmp(&costs[*other]));
+            for kind in order.into_iter().take(FITTED_KINDS) {
+                let start = Adjustable { faults: kinds[kind], ..self.drive };
+                let polished = polish_to_choose(objective, &start, &self.unknowns, self.priors);
+                let least = best.as_ref().map_or(self.cost, |best| best.cost);
+                if polished.cost < least {
+                    best = Some(polished);
+                }
+            }
+        }
+        if let Some(best) = best {
+            (self.drive, self.cost) = (best.drive, best.cost);
         }
     }
 
@@ -214,6 +242,9 @@ impl FaultSearch<'_> {
         trials.into_iter().map(|(trial, _)| trial).collect()
     }
 }
+
+/// Kinds of a fault that are fitted again after another fault was found: the best as they stand.
+const FITTED_KINDS: usize = 2;
 
 /// Starts of a fault that are fitted: the most promising of all.
 const FITTED_STARTS: usize = 2;
