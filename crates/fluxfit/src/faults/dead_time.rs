@@ -1,16 +1,8 @@
 //! Dead time and device drops: each phase loses a voltage against its current.
 //!
-//! Beyond some phase current the whole voltage is lost; near zero, where the ripple changes the current's sign between the switching
-//! instants of a period, a part of it. A ramp of the width of that ripple describes the mean over a period:
-//!
-//! ```text
-//! u_phase = commanded - V f(i_phase - shift),    f(i) = i / width, but at most 1 and at least -1
-//! ```
-//!
-//! Where a row is half a carrier period, each phase switches once in it, up in one row and down in the next. A late edge up takes
-//! voltage while current flows out, a late edge down gives some while it flows in: per row that is `V (f + 1)` and `V (f - 1)`, and what
-//! is common to all phases has no effect. But the current at an edge up is the lowest of its ripple, at an edge down the highest: near
-//! its zero crossing the deciding sign alternates, which is the shift.
+//! What a switching period loses depends on the currents at its edges, ripple included: [`switched_period`] has the equations. Where rows
+//! are not switching periods, or devices take their voltage gradually, the loss has a width: a ramp `i / width`, but at most one and at
+//! least minus one, stands in for the current's sign.
 //!
 //! A log of operating points alone shows the fault by its harmonics only: [`ripple`].
 //!
@@ -20,9 +12,7 @@
 pub mod ripple;
 pub(super) mod switched_period;
 
-use super::{
-    description::{AngleNeed, Description, Names, NumberDescription, one, peak_current, present_state},
-};
+use super::description::{AngleNeed, Description, Names, NumberDescription, one, peak_current, present_state};
 
 /// What dead time and devices take.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -162,52 +152,5 @@ impl DeadTime {
     /// An inverter takes voltage, it never adds any.
     fn takes_voltage(&self) -> bool {
         self.voltage > 0.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::frames::{Abc, AlphaBeta, Turn};
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn the_mean_is_that_of_many_points(from in -3.0..3.0f64, to in -3.0..3.0f64, width in 0.01..2.0f64) {
-            const POINTS: u32 = 20_000;
-            let point = |k: u32| ((from + (to - from) * (f64::from(k) + 0.5) / f64::from(POINTS)) / width).clamp(-1.0, 1.0);
-            let expected = (0..POINTS).map(point).sum::<f64>() / f64::from(POINTS);
-            prop_assert!((mean_of_ramp(from, to, width) - expected).abs() < 1e-4);
-        }
-    }
-
-    /// A square wave's fundamental is 4/pi; along the current.
-    #[test]
-    fn the_fundamental_is_four_over_pi() {
-        const STEPS: u32 = 6000;
-        let vector = |k: u32| {
-            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(STEPS)).sin_cos();
-            [5.0 * cos, 5.0 * sin]
-        };
-        let along = |k: u32| {
-            let (start, end) = (vector(k), vector(k + 1));
-            let loss = mean_loss(start, end, 0.0, 0.0);
-            (loss[0] * (start[0] + end[0]) + loss[1] * (start[1] + end[1])) / 10.0
-        };
-        let mean = (0..STEPS).map(along).sum::<f64>() / f64::from(STEPS);
-        assert!((mean - 4.0 / std::f64::consts::PI).abs() < 1e-5, "{mean}");
-    }
-
-    /// Where each row is half a carrier period, a phase current within the ripple loses in one row what it gains in the next.
-    #[test]
-    fn the_ripple_alternates_from_row_to_row() {
-        let AlphaBeta { alpha, beta } = Abc { a: 3.0, b: -0.5, c: -2.5 }.to_alpha_beta();
-        for (row, signs) in [(0, Abc { a: 1.0, b: -1.0, c: -1.0 }), (1, Abc { a: 1.0, b: 1.0, c: -1.0 })] {
-            let still = Turn::by(0.0);
-            let place = Place { half: carrier_half(row), ..Place::still(still) };
-            let left = reduced([2.0, 0.0, 1.0], [0.0; 2], [alpha, beta], &place);
-            let expected = signs.to_alpha_beta();
-            assert!((left[0] + 2.0 * expected.alpha).hypot(left[1] + 2.0 * expected.beta) < 1e-15, "{row}: {left:?}");
-        }
     }
 }

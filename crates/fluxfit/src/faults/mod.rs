@@ -337,6 +337,7 @@ mod tests {
             omega_e: 2000.0,
             acceleration: 100.0,
             advance_per_lag: 0.1,
+            per_bus: 0.01,
             time: 0.25,
         };
         // Also where other lanes have faults of every kind.
@@ -344,7 +345,8 @@ mod tests {
         for kinds in [FaultKinds::of(&faults), kinds] {
             let acting = Acting::of(kinds, 1e-4, |number| number(&faults));
             assert_eq!(acting.motor_current(i, place.start, place.omega_e), i);
-            assert_eq!(acting.motor_voltage(i, i, i, &place), i);
+            assert_eq!(acting.commanded_voltage(i, i, &place), i);
+            assert_eq!(acting.lost(i, [i, i], i, &place), [0.0; 2]);
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);
             assert_eq!(acting.filtered(i, [i, i], &Place { end: place.start, ..place }), i);
             assert_eq!(acting.extra_flux(i), [0.0; 2]);
