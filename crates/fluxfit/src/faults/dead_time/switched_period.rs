@@ -72,38 +72,45 @@ impl<V: Number> SwitchedLoss<V> {
         let (start, end) = (inverse_clarke(place.start.forward(start)), inverse_clarke(place.end.forward(end)));
         let v = modulated(inverse_clarke(place.middle.forward(u)));
         let per_bus = zero.constant(place.per_bus);
-        let (mut low, mut out) = ([zero; 3], [zero; 3]);
-        for x in 0..3 {
-            low[x] = half - v[x] * per_bus;
-            out[x] = half * (one + ramp(half * (start[x] + end[x]), self.width));
-        }
         // The carrier's period over the row's.
         let carrier = one + self.halves.abs();
         let rising = half * (one + self.halves * zero.constant(place.half));
-        let whole = one - self.halves.abs();
-        let seconds = self.ripple * carrier * zero.constant(place.length);
-        let amperes = [seconds * per_henry[0], seconds * per_henry[1]];
-        let mut loss = [zero; 3];
+        let amperes = by_volt_seconds(self.ripple * carrier * zero.constant(place.length), per_henry, place);
+        // The currents at the edges, but for what the others lose before.
+        let (mut low, mut up, mut down) = ([zero; 3], [zero; 3], [zero; 3]);
         for x in 0..3 {
-            let (mut until_up, mut until_down) = ([zero; 3], [zero; 3]);
+            low[x] = half - v[x] * per_bus;
+            let mut commanded = zero;
             for y in 0..3 {
-                let ahead = v[y] - v[x];
-                let commanded = half * (zero.if_less(ahead, ahead, zero) - half * v[y] + v[x] * v[y] * per_bus);
-                let (before, after) = (zero.if_less(ahead, one, zero), ahead.if_less(zero, one, zero));
-                let lost = self.voltage * (one - self.lasting);
-                until_up[y] = commanded - lost * out[y] * before;
-                until_down[y] = lost * ((one - out[y]) * after - whole * out[y]) - commanded;
+                let driven = half * (later(v[y], v[x]) - half * v[y] + v[x] * v[y] * per_bus);
+                commanded = amperes[x][y].mul_add(driven, commanded);
             }
             let (when, way) = (half * carrier * low[x], end[x] - start[x]);
             let bent = when * (one - when) * bend[x];
-            let up = when.mul_add(way, start[x]) + bent + driven(until_up, amperes, place)[x];
-            let down = (one - when).mul_add(way, start[x]) + bent + driven(until_down, amperes, place)[x];
+            up[x] = when.mul_add(way, start[x]) + bent + commanded;
+            down[x] = (one - when).mul_add(way, start[x]) + bent - commanded;
+        }
+        // Edge by edge: what the phases that switch before have lost, as far as their dead time is over.
+        let lost = self.voltage * (one - self.lasting);
+        let before_up = self.after_others(up, v, lost, amperes);
+        let (mut falls, out) = (down, self.out(before_up));
+        let risen = lost * (one - self.halves.abs());
+        for x in 0..3 {
+            for y in 0..3 {
+                falls[x] = falls[x] - amperes[x][y] * risen * out[y];
+            }
+        }
+        // An edge down gives where an edge up takes, and the lowest phase is first.
+        let mirrored = self.after_others([-falls[0], -falls[1], -falls[2]], [-v[0], -v[1], -v[2]], lost, amperes);
+        let mut loss = [zero; 3];
+        for x in 0..3 {
+            let (up, down) = (before_up[x], -mirrored[x]);
             if kinds.edges {
                 let at_edges = rising * ramp(up, self.width) + (one - rising) * ramp(down, self.width);
                 loss[x] = (one - self.lasting) * at_edges;
             }
             if kinds.lasting {
-                let half_way = half * carrier * way;
+                let half_way = half * carrier * (end[x] - start[x]);
                 let (top, bottom) = (start[x] + half_way, end[x] - half_way);
                 let of_up = low[x] * mean_of_ramp(start[x], up, self.width) + (one - low[x]) * mean_of_ramp(up, top, self.width);
                 let of_down = (one - low[x]) * mean_of_ramp(bottom, down, self.width) + low[x] * mean_of_ramp(down, end[x], self.width);
@@ -112,6 +119,35 @@ impl<V: Number> SwitchedLoss<V> {
         }
         let [d, q] = place.middle.backward(clarke(loss));
         [self.voltage * d, self.voltage * q]
+    }
+}
+
+impl<V: Number> SwitchedLoss<V> {
+    /// Currents at the edges up, given what they would be if no phase lost anything in this half of the carrier.
+    #[inline(always)]
+    fn after_others(&self, alone: [V; 3], v: [V; 3], lost: V, amperes: [[V; 3]; 3]) -> [V; 3] {
+        let half = lost.constant(0.5);
+        let mut i = alone;
+        // The second phase waits for the first, the third for both.
+        for _ in 0..2 {
+            let out = self.out(i);
+            i = alone;
+            for x in 0..3 {
+                for y in 0..3 {
+                    let until = half * later(v[y], v[x]);
+                    i[x] = i[x] - amperes[x][y] * until.if_less(lost, until, lost) * out[y];
+                }
+            }
+        }
+        i
+    }
+
+    /// One where a current flows out of its leg, zero where it flows in.
+    #[inline(always)]
+    fn out(&self, i: [V; 3]) -> [V; 3] {
+        let (half, one) = (i[0].constant(0.5), i[0].constant(1.0));
+        let [a, b, c] = i;
+        [half * (one + ramp(a, self.width)), half * (one + ramp(b, self.width)), half * (one + ramp(c, self.width))]
     }
 }
 
@@ -128,11 +164,29 @@ fn lower<V: Number>(a: V, b: V) -> V {
     a.if_less(b, a, b)
 }
 
-/// Phase currents, A, of flux linkages of the phases that differ, each `linked` times what makes `amperes` of a volt along d and q.
+/// By how much one voltage is later, V: by that over the DC voltage, and half a period, its phase switches before the other.
 #[inline(always)]
-fn driven<V: Number>(linked: [V; 3], amperes: [V; 2], place: &Place) -> [V; 3] {
-    let [d, q] = place.middle.backward(clarke(linked));
-    inverse_clarke(place.middle.forward([amperes[0] * d, amperes[1] * q]))
+fn later<V: Number>(v: V, than: V) -> V {
+    let (zero, ahead) = (v.constant(0.0), v - than);
+    zero.if_less(ahead, ahead, zero)
+}
+
+/// Phase currents, A, that a volt over so many seconds on each phase makes: those of phase `x` by phase `y` at `[x][y]`.
+#[inline(always)]
+fn by_volt_seconds<V: Number>(seconds: V, [per_ld, per_lq]: [V; 2], place: &Place) -> [[V; 3]; 3] {
+    let third = seconds.constant(1.0 / 3.0) * seconds;
+    let twice = place.middle.twice();
+    let (mean, difference) = (third * (per_ld + per_lq), third * (per_ld - per_lq));
+    let (cos, sin) = (difference * seconds.constant(twice.cos), difference * seconds.constant(twice.sin));
+    // The stator's matrix of inverse inductances, two thirds of it.
+    let (alpha, beta, both) = (mean + cos, mean - cos, seconds.constant(0.5 * 3.0_f64.sqrt()) * sin);
+    let (half, quarter, three_quarters) = (seconds.constant(0.5), seconds.constant(0.25), seconds.constant(0.75));
+    let ab = both - half * alpha;
+    let ac = -both - half * alpha;
+    let bc = quarter * alpha - three_quarters * beta;
+    let bb = quarter * alpha + three_quarters * beta - both;
+    let cc = quarter * alpha + three_quarters * beta + both;
+    [[alpha, ab, ac], [ab, bb, bc], [ac, bc, cc]]
 }
 
 /// `i / width`, but at most one and at least minus one.
