@@ -1,7 +1,7 @@
 //! Angle delay: the drive's electrical angle is late by a fixed time, as of a resolver converter or a position that is sampled early. It
 //! is then too small by `omega_e` times that time: voltages and currents are written in a frame that lags behind the magnet's.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, present_state, no_kinds};
 use crate::lanes::Number;
 
 /// An angle that is read late.
@@ -31,6 +31,7 @@ pub(super) static FAULT: Description<AngleDelay> = Description {
         usual_size: |_, _| USUAL,
     }],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| state.time > -USUAL && state.time < LONGEST,
 };
 

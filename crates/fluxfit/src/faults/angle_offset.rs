@@ -3,7 +3,7 @@
 //! Voltages and currents are then written in a frame that leads the magnet's by that angle: both are turned forward by it to stand in the
 //! magnet's frame.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state, no_kinds};
 
 /// An angle that is read wrongly.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -29,5 +29,6 @@ pub(super) static FAULT: Description<AngleOffset> = Description {
         usual_size: one,
     }],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| state.angle.abs() < LARGEST,
 };

@@ -4,7 +4,7 @@
 //! acts like a smaller impedance. Three sensors have any `s`. Where only two phases have a sensor and the third current is
 //! their negative sum, one number is all that there is, the gain of one over that of the other; it turns the current too.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state, no_kinds};
 use crate::{
     frames::{AlphaBeta, Turn},
     lanes::Number,
@@ -47,6 +47,7 @@ pub(super) static THREE_SENSORS: Description<CurrentGains> = Description {
         },
     ],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| state.is_physical(),
 };
 
@@ -64,6 +65,7 @@ pub(super) static SENSORS_A_B: Description<CurrentGains> = Description {
         usual_size: one,
     }],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| state.is_physical(),
 };
 
@@ -81,6 +83,7 @@ pub(super) static SENSORS_B_C: Description<CurrentGains> = Description {
         usual_size: one,
     }],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| state.is_physical(),
 };
 
@@ -98,6 +101,7 @@ pub(super) static SENSORS_C_A: Description<CurrentGains> = Description {
         usual_size: one,
     }],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| state.is_physical(),
 };
 

@@ -1,7 +1,7 @@
 //! Current sensor offset: what the current sensors read at zero. It is a constant vector in the stator's frame, so it turns in the
 //! rotor's.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, peak_current, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, peak_current, present_state, no_kinds};
 use crate::{
     frames::{AlphaBeta, Turn},
     lanes::Number,
@@ -35,6 +35,7 @@ pub(super) static FAULT: Description<CurrentOffset> = Description {
         },
     ],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, peak| state.current.alpha.hypot(state.current.beta) < peak,
 };
 

@@ -12,7 +12,7 @@
 pub mod ripple;
 pub(super) mod switched_period;
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, one, peak_current, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, no_kinds, one, peak_current, present_state};
 
 /// What dead time and devices take.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -50,32 +50,43 @@ const PHASES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 /// The sixth of a turn.
 const SIXTH: f64 = std::f64::consts::FRAC_PI_3;
 
-/// What a fit starts from. The cost has kinks, and the carrier's halves are not smooth at all, so one start does not find them all.
+/// How the voltage is lost, and from which width a fit starts.
 struct Start {
     lasting: f64,
     halves: f64,
-    /// Width as a fraction of the largest current.
+    /// As a fraction of the largest current.
     width: f64,
     ripple: f64,
 }
 
-/// Dead time where rows are carrier periods, or either half of one; device drops; and three widths where rows are of other lengths or
-/// the ripple is hidden.
-const SWITCHING: [Start; 7] = [
+/// Dead time where rows are carrier periods, or either half of one; device drops; and the mean over rows of other lengths, or where no
+/// ripple shows.
+const KINDS: [Start; 5] = [
     Start { lasting: 0.0, halves: 0.0, width: 0.02, ripple: 1.0 },
     Start { lasting: 0.0, halves: 1.0, width: 0.02, ripple: 1.0 },
     Start { lasting: 0.0, halves: -1.0, width: 0.02, ripple: 1.0 },
     Start { lasting: 1.0, halves: 0.0, width: 0.02, ripple: 1.0 },
     Start { lasting: 1.0, halves: 0.0, width: 0.02, ripple: 0.0 },
-    Start { lasting: 1.0, halves: 0.0, width: 0.1, ripple: 0.0 },
-    Start { lasting: 1.0, halves: 0.0, width: 0.4, ripple: 0.0 },
 ];
+
+/// The last of them with other widths: the cost has a kink wherever the ramp's end passes a measured current, so one start does not find
+/// them all.
+const WIDER: [Start; 2] =
+    [Start { lasting: 1.0, halves: 0.0, width: 0.1, ripple: 0.0 }, Start { lasting: 1.0, halves: 0.0, width: 0.4, ripple: 0.0 }];
 
 impl Start {
     fn of(&self, state: &DeadTime, peak: f64) -> DeadTime {
         let Self { lasting, halves, width, ripple } = *self;
         DeadTime { width: width * peak, ripple, lasting, halves, least_width: LEAST_WIDTH * peak, ..*state }
     }
+}
+
+fn starts(state: &DeadTime, peak: f64) -> Vec<DeadTime> {
+    KINDS.iter().chain(&WIDER).map(|start| start.of(state, peak)).collect()
+}
+
+fn kinds(state: &DeadTime, peak: f64) -> Vec<DeadTime> {
+    KINDS.iter().map(|start| start.of(state, peak)).collect()
 }
 
 const VOLTAGE: NumberDescription<DeadTime> = NumberDescription {
@@ -116,7 +127,8 @@ pub(super) static FAULT: Description<DeadTime> = Description {
     angle: AngleNeed::Known,
     alters_measured_current: false,
     numbers: &[VOLTAGE, WIDTH],
-    starts: |state, peak| SWITCHING.map(|start| DeadTime { phase: state.phase, ..start.of(state, peak) }).to_vec(),
+    starts,
+    kinds,
     is_physical: |state, _, _| state.takes_voltage(),
 };
 
@@ -129,10 +141,9 @@ pub(super) static WITHOUT_ANGLE: Description<DeadTime> = Description {
     alters_measured_current: false,
     numbers: &[VOLTAGE, WIDTH, PHASE],
     starts: |state, peak| {
-        let at = |start: &Start, phase: f64| DeadTime { phase, ..start.of(state, peak) };
-        let phases: Vec<f64> = if state.voltage == 0.0 { PHASES.map(|phase| SIXTH * phase).to_vec() } else { vec![state.phase] };
-        SWITCHING.iter().flat_map(|start| phases.iter().map(move |phase| at(start, *phase))).collect()
+        PHASES.iter().flat_map(|phase| starts(&DeadTime { phase: SIXTH * phase, ..*state }, peak)).collect()
     },
+    kinds,
     is_physical: |state, _, _| state.takes_voltage(),
 };
 
@@ -145,6 +156,7 @@ pub(super) static DEVICE_DROPS: Description<DeadTime> = Description {
     alters_measured_current: false,
     numbers: &[LASTING],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| (0.0..=1.0).contains(&state.lasting),
 };
 

@@ -45,6 +45,9 @@ pub(super) struct Description<S: 'static> {
     /// The states from which a fit begins, given the present state and the largest measured current, A. Several where the cost is not
     /// smooth in one of the numbers.
     pub(super) starts: fn(&S, f64) -> Vec<S>,
+    /// The present state as each of the kinds that a fault has, of which no fit leads from one to the other, given the largest measured
+    /// current, A; [none](no_kinds) if there is but one.
+    pub(super) kinds: fn(&S, f64) -> Vec<S>,
     /// Whether fitted values are possible in a real drive, given the motor fitted beside them and the largest measured current, A.
     pub(super) is_physical: fn(&S, &Motor, f64) -> bool,
 }
@@ -75,6 +78,11 @@ pub(super) struct Names {
 /// The start of most faults: from where they are.
 pub(super) fn present_state<S: Copy>(state: &S, _: f64) -> Vec<S> {
     vec![*state]
+}
+
+/// Most faults are of one kind.
+pub(super) fn no_kinds<S>(_: &S, _: f64) -> Vec<S> {
+    Vec::new()
 }
 
 /// The usual size of an angle or a ratio.

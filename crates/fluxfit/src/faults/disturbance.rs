@@ -5,7 +5,7 @@
 //! prediction problems", Journal of Basic Engineering 82, 1960, doi:10.1115/1.3662552; the gain is an unknown of the fit, as in L. Ljung,
 //! System Identification, 2nd edition, 1999, section 4.3 (innovations form).
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state, no_kinds};
 use crate::{frames::Dq, lanes::Number};
 
 /// The observer of a disturbed motor.
@@ -39,6 +39,7 @@ pub(super) static FAULT: Description<Disturbance> = Description {
         },
     ],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, _, _| {
         let Dq { d, q } = state.gain;
         d.max(q) > 0.0 && d.abs().max(q.abs()) < LARGEST

@@ -13,7 +13,7 @@
 
 use super::{
     Place,
-    description::{AngleNeed, Description, Names, NumberDescription, one},
+    description::{AngleNeed, Description, Names, NumberDescription, one, no_kinds},
 };
 use crate::{
     frames::{Turn, turned},
@@ -82,6 +82,7 @@ pub(super) static OF_PHASES: Description<Filter> = Description {
         NOISE,
     ],
     starts: |state, _| starts(|phases| Filter { phases, ..*state }),
+    kinds: no_kinds,
     is_physical: |state, _, _| is_physical(state.phases) && state.noise_before.abs() < MOST_NOISE,
 };
 
@@ -101,6 +102,7 @@ pub(super) static OF_CURRENTS: Description<Filter> = Description {
         NOISE,
     ],
     starts: |state, _| starts(|currents| Filter { currents, ..*state }),
+    kinds: no_kinds,
     is_physical: |state, _, _| is_physical(state.currents) && state.noise_before.abs() < MOST_NOISE,
 };
 
@@ -117,6 +119,7 @@ pub(super) static OF_VOLTAGES: Description<Filter> = Description {
         usual_size: |_, _| USUAL,
     }],
     starts: |state, _| TIME_CONSTANTS.map(|voltages| Filter { voltages, ..*state }).to_vec(),
+    kinds: no_kinds,
     is_physical: |state, _, _| is_physical(state.voltages),
 };
 
@@ -136,6 +139,7 @@ pub(super) static OF_BOTH: Description<Filter> = Description {
         NOISE,
     ],
     starts: |state, _| starts(|both| Filter { currents: both, voltages: both, ..*state }),
+    kinds: no_kinds,
     is_physical: |state, _, _| is_physical(state.currents) && state.noise_before.abs() < MOST_NOISE,
 };
 

@@ -9,7 +9,7 @@
 
 use super::{
     Place,
-    description::{AngleNeed, Description, Names, NumberDescription, present_state},
+    description::{AngleNeed, Description, Names, NumberDescription, present_state, no_kinds},
 };
 use crate::{lanes::Number, motor::Motor};
 
@@ -65,6 +65,7 @@ pub(super) static FAULT: Description<FluxHarmonics> = Description {
         },
     ],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, motor, _| {
         let FluxHarmonics { d, q } = state;
         d[0].hypot(d[1]).max(q[0].hypot(q[1])) < LARGEST * motor.psi_f.abs()

@@ -131,6 +131,7 @@ struct Row {
     get: fn(&Faults, usize) -> f64,
     set: fn(&mut Faults, usize, f64),
     starts: fn(&Faults, f64) -> Vec<Faults>,
+    kinds: fn(&Faults, f64) -> Vec<Faults>,
     is_physical: fn(&Faults, &Motor, f64) -> bool,
 }
 
@@ -150,6 +151,10 @@ macro_rules! row {
             set: |faults, place, value| ($description.numbers[place].set)(&mut faults.$state, value),
             starts: |faults, peak| {
                 let states = ($description.starts)(&faults.$state, peak);
+                states.into_iter().map(|$state| Faults { $state, ..*faults }).collect()
+            },
+            kinds: |faults, peak| {
+                let states = ($description.kinds)(&faults.$state, peak);
                 states.into_iter().map(|$state| Faults { $state, ..*faults }).collect()
             },
             is_physical: |faults, motor, peak| ($description.is_physical)(&faults.$state, motor, peak),
@@ -239,6 +244,11 @@ impl Fault {
     /// The states from which a fit begins, given the largest measured current, A.
     pub(crate) fn starts(self, faults: &Faults, peak: f64) -> Vec<Faults> {
         (self.row().starts)(faults, peak)
+    }
+
+    /// What it is now, once as each of the kinds that it has; none if there is but one.
+    pub(crate) fn kinds(self, faults: &Faults, peak: f64) -> Vec<Faults> {
+        (self.row().kinds)(faults, peak)
     }
 
     /// Whether its values are possible in a real drive with this motor, given the largest measured current, A.

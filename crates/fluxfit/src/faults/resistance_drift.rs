@@ -2,7 +2,7 @@
 
 use super::{
     Place,
-    description::{AngleNeed, Description, Names, NumberDescription, present_state},
+    description::{AngleNeed, Description, Names, NumberDescription, present_state, no_kinds},
 };
 use crate::lanes::Number;
 
@@ -29,6 +29,7 @@ pub(super) static FAULT: Description<ResistanceDrift> = Description {
         usual_size: |motor, _| motor.rs.abs(),
     }],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, motor, _| state.change.abs() < LARGEST * motor.rs.abs(),
 };
 

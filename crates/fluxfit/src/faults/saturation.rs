@@ -7,7 +7,7 @@
 //! The simplest flux beyond the linear one that is odd along its own axis, and whose cross term belongs to one magnetic energy:
 //! `d psi_d / d i_q = d psi_q / d i_d = 2 c i_q`. No fault of the drive but of the model of its motor; it is found like one.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, present_state};
+use super::description::{AngleNeed, Description, Names, NumberDescription, present_state, no_kinds};
 use crate::{frames::Dq, lanes::Number, motor::PARAMETERS};
 
 /// Coefficients of saturation, H/A. Iron that saturates makes them negative.
@@ -55,6 +55,7 @@ pub(super) static FAULT: Description<Saturation> = Description {
         },
     ],
     starts: present_state,
+    kinds: no_kinds,
     is_physical: |state, motor, peak| {
         let (d, q, cross) = (state.d * peak / motor.ld, state.q * peak / motor.lq, state.cross * peak / motor.lq);
         // Iron takes flux away, it takes enough to be seen, and more current never makes less flux.

@@ -6,7 +6,7 @@
 
 use super::{
     Place,
-    description::{AngleNeed, Description, Names, NumberDescription},
+    description::{AngleNeed, Description, Names, NumberDescription, no_kinds},
 };
 use crate::lanes::Number;
 
@@ -36,6 +36,7 @@ pub(super) static FAULT: Description<SpeedLag> = Description {
         usual_size: |_, _| USUAL,
     }],
     starts: |state, _| vec![*state],
+    kinds: no_kinds,
     is_physical: |state, _, _| (0.0..LONGEST).contains(&state.time),
 };
 

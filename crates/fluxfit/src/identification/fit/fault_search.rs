@@ -136,9 +136,12 @@ impl FaultSearch<'_> {
                 Some(best) => taken.push(best.clone()),
                 None => break trials,
             }
-            self.choose_kinds(&taken);
+            self.choose_kinds(&taken[taken.len() - 1..]);
             self.choose_reading();
         };
+        if taken.len() > 1 {
+            self.choose_kinds(&taken);
+        }
         let observer = match observer {
             Some(_) => self.drop_observer(),
             None => FaultTrial { fault: Fault::Disturbance, gain: 0.0, outcome: FaultOutcome::NotNeeded },
@@ -157,30 +160,17 @@ impl FaultSearch<'_> {
         }
     }
 
-    /// Some faults have kinds that no fit leads from one to the other: with what was found since, another kind may fit better.
+    /// Some faults have kinds of which no fit leads from one to the other: another one may fit better, now that their numbers are known.
     fn choose_kinds(&mut self, taken: &[FaultTrial]) {
         let objective = self.objective();
-        let peak = objective.peak_current();
-        let mut best: Option<Polished> = None;
-        for trial in taken {
-            let kinds = trial.fault.starts(&self.drive.faults, peak);
-            if kinds.len() < 2 {
-                continue;
-            }
-            let costs = parallel::map(&kinds, |faults| objective.cost_of(&Adjustable { faults: *faults, ..self.drive }));
-            let mut order: Vec<usize> = (0..kinds.len()).collect();
-            order.sort_by(|one, other| costs[*one].total_cmp(&costs[*other]));
-            for kind in order.into_iter().take(FITTED_KINDS) {
-                let start = Adjustable { faults: kinds[kind], ..self.drive };
-                let polished = polish_to_choose(objective, &start, &self.unknowns, self.priors);
-                let least = best.as_ref().map_or(self.cost, |best| best.cost);
-                if polished.cost < least {
-                    best = Some(polished);
-                }
-            }
-        }
-        if let Some(best) = best {
-            (self.drive, self.cost) = (best.drive, best.cost);
+        let kinds = |trial: &FaultTrial| trial.fault.kinds(&self.drive.faults, objective.peak_current());
+        let kinds: Vec<Faults> = taken.iter().flat_map(kinds).collect();
+        let polished = parallel::map(&kinds, |faults| {
+            polish_to_choose(objective, &Adjustable { faults: *faults, ..self.drive }, &self.unknowns, self.priors)
+        });
+        let best = polished.into_iter().min_by(|one, other| one.cost.total_cmp(&other.cost)).filter(|best| best.cost < self.cost);
+        if let Some(Polished { drive, cost, .. }) = best {
+            (self.drive, self.cost) = (drive, cost);
         }
     }
 
@@ -242,9 +232,6 @@ impl FaultSearch<'_> {
         trials.into_iter().map(|(trial, _)| trial).collect()
     }
 }
-
-/// Kinds of a fault that are fitted again after another fault was found: the best as they stand.
-const FITTED_KINDS: usize = 2;
 
 /// Starts of a fault that are fitted: the most promising of all.
 const FITTED_STARTS: usize = 2;
