@@ -74,8 +74,17 @@ pub(crate) struct FaultKinds {
 impl FaultKinds {
     /// All kinds at once.
     #[cfg(test)]
-    pub(crate) const ALL: Self =
-        Self { sensors: true, delay: true, filter: true, voltages: true, loss: LossKinds { edges: true, lasting: true }, phase: true, beside: true, flux: true, observer: true };
+    pub(crate) const ALL: Self = Self {
+        sensors: true,
+        delay: true,
+        filter: true,
+        voltages: true,
+        loss: LossKinds { edges: true, lasting: true },
+        phase: true,
+        beside: true,
+        flux: true,
+        observer: true,
+    };
 
     pub(crate) fn of(faults: &Faults) -> Self {
         let none = Faults::default();
@@ -220,7 +229,8 @@ impl<V: Number> Acting<V> {
     /// nothing were lost, A; all in the frame of its magnet. `per_henry` are its inverse inductances.
     #[inline(always)]
     pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
-        let [u, start, end] = [self.into_logged_frame(commanded, place), self.into_logged_frame(start, place), self.into_logged_frame(end, place)];
+        let [u, start, end] =
+            [self.into_logged_frame(commanded, place), self.into_logged_frame(start, place), self.into_logged_frame(end, place)];
         let lost = if self.kinds.phase {
             // In a stator that is turned by the phase's angle.
             let [cos, sin] = self.phase;
@@ -232,12 +242,14 @@ impl<V: Number> Acting<V> {
         self.into_magnets_frame(lost, place)
     }
 
+    /// Of a vector in the frame of the logged angle.
     #[inline(always)]
     fn into_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;
         self.undelayed(turned(vector, cos, sin), place.omega_e, false)
     }
 
+    /// Of a vector in the frame of the magnet.
     #[inline(always)]
     fn into_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;

@@ -1,7 +1,7 @@
 //! Angle delay: the drive's electrical angle is late by a fixed time, as of a resolver converter or a position that is sampled early. It
 //! is then too small by `omega_e` times that time: voltages and currents are written in a frame that lags behind the magnet's.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, present_state, no_kinds};
+use super::description::{AngleNeed, Description, Names, NumberDescription, no_kinds, present_state};
 use crate::lanes::Number;
 
 /// An angle that is read late.

@@ -3,7 +3,7 @@
 //! Voltages and currents are then written in a frame that leads the magnet's by that angle: both are turned forward by it to stand in the
 //! magnet's frame.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state, no_kinds};
+use super::description::{AngleNeed, Description, Names, NumberDescription, no_kinds, one, present_state};
 
 /// An angle that is read wrongly.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -4,7 +4,7 @@
 //! acts like a smaller impedance. Three sensors have any `s`. Where only two phases have a sensor and the third current is
 //! their negative sum, one number is all that there is, the gain of one over that of the other; it turns the current too.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state, no_kinds};
+use super::description::{AngleNeed, Description, Names, NumberDescription, no_kinds, one, present_state};
 use crate::{
     frames::{AlphaBeta, Turn},
     lanes::Number,

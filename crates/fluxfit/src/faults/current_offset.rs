@@ -1,7 +1,7 @@
 //! Current sensor offset: what the current sensors read at zero. It is a constant vector in the stator's frame, so it turns in the
 //! rotor's.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, peak_current, present_state, no_kinds};
+use super::description::{AngleNeed, Description, Names, NumberDescription, no_kinds, peak_current, present_state};
 use crate::{
     frames::{AlphaBeta, Turn},
     lanes::Number,

@@ -140,9 +140,7 @@ pub(super) static WITHOUT_ANGLE: Description<DeadTime> = Description {
     angle: AngleNeed::OnlyTraced,
     alters_measured_current: false,
     numbers: &[VOLTAGE, WIDTH, PHASE],
-    starts: |state, peak| {
-        PHASES.iter().flat_map(|phase| starts(&DeadTime { phase: SIXTH * phase, ..*state }, peak)).collect()
-    },
+    starts: |state, peak| PHASES.iter().flat_map(|phase| starts(&DeadTime { phase: SIXTH * phase, ..*state }, peak)).collect(),
     kinds,
     is_physical: |state, _, _| state.takes_voltage(),
 };

@@ -5,7 +5,7 @@
 //! prediction problems", Journal of Basic Engineering 82, 1960, doi:10.1115/1.3662552; the gain is an unknown of the fit, as in L. Ljung,
 //! System Identification, 2nd edition, 1999, section 4.3 (innovations form).
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, one, present_state, no_kinds};
+use super::description::{AngleNeed, Description, Names, NumberDescription, no_kinds, one, present_state};
 use crate::{frames::Dq, lanes::Number};
 
 /// The observer of a disturbed motor.

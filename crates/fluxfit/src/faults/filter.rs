@@ -13,7 +13,7 @@
 
 use super::{
     Place,
-    description::{AngleNeed, Description, Names, NumberDescription, one, no_kinds},
+    description::{AngleNeed, Description, Names, NumberDescription, no_kinds, one},
 };
 use crate::{
     frames::{Turn, turned},

@@ -19,7 +19,7 @@ pub(crate) struct Place {
     pub(crate) acceleration: f64,
     /// By which the voltage would be turned further if the speed that advanced its angle lagged by a second, rad.
     pub(crate) advance_per_lag: f64,
-    /// One over the DC voltage, 1/V; zero where it is not logged.
+    /// One over the DC voltage, 1/V.
     pub(crate) per_bus: f64,
     /// Its time within the log: from minus one half at the first row to plus one half at the last.
     pub(crate) time: f64,

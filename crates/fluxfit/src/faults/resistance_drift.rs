@@ -2,7 +2,7 @@
 
 use super::{
     Place,
-    description::{AngleNeed, Description, Names, NumberDescription, present_state, no_kinds},
+    description::{AngleNeed, Description, Names, NumberDescription, no_kinds, present_state},
 };
 use crate::lanes::Number;
 

@@ -7,7 +7,7 @@
 //! The simplest flux beyond the linear one that is odd along its own axis, and whose cross term belongs to one magnetic energy:
 //! `d psi_d / d i_q = d psi_q / d i_d = 2 c i_q`. No fault of the drive but of the model of its motor; it is found like one.
 
-use super::description::{AngleNeed, Description, Names, NumberDescription, present_state, no_kinds};
+use super::description::{AngleNeed, Description, Names, NumberDescription, no_kinds, present_state};
 use crate::{frames::Dq, lanes::Number, motor::PARAMETERS};
 
 /// Coefficients of saturation, H/A. Iron that saturates makes them negative.

@@ -53,7 +53,21 @@ pub(super) struct SimulatedSegment {
     pub(super) log_segment: Option<usize>,
     /// Whether the first vector is unknown, because the voltages are centred.
     pub(super) alternates: bool,
-    pub(super) per_bus: f64,
+    /// One over the DC voltage, 1/V.
+    per_bus: f64,
+}
+
+/// The part of the DC voltage that a drive takes at most, where that is not logged: some voltage is left for its current loop.
+const USED_PART: f64 = 0.8;
+
+/// The DC voltage, V: its mean, or what the largest vector of these rows asks for; infinite where there is none. Only the ripple's second
+/// order depends on it.
+fn bus_voltage(log: &Log, rows: &Range<usize>) -> f64 {
+    let columns = log.columns();
+    let largest = || rows.clone().map(|row| columns.ud[row].hypot(columns.uq[row])).fold(0.0, f64::max);
+    let mean = |u_dc: &Vec<f64>| u_dc[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+    let bus = columns.u_dc.as_ref().map_or_else(|| 3.0_f64.sqrt() * largest() / USED_PART, mean);
+    if bus > 0.0 { bus } else { f64::INFINITY }
 }
 
 impl SimulatedSegment {
@@ -73,12 +87,7 @@ impl SimulatedSegment {
             middles: periods.iter().map(|period| Turn::by(period.theta_e)).collect(),
             angle_known: angles.known,
             log_segment: log.segments().iter().position(|segment| segment.rows.contains(&rows.start)),
-            per_bus: {
-                let u = &columns.u_dc.as_ref().map(|u| u[rows.clone()].iter().sum::<f64>() / rows.len() as f64);
-                let most = rows.clone().map(|row| columns.ud[row].hypot(columns.uq[row])).fold(0.0, f64::max);
-                let bus = u.unwrap_or(3.0_f64.sqrt() * most / 0.8);
-                if bus > 0.0 { 1.0 / bus } else { 0.0 }
-            },
+            per_bus: bus_voltage(log, &rows).recip(),
             alternates: timing == VoltageTiming::Centered,
             rows_of_periods: Vec::new(),
             rows,

@@ -266,6 +266,7 @@ struct FaultyBlock<'a, 'b, V> {
     segment: &'a SimulatedSegment,
     first: usize,
     transitions: &'a [TransitionLanes<V>],
+    /// Inverse inductances, 1/H.
     per_henry: [V; 2],
     state: &'a mut State<V>,
     into: &'a mut Into<'b, V>,

@@ -64,10 +64,8 @@ impl<V: Number> SwitchedLoss<V> {
         // The rotor turns under a voltage that stands still: the way from sample to sample is bent.
         let turn = zero.constant(place.omega_e * place.length);
         let pushed = half * turn * zero.constant(place.length);
-        let bend = [
-            half * turn * turn * start[0] - pushed * per_henry[0] * u[1],
-            half * turn * turn * start[1] + pushed * per_henry[1] * u[0],
-        ];
+        let bend =
+            [half * turn * turn * start[0] - pushed * per_henry[0] * u[1], half * turn * turn * start[1] + pushed * per_henry[1] * u[0]];
         let bend = inverse_clarke(place.middle.forward(bend));
         let (start, end) = (inverse_clarke(place.start.forward(start)), inverse_clarke(place.end.forward(end)));
         let v = modulated(inverse_clarke(place.middle.forward(u)));
