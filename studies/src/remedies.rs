@@ -155,7 +155,7 @@ fn result(case: &Case, after: &Answer, parameter: Parameter) -> After {
 fn promised(remedy: &Remedy) -> Option<f64> {
     match remedy {
         Remedy::Measure(promised) => Some(promised.half_width),
-        Remedy::HoldLonger { .. } => Some(0.05),
+        Remedy::HoldLonger { half_width, .. } => Some(*half_width),
         _ => None,
     }
 }

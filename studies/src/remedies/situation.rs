@@ -8,7 +8,7 @@ use crate::{drives::course::Course, rated::Rated};
 use fluxfit::motor::Motor;
 use fluxfit_drive::{
     Scenario,
-    scenario::{Adc, Control, Harmonics, Inverter, LoggedRows, Logging, Mechanics, Schedule, Sensors, SimulatedMotor, Update},
+    scenario::{Adc, Control, FilterFrame, Harmonics, Inverter, LoggedRows, Logging, Mechanics, Schedule, Sensors, SimulatedMotor, Update},
     schedule::{Profile, Ramp},
 };
 use std::f64::consts::TAU;
@@ -170,8 +170,8 @@ impl Wrong {
             NoDeadTime => inverter.dead_time = 0.0,
             NoNoise => (sensors.current_noise, sensors.adc) = (0.0, None),
             NoAngle => (logging.theta_e, logging.u_dc) = (false, false),
-            CurrentFilter => logging.current_filter = filter(FILTER),
-            VoltageFilter => logging.voltage_filter = filter(FILTER),
+            CurrentFilter => (logging.filter_frame, logging.current_filter) = (FilterFrame::Dq, filter(FILTER)),
+            VoltageFilter => (logging.filter_frame, logging.voltage_filter) = (FilterFrame::Dq, filter(FILTER)),
             SpeedFilter => logging.speed_filter = filter(SPEED_FILTER),
             Every(_) => {}
             MeanOf(_) => logging.rows = LoggedRows::Mean,

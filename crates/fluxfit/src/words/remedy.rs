@@ -26,7 +26,10 @@ impl Display for Remedy {
                     Some(Also::AndSecondPoint) => write!(f, ", and one at a clearly different speed and load"),
                 }
             }
-            Self::HoldLonger { times, or } => write!(f, "hold each operating point about {times:.0} times as long, or {or}"),
+            Self::HoldLonger { times, parameter, half_width, or } => {
+                let (symbol, width) = (parameter.symbol(), percent(*half_width));
+                write!(f, "hold each operating point about {times:.0} times as long: {symbol} to about ±{width}; or {or}")
+            }
             Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
             Self::CompensateDeadTime => {

@@ -13,12 +13,15 @@
 //! The first proposal, in the order of how easy they are at the bench, that would make the parameter identified is chosen; else
 //! the best.
 
-use super::super::{
-    fit::finding::Bench,
-    judge::{
-        reason::SAME,
-        verdict::{IDENTIFIED, WEAK},
+use super::{
+    super::{
+        fit::finding::Bench,
+        judge::{
+            reason::SAME,
+            verdict::{IDENTIFIED, WEAK},
+        },
     },
+    trial::Trials,
 };
 use crate::{frames::Dq, motor::Parameter};
 use nalgebra::{Matrix4, Vector4};
@@ -72,7 +75,13 @@ pub struct Promised {
 pub(super) const STEP: f64 = 0.2;
 
 /// Lengths of a stretch that are quickly measured, s.
-const LENGTHS: [f64; 5] = [0.2, 0.5, 1.0, 2.0, 5.0];
+const LENGTHS: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0];
+
+/// Most measurements that are tried for a parameter.
+const MOST_TRIED: usize = 3;
+
+/// What leaves more than this part of the interval that there is now is not worth proposing.
+const WORTH: f64 = 0.5;
 
 /// Fewest rows of a stretch that is to be found as one.
 const MIN_ROWS: f64 = 50.0;
@@ -81,7 +90,7 @@ const MIN_ROWS: f64 = 50.0;
 const MULTIMETER: f64 = 0.01;
 
 /// Half a 95 % interval in standard deviations.
-const HALF_WIDTH: f64 = 1.96;
+pub(super) const HALF_WIDTH: f64 = 1.96;
 
 /// A measurement that is considered, with the currents (A) and speed (electrical rad/s) of a stretch.
 enum Proposal {
@@ -90,20 +99,35 @@ enum Proposal {
 }
 
 /// What to measure for a parameter, and what it would bring; nothing, where nothing proposed would help.
-/// `of_gains`: what remains whatever is measured, as a standard error, SI.
-pub(super) fn best(bench: &Bench, of_gains: f64, parameter: Parameter) -> Option<Promised> {
+/// `of_gains`: what remains whatever is measured, as a standard error, SI; `now`: its half-width now, as a fraction.
+pub(super) fn best(trials: &mut Trials, of_gains: f64, now: f64, parameter: Parameter) -> Option<Promised> {
+    let mut best: Option<Promised> = None;
+    for estimated in promising(trials.bench, trials.longest(), of_gains, parameter).into_iter().take(MOST_TRIED) {
+        let Some(half_width) = trials.half_width(estimated.measurement, parameter) else { continue };
+        if best.is_none_or(|best| half_width < best.half_width) {
+            best = Some(Promised { half_width, ..estimated });
+        }
+        if half_width <= IDENTIFIED {
+            break;
+        }
+    }
+    best.filter(|best| best.half_width < (WORTH * now).min(WEAK))
+}
+
+/// What could be measured in at most so long, s, with what noise and accuracy alone would leave: what would make the parameter identified,
+/// the easiest first; then the rest, the best first.
+fn promising(bench: &Bench, longest: f64, of_gains: f64, parameter: Parameter) -> Vec<Promised> {
     let width = |covariance: &Matrix4<f64>| width(bench, covariance, of_gains, parameter);
-    let best = proposals(bench, parameter)
-        .iter()
-        .flat_map(|proposal| outcomes(bench, proposal, parameter, &width))
-        .filter(|promised| promised.half_width.is_finite())
-        .fold(None, |best: Option<Promised>, one| match best {
-            // An easier one that suffices stands; of those that do not, the better.
-            Some(best) if best.half_width <= IDENTIFIED || best.half_width <= one.half_width => Some(best),
-            _ => Some(one),
-        })?;
-    // What leaves more than half of what there is now, or no value at all, is not worth proposing.
-    (best.half_width < (0.5 * width(&bench.covariance)).min(WEAK)).then_some(best)
+    let best_of = |proposal: &Proposal| {
+        let outcomes = outcomes(bench, proposal, longest, parameter, &width);
+        let suffices = outcomes.iter().position(|promised| promised.half_width <= IDENTIFIED);
+        outcomes.get(suffices.unwrap_or(outcomes.len().saturating_sub(1))).copied()
+    };
+    let of_all: Vec<Promised> = proposals(bench, parameter).iter().filter_map(best_of).filter(|one| one.half_width.is_finite()).collect();
+    let (mut promising, mut rest): (Vec<_>, Vec<_>) = of_all.into_iter().partition(|one| one.half_width <= IDENTIFIED);
+    rest.sort_by(|one, other| one.half_width.total_cmp(&other.half_width));
+    promising.append(&mut rest);
+    promising
 }
 
 /// Relative half-width of a parameter's interval.
@@ -113,7 +137,13 @@ fn width(bench: &Bench, covariance: &Matrix4<f64>, of_gains: f64, parameter: Par
 }
 
 /// What a proposal makes of a parameter's interval, longer and longer.
-fn outcomes(bench: &Bench, proposal: &Proposal, parameter: Parameter, width: &impl Fn(&Matrix4<f64>) -> f64) -> Vec<Promised> {
+fn outcomes(
+    bench: &Bench,
+    proposal: &Proposal,
+    longest: f64,
+    parameter: Parameter,
+    width: &impl Fn(&Matrix4<f64>) -> f64,
+) -> Vec<Promised> {
     match proposal {
         Proposal::Multimeter => {
             let equation = Vector4::new(1.0, 0.0, 0.0, 0.0);
@@ -123,7 +153,7 @@ fn outcomes(bench: &Bench, proposal: &Proposal, parameter: Parameter, width: &im
             vec![Promised { measurement, parameter, half_width: width(&after) }]
         }
         Proposal::Hold { i, omega_e, place } => {
-            let lengths = LENGTHS.into_iter().filter(|length| length / bench.sample_period >= MIN_ROWS);
+            let lengths = LENGTHS.into_iter().filter(|length| *length <= longest && length / bench.sample_period >= MIN_ROWS);
             let promised = lengths.map(|seconds| Promised {
                 measurement: Measurement::Stretch { seconds, place: *place },
                 parameter,

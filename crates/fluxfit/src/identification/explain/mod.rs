@@ -6,5 +6,6 @@ pub(crate) mod judgement;
 pub(crate) mod measurement;
 pub(crate) mod remedy;
 pub(crate) mod temperature;
+pub(crate) mod trial;
 pub(crate) mod unseen;
 pub(crate) mod warning;
