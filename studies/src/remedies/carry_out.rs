@@ -95,7 +95,10 @@ impl Case {
             }
             // The simulated bench is at rest; the other half of the advice is left.
             Remedy::RemoveDisturbances => {
-                case.hold(step(0.5 * LARGER_STEP * at.magnitude()), omega_e, HOLD);
+                case.hold(at, omega_e, HOLD);
+                case.hold(step(LARGER_STEP * at.magnitude()), omega_e, HOLD);
+                case.hold(Dq { q: 0.5 * at.q, ..at }, omega_e, HOLD);
+                case.hold(at, 0.5 * omega_e, HOLD);
                 case.request.model = Some(Model::Steady);
             }
             Remedy::LogAngle if !self.scenario.logging.theta_e => case.scenario.logging.theta_e = true,

@@ -41,8 +41,8 @@ impl Display for Remedy {
             ),
             Self::RemoveDisturbances => write!(
                 f,
-                "log with the test bench at rest (no torque ripple, no supply ripple), or add a stretch held still and identify from it \
-                 with the steady model"
+                "log with the test bench at rest (no torque ripple, no supply ripple), or add stretches held still at two loads, two values \
+                 of i_d and two speeds, and identify with the steady model"
             ),
             Self::CalibrateSensors => write!(f, "calibrate the current sensors"),
             Self::CalibrateBusVoltage => write!(f, "calibrate the measurement of the DC voltage"),

@@ -242,3 +242,105 @@ fn times(log: &Log) -> Option<TimeWindow> {
     let t = &log.columns().t;
     Some(TimeWindow { from: *t.first()?, to: *t.last()? })
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::faults::{angle_offset::AngleOffset, dead_time::DeadTime};
+    use std::cell::RefCell;
+
+    pub(crate) const ROWS: usize = 200;
+
+    const MOTOR: Motor = Motor { rs: 0.5, ld: 4e-3, lq: 7e-3, psi_f: 0.1 };
+    const OMEGA: f64 = 300.0;
+
+    /// Of a perfect drive.
+    pub(crate) fn none() -> Losses {
+        Losses { faults: Faults::default(), along_current: 0.0, timing: None }
+    }
+
+    /// A motor held at a current and speed, with an angle.
+    pub(crate) fn held(motor: &Motor, i: Dq, omega_e: f64) -> Log {
+        log_of(i, omega_e, |_| motor.steady_voltage(i, omega_e))
+    }
+
+    fn log_of(i: Dq, omega_e: f64, u: impl Fn(f64) -> Dq) -> Log {
+        let mut columns = Columns { theta_e: Some(Vec::new()), ..Columns::default() };
+        for row in 0..ROWS {
+            let t = row as f64 * 1e-4;
+            let u = u(omega_e * t);
+            columns.t.push(t);
+            columns.ud.push(u.d);
+            columns.uq.push(u.q);
+            columns.id.push(i.d);
+            columns.iq.push(i.q);
+            columns.omega_e.push(omega_e);
+            columns.theta_e.get_or_insert_default().push(omega_e * t);
+        }
+        Log::new(columns).unwrap()
+    }
+
+    fn bench() -> Bench {
+        let held = vec![(Dq { d: 0.0, q: 10.0 }, OMEGA)];
+        let covariance = nalgebra::Matrix4::identity();
+        Bench { motor: MOTOR, covariance, held, row_variance: 0.0, sample_period: 1e-4, voltage: 40.0, voltage_accuracy: 0.0 }
+    }
+
+    /// The log that is identified after 0.01 s at a place.
+    fn tried(log: &Log, losses: Losses, place: Place) -> Log {
+        let seen = RefCell::new(None);
+        let identify = |log: &Log, _: &Request| {
+            *seen.borrow_mut() = Some(log.clone());
+            Some([0.1; PARAMETERS])
+        };
+        let (request, bench) = (Request::default(), bench());
+        let points = [OperatingPoint::measure(log, 0..ROWS, None)];
+        let mut trials = Trials::new((log, &request), &bench, &points, losses, &identify);
+        let measurement = Measurement::Stretch { seconds: 0.01, place };
+        assert_eq!(trials.half_width(measurement, Parameter::Ld), Some(0.1));
+        seen.into_inner().unwrap()
+    }
+
+    /// The rows that were added are what the motor's own equations, and what is lost beside them, say there.
+    fn assert_added(log: &Log, i: Dq, omega_e: f64, u: impl Fn(f64) -> Dq) {
+        let columns = log.columns();
+        assert_eq!((log.rows(), log.segments().len()), (ROWS + 100, 2));
+        for row in ROWS..ROWS + 100 {
+            let expected = u(columns.theta_e.as_ref().unwrap()[row]);
+            assert!((columns.ud[row] - expected.d).hypot(columns.uq[row] - expected.q) < 1e-9, "{row}: {expected:?}");
+            assert!((columns.id[row] - i.d).hypot(columns.iq[row] - i.q) < 1e-12 && columns.omega_e[row] == omega_e, "{row}");
+        }
+    }
+
+    #[test]
+    fn a_moved_stretch_obeys_the_motors_equations() {
+        let log = held(&MOTOR, Dq { d: 0.0, q: 10.0 }, OMEGA);
+        for (place, i, omega_e) in [
+            (Place::Id(-2.0), Dq { d: -2.0, q: 10.0 }, OMEGA),
+            (Place::HalfLoad { iq: 5.0 }, Dq { d: 0.0, q: 5.0 }, OMEGA),
+            (Place::HalfSpeed, Dq { d: 0.0, q: 10.0 }, 0.5 * OMEGA),
+        ] {
+            assert_added(&tried(&log, none(), place), i, omega_e, |_| MOTOR.steady_voltage(i, omega_e));
+        }
+    }
+
+    /// Dead time of 2 V a phase, all of it from the least current on, and an angle that is read 0.1 rad too large: the motor's own frame lies
+    /// back by that.
+    #[test]
+    fn a_moved_stretch_has_the_faults_of_the_log() {
+        let voltage = |i: Dq, theta_e: f64| {
+            let (sin, cos) = 0.1_f64.sin_cos();
+            let in_motor = Dq { d: i.d * cos - i.q * sin, q: i.q * cos + i.d * sin };
+            let u = MOTOR.steady_voltage(in_motor, OMEGA);
+            let phases = i.to_alpha_beta(theta_e).to_abc();
+            let loss = Abc { a: 2.0 * phases.a.signum(), b: 2.0 * phases.b.signum(), c: 2.0 * phases.c.signum() };
+            let loss = loss.to_alpha_beta().to_dq(theta_e);
+            Dq { d: u.d * cos + u.q * sin + loss.d, q: u.q * cos - u.d * sin + loss.q }
+        };
+        let (from, to) = (Dq { d: 0.0, q: 10.0 }, Dq { d: -3.0, q: 10.0 });
+        let log = log_of(from, OMEGA, |theta_e| voltage(from, theta_e));
+        let dead_time = DeadTime { voltage: 2.0, ..DeadTime::default() };
+        let losses = Losses { faults: Faults { dead_time, angle_offset: AngleOffset { angle: 0.1 }, ..Faults::default() }, ..none() };
+        assert_added(&tried(&log, losses, Place::Id(-3.0)), to, OMEGA, |theta_e| voltage(to, theta_e));
+    }
+}
