@@ -1,7 +1,7 @@
 //! Remedies carried out on the simulator: how many reach the width that they promise, as tables.
 //!
-//! `remedies [judged | motors | drawn [LOGS]] [--list]`: the judged situations of the bicycle's motor, of a dozen others, or drawn logs, 300
-//! unless told otherwise; without a word all of them. `--list` adds a line for each remedy.
+//! `remedies [judged | motors | drawn [LOGS]] [--list]`: the judged situations of the bicycle's motor, of a dozen others, or drawn logs,
+//! 300 unless told otherwise; without a word all of them. `--list` writes a line for each remedy, as they come.
 // Tables on standard output are what this program is for.
 #![allow(clippy::print_stdout)]
 
@@ -18,6 +18,9 @@ use std::error::Error;
 
 /// Drawn logs unless told otherwise.
 const LOGS: u64 = 300;
+
+/// Logs between two writings of the list.
+const SOME: usize = 20;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -36,11 +39,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             "drawn" => ("Drawn logs", drawn(logs, &typical())),
             other => return Err(format!("{other} is no kind of logs; give judged, motors or drawn").into()),
         };
-        let carried = survey(&cases);
-        println!("## {title}: {} logs\n\n{}", cases.len(), table(&carried));
-        if lists {
-            println!("{}", list(&carried));
+        let mut carried = Vec::new();
+        for some in cases.chunks(SOME) {
+            let of_some = survey(some);
+            if lists {
+                print!("{}", list(&of_some));
+            }
+            carried.extend(of_some);
         }
+        println!("## {title}: {} logs\n\n{}", cases.len(), table(&carried));
     }
     Ok(())
 }

@@ -56,7 +56,7 @@ pub fn table(carried: &[Carried]) -> String {
     text
 }
 
-/// A line for each remedy.
+/// A line for each remedy: log, parameter, half-width before, promised, reached, error, remedy, why no better.
 pub fn list(carried: &[Carried]) -> String {
     let mut text =
         "| log | | before, ±% | promised | reached | error | remedy | why no better |\n|---|---|--:|--:|--:|--:|---|---|\n".to_owned();

@@ -8,7 +8,6 @@ use super::{
             verdict::{Judged, Verdict},
         },
     },
-    measurement,
     remedy::{self, Remedy},
     trial::Trials,
 };
@@ -56,7 +55,7 @@ pub(crate) fn explained(judged: [Judged; PARAMETERS], finding: &Finding, mut tri
         let parameter = source.parameter;
         let of_gains = finding.uncertainty.parameters[parameter as usize].systematic.common_gains();
         let now = if source.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { source.relative_half_width() };
-        let measure = || trials.as_mut().and_then(|trials| measurement::best(trials, of_gains, now, parameter));
+        let measure = || trials.as_mut().and_then(|trials| trials.best(of_gains, now, parameter));
         source.reason.as_ref().and_then(|reason| remedy::of(reason, parameter, finding, measure))
     };
     let remedies: Vec<Option<Remedy>> = judged.iter().map(&mut remedy).collect();

@@ -8,7 +8,8 @@ use super::{
             verdict::IDENTIFIED,
         },
     },
-    measurement::{HALF_WIDTH, Promised, STEP},
+    measurement::Promised,
+    promising::{HALF_WIDTH, STEP},
 };
 use crate::{
     motor::{Motor, Parameter},

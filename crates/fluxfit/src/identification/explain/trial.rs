@@ -1,16 +1,18 @@
 //! Trying a measurement before it is promised: the log with what the measurement would add is identified as the log itself was.
 //!
-//! So the promise has the misfit, the terms and the doubts that are left after it. A prior is given with the value that came out. A stretch is
-//! made of rows that the log has: those of the operating point of largest current, with their noise and ripple, moved to other currents or
-//! another speed. At the same speed the equations of the motor are linear, so that such rows are as good a solution as those that were
+//! So the promise has the misfit, the terms and the doubts that are left after it. A prior is given with the value that came out. A stretch
+//! is made of rows that the log has: those of the operating point of largest current, with their noise and ripple, moved to other currents
+//! or another speed. At the same speed the equations of the motor are linear, so that such rows are as good a solution as those that were
 //! measured; what dead time takes is moved with the currents.
 
 use super::{
     super::{
         fit::finding::Bench,
+        judge::verdict::{IDENTIFIED, WEAK},
         request::{Known, Request},
     },
-    measurement::{Measurement, Place},
+    measurement::{Measurement, Place, Promised},
+    promising::promising,
 };
 use crate::{
     faults::Faults,
@@ -24,6 +26,12 @@ use crate::{
     },
 };
 use std::f64::consts::FRAC_PI_4;
+
+/// Most measurements that are tried for a parameter.
+const MOST_TRIED: usize = 3;
+
+/// What leaves more than this part of the interval that there is now is not worth proposing.
+const WORTH: f64 = 0.5;
 
 /// Most rows of a log that is identified again: twice the time of an answer that takes a second.
 const MOST_ROWS: usize = 100_000;
@@ -67,6 +75,23 @@ impl<'a> Trials<'a> {
         identify: &'a dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]>,
     ) -> Self {
         Self { log, request, bench, points, losses, identify, done: Vec::new() }
+    }
+
+    /// What to measure for a parameter, and what it would bring; nothing, where nothing proposed would help. Of what makes the parameter
+    /// identified, the easiest; else the best.
+    /// `of_gains`: what remains whatever is measured, as a standard error, SI; `now`: its half-width now, as a fraction.
+    pub(super) fn best(&mut self, of_gains: f64, now: f64, parameter: Parameter) -> Option<Promised> {
+        let mut best: Option<Promised> = None;
+        for estimated in promising(self.bench, self.longest(), of_gains, parameter).into_iter().take(MOST_TRIED) {
+            let Some(half_width) = self.half_width(estimated.measurement, parameter) else { continue };
+            if best.is_none_or(|best| half_width < best.half_width) {
+                best = Some(Promised { half_width, ..estimated });
+            }
+            if half_width <= IDENTIFIED {
+                break;
+            }
+        }
+        best.filter(|best| best.half_width < (WORTH * now).min(WEAK))
     }
 
     /// The longest stretch that can be tried, s. Beside a longer one the log's own operating points would count as pauses.
@@ -324,8 +349,8 @@ pub(super) mod tests {
         }
     }
 
-    /// Dead time of 2 V a phase, all of it from the least current on, and an angle that is read 0.1 rad too large: the motor's own frame lies
-    /// back by that.
+    /// Dead time of 2 V a phase, all of it from the least current on, and an angle that is read 0.1 rad too large: the motor's own frame
+    /// lies back by that.
     #[test]
     fn a_moved_stretch_has_the_faults_of_the_log() {
         let voltage = |i: Dq, theta_e: f64| {
@@ -342,5 +367,28 @@ pub(super) mod tests {
         let dead_time = DeadTime { voltage: 2.0, ..DeadTime::default() };
         let losses = Losses { faults: Faults { dead_time, angle_offset: AngleOffset { angle: 0.1 }, ..Faults::default() }, ..none() };
         assert_added(&tried(&log, losses, Place::Id(-3.0)), to, OMEGA, |theta_e| voltage(to, theta_e));
+    }
+
+    /// By noise alone a multimeter would leave 0.2 % of psi_f. What is left when it is tried is promised; and if that is no half of what
+    /// there is, nothing is.
+    #[test]
+    fn what_is_promised_is_what_a_trial_leaves() {
+        let direction = nalgebra::Vector4::new(1.0, 0.0, 0.0, -8.0 / 400.0);
+        let motor = Motor { rs: 1.0, ld: 5e-3, lq: 10e-3, psi_f: 0.2 };
+        let held_at = vec![(Dq { d: 0.0, q: 8.0 }, 400.0)];
+        let bench = Bench { motor, covariance: direction * direction.transpose(), held: held_at, voltage_accuracy: 1e-6, ..bench() };
+        let log = held(&motor, Dq { d: 0.0, q: 8.0 }, 400.0);
+        let request = Request::default();
+        let tried = |log: &Log, request: &Request| {
+            let is_prior = request.known[0] == Known::Prior { value: 1.0, standard_error: 0.01 };
+            Some(if is_prior && log.rows() == ROWS { [0.02, 1.0, 1.0, 0.19] } else { [0.5; 4] })
+        };
+        let promised = |now: f64| {
+            let mut trials = Trials::new((&log, &request), &bench, &[], none(), &tried);
+            trials.best(0.0, now, Parameter::PsiF)
+        };
+        let measurement = Measurement::Resistance { accuracy: 0.01 };
+        assert_eq!(promised(0.5), Some(Promised { measurement, parameter: Parameter::PsiF, half_width: 0.19 }));
+        assert_eq!(promised(0.3), None);
     }
 }
