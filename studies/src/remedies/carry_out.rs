@@ -19,7 +19,7 @@ const MULTIMETER: f64 = 0.01;
 /// The i_d that is a larger step, as a part of the current.
 const LARGER_STEP: f64 = -0.4;
 /// Longest drive that is simulated, as samples: 5 s at 20 kHz are 100 000.
-const MOST_SAMPLES: f64 = 4e5;
+const MOST_SAMPLES: f64 = 1.2e5;
 
 /// A drive whose log is identified.
 #[derive(Debug, Clone, PartialEq)]
