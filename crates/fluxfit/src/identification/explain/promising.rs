@@ -24,8 +24,11 @@ use nalgebra::{Matrix4, Vector4};
 /// Share of the current that a step of i_d should have: the paper's -2 A of 10 A.
 pub(super) const STEP: f64 = 0.2;
 
-/// Lengths of a stretch that are quickly measured, s.
+/// Lengths of a stretch, s.
 const LENGTHS: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0];
+
+/// From this length on a stretch is quickly measured, s: a shorter one only where a longer one does not fit the log's own points.
+const QUICKLY: f64 = 0.2;
 
 /// Fewest rows of a stretch that is to be found as one.
 const MIN_ROWS: f64 = 50.0;
@@ -42,12 +45,12 @@ enum Proposal {
     Multimeter,
 }
 
-/// What could be measured in at most so long, s, with what noise and accuracy alone would leave: what would make the parameter identified,
+/// What could be measured, with stretches from so long to so long, s, and with what noise and accuracy alone would leave: what would make the parameter identified,
 /// the easiest first; then the rest, the best first.
-pub(super) fn promising(bench: &Bench, longest: f64, of_gains: f64, parameter: Parameter) -> Vec<Promised> {
+pub(super) fn promising(bench: &Bench, lengths: (f64, f64), of_gains: f64, parameter: Parameter) -> Vec<Promised> {
     let width = |covariance: &Matrix4<f64>| width(bench, covariance, of_gains, parameter);
     let best_of = |proposal: &Proposal| {
-        let outcomes = outcomes(bench, proposal, longest, parameter, &width);
+        let outcomes = outcomes(bench, proposal, lengths, parameter, &width);
         let suffices = outcomes.iter().position(|promised| promised.half_width <= IDENTIFIED);
         outcomes.get(suffices.unwrap_or(outcomes.len().saturating_sub(1))).copied()
     };
@@ -68,7 +71,7 @@ fn width(bench: &Bench, covariance: &Matrix4<f64>, of_gains: f64, parameter: Par
 fn outcomes(
     bench: &Bench,
     proposal: &Proposal,
-    longest: f64,
+    lengths: (f64, f64),
     parameter: Parameter,
     width: &impl Fn(&Matrix4<f64>) -> f64,
 ) -> Vec<Promised> {
@@ -81,8 +84,11 @@ fn outcomes(
             vec![Promised { measurement, parameter, half_width: width(&after) }]
         }
         Proposal::Hold { i, omega_e, place } => {
-            let lengths = LENGTHS.into_iter().filter(|length| *length <= longest && length / bench.sample_period >= MIN_ROWS);
-            let promised = lengths.map(|seconds| Promised {
+            let fits = |length: &f64| (lengths.0..=lengths.1).contains(length) && length / bench.sample_period >= MIN_ROWS;
+            let mut fitting: Vec<f64> = LENGTHS.into_iter().filter(fits).collect();
+            let short = fitting.iter().take_while(|length| **length < QUICKLY).count();
+            fitting.drain(..short.min(fitting.len().saturating_sub(1)));
+            let promised = fitting.into_iter().map(|seconds| Promised {
                 measurement: Measurement::Stretch { seconds, place: *place },
                 parameter,
                 half_width: width(&after_hold(bench, *i, *omega_e, seconds)),
@@ -147,14 +153,14 @@ mod tests {
     #[test]
     fn the_estimate_is_what_the_equations_say() {
         let bench = bench(Matrix4::from_diagonal(&Vector4::new(0.0, 1.0, 0.0, 0.0)), 10.0, 1.0, 0.0);
-        let promising = promising(&bench, 0.1, 0.0, Parameter::Ld);
+        let promising = promising(&bench, (0.0, 0.01), 0.0, Parameter::Ld);
         assert_eq!(promising[0].measurement, Measurement::Stretch { seconds: 0.01, place: Place::Id(-2.0) });
         assert!((promising[0].half_width - 0.049).abs() < 0.0005, "{promising:?}");
         assert_eq!(promising[0].to_string(), "add 0.01 s at i_d = -2 A, same speed: L_d to about ±4.9 %");
         let multimeter = promising.iter().find(|one| matches!(one.measurement, Measurement::Resistance { .. })).unwrap();
         assert!(multimeter.half_width > 1.0, "{promising:?}");
         // A stretch must not be so long that it makes the log's own operating points look like pauses.
-        let lasts = |one: &Promised| matches!(one.measurement, Measurement::Stretch { seconds, .. } if seconds > 0.1);
+        let lasts = |one: &Promised| matches!(one.measurement, Measurement::Stretch { seconds, .. } if seconds > 0.01);
         assert!(!promising.iter().any(lasts), "{promising:?}");
     }
 
@@ -163,7 +169,7 @@ mod tests {
         // One point at i_d = 0: R_s 8 A + 400 rad/s psi_f is known, neither of them is.
         let direction = Vector4::new(1.0, 0.0, 0.0, -8.0 / 400.0);
         let bench = bench(direction * direction.transpose(), 8.0, 1e-6, 1e-6);
-        let first = promising(&bench, 1.0, 0.0, Parameter::PsiF)[0];
+        let first = promising(&bench, (0.0, 1.0), 0.0, Parameter::PsiF)[0];
         assert_eq!(first.measurement, Measurement::Resistance { accuracy: 0.01 });
         // 1 % of 1 ohm moves psi_f by 8/400 of 10 mohm, 0.2 mWb of 200: 0.1 %, and 1.96 times that.
         assert!((first.half_width - 0.00196).abs() < 1e-5, "{first:?}");

@@ -82,7 +82,7 @@ impl<'a> Trials<'a> {
     /// `of_gains`: what remains whatever is measured, as a standard error, SI; `now`: its half-width now, as a fraction.
     pub(super) fn best(&mut self, of_gains: f64, now: f64, parameter: Parameter) -> Option<Promised> {
         let mut best: Option<Promised> = None;
-        for estimated in promising(self.bench, self.longest(), of_gains, parameter).into_iter().take(MOST_TRIED) {
+        for estimated in promising(self.bench, self.lengths(), of_gains, parameter).into_iter().take(MOST_TRIED) {
             let Some(half_width) = self.half_width(estimated.measurement, parameter) else { continue };
             if best.is_none_or(|best| half_width < best.half_width) {
                 best = Some(Promised { half_width, ..estimated });
@@ -94,10 +94,11 @@ impl<'a> Trials<'a> {
         best.filter(|best| best.half_width < (WORTH * now).min(WEAK))
     }
 
-    /// The longest stretch that can be tried, s. Beside a longer one the log's own operating points would count as pauses.
-    pub(super) fn longest(&self) -> f64 {
-        let lengths = self.points.iter().map(|point| point.time.1 - point.time.0);
-        windows_beside(lengths.fold(f64::INFINITY, f64::min))
+    /// From which length to which a stretch fits the log's own operating points, s: a shorter one would count as a pause between them, and
+    /// beside a longer one they would.
+    fn lengths(&self) -> (f64, f64) {
+        let lengths = || self.points.iter().map(|point| point.time.1 - point.time.0);
+        (lengths().fold(0.0, f64::max) / LONGER, lengths().fold(f64::INFINITY, f64::min) * LONGER)
     }
 
     /// Half-width of a parameter after a measurement, as a fraction; `None` if it cannot be tried.
@@ -223,10 +224,6 @@ const GAP: f64 = 100.0;
 /// How many times longer than another window the longest may be, so that both are operating points.
 const LONGER: f64 = 4.0;
 
-fn windows_beside(shortest: f64) -> f64 {
-    if shortest.is_finite() { LONGER * shortest } else { 0.0 }
-}
-
 /// The rows of a point.
 fn rows_of(all: &Columns, at: &OperatingPoint) -> Columns {
     let of = |column: &Vec<f64>| column[at.rows.clone()].to_vec();
@@ -293,14 +290,16 @@ pub(super) mod tests {
         let mut columns = Columns { theta_e: Some(Vec::new()), ..Columns::default() };
         for row in 0..ROWS {
             let t = row as f64 * 1e-4;
-            let u = u(omega_e * t);
+            // No phase current is zero at the first row.
+            let theta_e = 0.1 + omega_e * t;
+            let u = u(theta_e);
             columns.t.push(t);
             columns.ud.push(u.d);
             columns.uq.push(u.q);
             columns.id.push(i.d);
             columns.iq.push(i.q);
             columns.omega_e.push(omega_e);
-            columns.theta_e.get_or_insert_default().push(omega_e * t);
+            columns.theta_e.get_or_insert_default().push(theta_e);
         }
         Log::new(columns).unwrap()
     }
