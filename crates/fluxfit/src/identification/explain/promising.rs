@@ -45,8 +45,8 @@ enum Proposal {
     Multimeter,
 }
 
-/// What could be measured, with stretches from so long to so long, s, and with what noise and accuracy alone would leave: what would make the parameter identified,
-/// the easiest first; then the rest, the best first.
+/// What could be measured, with stretches from so long to so long, s, and what noise and accuracy alone would leave after it: first what
+/// would make the parameter identified, the easiest first; then the rest, the best first.
 pub(super) fn promising(bench: &Bench, lengths: (f64, f64), of_gains: f64, parameter: Parameter) -> Vec<Promised> {
     let width = |covariance: &Matrix4<f64>| width(bench, covariance, of_gains, parameter);
     let best_of = |proposal: &Proposal| {
