@@ -108,7 +108,7 @@ impl Drawn {
         let speed = highest_speed(&rated);
         faults.iter().for_each(|fault| fault.put_into(&mut scenario, rated.current, speed, &mut draws));
         // After the duration is known.
-        scenario.schedule = course.schedule(scenario.duration, rated.current, speed / f64::from(rated.pole_pairs), &mut draws);
+        scenario.schedule = course.drawn(scenario.duration, rated.current, speed / f64::from(rated.pole_pairs), &mut draws);
         Some(Self { index, rated, course, faults, kind, scenario })
     }
 

@@ -4,3 +4,4 @@ pub mod coverage;
 pub mod drives;
 pub mod known;
 pub mod rated;
+pub mod remedies;

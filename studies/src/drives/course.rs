@@ -81,19 +81,23 @@ impl Course {
         }
     }
 
-    /// The course over a duration, s, with the largest current, A, and the full speed, mechanical rad/s.
-    pub(super) fn schedule(self, duration: f64, current: f64, speed: f64, draws: &mut Draws) -> Schedule {
+    /// The course over a duration, s, with the largest current, A, and the full speed, mechanical rad/s, both made smaller at random.
+    pub(super) fn drawn(self, duration: f64, current: f64, speed: f64, draws: &mut Draws) -> Schedule {
+        let current = current * between(draws, SMALLER);
+        self.schedule(duration, current, speed * between_decades(draws, SMALLER))
+    }
+
+    /// The course over a duration, s, with these for the largest current, A, and the full speed, mechanical rad/s.
+    pub fn schedule(self, duration: f64, current: f64, speed: f64) -> Schedule {
         let [id, iq, speeds] = self.levels();
         let ramps = |levels: Levels, scale: f64, over: f64| -> Vec<Ramp> {
             let over = |at: f64| if at == 0.0 { 0.0 } else { over * duration };
             levels.iter().map(|(at, to)| Ramp { at: at * duration, to: to * scale, over: over(*at) }).collect()
         };
-        let current = current * between(draws, SMALLER);
-        let scale = speed * between_decades(draws, SMALLER);
-        let mut speeds = ramps(speeds, scale, RUN_UP);
+        let mut speeds = ramps(speeds, speed, RUN_UP);
         if self == Self::Acceleration {
             let slow = speeds.first().map_or(0.0, |ramp| ramp.to);
-            speeds.push(Ramp { at: 0.1 * duration, to: scale, over: 0.4 * duration });
+            speeds.push(Ramp { at: 0.1 * duration, to: speed, over: 0.4 * duration });
             speeds.push(Ramp { at: 0.58 * duration, to: slow, over: 0.4 * duration });
         }
         Schedule {

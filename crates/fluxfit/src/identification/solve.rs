@@ -4,6 +4,7 @@ use super::{
     explain::{
         judgement::{Judgement, explained},
         temperature::AtTemperature,
+        trial::{Losses, Trials},
         unseen::{self, Counted, Unseen},
         warning::{self, Evidence, Warning},
     },
@@ -25,12 +26,12 @@ use super::{
         model::{self, Model, ModelChoice, ModelReason},
         search_box, stretches,
     },
-    progress::{Progress, Step},
+    progress::{Progress, Step, silent},
     request::Request,
 };
 use crate::{
     error::Error,
-    faults::Fault,
+    faults::{Fault, Faults},
     log::Log,
     motor::{PARAMETERS, Parameter},
     optimizer::Method,
@@ -91,25 +92,12 @@ impl Identification {
 /// the verdicts say so.
 pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<Identification, Error> {
     request.check()?;
-    let _ = progress(Step::OperatingPoints);
-    let steady = SteadyFit::of(log, request);
-    let model = model::choose(log, request.model);
-    let (steady, output) = match model.model {
-        Model::Steady => (Some(steady?), None),
-        Model::OutputError => {
-            log.refuse_short_circuit()?;
-            let steady = steady.ok();
-            let output = OutputFit::of(log, steady.as_ref(), request, progress)?;
-            (steady, Some(output))
-        }
-    };
-    let (model, mut output) = by_excitation(log, steady.as_ref(), output, model, request)?;
-    let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
-    let mut steady = steady;
-    // Only now: what all sensors share decides neither the model nor the value.
-    common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
+    let Fitted { model, steady, output, saturation } = fitted(log, request, progress)?;
     let finding = finding(steady.as_ref(), output.as_ref())?;
-    let parameters = explained(judge(finding, saturation.as_ref(), request, log.is_short_circuit()), finding);
+    let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
+    let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
+    let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), &half_widths);
+    let parameters = explained(judged, finding, Some(trials));
     let method = swarm::method(request, model.model);
     let search = method.map(|method| search(log, steady.as_ref(), output.as_ref(), method, request, progress)).transpose()?;
     let evidence = Evidence {
@@ -140,6 +128,58 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
         unseen,
         counted,
     })
+}
+
+/// What the fits come to.
+struct Fitted {
+    model: ModelChoice,
+    steady: Option<SteadyFit>,
+    output: Option<OutputFit>,
+    saturation: Option<SaturationFinding>,
+}
+
+/// Prepares and fits.
+fn fitted(log: &Log, request: &Request, progress: Progress) -> Result<Fitted, Error> {
+    let _ = progress(Step::OperatingPoints);
+    let steady = SteadyFit::of(log, request);
+    let model = model::choose(log, request.model);
+    let (steady, output) = match model.model {
+        Model::Steady => (Some(steady?), None),
+        Model::OutputError => {
+            log.refuse_short_circuit()?;
+            let steady = steady.ok();
+            let output = OutputFit::of(log, steady.as_ref(), request, progress)?;
+            (steady, Some(output))
+        }
+    };
+    let (model, mut output) = by_excitation(log, steady.as_ref(), output, model, request)?;
+    let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
+    let mut steady = steady;
+    // Only now: what all sensors share decides neither the model nor the value.
+    common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
+    Ok(Fitted { model, steady, output, saturation })
+}
+
+/// Half-widths of a log's parameters as fractions of their values, infinite where there is no value; nothing if it has no answer.
+fn half_widths(log: &Log, request: &Request) -> Option<[f64; PARAMETERS]> {
+    let Fitted { steady, output, saturation, .. } = fitted(log, request, &silent).ok()?;
+    let finding = finding(steady.as_ref(), output.as_ref()).ok()?;
+    let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
+    Some(judged.map(|one| if one.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { one.relative_half_width() }))
+}
+
+/// What stands between the log and its motor, by the model that answers.
+fn losses(steady: Option<&SteadyFit>, output: Option<&OutputFit>) -> Losses {
+    match output {
+        Some(fit) => {
+            let is_certain = fit.possible_timings().count() <= 1;
+            Losses { faults: fit.drive.faults, along_current: 0.0, timing: is_certain.then_some(fit.voltage_timing.value) }
+        }
+        None => {
+            let along_current = steady.and_then(|fit| fit.estimate.loss).map_or(0.0, |(volts, _)| volts);
+            Losses { faults: Faults::default(), along_current, timing: None }
+        }
+    }
 }
 
 /// The simulated currents' fit without what they leave open, or the operating points where those tell more and no model is stated.

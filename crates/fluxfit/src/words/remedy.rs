@@ -26,7 +26,10 @@ impl Display for Remedy {
                     Some(Also::AndSecondPoint) => write!(f, ", and one at a clearly different speed and load"),
                 }
             }
-            Self::HoldLonger { times, or } => write!(f, "hold each operating point about {times:.0} times as long, or {or}"),
+            Self::HoldLonger { times, parameter, half_width, or } => {
+                let (symbol, width) = (parameter.symbol(), percent(*half_width));
+                write!(f, "hold each operating point about {times:.0} times as long: {symbol} to about ±{width}; or {or}")
+            }
             Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
             Self::CompensateDeadTime => {
@@ -38,8 +41,8 @@ impl Display for Remedy {
             ),
             Self::RemoveDisturbances => write!(
                 f,
-                "log with the test bench at rest (no torque ripple, no supply ripple), or add a stretch held still and identify from it \
-                 with the steady model"
+                "log with the test bench at rest (no torque ripple, no supply ripple), or add stretches held still at two loads, two values \
+                 of i_d and two speeds, and identify with the steady model"
             ),
             Self::CalibrateSensors => write!(f, "calibrate the current sensors"),
             Self::CalibrateBusVoltage => write!(f, "calibrate the measurement of the DC voltage"),

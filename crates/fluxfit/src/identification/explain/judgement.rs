@@ -9,6 +9,7 @@ use super::{
         },
     },
     remedy::{self, Remedy},
+    trial::Trials,
 };
 use crate::motor::{PARAMETERS, Parameter};
 
@@ -43,17 +44,21 @@ impl Judgement {
     }
 }
 
-/// Adds the remedies.
-pub(crate) fn explained(judged: [Judged; PARAMETERS], finding: &Finding) -> [Judgement; PARAMETERS] {
-    let remedy = |one: &Judged| {
+/// Adds the remedies. Measurements are tried on the log before they are proposed, if there is one to try them on.
+pub(crate) fn explained(judged: [Judged; PARAMETERS], finding: &Finding, mut trials: Option<Trials>) -> [Judgement; PARAMETERS] {
+    let mut remedy = |one: &Judged| {
         // What is wrong with one parameter of a fit is to be mended for all of them.
         let source = match one.reason {
             Some(Reason::OtherNegative { parameter }) => &judged[parameter as usize],
             _ => one,
         };
-        source.reason.as_ref().and_then(|reason| remedy::of(reason, source.parameter, finding))
+        let parameter = source.parameter;
+        let of_gains = finding.uncertainty.parameters[parameter as usize].systematic.common_gains();
+        let now = if source.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { source.relative_half_width() };
+        let measure = || trials.as_mut().and_then(|trials| trials.best(of_gains, now, parameter));
+        source.reason.as_ref().and_then(|reason| remedy::of(reason, parameter, finding, measure))
     };
-    let remedies = judged.each_ref().map(remedy);
+    let remedies: Vec<Option<Remedy>> = judged.iter().map(&mut remedy).collect();
     let mut remedies = remedies.into_iter();
     judged.map(|Judged { parameter, raw, uncertainty, verdict, reason }| Judgement {
         parameter,

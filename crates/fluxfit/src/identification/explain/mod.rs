@@ -4,7 +4,9 @@
 pub(crate) mod conventions;
 pub(crate) mod judgement;
 pub(crate) mod measurement;
+mod promising;
 pub(crate) mod remedy;
 pub(crate) mod temperature;
+pub(crate) mod trial;
 pub(crate) mod unseen;
 pub(crate) mod warning;

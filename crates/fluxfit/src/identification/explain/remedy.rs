@@ -2,13 +2,14 @@
 
 use super::{
     super::{
-        fit::{finding::Finding, part::Part},
+        fit::{finding::Finding, output_errors::CORRELATED, part::Part},
         judge::{
             reason::{Common, Reason},
             verdict::IDENTIFIED,
         },
     },
-    measurement::{self, Promised, STEP},
+    measurement::Promised,
+    promising::{HALF_WIDTH, STEP},
 };
 use crate::{
     motor::{Motor, Parameter},
@@ -33,6 +34,10 @@ pub enum Remedy {
     HoldLonger {
         /// How many times as long as now.
         times: f64,
+        /// The parameter that it is for.
+        parameter: Parameter,
+        /// Half of the 95 % interval to expect, as a fraction of the value.
+        half_width: f64,
         /// The alternative, itself a remedy.
         or: Box<Remedy>,
     },
@@ -48,8 +53,8 @@ pub enum Remedy {
     CompensateDeadTime,
     /// Log what tells a recorder's lag: different loads at one speed, or rows without current.
     TellFrameLag,
-    /// Log without disturbances (torque ripple, supply ripple), or identify by the steady model from a stretch of constant currents and
-    /// speed.
+    /// Log without disturbances (torque ripple, supply ripple), or identify by the steady model from stretches of constant currents and
+    /// speed that differ in load, i_d and speed.
     RemoveDisturbances,
     /// Calibrate the current sensors.
     CalibrateSensors,
@@ -91,16 +96,18 @@ pub enum Also {
 /// Beyond this, longer windows are no remedy.
 const MUCH_LONGER: f64 = 100.0;
 
-/// What to do about a reason; nothing about a value that was given.
-pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding) -> Option<Remedy> {
-    let of_gains = finding.uncertainty.parameters[parameter as usize].systematic.common_gains();
-    let measure = || measurement::best(&finding.bench, of_gains, parameter).map(Remedy::Measure);
-    let or_stretch = |also: Option<Also>| measure().unwrap_or_else(|| Remedy::AddStretch { id: step(finding), also });
+/// Most of the interval of an identified parameter that may be no noise where longer windows are to help.
+const MOST_REST: f64 = 0.9;
+
+/// What to do about a reason; nothing about a value that was given. `measure`: what to measure, where that is worth it.
+pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measure: impl FnOnce() -> Option<Promised>) -> Option<Remedy> {
+    let measure = || measure().map(Remedy::Measure);
+    let or_stretch = |also: Option<Also>| Remedy::AddStretch { id: step(finding), also };
     Some(match reason {
         Reason::Given => return None,
-        Reason::IdZero { .. } | Reason::IdConstant => or_stretch(None),
-        Reason::OnePoint => or_stretch(Some(Also::OrSecondPoint)),
-        Reason::TooSimilar { .. } => or_stretch(Some(Also::AndSecondPoint)),
+        Reason::IdZero { .. } | Reason::IdConstant => measure().unwrap_or_else(|| or_stretch(None)),
+        Reason::OnePoint => measure().unwrap_or_else(|| or_stretch(Some(Also::OrSecondPoint))),
+        Reason::TooSimilar { .. } => measure().unwrap_or_else(|| or_stretch(Some(Also::AndSecondPoint))),
         Reason::ShortCircuit => Remedy::FixOne,
         Reason::Negative | Reason::OtherNegative { .. } => match lag_instead_of_sign(finding) {
             Some(lag) => Remedy::CheckFrame { lag },
@@ -108,29 +115,46 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding) -> Op
         },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
         Reason::DisturbedWithoutAngle => Remedy::LogAngle,
-        Reason::Wide { part, half_width } => narrower(*part, *half_width, || measure().unwrap_or(Remedy::SpreadPoints { parameter })),
+        Reason::Wide { part, .. } => narrower(*part, parameter, finding, measure),
     })
 }
 
 /// What makes a wide interval narrower; `measure` is what to measure for it.
-fn narrower(part: Part, half_width: f64, measure: impl Fn() -> Remedy) -> Remedy {
+fn narrower(part: Part, parameter: Parameter, finding: &Finding, measure: impl FnOnce() -> Option<Remedy>) -> Remedy {
     match part {
         Part::Noise => {
-            // A standard error falls with the root of the time.
-            let times = (half_width / IDENTIFIED).powi(2).ceil();
-            if times < MUCH_LONGER { Remedy::HoldLonger { times, or: Box::new(measure()) } } else { measure() }
+            let or = measure().unwrap_or(Remedy::SpreadPoints { parameter });
+            match longer(parameter, finding) {
+                Some((times, half_width)) => Remedy::HoldLonger { times, parameter, half_width, or: Box::new(or) },
+                None => or,
+            }
         }
-        Part::Accuracy | Part::Excitation => measure(),
+        Part::Accuracy | Part::Excitation => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Part::Timing => Remedy::StateVoltageTiming,
-        Part::DeadTime => Remedy::CompensateDeadTime,
+        Part::DeadTime => measure().unwrap_or(Remedy::CompensateDeadTime),
         Part::FrameLag => Remedy::TellFrameLag,
+        // What disturbs the motor would disturb it in a further stretch too.
         Part::ProcessNoise => Remedy::RemoveDisturbances,
         Part::Sensors | Part::CurrentGain => Remedy::CalibrateSensors,
         Part::BusVoltage => Remedy::CalibrateBusVoltage,
         Part::Saturation => Remedy::NarrowCurrents,
         Part::Misfit => Remedy::SimilarWindows,
-        Part::Prior => Remedy::SharperPrior,
+        Part::Prior => measure().unwrap_or(Remedy::SharperPrior),
     }
+}
+
+/// How many times as long the operating points are to be held for a parameter to be identified, and the half-width then, as a fraction.
+/// Noise falls with the root of the time, and the rest of the interval not at all. Nothing where residuals are not noise.
+fn longer(parameter: Parameter, finding: &Finding) -> Option<(f64, f64)> {
+    let uncertainty = &finding.uncertainty.parameters[parameter as usize];
+    let value = finding.motor.get(parameter).abs();
+    let (noise, rest) = (uncertainty.statistical, uncertainty.systematic.total());
+    let allowed = IDENTIFIED * value / HALF_WIDTH;
+    if finding.trust.correlation_of_neighbours > CORRELATED || rest > MOST_REST * allowed {
+        return None;
+    }
+    let times = (noise * noise / (allowed * allowed - rest * rest)).ceil();
+    (times < MUCH_LONGER).then(|| (times, HALF_WIDTH * (noise / times.sqrt()).hypot(rest) / value))
 }
 
 /// Longest lag, s, of voltages behind currents that is ordinary: two periods of a drive that controls at 10 kHz.
@@ -184,7 +208,7 @@ mod tests {
     #[test]
     fn a_sign_is_not_suspected_where_a_lag_explains_it() {
         let motor = Motor { rs: 0.03, ld: 0.0, lq: -100e-6, psi_f: 9e-3 };
-        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period));
+        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period), || None);
         let Some(Remedy::CheckFrame { lag }) = remedy(motor, 1e-3) else { panic!("a lag explains it") };
         assert!((lag / 27.8e-6 - 1.0).abs() < 0.01, "{lag}");
         let signs = Some(Remedy::CheckSigns { units: false });

@@ -61,6 +61,13 @@ pub(crate) struct Judged {
     pub(crate) reason: Option<Reason>,
 }
 
+impl Judged {
+    /// Half of the 95 % interval as a fraction of the number.
+    pub(crate) fn relative_half_width(&self) -> f64 {
+        self.uncertainty.half_width / self.raw.abs()
+    }
+}
+
 /// Judges every parameter of a finding; `is_short_circuit`: of a log without voltages.
 pub(crate) fn judge(
     finding: &Finding,

@@ -1,0 +1,393 @@
+//! Trying a measurement before it is promised: the log with what the measurement would add is identified as the log itself was.
+//!
+//! So the promise has the misfit, the terms and the doubts that are left after it. A prior is given with the value that came out. A stretch
+//! is made of rows that the log has: those of the operating point of largest current, with their noise and ripple, moved to other currents
+//! or another speed. At the same speed the equations of the motor are linear, so that such rows are as good a solution as those that were
+//! measured; what dead time takes is moved with the currents.
+
+use super::{
+    super::{
+        fit::finding::Bench,
+        judge::verdict::{IDENTIFIED, WEAK},
+        request::{Known, Request},
+    },
+    measurement::{Measurement, Place, Promised},
+    promising::promising,
+};
+use crate::{
+    faults::Faults,
+    frames::{Abc, Dq},
+    log::{Columns, Log},
+    motor::{Motor, PARAMETERS, Parameter},
+    objective::acting_voltage::VoltageTiming,
+    steady::{
+        OperatingPoint,
+        windows::{MIN_ROWS, TimeWindow},
+    },
+};
+use std::f64::consts::FRAC_PI_4;
+
+/// Most measurements that are tried for a parameter.
+const MOST_TRIED: usize = 3;
+
+/// What leaves more than this part of the interval that there is now is not worth proposing.
+const WORTH: f64 = 0.5;
+
+/// Most rows of a log that is identified again: twice the time of an answer that takes a second.
+const MOST_ROWS: usize = 100_000;
+
+/// Most identifications of one log, so that an answer takes a few times as long as without a remedy.
+const MOST_TRIALS: usize = 4;
+
+/// R_s of which nothing is known takes this part of the voltage along q: as much as there may be, so that a promise is not too good.
+const LARGEST_PART: f64 = 0.3;
+
+/// What stands between the log and its motor, as far as a moved stretch needs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Losses {
+    /// Of the simulated currents; none if the operating points answer.
+    pub(crate) faults: Faults,
+    /// The voltage, V, that operating points lose along their current.
+    pub(crate) along_current: f64,
+    /// The only timing of the voltage columns that is possible: no other needs to be tried again.
+    pub(crate) timing: Option<VoltageTiming>,
+}
+
+/// A log on which measurements are tried.
+pub(crate) struct Trials<'a> {
+    pub(crate) log: &'a Log,
+    pub(crate) request: &'a Request,
+    pub(crate) bench: &'a Bench,
+    /// In the log.
+    pub(crate) points: &'a [OperatingPoint],
+    pub(crate) losses: Losses,
+    /// Half-widths of another log's parameters as fractions of their values; infinite where there is none.
+    pub(crate) identify: &'a dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]>,
+    done: Vec<(Measurement, Option<[f64; PARAMETERS]>)>,
+}
+
+impl<'a> Trials<'a> {
+    pub(crate) fn new(
+        (log, request): (&'a Log, &'a Request),
+        bench: &'a Bench,
+        points: &'a [OperatingPoint],
+        losses: Losses,
+        identify: &'a dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]>,
+    ) -> Self {
+        Self { log, request, bench, points, losses, identify, done: Vec::new() }
+    }
+
+    /// What to measure for a parameter, and what it would bring; nothing, where nothing proposed would help. Of what makes the parameter
+    /// identified, the easiest; else the best.
+    /// `of_gains`: what remains whatever is measured, as a standard error, SI; `now`: its half-width now, as a fraction.
+    pub(super) fn best(&mut self, of_gains: f64, now: f64, parameter: Parameter) -> Option<Promised> {
+        let mut best: Option<Promised> = None;
+        for estimated in promising(self.bench, self.lengths(), of_gains, parameter).into_iter().take(MOST_TRIED) {
+            let Some(half_width) = self.half_width(estimated.measurement, parameter) else { continue };
+            if best.is_none_or(|best| half_width < best.half_width) {
+                best = Some(Promised { half_width, ..estimated });
+            }
+            if half_width <= IDENTIFIED {
+                break;
+            }
+        }
+        best.filter(|best| best.half_width < (WORTH * now).min(WEAK))
+    }
+
+    /// From which length to which a stretch fits the log's own operating points, s: a shorter one would count as a pause between them, and
+    /// beside a longer one they would.
+    fn lengths(&self) -> (f64, f64) {
+        let lengths = || self.points.iter().map(|point| point.time.1 - point.time.0);
+        (lengths().fold(0.0, f64::max) / LONGER, lengths().fold(f64::INFINITY, f64::min) * LONGER)
+    }
+
+    /// Half-width of a parameter after a measurement, as a fraction; `None` if it cannot be tried.
+    pub(super) fn half_width(&mut self, measurement: Measurement, parameter: Parameter) -> Option<f64> {
+        let known = self.done.iter().find(|(other, _)| *other == measurement).map(|(_, widths)| *widths);
+        let widths = known.unwrap_or_else(|| {
+            let room = self.done.len() < MOST_TRIALS && self.log.rows() <= MOST_ROWS;
+            let widths = if room { self.tried(measurement) } else { None };
+            self.done.push((measurement, widths));
+            widths
+        });
+        widths.map(|widths| widths[parameter as usize])
+    }
+
+    fn tried(&self, measurement: Measurement) -> Option<[f64; PARAMETERS]> {
+        let mut request = Request { voltage_timing: self.request.voltage_timing.or(self.losses.timing), ..self.request.clone() };
+        match measurement {
+            Measurement::Resistance { accuracy } => {
+                let rs = self.rs();
+                request.known[Parameter::Rs as usize] = Known::Prior { value: rs, standard_error: accuracy * rs };
+                (self.identify)(self.log, &request)
+            }
+            Measurement::Stretch { seconds, place } => {
+                let stretches = self.stretches(seconds, place)?;
+                if !request.windows.is_empty() {
+                    request.windows.extend(stretches.iter().filter_map(times));
+                }
+                let joined = Log::join(std::iter::once(self.log.clone()).chain(stretches)).ok()?;
+                (self.identify)(&joined, &request)
+            }
+        }
+    }
+
+    /// R_s, ohm: what came out, or a guess.
+    fn rs(&self) -> f64 {
+        let rs = self.bench.motor.rs;
+        if rs > 0.0 { rs } else { LARGEST_PART * self.bench.voltage / self.bench.current() }
+    }
+
+    /// Stretches that last so long together, s, each as long as the operating point of largest current or shorter.
+    fn stretches(&self, seconds: f64, place: Place) -> Option<Vec<Log>> {
+        let at = self.points.iter().max_by(|one, other| one.current().magnitude().total_cmp(&other.current().magnitude()))?;
+        let moved = self.moved(at, place)?;
+        let rows = (seconds / self.bench.sample_period).round() as usize;
+        let period = self.bench.sample_period;
+        let mut begin = self.log.columns().t.last()? + GAP * period;
+        let mut logs = Vec::new();
+        let mut left = rows;
+        while left >= MIN_ROWS.min(rows) && left > 0 {
+            let length = left.min(at.rows.len());
+            let part = part(&moved, length, begin);
+            begin = part.t.last()? + GAP * period;
+            logs.push(Log::new(part).ok()?);
+            left -= length;
+        }
+        (!logs.is_empty()).then_some(logs)
+    }
+
+    /// The rows of an operating point, moved.
+    fn moved(&self, at: &OperatingPoint, place: Place) -> Option<Columns> {
+        let (from, omega_e) = (at.current(), at.omega_e());
+        let (to, slower) = match place {
+            Place::Id(id) => (Dq { d: id, ..from }, 1.0),
+            Place::HalfLoad { iq } => (Dq { q: iq, ..from }, 1.0),
+            Place::HalfSpeed => (from, 0.5),
+        };
+        let motor = Motor { rs: self.rs(), ..self.bench.motor };
+        // At the same speed the flux induces the same.
+        let motor = if slower == 1.0 { Motor { psi_f: 0.0, ..motor } } else { motor };
+        let Faults { angle_offset, angle_delay, .. } = self.losses.faults;
+        let too_large = |omega_e: f64| angle_offset.angle - omega_e * angle_delay.time;
+        let voltage = |i: Dq, omega_e: f64| {
+            let error = too_large(omega_e);
+            motor.steady_voltage(i.turned(error), omega_e).turned(-error)
+        };
+        let (before, after) = (voltage(from, omega_e), voltage(to, slower * omega_e));
+        let step = Dq { d: after.d - before.d, q: after.q - before.q };
+        if !(step.d.is_finite() && step.q.is_finite()) {
+            return None;
+        }
+        let mut columns = rows_of(self.log.columns(), at);
+        let begin = columns.t[0];
+        let first = columns.theta_e.as_ref().map(|theta_e| theta_e[0]);
+        for k in 0..columns.t.len() {
+            let theta_e = columns.theta_e.as_ref().map(|theta_e| theta_e[k]);
+            let slow = first.filter(|_| slower != 1.0).map(|first| first + slower * omega_e * (columns.t[k] - begin)).or(theta_e);
+            let i = Dq { d: columns.id[k], q: columns.iq[k] };
+            let other = Dq { d: i.d + to.d - from.d, q: i.q + to.q - from.q };
+            let (lost, loses) = (self.loss(i, theta_e), self.loss(other, slow));
+            columns.ud[k] += step.d + loses.d - lost.d;
+            columns.uq[k] += step.q + loses.q - lost.q;
+            (columns.id[k], columns.iq[k]) = (other.d, other.q);
+            columns.omega_e[k] *= slower;
+            if let (Some(column), Some(slow)) = (columns.theta_e.as_mut(), slow) {
+                column[k] = slow;
+            }
+        }
+        Some(columns)
+    }
+
+    /// What dead time and devices take at a current, V; of an unknown angle its mean over a turn.
+    fn loss(&self, i: Dq, theta_e: Option<f64>) -> Dq {
+        let dead_time = self.losses.faults.dead_time;
+        let magnitude = i.magnitude();
+        if magnitude == 0.0 {
+            return Dq::default();
+        }
+        let along = |volts: f64| Dq { d: volts * i.d / magnitude, q: volts * i.q / magnitude };
+        match theta_e {
+            Some(theta_e) if dead_time.voltage != 0.0 => {
+                let ramp = |i: f64| dead_time.voltage * (i / dead_time.width.abs().max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
+                let phases = i.to_alpha_beta(theta_e).to_abc();
+                Abc { a: ramp(phases.a), b: ramp(phases.b), c: ramp(phases.c) }.to_alpha_beta().to_dq(theta_e)
+            }
+            _ => along(dead_time.voltage / FRAC_PI_4 + self.losses.along_current),
+        }
+    }
+}
+
+/// Sample periods between the log and a stretch, and between stretches: more than a lost row.
+const GAP: f64 = 100.0;
+
+/// How many times longer than another window the longest may be, so that both are operating points.
+const LONGER: f64 = 4.0;
+
+/// The rows of a point.
+fn rows_of(all: &Columns, at: &OperatingPoint) -> Columns {
+    let of = |column: &Vec<f64>| column[at.rows.clone()].to_vec();
+    Columns {
+        t: of(&all.t),
+        ud: of(&all.ud),
+        uq: of(&all.uq),
+        id: of(&all.id),
+        iq: of(&all.iq),
+        omega_e: of(&all.omega_e),
+        theta_e: all.theta_e.as_ref().map(of),
+        u_dc: all.u_dc.as_ref().map(of),
+        temperature: all.temperature.as_ref().map(of),
+    }
+}
+
+/// So many rows from the first on, which begin at a time, s.
+fn part(columns: &Columns, rows: usize, begin: f64) -> Columns {
+    let of = |column: &Vec<f64>| column[..rows.min(column.len())].to_vec();
+    let mut part = Columns {
+        t: of(&columns.t),
+        ud: of(&columns.ud),
+        uq: of(&columns.uq),
+        id: of(&columns.id),
+        iq: of(&columns.iq),
+        omega_e: of(&columns.omega_e),
+        theta_e: columns.theta_e.as_ref().map(of),
+        u_dc: columns.u_dc.as_ref().map(of),
+        temperature: columns.temperature.as_ref().map(of),
+    };
+    let by = begin - part.t.first().copied().unwrap_or_default();
+    part.t.iter_mut().for_each(|t| *t += by);
+    part
+}
+
+/// The whole of a log as a window.
+fn times(log: &Log) -> Option<TimeWindow> {
+    let t = &log.columns().t;
+    Some(TimeWindow { from: *t.first()?, to: *t.last()? })
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::faults::{angle_offset::AngleOffset, dead_time::DeadTime};
+    use std::cell::RefCell;
+
+    pub(crate) const ROWS: usize = 200;
+
+    const MOTOR: Motor = Motor { rs: 0.5, ld: 4e-3, lq: 7e-3, psi_f: 0.1 };
+    const OMEGA: f64 = 300.0;
+
+    /// Of a perfect drive.
+    pub(crate) fn none() -> Losses {
+        Losses { faults: Faults::default(), along_current: 0.0, timing: None }
+    }
+
+    /// A motor held at a current and speed, with an angle.
+    pub(crate) fn held(motor: &Motor, i: Dq, omega_e: f64) -> Log {
+        log_of(i, omega_e, |_| motor.steady_voltage(i, omega_e))
+    }
+
+    fn log_of(i: Dq, omega_e: f64, u: impl Fn(f64) -> Dq) -> Log {
+        let mut columns = Columns { theta_e: Some(Vec::new()), ..Columns::default() };
+        for row in 0..ROWS {
+            let t = row as f64 * 1e-4;
+            // No phase current is zero at the first row.
+            let theta_e = 0.1 + omega_e * t;
+            let u = u(theta_e);
+            columns.t.push(t);
+            columns.ud.push(u.d);
+            columns.uq.push(u.q);
+            columns.id.push(i.d);
+            columns.iq.push(i.q);
+            columns.omega_e.push(omega_e);
+            columns.theta_e.get_or_insert_default().push(theta_e);
+        }
+        Log::new(columns).unwrap()
+    }
+
+    fn bench() -> Bench {
+        let held = vec![(Dq { d: 0.0, q: 10.0 }, OMEGA)];
+        let covariance = nalgebra::Matrix4::identity();
+        Bench { motor: MOTOR, covariance, held, row_variance: 0.0, sample_period: 1e-4, voltage: 40.0, voltage_accuracy: 0.0 }
+    }
+
+    /// The log that is identified after 0.01 s at a place.
+    fn tried(log: &Log, losses: Losses, place: Place) -> Log {
+        let seen = RefCell::new(None);
+        let identify = |log: &Log, _: &Request| {
+            *seen.borrow_mut() = Some(log.clone());
+            Some([0.1; PARAMETERS])
+        };
+        let (request, bench) = (Request::default(), bench());
+        let points = [OperatingPoint::measure(log, 0..ROWS, None)];
+        let mut trials = Trials::new((log, &request), &bench, &points, losses, &identify);
+        let measurement = Measurement::Stretch { seconds: 0.01, place };
+        assert_eq!(trials.half_width(measurement, Parameter::Ld), Some(0.1));
+        seen.into_inner().unwrap()
+    }
+
+    /// The rows that were added are what the motor's own equations, and what is lost beside them, say there.
+    fn assert_added(log: &Log, i: Dq, omega_e: f64, u: impl Fn(f64) -> Dq) {
+        let columns = log.columns();
+        assert_eq!((log.rows(), log.segments().len()), (ROWS + 100, 2));
+        for row in ROWS..ROWS + 100 {
+            let expected = u(columns.theta_e.as_ref().unwrap()[row]);
+            assert!((columns.ud[row] - expected.d).hypot(columns.uq[row] - expected.q) < 1e-9, "{row}: {expected:?}");
+            assert!((columns.id[row] - i.d).hypot(columns.iq[row] - i.q) < 1e-12 && columns.omega_e[row] == omega_e, "{row}");
+        }
+    }
+
+    #[test]
+    fn a_moved_stretch_obeys_the_motors_equations() {
+        let log = held(&MOTOR, Dq { d: 0.0, q: 10.0 }, OMEGA);
+        for (place, i, omega_e) in [
+            (Place::Id(-2.0), Dq { d: -2.0, q: 10.0 }, OMEGA),
+            (Place::HalfLoad { iq: 5.0 }, Dq { d: 0.0, q: 5.0 }, OMEGA),
+            (Place::HalfSpeed, Dq { d: 0.0, q: 10.0 }, 0.5 * OMEGA),
+        ] {
+            assert_added(&tried(&log, none(), place), i, omega_e, |_| MOTOR.steady_voltage(i, omega_e));
+        }
+    }
+
+    /// Dead time of 2 V a phase, all of it from the least current on, and an angle that is read 0.1 rad too large: the motor's own frame
+    /// lies back by that.
+    #[test]
+    fn a_moved_stretch_has_the_faults_of_the_log() {
+        let voltage = |i: Dq, theta_e: f64| {
+            let (sin, cos) = 0.1_f64.sin_cos();
+            let in_motor = Dq { d: i.d * cos - i.q * sin, q: i.q * cos + i.d * sin };
+            let u = MOTOR.steady_voltage(in_motor, OMEGA);
+            let phases = i.to_alpha_beta(theta_e).to_abc();
+            let loss = Abc { a: 2.0 * phases.a.signum(), b: 2.0 * phases.b.signum(), c: 2.0 * phases.c.signum() };
+            let loss = loss.to_alpha_beta().to_dq(theta_e);
+            Dq { d: u.d * cos + u.q * sin + loss.d, q: u.q * cos - u.d * sin + loss.q }
+        };
+        let (from, to) = (Dq { d: 0.0, q: 10.0 }, Dq { d: -3.0, q: 10.0 });
+        let log = log_of(from, OMEGA, |theta_e| voltage(from, theta_e));
+        let dead_time = DeadTime { voltage: 2.0, ..DeadTime::default() };
+        let losses = Losses { faults: Faults { dead_time, angle_offset: AngleOffset { angle: 0.1 }, ..Faults::default() }, ..none() };
+        assert_added(&tried(&log, losses, Place::Id(-3.0)), to, OMEGA, |theta_e| voltage(to, theta_e));
+    }
+
+    /// By noise alone a multimeter would leave 0.2 % of psi_f. What is left when it is tried is promised; and if that is no half of what
+    /// there is, nothing is.
+    #[test]
+    fn what_is_promised_is_what_a_trial_leaves() {
+        let direction = nalgebra::Vector4::new(1.0, 0.0, 0.0, -8.0 / 400.0);
+        let motor = Motor { rs: 1.0, ld: 5e-3, lq: 10e-3, psi_f: 0.2 };
+        let held_at = vec![(Dq { d: 0.0, q: 8.0 }, 400.0)];
+        let bench = Bench { motor, covariance: direction * direction.transpose(), held: held_at, voltage_accuracy: 1e-6, ..bench() };
+        let log = held(&motor, Dq { d: 0.0, q: 8.0 }, 400.0);
+        let request = Request::default();
+        let tried = |log: &Log, request: &Request| {
+            let is_prior = request.known[0] == Known::Prior { value: 1.0, standard_error: 0.01 };
+            Some(if is_prior && log.rows() == ROWS { [0.02, 1.0, 1.0, 0.19] } else { [0.5; 4] })
+        };
+        let promised = |now: f64| {
+            let mut trials = Trials::new((&log, &request), &bench, &[], none(), &tried);
+            trials.best(0.0, now, Parameter::PsiF)
+        };
+        let measurement = Measurement::Resistance { accuracy: 0.01 };
+        assert_eq!(promised(0.5), Some(Promised { measurement, parameter: Parameter::PsiF, half_width: 0.19 }));
+        assert_eq!(promised(0.3), None);
+    }
+}
