@@ -23,10 +23,6 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// Probability that the interval holds.
 const CONFIDENCE: f64 = 0.95;
 
-/// Degrees of freedom of a part that is the difference of two fits: one draw of what the model lacks, whose size it tells to a half.
-/// GUM G.4.2: `1/2 (relative uncertainty)^-2`.
-const OF_A_DIFFERENCE: f64 = 2.0;
-
 /// As many degrees of freedom as no end of them: Student's t is the normal distribution to 1e-6.
 const NORMAL: f64 = 1e6;
 
@@ -102,8 +98,6 @@ pub struct ParameterUncertainty {
     pub systematic: Systematic,
     /// Degrees of freedom of both together.
     pub degrees_of_freedom: f64,
-    /// Those of the statistical part.
-    of_noise: f64,
     /// Half the width of the 95 % interval.
     pub half_width: f64,
 }
@@ -112,30 +106,24 @@ impl ParameterUncertainty {
     /// Both parts and their interval. Degrees of freedom are those of the statistical part.
     pub(crate) fn of(statistical: f64, degrees_of_freedom: f64, systematic: Systematic) -> Self {
         let standard_error = statistical.hypot(systematic.total());
-        // Welch and Satterthwaite, with no end of degrees behind what is not named; all is 0/0 where nothing is in doubt.
-        let share = |part: f64, degrees: f64| (part / standard_error).powi(4) / degrees;
-        let degrees = (share(statistical, degrees_of_freedom) + share(systematic.process_noise, OF_A_DIFFERENCE)).recip();
-        let together = if degrees.is_nan() { NORMAL } else { degrees.clamp(1.0, NORMAL) };
-        Self {
-            statistical,
-            systematic,
-            degrees_of_freedom: together,
-            of_noise: degrees_of_freedom,
-            half_width: quantile(together) * standard_error,
-        }
+        // Welch and Satterthwaite, with no end of degrees behind the systematic part; the statistical variance over its own
+        // square is 0/0 where there is no noise.
+        let degrees = degrees_of_freedom * (standard_error / statistical).powi(4);
+        let degrees_of_freedom = if degrees.is_nan() { NORMAL } else { degrees.clamp(1.0, NORMAL) };
+        Self { statistical, systematic, degrees_of_freedom, half_width: quantile(degrees_of_freedom) * standard_error }
     }
 
     /// The same with so much misfit that the interval is at least as wide as this to either side, SI.
     pub(crate) fn with_min_half_width(self, half_width: f64) -> Self {
-        let Self { statistical, mut systematic, of_noise, .. } = self;
+        let Self { statistical, mut systematic, degrees_of_freedom, .. } = self;
         // Student's t is never narrower than the normal distribution, so this part alone makes the interval that wide.
         systematic.misfit = systematic.misfit.hypot(half_width / quantile(NORMAL));
-        Self::of(statistical, of_noise, systematic)
+        Self::of(statistical, degrees_of_freedom, systematic)
     }
 
     /// The interval anew, after a part has changed.
     pub(crate) fn anew(&self) -> Self {
-        Self::of(self.statistical, self.of_noise, self.systematic)
+        Self::of(self.statistical, self.degrees_of_freedom, self.systematic)
     }
 
     /// Both parts in quadrature.
@@ -190,14 +178,16 @@ impl Uncertainty {
     /// The same of an answer with constant parameters, where saturation makes them spread with this standard uncertainty, SI.
     pub(crate) fn with_saturation(mut self, spread: [f64; PARAMETERS]) -> Self {
         for (parameter, part) in self.parameters.iter_mut().zip(spread) {
-            let ParameterUncertainty { statistical, mut systematic, of_noise, .. } = *parameter;
+            let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
+            // Degrees of freedom of both parts together, back to those of the statistical one.
+            let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
             // Saturation is why the points contradict each other: one doubt, told twice. And its spread is about this very answer, so that
             // what else is doubtful there is within it. A gain is not: it moves the spread as a whole.
             let needed = part.max(systematic.misfit);
             systematic.misfit = 0.0;
             let (rest, gains) = (statistical.hypot(systematic.total()), systematic.common_gains());
             systematic.saturation = (needed * needed - (rest * rest - gains * gains)).max(0.0).sqrt();
-            *parameter = ParameterUncertainty::of(statistical, of_noise, systematic);
+            *parameter = ParameterUncertainty::of(statistical, behind, systematic);
         }
         self
     }
@@ -207,9 +197,10 @@ impl Uncertainty {
     pub(super) fn count_common_gains(&mut self, currents: &[f64; PARAMETERS], voltages: &[f64; PARAMETERS]) {
         let before = self.parameters.map(|parameter| parameter.correlated());
         for (p, parameter) in self.parameters.iter_mut().enumerate() {
-            let ParameterUncertainty { statistical, mut systematic, of_noise, .. } = *parameter;
+            let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
+            let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
             (systematic.current_gain, systematic.bus_voltage) = (currents[p].abs(), voltages[p].abs());
-            *parameter = ParameterUncertainty::of(statistical, of_noise, systematic);
+            *parameter = ParameterUncertainty::of(statistical, behind, systematic);
         }
         let after = self.parameters.map(|parameter| parameter.correlated());
         let by_gains = |p: usize, q: usize| currents[p] * currents[q] + voltages[p] * voltages[q];
