@@ -15,7 +15,7 @@
 use super::{
     long_run::effective_sample_size,
     normal_matrix::{dot, inverse_normal},
-    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, VERY_STRONG, readings},
+    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, TimingTrial, VERY_STRONG, readings},
     voltage_accuracy,
 };
 use crate::{
@@ -136,11 +136,11 @@ impl FaultSearch<'_> {
                 Some(best) => taken.push(best.clone()),
                 None => break trials,
             }
-            self.choose_kinds(&taken[taken.len() - 1..]);
+            self.choose_kinds(&taken[taken.len() - 1..], true);
             self.choose_reading();
         };
         if taken.len() > 1 {
-            self.choose_kinds(&taken);
+            self.choose_kinds(&taken, false);
         }
         let observer = match observer {
             Some(_) => self.drop_observer(),
@@ -160,17 +160,36 @@ impl FaultSearch<'_> {
         }
     }
 
-    /// Some faults have kinds of which no fit leads from one to the other: another one may fit better, now that their numbers are known.
-    fn choose_kinds(&mut self, taken: &[FaultTrial]) {
-        let objective = self.objective();
-        let kinds = |trial: &FaultTrial| trial.fault.kinds(&self.drive.faults, objective.peak_current());
-        let kinds: Vec<Faults> = taken.iter().flat_map(kinds).collect();
-        let polished = parallel::map(&kinds, |faults| {
-            polish_to_choose(objective, &Adjustable { faults: *faults, ..self.drive }, &self.unknowns, self.priors)
+    /// Some faults have kinds of which no fit leads from one to the other: another one may fit better, now that their numbers are known;
+    /// where `anew`, perhaps under another reading, because a half of the carrier passes for a delay.
+    fn choose_kinds(&mut self, taken: &[FaultTrial], anew: bool) {
+        let peak = self.objective().peak_current();
+        let kinds: Vec<Faults> = taken.iter().flat_map(|trial| trial.fault.kinds(&self.drive.faults, peak)).collect();
+        let all: Vec<(usize, Faults)> =
+            (0..self.objectives.len()).flat_map(|reading| kinds.iter().map(move |faults| (reading, *faults))).collect();
+        let (mut here, mut elsewhere): (Vec<_>, Vec<_>) = all.into_iter().partition(|(reading, _)| *reading == self.reading);
+        if anew {
+            let costs = parallel::map(&elsewhere, |(reading, faults)| {
+                let objective = &self.objectives[*reading].1;
+                objective.cost_of(&Adjustable { faults: *faults, ..self.drive }) / objective.rows() as f64
+            });
+            let mut order: Vec<usize> = (0..elsewhere.len()).collect();
+            order.sort_by(|one, other| costs[*one].total_cmp(&costs[*other]));
+            elsewhere = order.into_iter().take(FITTED_ELSEWHERE).map(|place| elsewhere[place]).collect();
+            here.append(&mut elsewhere);
+        }
+        let trials = parallel::map(&here, |(reading, faults)| {
+            let (timing, objective) = &self.objectives[*reading];
+            let start = Adjustable { faults: *faults, ..self.drive };
+            let polished = polish_to_choose(objective, &start, &self.unknowns, self.priors);
+            (*reading, TimingTrial { timing: *timing, polished, rows: objective.rows() })
         });
-        let best = polished.into_iter().min_by(|one, other| one.cost.total_cmp(&other.cost)).filter(|best| best.cost < self.cost);
-        if let Some(Polished { drive, cost, .. }) = best {
-            (self.drive, self.cost) = (drive, cost);
+        let (timing, objective) = &self.objectives[self.reading];
+        let now = Polished { drive: self.drive, cost: self.cost, converged: false };
+        let now = TimingTrial { timing: *timing, polished: now, rows: objective.rows() };
+        let best = trials.into_iter().min_by(|(_, one), (_, other)| one.rank().total_cmp(&other.rank()));
+        if let Some((reading, best)) = best.filter(|(_, best)| best.rank() < now.rank()) {
+            (self.reading, self.drive, self.cost) = (reading, best.polished.drive, best.polished.cost);
         }
     }
 
@@ -232,6 +251,9 @@ impl FaultSearch<'_> {
         trials.into_iter().map(|(trial, _)| trial).collect()
     }
 }
+
+/// Kinds of a fault under other readings of the voltages that are fitted: the best as they stand.
+const FITTED_ELSEWHERE: usize = 4;
 
 /// Starts of a fault that are fitted: the most promising of all.
 const FITTED_STARTS: usize = 2;

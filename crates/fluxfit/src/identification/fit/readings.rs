@@ -41,7 +41,7 @@ impl TimingTrial {
     }
 
     /// The mean square with a handicap for readings that are rare.
-    fn rank(&self) -> f64 {
+    pub(super) fn rank(&self) -> f64 {
         let handicap = match self.timing {
             VoltageTiming::Averaged => AVERAGED,
             timing if timing.is_unusual() => UNUSUAL,
