@@ -181,7 +181,8 @@ fn dead_time_that_takes_more_than_the_resistance() {
     assert!(fit.has(Fault::DeadTime));
     let lost = fit.drive.faults.dead_time.voltage;
     assert!((lost / 6.0 - 1.0).abs() < 0.02, "{lost} V");
-    holds("dead time", &with, &TRACTION, [10.0, 1.0, 1.0, 1.0]);
+    holds("dead time", &with, &TRACTION, [2.0, 0.2, 0.2, 0.2]);
+    assert!(Parameter::ALL.iter().all(|parameter| with.parameter(*parameter).verdict == Verdict::Identified));
 }
 
 #[test]

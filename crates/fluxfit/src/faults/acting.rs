@@ -222,7 +222,7 @@ impl<V: Number> Acting<V> {
             return logged;
         }
         let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_filter, logged, before), place);
-        self.into_magnets_frame(logged, place)
+        self.in_magnets_frame(logged, place)
     }
 
     /// What the inverter loses of a commanded voltage, V, given the currents in the motor at the start of the period, and at its end if
@@ -230,7 +230,7 @@ impl<V: Number> Acting<V> {
     #[inline(always)]
     pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
         let [u, start, end] =
-            [self.into_logged_frame(commanded, place), self.into_logged_frame(start, place), self.into_logged_frame(end, place)];
+            [self.in_logged_frame(commanded, place), self.in_logged_frame(start, place), self.in_logged_frame(end, place)];
         let lost = if self.kinds.phase {
             // In a stator that is turned by the phase's angle.
             let [cos, sin] = self.phase;
@@ -239,19 +239,19 @@ impl<V: Number> Acting<V> {
         } else {
             self.dead_time.over(self.kinds.loss, u, [start, end], per_henry, place)
         };
-        self.into_magnets_frame(lost, place)
+        self.in_magnets_frame(lost, place)
     }
 
     /// Of a vector in the frame of the logged angle.
     #[inline(always)]
-    fn into_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+    fn in_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;
         self.undelayed(turned(vector, cos, sin), place.omega_e, false)
     }
 
     /// Of a vector in the frame of the magnet.
     #[inline(always)]
-    fn into_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+    fn in_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;
         self.undelayed(turned(vector, cos, -sin), place.omega_e, true)
     }

@@ -1,6 +1,6 @@
 //! Dead time and device drops: each phase loses a voltage against its current.
 //!
-//! What a switching period loses depends on the currents at its edges, ripple included: [`switched_period`] has the equations. Where rows
+//! What a switching period loses depends on the currents at its edges, ripple included: `switched_period.rs` has the equations. Where rows
 //! are not switching periods, or devices take their voltage gradually, the loss has a width: a ramp `i / width`, but at most one and at
 //! least minus one, stands in for the current's sign.
 //!

@@ -63,7 +63,7 @@ pub enum Fitness {
         /// The voltage timing.
         reading: VoltageTiming,
         /// The lowest minimum known.
-        minimum: Polished,
+        minimum: Box<Polished>,
     },
 }
 
@@ -122,7 +122,7 @@ impl StudyProblem {
         Ok(Self {
             rows: objective.rows_per_segment(),
             unexcited: unexcited(&objective, &minimum, &bounds),
-            fitness: Fitness::OutputError { objective, reading, minimum },
+            fitness: Fitness::OutputError { objective, reading, minimum: Box::new(minimum) },
             operating_points: Vec::new(),
             bounds,
         })
@@ -217,7 +217,7 @@ impl Fitness {
         let (before, cost) = (minimum.cost, objective.cost(motor));
         let polished = polish(objective, motor);
         // From a minimum the polish cannot descend, and rounding may make its result slightly worse.
-        *minimum = if polished.cost <= cost { polished } else { Polished { drive: Adjustable::from(*motor), cost, ..polished } };
+        **minimum = if polished.cost <= cost { polished } else { Polished { drive: Adjustable::from(*motor), cost, ..polished } };
         before - minimum.cost
     }
 }
