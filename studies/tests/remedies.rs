@@ -1,26 +1,18 @@
-//! Remedies of the judged situations and of the first drawn logs, carried out on the simulator. `./check --thorough` runs it.
+//! Remedies of the judged situations, carried out on the simulator. `./check --thorough` runs it.
 
-use fluxfit_studies::{
-    rated::typical,
-    remedies::{
-        drawn, judged,
-        situation::BICYCLE,
-        survey,
-        table::{Kept, list, table},
-    },
+use fluxfit_studies::remedies::{
+    judged,
+    situation::BICYCLE,
+    survey,
+    table::{Kept, list, table},
 };
-
-/// Drawn logs: as many as take a minute.
-const LOGS: u64 = 12;
 
 /// Least part of the promised widths that must be reached within a factor of 1.5.
 const LEAST_KEPT: f64 = 0.9;
 
 #[test]
 fn remedies_keep_their_promise() {
-    let mut cases = judged(&BICYCLE);
-    cases.extend(drawn(LOGS, &typical()));
-    let carried = survey(&cases);
+    let carried = survey(&judged(&BICYCLE));
     println!("{}{}", table(&carried), list(&carried));
     let Kept { promised, kept, .. } = Kept::of(&carried);
     assert!(promised >= 3, "{promised} remedies promise a width");
