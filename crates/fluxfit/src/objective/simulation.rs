@@ -332,7 +332,8 @@ impl<V: Number> NullaryFnOnce for FaultyBlock<'_, V> {
 }
 
 impl<V: Number> FaultyBlock<'_, V> {
-    /// One row, with those responses that are alive. Faults that depend on the current follow the simulated one: the measured one would bring its noise into the prediction.
+    /// One row, with those responses that are alive. Faults that depend on the current follow the simulated one: the measured one would
+    /// bring its noise into the prediction.
     #[inline(always)]
     fn row(&self, row: usize, transitions: &TransitionLanes<V>, alive: Range<usize>, state: &mut State<V>) {
         let segment = self.segment;

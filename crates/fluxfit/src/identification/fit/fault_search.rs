@@ -29,7 +29,7 @@ use crate::{
     parallel,
 };
 use nalgebra::DVector;
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 
 /// A fault that was tried.
 #[derive(Debug, Clone, PartialEq)]
@@ -202,7 +202,7 @@ impl FaultSearch<'_> {
         let starts = as_found.chain(self.kinds(taken, &alone)).collect();
         let mut compared = contest(self.objectives, starts, &unknowns, self.priors, &WITHOUT_OBSERVER);
         // The best of each reading.
-        let mut seen = HashSet::new();
+        let mut seen = BTreeSet::new();
         compared.retain(|(reading, _)| seen.insert(*reading));
         let Some(&(place, without)) = compared.first() else { return trial(0.0, FaultOutcome::Taken) };
         let (rows, peak) = (2.0 * self.objective().rows() as f64, self.objective().peak_current());

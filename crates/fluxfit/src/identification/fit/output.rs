@@ -241,7 +241,7 @@ struct Advanced {
 }
 
 /// A speed that lags spoils the angle, which comes from it or is made smooth by it: what was found of the lag, to first order, is undone,
-/// and all is chosen again, with what is left of it unknown; what is found then is undone too.
+/// and what is left of it is found and undone too. Then all is chosen again, because faults were found beside a wrong angle.
 fn with_speed_in_time(
     log: &Log,
     choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>,
@@ -254,12 +254,12 @@ fn with_speed_in_time(
         return Ok(found);
     };
     let unknown: Vec<Unknown> = Unknown::of_fault(Fault::SpeedLag).collect();
-    let lag = found.chosen.drive.faults.speed_lag.time;
-    let mut chosen = choose(&log.without_speed_lag(lag), &unknown)?;
-    let lag = lag + chosen.drive.faults.speed_lag.time;
-    chosen.drive.faults.speed_lag.time = 0.0;
+    let mut chosen = found.chosen;
+    let lag = std::mem::take(&mut chosen.drive.faults.speed_lag).time;
+    let left = fit_again(&log.without_speed_lag(lag), chosen)?.drive.faults.speed_lag.time;
+    let lag = lag + left;
     let advanced = log.without_speed_lag(lag);
-    let mut chosen = fit_again(&advanced, chosen)?;
+    let mut chosen = choose(&advanced, &unknown)?;
     chosen.terms.insert(0, lags);
     Ok(Advanced { log: Some(advanced), lag, chosen })
 }
