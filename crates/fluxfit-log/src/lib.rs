@@ -25,6 +25,7 @@
 //! | [`document`] | the JSON document of an inspection |
 //! | `in_order` | work on all cores, with results in order |
 //! | `channel` | the channels of a log and their names |
+//! | `instant` | dates and times in tables of text |
 //! | `header_unit` | units in the headers of columns |
 //! | `argument` | arguments of the form `channel=value` |
 //! | `note`, `problem` | what is reported: notes and errors |
@@ -37,6 +38,7 @@ mod csv;
 pub mod document;
 mod header_unit;
 mod in_order;
+mod instant;
 mod note;
 mod problem;
 mod reading;

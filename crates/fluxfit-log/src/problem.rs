@@ -17,8 +17,10 @@ pub(crate) enum Problem {
     EmptyCell,
     #[error("{} has a comma and a point, so its decimal mark is ambiguous; write numbers without thousands separators", quote(.text))]
     Thousands { text: String },
-    #[error("{} is a time of day; write time as a number, in s", quote(.text))]
+    #[error("{} is a time that is not understood; write it as a number, in s, or as in 2016-02-12 10:31:00.123", quote(.text))]
     ClockTime { text: String },
+    #[error("{} is no date and time as in the first rows; write all of them in one way", quote(.text))]
+    Instant { text: String },
     #[error("{} has another decimal mark than line {other}; use one mark throughout, and no thousands separators", quote(.text))]
     DecimalMarks { text: String, other: u64 },
     #[error("this cell has another decimal mark than line {other}; use one mark throughout, and no thousands separators")]
@@ -54,6 +56,15 @@ pub(crate) enum Problem {
         "the {what} is in {unit}, and converting it takes the number of pole pairs; state it, or state that the unit is {electrical_unit}"
     )]
     PolePairs { what: &'static str, channel: &'static str, unit: &'static str, electrical: &'static str, electrical_unit: &'static str },
+
+    #[error(
+        "nothing states the unit of this speed, or whether it is the electrical one; state it: rad/s is electrical, rad/s-mech and rpm-mech are those of the shaft"
+    )]
+    SpeedUnit,
+    #[error("the times are whole numbers in steps of {step}, and nothing states their unit; state it")]
+    TimeUnit { step: u64 },
+    #[error("by its values this column is not the angle of the rotor; map theta_e to the angle, or log it")]
+    NoAngle,
 
     // Data
     #[error(
@@ -108,6 +119,10 @@ pub(crate) enum Problem {
     Unit { channel: &'static str, unit: String, allowed: Vec<&'static str> },
     #[error("{channel} is given twice; give it once")]
     Twice { channel: &'static str },
+    #[error("{channel} is no voltage, so it is no share of u_dc; remove this")]
+    NoShare { channel: &'static str },
+    #[error("the mapping says that {channel} is a share of u_dc, and the log has no u_dc; map u_dc to the DC voltage")]
+    NoBus { channel: &'static str },
     #[error("the number of pole pairs is 0; it must be at least 1")]
     ZeroPolePairs,
 }
@@ -117,18 +132,19 @@ impl Problem {
         match self {
             Self::Gzip { .. } | Self::Document { .. } | Self::NoRows => FileErrorKind::Format,
             Self::Container { .. } | Self::NoNumbers { .. } | Self::ManyColumns { .. } => FileErrorKind::Format,
-            Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } => FileErrorKind::Value,
+            Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
             Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::Duplicate { .. } => FileErrorKind::Columns,
-            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } => FileErrorKind::Columns,
-            Self::HeaderUnit { .. } | Self::PolePairs { .. } => FileErrorKind::Unit,
+            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle => FileErrorKind::Columns,
+            Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
             Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) => FileErrorKind::Data,
             Self::MatObject { .. } | Self::NewerHdf5 { .. } | Self::Hdf5Filter { .. } => FileErrorKind::Unsupported,
             Self::ParquetCodec { .. } | Self::LargeChunks { .. } | Self::OldMdf => FileErrorKind::Unsupported,
             #[cfg(not(feature = "mdf4"))]
             Self::NoMdf => FileErrorKind::Unsupported,
-            Self::Channel { .. } | Self::Unit { .. } | Self::Twice { .. } | Self::ZeroPolePairs => FileErrorKind::Request,
+            Self::Channel { .. } | Self::Unit { .. } | Self::Twice { .. } => FileErrorKind::Request,
+            Self::NoShare { .. } | Self::NoBus { .. } | Self::ZeroPolePairs => FileErrorKind::Request,
         }
     }
 
@@ -149,6 +165,10 @@ impl Problem {
             Self::PolePairs { channel, electrical, .. } => {
                 vec![Advice::StatePolePairs, Advice::StateUnit { channel, unit: Some(electrical) }]
             }
+            Self::NoBus { .. } => map(&["u_dc"]),
+            Self::SpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: None }],
+            Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
+            Self::NoAngle => map(&["theta_e"]),
             Self::ZeroPolePairs => vec![Advice::StatePolePairs],
             _ => Vec::new(),
         }

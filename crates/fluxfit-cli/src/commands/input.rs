@@ -8,6 +8,7 @@ use crate::{
 use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, log::Source, optimizer};
 use fluxfit_log::{LogOptions, Note, read_log_with_progress, read_mapping};
 use fluxfit_setup::{MotorFile, read_motor};
+use fluxfit_units::wording::one_line;
 use std::{fs, path::Path};
 
 /// The logs, joined, and the motor file.
@@ -107,5 +108,5 @@ pub(crate) fn of_log(name: &str, error: Error) -> CommandError {
 
 /// The file's name in a message.
 pub(crate) fn name(path: &Path) -> String {
-    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { one_line(&path.display().to_string()) }
 }

@@ -89,7 +89,7 @@ impl Parquet {
                 continue;
             };
             let unit = matches!(meaning, Meaning::Instant(_)).then(|| "s".to_owned());
-            heads.push(ColumnHead { name, unit, rows, group: 0, is_time: false });
+            heads.push(ColumnHead { name, unit, rows, ..ColumnHead::default() });
             columns.push(Column { leaf, meaning, present: column.max_def_level() });
         }
         if heads.is_empty() {

@@ -6,6 +6,7 @@ use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 use fluxfit_files::{
     FileError, Problem as FileProblem,
+    csv::tidy::{RowStyle, Tidied},
     input::{io_problem, line_at},
 };
 use std::io::{Cursor, ErrorKind, Read};
@@ -78,6 +79,23 @@ impl Text {
         };
         text.notes = notes;
         Ok(text)
+    }
+}
+
+impl Text {
+    /// The text with its rows, from `body` on, as records.
+    pub(super) fn with_rows(mut self, style: RowStyle, body: usize) -> Self {
+        let rows = self.head.split_off(body).into_bytes();
+        let mut tidied: Box<dyn Read> = Box::new(Tidied::new(Cursor::new(rows).chain(self.rest), style));
+        // So much that the first rows can be looked at.
+        let mut first = Vec::new();
+        // An error comes again where the rest is read.
+        let _ = (&mut tidied).take(HEAD as u64).read_to_end(&mut first);
+        let whole = first.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let cut = first.split_off(whole);
+        self.head.push_str(&String::from_utf8_lossy(&first));
+        self.rest = Box::new(Cursor::new(cut).chain(tidied));
+        self
     }
 }
 

@@ -44,6 +44,8 @@ pub struct InspectedColumn {
     pub range: Option<[f64; 2]>,
     /// The file states that it is the time of the columns of its group.
     pub is_time: bool,
+    /// Its cells are dates and times, or count from 1970.
+    pub is_instant: bool,
 }
 
 /// Inspects a file; the path `-` is standard input.
@@ -71,6 +73,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         resembles: survey.resembling.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
         range: ranges.get(index).copied().flatten(),
         is_time: head.is_time,
+        is_instant: head.instants.is_some(),
     });
     Ok(Inspection {
         kind: table.kind(),
@@ -98,7 +101,13 @@ fn ranges(path: &Path) -> Vec<Option<[f64; 2]>> {
         let of_group: Vec<usize> = (0..heads.len()).filter(|index| heads[*index].group == group).collect();
         let wanted: Vec<WantedColumn> = of_group
             .iter()
-            .map(|index| WantedColumn { index: *index, header: heads[*index].name.clone(), is_time: false, is_optional: true })
+            .map(|index| WantedColumn {
+                index: *index,
+                header: heads[*index].name.clone(),
+                is_time: false,
+                is_optional: true,
+                instants: heads[*index].instants.clone(),
+            })
             .collect();
         // Up to the first error, if there is one.
         let _ = table.read(&wanted, &mut |block| {

@@ -25,6 +25,8 @@ pub(super) struct ResolvedOptions {
     headers: Vec<(Channel, String)>,
     units: Vec<(Channel, Unit)>,
     factors: Vec<(Channel, f64)>,
+    /// Channels whose values are shares of the DC voltage of their row.
+    pub(super) shares_of_bus: Vec<Channel>,
     /// Number of pole pairs.
     pub(super) pole_pairs: Option<u32>,
     /// Time between rows, s, where no column has the time.
@@ -74,7 +76,8 @@ impl ResolvedOptions {
             factors.push((column.channel, column.factor));
         }
         let pole_pairs = options.pole_pairs.or(*pole_pairs);
-        Ok(Self { headers, units, factors, pole_pairs, sample_period: *sample_period, most_rows: MOST_ROWS })
+        let shares_of_bus = columns.iter().filter(|column| column.is_times_u_dc).map(|column| column.channel).collect();
+        Ok(Self { headers, units, factors, shares_of_bus, pole_pairs, sample_period: *sample_period, most_rows: MOST_ROWS })
     }
 
     /// The header that a channel is mapped to.

@@ -15,6 +15,7 @@ use super::{
     options::{LogOptions, ResolvedOptions},
     phases, plausibility, repair,
     table::Table,
+    turning,
 };
 use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
 use fluxfit::log::{Columns, Log, Segment, Source, check_values};
@@ -106,9 +107,11 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let chosen = columns::choose(&table, named, options, &mut notes)?;
     let Gathered { mut channels, lines, is_interpolated } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     let aligned = align::align(&mut channels, &lines)?;
+    channels.times_bus(&options.shares_of_bus)?;
     plausibility::refuse_standardized(&chosen, &channels)?;
     let is_interpolated = is_interpolated || aligned.is_some();
     let mut more: Vec<String> = aligned.into_iter().collect();
+    turning::settle(&mut channels, &chosen, &mut notes)?;
     more.extend(repair::repair(&mut channels));
     more.extend(phases::transform(&mut channels));
     more.extend(plausibility::note_references(&channels));
