@@ -92,6 +92,11 @@ impl Instants {
         is_log.then_some(Self { first: if style == Style::Clock { 0 } else { first }, style })
     }
 
+    /// Numbers of seconds, counted from zero.
+    pub(crate) fn since_zero() -> Self {
+        Self { style: Style::Epoch(0, "seconds"), first: 0 }
+    }
+
     /// Seconds since the first instant, or since midnight.
     pub(crate) fn seconds(&self, cell: &[u8]) -> Option<f64> {
         let instant = self.style.nanoseconds(str::from_utf8(cell).ok()?)?;

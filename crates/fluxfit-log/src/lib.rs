@@ -1,4 +1,4 @@
-//! Reading the logs of drives: text of any dialect, Parquet, MATLAB, HDF5 and MDF 4.
+//! Reading the logs of drives: text of any dialect, JSON, LVM, CAN frames, Parquet, MATLAB, HDF5 and MDF 4.
 //!
 //! A log is either understood, in SI units, or refused in one sentence on one line that names the file, the line and the column where
 //! there is one, and what to do. Everything that was inferred or repaired is reported in a [`Note`]. No input makes a function of this
@@ -20,6 +20,7 @@
 //! |---|---|
 //! | `reading` | from a table to a log: layout, columns, units, repairs |
 //! | `csv` | tables of text |
+//! | `records` | other logs of text: JSON, LVM, CAN frames |
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
 //! | [`document`] | the JSON document of an inspection |
@@ -42,6 +43,7 @@ mod instant;
 mod note;
 mod problem;
 mod reading;
+mod records;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container};

@@ -22,6 +22,7 @@ fn option(advice: &Advice) -> Option<String> {
             }
         }
         Advice::StateUnit { channel, unit } => Some(format!("--unit {channel}={}", unit.unwrap_or("UNIT"))),
+        Advice::StateDbc => Some("--dbc FILE.dbc".to_owned()),
         Advice::StatePolePairs => Some("--pole-pairs N".to_owned()),
         Advice::FixParameters(keys) => {
             Some(format!("--fix {}", keys.iter().map(|key| format!("{key}=VALUE")).collect::<Vec<_>>().join(",")))

@@ -19,7 +19,11 @@ mod rows;
 mod tests;
 mod text;
 
-use crate::block::{Block, ColumnHead, WantedColumn};
+use crate::{
+    block::{Block, ColumnHead, WantedColumn},
+    container::MOST_COLUMNS,
+    problem::Problem,
+};
 use fluxfit_files::{
     FileError,
     csv::{
@@ -27,8 +31,9 @@ use fluxfit_files::{
         tidy::RowStyle,
     },
 };
+#[cfg(test)]
 use std::io::Read;
-use text::Text;
+pub(crate) use text::Text;
 
 /// A table whose header is read, and whose rows are not yet.
 pub(crate) struct TextTable {
@@ -47,10 +52,22 @@ impl TextTable {
     ///
     /// # Errors
     /// If the bytes cannot be read, are not text, or have no header.
+    #[cfg(test)]
     pub(crate) fn open(bytes: Box<dyn Read>) -> Result<Self, FileError> {
-        let mut text = Text::open(bytes)?;
+        Self::of(Text::open(bytes)?)
+    }
+
+    /// Reads up to the header of a text.
+    ///
+    /// # Errors
+    /// If it has no header.
+    pub(crate) fn of(mut text: Text) -> Result<Self, FileError> {
         let mut notes = std::mem::take(&mut text.notes);
         let header = header::find(&text.head, &mut notes)?;
+        let is_cut = text.has_rest() && header.body >= text.head.len();
+        if is_cut || header.names.len() > MOST_COLUMNS {
+            return Err(FileError::from(Problem::ManyColumns { most: MOST_COLUMNS }).at_line(header.line));
+        }
         if header.rows != RowStyle::Plain {
             text = text.with_rows(header.rows, header.body);
         }

@@ -55,7 +55,7 @@ pub struct InspectedColumn {
 pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileError> {
     let name = input::name(path);
     let resolved = ResolvedOptions::resolve(options)?;
-    let table = input::open(path).and_then(Table::open).map_err(|error| error.in_file(&name))?;
+    let table = input::open(path).and_then(|bytes| Table::open(bytes, resolved.dbc.as_deref())).map_err(|error| error.in_file(&name))?;
     let names: Vec<String> = table.heads().iter().map(|head| head.name.clone()).collect();
     let layout = Layout::recognize(&names);
     let survey = columns::survey(table.heads(), layout, &resolved);
@@ -64,7 +64,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         let unit = taken.or_else(|| survey.resembling.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit))?;
         Some((unit.name(), unit.prose()))
     };
-    let ranges = ranges(path);
+    let ranges = ranges(path, resolved.dbc.as_deref());
     let inspected = table.heads().iter().enumerate().map(|(index, head)| InspectedColumn {
         header: head.name.clone(),
         unit: head.unit.clone(),
@@ -84,9 +84,9 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
 }
 
 /// The smallest and largest number of every column, from a second reading.
-fn ranges(path: &Path) -> Vec<Option<[f64; 2]>> {
+fn ranges(path: &Path, dbc: Option<&str>) -> Vec<Option<[f64; 2]>> {
     let Ok(mut table) = input::open(path).and_then(|bytes| match bytes {
-        Bytes::File(..) => Table::open(bytes),
+        Bytes::File(..) => Table::open(bytes, dbc),
         // A pipe can be read only once.
         Bytes::Stream(_) => Err(Problem::NoRows.into()),
     }) else {

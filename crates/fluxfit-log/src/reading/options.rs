@@ -15,6 +15,8 @@ pub struct LogOptions {
     pub units: Vec<(String, Unit)>,
     /// Number of pole pairs, which converts a mechanical speed or angle.
     pub pole_pairs: Option<u32>,
+    /// The text of the DBC that names the signals of a log of CAN frames.
+    pub dbc: Option<String>,
     /// A mapping file; the three fields above override it.
     pub mapping: Mapping,
 }
@@ -31,6 +33,8 @@ pub(super) struct ResolvedOptions {
     pub(super) pole_pairs: Option<u32>,
     /// Time between rows, s, where no column has the time.
     pub(super) sample_period: Option<f64>,
+    /// The text of a DBC.
+    pub(super) dbc: Option<String>,
     /// Maximum number of rows that are used of a longer log.
     pub(super) most_rows: usize,
 }
@@ -77,7 +81,16 @@ impl ResolvedOptions {
         }
         let pole_pairs = options.pole_pairs.or(*pole_pairs);
         let shares_of_bus = columns.iter().filter(|column| column.is_times_u_dc).map(|column| column.channel).collect();
-        Ok(Self { headers, units, factors, shares_of_bus, pole_pairs, sample_period: *sample_period, most_rows: MOST_ROWS })
+        Ok(Self {
+            headers,
+            units,
+            factors,
+            shares_of_bus,
+            pole_pairs,
+            sample_period: *sample_period,
+            dbc: options.dbc.clone(),
+            most_rows: MOST_ROWS,
+        })
     }
 
     /// The header that a channel is mapped to.

@@ -55,7 +55,9 @@ pub fn read_log(path: &Path, options: &LogOptions) -> Result<ReadLog, FileError>
 /// As [`read_log`].
 pub fn read_log_with_progress(path: &Path, options: &LogOptions, progress: impl Fn(u64) + 'static) -> Result<ReadLog, FileError> {
     let options = ResolvedOptions::resolve(options)?;
-    let read = input::open(path).and_then(|bytes| Table::open(bytes.with_progress(progress))).and_then(|table| read(table, &options));
+    let read = input::open(path)
+        .and_then(|bytes| Table::open(bytes.with_progress(progress), options.dbc.as_deref()))
+        .and_then(|table| read(table, &options));
     read.map_err(|error| error.in_file(&input::name(path)))
 }
 
@@ -81,7 +83,7 @@ pub fn read_log_with_progress(path: &Path, options: &LogOptions, progress: impl 
 /// If reading fails, or as [`parse_log`].
 pub fn read_log_from(name: &str, reader: impl Read + 'static, options: &LogOptions) -> Result<ReadLog, FileError> {
     let options = ResolvedOptions::resolve(options)?;
-    let read = Table::open(Bytes::Stream(Box::new(reader))).and_then(|table| read(table, &options));
+    let read = Table::open(Bytes::Stream(Box::new(reader)), options.dbc.as_deref()).and_then(|table| read(table, &options));
     read.map_err(|error| error.in_file(name))
 }
 

@@ -89,9 +89,12 @@ pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
 
 /// Whether the name of a column says that it is a reference, or another number that was not measured.
 pub(super) fn is_reference(header: &str) -> bool {
-    // Without the unit: 1/min is no minimum.
-    let name = header.split(['[', '(']).next().unwrap_or(header);
-    words(name).iter().any(|word| REFERENCE.contains(&word.as_str()))
+    without_unit(header).iter().any(|word| REFERENCE.contains(&word.as_str()))
+}
+
+/// The words of a header before brackets: 1/min is no minimum.
+fn without_unit(header: &str) -> Vec<String> {
+    words(header.split(['[', '(']).next().unwrap_or(header))
 }
 
 /// The best similarity of consecutive words to a spelling.
@@ -99,7 +102,7 @@ fn score(channel: Channel, name: &str) -> Option<f64> {
     let words = words(name);
     // Neither time nor speed is proposed for a reference; voltages are, because their references are measured well enough.
     if matches!(channel.dimension(), Dimension::Time | Dimension::Speed)
-        && (is_reference(name) || NO_TIME.contains(&words.concat().as_str()))
+        && (is_reference(name) || NO_TIME.contains(&without_unit(name).concat().as_str()))
     {
         return None;
     }

@@ -5,7 +5,7 @@ pyarrow, scipy, h5py, asammdf and gzip, none of which is part of the reader. Wha
 
     pip install -r requirements.txt; python3 make.py        rewrites logs/, mappings/ and expected.toml
 
-In expected.toml, each case has a file and what the user says of it (map, units, pole_pairs, mapping), and either
+In expected.toml, each case has a file and what the user says of it (map, units, pole_pairs, mapping, dbc), and either
     a reading: layout, rows, segments, sample_period, notes (each must occur in some note), columns in SI (first, last, sum; a tolerance of 0 means
                the same bits), same_as (all columns have the bits of that file's);
     or a refusal: words that the one sentence must contain, each given as alternatives parted by |; and the line, where there is one.

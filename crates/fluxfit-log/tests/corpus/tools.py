@@ -4,12 +4,17 @@ pandas, numpy, json, scipy, h5py, python-can, cantools and mat-io write; what is
 """
 
 
+import json
+
+import can
+import cantools
+import h5py
 import numpy as np
 import pandas as pd
 
 
 def write(make):
-    for part in (dates, epochs, names, headers):
+    for part in (dates, epochs, names, headers, records, lvm, frames, hdf5):
         part(make)
 
 
@@ -153,3 +158,171 @@ def headers(make):
     make.read("two_header_rows.csv", "the two header rows of a MultiIndex of pandas", fast, same_as="canonical.csv", notes=["titles"])
 
 
+
+
+# JSON
+
+
+def records(make):
+    fast = make.part(make.FAST)
+    frame = pd.DataFrame(fast)
+    rows = [{name: float(value) for name, value in zip(fast, row)} for row in zip(*fast.values())]
+
+    def same(file, says, text, **more):
+        make.put(file, text)
+        make.read(file, says, fast, same_as="canonical.csv", **more)
+
+    same("lines.jsonl", "JSON lines", "".join(json.dumps(row) + "\n" for row in rows))
+    same("array.json", "an array of records, on one line", json.dumps(rows))
+    same("array_indented.json", "an array of records, indented", json.dumps(rows, indent=1))
+    same("pandas_lines.jsonl", "what pandas writes with lines=True", frame.to_json(orient="records", lines=True, double_precision=15))
+    same("pandas_columns.json", "what pandas writes by default: an object for each column", frame.to_json(double_precision=15))
+    same("pandas_split.json", "what pandas writes with orient=split", frame.to_json(orient="split", double_precision=15))
+    same("lists.json", "a list for each column", json.dumps({name: [float(value) for value in values] for name, values in fast.items()}))
+    same("data_key.json", "an array of records within an object", json.dumps({"data": rows}))
+    nested = [{"t": row["t"], "motor": {"ud": row["ud"], "uq": row["uq"], "id": row["id"], "iq": row["iq"]}, "omega_e": row["omega_e"]} for row in rows]
+    same("nested.jsonl", "objects within records", "".join(json.dumps(row) + "\n" for row in nested))
+    start = pd.Timestamp("2016-02-12T23:59:58.5Z")
+    dated = [row | {"t": (start + pd.Timedelta(nanoseconds=int(round(row["t"] * 1e9)))).isoformat(), "mode": "run"} for row in rows]
+    make.put("dates.jsonl", "".join(json.dumps(row) + "\n" for row in dated))
+    make.read("dates.jsonl", "JSON lines with dates and a text", fast, tolerances={"t": 1e-9}, notes=["dates"])
+    nan = [row | {"u_dc": float("nan")} for row in rows]
+    same("python_nan.jsonl", "NaN as Python writes it, in a column that is not needed", "".join(json.dumps(row) + "\n" for row in nan))
+    make.put("text_value.jsonl", "".join(json.dumps(row | ({"uq": "high"} if at == 2 else {})) + "\n" for at, row in enumerate(rows)))
+    make.refuse("text_value.jsonl", "a text in place of a number", "uq", "high", "number", line=3)
+    make.put("no_records.json", json.dumps({"name": "bench", "runs": 3}))
+    make.refuse("no_records.json", "JSON that is no table", "JSON", "record|object")
+    make.put("cut_off.json", json.dumps(rows)[:-3000])
+    make.refuse("cut_off.json", "JSON that was cut off", "JSON", "ends")
+
+
+# LabVIEW
+
+
+def lvm(make):
+    """As the description of the format has it: no Python library writes it."""
+    fast = make.part(make.FAST)
+    rest = make.NAMES[1:]
+    units = ["V", "V", "A", "A", "rad/s"]
+
+    def header(times, channels, separator="\t", decimal="."):
+        name = {"\t": "Tab", ",": "Comma"}[separator]
+        file = [["LabVIEW Measurement"], ["Writer_Version", "2"], ["Reader_Version", "2"], ["Separator", name], ["Decimal_Separator", decimal],
+                ["Multi_Headings", "Yes"], ["X_Columns", times], ["Time_Pref", "Absolute"], ["Date", "2016/02/12"], ["Time", "23:59:58.5"], ["***End_of_Header***"], []]
+        step = repr(1e-4).replace(".", decimal)
+        segment = [["Channels", str(channels)], ["Samples"] + [str(len(fast["t"]))] * channels, ["Date"] + ["2016/02/12"] * channels,
+                   ["Time"] + ["23:59:58.5000000000000000000"] * channels, ["Y_Unit_Label"] + units[:channels], ["X_Dimension"] + ["Time"] * channels,
+                   ["X0"] + [f"0{decimal}0E+0"] * channels, ["Delta_X"] + [step] * channels, ["***End_of_Header***"]]
+        return "".join(separator.join(line) + separator + "\r\n" for line in file + segment)
+
+    def rows(names, columns, separator="\t", decimal="."):
+        text = separator.join(names + ["Comment"]) + "\r\n"
+        for row in zip(*columns):
+            text += separator.join("" if value is None else make.plain(value).replace(".", decimal) for value in row) + "\r\n"
+        return text
+
+    values = [fast[name] for name in rest]
+    make.put("one_x.lvm", header("One", 5) + rows(["X_Value", *rest], [fast["t"], *values]))
+    make.read("one_x.lvm", "LabVIEW: one X column", fast, same_as="canonical.csv")
+    make.put("comma.lvm", header("One", 5, decimal=",") + rows(["X_Value", *rest], [fast["t"], *values], decimal=","))
+    make.read("comma.lvm", "LabVIEW: decimal commas", fast, same_as="canonical.csv")
+    make.put("no_x.lvm", header("No", 5) + rows(["X_Value", *rest], [[None] * len(fast["t"]), *values]))
+    make.read("no_x.lvm", "LabVIEW: no X column, but X0 and Delta_X", fast, tolerances={"t": 1e-15})
+    pairs = [column for name in rest for column in (fast["t"], fast[name])]
+    make.put("multi_x.lvm", header("Multi", 5) + rows([entry for name in rest for entry in ("X_Value", name)], pairs))
+    make.read("multi_x.lvm", "LabVIEW: an X column for each channel", fast, same_as="canonical.csv")
+    make.put("broken_x.lvm", header("Multi", 5) + rows(["X_Value", *rest], [fast["t"], *values]))
+    make.refuse("broken_x.lvm", "LabVIEW: not the columns that X_Columns says", "LabVIEW", "X_Columns")
+
+
+# CAN
+
+
+DBC = """VERSION ""
+
+NS_ :
+
+BS_:
+
+BU_: DRIVE
+
+BO_ 256 Voltages: 8 DRIVE
+ SG_ ud : 0|32@1- (0.001,0) [0|0] "V" DRIVE
+ SG_ uq : 32|32@1- (0.001,0) [0|0] "V" DRIVE
+
+BO_ 2147484160 Currents: 8 DRIVE
+ SG_ id : 7|32@0- (0.0001,0) [0|0] "A" DRIVE
+ SG_ iq : 39|32@0- (0.0001,0) [0|0] "A" DRIVE
+
+BO_ 258 Speed: 5 DRIVE
+ SG_ kind M : 0|8@1+ (1,0) [0|0] "" DRIVE
+ SG_ omega_e m1 : 8|32@1- (1,0) [0|0] "rad/s" DRIVE
+ SG_ counter m2 : 8|32@1- (1,0) [0|0] "" DRIVE
+
+SIG_VALTYPE_ 258 omega_e : 1;
+"""
+
+
+def frames(make):
+    """cantools encodes, python-can writes. All messages of a row have the time of the row."""
+    slow = make.part(make.SLOW)
+    path = make.MAPPINGS / "drive.dbc"
+    path.write_text(DBC)
+    dbc = cantools.database.load_string(DBC, "dbc")
+    start = 1_455_321_598.5
+    messages = []
+    for row in zip(*(slow[name][:100] for name in make.NAMES)):
+        values = dict(zip(make.NAMES, map(float, row)))
+        for name, signals in [("Voltages", {"ud": values["ud"], "uq": values["uq"]}), ("Currents", {"id": values["id"], "iq": values["iq"]}),
+                              ("Speed", {"kind": 1, "omega_e": values["omega_e"]}), ("Speed", {"kind": 2, "counter": 7})]:
+            message = dbc.get_message_by_name(name)
+            data = message.encode(signals)
+            shift = 1e-5 if signals.get("kind") == 2 else 0.0
+            messages.append(can.Message(timestamp=start + values["t"] + shift, arbitration_id=message.frame_id, is_extended_id=message.is_extended_frame, data=data, channel="can0"))
+    log = {name: values[:100] for name, values in slow.items()}
+    told = {"dbc": "mappings/drive.dbc"}
+    tolerances = {"t": 1e-6, "ud": 1e-12, "uq": 1e-12, "id": 1e-12, "iq": 1e-12, "omega_e": 3e-5}
+    with can.CanutilsLogWriter(make.LOGS / "frames.log") as writer:
+        for message in messages:
+            writer.on_message_received(message)
+    make.read("frames.log", "CAN frames by python-can in the format of candump -l, signals in both byte orders, a float, a multiplexer", log, tolerances=tolerances, told=told)
+    text = ""
+    for message in messages:
+        identifier = f"{message.arbitration_id:08X}" if message.is_extended_id else f"{message.arbitration_id:03X}"
+        text += f" ({message.timestamp:.6f})  can0  {identifier}   [{len(message.data)}]  {message.data.hex(' ').upper()}\n"
+    make.put("frames_spaced.log", text)
+    make.read("frames_spaced.log", "CAN frames as candump -t a shows them", log, tolerances=tolerances, told=told)
+    make.put("frames_without_dbc.log", (make.LOGS / "frames.log").read_bytes())
+    make.refuse("frames_without_dbc.log", "CAN frames, and nobody says what they mean", "candump", "DBC")
+    with can.ASCWriter(make.LOGS / "vector.asc") as writer:
+        for message in messages[:20]:
+            writer.on_message_received(message)
+    make.refuse("vector.asc", "a log of Vector's tools", "ASC", "candump|MDF")
+    with can.BLFWriter(make.LOGS / "vector.blf") as writer:
+        for message in messages[:20]:
+            writer.on_message_received(message)
+    make.refuse("vector.blf", "a binary log of Vector's tools", "BLF", "CSV")
+
+
+# HDF5
+
+
+def hdf5(make):
+    fast = make.part(make.FAST)
+    raw = make.LOGS / "raw.bin"
+    fast["iq"].astype("<f8").tofile(raw)
+    with h5py.File(make.LOGS / "external.h5", "w") as file:
+        for name in make.NAMES:
+            outside = {"external": [("raw.bin", 0, 8 * len(fast["iq"]))]} if name == "iq" else {}
+            data = file.create_dataset(name, (len(fast[name]),), "<f8", **outside)
+            if not outside:
+                data[:] = fast[name]
+    raw.unlink()
+    make.refuse("external.h5", "HDF5 whose i_q lies in another file", "HDF5|external", "another file|external|outside")
+    with h5py.File(make.LOGS / "virtual.h5", "w") as file:
+        for name in make.NAMES:
+            file[name if name != "iq" else "measured"] = fast[name]
+        layout = h5py.VirtualLayout((len(fast["iq"]),), "<f8")
+        layout[:] = h5py.VirtualSource(file["measured"])
+        file.create_virtual_dataset("iq", layout)
+    make.refuse("virtual.h5", "HDF5 with a virtual dataset", "virtual|iq")
