@@ -28,7 +28,7 @@ const STEPS: f64 = 10.0;
 const WORDS: usize = 3;
 
 /// Words in the name of a column that mark it as a reference or another number that is no measurement; `soll` is German.
-const REFERENCE: [&str; 26] = [
+const REFERENCE: [&str; 28] = [
     "ref",
     "reference",
     "req",
@@ -55,6 +55,8 @@ const REFERENCE: [&str; 26] = [
     "err",
     "offset",
     "nominal",
+    "nom",
+    "rated",
 ];
 
 /// Units of quantities that no channel has.
