@@ -112,6 +112,9 @@ pub(crate) struct ColumnArguments {
     /// fluxfit inspect LOG -o MAPPING.toml writes one to start from.
     #[arg(long, value_name = "MAPPING.toml")]
     pub(crate) mapping: Option<PathBuf>,
+    /// DBC file that names the signals in a log of CAN frames (candump)
+    #[arg(long, value_name = "FILE.dbc")]
+    pub(crate) dbc: Option<PathBuf>,
 }
 
 /// Canonical names and headers of one `--map`.

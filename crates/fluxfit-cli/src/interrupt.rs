@@ -1,5 +1,5 @@
-//! Ctrl-C, and a request to terminate. Work that has a best so far is done [`gently`]: it asks [`go_on`] and ends by itself. Any other
-//! work ends at once, says what it was, and leaves no half-written file. A second signal ends at once in any case.
+//! Ctrl-C, a request to terminate, and a terminal that was closed. Work that has a best so far is done [`gently`]: it asks [`go_on`] and
+//! ends by itself. Other work ends at once, says what it was, and leaves no half-written file. A second signal ends at once in any case.
 
 use crate::terminal;
 use fluxfit_files::discard_unfinished;
@@ -30,15 +30,25 @@ fn work() -> MutexGuard<'static, Work> {
     WORK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Listens from now on. A hangup is left alone: `nohup` has its own way with it.
+/// Whether a hangup is ignored, as `nohup` has it: the lowest bit of the set of ignored signals. Where the system does not tell, it is left
+/// alone too.
+#[cfg(unix)]
+fn ignores_hangup() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_none_or(|mask| mask & 1 != 0)
+}
+
+/// Listens from now on.
 pub(crate) fn listen() -> std::io::Result<()> {
     #[cfg(unix)]
     {
         use signal_hook::{
-            consts::{SIGINT, SIGTERM},
+            consts::{SIGHUP, SIGINT, SIGTERM},
             iterator::Signals,
         };
-        let mut signals = Signals::new([SIGINT, SIGTERM])?;
+        let signals = [SIGINT, SIGTERM, SIGHUP];
+        let mut signals = Signals::new(if ignores_hangup() { &signals[..2] } else { &signals[..] })?;
         std::thread::Builder::new().name("signals".to_owned()).spawn(move || signals.forever().for_each(came))?;
     }
     #[cfg(windows)]

@@ -12,13 +12,26 @@ mod json;
 mod shell;
 mod terminal;
 
-use clap::FromArgMatches;
+use clap::{
+    FromArgMatches,
+    error::{ContextKind, ContextValue, ErrorKind},
+};
 use error::CommandError;
-use std::process::ExitCode;
+use fluxfit_units::wording::one_line;
+use std::{path::Path, process::ExitCode};
 use terminal::Detail;
 
 fn main() -> ExitCode {
-    let matches = command_line::command().get_matches();
+    let matches = match command_line::command().try_get_matches() {
+        Ok(matches) => matches,
+        Err(error) => {
+            if let Some(log) = log_in_place_of_verb(&error) {
+                terminal::print_error(&CommandError::Usage(log));
+                return ExitCode::from(2);
+            }
+            error.exit()
+        }
+    };
     let command = match command_line::Command::from_arg_matches(&matches) {
         Ok(command) => command,
         Err(error) => error.format(&mut command_line::command()).exit(),
@@ -39,6 +52,20 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// What to say to somebody who names a file where a verb belongs.
+fn log_in_place_of_verb(error: &clap::Error) -> Option<String> {
+    let word = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(word)) if error.kind() == ErrorKind::InvalidSubcommand => word,
+        _ => return None,
+    };
+    let path = Path::new(word);
+    let looks_like_file = path.is_file() || path.extension().is_some() || word.contains('/');
+    looks_like_file.then(|| {
+        let argument = shell::word(path.as_os_str());
+        format!("{} is no command; to identify a motor from this log: fluxfit identify {}", one_line(word), one_line(&argument))
+    })
 }
 
 fn detail(telling: &command_line::Telling) -> Detail {

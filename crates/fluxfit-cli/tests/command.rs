@@ -13,6 +13,8 @@ mod bad_scenario;
 mod compare;
 #[path = "command/craft.rs"]
 mod craft;
+#[path = "command/edges.rs"]
+mod edges;
 #[path = "command/export.rs"]
 mod export;
 #[path = "command/identify.rs"]

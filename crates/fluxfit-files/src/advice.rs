@@ -13,6 +13,8 @@ pub enum Advice {
         /// Its unit, where there is a likely one.
         unit: Option<&'static str>,
     },
+    /// State the DBC that names the signals of CAN frames.
+    StateDbc,
     /// State the number of pole pairs.
     StatePolePairs,
     /// Give the values of these parameters.

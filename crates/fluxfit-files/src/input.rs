@@ -1,6 +1,7 @@
 //! Bytes and text of a file, or of standard input, whose path is `-`.
 
 use crate::{error::FileError, problem::Problem};
+use fluxfit_units::wording::one_line;
 use std::{
     fs,
     io::{self, Read},
@@ -14,7 +15,7 @@ pub fn is_standard(path: &Path) -> bool {
 
 /// The name of a file in messages.
 pub fn name(path: &Path) -> String {
-    if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
+    if is_standard(path) { "standard input".to_owned() } else { one_line(&path.display().to_string()) }
 }
 
 /// Where the bytes of a file come from.

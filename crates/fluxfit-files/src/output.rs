@@ -10,8 +10,19 @@ use std::{
     io::{self, BufWriter, Stdout, Write},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
+    time::Duration,
 };
 use tempfile::NamedTempFile;
+
+/// Names of temporary files.
+const PREFIX: &str = ".fluxfit-";
+const SUFFIX: &str = ".tmp";
+
+/// A file is locked this soon after it is made.
+const BEFORE_LOCK: Duration = Duration::from_millis(100);
+
+/// Links that may lead to a file one after the other.
+const MOST_LINKS: usize = 40;
 
 /// Bytes that are written at once.
 const BUFFER: usize = 1 << 16;
@@ -142,7 +153,7 @@ fn open(path: &Path) -> Result<Sink, FileError> {
         let device = fs::OpenOptions::new().write(true).open(path);
         return device.map(Sink::Device).map_err(|error| problem(&error).into());
     }
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let target = fs::canonicalize(path).unwrap_or_else(|_| target_of_link(path));
     let directory = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !directory.is_dir() {
         return Err(Problem::NoDirectory { directory: directory.display().to_string() }.into());
@@ -152,10 +163,38 @@ fn open(path: &Path) -> Result<Sink, FileError> {
     Ok(Sink::File { file, listed, target, permissions })
 }
 
+/// Where a link leads whose target does not exist yet; the path itself, if it is no link.
+fn target_of_link(path: &Path) -> PathBuf {
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { break };
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    target
+}
+
+/// Removes the temporary files of programs that were killed: nobody holds their locks.
+fn remove_abandoned(directory: &Path) {
+    let is_temporary = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        let age = |entry: &fs::DirEntry| entry.metadata().ok()?.modified().ok()?.elapsed().ok();
+        let is_old = || age(&entry).is_some_and(|age| age > BEFORE_LOCK);
+        if entry.file_name().to_str().is_some_and(is_temporary)
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && is_old()
+            && fs::File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok())
+        {
+            // Another run may have done so.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// A temporary file with the permissions that the user's mask allows, instead of those of the user alone.
 fn temporary(directory: &Path) -> io::Result<(NamedTempFile, Listed)> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".fluxfit-").suffix(".tmp");
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    remove_abandoned(directory);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -163,6 +202,8 @@ fn temporary(directory: &Path) -> io::Result<(NamedTempFile, Listed)> {
     }
     let mut unfinished = unfinished();
     let file = builder.tempfile_in(directory)?;
+    // Where a file system has no locks, nothing is removed.
+    let _ = file.as_file().try_lock();
     unfinished.push(file.path().to_owned());
     let listed = Listed(file.path().to_owned());
     Ok((file, listed))
@@ -215,6 +256,33 @@ mod tests {
         assert!(is_replaceable(&path) && !path.exists());
         drop(output);
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_removed_and_what_another_one_writes_is_kept() {
+        let directory = tempfile::tempdir().unwrap();
+        let (left, own) = (directory.path().join(".fluxfit-abc.tmp"), directory.path().join(".fluxfit.tmp"));
+        fs::write(&left, "half").unwrap();
+        fs::write(&own, "of the user").unwrap();
+        std::thread::sleep(2 * BEFORE_LOCK);
+        let path = directory.path().join("log.csv");
+        let writing = Output::open(&path).unwrap();
+        assert!(!left.exists() && own.exists());
+        std::thread::sleep(2 * BEFORE_LOCK);
+        drop(Output::open(&path).unwrap());
+        writing.commit().unwrap();
+        assert!(path.exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_a_file_that_does_not_exist_yet_is_kept() {
+        let directory = tempfile::tempdir().unwrap();
+        let link = directory.path().join("link");
+        std::os::unix::fs::symlink("target", &link).unwrap();
+        write_atomically(&link, b"new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(directory.path().join("target")).unwrap(), "new");
     }
 
     #[test]

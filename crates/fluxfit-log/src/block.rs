@@ -1,9 +1,10 @@
 //! Columns of a table, whatever they mean, and their values in blocks of rows.
 
+use crate::instant::Instants;
 use fluxfit_files::FileError;
 
 /// Name, unit and length of a column, as the file states them.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct ColumnHead {
     /// Fields of structures are joined by dots, and `(:,2)` is the second column of a matrix.
     pub(crate) name: String,
@@ -15,6 +16,8 @@ pub(crate) struct ColumnHead {
     pub(crate) group: usize,
     /// This column is the time of its group: the master channel of an MDF file, or the field `time` or `Time` of a structure.
     pub(crate) is_time: bool,
+    /// Its cells are instants, by the first rows of a text.
+    pub(crate) instants: Option<Instants>,
 }
 
 /// A column whose values are to be read.
@@ -25,6 +28,8 @@ pub(crate) struct WantedColumn {
     pub(crate) is_time: bool,
     /// Cells that are not numbers do not refuse the table.
     pub(crate) is_optional: bool,
+    /// Its cells are to be read as instants, in s.
+    pub(crate) instants: Option<Instants>,
 }
 
 /// Rows of the wanted columns.

@@ -30,17 +30,20 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         Rotation::Unstated => unstated,
     };
     let unit = match text.as_str() {
-        "s" | "sec" | "seconds" => Unit::Second,
+        "s" | "sec" | "secs" | "second" | "seconds" | "sek" | "sekunden" => Unit::Second,
         // `ms_today` is the time column of a VESC log.
-        "ms" | "msec" | "ms_today" => Unit::Millisecond,
-        "us" | "µs" | "μs" | "usec" => Unit::Microsecond,
+        "ms" | "msec" | "ms_today" | "millis" | "millisecond" | "milliseconds" => Unit::Millisecond,
+        "us" | "µs" | "μs" | "usec" | "micros" | "microsecond" | "microseconds" => Unit::Microsecond,
+        "ns" | "nsec" | "nanos" | "nanosecond" | "nanoseconds" => Unit::Nanosecond,
         "v" | "volt" | "volts" => Unit::Volt,
         "mv" => Unit::Millivolt,
         "a" | "amp" | "amps" | "ampere" => Unit::Ampere,
         "ma" => Unit::Milliampere,
         "erpm" => Unit::RpmElectrical,
         // Where neither is stated, revolutions are those of the shaft: electrical ones are usually marked as such.
-        "rpm" | "r/min" | "1/min" | "min-1" => by_rotation(Unit::RpmElectrical, Unit::RpmMechanical, Unit::RpmMechanical),
+        "rpm" | "r/min" | "1/min" | "min-1" | "min^-1" | "u/min" | "upm" | "rev/min" => {
+            by_rotation(Unit::RpmElectrical, Unit::RpmMechanical, Unit::RpmMechanical)
+        }
         "rad/s" | "rad_s" | "rad.s" | "rads" | "rad_per_s" | "radps" => {
             by_rotation(Unit::RadianPerSecond, Unit::RadianPerSecondMechanical, Unit::RadianPerSecond)
         }

@@ -1,4 +1,4 @@
-//! Reading the logs of drives: text of any dialect, Parquet, MATLAB, HDF5 and MDF 4.
+//! Reading the logs of drives: text of any dialect, JSON, LVM, CAN frames, Parquet, MATLAB, HDF5 and MDF 4.
 //!
 //! A log is either understood, in SI units, or refused in one sentence on one line that names the file, the line and the column where
 //! there is one, and what to do. Everything that was inferred or repaired is reported in a [`Note`]. No input makes a function of this
@@ -20,11 +20,13 @@
 //! |---|---|
 //! | `reading` | from a table to a log: layout, columns, units, repairs |
 //! | `csv` | tables of text |
+//! | `records` | other logs of text: JSON, LVM, CAN frames |
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
 //! | [`document`] | the JSON document of an inspection |
 //! | `in_order` | work on all cores, with results in order |
 //! | `channel` | the channels of a log and their names |
+//! | `instant` | dates and times in tables of text |
 //! | `header_unit` | units in the headers of columns |
 //! | `argument` | arguments of the form `channel=value` |
 //! | `note`, `problem` | what is reported: notes and errors |
@@ -37,9 +39,11 @@ mod csv;
 pub mod document;
 mod header_unit;
 mod in_order;
+mod instant;
 mod note;
 mod problem;
 mod reading;
+mod records;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container};

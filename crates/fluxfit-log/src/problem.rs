@@ -17,8 +17,10 @@ pub(crate) enum Problem {
     EmptyCell,
     #[error("{} has a comma and a point, so its decimal mark is ambiguous; write numbers without thousands separators", quote(.text))]
     Thousands { text: String },
-    #[error("{} is a time of day; write time as a number, in s", quote(.text))]
+    #[error("{} is a time that is not understood; write it as a number, in s, or as in 2016-02-12 10:31:00.123", quote(.text))]
     ClockTime { text: String },
+    #[error("{} is no date and time as in the first rows; write all of them in one way", quote(.text))]
+    Instant { text: String },
     #[error("{} has another decimal mark than line {other}; use one mark throughout, and no thousands separators", quote(.text))]
     DecimalMarks { text: String, other: u64 },
     #[error("this cell has another decimal mark than line {other}; use one mark throughout, and no thousands separators")]
@@ -55,6 +57,15 @@ pub(crate) enum Problem {
     )]
     PolePairs { what: &'static str, channel: &'static str, unit: &'static str, electrical: &'static str, electrical_unit: &'static str },
 
+    #[error(
+        "nothing states the unit of this speed, or whether it is the electrical one; state it: rad/s is electrical, rad/s-mech and rpm-mech are those of the shaft"
+    )]
+    SpeedUnit,
+    #[error("the times are whole numbers in steps of {step}, and nothing states their unit; state it")]
+    TimeUnit { step: u64 },
+    #[error("by its values this column is not the angle of the rotor; map theta_e to the angle, or log it")]
+    NoAngle,
+
     // Data
     #[error(
         "ud, uq, id, iq and omega_e all have a mean near 0 and a standard deviation near 1: the file is standardized, so its values are not in V, A and rad/s; use the original data"
@@ -86,8 +97,12 @@ pub(crate) enum Problem {
     MatObject { name: String, class: String },
     #[error("this HDF5 file has {what}, which is not supported; write it with libver='earliest', or export the log as Parquet")]
     NewerHdf5 { what: &'static str },
+    #[error("the numbers of this array lie in another file; write them into this one")]
+    ExternalHdf5,
     #[error("this HDF5 file is compressed by filter {identifier}, which is not supported; use gzip, or export the log as Parquet")]
     Hdf5Filter { identifier: u16 },
+    #[error("this Parquet file has {rows} rows of hardly anything but constants, which is no log; export the rows in which the drive runs")]
+    ConstantRows { rows: u64 },
     #[error("this Parquet file is compressed by {codec}, which is not supported; use zstd, gzip, lz4 or snappy")]
     ParquetCodec { codec: String },
     #[error("this HDF5 file has chunks of more than {most} MiB; write it with smaller chunks, or export the log as Parquet")]
@@ -97,6 +112,24 @@ pub(crate) enum Problem {
     #[cfg(not(feature = "mdf4"))]
     #[error("this build of fluxfit does not read MDF 4; build it with the feature mdf4, or export the log as Parquet or CSV")]
     NoMdf,
+
+    // Other logs of text
+    #[error("this is JSON, but no table: {reason}; write an object for each row, as in {{\"t\": 0.0, \"ud\": 1.5}}")]
+    Json { reason: String },
+    #[error("a record of this JSON file has more than {most} MiB; write an object for each row")]
+    LongRecord { most: usize },
+    #[error("this LabVIEW measurement file cannot be read: {reason}; export it again, with one X column")]
+    Lvm { reason: &'static str },
+    #[error("this is a candump log, whose frames have no names; state the DBC that names their signals")]
+    NoDbc,
+    #[error("the DBC is damaged, or not one: {reason}")]
+    Dbc { reason: String },
+    #[error("{} is no frame of candump; remove the line", quote(.text))]
+    Frame { text: String },
+    #[error("the DBC names no message that the log has twice or more; state that of this bus")]
+    NoMessages,
+    #[error("this is {what}; convert it to candump's format or to MDF 4")]
+    CanLog { what: &'static str },
 
     // What is stated about a log
     #[error(
@@ -108,6 +141,10 @@ pub(crate) enum Problem {
     Unit { channel: &'static str, unit: String, allowed: Vec<&'static str> },
     #[error("{channel} is given twice; give it once")]
     Twice { channel: &'static str },
+    #[error("{channel} is no voltage, so it is no share of u_dc; remove this")]
+    NoShare { channel: &'static str },
+    #[error("the mapping says that {channel} is a share of u_dc, and the log has no u_dc; map u_dc to the DC voltage")]
+    NoBus { channel: &'static str },
     #[error("the number of pole pairs is 0; it must be at least 1")]
     ZeroPolePairs,
 }
@@ -115,20 +152,24 @@ pub(crate) enum Problem {
 impl Problem {
     fn kind(&self) -> FileErrorKind {
         match self {
+            Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
+            Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
+            Self::CanLog { .. } => FileErrorKind::Unsupported,
             Self::Gzip { .. } | Self::Document { .. } | Self::NoRows => FileErrorKind::Format,
-            Self::Container { .. } | Self::NoNumbers { .. } | Self::ManyColumns { .. } => FileErrorKind::Format,
-            Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } => FileErrorKind::Value,
+            Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::ManyColumns { .. } => FileErrorKind::Format,
+            Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
             Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::Duplicate { .. } => FileErrorKind::Columns,
-            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } => FileErrorKind::Columns,
-            Self::HeaderUnit { .. } | Self::PolePairs { .. } => FileErrorKind::Unit,
+            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle => FileErrorKind::Columns,
+            Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
             Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) => FileErrorKind::Data,
-            Self::MatObject { .. } | Self::NewerHdf5 { .. } | Self::Hdf5Filter { .. } => FileErrorKind::Unsupported,
+            Self::ExternalHdf5 | Self::MatObject { .. } | Self::NewerHdf5 { .. } | Self::Hdf5Filter { .. } => FileErrorKind::Unsupported,
             Self::ParquetCodec { .. } | Self::LargeChunks { .. } | Self::OldMdf => FileErrorKind::Unsupported,
             #[cfg(not(feature = "mdf4"))]
             Self::NoMdf => FileErrorKind::Unsupported,
-            Self::Channel { .. } | Self::Unit { .. } | Self::Twice { .. } | Self::ZeroPolePairs => FileErrorKind::Request,
+            Self::Channel { .. } | Self::Unit { .. } | Self::Twice { .. } => FileErrorKind::Request,
+            Self::NoShare { .. } | Self::NoBus { .. } | Self::ZeroPolePairs => FileErrorKind::Request,
         }
     }
 
@@ -149,6 +190,11 @@ impl Problem {
             Self::PolePairs { channel, electrical, .. } => {
                 vec![Advice::StatePolePairs, Advice::StateUnit { channel, unit: Some(electrical) }]
             }
+            Self::NoDbc => vec![Advice::StateDbc],
+            Self::NoBus { .. } => map(&["u_dc"]),
+            Self::SpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: None }],
+            Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
+            Self::NoAngle => map(&["theta_e"]),
             Self::ZeroPolePairs => vec![Advice::StatePolePairs],
             _ => Vec::new(),
         }

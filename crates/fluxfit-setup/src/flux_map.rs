@@ -27,6 +27,7 @@ pub(crate) fn read_flux_map(path: &Path) -> Result<FluxMap, FileError> {
 
 fn parse(text: &str) -> Result<FluxMap, FileError> {
     let header = header::find(text, &mut Vec::new())?;
+    let text = &*header.rows.tidied(text, header.body);
     let (mut points, mut starts) = (Vec::new(), Vec::new());
     let columns = columns(&header)?;
     let mut reader = record::reader(&text.as_bytes()[header.body..], header.separator);

@@ -12,6 +12,8 @@ pub enum Unit {
     Millisecond,
     /// us.
     Microsecond,
+    /// ns.
+    Nanosecond,
     /// V.
     Volt,
     /// mV.
@@ -48,10 +50,11 @@ pub enum Unit {
 
 impl Unit {
     /// All of them; of each dimension the SI unit first.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Second,
         Self::Millisecond,
         Self::Microsecond,
+        Self::Nanosecond,
         Self::Volt,
         Self::Millivolt,
         Self::Ampere,
@@ -76,6 +79,7 @@ impl Unit {
             Self::Second => ("s", "s", Dimension::Time, 1.0),
             Self::Millisecond => ("ms", "ms", Dimension::Time, 1e-3),
             Self::Microsecond => ("us", "us", Dimension::Time, 1e-6),
+            Self::Nanosecond => ("ns", "ns", Dimension::Time, 1e-9),
             Self::Volt => ("V", "V", Dimension::Voltage, 1.0),
             Self::Millivolt => ("mV", "mV", Dimension::Voltage, 1e-3),
             Self::Ampere => ("A", "A", Dimension::Current, 1.0),
@@ -115,6 +119,11 @@ impl Unit {
         self.properties().0.ends_with("-mech")
     }
 
+    /// Its size in SI units; of mechanical units, for one pole pair.
+    pub fn in_si(self) -> f64 {
+        self.properties().3
+    }
+
     /// Units of `dimension`, SI first.
     pub fn of(dimension: Dimension) -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(move |unit| unit.dimension() == dimension)
@@ -129,7 +138,7 @@ impl Unit {
     /// Converts values to SI units, in place.
     pub fn to_si(self, values: &mut [f64], pole_pairs: u32) {
         let factor = self.properties().3 * if self.is_mechanical() { f64::from(pole_pairs) } else { 1.0 };
-        if factor == 1e-3 || factor == 1e-6 {
+        if [1e-3, 1e-6, 1e-9].contains(&factor) {
             // Dividing by a thousand is exact where multiplying by 0.001 is not.
             let divisor = factor.recip().round();
             values.iter_mut().for_each(|value| *value /= divisor);

@@ -23,10 +23,14 @@ pub fn shorten(text: &str) -> String {
     one_line(&short)
 }
 
-/// `text` with control characters and line breaks escaped.
+/// `text` with control characters, line breaks and marks of the writing direction escaped: what a file says can neither steer a terminal
+/// nor turn a sentence around.
 pub fn one_line(text: &str) -> String {
-    let breaks = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
-    text.chars().flat_map(|c| if breaks(c) { c.escape_default().collect() } else { vec![c] }).collect()
+    let steers = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}' | '\u{e0000}'..='\u{e007f}')
+    };
+    text.chars().flat_map(|c| if steers(c) { c.escape_default().collect() } else { vec![c] }).collect()
 }
 
 /// `a, b and c`.
@@ -81,6 +85,7 @@ mod tests {
     fn a_quotation_stays_short_and_on_one_line() {
         assert_eq!(quote("a\nb\u{2028}"), "\"a\\nb\\u{2028}\"");
         assert_eq!(quote(&"ü".repeat(41)), format!("\"{}…\"", "ü".repeat(40)));
+        assert_eq!(quote("a\u{202e}b\u{1b}[2J"), "\"a\\u{202e}b\\u{1b}[2J\"");
         assert_eq!(quote(&"x".repeat(40)), format!("\"{}\"", "x".repeat(40)));
     }
 

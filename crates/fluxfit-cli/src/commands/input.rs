@@ -8,6 +8,7 @@ use crate::{
 use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, log::Source, optimizer};
 use fluxfit_log::{LogOptions, Note, read_log_with_progress, read_mapping};
 use fluxfit_setup::{MotorFile, read_motor};
+use fluxfit_units::wording::one_line;
 use std::{fs, path::Path};
 
 /// The logs, joined, and the motor file.
@@ -68,6 +69,7 @@ pub(crate) fn options(arguments: &ColumnArguments, of_motor: Option<u32>) -> Res
         map: arguments.map.iter().flat_map(|pairs| pairs.0.clone()).collect(),
         units: arguments.unit.clone(),
         pole_pairs,
+        dbc: arguments.dbc.as_deref().map(read_dbc).transpose()?,
         mapping,
     })
 }
@@ -100,12 +102,20 @@ fn nameplate(input: &Input) -> Nameplate {
 /// An error of the library: of the log, if it is about the log.
 pub(crate) fn of_log(name: &str, error: Error) -> CommandError {
     match error.kind() {
-        ErrorKind::NoOperatingPoint { .. } | ErrorKind::Window { .. } => CommandError::Log { log: name.to_owned(), error },
+        ErrorKind::TooShort { .. } | ErrorKind::NoOperatingPoint { .. } | ErrorKind::Window { .. } => {
+            CommandError::Log { log: name.to_owned(), error }
+        }
         _ => CommandError::Library(error),
     }
 }
 
 /// The file's name in a message.
 pub(crate) fn name(path: &Path) -> String {
-    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { one_line(&path.display().to_string()) }
+}
+
+/// The text of a DBC. Old tools write it in Windows-1252, whose letters beyond ASCII are in comments only.
+fn read_dbc(path: &Path) -> Result<String, CommandError> {
+    let bytes = fluxfit_files::input::read(path)?;
+    Ok(String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}').to_owned())
 }

@@ -4,6 +4,7 @@
 use crate::{arguments::LogArguments, error::CommandError, interrupt, shell, terminal};
 use fluxfit_files::write_atomically;
 use fluxfit_report::{FigureFile, Origin};
+use fluxfit_units::wording::one_line;
 use std::{fs, path::Path};
 
 /// Refuses a report where it would mix with the answer or destroy what is read.
@@ -24,6 +25,11 @@ pub(crate) fn check<'a>(arguments: &'a LogArguments, others_read: impl IntoItera
 pub(crate) fn check_name(path: &Path) -> Result<(), CommandError> {
     if path.as_os_str() == "-" {
         return Err(CommandError::Usage("--report needs the name of a file: standard output is for the answer".to_owned()));
+    }
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    if let Some(other) = extension.filter(|extension| !["html", "htm", "xhtml"].contains(&extension.as_str())) {
+        let why = format!("--report writes an HTML page, not {}; name it .html, and print it from a browser", one_line(&other));
+        return Err(CommandError::Usage(why));
     }
     Ok(())
 }

@@ -1,6 +1,8 @@
 //! How this program states what resolves an error or a note of a reader: the options behind each [`Advice`].
 
+use crate::shell;
 use fluxfit_files::Advice;
+use fluxfit_units::wording::one_line;
 
 /// A sentence with the options that do what it advises: `.. (--map uq=COLUMN)`.
 pub(crate) fn with_options(sentence: &str, advice: &[Advice]) -> String {
@@ -13,16 +15,14 @@ fn option(advice: &Advice) -> Option<String> {
         Advice::MapColumns(pairs) => {
             let pair = |(channel, header): &(&str, Option<String>)| format!("{channel}={}", header.as_deref().unwrap_or("COLUMN"));
             let argument = pairs.iter().map(pair).collect::<Vec<_>>().join(",");
-            // Names come from files: what a shell would split or interpret is quoted, and what would not fit a line is left out.
-            let is_plain = argument.chars().all(|c| c.is_alphanumeric() || "_=,.-@".contains(c));
-            let is_printable = argument.chars().all(|c| !c.is_control() && !"\"$`\\".contains(c));
-            match (is_plain, is_printable) {
-                (true, _) => Some(format!("--map {argument}")),
-                (false, true) => Some(format!("--map \"{argument}\"")),
-                (false, false) => Some(format!("--map {}=COLUMN", pairs.first()?.0)),
+            // Names come from files: what a shell would split or interpret is quoted, and what would not print as it is is left out.
+            match one_line(&argument) == argument {
+                true => Some(format!("--map {}", shell::word(argument.as_ref()))),
+                false => Some(format!("--map {}=COLUMN", pairs.first()?.0)),
             }
         }
         Advice::StateUnit { channel, unit } => Some(format!("--unit {channel}={}", unit.unwrap_or("UNIT"))),
+        Advice::StateDbc => Some("--dbc FILE.dbc".to_owned()),
         Advice::StatePolePairs => Some("--pole-pairs N".to_owned()),
         Advice::FixParameters(keys) => {
             Some(format!("--fix {}", keys.iter().map(|key| format!("{key}=VALUE")).collect::<Vec<_>>().join(",")))
@@ -43,8 +43,14 @@ mod tests {
         assert_eq!(with_options("a", &[]), "a");
         assert_eq!(with_options("a", &map(&[("id", None), ("iq", None)])), "a (--map id=COLUMN,iq=COLUMN)");
         assert_eq!(with_options("a", &map(&[("ud", Some("u_d")), ("uq", Some("u_q"))])), "a (--map ud=u_d,uq=u_q)");
-        assert_eq!(with_options("a", &map(&[("uq", Some("q-axis voltage"))])), "a (--map \"uq=q-axis voltage\")");
+        assert_eq!(with_options("a", &map(&[("uq", Some("q-axis voltage"))])), "a (--map 'uq=q-axis voltage')");
         assert_eq!(with_options("a", &map(&[("uq", Some("a\n$(b)"))])), "a (--map uq=COLUMN)");
+        for (name, quoted) in
+            [("$(b)", "'uq=$(b)'"), ("`b`", "'uq=`b`'"), ("b\\", "'uq=b\\'"), ("it's", r"'uq=it'\''s'"), ("!!", "'uq=!!'")]
+        {
+            assert_eq!(with_options("a", &map(&[("uq", Some(name))])), format!("a (--map {quoted})"));
+        }
+        assert_eq!(with_options("a", &map(&[("uq", Some("a\u{202e}b"))])), "a (--map uq=COLUMN)");
         let pole_pairs = [Advice::StatePolePairs, Advice::StateUnit { channel: "omega_e", unit: Some("rpm-elec") }];
         assert_eq!(with_options("a", &pole_pairs), "a (--pole-pairs N, or --unit omega_e=rpm-elec)");
         assert_eq!(with_options("a", &[Advice::FixParameters(vec!["ld", "rs"])]), "a (--fix ld=VALUE,rs=VALUE)");

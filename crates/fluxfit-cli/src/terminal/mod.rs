@@ -11,7 +11,7 @@ use crate::error::CommandError;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit::Warning;
-use fluxfit_units::significant;
+use fluxfit_units::{significant, wording::one_line};
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},
@@ -117,13 +117,13 @@ pub(crate) fn note(message: &str) {
 /// Says that a file was written, and what it is.
 pub(crate) fn wrote(what: &str, file: &Path) {
     if detail_level() > Detail::Quiet && file.as_os_str() != "-" {
-        say(&format!("{DIM}{what}:{DIM:#} {}", file.display()));
+        say(&format!("{DIM}{what}:{DIM:#} {}", one_line(&file.display().to_string())));
     }
 }
 
 /// Says why one was not.
 pub(crate) fn refuse_export(file: &Path, why: &str) {
-    say(&format!("{ERROR}error:{ERROR:#} {} is not written: {why}", file.display()));
+    say(&format!("{ERROR}error:{ERROR:#} {} is not written: {why}", one_line(&file.display().to_string())));
 }
 
 fn say(line: &str) {

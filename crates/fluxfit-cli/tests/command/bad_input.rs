@@ -19,7 +19,11 @@ fn with_row(text: &str) -> String {
 #[test]
 fn unreadable_logs() {
     let table: Vec<(&str, Vec<u8>, &[&str])> = vec![
-        ("missing column", log(100, |_| None).replace("omega_e", "speed").into(), &["line 1", "omega_e", "missing", "--map omega_e=speed"]),
+        (
+            "missing column",
+            log(100, |_| None).replace("omega_e", "load_speed").into(),
+            &["line 1", "omega_e", "missing", "--map omega_e=load_speed"],
+        ),
         ("text in a number", with_row("0.0003,-45,8O,-2,9,418").into(), &["line 5", "column 'uq'", "8O"]),
         ("empty cell", with_row("0.0003,-45,,-2,9,418").into(), &["line 5", "column 'uq'"]),
         ("NaN", with_row("0.0003,-45,NaN,-2,9,418").into(), &["line 5", "column 'uq'", "NaN"]),

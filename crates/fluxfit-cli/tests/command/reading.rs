@@ -59,18 +59,18 @@ fn an_inspection_shows_columns_and_writes_a_mapping_that_identify_takes() {
     let canonical = fs::read_to_string(root().join(LOGS).join("slow.csv")).unwrap();
     fs::write(
         &log,
-        canonical.replacen("t,ud,uq,id,iq,omega_e", "time [s],Motor.Vd,Motor.Vq,Motor.Id,Motor.Iq,Motor.Speed [rad/s-elec]", 1),
+        canonical.replacen("t,ud,uq,id,iq,omega_e", "time [s],Bench Vd,Bench Vq,Bench Id,Bench Iq,Bench Speed [rad/s-elec]", 1),
     )
     .unwrap();
     let (log, mapping) = (log.to_str().unwrap(), mapping.to_str().unwrap());
     let run = fluxfit(&["inspect", log, "-o", mapping]);
     assert_eq!(run.status, 2, "{}", run.err);
-    assert!(run.out.contains("Motor.Vd") && run.out.contains("ud?"), "{}", run.out);
+    assert!(run.out.contains("Bench Vd") && run.out.contains("ud?"), "{}", run.out);
     let guessed = fs::read_to_string(mapping).unwrap();
-    assert!(guessed.contains("ud = { column = \"Motor.Vd\" }"), "{guessed}");
+    assert!(guessed.contains("ud = { column = \"Bench Vd\" }"), "{guessed}");
     let run = fluxfit(&["identify", log, "--mapping", mapping]);
     assert_eq!(run.status, 2, "its unit is unknown: {}", run.err);
-    fs::write(mapping, guessed.replace("column = \"Motor.Speed [rad/s-elec]\"", "column = \"Motor.Speed [rad/s-elec]\", unit = \"rad/s\""))
+    fs::write(mapping, guessed.replace("column = \"Bench Speed [rad/s-elec]\"", "column = \"Bench Speed [rad/s-elec]\", unit = \"rad/s\""))
         .unwrap();
     let (_, document) = json(&["identify", log, "--mapping", mapping]);
     assert_eq!(document["parameters"], answer("slow.csv")["parameters"]);
@@ -91,7 +91,7 @@ fn the_document_of_an_inspection_has_columns_and_gaps() {
     assert_eq!(document["log"]["gaps"], serde_json::json!([{ "t0": 0.099, "t1": 0.6 }]));
     assert_eq!(document["error"], Value::Null);
 
-    fs::write(&path, "t,Motor.Vd,uq,id,iq,omega_e\n0,1,20,0,3,400\n1,1,20,0,3,400\n").unwrap();
+    fs::write(&path, "t,Bench Vd,uq,id,iq,omega_e\n0,1,20,0,3,400\n1,1,20,0,3,400\n").unwrap();
     let (status, document) = json(&["inspect", path.to_str().unwrap()]);
     assert_eq!((status, &document["log"], &document["columns"][1]["resembles"]), (2, &Value::Null, &"ud".into()));
     assert!(document["error"].as_str().unwrap().contains("the column ud is missing"), "{document}");

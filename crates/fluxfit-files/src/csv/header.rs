@@ -1,6 +1,6 @@
 //! The header of a table of text: where it is, and what separates its names.
 
-use super::record;
+use super::{record, tidy::RowStyle};
 use crate::{error::FileError, input, problem::Problem};
 use fluxfit_units::wording::{list, quote};
 
@@ -12,8 +12,10 @@ pub struct Header {
     pub units: Vec<String>,
     /// Line of the header, from 1.
     pub line: u64,
-    /// Byte between the cells.
+    /// Byte between the cells, once the rows are [tidied](RowStyle).
     pub separator: u8,
+    /// How the rows are written.
+    pub rows: RowStyle,
     /// Offset of the first byte below.
     pub body: usize,
     /// Line of that byte.
@@ -33,7 +35,15 @@ const LONGEST_UNIT: usize = 16;
 /// If there is no header, or it has only one name.
 pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     let mut header = names(text, notes)?;
-    if let Some((units, end)) = units(text, &header) {
+    if header.rows == RowStyle::Plain && header.separator != b';' && first_row(text, header.body).is_some_and(|row| row.ends_with(';')) {
+        header.rows = RowStyle::Terminated;
+        if let Some(last) = header.names.last_mut() {
+            last.truncate(last.trim_end_matches(';').trim_end().len());
+        }
+    }
+    if header.units.is_empty()
+        && let Some((units, end)) = units(text, &header)
+    {
         notes.push(format!("line {} is a row of units", record::line_of(text, header.body)));
         header.units = units;
         header.body = end;
@@ -42,21 +52,38 @@ pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     Ok(header)
 }
 
+/// The first line below that is not blank, without spaces at its ends.
+fn first_row(text: &str, from: usize) -> Option<&str> {
+    lines(text.get(from..)?).map(|(_, line)| line.trim()).find(|line| !line.is_empty())
+}
+
 /// A row of short texts without a number above a row with numbers, and the offset of its end.
 fn units(text: &str, header: &Header) -> Option<(Vec<String>, usize)> {
     let record = |from: usize| {
         let (start, line) = lines(&text[from..]).find(|(_, line)| !line.trim().is_empty())?;
-        Some((record::first_record(line, header.separator).0, from + start + line.len()))
+        Some((cells(line, header.separator, header.rows), from + start + line.len()))
     };
-    let (cells, end) = record(header.body)?;
-    let (below, _) = record(end)?;
+    let (row, end) = record(header.body)?;
     let is_unit = |cell: &String| !is_number(cell, header.separator) && cell.chars().count() <= LONGEST_UNIT;
-    let is_row = cells.iter().all(is_unit) && cells.iter().filter(|cell| !cell.is_empty()).count() > 1;
-    (is_row && cells.len() <= header.names.len() && below.iter().any(|cell| is_number(cell, header.separator))).then_some((cells, end))
+    let is_row = row.iter().all(is_unit) && row.iter().filter(|cell| !cell.is_empty()).count() > 1;
+    if !is_row || row.len() > header.names.len() {
+        return None;
+    }
+    let (below, _) = record(end)?;
+    below.iter().any(|cell| is_number(cell, header.separator)).then_some((row, end))
+}
+
+/// The cells of a line.
+fn cells(line: &str, separator: u8, rows: RowStyle) -> Vec<String> {
+    match rows {
+        RowStyle::Aligned => line.split_whitespace().map(str::to_owned).collect(),
+        RowStyle::Terminated => record::first_record(line.trim_end().trim_end_matches(';'), separator).0,
+        RowStyle::Plain => record::first_record(line, separator).0,
+    }
 }
 
 fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
-    let mut comment = None;
+    let mut comments = Vec::new();
     let mut stated_separator = None;
     let mut titles = Vec::new();
     let mut lines = lines(text);
@@ -64,7 +91,7 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         let (start, line) = lines.next().ok_or(Problem::NoHeader)?;
         let trimmed = line.trim();
         if trimmed.starts_with(['#', '%']) {
-            comment = Some((start, trimmed));
+            comments.push((start, trimmed));
         } else if let Some(separator) = separator_line(line) {
             stated_separator = Some(separator);
         } else if !trimmed.trim_matches([',', ';', ' ', '\t']).is_empty() {
@@ -78,10 +105,21 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     if !titles.is_empty() {
         notes.push(format!("read as titles above the header: {}", list(&titles)));
     }
-    let separator = stated_separator.unwrap_or_else(|| most_frequent_separator(first));
-    let header = at(text, start, separator);
-    if header.names.len() > 1 && header.names.iter().all(|name| is_number(name, separator)) {
-        return from_comment(text, comment, start, &header, notes);
+    let header = match stated_separator {
+        None if is_aligned(text, start, first) => Header {
+            names: cells(first, b'\t', RowStyle::Aligned),
+            units: Vec::new(),
+            line: record::line_of(text, start),
+            separator: b'\t',
+            rows: RowStyle::Aligned,
+            body: start + first.len(),
+            body_line: 0,
+        },
+        _ => at(text, start, stated_separator.unwrap_or_else(|| most_frequent_separator(first))),
+    };
+    let is_value = |name: &String| is_number(name.trim_end_matches(';'), header.separator);
+    if header.names.len() > 1 && header.names.iter().all(is_value) {
+        return from_comments(text, &comments, start, header, notes);
     }
     if header.names.len() < 2 {
         return Err(FileError::from(Problem::OneColumn { text: first.trim().to_owned() }).at_line(header.line));
@@ -91,33 +129,64 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
 
 fn at(text: &str, start: usize, separator: u8) -> Header {
     let (names, length) = record::first_record(&text[start..], separator);
-    Header { names, units: Vec::new(), line: record::line_of(text, start), separator, body: start + length, body_line: 0 }
+    let (line, body) = (record::line_of(text, start), start + length);
+    Header { names, units: Vec::new(), line, separator, rows: RowStyle::Plain, body, body_line: 0 }
 }
 
-/// The header in the last comment above the rows, where some tools write it.
-fn from_comment(
-    text: &str,
-    comment: Option<(usize, &str)>,
-    body: usize,
-    first: &Header,
-    notes: &mut Vec<String>,
-) -> Result<Header, FileError> {
-    if let Some((start, comment)) = comment {
+/// Whether a line and the first row below it, or the line alone if it has numbers only, have as many words and no separator: their cells
+/// are separated by spaces.
+fn is_aligned(text: &str, start: usize, line: &str) -> bool {
+    let bare = |line: &str| !line.trim().contains([',', ';', '\t', '"']);
+    let are_numbers = |line: &str| line.split_whitespace().all(|word| is_number(word, b'\t'));
+    let words = line.split_whitespace().count();
+    let fits = |row: &str| row.split_whitespace().count() == words && bare(row);
+    words > 1
+        && bare(line)
+        && (are_numbers(line)
+            || lines(&text[start + line.len()..])
+                .map(|(_, line)| line)
+                .filter(|line| !line.trim().is_empty())
+                .take(2)
+                .take_while(|row| fits(row))
+                .any(are_numbers))
+}
+
+/// The header in a comment above the rows, where some tools write it: the last one that has as many names as a row has cells. A comment
+/// below it with as many cells in brackets has the units.
+fn from_comments(text: &str, comments: &[(usize, &str)], body: usize, first: Header, notes: &mut Vec<String>) -> Result<Header, FileError> {
+    let cells_of = |comment: &str| {
         let bare = comment.trim_start_matches(['#', '%']);
-        let separator = most_frequent_separator(bare);
-        let (names, _) = record::first_record(bare, separator);
-        if names.len() == first.names.len() && names.iter().all(|name| !is_number(name, separator)) {
-            let line = record::line_of(text, start);
-            notes.push(format!("the names of the columns were taken from the comment in line {line}"));
-            return Ok(Header { names, units: Vec::new(), line, separator: first.separator, body, body_line: 0 });
+        if bare.contains([',', ';', '\t']) || first.rows != RowStyle::Aligned {
+            let separator = most_frequent_separator(bare);
+            let bare = if separator == b';' { bare } else { bare.trim_end_matches(';') };
+            return record::first_record(bare, separator).0;
         }
+        cells(bare, b'\t', RowStyle::Aligned)
+    };
+    let mut fitting = comments.iter().rev().map(|(start, comment)| (*start, cells_of(comment))).filter(|(_, cells)| {
+        let are_names = !cells.iter().any(|cell| cell.is_empty() || is_number(cell, b'\t'));
+        cells.len() == first.names.len() && are_names
+    });
+    let Some((mut start, mut names)) = fitting.next() else {
+        let problem = Problem::NumbersForHeader { text: first.names.join(", ") };
+        return Err(FileError::from(problem).at_line(first.line));
+    };
+    let mut units = Vec::new();
+    let is_bracketed = |cell: &String| (cell.starts_with('[') && cell.ends_with(']')) || (cell.starts_with('(') && cell.ends_with(')'));
+    if names.iter().all(is_bracketed)
+        && let Some((above, of_above)) = fitting.next()
+    {
+        units = std::mem::replace(&mut names, of_above);
+        start = above;
     }
-    let problem = Problem::NumbersForHeader { text: first.names.join(", ") };
-    Err(FileError::from(problem).at_line(first.line))
+    let line = record::line_of(text, start);
+    notes.push(format!("the names of the columns were taken from the comment in line {line}"));
+    Ok(Header { names, units, line, body, ..first })
 }
 
 /// Whether a line is a title, a timestamp or a line of information above the header: it has one cell or begins with a digit, and the
-/// next line has more cells; or it has at most half as many cells as the first row of numbers below.
+/// next line has more cells; or it has at most half as many cells as the first row of numbers below; or it has empty cells, and the line
+/// below has fewer and is no row of numbers either.
 fn is_title(text: &str, start: usize, line: &str) -> bool {
     let header = at(text, start, most_frequent_separator(line));
     let cells = header.names.len();
@@ -128,9 +197,21 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
     if cells > 1 && !dated {
         let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell, b';')).count() * 2 > cells.len();
         let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
-        return row.is_some_and(|row| 2 * cells <= row.len());
+        return row.is_some_and(|row| 2 * cells <= row.len()) || header.names.iter().any(String::is_empty) && is_above_names(&header, text);
     }
     below().next().is_some_and(|(_, line)| cells_of(line).len() > cells)
+}
+
+/// Whether a line below a line with empty cells, and above the first row of numbers, has more names in it.
+fn is_above_names(line: &Header, text: &str) -> bool {
+    let filled = |cells: &[String]| cells.iter().filter(|cell| !cell.is_empty()).count();
+    let numbers = |cells: &[String]| cells.iter().filter(|cell| is_number(cell, line.separator)).count();
+    lines(&text[line.body..])
+        .filter(|(_, line)| !line.trim().is_empty())
+        .take(TITLES)
+        .map(|(_, below)| record::first_record(below, line.separator).0)
+        .take_while(|below| 2 * numbers(below) <= filled(below))
+        .any(|below| filled(&below) > filled(&line.names) && numbers(&below) == 0)
 }
 
 /// The separator from a line `sep=;`, as spreadsheets write it.
@@ -154,6 +235,11 @@ fn most_frequent_separator(line: &str) -> u8 {
         };
         line.as_bytes().iter().copied().filter(outside).count()
     };
+    // A semicolon at the end alone separates nothing.
+    let ends = line.trim_end().ends_with(';') && count(b';') == 1 && count(b',') + count(b'\t') > 0;
+    if ends {
+        return if count(b',') >= count(b'\t') { b',' } else { b'\t' };
+    }
     // The last of equal maxima wins.
     [b'\t', b',', b';'].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
@@ -201,6 +287,28 @@ mod tests {
         assert_eq!((header.names, header.separator, header.body), (vec!["a".into(), "b".into(), "c".into()], b';', 23));
         assert_eq!(notes, ["the names of the columns were taken from the comment in line 2"]);
         assert!(find("# a,b\n1,2,3\n", &mut notes).is_err());
+        // With the units in a comment below, and rows that end with a semicolon.
+        let header = find("% drive 3\r\n\r\n%a,b\r\n%[s],[V]\r\n1,2;\r\n3,4;\r\n", &mut notes).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((header.names, header.units), (vec!["a".to_owned(), "b".to_owned()], vec!["[s]".to_owned(), "[V]".to_owned()]));
+        assert_eq!((header.line, header.separator, header.rows), (3, b',', RowStyle::Terminated));
+        let header = find("# a b c\n1.0 2.0 3.0\n", &mut notes).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((header.names.concat(), header.rows, header.body), ("abc".to_owned(), RowStyle::Aligned, 8));
+    }
+
+    #[test]
+    fn titles_with_empty_cells_are_above_the_names() {
+        let names = || vec!["t".to_owned(), "ud".to_owned(), "uq".to_owned()];
+        assert_eq!(found("Bench 3;;2016\n;Drive;\nt;ud;uq\n1;2;3"), (names(), 3, b';', "1;2;3"));
+        assert_eq!(found("t;ud;uq;\n1;2;3"), (names(), 1, b';', "1;2;3"));
+        // A column without a name, as pandas writes its index.
+        assert_eq!(found(",ud,uq\n0,1,2\n").0, ["", "ud", "uq"]);
+    }
+
+    #[test]
+    fn names_and_numbers_may_be_aligned_with_spaces() {
+        let header = find("  t    ud   uq\n 0.0  1.0 -2.0\n", &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((header.names.join(","), header.rows, header.body), ("t,ud,uq".to_owned(), RowStyle::Aligned, 15));
+        assert!(find("one title of words\n", &mut Vec::new()).is_err());
     }
 
     #[test]

@@ -29,16 +29,30 @@ pub fn leading_number(text: &[u8]) -> Option<(f64, usize)> {
 
 /// The cells of the first record, without empty ones at its end, and its length in bytes including the end of the line.
 pub fn first_record(text: &str, separator: u8) -> (Vec<String>, usize) {
+    let (bytes, start) = (text.as_bytes(), begin(text.as_bytes(), 0));
+    let end = memchr::memchr2(b'\r', b'\n', &bytes[start..]).map_or(bytes.len(), |at| start + at);
+    let mut names: Vec<String>;
+    let length;
+    // A line without quotation marks is a record as it is. Setting up a reader would cost more than reading it.
+    if memchr::memchr(b'"', &bytes[start..end]).is_none() {
+        names = bytes[start..end].split(|byte| *byte == separator).map(|cell| text_of(trimmed(cell))).collect();
+        length = if bytes[end..].starts_with(b"\r\n") { end + 2 } else { bytes.len().min(end + 1) };
+    } else {
+        (names, length) = first_of_any(text, separator);
+    }
+    while names.last().is_some_and(String::is_empty) {
+        names.pop();
+    }
+    (names, length)
+}
+
+fn first_of_any(text: &str, separator: u8) -> (Vec<String>, usize) {
     let mut reader = reader(text.as_bytes(), separator);
     let mut record = ByteRecord::new();
     if next(&mut reader, &mut record).is_err() {
         return (Vec::new(), text.len());
     }
-    let mut names: Vec<String> = record.iter().map(|cell| text_of(trimmed(cell))).collect();
-    while names.last().is_some_and(String::is_empty) {
-        names.pop();
-    }
-    (names, in_memory(reader.position().byte()))
+    (record.iter().map(|cell| text_of(trimmed(cell))).collect(), in_memory(reader.position().byte()))
 }
 
 /// The line, from 1, of the record that begins at or after `start`.

@@ -5,7 +5,7 @@
 pub(super) const BLOCK: usize = 1 << 11;
 
 /// Maximum number of columns of a file. A log has at most some hundred; a flux map of 256 x 256 points has some thousand.
-pub(super) const MOST_COLUMNS: usize = 20_000;
+pub(crate) const MOST_COLUMNS: usize = 20_000;
 
 /// Maximum number of bytes, or rows, that a file of this length can hold: deflate compresses 1032 bytes into one at best. Without this
 /// bound a small file that repeats one value could keep a reader busy for days.

@@ -89,7 +89,7 @@ impl Mat {
                     Line::Column(_) => format!("{name}(:,{})", k + 1),
                     Line::Row(_) => format!("{name}({},:)", k + 1),
                 };
-                heads.push(ColumnHead { name, unit: array.unit.clone(), rows, group, is_time });
+                heads.push(ColumnHead { name, unit: array.unit.clone(), rows, group, is_time, instants: None });
                 columns.push(Column { array: at, line });
             }
             if heads.len() > MOST_COLUMNS {

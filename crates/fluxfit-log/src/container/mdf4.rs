@@ -50,7 +50,8 @@ impl Mdf4 {
                 } else if channel_group.sample_count > 0 {
                     let unit = (!channel.unit.is_empty()).then(|| channel.unit.clone());
                     let rows = channel_group.sample_count;
-                    heads.push(ColumnHead { name: channel.name.clone(), unit, rows, group, is_time: channel.is_time_channel() });
+                    let is_time = channel.is_time_channel();
+                    heads.push(ColumnHead { name: channel.name.clone(), unit, rows, group, is_time, instants: None });
                     channels.push(channel.clone());
                 }
                 if heads.len() + unreadable.len() > MOST_COLUMNS {

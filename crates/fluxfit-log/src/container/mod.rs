@@ -16,6 +16,7 @@ mod random_access;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use limits::MOST_COLUMNS;
 pub(crate) use random_access::RandomAccess;
 
 use crate::{block::ColumnHead, problem::Problem};

@@ -27,6 +27,12 @@ use parquet::{
     schema::types::ColumnDescriptor,
 };
 
+/// Rows that a file of any size may have,
+const FEW_ROWS: u64 = 10_000_000;
+
+/// and rows for each byte of a larger one: measured values take more than a bit each, and 1e8 rows of constants are no log.
+const ROWS_PER_BYTE: u64 = 8;
+
 /// Rows that are decoded at a time: so many that handing a column to a thread takes no time, so few that the values stay in the cache.
 const STRETCH: usize = 16 * BLOCK;
 
@@ -78,6 +84,9 @@ impl Parquet {
         let rows = groups.iter().try_fold(0u64, |sum, group| sum.checked_add(u64::try_from(group.num_rows()).ok()?));
         let rows =
             rows.filter(|rows| *rows <= most_held(source.length())).ok_or_else(|| damaged(FORMAT, "its number of rows is impossible"))?;
+        if rows > FEW_ROWS && rows > source.length().saturating_mul(ROWS_PER_BYTE) {
+            return Err(Problem::ConstantRows { rows }.into());
+        }
         if groups.iter().any(|group| group.num_columns() != schema.num_columns()) {
             return Err(damaged(FORMAT, "its row groups have different columns"));
         }
@@ -89,7 +98,7 @@ impl Parquet {
                 continue;
             };
             let unit = matches!(meaning, Meaning::Instant(_)).then(|| "s".to_owned());
-            heads.push(ColumnHead { name, unit, rows, group: 0, is_time: false });
+            heads.push(ColumnHead { name, unit, rows, ..ColumnHead::default() });
             columns.push(Column { leaf, meaning, present: column.max_def_level() });
         }
         if heads.is_empty() {
@@ -361,6 +370,15 @@ fn fault(error: ParquetError) -> FileError {
         ParquetError::General(text) | ParquetError::NYI(text) | ParquetError::EOF(text) => text,
         other => other.to_string(),
     };
-    // Some messages of the crate have several lines; the first states the problem.
-    damaged(FORMAT, text.lines().next().unwrap_or("it cannot be read"))
+    // The crate's own words are for those who develop it.
+    let is_short = ["EOF", "eof", "end of file", "not enough bytes", "enough data", "too early"].iter().any(|word| text.contains(word));
+    let is_end = text.contains("footer") || text.contains("magic");
+    damaged(
+        FORMAT,
+        match (is_end, is_short) {
+            (true, _) => "its end, which says what it holds, is missing or damaged",
+            (_, true) => "it ends too early",
+            _ => "its data are damaged",
+        },
+    )
 }

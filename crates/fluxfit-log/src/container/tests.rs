@@ -179,7 +179,7 @@ fn parquet_refusals() {
     let mut bytes = fs::read(path("none.parquet")).unwrap();
     bytes.truncate(bytes.len() - 10);
     let error = Binary::open(RandomAccess::memory(bytes)).err().unwrap().to_string();
-    assert_eq!(error, "this Parquet file cannot be read: Invalid Parquet file. Corrupt footer; export it again");
+    assert_eq!(error, "this Parquet file cannot be read: its end, which says what it holds, is missing or damaged; export it again");
 }
 
 fn open_only(name: &str) -> Binary {

@@ -70,7 +70,8 @@ impl<'a> Rules<'a> {
     pub(super) fn new(separator: u8, expected: usize, wanted: &'a [WantedColumn]) -> Self {
         let mut order: Vec<(usize, usize)> = wanted.iter().enumerate().map(|(place, column)| (column.index, place)).collect();
         order.sort_unstable();
-        let is_distinct = order.windows(2).all(|pair| pair[0].0 != pair[1].0);
+        // Cells that are no numbers are not those of a usual row.
+        let is_distinct = order.windows(2).all(|pair| pair[0].0 != pair[1].0) && wanted.iter().all(|column| column.instants.is_none());
         Self { separator, expected, wanted, order: is_distinct.then_some(order) }
     }
 }
@@ -191,9 +192,15 @@ impl<'a> BlockRows<'a> {
         let mut missing = 0;
         for (place, column) in wanted.iter().enumerate() {
             let cell = row.cell(column.index);
-            let value = match number(cell, separator, &mut self.scratch) {
+            let value = match &column.instants {
+                Some(instants) => instants.seconds(cell),
+                None => number(cell, separator, &mut self.scratch),
+            };
+            let value = match value {
                 Some(value) => {
-                    self.check_mark(place, cell, row.line)?;
+                    if column.instants.is_none() {
+                        self.check_mark(place, cell, row.line)?;
+                    }
                     value
                 }
                 None if cell.is_empty() => {
@@ -201,7 +208,7 @@ impl<'a> BlockRows<'a> {
                     f64::NAN
                 }
                 None => {
-                    let refused = not_a_number(cell, column.is_time).in_column(&column.header);
+                    let refused = not_a_number(cell, column).in_column(&column.header);
                     if row.is_cut_off && self.carried.any {
                         self.undo(place);
                         return Ok(Reading::CutOff);
@@ -271,10 +278,13 @@ fn is_plain(bytes: &[u8]) -> bool {
 }
 
 /// The error for a cell that is not a number.
-fn not_a_number(cell: &[u8], is_time: bool) -> FileError {
+fn not_a_number(cell: &[u8], column: &WantedColumn) -> FileError {
     let text = text_of(cell);
+    if column.instants.is_some() {
+        return Problem::Instant { text }.into();
+    }
     let is_grouped = text.contains(',') && text.contains('.') && text.bytes().all(|byte| byte.is_ascii_digit() || b",.+-".contains(&byte));
-    match is_time && text.contains(':') {
+    match column.is_time && text.contains(':') {
         true => Problem::ClockTime { text }.into(),
         false if is_grouped => Problem::Thousands { text }.into(),
         false => FileProblem::NotANumber { text }.into(),

@@ -4,12 +4,14 @@
 //! bytes -> decompressed, decoded text -> header -> cells -> numbers
 //! ```
 //!
-//! Recognized without options: comma, semicolon or tab, also at the end of a line; quotes and spaces around names and values; gzip;
-//! UTF-8, UTF-16 and Windows-1252; titles above the header and `#` and `%` comments; a row of units below it; blank lines; a decimal
-//! comma, unless the comma is the separator. Only the wanted cells are converted to numbers, in blocks of rows on all cores.
+//! Recognized without options: comma, semicolon, tab or aligning spaces; a separator or a semicolon at the end of a line; quotes and
+//! spaces around names and values; gzip; UTF-8, UTF-16 and Windows-1252; titles above the header, `#` and `%` comments, and a header in
+//! them; a row of units below it; blank lines; a decimal comma, unless the comma is the separator; dates and times. Only the wanted cells
+//! are converted to numbers, in blocks of rows on all cores.
 
 mod block_rows;
 mod blocks;
+mod first_rows;
 mod marks;
 mod plain;
 mod rows;
@@ -17,13 +19,21 @@ mod rows;
 mod tests;
 mod text;
 
-use crate::block::{Block, ColumnHead, WantedColumn};
+use crate::{
+    block::{Block, ColumnHead, WantedColumn},
+    container::MOST_COLUMNS,
+    problem::Problem,
+};
 use fluxfit_files::{
     FileError,
-    csv::header::{self, Header},
+    csv::{
+        header::{self, Header},
+        tidy::RowStyle,
+    },
 };
+#[cfg(test)]
 use std::io::Read;
-use text::Text;
+pub(crate) use text::Text;
 
 /// A table whose header is read, and whose rows are not yet.
 pub(crate) struct TextTable {
@@ -42,17 +52,32 @@ impl TextTable {
     ///
     /// # Errors
     /// If the bytes cannot be read, are not text, or have no header.
+    #[cfg(test)]
     pub(crate) fn open(bytes: Box<dyn Read>) -> Result<Self, FileError> {
-        let mut text = Text::open(bytes)?;
+        Self::of(Text::open(bytes)?)
+    }
+
+    /// Reads up to the header of a text.
+    ///
+    /// # Errors
+    /// If it has no header.
+    pub(crate) fn of(mut text: Text) -> Result<Self, FileError> {
         let mut notes = std::mem::take(&mut text.notes);
         let header = header::find(&text.head, &mut notes)?;
+        let is_cut = text.has_rest() && header.body >= text.head.len();
+        if is_cut || header.names.len() > MOST_COLUMNS {
+            return Err(FileError::from(Problem::ManyColumns { most: MOST_COLUMNS }).at_line(header.line));
+        }
+        if header.rows != RowStyle::Plain {
+            text = text.with_rows(header.rows, header.body);
+        }
+        let mut instants = first_rows::instants(&text.head, &header);
         let unit = |place: usize| header.units.get(place).filter(|unit| !unit.is_empty()).cloned();
         let heads = header.names.iter().enumerate().map(|(place, name)| ColumnHead {
             name: name.clone(),
             unit: unit(place),
-            rows: 0,
-            group: 0,
-            is_time: false,
+            instants: instants.get_mut(place).and_then(Option::take),
+            ..ColumnHead::default()
         });
         Ok(Self { heads: heads.collect(), header, text: Some(text), block_size: blocks::BLOCK, notes })
     }
@@ -66,6 +91,7 @@ impl TextTable {
     pub(crate) fn separator(&self) -> &'static str {
         match self.header.separator {
             b';' => "semicolons",
+            _ if self.header.rows == RowStyle::Aligned => "spaces",
             b'\t' => "tabs",
             _ => "commas",
         }

@@ -16,7 +16,7 @@ fn outcome(text: &[u8], size: usize) -> Outcome {
         .into_iter()
         .map(|(name, is_optional)| {
             let index = table.heads.iter().position(|head| head.name == name).unwrap();
-            WantedColumn { index, header: name.to_owned(), is_time: name == "a", is_optional }
+            WantedColumn { index, header: name.to_owned(), is_time: name == "a", is_optional, instants: None }
         })
         .collect();
     let (mut values, mut lines, mut refused) = (vec![Vec::new(); 3], Vec::new(), vec![None; 3]);

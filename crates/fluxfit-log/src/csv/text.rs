@@ -6,6 +6,7 @@ use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 use fluxfit_files::{
     FileError, Problem as FileProblem,
+    csv::tidy::{RowStyle, Tidied},
     input::{io_problem, line_at},
 };
 use std::io::{Cursor, ErrorKind, Read};
@@ -13,22 +14,29 @@ use std::io::{Cursor, ErrorKind, Read};
 /// Bytes of the head, which must contain the header.
 const HEAD: usize = 1 << 20;
 
+/// Bytes of the longest character, which the head may lack at its end.
+const LONGEST_CHARACTER: usize = 4;
+
 /// The first bytes of a gzip file (RFC 1952).
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// The first bytes of documents that users mistake for tables of text.
-const DOCUMENTS: [(&[u8], &str); 4] = [
+const DOCUMENTS: [(&[u8], &str); 8] = [
     (b"PK\x03\x04", "an Excel workbook, or another zip archive"),
     (b"\xd0\xcf\x11\xe0", "an old Excel workbook"),
     (b"%PDF", "a PDF"),
     (b"{\\rtf", "a text with formats"),
+    (b"TDSm", "a TDMS file of LabVIEW"),
+    (b"LOGG", "a BLF log of Vector's tools"),
+    (b"SQLite format 3", "a database of SQLite"),
+    (b"#ROSBAG", "a bag of ROS"),
 ];
 
 /// Decompressed, decoded text.
 pub(crate) struct Text {
     /// The beginning; all of a short text.
-    pub(super) head: String,
-    pub(super) rest: Box<dyn Read>,
+    pub(crate) head: String,
+    pub(crate) rest: Box<dyn Read>,
     pub(super) is_gzip: bool,
     /// What was inferred.
     pub(super) notes: Vec<String>,
@@ -78,6 +86,33 @@ impl Text {
         };
         text.notes = notes;
         Ok(text)
+    }
+}
+
+impl Text {
+    /// A text in memory.
+    pub(crate) fn of(head: String) -> Self {
+        Self { head, rest: Box::new(std::io::empty()), is_gzip: false, notes: Vec::new() }
+    }
+
+    /// Whether the head may not be all of it.
+    pub(crate) fn has_rest(&self) -> bool {
+        self.head.len() + LONGEST_CHARACTER > HEAD
+    }
+
+    /// The text with its rows, from `body` on, as records.
+    pub(super) fn with_rows(mut self, style: RowStyle, body: usize) -> Self {
+        let rows = self.head.split_off(body).into_bytes();
+        let mut tidied: Box<dyn Read> = Box::new(Tidied::new(Cursor::new(rows).chain(self.rest), style));
+        // So much that the first rows can be looked at.
+        let mut first = Vec::new();
+        // An error comes again where the rest is read.
+        let _ = (&mut tidied).take(HEAD as u64).read_to_end(&mut first);
+        let whole = first.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let cut = first.split_off(whole);
+        self.head.push_str(&String::from_utf8_lossy(&first));
+        self.rest = Box::new(Cursor::new(cut).chain(tidied));
+        self
     }
 }
 

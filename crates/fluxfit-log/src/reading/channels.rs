@@ -68,6 +68,19 @@ impl Channels {
         Some(self.columns.swap_remove(index).1)
     }
 
+    /// Multiplies channels that are shares of the DC voltage by that of their row.
+    pub(super) fn times_bus(&mut self, shares: &[Channel]) -> Result<(), FileError> {
+        for channel in shares {
+            let Some(bus) = self.get(Channel::UDc).map(<[f64]>::to_vec) else {
+                return Err(Problem::NoBus { channel: channel.name() }.into());
+            };
+            if let Some((_, values)) = self.columns.iter_mut().find(|(other, _)| other == channel) {
+                values.iter_mut().zip(&bus).for_each(|(value, bus)| *value *= bus);
+            }
+        }
+        Ok(())
+    }
+
     /// Keeps the rows for which `kept` is true.
     pub(super) fn retain(&mut self, kept: &[bool]) {
         let marked = |row: &usize| kept.get(*row).copied().unwrap_or(false);

@@ -1,6 +1,6 @@
 //! A column of the file that is read: its channel, its unit and its factor.
 
-use crate::{block::WantedColumn, channel::Channel};
+use crate::{block::WantedColumn, channel::Channel, instant::Instants};
 use fluxfit_files::FileError;
 use fluxfit_units::{Unit, significant, wording::shorten};
 
@@ -17,6 +17,12 @@ pub(super) struct ChosenColumn {
     pub(super) scale: f64,
     /// The user did not ask for it: if it cannot be read it is left out, and the log is read without it.
     pub(super) is_optional: bool,
+    /// The file or the user states the unit.
+    pub(super) is_unit_stated: bool,
+    /// It was found by one of the usual names of its channel, not by the channel's own.
+    pub(super) is_alias: bool,
+    /// Its cells are instants, which the table reads in s.
+    pub(super) instants: Option<Instants>,
 }
 
 impl ChosenColumn {
@@ -38,7 +44,8 @@ impl ChosenColumn {
     /// The column as the table reads it.
     pub(super) fn wanted(&self) -> WantedColumn {
         let is_time = self.channel == Channel::T;
-        WantedColumn { index: self.index, header: self.header.clone(), is_time, is_optional: self.is_optional }
+        let (header, instants) = (self.header.clone(), self.instants.clone());
+        WantedColumn { index: self.index, header, is_time, is_optional: self.is_optional, instants }
     }
 }
 

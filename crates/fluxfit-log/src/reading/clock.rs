@@ -1,4 +1,7 @@
-//! Times that wrap around: the time of day at midnight, a 32-bit counter at its end.
+//! Times that wrap around, the time of day at midnight or a 32-bit counter at its end; and times since 1970 of a column that states no
+//! unit.
+
+use crate::instant::epoch_digits;
 
 /// Periods, s, after which times wrap around, and what such a time is.
 const CLOCKS: [(f64, &str); 3] =
@@ -8,9 +11,20 @@ const CLOCKS: [(f64, &str); 3] =
 /// are unlikely to do that by chance.
 const END: f64 = 0.01;
 
-/// Unwraps times block by block.
+/// Rows of a log that are this many seconds apart or more are unlikely: whole numbers with such steps are a count of something shorter.
+const LONG_STEP: f64 = 5.0;
+
+/// Settles times block by block.
 #[derive(Debug, Default)]
 pub(super) struct Clock {
+    /// Whether the unit of the times may have to be found.
+    is_open: bool,
+    /// The first time and the divisor, if the times count from 1970; and what they are.
+    since_1970: Option<(f64, f64, &'static str)>,
+    /// The times have a name that states no unit, so that s is an assumption.
+    is_assumed: bool,
+    /// The usual step of the first times, if they are whole numbers.
+    step: Option<f64>,
     /// What is added to times, s.
     offset: f64,
     last: Option<f64>,
@@ -19,8 +33,26 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// Makes times, s, continue where they wrapped around, in place.
-    pub(super) fn unwrap(&mut self, t: &mut [f64]) {
+    /// Of times whose unit is stated or not, under their own name or one that says nothing of a unit.
+    pub(super) fn of(is_unit_stated: bool, is_alias: bool) -> Self {
+        Self { is_open: !is_unit_stated, is_assumed: !is_unit_stated && is_alias, ..Self::default() }
+    }
+
+    /// Makes times, s, continue where they wrapped around, in place. Those since 1970 count from the first one, so that their fractions
+    /// keep all digits.
+    pub(super) fn settle(&mut self, t: &mut [f64]) {
+        if self.is_open && !t.is_empty() {
+            self.is_open = false;
+            self.step = whole_step(t);
+            self.since_1970 = epoch_digits(t).map(|(digits, what)| (t[0], 10_f64.powi(digits as i32), what));
+        }
+        if let Some((first, divisor, _)) = self.since_1970 {
+            t.iter_mut().for_each(|time| *time = (*time - first) / divisor);
+        }
+        self.unwrap(t);
+    }
+
+    fn unwrap(&mut self, t: &mut [f64]) {
         for time in t {
             if let Some(last) = self.last.filter(|last| *time < *last)
                 && let Some((period, what)) =
@@ -39,12 +71,29 @@ impl Clock {
         }
     }
 
-    /// A note if times wrapped around.
-    pub(super) fn note(&self) -> Option<String> {
-        let what = self.wraps.first()?;
-        let times = if self.wraps.len() == 1 { "once".to_owned() } else { format!("{} times", self.wraps.len()) };
-        Some(format!("{what} wrapped around {times}; it is continued from there"))
+    /// The step of times that are unlikely to be in s, if nothing states their unit.
+    pub(super) fn unstated_step(&self) -> Option<u64> {
+        let step = self.step.filter(|step| self.is_assumed && self.since_1970.is_none() && *step >= LONG_STEP)?;
+        Some(step as u64)
     }
+
+    /// Notes on what was found.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let counted = self.since_1970.map(|(_, _, what)| format!("t: by their size the times are {what}; t counts from the first one"));
+        let wrapped = self.wraps.first().map(|what| {
+            let times = if self.wraps.len() == 1 { "once".to_owned() } else { format!("{} times", self.wraps.len()) };
+            format!("{what} wrapped around {times}; it is continued from there")
+        });
+        counted.into_iter().chain(wrapped).collect()
+    }
+}
+
+/// The median step of whole numbers; none if they are not whole, or too few.
+fn whole_step(t: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let is_whole = t.iter().all(|time| time.fract() == 0.0);
+    let middle = steps.len() / 2;
+    (is_whole && !steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]
@@ -55,10 +104,10 @@ mod tests {
     fn time_continues_over_midnight() {
         let mut clock = Clock::default();
         let (mut before, mut after) = (vec![86_399.8, 86_399.9], vec![0.0, 0.1]);
-        clock.unwrap(&mut before);
-        clock.unwrap(&mut after);
+        clock.settle(&mut before);
+        clock.settle(&mut after);
         assert_eq!((before, after), (vec![86_399.8, 86_399.9], vec![86_400.0, 86_400.1]));
-        assert_eq!(clock.note().as_deref(), Some("the time of day wrapped around once; it is continued from there"));
+        assert_eq!(clock.notes(), ["the time of day wrapped around once; it is continued from there"]);
     }
 
     #[test]
@@ -66,7 +115,20 @@ mod tests {
         let mut clock = Clock::default();
         let mut t = vec![5.0, 4.0, 50_000.0, 0.0, 86_399.0, 10_000.0];
         let same = t.clone();
-        clock.unwrap(&mut t);
-        assert_eq!((t, clock.note()), (same, None));
+        clock.settle(&mut t);
+        assert_eq!((t, clock.notes()), (same, vec![]));
+    }
+
+    #[test]
+    fn times_since_1970_count_from_the_first() {
+        let mut clock = Clock::of(false, false);
+        let (mut first, mut more) = (vec![1_455_273_060_500.0, 1_455_273_060_501.0], vec![1_455_273_060_502.0]);
+        clock.settle(&mut first);
+        clock.settle(&mut more);
+        assert_eq!((first, more), (vec![0.0, 0.001], vec![0.002]));
+        let mut stated = Clock::of(true, false);
+        let mut t = vec![1_455_273_060.0, 1_455_273_061.0];
+        stated.settle(&mut t);
+        assert_eq!((t[0], stated.notes()), (1_455_273_060.0, vec![]));
     }
 }

@@ -10,7 +10,10 @@ use crate::{
 };
 use Channel::{Ud, Uq};
 use fluxfit_files::{Advice, FileError};
-use fluxfit_units::{Dimension, Unit, wording::list};
+use fluxfit_units::{
+    Dimension, Unit,
+    wording::{list, shorten},
+};
 
 /// The columns that a log needs, then the optional ones.
 ///
@@ -44,6 +47,11 @@ pub(super) fn choose(
             Ok(column) => chosen.extend(column),
             Err(error) => notes.push(chosen::left_out(channel, &at_header(error)).into()),
         }
+    }
+    let by_name = chosen.iter().filter(|column| column.is_alias && column.channel != Channel::ThetaE);
+    let by_name: Vec<String> = by_name.map(|column| format!("{} = '{}'", column.channel.name(), shorten(&column.header))).collect();
+    if !by_name.is_empty() {
+        notes.push(format!("read by their usual names: {}; map those that are something else", list(&by_name)).into());
     }
     if let Some((channel, _)) = unstated.first() {
         let columns: Vec<&str> = unstated.iter().map(|(_, column)| column.as_str()).collect();

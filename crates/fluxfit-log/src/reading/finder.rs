@@ -1,16 +1,18 @@
 //! Finds the columns of a table that make a log, and their units.
 
 use super::{
+    alias,
     chosen::ChosenColumn,
     layout::{Layout, is_called},
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
-    resemblance::{is_reference, propose},
+    resemblance::{has_other_unit, is_reference, propose},
 };
 use crate::{
     block::ColumnHead,
     channel::Channel,
     header_unit::{HeaderUnit, split_header, states_electrical, unit_in_row},
+    instant::Instants,
     note::Note,
     problem::Problem,
 };
@@ -109,7 +111,14 @@ impl Finder<'_> {
     /// The columns of both axes. If neither voltage is there, the two voltage references, which most drives log; never a reference
     /// together with a voltage of another kind.
     pub(super) fn pair(&self, [d, q]: [Channel; 2]) -> Result<[Option<usize>; 2], FileError> {
-        let indices = [self.index(d)?, self.index(q)?];
+        let mut indices = [self.index(d)?, self.index(q)?];
+        if let [Some(of_d), Some(of_q)] = indices {
+            let names = [&self.heads[of_d].name, &self.heads[of_q].name].map(String::as_str);
+            if !alias::are_pair([d, q], names) {
+                let is_alias = [self.is_alias(d, names[0]), self.is_alias(q, names[1])];
+                indices = [(!is_alias[0]).then_some(of_d), (!is_alias[1]).then_some(of_q)];
+            }
+        }
         let reference = |channel: Channel| {
             let wanted = format!("{}_ref", channel.name());
             self.heads.iter().position(|head| split_header(&head.name, channel.dimension()).0.eq_ignore_ascii_case(&wanted))
@@ -143,7 +152,21 @@ impl Finder<'_> {
         }
         let found = automatic(channel, self.heads)?;
         let is_time = || self.heads.iter().position(|head| head.is_time);
-        Ok(if channel == T { found.or_else(is_time) } else { found })
+        let is_dated = || self.heads.iter().position(|head| head.instants.as_ref().is_some_and(Instants::is_date));
+        let usual = || self.layout.is_none().then(|| alias::find(channel, self.heads)).flatten();
+        Ok(match channel {
+            T => found.or_else(is_time).or_else(usual).or_else(is_dated),
+            _ => found.or_else(usual),
+        })
+    }
+
+    /// Whether a column has not the channel's own name, nor one that the user or the layout gives it.
+    fn is_alias(&self, channel: Channel, name: &str) -> bool {
+        let is_layouts = self.layout.and_then(|layout| layout.column(channel)).is_some();
+        self.options.header(channel).is_none() && !is_layouts && {
+            let head = ColumnHead { name: name.to_owned(), ..ColumnHead::default() };
+            !matches!(automatic(channel, &[head]), Ok(Some(_)))
+        }
     }
 
     /// A column with its unit. If SI is assumed because no unit is stated, the column is added to `unstated`.
@@ -156,15 +179,30 @@ impl Finder<'_> {
         notes: &mut Vec<Note>,
     ) -> Result<ChosenColumn, FileError> {
         let head = &self.heads[index];
-        Ok(ChosenColumn {
-            channel,
-            index,
-            header: head.name.clone(),
-            unit: self.unit(channel, head, unstated, notes)?,
-            pole_pairs: self.options.pole_pairs.unwrap_or(1),
-            scale: self.options.factor(channel),
-            is_optional,
-        })
+        let (pole_pairs, scale) = (self.options.pole_pairs.unwrap_or(1), self.options.factor(channel));
+        let is_alias = self.is_alias(channel, &head.name);
+        let header = head.name.clone();
+        if let Some(instants) = self.instants(channel, head) {
+            let column = format!("{}: column '{}'", channel.name(), shorten(&head.name));
+            notes.push(format!("{column} read as {}", instants.describe()).into());
+            let (unit, instants) = (Unit::Second, Some(instants));
+            return Ok(ChosenColumn {
+                channel,
+                index,
+                header,
+                unit,
+                pole_pairs,
+                scale,
+                is_optional,
+                is_unit_stated: true,
+                is_alias,
+                instants,
+            });
+        }
+        let assumed = unstated.len();
+        let unit = self.unit(channel, head, unstated, notes)?;
+        let is_unit_stated = unstated.len() == assumed && !(channel == T && unit == Unit::Second);
+        Ok(ChosenColumn { channel, index, header, unit, pole_pairs, scale, is_optional, is_unit_stated, is_alias, instants: None })
     }
 
     /// An optional column that the user did not map, if the file has it and it is not read as another channel.
@@ -186,12 +224,29 @@ impl Finder<'_> {
         column.map(Some).map_err(|error| error.in_column(&self.heads[index].name))
     }
 
+    /// How the cells of the time are read, if they are instants and neither the user nor the header states another unit.
+    fn instants(&self, channel: Channel, head: &ColumnHead) -> Option<Instants> {
+        let stated = match split_header(&head.name, Dimension::Time).1 {
+            HeaderUnit::Known(unit) => Some(unit),
+            _ => None,
+        };
+        let agrees = |instants: &Instants| match (instants.digits(), self.options.unit(T).or(stated)) {
+            (None, _) => true,
+            (Some(_), None) => true,
+            (Some(digits), Some(unit)) => unit.in_si() == 10_f64.powi(-(digits as i32)),
+        };
+        head.instants.clone().filter(|instants| channel == T && agrees(instants))
+    }
+
     fn refuse_missing(&self, missing: &[Channel], found: &[(Channel, usize)]) -> FileError {
         // Columns that are used already are not proposed for another channel, and references not for measured currents.
         let present = self.names();
         let mut free = present.clone();
         found.iter().for_each(|(_, index)| free[*index].clear());
         let currents: Vec<Channel> = missing.iter().copied().filter(|channel| channel.dimension() == Dimension::Current).collect();
+        for (name, _) in free.iter_mut().zip(self.heads).filter(|(_, head)| missing.iter().all(|channel| has_other_unit(*channel, head))) {
+            name.clear();
+        }
         let mut references = Vec::new();
         for name in free.iter_mut().filter(|name| is_reference(name)) {
             if currents.iter().any(|channel| propose(*channel, std::slice::from_ref(name)).is_some()) {
@@ -202,7 +257,12 @@ impl Finder<'_> {
         let unreadable: Vec<String> = self.unreadable.iter().filter(resembles).cloned().collect();
         let mut proposals = Vec::new();
         for channel in missing {
-            if let Some(index) = propose(*channel, &free) {
+            let fitting: Vec<String> = free
+                .iter()
+                .zip(self.heads)
+                .map(|(name, head)| if has_other_unit(*channel, head) { String::new() } else { name.clone() })
+                .collect();
+            if let Some(index) = propose(*channel, &fitting) {
                 proposals.push((channel.name(), std::mem::take(&mut free[index])));
             }
         }
@@ -243,18 +303,25 @@ impl Finder<'_> {
                 let units = Unit::of(dimension).map(Unit::name).collect();
                 return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), units }.into());
             }
+            _ if dimension == Dimension::Speed && self.is_alias(channel, name) && !states_electrical(name) => {
+                return Err(Problem::SpeedUnit.into());
+            }
             _ => {
                 unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));
                 return Ok(si);
             }
         };
+        let is_alias = stated.is_none() && self.is_alias(channel, name);
+        if is_alias && dimension == Dimension::Speed && !unit.is_mechanical() && !states_electrical(name) {
+            return Err(Problem::SpeedUnit.into());
+        }
         if unit.is_mechanical() && self.options.pole_pairs.is_none() {
             return Err(needs_pole_pairs(channel, unit).into());
         }
         let column = format!("{canonical}: column '{}'", shorten(name));
         let turning = matches!(unit, Unit::RadianPerSecond | Unit::HertzElectrical | Unit::Radian | Unit::Degree);
         let is_sure = stated.is_some() || is_canonical || of_layout.is_some() || states_electrical(name);
-        if turning && !is_sure {
+        if turning && !is_sure && !(is_alias && dimension == Dimension::Angle) {
             let sentence = format!("{column} read as {}; if it is mechanical, state its unit", unit.prose());
             let advice = Advice::StateUnit { channel: canonical, unit: Some(mechanical(unit).name()) };
             notes.push(Note::with_advice(sentence, advice));
@@ -262,7 +329,7 @@ impl Finder<'_> {
             let pole_pairs = self.options.pole_pairs.filter(|_| unit.is_mechanical());
             let with = pole_pairs.map(|n| format!(" with {n} pole pair{}", if n == 1 { "" } else { "s" }));
             notes.push(format!("{column} read as {}{}", unit.prose(), with.unwrap_or_default()).into());
-        } else if self.options.header(channel).is_none() && of_layout.is_none() && ![stem, field].contains(&canonical) {
+        } else if !is_alias && self.options.header(channel).is_none() && of_layout.is_none() && ![stem, field].contains(&canonical) {
             notes.push(format!("{column} used").into());
         }
         Ok(unit)

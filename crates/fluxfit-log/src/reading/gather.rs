@@ -75,7 +75,20 @@ fn of_group(chosen: &[ChosenColumn], heads: &[ColumnHead], group: usize) -> Opti
     if !has_time(&columns) && chosen.iter().any(|column| column.channel == T) {
         let index = heads.iter().position(|head| head.group == group && head.is_time)?;
         let header = heads[index].name.clone();
-        columns.push(ChosenColumn { channel: T, index, header, unit: Unit::Second, pole_pairs: 1, scale: 1.0, is_optional: false });
+        let instants = heads[index].instants.clone();
+        let (unit, is_unit_stated, is_optional) = (Unit::Second, true, false);
+        columns.push(ChosenColumn {
+            channel: T,
+            index,
+            header,
+            unit,
+            pole_pairs: 1,
+            scale: 1.0,
+            is_optional,
+            is_unit_stated,
+            is_alias: false,
+            instants,
+        });
     }
     Some(columns)
 }
@@ -96,7 +109,9 @@ fn one_group(
     let wanted: Vec<WantedColumn> = columns.iter().map(ChosenColumn::wanted).collect();
     let mut counted = period.filter(|_| place(T).is_none()).map(|period| Counted { period, t: -period, run: None });
     let mut selection = Selection::new(columns.len() + usize::from(counted.is_some()), features(&place), most_rows);
-    let mut clock = Clock::default();
+    let is_unit_stated = place(T).is_some_and(|t| columns[t].is_unit_stated);
+    let is_alias = place(T).is_some_and(|t| columns[t].is_alias);
+    let mut clock = Clock::of(is_unit_stated, is_alias);
     let mut refused: Vec<Option<FileError>> = vec![None; columns.len()];
     notes.extend(
         table
@@ -110,7 +125,7 @@ fn one_group(
                     column.to_si(values);
                 }
                 if let Some(t) = place(T) {
-                    clock.unwrap(&mut block.values[t]);
+                    clock.settle(&mut block.values[t]);
                 }
                 if let Some(counted) = &mut counted {
                     let t = counted.next(block.lines.len(), place(Run).map(|run| block.values[run].as_slice()));
@@ -122,7 +137,10 @@ fn one_group(
             .into_iter()
             .map(Note::from),
     );
-    notes.extend(clock.note().map(Note::from));
+    notes.extend(clock.notes().into_iter().map(Note::from));
+    if let Some(step) = clock.unstated_step() {
+        return Err(Problem::TimeUnit { step }.into());
+    }
     let (values, lines, note) = selection.finish();
     notes.extend(note.map(Note::from));
     let lines = lines.of_container(table.line().is_none());

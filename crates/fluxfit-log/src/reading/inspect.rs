@@ -44,6 +44,8 @@ pub struct InspectedColumn {
     pub range: Option<[f64; 2]>,
     /// The file states that it is the time of the columns of its group.
     pub is_time: bool,
+    /// Its cells are dates and times, or count from 1970.
+    pub is_instant: bool,
 }
 
 /// Inspects a file; the path `-` is standard input.
@@ -53,7 +55,7 @@ pub struct InspectedColumn {
 pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileError> {
     let name = input::name(path);
     let resolved = ResolvedOptions::resolve(options)?;
-    let table = input::open(path).and_then(Table::open).map_err(|error| error.in_file(&name))?;
+    let table = input::open(path).and_then(|bytes| Table::open(bytes, resolved.dbc.as_deref())).map_err(|error| error.in_file(&name))?;
     let names: Vec<String> = table.heads().iter().map(|head| head.name.clone()).collect();
     let layout = Layout::recognize(&names);
     let survey = columns::survey(table.heads(), layout, &resolved);
@@ -62,7 +64,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         let unit = taken.or_else(|| survey.resembling.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit))?;
         Some((unit.name(), unit.prose()))
     };
-    let ranges = ranges(path);
+    let ranges = ranges(path, resolved.dbc.as_deref());
     let inspected = table.heads().iter().enumerate().map(|(index, head)| InspectedColumn {
         header: head.name.clone(),
         unit: head.unit.clone(),
@@ -71,6 +73,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         resembles: survey.resembling.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
         range: ranges.get(index).copied().flatten(),
         is_time: head.is_time,
+        is_instant: head.instants.is_some(),
     });
     Ok(Inspection {
         kind: table.kind(),
@@ -81,9 +84,9 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
 }
 
 /// The smallest and largest number of every column, from a second reading.
-fn ranges(path: &Path) -> Vec<Option<[f64; 2]>> {
+fn ranges(path: &Path, dbc: Option<&str>) -> Vec<Option<[f64; 2]>> {
     let Ok(mut table) = input::open(path).and_then(|bytes| match bytes {
-        Bytes::File(..) => Table::open(bytes),
+        Bytes::File(..) => Table::open(bytes, dbc),
         // A pipe can be read only once.
         Bytes::Stream(_) => Err(Problem::NoRows.into()),
     }) else {
@@ -98,7 +101,13 @@ fn ranges(path: &Path) -> Vec<Option<[f64; 2]>> {
         let of_group: Vec<usize> = (0..heads.len()).filter(|index| heads[*index].group == group).collect();
         let wanted: Vec<WantedColumn> = of_group
             .iter()
-            .map(|index| WantedColumn { index: *index, header: heads[*index].name.clone(), is_time: false, is_optional: true })
+            .map(|index| WantedColumn {
+                index: *index,
+                header: heads[*index].name.clone(),
+                is_time: false,
+                is_optional: true,
+                instants: heads[*index].instants.clone(),
+            })
             .collect();
         // Up to the first error, if there is one.
         let _ = table.read(&wanted, &mut |block| {

@@ -9,6 +9,8 @@
 //! t = "time_ms"
 //! # without a unit, that of the header or SI; scale and sign are factors besides the unit
 //! ud = { column = "motor_vd", unit = "mV", scale = 2.0, sign = -1 }
+//! # a share of the DC voltage in the same row
+//! uq = { column = "duty_q", scale = 0.577, times = "u_dc" }
 //! ```
 
 use crate::{channel::Channel, problem::Problem};
@@ -39,6 +41,8 @@ pub(crate) struct MappedColumn {
     pub(crate) unit: Option<Unit>,
     /// Scale times sign.
     pub(crate) factor: f64,
+    /// Its values are shares of the DC voltage of their row.
+    pub(crate) is_times_u_dc: bool,
 }
 
 /// Scalings of the Clarke and Park transforms.
@@ -74,7 +78,7 @@ impl Park {
 }
 
 /// Keys of a column.
-const COLUMN_KEYS: &[&str] = &["column", "unit", "scale", "sign"];
+const COLUMN_KEYS: &[&str] = &["column", "unit", "scale", "sign", "times"];
 
 const EXAMPLE: &str = "ud = \"motor_vd\" or ud = { column = \"motor_vd\", unit = \"mV\" }";
 
@@ -134,7 +138,7 @@ fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColu
     };
     if entry.text().is_ok() {
         let header = named(entry)?;
-        return Ok(Some(MappedColumn { channel, header: Some(header), unit: None, factor: 1.0 }));
+        return Ok(Some(MappedColumn { channel, header: Some(header), unit: None, factor: 1.0, is_times_u_dc: false }));
     }
     let table = entry.table(COLUMN_KEYS, "the name of a column, or a table with its name and unit", EXAMPLE)?;
     let unit = table.get("unit").map(|entry| {
@@ -149,7 +153,12 @@ fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColu
     });
     let sign = table.get("sign").map(|entry| entry.word(&[("1", 1.0), ("-1", -1.0)])).transpose()?.unwrap_or(1.0);
     let header = table.get("column").map(named).transpose()?;
-    Ok(Some(MappedColumn { channel, header, unit: unit.transpose()?, factor: scale.transpose()?.unwrap_or(1.0) * sign }))
+    let times = table.get("times").map(|entry| match channel.dimension() {
+        Dimension::Voltage if channel != Channel::UDc => entry.word(&[("u_dc", true)]),
+        _ => Err(entry.refuse(Problem::NoShare { channel: channel.name() })),
+    });
+    let (unit, factor) = (unit.transpose()?, scale.transpose()?.unwrap_or(1.0) * sign);
+    Ok(Some(MappedColumn { channel, header, unit, factor, is_times_u_dc: times.transpose()?.unwrap_or(false) }))
 }
 
 #[cfg(test)]
@@ -168,14 +177,22 @@ mod tests {
         let mapping = read(text).unwrap();
         assert_eq!((mapping.pole_pairs, mapping.sample_period, mapping.park), (Some(4), Some(1e-4), Park::Power));
         let expected = [
-            MappedColumn { channel: Channel::T, header: None, unit: Some(Unit::Millisecond), factor: 1.0 },
-            MappedColumn { channel: Channel::Ud, header: Some("vd".into()), unit: None, factor: 1.0 },
-            MappedColumn { channel: Channel::Iq, header: Some("Iq [A]".into()), unit: None, factor: -0.5 },
+            MappedColumn { channel: Channel::T, header: None, unit: Some(Unit::Millisecond), factor: 1.0, is_times_u_dc: false },
+            MappedColumn { channel: Channel::Ud, header: Some("vd".into()), unit: None, factor: 1.0, is_times_u_dc: false },
+            MappedColumn { channel: Channel::Iq, header: Some("Iq [A]".into()), unit: None, factor: -0.5, is_times_u_dc: false },
         ];
         assert_eq!(mapping.columns, expected);
         assert_eq!(read(""), Ok(Mapping::default()));
         // A power-invariant vector is sqrt(3/2) times as long, an rms one sqrt(1/2) times.
         assert!((Park::Power.factor() * 1.5_f64.sqrt() - 1.0).abs() < 1e-15 && (Park::Rms.factor() * 0.5_f64.sqrt() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn voltages_may_be_shares_of_the_dc_voltage() {
+        let mapping = read("[columns]\nud = { column = \"m\", scale = 0.5, times = \"u_dc\" }").unwrap();
+        assert_eq!((mapping.columns[0].factor, mapping.columns[0].is_times_u_dc), (0.5, true));
+        let sentence = "map.toml, line 2, key 'times': id is no voltage, so it is no share of u_dc; remove this";
+        assert_eq!(read("[columns]\nid = { times = \"u_dc\" }"), Err(sentence.to_owned()));
     }
 
     #[test]
@@ -195,7 +212,7 @@ mod tests {
             ),
             (
                 "[columns]\nid = { name = \"x\" }",
-                "line 2, key 'name': this key is not known; the name of a column, or a table with its name and unit can hold column, unit, scale and sign",
+                "line 2, key 'name': this key is not known; the name of a column, or a table with its name and unit can hold column, unit, scale, sign and times",
             ),
         ];
         for (text, sentence) in cases {

@@ -26,7 +26,7 @@ impl Inspection {
         }
         text +=
             "# park = \"amplitude-invariant\"  # dq values are peak values of the phases; or \"power-invariant\", \"rms\"\n\n[columns]\n";
-        text += "# also possible: scale = 0.01, sign = -1\n";
+        text += "# also possible: scale = 0.01, sign = -1, and of voltages times = \"u_dc\"\n";
         for channel in Channel::NEEDED {
             let found =
                 |of: fn(&InspectedColumn) -> Option<&'static str>| self.columns.iter().find(|column| of(column) == Some(channel.name()));
@@ -50,7 +50,9 @@ impl Inspection {
             let read_as = taken.or(resembling).and_then(|column| column.read_as);
             let unit =
                 if taken.is_some() { Some(read_as.map_or(channel.unit().name(), |(unit, _)| unit)) } else { read_as.map(|(unit, _)| unit) };
-            let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default() + &factor(channel, options);
+            let is_instant = channel == Channel::T && taken.is_some_and(|column| column.is_instant);
+            let unit =
+                unit.filter(|_| !is_instant).map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default() + &factor(channel, options);
             let _ = writeln!(text, "{} = {{ column = {}{unit} }}{remark}", channel.name(), quoted(column));
         }
         for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
@@ -126,22 +128,25 @@ mod tests {
     /// A column that only resembles a channel keeps the unit of its header.
     #[test]
     fn a_proposed_column_keeps_the_unit_of_its_header() {
-        let found = inspected("Zeit [ms],Motor.Ud,Motor.Speed_rpm\n1,2,3\n2,2,3\n", &LogOptions::default());
+        let found = inspected("Zeit [ms],Motor.Ud,Motor.Load speed_rpm\n1,2,3\n2,2,3\n", &LogOptions::default());
         let mapping = found.mapping(&LogOptions::default());
         assert!(
-            mapping.contains("\nomega_e = { column = \"Motor.Speed_rpm\", unit = \"rpm-mech\" }  # by its name; check it\n"),
+            mapping.contains("\nomega_e = { column = \"Motor.Load speed_rpm\", unit = \"rpm-mech\" }  # by its name; check it\n"),
             "{mapping}"
         );
     }
 
     #[test]
     fn a_table_that_is_not_a_log_can_be_inspected() {
-        let found = inspected("u_d,motor_speed,i_d\n1,2,3\n", &LogOptions::default());
+        let found = inspected("load u_d,load speed,load i_d\n1,2,3\n", &LogOptions::default());
         assert!(found.log.is_err());
         assert_eq!(found.columns.iter().map(|column| column.resembles).collect::<Vec<_>>(), [Some("ud"), Some("omega_e"), Some("id")]);
         assert_eq!(found.columns[1].range, Some([2.0, 2.0]));
         let mapping = found.mapping(&LogOptions::default());
         assert!(mapping.contains("\nuq = { column = \"\" }  # no column resembles it\n"), "{mapping}");
-        assert!(mapping.contains("\nud = { column = \"u_d\" }  # by its name; check it, and add unit = .. unless it is SI\n"), "{mapping}");
+        assert!(
+            mapping.contains("\nud = { column = \"load u_d\" }  # by its name; check it, and add unit = .. unless it is SI\n"),
+            "{mapping}"
+        );
     }
 }

@@ -6,6 +6,7 @@
 //! Angle and DC voltage are optional. Unless the user mapped them, nothing about them refuses a log: what cannot be read is left
 //! out, with a note.
 
+mod alias;
 mod align;
 mod channels;
 mod chosen;
@@ -27,6 +28,7 @@ mod repair;
 mod resemblance;
 mod selection;
 mod table;
+mod turning;
 
 pub use inspect::{InspectedColumn, Inspection, inspect};
 pub use layout::{LAYOUTS, Layout};

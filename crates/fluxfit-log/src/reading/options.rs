@@ -15,6 +15,8 @@ pub struct LogOptions {
     pub units: Vec<(String, Unit)>,
     /// Number of pole pairs, which converts a mechanical speed or angle.
     pub pole_pairs: Option<u32>,
+    /// The text of the DBC that names the signals of a log of CAN frames.
+    pub dbc: Option<String>,
     /// A mapping file; the three fields above override it.
     pub mapping: Mapping,
 }
@@ -25,10 +27,14 @@ pub(super) struct ResolvedOptions {
     headers: Vec<(Channel, String)>,
     units: Vec<(Channel, Unit)>,
     factors: Vec<(Channel, f64)>,
+    /// Channels whose values are shares of the DC voltage of their row.
+    pub(super) shares_of_bus: Vec<Channel>,
     /// Number of pole pairs.
     pub(super) pole_pairs: Option<u32>,
     /// Time between rows, s, where no column has the time.
     pub(super) sample_period: Option<f64>,
+    /// The text of a DBC.
+    pub(super) dbc: Option<String>,
     /// Maximum number of rows that are used of a longer log.
     pub(super) most_rows: usize,
 }
@@ -74,7 +80,17 @@ impl ResolvedOptions {
             factors.push((column.channel, column.factor));
         }
         let pole_pairs = options.pole_pairs.or(*pole_pairs);
-        Ok(Self { headers, units, factors, pole_pairs, sample_period: *sample_period, most_rows: MOST_ROWS })
+        let shares_of_bus = columns.iter().filter(|column| column.is_times_u_dc).map(|column| column.channel).collect();
+        Ok(Self {
+            headers,
+            units,
+            factors,
+            shares_of_bus,
+            pole_pairs,
+            sample_period: *sample_period,
+            dbc: options.dbc.clone(),
+            most_rows: MOST_ROWS,
+        })
     }
 
     /// The header that a channel is mapped to.

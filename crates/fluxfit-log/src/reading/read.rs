@@ -15,6 +15,7 @@ use super::{
     options::{LogOptions, ResolvedOptions},
     phases, plausibility, repair,
     table::Table,
+    turning,
 };
 use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
 use fluxfit::log::{Columns, Log, Segment, Source, check_values};
@@ -54,7 +55,9 @@ pub fn read_log(path: &Path, options: &LogOptions) -> Result<ReadLog, FileError>
 /// As [`read_log`].
 pub fn read_log_with_progress(path: &Path, options: &LogOptions, progress: impl Fn(u64) + 'static) -> Result<ReadLog, FileError> {
     let options = ResolvedOptions::resolve(options)?;
-    let read = input::open(path).and_then(|bytes| Table::open(bytes.with_progress(progress))).and_then(|table| read(table, &options));
+    let read = input::open(path)
+        .and_then(|bytes| Table::open(bytes.with_progress(progress), options.dbc.as_deref()))
+        .and_then(|table| read(table, &options));
     read.map_err(|error| error.in_file(&input::name(path)))
 }
 
@@ -80,7 +83,7 @@ pub fn read_log_with_progress(path: &Path, options: &LogOptions, progress: impl 
 /// If reading fails, or as [`parse_log`].
 pub fn read_log_from(name: &str, reader: impl Read + 'static, options: &LogOptions) -> Result<ReadLog, FileError> {
     let options = ResolvedOptions::resolve(options)?;
-    let read = Table::open(Bytes::Stream(Box::new(reader))).and_then(|table| read(table, &options));
+    let read = Table::open(Bytes::Stream(Box::new(reader)), options.dbc.as_deref()).and_then(|table| read(table, &options));
     read.map_err(|error| error.in_file(name))
 }
 
@@ -106,9 +109,11 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let chosen = columns::choose(&table, named, options, &mut notes)?;
     let Gathered { mut channels, lines, is_interpolated } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     let aligned = align::align(&mut channels, &lines)?;
+    channels.times_bus(&options.shares_of_bus)?;
     plausibility::refuse_standardized(&chosen, &channels)?;
     let is_interpolated = is_interpolated || aligned.is_some();
     let mut more: Vec<String> = aligned.into_iter().collect();
+    turning::settle(&mut channels, &chosen, &mut notes)?;
     more.extend(repair::repair(&mut channels));
     more.extend(phases::transform(&mut channels));
     more.extend(plausibility::note_references(&channels));

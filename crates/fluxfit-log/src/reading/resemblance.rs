@@ -1,6 +1,10 @@
 //! Names that resemble those of a channel or of a reference: for proposals and warnings only, a column is never read because of them.
 
-use crate::channel::Channel;
+use crate::{
+    block::ColumnHead,
+    channel::Channel,
+    header_unit::{HeaderUnit, split_header, unit_in_row},
+};
 use fluxfit_units::Dimension;
 
 /// Smallest similarity, 0 to 1, of a misspelt time or speed: one wrong letter in four. Voltages and currents must be spelt exactly,
@@ -9,6 +13,9 @@ const SIMILAR: f64 = 0.75;
 
 /// Shorter names must be spelt exactly.
 const SHORT: usize = 4;
+
+/// Close to `timestamp`, and a count of rows.
+const NO_TIME: [&str; 2] = ["timestep", "timesteps"];
 
 /// Other words in a header reduce the similarity, by at most this.
 const OTHER_WORDS: f64 = 0.2;
@@ -20,9 +27,43 @@ const STEPS: f64 = 10.0;
 /// Maximum number of words of a header that make one name, as in `q-axis current`.
 const WORDS: usize = 3;
 
-/// Words in the name of a column that mark it as a reference; `soll` is German.
-const REFERENCE: [&str; 13] =
-    ["ref", "reference", "req", "request", "requested", "cmd", "command", "target", "setpoint", "demand", "desired", "set", "soll"];
+/// Words in the name of a column that mark it as a reference or another number that is no measurement; `soll` is German.
+const REFERENCE: [&str; 28] = [
+    "ref",
+    "reference",
+    "req",
+    "request",
+    "requested",
+    "cmd",
+    "command",
+    "target",
+    "setpoint",
+    "sp",
+    "demand",
+    "desired",
+    "set",
+    "soll",
+    "sollwert",
+    "step",
+    "steps",
+    "index",
+    "limit",
+    "lim",
+    "max",
+    "min",
+    "error",
+    "err",
+    "offset",
+    "nominal",
+    "nom",
+    "rated",
+];
+
+/// Units of quantities that no channel has.
+const OTHER_UNITS: [&str; 22] = [
+    "nm", "n m", "n.m", "n.mm", "mnm", "w", "kw", "%", "k", "f", "°f", "l/min", "bar", "pa", "kpa", "kg", "g", "m/s", "m/s²", "km/h", "wh",
+    "ah",
+];
 
 /// The header that most resembles `channel`, if any does.
 pub(super) fn propose(channel: Channel, names: &[String]) -> Option<usize> {
@@ -31,14 +72,42 @@ pub(super) fn propose(channel: Channel, names: &[String]) -> Option<usize> {
     scored.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(index, _)| index)
 }
 
-/// Whether the name of a column says that it is a reference.
+/// Whether a header states the unit of another quantity than the channel's.
+pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
+    let dimension = channel.dimension();
+    let own = match (split_header(&head.name, dimension).1, head.unit.as_deref()) {
+        (HeaderUnit::Unknown(text), _) => Some(text),
+        (HeaderUnit::None, Some(unit)) => match unit_in_row(unit, &head.name, dimension) {
+            HeaderUnit::Unknown(text) => Some(text),
+            _ => None,
+        },
+        _ => None,
+    };
+    let Some(text) = own.map(|text| text.trim().trim_matches(['[', ']', '(', ')']).to_lowercase()) else { return false };
+    let is_of =
+        |other: Channel| other.dimension() != dimension && matches!(unit_in_row(&text, "", other.dimension()), HeaderUnit::Known(_));
+    OTHER_UNITS.contains(&text.as_str()) || Channel::all().any(is_of)
+}
+
+/// Whether the name of a column says that it is a reference, or another number that was not measured.
 pub(super) fn is_reference(header: &str) -> bool {
-    words(header).iter().any(|word| REFERENCE.contains(&word.as_str()))
+    without_unit(header).iter().any(|word| REFERENCE.contains(&word.as_str()))
+}
+
+/// The words of a header before brackets: 1/min is no minimum.
+fn without_unit(header: &str) -> Vec<String> {
+    words(header.split(['[', '(']).next().unwrap_or(header))
 }
 
 /// The best similarity of consecutive words to a spelling.
 fn score(channel: Channel, name: &str) -> Option<f64> {
     let words = words(name);
+    // Neither time nor speed is proposed for a reference; voltages are, because their references are measured well enough.
+    if matches!(channel.dimension(), Dimension::Time | Dimension::Speed)
+        && (is_reference(name) || NO_TIME.contains(&without_unit(name).concat().as_str()))
+    {
+        return None;
+    }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();
     let runs = (0..words.len()).flat_map(|start| (start + 1..=(start + WORDS).min(words.len())).map(move |end| start..end));
     let scores = runs.filter_map(|run| {
@@ -63,7 +132,7 @@ fn similarity(channel: Channel, run: &str, spelling: &str) -> f64 {
 }
 
 /// The words of a name in lower case, split at punctuation and where a capital follows a small letter, as in `MotorVd`.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut small_before = false;
     for c in name.chars() {
@@ -103,6 +172,7 @@ mod tests {
         let dyno = "Input voltage;Test motor q-axis current;Test motor d-axis current;Output Torque;Output Speed;Output Speed set-point;Absorber q-axis current";
         assert_eq!(proposed(dyno), ["-", "-", "-", "Test motor d-axis current", "Test motor q-axis current", "Output Speed"]);
         assert_eq!(proposed("tmie;omga;uds"), ["tmie", "-", "-", "-", "-", "omga"]);
+        assert_eq!(proposed("timestep;speed_step"), ["-"; 6]);
     }
 
     #[test]
@@ -110,7 +180,7 @@ mod tests {
         for header in ["IqReq", "id_ref", "i_d_ref (A)", "iq setpoint", "ID_CMD"] {
             assert!(is_reference(header), "{header}");
         }
-        for header in ["id", "motor_id_a", "Id preferred", "i_q", "offset_id"] {
+        for header in ["id", "motor_id_a", "Id preferred", "i_q", "outset_id"] {
             assert!(!is_reference(header), "{header}");
         }
     }

@@ -3,7 +3,8 @@
 use crate::{
     block::{Block, ColumnHead, WantedColumn},
     container::{self, Binary, RandomAccess},
-    csv::TextTable,
+    csv::{Text, TextTable},
+    records::Records,
 };
 use fluxfit_files::{
     FileError,
@@ -14,6 +15,7 @@ use std::io::{Cursor, Read, Seek};
 /// A table of text or of another format.
 pub(super) enum Table {
     Text(TextTable),
+    Records(Records),
     Binary(Binary),
 }
 
@@ -25,36 +27,42 @@ impl Table {
     ///
     /// # Errors
     /// If the bytes cannot be read, or have no names of columns.
-    pub(super) fn open(bytes: Bytes) -> Result<Self, FileError> {
+    pub(super) fn open(bytes: Bytes, dbc: Option<&str>) -> Result<Self, FileError> {
         let failed = |error: std::io::Error| FileError::from(io_problem("reading", &error));
         match bytes {
             Bytes::File(mut file, progress) => match Binary::open(RandomAccess::file(file.try_clone().map_err(failed)?)?)? {
                 Some(binary) => Ok(Self::Binary(binary)),
                 None => {
                     file.rewind().map_err(failed)?;
-                    TextTable::open(Box::new(Reporting { file, progress })).map(Self::Text)
+                    Self::of_text(Box::new(Reporting { file, progress }), dbc)
                 }
             },
             Bytes::Stream(mut stream) => {
                 let mut start = Vec::new();
                 (&mut stream).take(START).read_to_end(&mut start).map_err(failed)?;
                 if !container::is_container(&start) {
-                    return TextTable::open(Box::new(Cursor::new(start).chain(stream))).map(Self::Text);
+                    return Self::of_text(Box::new(Cursor::new(start).chain(stream)), dbc);
                 }
                 stream.read_to_end(&mut start).map_err(failed)?;
                 let content = bytes::Bytes::from(start);
                 match Binary::open(RandomAccess::memory(content.clone()))? {
                     Some(binary) => Ok(Self::Binary(binary)),
-                    None => TextTable::open(Box::new(Cursor::new(content))).map(Self::Text),
+                    None => Self::of_text(Box::new(Cursor::new(content)), dbc),
                 }
             }
         }
+    }
+
+    fn of_text(bytes: Box<dyn Read>, dbc: Option<&str>) -> Result<Self, FileError> {
+        let text = Text::open(bytes)?;
+        if Records::has(&text)? { Records::open(text, dbc).map(Self::Records) } else { TextTable::of(text).map(Self::Text) }
     }
 
     /// The columns.
     pub(super) fn heads(&self) -> &[ColumnHead] {
         match self {
             Self::Text(table) => &table.heads,
+            Self::Records(records) => records.heads(),
             Self::Binary(table) => table.heads(),
         }
     }
@@ -63,6 +71,7 @@ impl Table {
     pub(super) fn unreadable(&self) -> &[String] {
         match self {
             Self::Text(_) => &[],
+            Self::Records(records) => records.unreadable(),
             Self::Binary(table) => table.unreadable(),
         }
     }
@@ -71,6 +80,7 @@ impl Table {
     pub(super) fn notes(&self) -> &[String] {
         match self {
             Self::Text(table) => &table.notes,
+            Self::Records(records) => records.notes(),
             Self::Binary(_) => &[],
         }
     }
@@ -79,13 +89,14 @@ impl Table {
     pub(super) fn line(&self) -> Option<u64> {
         match self {
             Self::Text(table) => Some(table.line()),
-            Self::Binary(_) => None,
+            Self::Records(_) | Self::Binary(_) => None,
         }
     }
 
     /// The format, in a few words.
     pub(super) fn kind(&self) -> String {
         match self {
+            Self::Records(records) => records.kind().to_owned(),
             Self::Text(table) => format!("text, separated by {}", table.separator()),
             Self::Binary(table) => table.kind().to_owned(),
         }
@@ -102,6 +113,7 @@ impl Table {
     ) -> Result<Vec<String>, FileError> {
         match self {
             Self::Text(table) => table.read(wanted, take),
+            Self::Records(records) => records.read(wanted, take),
             Self::Binary(table) => {
                 let columns: Vec<usize> = wanted.iter().map(|column| column.index).collect();
                 let mut row = 0;

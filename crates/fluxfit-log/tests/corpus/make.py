@@ -5,7 +5,7 @@ pyarrow, scipy, h5py, asammdf and gzip, none of which is part of the reader. Wha
 
     pip install -r requirements.txt; python3 make.py        rewrites logs/, mappings/ and expected.toml
 
-In expected.toml, each case has a file and what the user says of it (map, units, pole_pairs, mapping), and either
+In expected.toml, each case has a file and what the user says of it (map, units, pole_pairs, mapping, dbc), and either
     a reading: layout, rows, segments, sample_period, notes (each must occur in some note), columns in SI (first, last, sum; a tolerance of 0 means
                the same bits), same_as (all columns have the bits of that file's);
     or a refusal: words that the one sentence must contain, each given as alternatives parted by |; and the line, where there is one.
@@ -18,6 +18,7 @@ import io
 import math
 import shutil
 import struct
+import sys
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -28,6 +29,8 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 import scipy.io
+
+import tools
 
 HERE = Path(__file__).parent
 LOGS = HERE / "logs"
@@ -470,7 +473,8 @@ def traps():
     refuse(put("all_zero_speed.csv", table(changed(SLOW, omega_e=slow["omega_e"] * 0.0))), "the speed is zero throughout", "omega_e", "zero")
     clock = {"t": slow["t"], **{name: slow[name] for name in NAMES[1:]}}
     form = {name: plain for name in NAMES} | {"t": lambda value: f"11:04:{value:06.3f}"}
-    refuse(put("clock_time.csv", table(clock, form=form)), "time of the day, as a clock shows it", "time", "number", line=2)
+    read(put("clock_time.csv", table(clock, form=form)), "time of the day, as a clock shows it", slow,
+         tolerances={"t": 1.0}, names=NAMES[1:], notes=["time of day"])
     refuse(put("truncated.csv.gz", gzip.compress(text.encode(), mtime=0)[:-700]), "a gzip file that was cut off", "gzip|compressed", "cut|end|incomplete|damaged")
 
 
@@ -732,6 +736,7 @@ def main():
         folder.mkdir()
     for write in (dialects, drives, traps, parquet, mat, mdf, mappings):
         write()
+    tools.write(sys.modules[__name__])
     lines = ["# Written by make.py, which says what the keys mean.\n"]
     for case in cases:
         lines.append("\n[[case]]\n")

@@ -14,13 +14,21 @@ pub(crate) type Promise = fn(&[u8]);
 /// The readers; targets of fuzzing and folders of regressions have these names.
 pub(crate) const READERS: [(&str, Promise); 3] = [("log", log), ("mapping", mapping), ("argument", argument)];
 
+/// Names the signals of the frames in the corpus.
+const DBC: &str = include_str!("../corpus/mappings/drive.dbc");
+
 /// A log, without options and with those that a user may give.
 pub(crate) fn log(bytes: &[u8]) {
     let map = |text: &str| text.split(',').filter_map(|pair| parse_map(pair).ok()).collect();
     let units = |text: &str| text.split(',').filter_map(|pair| parse_unit(pair).ok()).collect();
     let options = [
         LogOptions::default(),
-        LogOptions { pole_pairs: Some(4), units: units("omega=rpm-mech,t=ms,theta=deg"), ..LogOptions::default() },
+        LogOptions {
+            pole_pairs: Some(4),
+            units: units("omega=rpm-mech,t=ms,theta=deg"),
+            dbc: Some(DBC.to_owned()),
+            ..LogOptions::default()
+        },
         LogOptions { mapping: Mapping::parse(NAME, b"sample_period = 0.001").unwrap_or_default(), ..LogOptions::default() },
         LogOptions { map: map("t=time,ud=u_d,uq=u_q,id=i_d,iq=i_q,omega=speed,theta=angle"), pole_pairs: Some(3), ..LogOptions::default() },
     ];

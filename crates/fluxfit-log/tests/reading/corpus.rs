@@ -53,6 +53,7 @@ fn options(case: &Table) -> LogOptions {
         map: pairs("map").map(|pair| parse_map(pair).unwrap()).collect(),
         units: pairs("units").map(|pair| parse_unit(pair).unwrap()).collect(),
         pole_pairs: case.get("pole_pairs").map(|number| u32::try_from(number.as_integer().unwrap()).unwrap()),
+        dbc: case.get("dbc").map(|path| fs::read_to_string(home().join(path.as_str().unwrap())).unwrap()),
         mapping: case.get("mapping").map(|path| read_mapping(&home().join(path.as_str().unwrap())).unwrap()).unwrap_or_default(),
     }
 }

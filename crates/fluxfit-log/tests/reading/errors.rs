@@ -32,13 +32,13 @@ fn headers_are_refused_in_one_sentence() {
             "drive.csv, line 2: \"0, 1, 2, 3, 4, 5\" are numbers in place of a header; put a line with the names of the columns above them",
         ),
         (
-            "t ud uq\n1 2 3\n".into(),
-            "drive.csv, line 1: \"t ud uq\" is a single column; separate names and values by comma, semicolon or tab",
+            "t|ud|uq\n1|2|3\n".into(),
+            "drive.csv, line 1: \"t|ud|uq\" is a single column; separate names and values by comma, semicolon or tab",
         ),
         (
-            "Run 7\nspeed,id,iq\n1,2,3\n".into(),
-            "drive.csv, line 2: the columns t, ud, uq and omega_e are missing; the file has 'speed', 'id' and 'iq'; \
-             by its name, 'speed' may be omega_e: map it if it is; no column resembles t, ud and uq",
+            "Run 7\nload speed,id,iq\n1,2,3\n".into(),
+            "drive.csv, line 2: the columns t, ud, uq and omega_e are missing; the file has 'load speed', 'id' and 'iq'; \
+             by its name, 'load speed' may be omega_e: map it if it is; no column resembles t, ud and uq",
         ),
         (
             format!("t,ud,id,iq,omega_e\n{ROWS}"),
@@ -47,15 +47,13 @@ fn headers_are_refused_in_one_sentence() {
         ),
         (
             format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
-            "drive.csv, line 1: the columns t, ud, uq, id, iq and omega_e are missing; \
-             the file has 'u_d', 'motor_speed', 'i_d', 'i_q', 'torque' and 'profile_id'; \
-             by their names, 'u_d' may be ud, 'i_d' may be id, 'i_q' may be iq and 'motor_speed' may be omega_e: map them if they are; \
-             no column resembles t and uq",
+            "drive.csv, line 1: the columns t and uq are missing; the file has 'u_d', 'motor_speed', 'i_d', 'i_q', 'torque' and \
+             'profile_id'; map them if they have other names, else log them too",
         ),
         (
-            format!("tiem,q-axis voltage,ud,id,iq,omega_e\n{ROWS}"),
-            "drive.csv, line 1: the columns t and uq are missing; the file has 'tiem', 'q-axis voltage', 'ud', 'id', 'iq' and 'omega_e'; \
-             by their names, 'tiem' may be t and 'q-axis voltage' may be uq: map them if they are",
+            format!("tiem,a q-axis voltage,ud,id,iq,omega_e\n{ROWS}"),
+            "drive.csv, line 1: the columns t and uq are missing; the file has 'tiem', 'a q-axis voltage', 'ud', 'id', 'iq' and 'omega_e'; \
+             by their names, 'tiem' may be t and 'a q-axis voltage' may be uq: map them if they are",
         ),
         (
             format!("{wide}\n"),
@@ -112,7 +110,7 @@ fn rows_are_refused_in_one_sentence() {
     let cases = [
         (
             below("a,b,c,d,e,f\n0,1,2,3,4,5\n1,1,2,3,4,5\n"),
-            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit: s, ms or us",
+            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit: s, ms, us or ns",
         ),
         (
             below("0,1,2,3,4,5\n\n1,1,2,3,4\n"),
@@ -134,7 +132,10 @@ fn rows_are_refused_in_one_sentence() {
             "drive.csv, line 3, column 'uq': \"two\\nlines, and more than forty character…\" is not a number; correct it or remove the row",
         ),
         (below("0,1,2,3,4,5\n1,1, ,3,4,5\n"), "drive.csv, line 3, column 'uq': the cell is empty or NaN; write a number or remove the row"),
-        (below("11:04:34.5,1,2,3,4,5\n"), "drive.csv, line 2, column 't': \"11:04:34.5\" is a time of day; write time as a number, in s"),
+        (
+            below("11:04 h,1,2,3,4,5\n"),
+            "drive.csv, line 2, column 't': \"11:04 h\" is a time that is not understood; write it as a number, in s, or as in 2016-02-12 10:31:00.123",
+        ),
         (
             below("0,1,2,3,4,5\n1,1,2,NaN,4,5\n"),
             "drive.csv, line 3, column 'id': the cell is empty or NaN; write a number or remove the row",
@@ -200,8 +201,8 @@ fn errors_and_notes_carry_the_advice_as_facts() {
     let map_to = |pairs: &[(&'static str, Option<&str>)]| {
         Advice::MapColumns(pairs.iter().map(|(channel, header)| (*channel, header.map(str::to_owned))).collect())
     };
-    let missing = error("t,u_d,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &LogOptions::default());
-    assert_eq!((missing.kind(), missing.advice()), (FileErrorKind::Columns, &[map_to(&[("ud", Some("u_d"))])][..]));
+    let missing = error("t,load u_d,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &LogOptions::default());
+    assert_eq!((missing.kind(), missing.advice()), (FileErrorKind::Columns, &[map_to(&[("ud", Some("load u_d"))])][..]));
     let absent = error("t,uq,id,iq,omega_e\n0,2,3,4,5\n", &LogOptions::default());
     assert_eq!(absent.advice(), [map_to(&[("ud", None)])]);
     let unknown_unit = error("t [h],ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &map(&["t=t [h]"]));

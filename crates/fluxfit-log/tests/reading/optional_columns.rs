@@ -43,21 +43,21 @@ fn angle_and_dc_voltage_are_read_if_the_log_has_them() {
 
 #[test]
 fn angle_and_dc_voltage_under_other_names() {
-    let log = with_columns("phi,bus,note", ["90,310,a", "180,305.5,"]);
+    let log = with_columns("alpha,bus,note", ["90,310,a", "180,305.5,"]);
     let (columns, notes) = read(&log, &LogOptions::default());
     assert_eq!((columns.theta_e, columns.u_dc, notes.len()), (None, None, 0));
-    let (columns, notes) = read(&log, &map(&["theta=phi", "u_dc=bus"]));
+    let (columns, notes) = read(&log, &map(&["theta=alpha", "u_dc=bus"]));
     assert_eq!((columns.theta_e, columns.u_dc), (Some(vec![90.0, 180.0]), Some(vec![310.0, 305.5])));
-    let unsaid = "no header states these units, so SI is assumed: theta_e ('phi') in electrical rad and u_dc ('bus') in V";
+    let unsaid = "no header states these units, so SI is assumed: theta_e ('alpha') in electrical rad and u_dc ('bus') in V";
     assert_eq!(notes, [unsaid]);
     // A mechanical angle becomes electrical, in other turns: 90 degrees are 2 pi / 4, four times that a turn.
     let units = vec![("theta".into(), Unit::DegreeMechanical), ("u_dc".into(), Unit::Volt)];
-    let mechanical = LogOptions { units, pole_pairs: Some(4), ..map(&["theta=phi", "u_dc=bus"]) };
+    let mechanical = LogOptions { units, pole_pairs: Some(4), ..map(&["theta=alpha", "u_dc=bus"]) };
     let (columns, notes) = read(&log, &mechanical);
     let angle = columns.theta_e.unwrap();
     let turn = std::f64::consts::TAU;
     assert!((angle[0] - turn).abs() < 1e-14 && (angle[1] - 2.0 * turn).abs() < 1e-14, "{angle:?}");
-    assert_eq!(notes, ["theta_e: column 'phi' read as mechanical degrees with 4 pole pairs"]);
+    assert_eq!(notes, ["theta_e: column 'alpha' read as mechanical degrees with 4 pole pairs"]);
     assert_eq!(
         read(&with_columns("angle_deg", ["90", "180"]), &map(&["theta=angle_deg"])).1,
         ["theta_e: column 'angle_deg' read as electrical degrees; if it is mechanical, state its unit"]

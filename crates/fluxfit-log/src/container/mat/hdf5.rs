@@ -21,9 +21,15 @@ use crate::{
 use fluxfit_files::FileError;
 use object::{Object, Type};
 use reader::{Cursor, LONGEST_TEXT, Reader};
-use std::{cell::Cell, collections::HashSet};
+use std::{
+    cell::Cell,
+    collections::{HashMap, HashSet},
+};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+/// Maximum number of names of one array; further ones are not read: nobody names a channel so often, and each would take time.
+const MOST_LINKS: usize = 16;
 
 /// Maximum nesting of groups.
 const DEEPEST: usize = 16;
@@ -46,7 +52,7 @@ impl File {
         let reader = Reader { source, base, format, budget };
         let root = superblock(&reader)?;
         let mut contents = Contents::default();
-        Walk { reader: &reader, contents: &mut contents, groups: HashSet::new() }.object(root, "", DEEPEST)?;
+        Walk { reader: &reader, contents: &mut contents, groups: HashSet::new(), arrays: HashMap::new() }.object(root, "", DEEPEST)?;
         Ok((Self { reader, places: Vec::new() }, contents))
     }
 
@@ -82,6 +88,8 @@ struct Walk<'a> {
     contents: &'a mut Contents<Place>,
     /// The addresses of groups that were visited: links may lead back to them.
     groups: HashSet<u64>,
+    /// How many links lead to each array.
+    arrays: HashMap<u64, usize>,
 }
 
 impl Walk<'_> {
@@ -116,6 +124,11 @@ impl Walk<'_> {
                 self.object(address, &join(path, &name), depth)?;
             }
             return Ok(());
+        }
+        let links = self.arrays.entry(address).or_default();
+        *links += 1;
+        if *links > MOST_LINKS {
+            return self.no_numbers(path);
         }
         self.array(&object, path, class.as_deref(), depth)
     }

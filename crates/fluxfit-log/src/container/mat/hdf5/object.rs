@@ -14,6 +14,7 @@ pub(super) mod message {
     pub(crate) const DATATYPE: u16 = 0x03;
     pub(crate) const FILL_VALUE: u16 = 0x05;
     pub(crate) const LINK: u16 = 0x06;
+    pub(crate) const EXTERNAL: u16 = 0x07;
     pub(crate) const LAYOUT: u16 = 0x08;
     pub(crate) const FILTERS: u16 = 0x0b;
     pub(crate) const ATTRIBUTE: u16 = 0x0c;
@@ -113,6 +114,7 @@ impl Object {
                 | message::DATATYPE
                 | message::FILL_VALUE
                 | message::LINK
+                | message::EXTERNAL
                 | message::LAYOUT
                 | message::FILTERS
                 | message::ATTRIBUTE

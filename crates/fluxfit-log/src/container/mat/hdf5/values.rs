@@ -52,6 +52,9 @@ impl Place {
         if length > most_held(reader.source.length()) {
             return Err(reader.damaged("an array in it is larger than the file allows"));
         }
+        if object.message(message::EXTERNAL).is_some() {
+            return Err(Problem::ExternalHdf5.into());
+        }
         let fill = object.message(message::FILL_VALUE).and_then(|bytes| fill_value(bytes, number)).unwrap_or(0.0);
         let mut cursor = Cursor(object.message(message::LAYOUT).ok_or_else(wrong)?);
         let (version, class) = cursor.u8().zip(cursor.u8()).ok_or_else(wrong)?;

@@ -1,0 +1,102 @@
+//! Logs of text that are no tables of cells: JSON, LabVIEW's LVM, and CAN frames with a DBC.
+
+mod candump;
+mod json;
+mod lvm;
+mod memory;
+
+use crate::{
+    block::{Block, ColumnHead, WantedColumn},
+    csv::Text,
+    problem::Problem,
+};
+use fluxfit_files::FileError;
+
+/// Texts that are named, because they cannot be read.
+const OTHERS: [(&str, &str); 2] =
+    [("date ", "a Vector ASC log of CAN frames"), ("timestamp,arbitration_id,", "a log of CAN frames as CSV")];
+
+/// A log whose columns are known, and whose rows may not be read yet.
+pub(crate) enum Records {
+    Json(Box<json::Json>),
+    Memory { kind: &'static str, table: memory::Table },
+}
+
+impl Records {
+    /// Whether a text is such a log.
+    ///
+    /// # Errors
+    /// If it is one that is not read.
+    pub(crate) fn has(text: &Text) -> Result<bool, FileError> {
+        let head = text.head.as_str();
+        if let Some((_, what)) = OTHERS.iter().find(|(start, _)| head.starts_with(start) && (*start != "date " || head.contains("base "))) {
+            return Err(Problem::CanLog { what }.into());
+        }
+        Ok(json::is_json(head) || lvm::is_lvm(head) || candump::is_candump(head))
+    }
+
+    /// Reads up to the columns. CAN frames are named by the text of a DBC.
+    ///
+    /// # Errors
+    /// If the text cannot be read, or has no columns of numbers.
+    pub(crate) fn open(text: Text, dbc: Option<&str>) -> Result<Self, FileError> {
+        if json::is_json(&text.head) {
+            return json::open(text).map(|opened| match opened {
+                json::Opened::Records(json) => Self::Json(json),
+                json::Opened::Columns(table) => Self::Memory { kind: "JSON, a list for each column", table },
+            });
+        }
+        if lvm::is_lvm(&text.head) {
+            return Ok(Self::Memory { kind: "LabVIEW measurement", table: lvm::read(text)? });
+        }
+        let dbc = dbc.ok_or(Problem::NoDbc)?;
+        Ok(Self::Memory { kind: "candump, named by a DBC", table: candump::read(text, dbc)? })
+    }
+
+    /// The format, in a few words.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::Json(_) => "JSON, a record for each row",
+            Self::Memory { kind, .. } => kind,
+        }
+    }
+
+    /// The columns.
+    pub(crate) fn heads(&self) -> &[ColumnHead] {
+        match self {
+            Self::Json(json) => &json.heads,
+            Self::Memory { table, .. } => &table.heads,
+        }
+    }
+
+    /// Names of columns that hold no numbers.
+    pub(crate) fn unreadable(&self) -> &[String] {
+        match self {
+            Self::Json(json) => &json.unreadable,
+            Self::Memory { table, .. } => &table.unreadable,
+        }
+    }
+
+    /// What was inferred.
+    pub(crate) fn notes(&self) -> &[String] {
+        match self {
+            Self::Json(_) => &[],
+            Self::Memory { table, .. } => &table.notes,
+        }
+    }
+
+    /// Passes the rows of columns of one group to `take`.
+    ///
+    /// # Errors
+    /// If a value is not a number, or `take` fails.
+    pub(crate) fn read(
+        &mut self,
+        wanted: &[WantedColumn],
+        take: &mut dyn FnMut(&mut Block) -> Result<(), FileError>,
+    ) -> Result<Vec<String>, FileError> {
+        match self {
+            Self::Json(json) => json.read(wanted, take),
+            Self::Memory { table, .. } => table.read(wanted, take).map(|()| Vec::new()),
+        }
+    }
+}
