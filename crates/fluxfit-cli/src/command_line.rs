@@ -9,7 +9,10 @@ use clap::{Args, CommandFactory, Parser};
 #[command(name = "fluxfit", version, max_term_width = 110, subcommand_value_name = "VERB", after_help = EXIT_STATUS, arg_required_else_help = true)]
 pub(crate) struct Command {
     #[command(subcommand)]
-    pub(crate) verb: Verb,
+    pub(crate) verb: Option<Verb>,
+    /// Explain a warning or finding by its code, e.g. misfit
+    #[arg(long, value_name = "CODE", exclusive = true)]
+    pub(crate) explain: Option<String>,
     #[command(flatten)]
     pub(crate) telling: Telling,
 }
@@ -50,7 +53,7 @@ pub(crate) fn command() -> clap::Command {
             text += &format!("{TITLE}{title}:{TITLE:#}\n{lines}");
         }
     }
-    command.help_template(format!("{{about}}\n\n{{usage-heading}} {{usage}}\n\n{text}{TITLE}Options:{TITLE:#}\n{{options}}{{after-help}}"))
+    command.help_template(format!("{{about}}\n{{usage-heading}} {{usage}}\n\n{text}{TITLE}Options:{TITLE:#}\n{{options}}{{after-help}}"))
 }
 
 /// Styles of clap's own headings and names.

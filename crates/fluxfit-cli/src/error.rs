@@ -1,6 +1,6 @@
 //! What can stop a command: one sentence each, from whoever found it.
 
-use crate::terminal::options;
+use crate::terminal::{options, told::Told};
 
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +33,14 @@ pub(crate) enum CommandError {
         /// What happened.
         error: fluxfit_drive::Error,
     },
+    /// Columns that contradict each other, so that an answer would mean nothing.
+    #[error("{log}: {}; to identify all the same, state --model; fluxfit --explain {}", .finding.sentence.trim_end_matches(':'), .finding.code)]
+    Columns {
+        /// Name of the log.
+        log: String,
+        /// What is wrong, and what mends it.
+        finding: Told,
+    },
     /// Arguments that do not go together.
     #[error("{0}")]
     Usage(String),
@@ -47,6 +55,14 @@ impl CommandError {
         match self {
             Self::Library(error) | Self::Log { error, .. } => options::of_error(error.kind()),
             _ => None,
+        }
+    }
+
+    /// Lines to paste that mend it.
+    pub(crate) fn lines(&self) -> &str {
+        match self {
+            Self::Columns { finding, .. } => &finding.lines,
+            _ => "",
         }
     }
 

@@ -1,5 +1,6 @@
 //! Ctrl-C, a request to terminate, and a terminal that was closed. Work that has a best so far is done [`gently`]: it asks [`go_on`] and
-//! ends by itself. Other work ends at once, says what it was, and leaves no half-written file. A second signal ends at once in any case.
+//! ends by itself. Any other work ends at once, says what it was, and leaves no half-written file; work with a
+//! [rough answer](or_roughly) computes it first. A second signal ends at once in any case.
 
 use crate::terminal;
 use fluxfit_files::discard_unfinished;
@@ -17,13 +18,17 @@ const BY_SIGNAL: i32 = 128;
 /// Number of the signal that came; zero, as long as none has.
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
 
-static WORK: Mutex<Work> = Mutex::new(Work { what: String::new(), is_gentle: false });
+static WORK: Mutex<Work> = Mutex::new(Work { what: String::new(), is_gentle: false, roughly: None });
 
 /// What goes on.
 struct Work {
     what: String,
     is_gentle: bool,
+    roughly: Option<Roughly>,
 }
+
+/// What shows a rough answer in place of the one that is interrupted.
+type Roughly = Box<dyn FnOnce() + Send>;
 
 fn work() -> MutexGuard<'static, Work> {
     // Each change leaves it whole.
@@ -73,6 +78,17 @@ pub(crate) fn gently<T>(ends: impl FnOnce() -> T) -> T {
     done
 }
 
+/// Does work that a signal ends with a rough answer instead.
+pub(crate) fn or_roughly<T>(show: impl FnOnce() + Send + 'static, work: impl FnOnce() -> T) -> T {
+    self::work().roughly = Some(Box::new(show));
+    let done = work();
+    // What a signal took away is being shown, and ends the program: the whole answer comes too late.
+    while self::work().roughly.take().is_none() {
+        std::thread::park();
+    }
+    done
+}
+
 /// Whether the work from now on ends by itself.
 pub(crate) fn be_gentle(is_gentle: bool) {
     work().is_gentle = is_gentle;
@@ -93,7 +109,7 @@ pub(crate) fn exit_status() -> Option<u8> {
 
 fn came(signal: i32) {
     // Held to the end: no work becomes gentle, or over, meanwhile.
-    let work = work();
+    let mut work = work();
     let is_first = SIGNAL.swap(signal, Ordering::Relaxed) == 0;
     if is_first && work.is_gentle {
         terminal::interrupted(&format!("{} ends with the best so far; once more ends it at once", work.what));
@@ -101,6 +117,20 @@ fn came(signal: i32) {
     }
     discard_unfinished();
     terminal::interrupted(&format!("while {}", work.what));
+    if let Some(roughly) = work.roughly.take().filter(|_| is_first) {
+        // In a thread of its own: a second signal ends it.
+        let show = move || {
+            roughly();
+            end(signal);
+        };
+        if std::thread::Builder::new().spawn(show).is_ok() {
+            return;
+        }
+    }
+    end(signal);
+}
+
+fn end(signal: i32) {
     #[expect(clippy::exit, reason = "the main thread cannot be asked")]
     std::process::exit(BY_SIGNAL + signal);
 }

@@ -7,6 +7,7 @@ mod arguments;
 mod command_line;
 mod commands;
 mod error;
+mod explanations;
 mod interrupt;
 mod json;
 mod shell;
@@ -42,7 +43,14 @@ fn main() -> ExitCode {
     if let Err(error) = interrupt::listen() {
         terminal::note(&format!("Ctrl-C will end this without the best so far: {error}"));
     }
-    let outcome = command.verb.run(command_line::command);
+    let outcome = match (&command.verb, &command.explain) {
+        (Some(verb), _) => verb.run(command_line::command),
+        (None, Some(code)) => explanations::show(code),
+        (None, None) => {
+            let missing = clap::error::ErrorKind::MissingSubcommand;
+            command_line::command().error(missing, "a verb is missing, such as identify; see fluxfit --help").exit()
+        }
+    };
     match outcome {
         Ok(status) => interrupt::exit_status().map_or_else(|| status.into(), ExitCode::from),
         // Whoever closed the pipe has seen enough.

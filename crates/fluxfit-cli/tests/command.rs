@@ -17,6 +17,8 @@ mod craft;
 mod edges;
 #[path = "command/export.rs"]
 mod export;
+#[path = "command/findings.rs"]
+mod findings;
 #[path = "command/identify.rs"]
 mod identify;
 #[cfg(unix)]
@@ -81,6 +83,11 @@ fn json(arguments: &[&str]) -> (i32, Value) {
     let document = serde_json::from_str(&run.out).unwrap_or_else(|error| panic!("{error}: {} {}", run.out, run.err));
     schema::assert_fits(&document);
     (run.status, document)
+}
+
+/// A text without its line breaks: words are wrapped wherever a line ends.
+fn unwrapped(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn root() -> PathBuf {

@@ -4,7 +4,7 @@
 //! `schema`). Fields are added, never renamed.
 
 use crate::reading::{InspectedColumn, Inspection, ReadLog};
-use fluxfit::log::Log;
+use fluxfit::{ColumnFinding, check_columns, log::Log};
 use serde::Serialize;
 
 /// The name of this document.
@@ -29,6 +29,8 @@ pub struct InspectionDocument {
     pub log: Option<InspectedLogEntry>,
     /// What reading the log inferred or repaired; one sentence each.
     pub notes: Vec<String>,
+    /// What the columns contradict each other in; empty if they agree, or if there is no log.
+    pub findings: Vec<FindingEntry>,
     /// Why the file cannot be read as a log, in one sentence; null if it can.
     pub error: Option<String>,
 }
@@ -52,6 +54,17 @@ pub struct ColumnEntry {
     pub range: Option<[f64; 2]>,
     /// Whether the file states that it is the time of the columns of its group.
     pub is_time: bool,
+}
+
+/// Something that the columns contradict each other in.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct FindingEntry {
+    /// The name of its kind, such as `speed-unit`; it stays the same from version to version.
+    pub code: &'static str,
+    /// What it is, in one sentence.
+    pub message: String,
 }
 
 /// The log that the file holds.
@@ -93,6 +106,7 @@ impl InspectionDocument {
             columns: inspection.columns.iter().map(ColumnEntry::of).collect(),
             log: read.ok().map(|read| InspectedLogEntry::of(&read.log)),
             notes: read.map_or(Vec::new(), |ReadLog { notes, .. }| notes.iter().map(|note| note.sentence.clone()).collect()),
+            findings: read.map_or(Vec::new(), |read| check_columns(&read.log).iter().map(FindingEntry::of).collect()),
             error: read.err().map(ToString::to_string),
         }
     }
@@ -109,6 +123,12 @@ impl ColumnEntry {
             range: column.range,
             is_time: column.is_time,
         }
+    }
+}
+
+impl FindingEntry {
+    fn of(finding: &ColumnFinding) -> Self {
+        Self { code: finding.code(), message: finding.to_string() }
     }
 }
 

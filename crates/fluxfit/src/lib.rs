@@ -33,8 +33,10 @@
 //! | [`Motor`], [`Parameter`], [`frames`] | the motor's equations; the dq frame and its convention |
 //! | [`Judgement`], [`Verdict`] | one parameter: value, interval and how well it is determined |
 //! | [`Reason`], [`Remedy`], [`Warning`] | facts about an answer; each prints as an English sentence |
+//! | [`Summary`], [`NextStep`] | the answer in a sentence, and the one thing to do next |
 //! | [`Promised`], [`Measurement`], [`Place`], [`Also`] | of a remedy: what to measure, where, and what it would bring |
 //! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is no error but a verdict |
+//! | [`check_columns`], [`ColumnFinding`] | what the columns contradict each other in, before anything is fitted |
 //! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
@@ -46,6 +48,7 @@
 //! Results depend on the log, the request and the seed: not on files, clocks or the number of threads.
 
 mod answer;
+pub mod column_check;
 pub mod current_loop;
 #[cfg(feature = "serde")]
 pub mod document;
@@ -71,6 +74,7 @@ pub mod validation;
 mod words;
 
 pub use answer::{Answer, HeldOut, IdentificationError, identify, identify_with_progress};
+pub use column_check::{ColumnFinding, check_columns};
 pub use error::{Error, ErrorKind};
 pub use fluxfit_optimize as optimizer;
 pub use identification::{
@@ -78,6 +82,7 @@ pub use identification::{
         judgement::Judgement,
         measurement::{Measurement, Place, Promised},
         remedy::{Also, Remedy},
+        summary::{NextStep, Summary},
         temperature::{AtTemperature, REFERENCE_TEMPERATURE, Referred},
         unseen::{Counted, Unseen, UnseenError},
         warning::Warning,

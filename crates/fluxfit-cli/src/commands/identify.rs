@@ -2,6 +2,7 @@
 
 mod current_loop;
 mod decisions;
+mod details;
 pub(crate) mod display;
 mod export;
 
@@ -13,13 +14,13 @@ use crate::{
 };
 use clap::Args;
 use fluxfit::{
-    Answer, Known, Request, Step, Swarm, Warning, identify_with_progress,
+    Answer, Known, Model, Request, Step, Swarm, Warning, identify_with_progress,
     motor::{PARAMETERS, Parameter},
     optimizer::Method,
 };
 use fluxfit_answer::export::Target;
 use fluxfit_report::{Report, figures, html};
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 
 #[derive(Debug, Args)]
 pub(crate) struct Identify {
@@ -90,17 +91,25 @@ fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
+    if !arguments.log.json {
+        terminal::hold_notes();
+    }
     report::check(&arguments.log, [])?;
     export::check(&arguments.log, &arguments.export)?;
     let input = input::read(&arguments.log)?;
+    let findings = input.findings();
+    if let Some(finding) = findings.first().filter(|_| arguments.model == ModelArgument::Auto) {
+        return Err(CommandError::Columns { log: input.name, finding: finding.clone() });
+    }
+    findings.iter().for_each(terminal::warn_of_columns);
     let request = request(arguments, &input)?;
     export::check_pole_pairs(&arguments.export, input.pole_pairs)?;
-    let answer = identified(&input, &request)?;
+    let answer = identified(&input, &request, !arguments.log.json)?;
     decisions::show(&answer.identification);
     if arguments.log.json {
         terminal::print(&json::text(&answer)?)?;
         // The document lists it among others; whoever interrupted the search is told at once.
-        answer.warnings().iter().filter(|warning| matches!(warning, Warning::Interrupted { .. })).for_each(terminal::warn);
+        answer.warnings().iter().filter(|warning| matches!(warning, Warning::Interrupted { .. })).for_each(terminal::warn_at_length);
     } else {
         display::show(&input.name, &answer)?;
     }
@@ -119,8 +128,8 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     Ok(if answer.is_complete() { exported } else { Status::Incomplete })
 }
 
-/// Identifies, and shows the progress. The swarm's search can be interrupted.
-fn identified(input: &input::Input, request: &Request) -> Result<Answer, CommandError> {
+/// Identifies, and shows the progress. The swarm's search can be interrupted; before it, people get a rough answer.
+fn identified(input: &input::Input, request: &Request, is_for_people: bool) -> Result<Answer, CommandError> {
     let fitting = format!("fitting {} rows", input.log.rows());
     let progress = terminal::unknown(&fitting);
     let show = |step: Step| {
@@ -141,10 +150,17 @@ fn identified(input: &input::Input, request: &Request) -> Result<Answer, Command
         }
         interrupt::go_on()
     };
-    let answer = identify_with_progress(&input.log, request, &show);
+    let identify = || identify_with_progress(&input.log, request, &show);
+    let answer = if is_for_people {
+        let (name, log) = (input.name.clone(), Arc::clone(&input.log));
+        let request = Request { model: Some(Model::Steady), swarm: Swarm::Off, bandwidth: None, hold_out: false, ..request.clone() };
+        interrupt::or_roughly(move || display::show_roughly(&name, &log, &request), identify)
+    } else {
+        identify()
+    };
     interrupt::be_gentle(false);
     answer.map_err(|found| {
-        found.suspected_units.iter().for_each(terminal::warn);
+        found.suspected_units.iter().for_each(terminal::warn_at_length);
         input::of_log(&input.name, found.error)
     })
 }

@@ -3,22 +3,25 @@
 use crate::{
     arguments::{ColumnArguments, LogArguments, by_parameter},
     error::CommandError,
-    terminal,
+    terminal::{self, mending, told::Told},
 };
-use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, log::Source, optimizer};
-use fluxfit_log::{LogOptions, Note, read_log_with_progress, read_mapping};
+use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, check_columns, log::Source, optimizer};
+use fluxfit_log::{LogOptions, Note, ReadColumn, read_log_with_progress, read_mapping};
 use fluxfit_setup::{MotorFile, read_motor};
 use fluxfit_units::wording::one_line;
-use std::{fs, path::Path};
+use std::{fs, path::Path, sync::Arc};
 
 /// The logs, joined, and the motor file.
 pub(crate) struct Input {
-    pub(crate) log: Log,
+    /// Shared with what shows a rough answer where the whole one is interrupted.
+    pub(crate) log: Arc<Log>,
     pub(crate) motor: MotorFile,
     /// Names of the logs, for headings.
     pub(crate) name: String,
     /// Pole pairs, from whoever tells them.
     pub(crate) pole_pairs: Option<u32>,
+    /// The columns of each log, as they were read.
+    columns: Vec<Vec<ReadColumn>>,
 }
 
 impl Input {
@@ -26,6 +29,15 @@ impl Input {
     pub(crate) fn said(&self) -> Vec<String> {
         let Source { columns, notes } = self.log.source();
         columns.iter().chain(notes).cloned().collect()
+    }
+}
+
+impl Input {
+    /// What the columns contradict each other in, with what mends it. Of several logs, all of them together: they are of one motor and
+    /// mostly of one drive, and what is proposed is for the first.
+    pub(crate) fn findings(&self) -> Vec<Told> {
+        let columns = self.columns.first().map_or(&[][..], Vec::as_slice);
+        check_columns(&self.log).iter().map(|finding| mending::told(finding, columns, self.pole_pairs)).collect()
     }
 }
 
@@ -42,23 +54,27 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     }
     let options = options(&arguments.columns, motor.pole_pairs)?;
     let (mut logs, mut notes) = (Vec::new(), Vec::new());
+    let mut read_columns = Vec::new();
+    let is_only = arguments.logs.len() == 1;
     for path in &arguments.logs {
         let progress = terminal::reading(&format!("reading {}", name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
         let read = read_log_with_progress(path, &options, progress.teller())?;
         drop(progress);
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
-        let of_log = |note: Note| Note { sentence: format!("{}: {}", name(path), note.sentence), ..note };
-        let of_log: Vec<Note> = read.notes.into_iter().map(of_log).collect();
+        let of_log = |sentence: &str| format!("{}: {sentence}", name(path));
         let columns = read.log.source().columns.clone();
-        logs.push(read.log.with_source(Source { columns, notes: of_log.iter().map(|note| note.sentence.clone()).collect() }));
-        notes.extend(of_log);
+        read_columns.push(read.columns);
+        let of_source = read.notes.iter().map(|note| of_log(&note.sentence)).collect();
+        logs.push(read.log.with_source(Source { columns, notes: of_source }));
+        // The name of the only log is said already.
+        notes.extend(read.notes.into_iter().map(|note| if is_only { note } else { Note { sentence: of_log(&note.sentence), ..note } }));
     }
     let log = Log::join(logs)?;
     notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
     log.source().columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
-    Ok(Input { log, motor, name: names.join(", "), pole_pairs: options.pole_pairs })
+    Ok(Input { log: Arc::new(log), motor, name: names.join(", "), pole_pairs: options.pole_pairs, columns: read_columns })
 }
 
 /// What the reader is told; the motor file's pole pairs count where nothing else tells them.

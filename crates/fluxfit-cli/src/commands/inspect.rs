@@ -3,10 +3,16 @@
 mod display;
 
 use super::{Status, input};
-use crate::{arguments::ColumnArguments, error::CommandError, json, terminal};
+use crate::{
+    arguments::ColumnArguments,
+    error::CommandError,
+    json,
+    terminal::{self, mending, told::Told},
+};
 use clap::Args;
+use fluxfit::check_columns;
 use fluxfit_files::{check_writable, write_atomically};
-use fluxfit_log::{document::InspectionDocument, inspect};
+use fluxfit_log::{Inspection, document::InspectionDocument, inspect};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -37,7 +43,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     if arguments.json {
         terminal::print(&json::text(&InspectionDocument::of(&inspection))?)?;
     } else if arguments.output.as_deref() != Some(Path::new("-")) {
-        display::show(&input::name(&arguments.log), &inspection)?;
+        display::show(&input::name(&arguments.log), &inspection, &findings(&inspection, options.pole_pairs))?;
     }
     if let Some(path) = arguments.output.as_deref() {
         write_atomically(path, mapping_file(&inspection.mapping(&options)).as_bytes())?;
@@ -47,6 +53,12 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
         Ok(_) => Ok(Status::Complete),
         Err(error) => Err(error.into()),
     }
+}
+
+/// What the columns contradict each other in, with what mends it.
+fn findings(inspection: &Inspection, pole_pairs: Option<u32>) -> Vec<Told> {
+    let Ok(read) = &inspection.log else { return Vec::new() };
+    check_columns(&read.log).iter().map(|finding| mending::told(finding, &read.columns, pole_pairs)).collect()
 }
 
 /// The proposed mapping file, with the command that takes it.

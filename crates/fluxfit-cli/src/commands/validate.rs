@@ -41,6 +41,7 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     }
     let motor = read_given_motor(path)?;
     let input = input::read_beside(&arguments.log, motor.file)?;
+    input.findings().iter().for_each(terminal::warn_of_columns);
     let mut request = Request { model: arguments.model.stated(), ..input::request(&arguments.log, &input)? };
     arguments.accuracy.apply(input.motor.sensors, &mut request);
     let found = terminal::working(format!("fitting {} rows", input.log.rows()), || validate(&input.log, &motor.given, &request));

@@ -10,7 +10,7 @@ pub(crate) fn with_options(sentence: &str, advice: &[Advice]) -> String {
     if options.is_empty() { sentence.to_owned() } else { format!("{sentence} ({})", options.join(", or ")) }
 }
 
-fn option(advice: &Advice) -> Option<String> {
+pub(super) fn option(advice: &Advice) -> Option<String> {
     match advice {
         Advice::MapColumns(pairs) => {
             let pair = |(channel, header): &(&str, Option<String>)| format!("{channel}={}", header.as_deref().unwrap_or("COLUMN"));

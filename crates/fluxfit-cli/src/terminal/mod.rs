@@ -3,25 +3,30 @@
 
 pub(crate) mod advice;
 mod excerpt;
+mod lines;
+pub(crate) mod mending;
 pub(crate) mod options;
 pub(crate) mod plot;
 mod progress;
+pub(crate) mod told;
 
 use crate::error::CommandError;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit::Warning;
 use fluxfit_units::{significant, wording::one_line};
+pub(crate) use lines::{columns, width, wrapped};
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},
     path::Path,
     sync::{
-        LazyLock,
+        LazyLock, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, AtomicU8, Ordering},
     },
     time::Instant,
 };
+use told::Told;
 
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
 pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
@@ -78,10 +83,18 @@ fn detail_level() -> Detail {
 
 /// Prints why a command stopped: a sentence, and below it the line of the file that it is about.
 pub(crate) fn print_error(error: &CommandError) {
+    release_notes();
     say(&format!("{ERROR}error:{ERROR:#} {}", options::with_option(&error.to_string(), error.option())));
+    say_lines(error.lines());
     if let Some(excerpt) = error.in_file().and_then(excerpt::of) {
         let _ = write!(anstream::stderr().lock(), "{DIM}{excerpt}{DIM:#}");
     }
+}
+
+/// Prints lines to be copied on standard error, as they are.
+fn say_lines(lines: &str) {
+    // Nobody listening on standard error is no reason to stop.
+    let _ = write!(anstream::stderr().lock(), "{lines}");
 }
 
 /// Says what a signal does, from the first column on, whatever progress has left there.
@@ -97,9 +110,37 @@ pub(crate) fn detail(message: impl FnOnce() -> String) {
     }
 }
 
-/// Prints a warning, and the option that answers it.
+/// Whether everything is to be told.
+pub(crate) fn is_verbose() -> bool {
+    detail_level() == Detail::Everything
+}
+
+/// Prints a warning in a line of its own; the whole sentence, and the option that answers it, where everything is to be told.
 pub(crate) fn warn(warning: &Warning) {
+    if is_verbose() {
+        warn_at_length(warning);
+    } else {
+        warn_of(warning.code(), &warning.in_short());
+    }
+}
+
+/// Says where more is said of warnings.
+pub(crate) fn point_to_explanations(warnings: &[Warning]) {
+    if let Some(first) = warnings.first().filter(|_| detail_level() == Detail::Notes) {
+        let what = if warnings.len() > 1 { "a warning" } else { "it" };
+        say(&format!("{DIM}more on {what}: fluxfit --explain {}{DIM:#}", first.code()));
+    }
+}
+
+/// Prints the whole sentence of a warning, and the option that answers it.
+pub(crate) fn warn_at_length(warning: &Warning) {
     warn_of(warning.code(), &options::with_option(&warning.to_string(), options::of_warning(warning)));
+}
+
+/// Prints a finding of the columns as a warning, with the lines that mend it.
+pub(crate) fn warn_of_columns(finding: &Told) {
+    warn_of(finding.code, &finding.sentence);
+    say_lines(&finding.lines);
 }
 
 /// Prints a warning that is not one of the library's.
@@ -107,11 +148,37 @@ pub(crate) fn warn_of(code: &str, message: &str) {
     say(&format!("{WARNING}warning{WARNING:#} [{code}]: {message}"));
 }
 
-/// Says what was inferred.
+/// Says what was inferred; while notes are [held](hold_notes), later.
 pub(crate) fn note(message: &str) {
     if detail_level() > Detail::Quiet {
-        say(&format!("{DIM}note:{DIM:#} {message}"));
+        match held_notes().as_mut() {
+            Some(held) => held.push(message.to_owned()),
+            None => say_note(message),
+        }
     }
+}
+
+fn say_note(message: &str) {
+    say(&format!("{DIM}note:{DIM:#} {message}"));
+}
+
+/// Notes that wait for the answer, where it comes first.
+static HELD_NOTES: Mutex<Option<Vec<String>>> = Mutex::new(None);
+
+fn held_notes() -> MutexGuard<'static, Option<Vec<String>>> {
+    // Each change leaves it whole.
+    HELD_NOTES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps notes until [`release_notes`]: the answer stands above them.
+pub(crate) fn hold_notes() {
+    held_notes().get_or_insert_default();
+}
+
+/// Says the notes that were kept.
+pub(crate) fn release_notes() {
+    let held = held_notes().take();
+    held.into_iter().flatten().for_each(|message| say_note(&message));
 }
 
 /// Says that a file was written, and what it is.
@@ -126,9 +193,11 @@ pub(crate) fn refuse_export(file: &Path, why: &str) {
     say(&format!("{ERROR}error:{ERROR:#} {} is not written: {why}", one_line(&file.display().to_string())));
 }
 
+/// Prints a line on standard error; on a terminal in as many lines as it takes.
 fn say(line: &str) {
+    let lines = lines::width_of_messages().map_or_else(|| format!("{line}\n"), |width| lines::wrapped_to(width, "", line));
     // Nobody listening on standard error is no reason to stop.
-    let _ = writeln!(anstream::stderr().lock(), "{line}");
+    let _ = write!(anstream::stderr().lock(), "{lines}");
 }
 
 /// A table without frame: a heading, and rows whose columns after the first `left` are aligned to the right.

@@ -1,5 +1,5 @@
 //! Curves in characters: convergence, logarithmic cost against iteration, one letter per method, so that they can be told apart
-//! without colour; and the courses of a log's currents and speed.
+//! without colour; and the courses of a log's channels.
 
 use anstyle::{Ansi256Color, AnsiColor};
 use fluxfit::{log::Log, study::MethodStudy};
@@ -7,8 +7,16 @@ use fluxfit_units::significant;
 use ratatui_core::{buffer::Buffer, layout::Rect, style::Color, symbols::Marker, widgets::Widget};
 use ratatui_widgets::chart::{Axis, Chart, Dataset, GraphType};
 
-/// Size of the plot in characters.
-const SIZE: (u16, u16) = (96, 20);
+/// Lines of the plot of convergence.
+const LINES: u16 = 20;
+
+/// Most columns of a plot: wider ones show no more.
+const WIDEST: u16 = 96;
+
+/// Columns of a plot, as the terminal has them.
+fn width() -> u16 {
+    u16::try_from(super::width()).unwrap_or(WIDEST).min(WIDEST)
+}
 
 /// Costs below this are drawn at it: rounding, where a logarithm means nothing.
 const FLOOR: f64 = 1e-12;
@@ -33,47 +41,74 @@ pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
         let (letter, color, _) = pen(study);
         Dataset::default().marker(Marker::Custom(letter)).graph_type(GraphType::Line).style(color).data(points)
     });
-    let labels = |from: f64, to: f64, steps: usize| (0..=steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
     let chart = Chart::new(datasets.collect())
-        .x_axis(Axis::default().bounds([0.0, iterations]).labels(labels(0.0, iterations, 3).map(|x| format!("{x:.0}"))))
-        .y_axis(Axis::default().bounds([low, high]).labels(labels(low, high, 4).map(|y| format!("1e{y:+.0}"))));
-    let area = Rect::new(0, 0, SIZE.0, SIZE.1);
+        .x_axis(Axis::default().bounds([0.0, iterations]).labels(ticks(0.0, iterations, 3).map(|x| format!("{x:.0}"))))
+        .y_axis(Axis::default().bounds([low, high]).labels(ticks(low, high, 4).map(|y| format!("1e{y:+.0}"))));
+    let area = Rect::new(0, 0, width(), LINES);
     let mut buffer = Buffer::empty(area);
     chart.render(area, &mut buffer);
     let pens: Vec<_> = methods.iter().map(|(study, _)| pen(study)).map(|(_, color, ansi)| (color, ansi)).collect();
     format!("{}{}\n", text(&buffer, &pens), legend(methods))
 }
 
-/// Size of one course in characters.
-const COURSE: (u16, u16) = (79, 7);
+/// Lines of one course, and of the axis below the last one.
+const COURSE: (u16, u16) = (4, 2);
 
 /// Points of a course: two, least and largest, for each of the columns of dots that a character has.
 const COLUMNS: usize = 140;
 
-/// i_d, i_q and the speed of a log over time, one below the other.
+/// Voltages, currents and speed of a log over time, one below the other.
 pub(crate) fn courses(log: &Log) -> String {
     let columns = log.columns();
-    let panels =
-        [("i_d, A", &columns.id, Color::Blue), ("i_q, A", &columns.iq, Color::Green), ("omega_e, rad/s", &columns.omega_e, Color::Yellow)];
-    panels.into_iter().map(|(name, values, color)| course(name, &columns.t, values, color)).collect()
+    let panels = [
+        ("u_d, V", &columns.ud, Color::Cyan),
+        ("u_q, V", &columns.uq, Color::Magenta),
+        ("i_d, A", &columns.id, Color::Blue),
+        ("i_q, A", &columns.iq, Color::Green),
+        ("omega_e, rad/s", &columns.omega_e, Color::Yellow),
+    ];
+    let (Some(start), Some(end)) = (columns.t.first(), columns.t.last()) else { return String::new() };
+    let axis = Axis::default().bounds([*start, *end]);
+    let last = panels.len() - 1;
+    let course = |(place, (name, values, color)): (usize, (&str, &Vec<f64>, Color))| {
+        let labels = ticks(*start, *end, 3).map(|t| format!("{} s", significant(t, 4)));
+        let (axis, below) = if place == last { (axis.clone().labels(labels), COURSE.1) } else { (axis.clone(), 0) };
+        course(name, &extremes(&columns.t, values), color, axis, below)
+    };
+    panels.into_iter().enumerate().map(course).collect()
 }
 
-fn course(name: &str, t: &[f64], values: &[f64], color: Color) -> String {
-    let (Some(start), Some(end)) = (t.first(), t.last()) else { return String::new() };
-    let points = extremes(t, values);
+/// The courses of columns of a file that is no log yet: name, and least and largest number of each of many stretches of rows.
+pub(crate) fn courses_of_columns(columns: &[(String, &[[f64; 2]])]) -> String {
+    let of_column = |(name, spans): &(String, &[[f64; 2]])| {
+        let points: Vec<(f64, f64)> =
+            spans.iter().enumerate().flat_map(|(k, [low, high])| [(k as f64, *low), (k as f64 + 0.5, *high)]).collect();
+        course(name, &points, Color::Blue, Axis::default().bounds([0.0, spans.len() as f64]), 0)
+    };
+    columns.iter().filter(|(_, spans)| !spans.is_empty()).map(of_column).collect()
+}
+
+/// Numbers with equal steps between them, from end to end.
+fn ticks(from: f64, to: f64, steps: usize) -> impl Iterator<Item = f64> {
+    (0..=steps).map(move |k| from + (to - from) * k as f64 / steps as f64)
+}
+
+/// One course; `below`: lines of the axis below it.
+fn course(name: &str, points: &[(f64, f64)], color: Color, x_axis: Axis, below: u16) -> String {
     let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, y)| (low.min(*y), high.max(*y)));
     let margin = if high > low { 0.05 * (high - low) } else { 0.5 + low.abs() * 0.05 };
     let bounds = [low - margin, high + margin];
-    let labels = |from: f64, to: f64, steps: usize| (0..=steps).map(move |k| from + (to - from) * k as f64 / steps as f64);
-    let data = Dataset::default().marker(Marker::Braille).graph_type(GraphType::Line).style(color).data(&points);
+    let data = Dataset::default().marker(Marker::Braille).graph_type(GraphType::Line).style(color).data(points);
     let chart = Chart::new(vec![data])
-        .x_axis(Axis::default().bounds([*start, *end]).labels(labels(*start, *end, 3).map(|t| format!("{} s", significant(t, 4)))))
-        .y_axis(Axis::default().bounds(bounds).labels(labels(bounds[0], bounds[1], 1).map(|y| format!("{:>8}", significant(y, 3)))));
-    let area = Rect::new(0, 0, COURSE.0, COURSE.1);
+        .x_axis(x_axis)
+        .y_axis(Axis::default().bounds(bounds).labels(bounds.map(|y| format!("{:>8}", significant(y, 3)))));
+    let area = Rect::new(0, 0, width() - 1, COURSE.0 + below);
     let mut buffer = Buffer::empty(area);
     chart.render(area, &mut buffer);
     let pen = match color {
         Color::Blue => AnsiColor::Blue,
+        Color::Cyan => AnsiColor::Cyan,
+        Color::Magenta => AnsiColor::Magenta,
         Color::Green => AnsiColor::Green,
         _ => AnsiColor::Yellow,
     };

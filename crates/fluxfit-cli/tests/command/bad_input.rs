@@ -40,7 +40,11 @@ fn unreadable_logs() {
         ("binary", b"\x7fELF\x02\x00\x00\x01 \xff\xfe\n".to_vec(), &["text"]),
         ("all zeros", log(100, |k| Some(format!("{:.4},0,0,0,0,0", k as f64 * 1e-4))).into(), &["zero"]),
         ("no speed", log(100, |k| Some(format!("{:.4},1,1,1,1,0", k as f64 * 1e-4))).into(), &["omega_e", "zero"]),
-        ("never steady", log(100, |k| Some(format!("{:.2},1,1,1,{},418", k as f64 * 1e-2, k))).into(), &["no steady stretch", "--window"]),
+        (
+            "never steady",
+            log(100, |k| Some(format!("{:.2},{},{},0,{k},418", k as f64 * 1e-2, -0.418 * k as f64, 20.9 + 0.5 * k as f64))).into(),
+            &["no steady stretch", "--window"],
+        ),
     ];
     for (name, text, expected) in table {
         let file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();

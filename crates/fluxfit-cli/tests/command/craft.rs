@@ -87,6 +87,43 @@ fn quiet_leaves_the_warnings_and_verbose_tells_the_decisions() {
     assert_eq!(fluxfit(&["identify", LOG, "-q", "-v"]).status, 2);
 }
 
+/// Of healthy logs and of those that have little to tell; what goes to a pipe is as wide as the narrowest terminal.
+#[test]
+fn every_line_of_an_answer_fits_80_columns() {
+    let zero = "examples/logs/id_zero_two_loads.csv";
+    let commands: [&[&str]; 9] = [
+        &["identify", LOG],
+        &["identify", LOG, "--model", "steady", "--bandwidth", "500Hz", "-v"],
+        &["identify", zero, "--model", "steady", "-v"],
+        &["identify", zero, "--window", "0.3:0.31", "--motor", "examples/paper_motor.toml"],
+        &["identify", LOG, "--prior", "rs=2±1%"],
+        &["validate", LOG, "--motor", "examples/paper_motor.toml"],
+        &["validate", LOG, "--motor", "examples/paper_motor.toml", "--model", "steady"],
+        &["inspect", LOG],
+        &["compare", LOG, "--runs", "2", "--iterations", "20"],
+    ];
+    for command in commands {
+        let run = fluxfit(command);
+        let wide = run.out.lines().find(|line| line.chars().count() > 80);
+        assert_eq!(wide, None, "{command:?}");
+        if !command.contains(&"-v") {
+            let wide = run.err.lines().filter(|line| line.starts_with("warning")).find(|line| line.chars().count() > 80);
+            assert_eq!(wide, None, "{command:?}");
+        }
+    }
+}
+
+#[test]
+fn a_code_is_explained_and_a_mistyped_one_is_answered_with_what_is_alike() {
+    let run = fluxfit(&["--explain", "no-redundancy"]);
+    assert!(run.status == 0 && run.out.starts_with("no-redundancy\n\n") && run.out.contains("What to do:"), "{}", run.out);
+    assert!(run.out.lines().all(|line| line.chars().count() <= 80), "{}", run.out);
+    let run = fluxfit(&["--explain", "misfits"]);
+    assert!(run.status == 2 && run.out.is_empty() && run.err.contains("did you mean misfit?"), "{}", run.err);
+    let pages = std::fs::read_to_string(super::root().join("crates/fluxfit-cli/src/explanations/codes.md")).unwrap();
+    assert_eq!(std::fs::read_to_string(super::root().join("docs/codes.md")).unwrap(), pages, "docs/codes.md is a copy");
+}
+
 #[test]
 fn every_shell_gets_completions_of_every_verb() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {

@@ -272,11 +272,7 @@ fn gains_are_shown_with_their_spread_and_a_bandwidth_too_high_is_warned_of() {
     assert!(json(&["identify", LOG, "--model", "steady"]).1.get("current_loop").is_none());
 
     let run = fluxfit(&["identify", LOG, "--model", "steady", "--bandwidth", "1 kHz"]);
-    assert!(
-        run.status == 0 && run.err.contains("[phase-margin]: a bandwidth of 1000 Hz leaves a phase margin of 36 degrees"),
-        "{}",
-        run.err
-    );
+    assert!(run.status == 0 && run.err.contains("[phase-margin]: 1000 Hz leaves a phase margin of 36 degrees"), "{}", run.err);
     for expected in ["Current controllers for 1000 Hz: phase margin 36 degrees", "K_p d", "K_p q", "K_i d, q", "V/(A s)", "L_q identified"]
     {
         assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);

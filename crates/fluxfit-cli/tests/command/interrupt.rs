@@ -144,6 +144,37 @@ fn what_has_no_best_so_far_says_what_was_interrupted() {
     assert!(err.contains("interrupted: while "), "{err}");
 }
 
+/// People get what the operating points say, marked as rough: 1 % of the truth, where the whole answer has a tenth of that.
+#[test]
+fn people_get_a_rough_answer_where_there_is_one() {
+    let mut running = Running::start(&["identify", LOG]);
+    running.wait_for("trying the timings of the voltages");
+    running.send("INT");
+    let (status, out, err) = running.end();
+    assert_eq!(status, Some(130), "{err}");
+    assert!(out.starts_with("Rough answer: ") && !out.contains("identified"), "{out}{err}");
+    for (symbol, truth) in [("R_s", 0.958), ("L_d", 5.25), ("L_q", 12.0), ("psi_f", 0.1827)] {
+        let line = out.lines().find(|line| line.trim_start().starts_with(symbol)).unwrap();
+        let value: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.01, "{line}");
+    }
+}
+
+#[test]
+fn people_are_told_that_there_is_no_answer_yet() {
+    // The first 0.09 s: the speed rises throughout, and there is no operating point.
+    let text = fs::read_to_string(root().join(LOG)).unwrap();
+    let ramp: Vec<&str> = text.lines().take(900).collect();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    fs::write(file.path(), ramp.join("\n")).unwrap();
+    let mut running = Running::start(&["identify", file.path().to_str().unwrap(), "--model", "output-error"]);
+    running.wait_for("trying the timings of the voltages");
+    running.send("INT");
+    let (status, out, err) = running.end();
+    assert_eq!(status, Some(130), "{err}");
+    assert!(out.starts_with("There is no answer yet"), "{out}{err}");
+}
+
 /// The paper's rig for a hundred seconds.
 fn long_scenario(directory: &Path) -> String {
     let template = super::fluxfit(&["simulate", "--template"]).out;

@@ -195,7 +195,7 @@ fn real_log_of_a_skateboard_names_its_lag_and_sells_no_inductance() {
             text += &format!("{name} = {{ column = \"{column}\", sign = {sign}{unit} }}\n");
         }
         fs::write(mapping.path(), text).unwrap();
-        let (_, document) = json(&["identify", &log, "--mapping", mapping.path().to_str().unwrap()]);
+        let (_, document) = json(&["identify", &log, "--mapping", mapping.path().to_str().unwrap(), "--model", "steady"]);
         assert_ne!(document["parameters"]["lq"]["verdict"], "identified", "{flips:b}");
         assert!((40e-6..50e-6).contains(&lag(&document).abs()), "{flips:b}: {}", lag(&document));
         if flips == 0 {

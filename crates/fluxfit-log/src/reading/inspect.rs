@@ -42,6 +42,9 @@ pub struct InspectedColumn {
     pub read_as: Option<(&'static str, &'static str)>,
     /// Its smallest and largest number, as the file has them; none if it has no numbers, or if the log came through a pipe.
     pub range: Option<[f64; 2]>,
+    /// The smallest and largest number of each of some hundred equal stretches of rows, in order, as the file has them; empty if it has no
+    /// numbers, or if the log came through a pipe.
+    pub course: Vec<[f64; 2]>,
     /// The file states that it is the time of the columns of its group.
     pub is_time: bool,
     /// Its cells are dates and times, or count from 1970.
@@ -64,14 +67,15 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         let unit = taken.or_else(|| survey.resembling.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit))?;
         Some((unit.name(), unit.prose()))
     };
-    let ranges = ranges(path, resolved.dbc.as_deref());
+    let courses = courses(path, resolved.dbc.as_deref());
     let inspected = table.heads().iter().enumerate().map(|(index, head)| InspectedColumn {
         header: head.name.clone(),
         unit: head.unit.clone(),
         channel: survey.taken.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
         read_as: read_as(index),
         resembles: survey.resembling.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
-        range: ranges.get(index).copied().flatten(),
+        range: courses.get(index).and_then(Course::range),
+        course: courses.get(index).map(|course| course.spans.clone()).unwrap_or_default(),
         is_time: head.is_time,
         is_instant: head.instants.is_some(),
     });
@@ -83,8 +87,48 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
     })
 }
 
-/// The smallest and largest number of every column, from a second reading.
-fn ranges(path: &Path, dbc: Option<&str>) -> Vec<Option<[f64; 2]>> {
+/// Most stretches of a course; where there are more, each two become one.
+const MOST_SPANS: usize = 280;
+
+/// The course of a column whose length is not known before.
+#[derive(Debug, Clone, Default)]
+struct Course {
+    /// Smallest and largest number of each stretch.
+    spans: Vec<[f64; 2]>,
+    /// Rows of a stretch, and of the last one so far.
+    rows: (usize, usize),
+}
+
+impl Course {
+    fn push(&mut self, value: f64) {
+        let (whole, last) = self.rows;
+        if self.spans.is_empty() || last == whole {
+            if self.spans.len() == MOST_SPANS {
+                self.spans = self.spans.chunks(2).filter_map(range).collect();
+                self.rows = (2 * whole, 0);
+            } else {
+                self.rows = (whole.max(1), 0);
+            }
+            self.spans.push([value; 2]);
+        }
+        if let Some([low, high]) = self.spans.last_mut() {
+            (*low, *high) = (low.min(value), high.max(value));
+        }
+        self.rows.1 += 1;
+    }
+
+    fn range(&self) -> Option<[f64; 2]> {
+        range(&self.spans)
+    }
+}
+
+/// The range of several; none of none.
+fn range(spans: &[[f64; 2]]) -> Option<[f64; 2]> {
+    spans.iter().copied().reduce(|[low, high], [least, most]| [low.min(least), high.max(most)])
+}
+
+/// The course of every column, from a second reading.
+fn courses(path: &Path, dbc: Option<&str>) -> Vec<Course> {
     let Ok(mut table) = input::open(path).and_then(|bytes| match bytes {
         Bytes::File(..) => Table::open(bytes, dbc),
         // A pipe can be read only once.
@@ -93,7 +137,7 @@ fn ranges(path: &Path, dbc: Option<&str>) -> Vec<Option<[f64; 2]>> {
         return Vec::new();
     };
     let heads = table.heads().to_vec();
-    let mut ranges = vec![None; heads.len()];
+    let mut courses = vec![Course::default(); heads.len()];
     let mut groups: Vec<usize> = heads.iter().map(|head| head.group).collect();
     groups.sort_unstable();
     groups.dedup();
@@ -112,13 +156,26 @@ fn ranges(path: &Path, dbc: Option<&str>) -> Vec<Option<[f64; 2]>> {
         // Up to the first error, if there is one.
         let _ = table.read(&wanted, &mut |block| {
             for (index, values) in of_group.iter().zip(&block.values) {
-                for value in values.iter().filter(|value| value.is_finite()) {
-                    let [low, high] = ranges[*index].get_or_insert([*value; 2]);
-                    (*low, *high) = (low.min(*value), high.max(*value));
-                }
+                values.iter().filter(|value| value.is_finite()).for_each(|value| courses[*index].push(*value));
             }
             Ok(())
         });
     }
-    ranges
+    courses
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Course, MOST_SPANS};
+
+    #[test]
+    fn a_course_has_every_extreme_in_its_place_however_long_it_becomes() {
+        let mut course = Course::default();
+        (0..10_000).for_each(|row| course.push(if row == 7_000 { 99.0 } else { f64::from(row % 2) }));
+        assert_eq!(course.range(), Some([0.0, 99.0]));
+        assert!(course.spans.len() <= MOST_SPANS && course.spans.len() >= MOST_SPANS / 2, "{}", course.spans.len());
+        let place = course.spans.iter().position(|[_, high]| *high == 99.0).unwrap() as f64 / course.spans.len() as f64;
+        assert!((place - 0.7).abs() < 0.02, "{place}");
+        assert_eq!(Course::default().range(), None);
+    }
 }

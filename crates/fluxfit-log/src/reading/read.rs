@@ -23,7 +23,7 @@ use fluxfit_files::{
     FileError,
     input::{self, Bytes},
 };
-use fluxfit_units::significant;
+use fluxfit_units::{Unit, significant};
 use std::{
     io::{Cursor, Read},
     path::Path,
@@ -38,6 +38,27 @@ pub struct ReadLog {
     pub layout: Option<&'static Layout>,
     /// What was inferred, repaired or looks wrong.
     pub notes: Vec<Note>,
+    /// The columns of the file that were read.
+    pub columns: Vec<ReadColumn>,
+}
+
+/// A column of a file, as it was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadColumn {
+    /// The channel that it was read as.
+    pub channel: &'static str,
+    /// Its name in the file.
+    pub header: String,
+    /// The unit in which it was read.
+    pub unit: Unit,
+    /// The factor besides the unit: scale and sign.
+    pub scale: f64,
+}
+
+impl ReadColumn {
+    fn of(column: &ChosenColumn) -> Self {
+        Self { channel: column.channel.name(), header: column.header.clone(), unit: column.unit, scale: column.scale }
+    }
 }
 
 /// Reads a log; the path `-` is standard input.
@@ -127,7 +148,8 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let log = log.with_source(source);
     // Columns that were found without a mapping and without another layout have the canonical names.
     let layout = layout.or_else(|| (!options.has_headers()).then(Layout::canonical));
-    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes })
+    let columns = chosen.iter().map(ReadColumn::of).collect();
+    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes, columns })
 }
 
 /// The layout with these names, if it is one of the table and that of a log.
@@ -178,7 +200,6 @@ fn gaps(log: &Log) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fluxfit_units::Unit;
 
     #[test]
     fn contradicting_options_are_refused() {

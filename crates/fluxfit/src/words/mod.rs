@@ -1,6 +1,7 @@
 //! The library's facts in English, once, for every face: [`Display`](std::fmt::Display) of reasons, remedies, warnings, and of what
 //! a validation found. How a face does a remedy (an option, an argument) is the face's own sentence.
 
+mod column_check;
 mod digits;
 mod model;
 mod nameplate;
@@ -8,7 +9,9 @@ mod names;
 mod reason;
 mod remedy;
 mod spikes;
+mod summary;
 mod temperature;
 mod unseen;
 mod validation;
 mod warning;
+mod warning_line;

@@ -1,6 +1,6 @@
 //! Why a parameter is not identified.
 
-use super::digits::one_digit;
+use super::digits::{one_digit, percent};
 use crate::{
     identification::{fit::part::Part, judge::reason::Reason},
     motor::Parameter,
@@ -46,10 +46,13 @@ impl Display for Reason {
     }
 }
 
-/// The largest part of an interval, and how wide it is.
+/// The largest part of an interval, and how wide it is; in the alternate form (`{:#}`) without that number, for several parameters at once.
 fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
-    let leaves =
-        if half_width < 10.0 { format!("leaves ±{:.2} %", 100.0 * half_width) } else { "leaves more than the value itself".to_owned() };
+    let leaves = match half_width {
+        _ if f.alternate() => "leaves wide intervals".to_owned(),
+        half_width if half_width < 10.0 => format!("leaves ±{}", percent(half_width)),
+        _ => "leaves more than the value itself".to_owned(),
+    };
     match part {
         Part::Noise => write!(f, "noise {leaves}"),
         Part::Accuracy => {

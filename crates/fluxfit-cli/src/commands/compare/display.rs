@@ -1,6 +1,6 @@
 //! A study: the paper's Table 2, the ranking by cost above the minimum, and its Fig. 4 in characters.
 
-use crate::terminal::{self, DIM, HEADING, plot, table};
+use crate::terminal::{self, DIM, HEADING, plot, table, wrapped};
 use fluxfit::study::comparison::Comparison;
 use fluxfit::{
     motor::{Motor, Parameter},
@@ -15,28 +15,29 @@ pub(crate) fn show(name: &str, facts: &Comparison, methods: &[(MethodStudy, f64)
     let (minimum, index) = (fitness.minimum_label(), fitness.minimum_subscript());
     let rows: Vec<String> = facts.problem.rows.iter().map(ToString::to_string).collect();
     let reading = fitness.voltage_timing().map(|reading| format!(", voltages read as {reading}")).unwrap_or_default();
-    let mut text = format!(
-        "{HEADING}{name}{HEADING:#}\n{} on {} rows{reading}; {} runs of each method, population {}, {} iterations, seed {}\nsearch box {}\n",
+    let asked = format!(
+        "{} on {} rows{reading}; {} runs of each method, population {}, {} iterations, seed {}",
         fitness.label(),
         rows.join(" + "),
         facts.runs,
         facts.settings.population,
         facts.settings.iterations,
         facts.settings.seed,
-        search_box(facts),
     );
+    let mut text =
+        format!("{HEADING}{name}{HEADING:#}\n{}{}", wrapped("", &asked), wrapped("", &format!("search box {}", search_box(facts))));
     if methods.is_empty() {
         return terminal::print(&text);
     }
     text += &format!("\n{HEADING}Mean of the runs' estimates{HEADING:#} (Table 2 of the paper)\n{}", table_2(facts, methods));
-    text += &format!(
-        "\n{HEADING}Cost above the {minimum}{HEADING:#}, F - F_{index}, {}, median over the runs; F_{index} = {}\n{}",
+    let cost = format!(
+        "{HEADING}Cost above the {minimum}{HEADING:#}, F - F_{index}, {}, median over the runs; F_{index} = {}",
         fitness.unit(),
         small(fitness.minimum().1),
-        ranking(methods)
     );
+    text += &format!("\n{}{}", wrapped("", &cost), ranking(methods));
     text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_{index} (Fig. 4 of the paper)\n{}", plot::convergence(methods));
-    text += &format!("\n{DIM}{}{DIM:#}\n", remark(fitness));
+    text += &format!("\n{DIM}{}{DIM:#}\n", wrapped("", remark(fitness)).trim_end());
     terminal::print(&text)
 }
 
@@ -127,9 +128,9 @@ fn ranking(methods: &[(MethodStudy, f64)]) -> String {
         row.extend([small(study.worst()), study.evaluations_per_run.to_string(), significant(1e3 * seconds, 2)]);
         row
     });
-    let titles = milestones.map(|iteration| format!("iteration {iteration}"));
+    let titles = milestones.map(|iteration| format!("iteration\n{iteration}"));
     let mut heading = vec![""];
     heading.extend(titles.iter().map(String::as_str));
-    heading.extend(["worst run", "evaluations", "ms/run"]);
+    heading.extend(["worst\nrun", "evalua-\ntions", "ms per\nrun"]);
     table(&heading, 1, rows)
 }

@@ -1,6 +1,6 @@
 //! The current controllers' gains, each with its interval.
 
-use crate::terminal::{self, DIM, HEADING, table};
+use crate::terminal::{self, DIM, HEADING, table, wrapped};
 use fluxfit::{
     current_loop::{CurrentLoop, DELAY_PERIODS, Gain},
     evidence::{Provenance, Resolved},
@@ -11,7 +11,7 @@ use fluxfit_units::significant;
 pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {
     let Resolved { value: rate, provenance } = found.control_rate;
     let heading = format!(
-        "\n{HEADING}Current controllers{HEADING:#} for {} Hz: phase margin {:.0} degrees with {DELAY_PERIODS} periods of delay at {} Hz{}\n",
+        "{HEADING}Current controllers{HEADING:#} for {} Hz: phase margin {:.0} degrees with {DELAY_PERIODS} periods of delay at {} Hz{}",
         significant(found.bandwidth, 4),
         found.phase_margin(),
         significant(rate, 5),
@@ -23,8 +23,9 @@ pub(crate) fn show(found: &CurrentLoop) -> std::io::Result<()> {
         let verdict = gain.map_or("not identifiable".to_owned(), |gain| gain.verdict.key().replace('-', " "));
         [vec![name.to_owned()], cells.to_vec(), vec![format!("{parameter} {verdict}")]].concat()
     });
-    let note = format!("{DIM}K_p = 2 pi bandwidth L, K_i = 2 pi bandwidth R_s: u = K_p e + K_i ∫ e dt, couplings fed forward{DIM:#}\n");
-    terminal::print(&format!("{heading}{}{note}", table(&["", "value", "", "95 %", "interval", "from"], 1, rows)))
+    let formula = "K_p = 2 pi bandwidth L, K_i = 2 pi bandwidth R_s: u = K_p e + K_i ∫ e dt, couplings fed forward";
+    let note = format!("{DIM}{}{DIM:#}\n", wrapped("", formula).trim_end());
+    terminal::print(&format!("\n{}{}{note}", wrapped("", &heading), table(&["", "value", "", "95 %", "interval", "from"], 1, rows)))
 }
 
 /// Value, unit, relative half-width and interval.

@@ -1,59 +1,88 @@
-//! An identification, to be read at a glance: what was read, the four parameters with their verdicts, why and what to do, and
-//! what the swarm made of it.
+//! An identification, to be read at a glance: the answer in a sentence, what to know of it, the four parameters with their verdicts,
+//! and why. What it rests on is among the [details].
 
-use crate::terminal::{self, BAD, DIM, GOOD, HEADING, WARNING, frequency, options, table};
+use super::details;
+use crate::terminal::{self, BAD, DIM, GOOD, HEADING, WARNING, frequency, options, table, wrapped};
 use fluxfit::{
-    Answer, HeldOut, Judgement, Log, Parameter, Reason, Verdict,
-    evidence::{FaultOutcome, Flux, Identification, ModelChoice, OutputFit, Provenance, SaturationFinding, SteadyFit},
-    optimizer::Method,
+    Answer, HeldOut, Judgement, Log, NextStep, Reason, Remedy, Request, Summary, Verdict,
+    evidence::{Flux, Identification, OutputFit, Provenance, SaturationFinding},
+    identify,
 };
-use fluxfit_units::{Scale, format_unknown, significant, small};
+use fluxfit_units::{Scale, format_unknown, significant};
 
-/// Shows an identification; warnings go to standard error.
+/// Shows an identification, the answer in a sentence first; warnings and notes go to standard error.
 pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     let found = &answer.identification;
-    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n\n", read(&answer.log, found));
-    text += &parameters(found);
+    let read = terminal::wrapped("", &format!("{name}: {}", read(&answer.log, found)));
+    terminal::print(&format!("{}{DIM}{}{DIM:#}\n", status(found), read.trim_end()))?;
+    found.warnings.iter().for_each(terminal::warn);
+    terminal::point_to_explanations(&found.warnings);
+    let mut text = format!("\n{}", parameters(found));
     text += &explanations(found);
     text += &found.temperature.map(|temperature| format!("\n{}", wrapped("", &sentence(&temperature.to_string())))).unwrap_or_default();
-    text += &unseen(found);
-    text += &format!("\n{}\n", model(found));
-    if let Some(fit) = &found.steady {
-        let what = if found.output.is_some() {
-            "Operating points (means), as a check: the residual is that of their own fit"
-        } else {
-            "Operating points (means)"
-        };
-        text += &format!("\n{DIM}{what}{DIM:#}\n{}", operating_points(fit));
-    }
     if let Some(saturation) = &found.saturation {
         text += &fluxes(saturation);
     }
-    let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
-    if let Some(method) = found.method.as_ref().filter(|_| answered) {
-        text += &format!("\n{}\n", search(found, method));
+    text += &format!("\n{}", model(found));
+    text += &unseen(found);
+    if terminal::is_verbose() {
+        text += &details::text(found);
     }
     terminal::print(&text)?;
-    found.warnings.iter().for_each(terminal::warn);
     answer.current_loop.as_ref().map(super::current_loop::show).transpose()?;
     match &answer.held_out {
         Some(HeldOut { log, validation: Some(validation), .. }) => {
             terminal::print("\n")?;
-            crate::commands::validate::display::show("what was held out", "This answer", log, validation)
+            crate::commands::validate::display::show("what was held out", "This answer", log, validation)?;
         }
         Some(HeldOut { validation: None, .. }) => {
             terminal::note("what was held out is not predicted: that takes all four parameters");
-            Ok(())
         }
-        None => {
-            if answer.log.segments().len() > 1 {
-                terminal::note(
-                    "to test this answer on a part of the log that it was not found from: --hold-out; on another log: fluxfit validate",
-                );
-            }
-            Ok(())
+        None if answer.log.segments().len() > 1 => {
+            terminal::note(
+                "to test this answer on a part of the log that it was not found from: --hold-out; on another log: fluxfit validate",
+            );
         }
+        None => {}
     }
+    terminal::release_notes();
+    Ok(())
+}
+
+/// Shows what the operating points alone say, where a signal has ended the identification before its answer: values, but no verdicts.
+pub(crate) fn show_roughly(name: &str, log: &Log, request: &Request) {
+    let text = match identify(log, request) {
+        Ok(answer) => {
+            let found = &answer.identification;
+            let what = "Rough answer: that of the operating points alone, before anything was checked. Do not use it for a drive.";
+            let rows = found.parameters.iter().map(|judgement| {
+                let cells = value_cells(judgement).unwrap_or(["-", "", "", ""].map(str::to_owned));
+                [vec![judgement.parameter.symbol().to_owned()], cells[..3].to_vec()].concat()
+            });
+            format!(
+                "{WARNING}{}{WARNING:#}\n{DIM}{name}{DIM:#}\n\n{}",
+                wrapped("", what).trim_end(),
+                table(&["", "value", "", "95 %"], 1, rows)
+            )
+        }
+        Err(error) => wrapped("", &format!("There is no answer yet, not even a rough one: {error}")),
+    };
+    // Nobody who reads it is no reason to stay.
+    let _ = terminal::print(&text);
+    terminal::release_notes();
+}
+
+/// How many parameters are identified, and the one thing to do next.
+fn status(found: &Identification) -> String {
+    let style = if found.is_complete() {
+        GOOD
+    } else if found.parameters.iter().any(|judgement| judgement.value().is_some()) {
+        WARNING
+    } else {
+        BAD
+    };
+    let style = style.bold();
+    format!("{style}{}{style:#}\n", wrapped("", &Summary::of(&found.parameters).to_string()).trim_end())
 }
 
 /// What was read, in one line.
@@ -62,37 +91,39 @@ fn read(log: &Log, found: &Identification) -> String {
     let period = periods.first().copied().unwrap_or(f64::NAN);
     let rate =
         if periods.iter().any(|other| (other / period - 1.0).abs() > 0.01) { "mixed rates".to_owned() } else { frequency(1.0 / period) };
+    let segments = log.segments().len();
+    let parts = if segments > 1 { format!(" in {segments} segments") } else { String::new() };
     let points = count(found.operating_points().len(), "operating point");
-    let used = match &found.output {
-        Some(fit) => format!("{} rows simulated, {points}", fit.residuals.len() / 2),
-        None => format!("{points} with {} rows used", found.operating_points().iter().map(|point| point.rows.len()).sum::<usize>()),
-    };
-    format!("{} rows at {rate}, {} s in {}; {used}", log.rows(), significant(log.duration(), 3), count(log.segments().len(), "segment"),)
+    format!("{} rows at {rate}, {} s{parts}, {points}", log.rows(), significant(log.duration(), 3))
 }
 
 fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
+/// The four parameters. What their intervals mostly come from, where there is room for it.
 fn parameters(found: &Identification) -> String {
     let rows = found.parameters.iter().map(|judgement| {
-        let (parameter, word) = (judgement.parameter, verdict(judgement.verdict));
-        let symbol = parameter.symbol().to_owned();
-        let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) else {
-            return vec![symbol, "-".to_owned(), String::new(), String::new(), String::new(), String::new(), word];
+        let (symbol, word) = (judgement.parameter.symbol().to_owned(), verdict(judgement.verdict));
+        let Some([value, unit, half_width, interval]) = value_cells(judgement) else {
+            return [symbol, "-".to_owned(), String::new(), String::new(), String::new(), word, String::new()];
         };
-        let (scale, error) = (Scale::for_value(parameter, value), judgement.uncertainty.standard_error());
-        vec![
+        [
             symbol,
-            scale.format(value, error),
-            scale.unit(parameter.unit()),
-            format!("±{} %", significant(100.0 * judgement.uncertainty.half_width / value.abs(), 2)),
-            format!("{} .. {}", scale.format(low, error), scale.format(high, error)),
-            if judgement.uncertainty.standard_error() > 0.0 { judgement.uncertainty.largest_part().label() } else { "given" }.to_owned(),
+            value,
+            unit,
+            half_width,
+            interval,
             word,
+            if judgement.uncertainty.standard_error() > 0.0 { judgement.uncertainty.largest_part().label() } else { "given" }.to_owned(),
         ]
     });
-    let plain = table(&["", "value", "", "95 %", "interval", "mostly from", "verdict"], 1, rows);
+    let rows: Vec<[String; 7]> = rows.collect();
+    let heading = ["", "value", "", "95 %", "interval", "verdict", "mostly from"];
+    let of_columns = |count: usize| table(&heading[..count], 1, rows.iter().map(|row| row[..count].to_vec()));
+    let whole = of_columns(heading.len());
+    let fits = whole.lines().all(|line| terminal::columns(line) <= terminal::width());
+    let plain = if fits { whole } else { of_columns(heading.len() - 1) };
     // Colour after layout: escape codes have no width.
     plain
         .replace(verdict(Verdict::NotIdentifiable).as_str(), &format!("{BAD}not identifiable{BAD:#}"))
@@ -100,29 +131,66 @@ fn parameters(found: &Identification) -> String {
         .replace(" identified", &format!(" {GOOD}identified{GOOD:#}"))
 }
 
+/// Value, unit, relative half-width and interval of a parameter; none where it has no value.
+fn value_cells(judgement: &Judgement) -> Option<[String; 4]> {
+    let (value, [low, high]) = judgement.value().zip(judgement.interval())?;
+    let (scale, error) = (Scale::for_value(judgement.parameter, value), judgement.uncertainty.standard_error());
+    Some([
+        scale.format(value, error),
+        scale.unit(judgement.parameter.unit()),
+        format!("±{} %", significant(100.0 * judgement.uncertainty.half_width / value.abs(), 2)),
+        format!("{} .. {}", scale.format(low, error), scale.format(high, error)),
+    ])
+}
+
 fn verdict(verdict: Verdict) -> String {
     verdict.key().replace('-', " ")
 }
 
-/// Reasons and remedies; parameters that share both share the lines.
+/// Reasons, those that parameters share only once; and the one thing to do that helps most.
 fn explanations(found: &Identification) -> String {
-    let mut shared: Vec<(Vec<&str>, &Judgement)> = Vec::new();
-    for judgement in found.parameters.iter().filter(|judgement| judgement.reason.is_some()) {
-        match shared.iter_mut().find(|(_, other)| other.reason == judgement.reason && other.remedy == judgement.remedy) {
+    let mut shared: Vec<(Vec<&str>, &Reason)> = Vec::new();
+    for judgement in &found.parameters {
+        let Some(reason) = &judgement.reason else { continue };
+        match shared.iter_mut().find(|(_, other)| is_same(other, reason)) {
             Some((symbols, _)) => symbols.push(judgement.parameter.symbol()),
-            None => shared.push((vec![judgement.parameter.symbol()], judgement)),
+            None => shared.push((vec![judgement.parameter.symbol()], reason)),
         }
     }
     let mut text = String::new();
-    for (symbols, judgement) in shared {
-        let (symbols, reason) = (symbols.join(", "), judgement.reason.as_ref().map(Reason::to_string).unwrap_or_default());
+    for (symbols, reason) in &shared {
+        let reason = if symbols.len() > 1 { format!("{reason:#}") } else { reason.to_string() };
+        let symbols = symbols.join(", ");
         let lines = wrapped("", &format!("{symbols}: {reason}."));
-        text += &format!("\n{HEADING}{symbols}{HEADING:#}{}", lines.strip_prefix(&symbols).unwrap_or(&lines));
-        if let Some(remedy) = &judgement.remedy {
-            text += &wrapped("  ", &format!("To do: {}.", options::with_option(&remedy.to_string(), options::of_remedy(remedy))));
+        text += &format!("{HEADING}{symbols}{HEADING:#}{}", lines.strip_prefix(&symbols).unwrap_or(&lines));
+    }
+    let next = Summary::of(&found.parameters).next;
+    if let Some(NextStep { remedy, .. }) = &next {
+        text += &to_do("To do", remedy);
+    }
+    if terminal::is_verbose() {
+        let mut told: Vec<&Remedy> = next.iter().map(|next| &next.remedy).collect();
+        for remedy in found.parameters.iter().filter_map(|judgement| judgement.remedy.as_ref()) {
+            if !told.contains(&remedy) {
+                told.push(remedy);
+                text += &to_do("Or", remedy);
+            }
         }
     }
-    text
+    if text.is_empty() { text } else { format!("\n{text}") }
+}
+
+/// Whether two reasons are told as one: intervals that are wide by the same cause.
+fn is_same(one: &Reason, other: &Reason) -> bool {
+    match (one, other) {
+        (Reason::Wide { part: one, .. }, Reason::Wide { part: other, .. }) => one == other,
+        _ => one == other,
+    }
+}
+
+fn to_do(what: &str, remedy: &Remedy) -> String {
+    let lines = wrapped("", &format!("{what}: {}.", options::with_option(&remedy.to_string(), options::of_remedy(remedy))));
+    format!("{HEADING}{what}{HEADING:#}{}", lines.strip_prefix(what).unwrap_or(&lines))
 }
 
 /// What no log shows: what the intervals count of it as stated, and what they do not.
@@ -132,7 +200,11 @@ fn unseen(found: &Identification) -> String {
     };
     let counted = line("In the intervals, as stated", found.counted.iter().map(ToString::to_string).collect());
     let unseen = line("Not in the intervals, because no log shows it", found.unseen.iter().map(ToString::to_string).collect());
-    if counted.is_empty() && unseen.is_empty() { String::new() } else { format!("\n{counted}{unseen}") }
+    if counted.is_empty() && unseen.is_empty() {
+        String::new()
+    } else {
+        format!("\n{DIM}{}{DIM:#}\n", format!("{counted}{unseen}").trim_end())
+    }
 }
 
 /// Half a sentence as a whole one.
@@ -142,46 +214,25 @@ fn sentence(text: &str) -> String {
     format!("{first}{}.", letters.as_str())
 }
 
-/// Columns that a line of words may have.
-const WIDTH: usize = 100;
-
-/// Words in lines. The first line begins with `indent`, the others are two letters further in.
-fn wrapped(indent: &str, text: &str) -> String {
-    let mut lines = String::new();
-    let mut line = indent.to_owned();
-    for word in text.split(' ') {
-        let starts = line.trim().is_empty();
-        if !starts && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines += &format!("{line}\n");
-            line = format!("{indent}  {word}");
-        } else {
-            line += &format!("{}{word}", if starts { "" } else { " " });
-        }
-    }
-    format!("{lines}{line}\n")
-}
-
 /// The model that answered, and what it found beside the motor.
 fn model(found: &Identification) -> String {
-    let ModelChoice { model, reason, .. } = &found.model;
-    let text = format!("{HEADING}Model{HEADING:#}: {}\n  {DIM}{reason}{DIM:#}", model.label());
-    let Some(fit) = &found.output else { return text };
+    let label = found.model.model.label();
+    let of_model = |text: &str| format!("{HEADING}Model{HEADING:#}{}", wrapped("", &format!("Model: {text}")).trim_start_matches("Model"));
+    let Some(fit) = &found.output else {
+        let rows = found.operating_points().iter().map(|point| point.rows.len()).sum::<usize>();
+        return of_model(&format!("{label}, {rows} rows."));
+    };
     let rms = fit.residual_rms();
     let how = if fit.voltage_timing.provenance == Provenance::Stated { "as stated" } else { "found" };
-    let mut text = format!(
-        "{text}\nCurrents of {} rows simulated; they miss the measured ones by {} (d) and {} (q) rms.\nVoltages read as {} ({how}).",
+    let mut text = of_model(&format!(
+        "{label}: the currents of {} rows are simulated and miss the measured ones by {} (d) and {} (q) rms; voltages read as {} ({how}).",
         fit.residuals.len() / 2,
         amperes(rms.d),
         amperes(rms.q),
         fit.voltage_timing.value.label(),
-    );
+    ));
     if !fit.fault_estimates.is_empty() {
-        text += &format!("\n\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit).trim_end());
-    }
-    for (outcome, lines) in [("Not taken", not_taken(fit, false)), ("Not tried without theta_e", not_taken(fit, true))] {
-        if !lines.is_empty() {
-            text += &format!("\n{DIM}{outcome}: {}.{DIM:#}", lines.join(", "));
-        }
+        text += &format!("\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit));
     }
     text
 }
@@ -214,34 +265,6 @@ fn beside(fit: &OutputFit) -> String {
         .collect()
 }
 
-/// Faults that the answer does without, in few words: for want of the electrical angle, or for any other reason.
-fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
-    let mut words = Vec::new();
-    for tried in &fit.fault_trials {
-        let left_out = if needs_angle {
-            tried.outcome == FaultOutcome::NeedsAngle
-        } else {
-            !matches!(tried.outcome, FaultOutcome::NeedsAngle | FaultOutcome::Taken | FaultOutcome::Covered)
-        };
-        let word = tried.fault.family();
-        if left_out && !words.contains(&word) {
-            words.push(word);
-        }
-    }
-    words
-}
-
-fn operating_points(found: &SteadyFit) -> String {
-    let rows = found.operating_points.iter().zip(&found.estimate.residuals).map(|(point, residual)| {
-        let (u, i) = (point.voltage(), point.current());
-        let mut row = vec![times(point.time), point.rows.len().to_string()];
-        row.extend([i.d, i.q, point.omega_e(), u.d, u.q].map(|value| format!("{value:.3}")));
-        row.extend(residual.map(millivolts));
-        row
-    });
-    table(&["t s", "rows", "i_d A", "i_q A", "omega_e rad/s", "u_d V", "u_q V", "residual d mV", "q mV"], 0, rows)
-}
-
 /// Flux per operating point, where inductances depend on the current.
 fn fluxes(found: &SaturationFinding) -> String {
     let given = if found.rs_uncertainty > 0.0 { format!(" ± {}", significant(2.0 * found.rs_uncertainty, 2)) } else { String::new() };
@@ -272,57 +295,6 @@ fn fluxes(found: &SaturationFinding) -> String {
     format!(
         "\n{DIM}Flux from voltage, with R_s = {}{given} ohm{DIM:#}\n{}",
         significant(found.rs, 4),
-        table(&["i_d A", "i_q A", "psi_d mWb", "±", "psi_q mWb", "±", "apparent L_d mH", "L_q mH"], 0, rows)
+        table(&["i_d\nA", "i_q\nA", "psi_d\nmWb", "\n±", "psi_q\nmWb", "\n±", "apparent\nL_d mH", "\nL_q mH"], 0, rows)
     )
-}
-
-/// Start and end, with digits that tell the window's length to a hundredth of it.
-fn times((start, end): (f64, f64)) -> String {
-    let decimals = (2 - (end - start).log10().floor() as i32).clamp(0, 9) as usize;
-    format!("{start:.decimals$} .. {end:.decimals$}")
-}
-
-/// Without the sign of a zero.
-fn millivolts(volts: f64) -> String {
-    let text = format!("{:.1}", 1e3 * volts);
-    if text == "-0.0" { "0.0".to_owned() } else { text }
-}
-
-/// What the swarm alone reached.
-fn search(found: &Identification, method: &Method) -> String {
-    let Some(search) = &found.search else { return String::new() };
-    let known = |parameter: &Parameter| found.parameter(*parameter).value().is_some();
-    let values: Vec<String> = Parameter::ALL
-        .into_iter()
-        .filter(known)
-        .map(|parameter| {
-            let value = search.motor.get(parameter);
-            let scale = Scale::for_value(parameter, value);
-            format!("{} {} {}", parameter.symbol(), scale.format(value, value.abs() * 1e-4), scale.unit(parameter.unit()))
-        })
-        .collect();
-    format!(
-        "{HEADING}{}{HEADING:#} alone, after {} evaluations, is {}{} above the {} minimum:\n  {}",
-        method.label(),
-        search.report.evaluations,
-        small(search.cost_above_optimum),
-        if found.output.is_some() { " A²" } else { "" },
-        if found.output.is_some() { "least-squares" } else { "exact least-squares" },
-        values.join(", "),
-    )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{WIDTH, wrapped};
-
-    #[test]
-    fn words_are_wrapped_and_none_is_lost() {
-        assert_eq!(wrapped("  ", "To do: nothing."), "  To do: nothing.\n");
-        let text = vec!["letters"; 40].join(" ");
-        let lines = wrapped("", &text);
-        assert!(lines.lines().count() == 4 && lines.lines().all(|line| line.len() <= WIDTH), "{lines}");
-        assert_eq!(lines.split_whitespace().count(), 40);
-        assert!(lines.lines().skip(1).all(|line| line.starts_with("  letters")));
-    }
 }

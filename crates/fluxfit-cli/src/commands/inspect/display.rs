@@ -1,6 +1,6 @@
 //! What was understood of a file, to be checked at a glance: columns, units, ranges, rows, gaps, and the courses of the currents.
 
-use crate::terminal::{self, BAD, DIM, HEADING, frequency, plot, table};
+use crate::terminal::{self, BAD, DIM, GOOD, HEADING, frequency, plot, table, told::Told};
 use fluxfit::log::Log;
 use fluxfit_log::Inspection;
 use fluxfit_units::significant;
@@ -11,15 +11,25 @@ const LISTED: usize = 60;
 /// Most gaps that are listed.
 const GAPS: usize = 3;
 
-/// Shows an inspection; notes go to standard error.
-pub(crate) fn show(name: &str, inspection: &Inspection) -> std::io::Result<()> {
+/// Shows an inspection, what is wrong with it first; notes go to standard error.
+pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told]) -> std::io::Result<()> {
+    let status = match (&inspection.log, findings.len()) {
+        (Err(_), _) => format!("{BAD}Not a log yet: the reason is below.{BAD:#}\n"),
+        (Ok(_), 0) => format!("{GOOD}Readable, and the columns agree with each other.{GOOD:#}\n"),
+        (Ok(_), 1) => format!("{BAD}Readable, but the columns contradict each other.{BAD:#}\n"),
+        (Ok(_), many) => format!("{BAD}Readable, but the columns contradict each other in {many} ways.{BAD:#}\n"),
+    };
+    terminal::print(&status)?;
+    findings.iter().for_each(terminal::warn_of_columns);
     let layout = inspection.layout.map_or("a layout that is not known".to_owned(), |layout| format!("layout: {}", layout.name));
-    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}; {layout}\n\n", inspection.kind);
+    let mut text = terminal::wrapped("", &format!("{HEADING}{name}{HEADING:#}: {}; {layout}", inspection.kind)) + "\n";
     let log = inspection.log.as_ref().ok().map(|read| &read.log);
     text += &columns(inspection, log);
     if let Some(log) = log {
         text += &format!("\n{}\n", rows(log));
         text += &format!("\n{}", plot::courses(log));
+    } else {
+        text += &format!("\n{}", plot::courses_of_columns(&candidates(inspection)));
     }
     terminal::print(&text)?;
     if let Ok(read) = &inspection.log {
@@ -27,6 +37,19 @@ pub(crate) fn show(name: &str, inspection: &Inspection) -> std::io::Result<()> {
     }
     Ok(())
 }
+
+/// The columns of a file that is no log yet that are, or may be, channels of a motor: as they are in the file, over its rows.
+fn candidates(inspection: &Inspection) -> Vec<(String, &[[f64; 2]])> {
+    let of_column = |channel: &str| {
+        let column = inspection.columns.iter().find(|column| column.channel.or(column.resembles) == Some(channel))?;
+        let unit = column.read_as.map(|(_, prose)| format!(", {prose}")).unwrap_or_default();
+        Some((format!("{channel} = {}{unit}", column.header), column.course.as_slice()))
+    };
+    PLOTTED.into_iter().filter_map(of_column).collect()
+}
+
+/// The channels that are plotted where they are found.
+const PLOTTED: [&str; 11] = ["ud", "uq", "id", "iq", "ua", "ub", "ia", "ib", "omega_e", "theta_e", "u_dc"];
 
 fn columns(inspection: &Inspection, log: Option<&Log>) -> String {
     let rows = inspection.columns.iter().take(LISTED).map(|column| {

@@ -1,6 +1,6 @@
 //! A validation, to be read at a glance: the verdict, what the log asks for instead, and how well each channel is predicted.
 
-use crate::terminal::{self, BAD, GOOD, HEADING, WARNING, table};
+use crate::terminal::{self, BAD, DIM, GOOD, WARNING, table};
 use anstyle::Style;
 use fluxfit::{Validation, log::Log, validation::validate::Channel, validation::validate::Difference, validation::validate::Outcome};
 use fluxfit_units::{Scale, significant, small};
@@ -8,14 +8,15 @@ use fluxfit_units::{Scale, significant, small};
 /// Shows a validation; warnings go to standard error.
 pub(crate) fn show(name: &str, motor: &str, log: &Log, found: &Validation) -> std::io::Result<()> {
     let style = style(found.outcome);
-    let mut text = format!("{HEADING}{motor} on {name}{HEADING:#}\n{}\n\n", read(log, found));
-    text += &format!("{style}{}{style:#}\n\n", found.verdict());
-    text += &parameters(found);
+    let verdict = terminal::wrapped("", &found.verdict().to_string());
+    let read = terminal::wrapped("", &format!("{motor} on {name}: {}", read(log, found)));
+    terminal::print(&format!("{style}{}{style:#}\n{DIM}{}{DIM:#}\n", verdict.trim_end(), read.trim_end()))?;
+    found.own.warnings.iter().for_each(terminal::warn);
+    terminal::point_to_explanations(&found.own.warnings);
+    let mut text = format!("\n{}", parameters(found));
     text += "\n";
     text += &channels(found);
-    terminal::print(&text)?;
-    found.own.warnings.iter().for_each(terminal::warn);
-    Ok(())
+    terminal::print(&text)
 }
 
 fn style(outcome: Outcome) -> Style {
@@ -51,7 +52,7 @@ fn parameters(found: &Validation) -> String {
         row.extend([difference.standard_errors().map_or(String::new(), |errors| format!("{errors:+.1}")), String::new()]);
         row
     });
-    table(&["", "given", "the log", "", "difference", "95 %", "in standard errors", ""], 1, rows)
+    table(&["", "given", "the log", "", "difference", "95 %", "in standard\nerrors", ""], 1, rows)
 }
 
 /// Decimals of a percentage that show two digits of its uncertainty.

@@ -6,6 +6,7 @@ pub(crate) mod judgement;
 pub(crate) mod measurement;
 mod promising;
 pub(crate) mod remedy;
+pub(crate) mod summary;
 pub(crate) mod temperature;
 pub(crate) mod trial;
 pub(crate) mod unseen;

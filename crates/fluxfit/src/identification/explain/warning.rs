@@ -139,6 +139,28 @@ pub enum Warning {
 }
 
 impl Warning {
+    /// The codes of all warnings.
+    pub const CODES: [&'static str; 18] = [
+        "no-redundancy",
+        "misfit",
+        "dead-time",
+        "no-current",
+        "short-stretches",
+        "coarse-sampling",
+        "frame-lag",
+        "open-loop",
+        "process-noise",
+        "angle",
+        "saturation",
+        "low-speed",
+        "voltage-limit",
+        "outside-box",
+        "convention",
+        "phase-margin",
+        "prior",
+        "interrupted",
+    ];
+
     /// Name in files.
     pub fn code(&self) -> &'static str {
         match self {

@@ -11,7 +11,8 @@ use crate::{
     motor::{PARAMETERS, Parameter},
 };
 
-/// Why a verdict is not better, or that the value was given. It prints as a sentence.
+/// Why a verdict is not better, or that the value was given. It prints as a sentence; as `{:#}` without the width of an interval, which
+/// parameters that share a reason need not share.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {

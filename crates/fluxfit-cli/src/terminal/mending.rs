@@ -1,0 +1,263 @@
+//! What mends a finding of the columns: the likely cause, and the option or the lines of a mapping file to paste.
+
+use super::{advice, told::Told};
+use fluxfit::{
+    ColumnFinding,
+    column_check::{Change, Turning},
+};
+use fluxfit_files::Advice;
+use fluxfit_log::ReadColumn;
+use fluxfit_units::{Dimension, Unit, significant};
+
+/// How well a ratio must agree with that of two units.
+const AGREES: f64 = 0.005;
+
+/// Most pole pairs of a motor.
+const MOST_POLE_PAIRS: u32 = 60;
+
+/// The columns with which a finding goes away.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Mending {
+    /// The likely cause, if the finding does not say it.
+    cause: Option<String>,
+    /// Options to add.
+    option: Option<String>,
+    /// Lines of a mapping file.
+    lines: Vec<String>,
+}
+
+impl Mending {
+    /// Of a finding in a log with these columns, read with this number of pole pairs.
+    fn of(finding: &ColumnFinding, read: &[ReadColumn], pole_pairs: Option<u32>) -> Self {
+        match finding {
+            ColumnFinding::SpeedUnit { ratio } => speed_unit(*ratio, read, pole_pairs.unwrap_or(1)).unwrap_or_default(),
+            ColumnFinding::AngleInDegrees => Self::option("--unit theta_e=deg".to_owned()),
+            ColumnFinding::SpeedSign { wrong } => {
+                let channel = if *wrong == Some(Turning::Angle) { "theta_e" } else { "omega_e" };
+                Self { lines: line(read, channel, channel, -1.0).into_iter().collect(), ..Self::default() }
+            }
+            ColumnFinding::TimeUnit { factor } => time_unit(*factor, read),
+            ColumnFinding::Axes { changes, .. } => changes.first().map(|changes| axes(changes, read)).unwrap_or_default(),
+            ColumnFinding::PhaseOrder => phases(read),
+            ColumnFinding::VoltageScale { ratio } => voltages(*ratio, read),
+            _ => Self::default(),
+        }
+    }
+
+    fn option(option: String) -> Self {
+        Self { option: Some(option), ..Self::default() }
+    }
+
+    /// The finding with its cause and option, as one sentence; and the lines to paste below it.
+    fn tell(&self, finding: &ColumnFinding) -> (String, String) {
+        let cause = self.cause.as_ref().map(|cause| format!(": {cause}")).unwrap_or_default();
+        let way = match (&self.option, self.lines.is_empty()) {
+            (Some(option), _) => format!("; add {option}"),
+            (None, false) => "; put into a mapping file (--mapping FILE), under [columns]:".to_owned(),
+            (None, true) => String::new(),
+        };
+        let lines = if self.option.is_some() { String::new() } else { self.lines.iter().map(|line| format!("    {line}\n")).collect() };
+        (format!("{finding}{cause}{way}"), lines)
+    }
+}
+
+/// Size of a unit in SI units, of a mechanical one with this number of pole pairs.
+fn size(unit: Unit, pole_pairs: u32) -> f64 {
+    let mut one = [1.0];
+    unit.to_si(&mut one, pole_pairs);
+    one[0]
+}
+
+fn column<'a>(read: &'a [ReadColumn], channel: &str) -> Option<&'a ReadColumn> {
+    read.iter().find(|column| column.channel == channel)
+}
+
+/// Unit and pole pairs with which the speed turns as fast as the angle; or the angle as fast as the speed.
+fn speed_unit(ratio: f64, read: &[ReadColumn], pole_pairs: u32) -> Option<Mending> {
+    let column = column(read, "omega_e")?;
+    let now = size(column.unit, pole_pairs) * ratio;
+    // The pole pairs that a mechanical unit would need.
+    let pole_pairs_of = |unit: Unit| {
+        let needed = now / size(unit, 1);
+        let whole = needed.round();
+        let fits = whole >= 1.0 && whole <= f64::from(MOST_POLE_PAIRS) && (needed / whole - 1.0).abs() < AGREES;
+        fits.then_some(whole as u32)
+    };
+    let is_right = |unit: &Unit| !unit.is_mechanical() && (now / size(*unit, 1) - 1.0).abs() < AGREES;
+    if let Some(pole_pairs) = pole_pairs_of(column.unit).filter(|_| column.unit.is_mechanical()) {
+        return Some(Mending { cause: Some(named_pairs(pole_pairs)), ..Mending::option(format!("--pole-pairs {pole_pairs}")) });
+    }
+    if let Some(unit) = Unit::of(Dimension::Speed).find(is_right) {
+        let cause = format!("the speed is in {}", unit.prose());
+        return Some(Mending { cause: Some(cause), ..Mending::option(format!("--unit omega_e={}", unit.name())) });
+    }
+    // The mechanical unit that is the electrical one's counterpart comes first.
+    let mut mechanical: Vec<Unit> = Unit::of(Dimension::Speed).filter(|unit| unit.is_mechanical()).collect();
+    mechanical.sort_by_key(|unit| size(*unit, 1) != size(column.unit, 1));
+    if let Some((unit, pole_pairs)) = mechanical.into_iter().find_map(|unit| pole_pairs_of(unit).map(|pairs| (unit, pairs))) {
+        let cause =
+            if size(unit, 1) == size(column.unit, 1) { "mechanical speed".to_owned() } else { format!("speed in {}", unit.prose()) };
+        let option = format!("--unit omega_e={} --pole-pairs {pole_pairs}", unit.name());
+        return Some(Mending { cause: Some(format!("{cause}, {}", named_pairs(pole_pairs))), ..Mending::option(option) });
+    }
+    let pairs = (1.0 / ratio).round();
+    let is_mechanical_angle = (2.0..=f64::from(MOST_POLE_PAIRS)).contains(&pairs) && (ratio * pairs - 1.0).abs() < AGREES;
+    is_mechanical_angle.then(|| Mending {
+        cause: Some(format!("mechanical angle, {}", named_pairs(pairs as u32))),
+        ..Mending::option(format!("--unit theta_e=rad-mech --pole-pairs {pairs:.0}"))
+    })
+}
+
+fn named_pairs(pole_pairs: u32) -> String {
+    format!("{pole_pairs} pole pair{}", if pole_pairs == 1 { "" } else { "s" })
+}
+
+fn time_unit(factor: f64, read: &[ReadColumn]) -> Mending {
+    let Some(column) = column(read, "t") else { return Mending::default() };
+    let wanted = size(column.unit, 1) * factor;
+    let unit = Unit::of(Dimension::Time).find(|unit| (size(*unit, 1) / wanted - 1.0).abs() < AGREES);
+    match unit {
+        Some(unit) => Mending::option(format!("--unit t={}", unit.name())),
+        None => Mending { lines: line(read, "t", "t", factor).into_iter().collect(), ..Mending::default() },
+    }
+}
+
+/// `ud = { column = "vd", sign = -1 }`: a channel read from the column of this or another one, times this factor.
+fn line(read: &[ReadColumn], channel: &str, from: &str, factor: f64) -> Option<String> {
+    let column = column(read, from)?;
+    let name = column.header.replace('\\', "\\\\").replace('"', "\\\"");
+    if name.chars().any(char::is_control) {
+        return None;
+    }
+    // Of a column with a scale of its own both are one number.
+    let factor = factor * column.scale;
+    Some(if factor == 1.0 {
+        format!("{channel} = \"{name}\"")
+    } else if factor == -1.0 {
+        format!("{channel} = {{ column = \"{name}\", sign = -1 }}")
+    } else {
+        format!("{channel} = {{ column = \"{name}\", scale = {} }}", significant(factor, 6))
+    })
+}
+
+/// Where each of the four columns comes from after the changes, and its sign.
+fn axes(changes: &[Change], read: &[ReadColumn]) -> Mending {
+    let mut from = ["ud", "uq", "id", "iq"];
+    let mut sign = [1.0; 4];
+    let mut speed = 1.0;
+    let has_angle = column(read, "theta_e").is_some();
+    for change in changes {
+        let reversed: &[usize] = match change {
+            Change::SwapAxes => {
+                from.swap(0, 1);
+                from.swap(2, 3);
+                &[]
+            }
+            Change::SwapVoltages => {
+                from.swap(0, 1);
+                &[]
+            }
+            Change::SwapCurrents => {
+                from.swap(2, 3);
+                &[]
+            }
+            Change::ReverseVoltages => &[0, 1],
+            Change::ReverseCurrents => &[2, 3],
+            Change::ReverseAxes => &[0, 1, 2, 3],
+            // An angle that turns with the speed shows that the speed is right.
+            Change::ReverseSpeed if has_angle => &[1, 3],
+            Change::ReverseSpeed => {
+                speed = -1.0;
+                &[]
+            }
+            Change::ReverseUd => &[0],
+            Change::ReverseUq => &[1],
+            Change::ReverseId => &[2],
+            Change::ReverseIq => &[3],
+            _ => return Mending::default(),
+        };
+        reversed.iter().for_each(|place| sign[*place] = -sign[*place]);
+    }
+    let channels = ["ud", "uq", "id", "iq"];
+    let is_changed = |place: &usize| from[*place] != channels[*place] || sign[*place] < 0.0;
+    let changed: Vec<usize> = (0..channels.len()).filter(is_changed).collect();
+    if speed > 0.0 && sign.iter().all(|sign| *sign > 0.0) {
+        let pairs = changed.iter().map(|place| Some((channels[*place], Some(column(read, from[*place])?.header.clone()))));
+        let pairs: Option<Vec<_>> = pairs.collect();
+        return pairs.map(|pairs| Mending { option: advice::option(&Advice::MapColumns(pairs)), ..Mending::default() }).unwrap_or_default();
+    }
+    let lines = changed.iter().map(|place| line(read, channels[*place], from[*place], sign[*place]));
+    let lines: Option<Vec<String>> = lines.chain((speed < 0.0).then(|| line(read, "omega_e", "omega_e", speed))).collect();
+    Mending { lines: lines.unwrap_or_default(), ..Mending::default() }
+}
+
+/// Phases b and c exchanged, of currents and voltages.
+fn phases(read: &[ReadColumn]) -> Mending {
+    let header = |channel: &str| column(read, channel).map(|column| Some(column.header.clone()));
+    let swapped = [("ib", "ic"), ("ic", "ib"), ("ub", "uc"), ("uc", "ub")].map(|(channel, from)| Some((channel, header(from)?)));
+    let pairs: Vec<_> = swapped.into_iter().flatten().collect();
+    // With one of them missing there is nothing to exchange; with only the voltages, they are not what turns backward.
+    let is_whole = pairs.iter().any(|(channel, _)| *channel == "ib") && pairs.len() % 2 == 0;
+    let option = if is_whole { advice::option(&Advice::MapColumns(pairs)) } else { None };
+    Mending { option, ..Mending::default() }
+}
+
+/// From here on the voltages are not V.
+const MILLI: f64 = 100.0;
+
+/// Up to here line to line voltages explain it.
+const LINE_TO_LINE: f64 = 1.8;
+
+fn voltages(ratio: f64, read: &[ReadColumn]) -> Mending {
+    if ratio >= MILLI {
+        return Mending { cause: Some("in mV, or digits of a converter".to_owned()), ..Mending::option("--unit ud=mV,uq=mV".to_owned()) };
+    }
+    if ratio > LINE_TO_LINE {
+        return Mending { cause: Some("in another unit, or digits of a converter".to_owned()), ..Mending::default() };
+    }
+    let lines: Option<Vec<String>> = ["ud", "uq"].into_iter().map(|channel| line(read, channel, channel, 1.0 / 3.0_f64.sqrt())).collect();
+    Mending { cause: Some("line to line, or RMS times sqrt 2 twice".to_owned()), option: None, lines: lines.unwrap_or_default() }
+}
+
+/// A finding in a log with these columns, read with this number of pole pairs, with what mends it.
+pub(crate) fn told(finding: &ColumnFinding, read: &[ReadColumn], pole_pairs: Option<u32>) -> Told {
+    let (sentence, lines) = Mending::of(finding, read, pole_pairs).tell(finding);
+    Told { code: finding.code(), sentence, lines }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(channel: &'static str, header: &str, unit: Unit) -> ReadColumn {
+        ReadColumn { channel, header: header.to_owned(), unit, scale: 1.0 }
+    }
+
+    /// By hand: a shaft at 100 rad/s with 4 pole pairs has 400 electrical rad/s, 955 r/min and 15.9 turns a second.
+    #[test]
+    fn a_ratio_names_the_unit_and_the_pole_pairs() {
+        let option = |ratio: f64, unit: Unit, pole_pairs: Option<u32>| {
+            Mending::of(&ColumnFinding::SpeedUnit { ratio }, &[read("omega_e", "n", unit)], pole_pairs).option.unwrap_or_default()
+        };
+        assert_eq!(option(4.0, Unit::RadianPerSecond, None), "--unit omega_e=rad/s-mech --pole-pairs 4");
+        assert_eq!(option(400.0 / 954.93, Unit::RadianPerSecond, None), "--unit omega_e=rpm-mech --pole-pairs 4");
+        assert_eq!(option(1.0 / 9.5493, Unit::RadianPerSecond, None), "--unit omega_e=rpm-elec");
+        assert_eq!(option(400.0 / 63.662, Unit::RadianPerSecond, None), "--unit omega_e=Hz-elec");
+        assert_eq!(option(400.0 / 15.9155, Unit::RadianPerSecond, None), "--unit omega_e=Hz-mech --pole-pairs 4");
+        assert_eq!(option(4.0, Unit::RpmElectrical, None), "--unit omega_e=rpm-mech --pole-pairs 4");
+        assert_eq!(option(2.0, Unit::RpmMechanical, Some(2)), "--pole-pairs 4");
+        assert_eq!(option(0.25, Unit::RadianPerSecond, None), "--unit theta_e=rad-mech --pole-pairs 4");
+        assert_eq!(option(1.37, Unit::RadianPerSecond, None), "");
+    }
+
+    #[test]
+    fn axes_become_a_map_or_lines_of_a_mapping_file() {
+        let columns = [("ud", "Vd"), ("uq", "Vq"), ("id", "Id"), ("iq", "Iq")].map(|(channel, header)| read(channel, header, Unit::Volt));
+        let of = |changes: &[Change]| axes(changes, &columns);
+        assert_eq!(of(&[Change::SwapCurrents]).option.unwrap(), "--map id=Iq,iq=Id");
+        assert_eq!(of(&[Change::SwapAxes]).option.unwrap(), "--map ud=Vq,uq=Vd,id=Iq,iq=Id");
+        assert_eq!(of(&[Change::ReverseUd]).lines, ["ud = { column = \"Vd\", sign = -1 }"]);
+        let both = of(&[Change::SwapVoltages, Change::ReverseUd]);
+        assert_eq!(both.lines, ["ud = { column = \"Vq\", sign = -1 }", "uq = \"Vd\""]);
+    }
+}

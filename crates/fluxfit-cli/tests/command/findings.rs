@@ -1,0 +1,183 @@
+//! Columns that contradict each other: the logs of an independent simulator, damaged as people damage them, and mended by what is proposed.
+
+use super::{fluxfit, root};
+use std::{fs, path::Path};
+
+const LOGS: [&str; 3] =
+    ["examples/logs/paper_rig_ideal.csv", "examples/logs/paper_rig_pwm_noise.csv", "examples/logs/id_zero_two_loads.csv"];
+
+/// The channels of a log, in the order of its file: the names, and the values of each row.
+const NAMES: [&str; 7] = ["t", "ud", "uq", "id", "iq", "omega_e", "theta_e"];
+
+type Row = [f64; 7];
+
+fn rows(log: &str) -> Vec<Row> {
+    let text = fs::read_to_string(root().join(log)).unwrap();
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let places = NAMES.map(|name| names.iter().position(|other| *other == name).unwrap());
+    lines
+        .map(|line| {
+            let values: Vec<f64> = line.split(',').map(|value| value.parse().unwrap()).collect();
+            places.map(|place| values[place])
+        })
+        .collect()
+}
+
+/// Writes a log without the channels from `channels` on.
+fn write(path: &Path, rows: &[Row], channels: usize) {
+    let line = |row: &Row| row[..channels].iter().map(f64::to_string).collect::<Vec<_>>().join(",") + "\n";
+    fs::write(path, format!("{}\n", NAMES[..channels].join(",")) + &rows.iter().map(line).collect::<String>()).unwrap();
+}
+
+/// The same motor, turning the other way: speed, angle and the q axis are negative.
+fn other_way(rows: &[Row]) -> Vec<Row> {
+    rows.iter().map(|[t, ud, uq, id, iq, omega, theta]| [*t, *ud, -uq, *id, -iq, -omega, -theta]).collect()
+}
+
+/// What `inspect` warns of: the code, and the whole sentence with the lines to paste.
+fn finding(path: &Path, options: &[String]) -> Option<(String, String)> {
+    let mut arguments = vec!["inspect", path.to_str().unwrap()];
+    arguments.extend(options.iter().map(String::as_str));
+    let run = fluxfit(&arguments);
+    assert_eq!(run.status, 0, "{}", run.err);
+    let start = run.err.find("warning [")?;
+    let text = &run.err[start..];
+    let code = text.split(['[', ']']).nth(1).unwrap().to_owned();
+    assert!(run.out.starts_with("Readable, but the columns contradict each other"), "{}", run.out);
+    Some((code, text.to_owned()))
+}
+
+/// What a finding proposes: options, or a mapping file.
+fn proposed(told: &str, directory: &Path) -> Vec<String> {
+    if let Some((_, options)) = told.split_once("; add ") {
+        return options.lines().next().unwrap().split(' ').map(str::to_owned).collect();
+    }
+    let lines: Vec<&str> = told.lines().skip(1).take_while(|line| line.starts_with("    ")).map(str::trim).collect();
+    assert!(!lines.is_empty(), "nothing is proposed: {told}");
+    let mapping = directory.join("mapping.toml");
+    fs::write(&mapping, format!("[columns]\n{}\n", lines.join("\n"))).unwrap();
+    vec!["--mapping".to_owned(), mapping.to_str().unwrap().to_owned()]
+}
+
+/// What people do to a row, its name, and how it is found.
+type Damage = (&'static str, fn(&Row) -> Row, usize, &'static str);
+
+const DAMAGES: [Damage; 20] = [
+    ("mechanical speed", |r| with(r, 5, r[5] / 4.0), 7, "speed-unit"),
+    ("speed in r/min", |r| with(r, 5, r[5] * 60.0 / std::f64::consts::TAU), 7, "speed-unit"),
+    ("mechanical r/min", |r| with(r, 5, r[5] * 15.0 / std::f64::consts::TAU), 7, "speed-unit"),
+    ("speed in Hz", |r| with(r, 5, r[5] / std::f64::consts::TAU), 7, "speed-unit"),
+    ("angle in degrees", |r| with(r, 6, r[6].to_degrees()), 7, "speed-unit"),
+    ("speed reversed", |r| with(r, 5, -r[5]), 7, "speed-sign"),
+    ("angle reversed", |r| with(r, 6, -r[6]), 7, "speed-sign"),
+    ("time in ms", |r| with(r, 0, 1e3 * r[0]), 7, "time-unit"),
+    ("time in us", |r| with(r, 0, 1e6 * r[0]), 7, "time-unit"),
+    ("speed reversed, no angle", |r| with(r, 5, -r[5]), 6, "column-signs"),
+    ("generator convention", |r| with(&with(r, 3, -r[3]), 4, -r[4]), 7, "column-signs"),
+    ("voltages reversed", |r| with(&with(r, 1, -r[1]), 2, -r[2]), 7, "column-signs"),
+    ("south pole", |r| [r[0], -r[1], -r[2], -r[3], -r[4], r[5], r[6]], 7, "column-signs"),
+    ("q lags d", |r| with(&with(r, 2, -r[2]), 4, -r[4]), 7, "column-signs"),
+    ("u_d reversed", |r| with(r, 1, -r[1]), 7, "column-signs"),
+    ("u_q reversed", |r| with(r, 2, -r[2]), 7, "column-signs"),
+    ("i_q reversed", |r| with(r, 4, -r[4]), 7, "column-signs"),
+    ("voltages exchanged", |r| with(&with(r, 1, r[2]), 2, r[1]), 7, "column-signs"),
+    ("currents exchanged", |r| with(&with(r, 3, r[4]), 4, r[3]), 7, "column-signs"),
+    ("axes exchanged", |r| [r[0], r[2], r[1], r[4], r[3], r[5], r[6]], 7, "column-signs"),
+];
+
+fn with(row: &Row, place: usize, value: f64) -> Row {
+    let mut row = *row;
+    row[place] = value;
+    row
+}
+
+#[test]
+fn what_people_do_to_columns_is_found_and_what_is_proposed_mends_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("log.csv");
+    for log in LOGS {
+        let rows = rows(log);
+        for (way, rows) in [("forward", rows.clone()), ("backward", other_way(&rows))] {
+            write(&path, &rows, 7);
+            assert_eq!(finding(&path, &[]), None, "{log}, {way}: a healthy log");
+            // Each damage in one log each way, a few in all of them: an inspection takes a third of a second.
+            let damages = DAMAGES.iter().filter(|(name, ..)| log == LOGS[1] || ["mechanical speed", "axes exchanged"].contains(name));
+            for &(name, damage, channels, code) in damages {
+                let damaged: Vec<Row> = rows.iter().map(damage).collect();
+                write(&path, &damaged, channels);
+                let (found, told) = finding(&path, &[]).unwrap_or_else(|| panic!("{log}, {way}, {name}: nothing is found"));
+                assert_eq!(found, code, "{log}, {way}, {name}: {told}");
+                let options = proposed(&told, directory.path());
+                assert_eq!(finding(&path, &options), None, "{log}, {way}, {name}: still after {options:?}\n{told}");
+            }
+        }
+    }
+}
+
+/// Of three phases b and c are exchanged. The simulator's dq quantities become phases by the inverse transforms, written out here.
+#[test]
+fn exchanged_phases_are_found_and_mended() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("phases.csv");
+    let third = std::f64::consts::TAU / 3.0;
+    let phase = |d: f64, q: f64, angle: f64| d * angle.cos() - q * angle.sin();
+    let mut text = "t,ua,ub,uc,ia,ib,ic,omega_e,theta_e\n".to_owned();
+    for [t, ud, uq, id, iq, omega, theta] in rows(LOGS[1]) {
+        let u = [0.0, 1.0, 2.0].map(|k| phase(ud, uq, theta - k * third));
+        let i = [0.0, 1.0, 2.0].map(|k| phase(id, iq, theta - k * third));
+        text += &format!("{t},{},{},{},{},{},{},{omega},{theta}\n", u[0], u[2], u[1], i[0], i[2], i[1]);
+    }
+    fs::write(&path, text).unwrap();
+    let (code, told) = finding(&path, &[]).unwrap();
+    assert_eq!(code, "phase-order", "{told}");
+    let options = proposed(&told, directory.path());
+    assert_eq!(options, ["--map", "ib=ic,ic=ib,ub=uc,uc=ub"]);
+    assert_eq!(finding(&path, &options), None);
+}
+
+/// 100 V turn in a circle at 200 V; in mV they seem a thousand times too large.
+#[test]
+fn voltages_that_cannot_be_are_found() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("log.csv");
+    let rows = rows(LOGS[1]);
+    for (scale, code) in [(1.0, None), (1e3, Some("voltage-scale"))] {
+        let line = |r: &Row| format!("{},{},{},{},{},{},200\n", r[0], scale * r[1], scale * r[2], r[3], r[4], r[5]);
+        fs::write(&path, "t,ud,uq,id,iq,omega_e,u_dc\n".to_owned() + &rows.iter().map(line).collect::<String>()).unwrap();
+        let found = finding(&path, &[]);
+        assert_eq!(found.as_ref().map(|(code, _)| code.as_str()), code, "{found:?}");
+        if let Some((_, told)) = found {
+            assert_eq!(finding(&path, &proposed(&told, directory.path())), None);
+        }
+    }
+}
+
+#[test]
+fn identify_refuses_what_means_nothing_unless_a_model_is_stated() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("log.csv");
+    let slow: Vec<Row> = rows(LOGS[1]).iter().map(|row| with(row, 5, row[5] / 4.0)).collect();
+    write(&path, &slow, 7);
+    let path = path.to_str().unwrap();
+    let run = fluxfit(&["identify", path]);
+    assert!(run.status == 2 && run.out.is_empty(), "{}", run.out);
+    let sentence =
+        "theta_e turns 4.000 times as fast as omega_e: mechanical speed, 4 pole pairs; add --unit omega_e=rad/s-mech --pole-pairs 4";
+    assert!(run.err.lines().next().unwrap().contains(sentence), "{}", run.err);
+    let mended = fluxfit(&["identify", path, "--unit", "omega_e=rad/s-mech", "--pole-pairs", "4"]);
+    assert!(mended.status == 0 && mended.out.starts_with("All 4 identified."), "{}{}", mended.out, mended.err);
+    let all_the_same = fluxfit(&["identify", path, "--model", "steady"]);
+    assert!(all_the_same.status < 2 && all_the_same.err.starts_with("warning [speed-unit]: theta_e turns"), "{}", all_the_same.err);
+}
+
+/// Names of columns that a motor may have, but no time: there is no log, and a plot all the same.
+#[test]
+fn a_file_that_is_no_log_yet_is_plotted_too() {
+    let text = "ud,uq,id,iq,speed_rpm\n".to_owned() + &(0..500).map(|k| format!("{k},20,0,{},500\n", k % 7)).collect::<String>();
+    let file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
+    fs::write(file.path(), text).unwrap();
+    let run = fluxfit(&["inspect", file.path().to_str().unwrap()]);
+    assert_eq!(run.status, 2, "{}", run.out);
+    assert!(run.out.starts_with("Not a log yet") && run.out.contains("ud = ud, V\n") && run.out.contains('⠤'), "{}", run.out);
+}

@@ -1,0 +1,27 @@
+//! Whether the columns of a log agree with each other, before anything is fitted: angle with speed, time with the currents, signs and
+//! order of the axes and phases, voltages with the DC voltage.
+//!
+//! A finding is what is almost certainly wrong; a log with some noise, dead time or lag has none. Facts; the sentences are in
+//! [`words`](crate::words).
+
+mod finding;
+mod regression;
+mod turning;
+mod voltages;
+
+use crate::log::Log;
+pub use finding::{Change, ColumnFinding, Turning};
+
+/// What the columns of a log contradict each other in. After the first contradiction of angle, time or axes no other of these is looked
+/// for: it would follow from the first.
+pub fn check_columns(log: &Log) -> Vec<ColumnFinding> {
+    let of_frame = turning::angle_against_speed(log)
+        .map(|finding| match finding {
+            ColumnFinding::SpeedSign { .. } => ColumnFinding::SpeedSign { wrong: regression::wrong_sign(log) },
+            finding => finding,
+        })
+        .or_else(|| turning::phase_order(log))
+        .or_else(|| regression::time_unit(log))
+        .or_else(|| regression::axes(log));
+    of_frame.into_iter().chain(voltages::scale(log)).collect()
+}

@@ -1,0 +1,269 @@
+//! The voltages explained by currents, speed and the slopes of the currents, by least squares over means of a few rows:
+//!
+//! ```text
+//! u_d = R i_d - L_q omega i_q       + V i_d/|i| + l_d di_d/dt
+//! u_q = R i_q + L_d omega i_d + psi omega + V i_q/|i| + l_q di_q/dt
+//! ```
+//!
+//! with R, L_d, L_q, psi and the voltage V that dead time takes not negative. Changed signs, or another order of the axes, are tried on the
+//! sums of products alone. It is no identification: it only tells which of a few explanations leaves far less of the voltage than another.
+
+use super::finding::{Change, ColumnFinding, Turning};
+use crate::{frames::Dq, log::Log};
+use nalgebra::{DMatrix, DVector};
+
+/// Most rows of a mean.
+const BLOCK: usize = 10;
+
+/// Means that are enough: a short log has fewer rows in each.
+const ENOUGH: usize = 300;
+
+/// Fewest means.
+const LEAST: usize = 30;
+
+/// Rows with less current or speed than this share of the largest tell little.
+const SMALL: f64 = 0.05;
+
+/// What no motor explains of the voltage as it is, as a fraction, before a change is looked for.
+const UNEXPLAINED: f64 = 0.03;
+
+/// What is left of the voltage, as a fraction, where the time is judged.
+const EXPLAINED: f64 = 0.15;
+
+/// A change must leave less than this part of that.
+const MUCH_LESS: f64 = 0.25;
+
+/// Changes that leave at most this many times what the best leaves are equally good.
+const AS_GOOD: f64 = 1.5;
+
+/// By this factor the slopes of the currents must reduce what is left of the voltage's square, where the time is judged by them.
+const BY_SLOPES: f64 = 4.0;
+
+/// The unknowns: R, L_d, L_q, psi, V; and the two inductances of the slopes, which may have any sign.
+const UNKNOWNS: usize = 7;
+
+/// Unknowns that are not negative.
+const BOUNDED: usize = 5;
+
+/// A mean of rows: voltage, current, the current's direction, its slope, omega i and omega.
+#[derive(Clone, Copy, Default)]
+struct Mean {
+    u: Dq,
+    i: Dq,
+    direction: Dq,
+    slope: Dq,
+    omega_i: Dq,
+    omega: f64,
+}
+
+/// The signs and the order that the columns are given.
+#[derive(Clone, Copy)]
+struct Frame {
+    swap_u: bool,
+    swap_i: bool,
+    u: [f64; 2],
+    i: [f64; 2],
+    omega: f64,
+}
+
+impl Frame {
+    const AS_IT_IS: Self = Self { swap_u: false, swap_i: false, u: [1.0; 2], i: [1.0; 2], omega: 1.0 };
+
+    fn with(mut self, change: Change) -> Self {
+        match change {
+            Change::SwapAxes => (self.swap_u, self.swap_i) = (!self.swap_u, !self.swap_i),
+            Change::SwapVoltages => self.swap_u = !self.swap_u,
+            Change::SwapCurrents => self.swap_i = !self.swap_i,
+            Change::ReverseCurrents => self.i = self.i.map(|sign| -sign),
+            Change::ReverseVoltages => self.u = self.u.map(|sign| -sign),
+            Change::ReverseAxes => (self.u, self.i) = (self.u.map(|sign| -sign), self.i.map(|sign| -sign)),
+            Change::ReverseSpeed => self.omega = -self.omega,
+            Change::ReverseUd => self.u[0] = -self.u[0],
+            Change::ReverseUq => self.u[1] = -self.u[1],
+            Change::ReverseId => self.i[0] = -self.i[0],
+            Change::ReverseIq => self.i[1] = -self.i[1],
+        }
+        self
+    }
+
+    /// Signs apply to what stands in the place of d and q after the exchange.
+    fn of(&self, mean: &Mean) -> Mean {
+        let turned = |value: Dq, swap: bool, [d, q]: [f64; 2]| {
+            let value = if swap { Dq { d: value.q, q: value.d } } else { value };
+            Dq { d: d * value.d, q: q * value.q }
+        };
+        let of_current = |value: Dq| turned(value, self.swap_i, self.i);
+        let omega_i = of_current(mean.omega_i);
+        Mean {
+            u: turned(mean.u, self.swap_u, self.u),
+            i: of_current(mean.i),
+            direction: of_current(mean.direction),
+            slope: of_current(mean.slope),
+            omega_i: Dq { d: self.omega * omega_i.d, q: self.omega * omega_i.q },
+            omega: self.omega * mean.omega,
+        }
+    }
+}
+
+/// What a fit leaves, as a fraction of the voltage's root mean square, and its unknowns.
+struct Fit {
+    left: f64,
+    unknowns: [f64; UNKNOWNS],
+}
+
+/// Means of consecutive rows that carry current at speed.
+fn means(log: &Log) -> Vec<Mean> {
+    let columns = log.columns();
+    let fastest = columns.omega_e.iter().fold(0.0_f64, |most, omega| most.max(omega.abs()));
+    let peak = log.peak_current();
+    let rows = (log.rows() / ENOUGH).clamp(1, BLOCK);
+    let mut means = Vec::new();
+    for segment in log.segments() {
+        let mut start = segment.rows.start;
+        while start + rows < segment.rows.end {
+            let block = start..start + rows;
+            let mut mean = Mean::default();
+            for row in block.clone() {
+                let i = Dq { d: columns.id[row], q: columns.iq[row] };
+                let length = i.magnitude();
+                let omega = columns.omega_e[row];
+                let direction = if length > 0.0 { Dq { d: i.d / length, q: i.q / length } } else { i };
+                let add = |sum: Dq, d: f64, q: f64| Dq { d: sum.d + d / rows as f64, q: sum.q + q / rows as f64 };
+                mean.u = add(mean.u, columns.ud[row], columns.uq[row]);
+                mean.i = add(mean.i, i.d, i.q);
+                mean.direction = add(mean.direction, direction.d, direction.q);
+                mean.omega_i = add(mean.omega_i, omega * i.d, omega * i.q);
+                mean.omega += omega / rows as f64;
+            }
+            let (end, span) = (start + rows, columns.t[start + rows] - columns.t[start]);
+            mean.slope = Dq { d: (columns.id[end] - columns.id[start]) / span, q: (columns.iq[end] - columns.iq[start]) / span };
+            start = end;
+            if mean.i.magnitude() >= SMALL * peak && mean.omega.abs() >= SMALL * fastest {
+                means.push(mean);
+            }
+        }
+    }
+    means
+}
+
+/// Fits the unknowns to the voltages of a frame. With few unknowns every set of bounds that hold is tried.
+fn fit(means: &[Mean], frame: &Frame, has_slopes: bool) -> Option<Fit> {
+    let mut normal = DMatrix::<f64>::zeros(UNKNOWNS + 1, UNKNOWNS + 1);
+    for mean in means {
+        let m = frame.of(mean);
+        let slope = if has_slopes { m.slope } else { Dq::default() };
+        let d = [m.i.d, 0.0, -m.omega_i.q, 0.0, m.direction.d, slope.d, 0.0, m.u.d];
+        let q = [m.i.q, m.omega_i.d, 0.0, m.omega, m.direction.q, 0.0, slope.q, m.u.q];
+        for row in [d, q] {
+            let row = DVector::from_column_slice(&row);
+            normal.ger(1.0, &row, &row, 1.0);
+        }
+    }
+    let whole = normal[(UNKNOWNS, UNKNOWNS)];
+    if means.len() < LEAST || whole <= 0.0 {
+        return None;
+    }
+    let mut best: Option<Fit> = None;
+    for free in 0..1_u32 << BOUNDED {
+        let used: Vec<usize> = (0..UNKNOWNS).filter(|k| (*k >= BOUNDED || free >> k & 1 == 1) && normal[(*k, *k)] > 0.0).collect();
+        // Columns of length one: currents, fluxes and slopes differ by powers of ten.
+        let scale: Vec<f64> = used.iter().map(|k| normal[(*k, *k)].sqrt()).collect();
+        let size = used.len();
+        let matrix =
+            DMatrix::from_fn(size, size, |a, b| normal[(used[a], used[b])] / (scale[a] * scale[b]) + if a == b { RIDGE } else { 0.0 });
+        let right = DVector::from_fn(size, |a, _| normal[(used[a], UNKNOWNS)] / scale[a]);
+        let Some(solution) = matrix.cholesky().map(|factor| factor.solve(&right)) else { continue };
+        let left = ((whole - solution.dot(&right)) / whole).max(0.0).sqrt();
+        let mut unknowns = [0.0; UNKNOWNS];
+        used.iter().enumerate().for_each(|(a, k)| unknowns[*k] = solution[a] / scale[a]);
+        let is_allowed = unknowns[..BOUNDED].iter().all(|unknown| *unknown >= 0.0);
+        if is_allowed && best.as_ref().is_none_or(|best| left < best.left) {
+            best = Some(Fit { left, unknowns });
+        }
+    }
+    best
+}
+
+/// Makes collinear columns solvable: at one operating point R and V are one.
+const RIDGE: f64 = 1e-9;
+
+/// Whether angle or speed has the wrong sign, where they differ: the sign of speed with which a motor explains the voltages.
+pub(super) fn wrong_sign(log: &Log) -> Option<Turning> {
+    let means = means(log);
+    let now = fit(&means, &Frame::AS_IT_IS, true)?.left;
+    let reversed = fit(&means, &Frame::AS_IT_IS.with(Change::ReverseSpeed), true)?.left;
+    if now < MUCH_LESS * reversed {
+        Some(Turning::Angle)
+    } else if reversed < MUCH_LESS * now {
+        Some(Turning::Speed)
+    } else {
+        None
+    }
+}
+
+/// Whether the inductances of the slopes are a power of 1000 times those of the speed.
+pub(super) fn time_unit(log: &Log) -> Option<ColumnFinding> {
+    let means = means(log);
+    let with = fit(&means, &Frame::AS_IT_IS, true)?;
+    let without = fit(&means, &Frame::AS_IT_IS, false)?;
+    if with.left > EXPLAINED || without.left * without.left < BY_SLOPES * with.left * with.left {
+        return None;
+    }
+    let [_, ld, lq, _, _, of_slope_d, of_slope_q] = with.unknowns;
+    // The axis whose current moves the voltage more is the better measured.
+    let moved = |slope: &dyn Fn(&Mean) -> f64, inductance: f64| means.iter().map(|mean| (inductance * slope(mean)).powi(2)).sum::<f64>();
+    let by_d = moved(&|mean| mean.slope.d, of_slope_d);
+    let by_q = moved(&|mean| mean.slope.q, of_slope_q);
+    let ratio = if by_d > by_q && ld > 0.0 { of_slope_d / ld } else { of_slope_q / lq };
+    let power = (ratio.log10() / 3.0).round();
+    let is_power = ratio > 0.0 && ratio.is_finite() && power != 0.0 && (ratio.log10() - 3.0 * power).abs() < HALF_A_DECADE;
+    is_power.then(|| ColumnFinding::TimeUnit { factor: 1e3_f64.powi(-power as i32) })
+}
+
+/// Noise of the slopes makes their inductance smaller, but not three times.
+const HALF_A_DECADE: f64 = 0.5;
+
+/// The changes of signs and order that are looked for, the usual ones first.
+const CHANGES: [Change; 11] = [
+    Change::ReverseCurrents,
+    Change::SwapAxes,
+    Change::ReverseSpeed,
+    Change::ReverseAxes,
+    Change::SwapCurrents,
+    Change::SwapVoltages,
+    Change::ReverseUd,
+    Change::ReverseUq,
+    Change::ReverseId,
+    Change::ReverseIq,
+    Change::ReverseVoltages,
+];
+
+/// Whether a motor explains the voltages only with other signs, or another order of the axes.
+pub(super) fn axes(log: &Log) -> Option<ColumnFinding> {
+    let means = means(log);
+    let now = fit(&means, &Frame::AS_IT_IS, true)?.left;
+    if now < UNEXPLAINED {
+        return None;
+    }
+    let left = |changes: &[Change]| {
+        let frame = changes.iter().fold(Frame::AS_IT_IS, |frame, change| frame.with(*change));
+        fit(&means, &frame, true).map(|fit| fit.left)
+    };
+    let singles = CHANGES.iter().map(|change| vec![*change]);
+    let pairs = || CHANGES.iter().enumerate().flat_map(|(k, one)| CHANGES[k + 1..].iter().map(|other| vec![*one, *other]));
+    best_of(singles, &left, now).or_else(|| best_of(pairs(), &left, now))
+}
+
+/// The best of these changes, and those as good, if they leave much less than `now`.
+fn best_of(changes: impl Iterator<Item = Vec<Change>>, left: &impl Fn(&[Change]) -> Option<f64>, now: f64) -> Option<ColumnFinding> {
+    let mut tried: Vec<(Vec<Change>, f64)> = changes.filter_map(|changes| left(&changes).map(|left| (changes, left))).collect();
+    // Stable: of those that are equal the more usual is named first.
+    tried.sort_by(|one, other| one.1.total_cmp(&other.1));
+    let best = tried.first()?.1;
+    if best > MUCH_LESS * now {
+        return None;
+    }
+    let as_good = |(_, left): &(Vec<Change>, f64)| *left <= AS_GOOD * best;
+    let changes: Vec<Vec<Change>> = tried.into_iter().take_while(as_good).map(|(changes, _)| changes).collect();
+    Some(ColumnFinding::Axes { changes, left: best, left_now: now })
+}

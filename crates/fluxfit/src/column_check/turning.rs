@@ -1,0 +1,134 @@
+//! The logged angle against the logged speed, and the currents against the angle.
+
+use super::finding::ColumnFinding;
+use crate::{frames::Dq, log::Log};
+use std::{
+    f64::consts::{FRAC_PI_2, PI, TAU},
+    ops::Range,
+};
+
+/// Rows in which the angle is compared with the speed at once: noise and steps of an angle average out.
+const BLOCK: usize = 16;
+
+/// Fewest rows that tell a ratio.
+const LEAST_ROWS: usize = 64;
+
+/// A ratio as near to one as this is that of a speed that lags, or of a coarse angle.
+const TOLERANCE: f64 = 0.03;
+
+/// Powers of 1000 are recognized this well: both columns were converted from the same numbers.
+const OF_POWER: f64 = 0.05;
+
+/// Least squared correlation of angle and speed for a ratio to mean something.
+const CORRELATION: f64 = 0.98;
+
+/// Turns of more than this between rows, rad, cannot be told from turns the other way.
+const MOST_TURN: f64 = 2.5;
+
+/// Share of rows that may turn more: the end of a mechanical turn, a lost row.
+const FEW: f64 = 0.02;
+
+/// A log that turns less than this in all, rad, tells no ratio.
+const LEAST_TURN: f64 = PI;
+
+/// The range of an angle in degrees within one turn: not counted over many turns, and not in radians.
+const DEGREES: Range<f64> = 300.0..360.5;
+
+/// The angle's rate over the speed, if it is not one.
+pub(super) fn angle_against_speed(log: &Log) -> Option<ColumnFinding> {
+    let theta = log.columns().theta_e.as_ref()?;
+    let (low, high) = theta.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), angle| (low.min(*angle), high.max(*angle)));
+    if DEGREES.contains(&(high - low)) && is_in_degrees(log, theta) {
+        return Some(ColumnFinding::AngleInDegrees);
+    }
+    let ratio = ratio(log, theta, TAU)?;
+    if (ratio - 1.0).abs() <= TOLERANCE {
+        return None;
+    }
+    let power = 1e3_f64.powi((ratio.abs().log10() / 3.0).round() as i32);
+    if power != 1.0 && (ratio / power - 1.0).abs() <= OF_POWER {
+        return Some(ColumnFinding::TimeUnit { factor: power });
+    }
+    if (ratio + 1.0).abs() <= TOLERANCE {
+        return Some(ColumnFinding::SpeedSign { wrong: None });
+    }
+    Some(ColumnFinding::SpeedUnit { ratio })
+}
+
+/// Whether an angle turns with the speed if it is taken to be in degrees, and not if in radians.
+fn is_in_degrees(log: &Log, theta: &[f64]) -> bool {
+    let as_radians = ratio(log, theta, TAU).is_some_and(|ratio| (ratio - 1.0).abs() <= TOLERANCE);
+    let as_degrees = ratio(log, theta, 360.0).is_some_and(|ratio| (ratio.to_radians() - 1.0).abs() <= TOLERANCE);
+    as_degrees && !as_radians
+}
+
+/// The rate of an angle with this period over the speed; `None` where the log does not tell it.
+fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
+    let columns = log.columns();
+    // Sums of squares and of products, over blocks of rows.
+    let (mut of_angle, mut of_speed, mut of_both, mut turned) = (0.0, 0.0, 0.0, 0.0);
+    let (mut rows, mut far) = (0, 0);
+    for segment in log.segments() {
+        let mut block = (0.0, 0.0);
+        for (count, row) in (segment.rows.start + 1..segment.rows.end).enumerate() {
+            let step = theta[row] - theta[row - 1];
+            let step = step - period * (step / period).round();
+            let by_speed = 0.5 * (columns.omega_e[row] + columns.omega_e[row - 1]) * (columns.t[row] - columns.t[row - 1]);
+            rows += 1;
+            far += usize::from(step.abs() > MOST_TURN / TAU * period);
+            block = (block.0 + step, block.1 + by_speed);
+            if (count + 1) % BLOCK == 0 {
+                let (angle, speed) = std::mem::take(&mut block);
+                of_angle += angle * angle;
+                of_speed += speed * speed;
+                of_both += angle * speed;
+                turned += angle.abs() * TAU / period;
+            }
+        }
+    }
+    let is_told = rows >= LEAST_ROWS && far as f64 <= FEW * rows as f64 && turned >= LEAST_TURN && of_speed > 0.0;
+    (is_told && of_both * of_both >= CORRELATION * of_angle * of_speed).then(|| of_both / of_speed)
+}
+
+/// Rows with less current than this share of the largest are not counted.
+const LEAST_CURRENT: f64 = 0.2;
+
+/// The current's correlation with itself a quarter turn later, in its own frame, below which it does not stand still there;
+const TURNS: f64 = 0.0;
+
+/// and in a frame that turns back twice as fast, above which it does there.
+const STANDS: f64 = 0.8;
+
+/// Whether the current turns backward in the frame of the angle, twice as fast: phases b and c, or two others, have changed places.
+pub(super) fn phase_order(log: &Log) -> Option<ColumnFinding> {
+    let columns = log.columns();
+    let theta = columns.theta_e.as_ref()?;
+    let current = |row: usize| Dq { d: columns.id[row], q: columns.iq[row] };
+    let least = LEAST_CURRENT * log.peak_current();
+    let (mut own, mut backward, mut length, mut pairs) = (0.0, 0.0, 0.0, 0);
+    for segment in log.segments() {
+        for row in segment.rows.clone() {
+            let turn = |later: usize| {
+                let step = theta[later] - theta[row];
+                step - TAU * (step / TAU).round()
+            };
+            // The first row a quarter of a turn later, by the speed; slow rows have none.
+            let speed = columns.omega_e[row].abs();
+            let quarter = columns.t[row] + FRAC_PI_2 / speed;
+            let later = row + columns.t[row..segment.rows.end].partition_point(|t| *t < quarter);
+            if later >= segment.rows.end || speed * (columns.t[later] - columns.t[row]) > PI {
+                continue;
+            }
+            let (before, after) = (current(row), current(later));
+            if before.magnitude() < least || after.magnitude() < least {
+                continue;
+            }
+            let back = after.turned(2.0 * turn(later));
+            own += before.d * after.d + before.q * after.q;
+            backward += before.d * back.d + before.q * back.q;
+            length += before.magnitude() * after.magnitude();
+            pairs += 1;
+        }
+    }
+    (pairs >= LEAST_ROWS && own < TURNS * length && backward > STANDS * length).then_some(ColumnFinding::PhaseOrder)
+}

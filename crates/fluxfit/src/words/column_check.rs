@@ -1,0 +1,74 @@
+//! What the columns of a log contradict each other in.
+
+use super::digits::{percent, three_digits};
+use crate::column_check::{Change, ColumnFinding, Turning};
+use std::fmt::{Display, Formatter, Result};
+
+impl Display for ColumnFinding {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        match self {
+            Self::SpeedUnit { ratio } => {
+                let (way, ratio) = if *ratio < 0.0 { (" and against it", -ratio) } else { ("", *ratio) };
+                write!(f, "theta_e turns {} times as fast as omega_e{way}", four_digits(ratio))
+            }
+            Self::AngleInDegrees => write!(f, "theta_e turns with omega_e only if it is in degrees"),
+            Self::SpeedSign { wrong: None } => write!(f, "theta_e turns against omega_e: one of them has the wrong sign"),
+            Self::SpeedSign { wrong: Some(Turning::Angle) } => {
+                write!(f, "theta_e turns against omega_e, and the voltages agree with omega_e: the angle has the wrong sign")
+            }
+            Self::SpeedSign { wrong: Some(Turning::Speed) } => {
+                write!(f, "theta_e turns against omega_e, and the voltages agree with theta_e: the speed has the wrong sign")
+            }
+            Self::TimeUnit { factor } => {
+                let (times, way) = if *factor < 1.0 { (1.0 / factor, "long") } else { (*factor, "short") };
+                write!(f, "the time between rows is {times:.0} times too {way} for the speed and the slopes of the currents")
+            }
+            Self::Axes { changes, left, left_now } => {
+                let ways: Vec<String> = changes.iter().take(NAMED).map(|changes| all_of(changes)).collect();
+                write!(
+                    f,
+                    "no motor explains these voltages ({} of them are left); with {} one does ({})",
+                    percent(*left_now),
+                    ways.join(", or with "),
+                    percent(*left)
+                )
+            }
+            Self::PhaseOrder => write!(f, "the current turns backward in the frame of theta_e: two phases have changed places"),
+            Self::VoltageScale { ratio } => write!(
+                f,
+                "the voltages are {} times what the inverter can make of u_dc (u_dc / sqrt 3), in nearly every row",
+                three_digits(*ratio)
+            ),
+        }
+    }
+}
+
+/// Ways that are named; more would only say that the log tells little.
+const NAMED: usize = 3;
+
+fn four_digits(ratio: f64) -> String {
+    let decimals = (3.0 - ratio.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{ratio:.decimals$}")
+}
+
+fn all_of(changes: &[Change]) -> String {
+    changes.iter().map(Change::to_string).collect::<Vec<_>>().join(" and ")
+}
+
+impl Display for Change {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        f.write_str(match self {
+            Self::SwapAxes => "d and q exchanged",
+            Self::SwapVoltages => "u_d and u_q exchanged",
+            Self::SwapCurrents => "i_d and i_q exchanged",
+            Self::ReverseCurrents => "both currents reversed (they are counted out of the motor)",
+            Self::ReverseVoltages => "both voltages reversed",
+            Self::ReverseAxes => "all voltages and currents reversed (d points to the south pole)",
+            Self::ReverseSpeed => "the speed reversed (or the q axis)",
+            Self::ReverseUd => "u_d reversed",
+            Self::ReverseUq => "u_q reversed",
+            Self::ReverseId => "i_d reversed",
+            Self::ReverseIq => "i_q reversed",
+        })
+    }
+}

@@ -1,0 +1,59 @@
+//! Warnings in a few words, for a line of their own above an answer. The whole sentence is the warning's
+//! [`Display`](std::fmt::Display).
+
+use super::digits::{list, three_digits};
+use crate::{identification::explain::warning::Warning, motor::Parameter};
+
+impl Warning {
+    /// What is wrong, in at most some fifty letters.
+    pub fn in_short(&self) -> String {
+        match self {
+            Self::NoRedundancy => "as many equations as unknowns: errors stay unseen".to_owned(),
+            Self::Misfit { ratio, .. } => {
+                format!("operating points contradict each other, {} x their noise", three_digits(*ratio))
+            }
+            Self::DeadTime { voltage } => format!("dead time or device drops take about {} V", three_digits(*voltage)),
+            Self::NoCurrent { rows, of } => format!("{rows} of {of} rows carry no current: not used"),
+            Self::NoCurrentInWindows { windows } => format!("{windows} of the windows carry no current"),
+            Self::ShortStretches { times } => {
+                format!("{} short steady stretch{} left out", times.len(), if times.len() == 1 { "" } else { "es" })
+            }
+            Self::CoarseSampling => "rows are far apart: taken as decimated".to_owned(),
+            Self::FrameLag { seconds, .. } => {
+                let late = if *seconds > 0.0 { "late" } else { "early" };
+                format!("the voltages' frame is {} us {late}: solved for", three_digits(1e6 * seconds.abs()))
+            }
+            Self::OpenLoop { times } => {
+                format!("open loop in {} stretch{}: only R_s is taken from there", times.len(), if times.len() == 1 { "" } else { "es" })
+            }
+            Self::ProcessNoise => "voltages that are not logged disturb the motor".to_owned(),
+            Self::Angle => "theta_e does not turn with omega_e: not used".to_owned(),
+            Self::Saturation { lq } => match lq {
+                Some([least, most]) => {
+                    let (scale, unit) = if most.inductance.abs() < 1e-3 { (1e6, "uH") } else { (1e3, "mH") };
+                    format!(
+                        "apparent L_q goes from {} to {} {unit}",
+                        three_digits(scale * least.inductance),
+                        three_digits(scale * most.inductance)
+                    )
+                }
+                None => "no constant inductances explain the log".to_owned(),
+            },
+            Self::LowSpeed { own, lost, .. } => {
+                format!("too slow: {} V of the motor, {} V lost", three_digits(*own), three_digits(*lost))
+            }
+            Self::VoltageLimit { rows, of } => format!("{rows} of {of} rows have |u| above u_dc / sqrt 3"),
+            Self::OutsideBox { parameters } => {
+                let symbols: Vec<&str> = parameters.iter().copied().map(Parameter::symbol).collect();
+                format!("{}: outside the swarm's search box", list(&symbols))
+            }
+            Self::Convention(convention) => match convention.deviating().next() {
+                Some(off) => format!("{} is {} times the nameplate's", off.parameter.symbol(), three_digits(off.ratio)),
+                None => "u_q and speed have opposite signs".to_owned(),
+            },
+            Self::PhaseMargin { bandwidth, margin, .. } => format!("{bandwidth:.0} Hz leaves a phase margin of {margin:.0} degrees"),
+            Self::PriorContradicted { parameter, .. } => format!("the log contradicts the prior of {}", parameter.symbol()),
+            Self::Interrupted { iterations, limit } => format!("the swarm made {iterations} of {limit} iterations"),
+        }
+    }
+}
