@@ -11,17 +11,16 @@ use std::{fs, path::Path};
 pub(crate) fn check<'a>(arguments: &'a LogArguments, others_read: impl IntoIterator<Item = &'a Path>) -> Result<(), CommandError> {
     check_directory(arguments.figures.as_deref())?;
     let Some(path) = arguments.report.as_deref() else { return Ok(()) };
-    check_name(path)?;
-    let read = arguments.logs.iter().map(AsRef::as_ref).chain(arguments.motor.as_deref()).chain(others_read);
+    let mut read = arguments.logs.iter().map(AsRef::as_ref).chain(arguments.motor.as_deref()).chain(others_read);
     // A report that does not exist yet is none of them.
-    let Ok(report) = fs::canonicalize(path) else { return Ok(()) };
-    if read.into_iter().any(|read| fs::canonicalize(read).is_ok_and(|read| read == report && report.is_file())) {
+    let mut is_one = |report: &Path| report.is_file() && read.any(|read| fs::canonicalize(read).is_ok_and(|read| read == report));
+    if fs::canonicalize(path).is_ok_and(|report| is_one(&report)) {
         return Err(CommandError::Usage(format!("--report {}: this file is read; name another one", path.display())));
     }
-    Ok(())
+    check_name(path)
 }
 
-/// Refuses standard output.
+/// Refuses standard output, and names of files that are no pages.
 pub(crate) fn check_name(path: &Path) -> Result<(), CommandError> {
     if path.as_os_str() == "-" {
         return Err(CommandError::Usage("--report needs the name of a file: standard output is for the answer".to_owned()));

@@ -9,7 +9,7 @@ use fluxfit_files::{
     csv::tidy::{RowStyle, Tidied},
     input::{io_problem, line_at},
 };
-use std::io::{Cursor, ErrorKind, Read};
+use std::io::{Cursor, Read};
 
 /// Bytes of the head, which must contain the header.
 const HEAD: usize = 1 << 20;
@@ -118,18 +118,9 @@ impl Text {
 
 /// Appends the next `most` bytes, fewer only at the end, and returns their number.
 pub(super) fn read_up_to(reader: &mut dyn Read, most: usize, is_gzip: bool, bytes: &mut Vec<u8>) -> Result<usize, FileError> {
-    let start = bytes.len();
-    let mut end = start;
-    bytes.resize(start + most, 0);
-    while end < bytes.len() {
-        match reader.read(&mut bytes[end..]) {
-            Ok(0) => break,
-            Ok(count) => end += count,
-            Err(error) if error.kind() == ErrorKind::Interrupted => {}
-            Err(error) if is_gzip => return Err(Problem::Gzip { reason: error.to_string() }.into()),
-            Err(error) => return Err(io_problem("reading", &error).into()),
-        }
+    match reader.take(most as u64).read_to_end(bytes) {
+        Ok(count) => Ok(count),
+        Err(error) if is_gzip => Err(Problem::Gzip { reason: error.to_string() }.into()),
+        Err(error) => Err(io_problem("reading", &error).into()),
     }
-    bytes.truncate(end);
-    Ok(end - start)
 }

@@ -318,7 +318,7 @@ def hdf5(make):
             if not outside:
                 data[:] = fast[name]
     raw.unlink()
-    make.refuse("external.h5", "HDF5 whose i_q lies in another file", "HDF5|external", "another file|external|outside")
+    make.refuse("external.h5", "HDF5 whose i_q lies in another file", "iq", "another file|external|outside")
     with h5py.File(make.LOGS / "virtual.h5", "w") as file:
         for name in make.NAMES:
             file[name if name != "iq" else "measured"] = fast[name]

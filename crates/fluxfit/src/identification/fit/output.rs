@@ -94,11 +94,7 @@ impl OutputFit {
         let start = output_start::start(log, &stretches, steady, request, &scale);
         let Advanced { log: advanced, lag, chosen } = match known {
             Some(known) => known.refitted(log, &stretches, request)?,
-            None => with_speed_in_time(
-                log,
-                |log, beside| choose(log, &stretches, &start, beside, request, progress),
-                |log, chosen| chosen.again(log, &stretches, request),
-            )?,
+            None => with_speed_in_time(log, |log, beside| choose(log, &stretches, &start, beside, request, progress))?,
         };
         let Chosen { reading, drive, unknowns, priors, readings, terms, independent } = chosen;
         let log = advanced.as_ref().unwrap_or(log);
@@ -240,28 +236,26 @@ struct Advanced {
     chosen: Chosen,
 }
 
-/// A speed that lags spoils the angle, which comes from it or is made smooth by it: what was found of the lag, to first order, is undone,
-/// and what is left of it is found and undone too. Then all is chosen again, because faults were found beside a wrong angle.
-fn with_speed_in_time(
-    log: &Log,
-    choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>,
-    fit_again: impl Fn(&Log, Chosen) -> Result<Chosen, Error>,
-) -> Result<Advanced, Error> {
-    let found = Advanced { log: None, lag: 0.0, chosen: choose(log, &[])? };
+/// Times that a lag is looked for: it is found to first order, and again where it was undone.
+const LAG_ROUNDS: usize = 2;
+
+/// A speed that lags spoils the angle, which comes from it or is made smooth by it: what was found of the lag is undone, and all is chosen
+/// again, with what is left of it unknown: faults that were found beside a wrong angle are bent by it.
+fn with_speed_in_time(log: &Log, choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>) -> Result<Advanced, Error> {
+    let mut found = Advanced { log: None, lag: 0.0, chosen: choose(log, &[])? };
     let Some(lags) =
         found.chosen.terms.iter().find(|trial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken).cloned()
     else {
         return Ok(found);
     };
     let unknown: Vec<Unknown> = Unknown::of_fault(Fault::SpeedLag).collect();
-    let mut chosen = found.chosen;
-    let lag = std::mem::take(&mut chosen.drive.faults.speed_lag).time;
-    let left = fit_again(&log.without_speed_lag(lag), chosen)?.drive.faults.speed_lag.time;
-    let lag = lag + left;
-    let advanced = log.without_speed_lag(lag);
-    let mut chosen = choose(&advanced, &unknown)?;
-    chosen.terms.insert(0, lags);
-    Ok(Advanced { log: Some(advanced), lag, chosen })
+    for _ in 0..LAG_ROUNDS {
+        let lag = found.lag + found.chosen.drive.faults.speed_lag.time;
+        let advanced = log.without_speed_lag(lag);
+        found = Advanced { chosen: choose(&advanced, &unknown)?, lag, log: Some(advanced) };
+    }
+    found.chosen.terms.insert(0, lags);
+    Ok(found)
 }
 
 /// The lag as a whole, where a part of it was undone.
