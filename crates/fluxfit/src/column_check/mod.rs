@@ -2,7 +2,7 @@
 //! order of the axes and phases, voltages with the DC voltage.
 //!
 //! A finding is what is almost certainly wrong; a log with some noise, dead time or lag has none. Facts; the sentences are in
-//! [`words`](crate::words).
+//! `words`.
 
 mod finding;
 mod regression;
