@@ -23,14 +23,14 @@ def output(command):
     return run.stdout.splitlines()
 
 
-def spans(line):
-    """One text element of a line: runs of characters of one style, each placed at its column."""
-    style, column, parts = {}, 0, []
+def spans(line, style):
+    """One text element of a line: runs of characters of one style, each placed at its column. The style goes on in the next line."""
+    column, parts = 0, []
     for piece in re.split(r"(\x1b\[[0-9;]*m)", line):
         if piece.startswith("\x1b"):
             for code in piece[2:-1].split(";"):
                 if code in ("", "0"):
-                    style = {}
+                    style.clear()
                 elif code == "1":
                     style["font-weight"] = "bold"
                 elif code == "2":
@@ -52,7 +52,8 @@ def main():
     plain = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in lines]
     width = MARGIN * 2 + max(map(len, plain)) * CHARACTER
     height = MARGIN * 2 + len(lines) * LINE
-    body = "\n".join(f'<text y="{MARGIN + (row + 1) * LINE - 4}" xml:space="preserve">{spans(line)}</text>' for row, line in enumerate(lines) if line)
+    style = {}
+    body = "\n".join(f'<text y="{MARGIN + (row + 1) * LINE - 4}" xml:space="preserve">{spans(line, style)}</text>' for row, line in enumerate(lines) if line)
     svg = f'''<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" viewBox="0 0 {width:.0f} {height:.0f}" role="img">
 <title>fluxfit identify and fluxfit compare on a terminal</title>
 <rect width="100%" height="100%" rx="8" fill="{BACKGROUND}"/>

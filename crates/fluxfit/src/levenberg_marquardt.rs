@@ -213,7 +213,7 @@ struct Problem<'a> {
 struct Point {
     units: DVector<f64>,
     drive: Adjustable,
-    /// Without priors.
+    /// Without priors; no number where a residual is none.
     cost: f64,
     residuals: DVector<f64>,
     /// None if a derivative is no number.
@@ -226,9 +226,9 @@ impl Problem<'_> {
         let drive = self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value));
         let point = by_differences(self.objective, &[(drive, self.unknowns.to_vec())], self.differences).pop();
         let Linearized { mut residuals, mut slopes } = point.unwrap_or_default();
+        let cost = dot(&residuals, &residuals);
         // A bad candidate is no failure: the next step is shorter.
         residuals.iter_mut().filter(|residual| residual.abs() > HOPELESS || residual.is_nan()).for_each(|residual| *residual = HOPELESS);
-        let cost = dot(&residuals, &residuals);
         residuals.extend(self.priors.iter().map(|prior| prior.weight * (prior.value - drive.get(prior.unknown))));
         for ((column, unknown), scale) in slopes.iter_mut().zip(self.unknowns).zip(&self.scale) {
             column.iter_mut().for_each(|slope| *slope *= scale);

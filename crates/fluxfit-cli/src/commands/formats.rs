@@ -12,6 +12,7 @@ const WIDTH: usize = 96;
 
 const TEXT: &str = "\
 Text: comma, semicolon or tab; decimal comma; UTF-8, UTF-16, Windows-1252; gzip; titles, comments and a row of units.
+Records: JSON (a record a line, or an array of them), LabVIEW LVM, candump with its database (--dbc FILE.dbc).
 ";
 
 const OTHERS: &str = "\
