@@ -213,7 +213,7 @@ struct Problem<'a> {
 struct Point {
     units: DVector<f64>,
     drive: Adjustable,
-    /// Without priors; no number where a residual is none.
+    /// Without priors; infinite where a residual is no number, so that it loses every comparison.
     cost: f64,
     residuals: DVector<f64>,
     /// None if a derivative is no number.
@@ -226,7 +226,8 @@ impl Problem<'_> {
         let drive = self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value));
         let point = by_differences(self.objective, &[(drive, self.unknowns.to_vec())], self.differences).pop();
         let Linearized { mut residuals, mut slopes } = point.unwrap_or_default();
-        let cost = dot(&residuals, &residuals);
+        let squares = dot(&residuals, &residuals);
+        let cost = if squares.is_nan() { f64::INFINITY } else { squares };
         // A bad candidate is no failure: the next step is shorter.
         residuals.iter_mut().filter(|residual| residual.abs() > HOPELESS || residual.is_nan()).for_each(|residual| *residual = HOPELESS);
         residuals.extend(self.priors.iter().map(|prior| prior.weight * (prior.value - drive.get(prior.unknown))));
