@@ -6,7 +6,7 @@
 //! ```
 //!
 //! with R, L_d, L_q, psi and the voltage V that dead time takes not negative. Changed signs, or another order of the axes, are tried on the
-//! sums of products alone. It is no identification: it only tells which of a few explanations leaves far less of the voltage than another.
+//! same means. It is no identification: it only tells which of a few explanations leaves far less of the voltage than another.
 
 use super::finding::{Change, ColumnFinding, Turning};
 use crate::{frames::Dq, log::Log};

@@ -93,10 +93,10 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
 /// Rows with less current than this share of the largest are not counted.
 const LEAST_CURRENT: f64 = 0.2;
 
-/// The current's correlation with itself a quarter turn later, in its own frame, below which it does not stand still there;
+/// The current turns in its own frame if its correlation with itself a quarter turn later is below this.
 const TURNS: f64 = 0.0;
 
-/// and in a frame that turns back twice as fast, above which it does there.
+/// It stands still in a frame that turns back twice as fast if that correlation is above this there.
 const STANDS: f64 = 0.8;
 
 /// Whether the current turns backward in the frame of the angle, twice as fast: phases b and c, or two others, have changed places.

@@ -16,8 +16,6 @@ pub struct Summary {
     pub given: Vec<Parameter>,
     /// Parameters whose verdict is [`Verdict::Weak`].
     pub weak: Vec<Parameter>,
-    /// Parameters without a value.
-    pub missing: Vec<Parameter>,
     /// The one thing to do next; `None` where nothing is to be done, or nothing is known that would help.
     pub next: Option<NextStep>,
 }
@@ -46,7 +44,6 @@ impl Summary {
             identified: of(Verdict::Identified),
             given: with(&is_given),
             weak: of(Verdict::Weak),
-            missing: of(Verdict::NotIdentifiable),
             next: next_step(parameters),
         }
     }
