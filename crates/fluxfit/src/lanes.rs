@@ -29,6 +29,9 @@ pub(crate) trait Number:
     /// Writes the numbers of all lanes, as many as there are.
     fn store(self, numbers: &mut [f64]);
 
+    /// Reads them again.
+    fn load(self, numbers: &[f64]) -> Self;
+
     /// Calls what is compiled for the same instructions, but once and not in place: for large work that several callers share.
     fn call<F: NullaryFnOnce>(self, work: F) -> F::Output;
 
@@ -68,6 +71,11 @@ impl Number for f64 {
     #[inline(always)]
     fn store(self, numbers: &mut [f64]) {
         numbers[0] = self;
+    }
+
+    #[inline(always)]
+    fn load(self, numbers: &[f64]) -> Self {
+        numbers[0]
     }
 
     #[inline(always)]
@@ -158,6 +166,14 @@ impl<S: Simd, const K: usize> Number for Lanes<S, K> {
         for k in 0..K {
             self.set.partial_store_f64s(&mut numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES], self.vectors[k]);
         }
+    }
+
+    #[inline(always)]
+    fn load(mut self, numbers: &[f64]) -> Self {
+        for k in 0..K {
+            self.vectors[k] = self.set.partial_load_f64s(&numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES]);
+        }
+        self
     }
 
     #[inline(always)]

@@ -7,6 +7,7 @@
 
 use crate::{
     motor::{Motor, Parameter},
+    normal_matrix::{FewRows, NormalMatrix, dot},
     objective::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
@@ -14,7 +15,6 @@ use crate::{
 };
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
-use std::cell::Cell;
 
 /// Step of the differences, in the unknowns' units: the cube root of rounding, at which the errors of a central difference are least.
 const STEP: f64 = 6e-6;
@@ -76,12 +76,12 @@ pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[
 
 /// [`polish_unknowns`] as far as a comparison of costs needs it.
 pub(crate) fn polish_to_choose(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
-    minimize(objective, start, unknowns, priors, NO_STEP_OF_CHOICE, rough_jacobian, &|_| ())
+    minimize(objective, start, unknowns, priors, NO_STEP_OF_CHOICE, Differences::Forward, &|_| ())
 }
 
 /// The first step of a polish alone.
 pub(crate) fn step(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
-    minimize(objective, start, unknowns, priors, FIRST_STEP, rough_jacobian, &|_| ())
+    minimize(objective, start, unknowns, priors, FIRST_STEP, Differences::Forward, &|_| ())
 }
 
 /// [`polish_unknowns`], which calls `progress` after each step with the number of simulations so far.
@@ -92,7 +92,7 @@ pub fn polish_with_progress(
     priors: &[PriorResidual],
     progress: &dyn Fn(usize),
 ) -> Polished {
-    minimize(objective, start, unknowns, priors, NO_STEP, jacobian, progress)
+    minimize(objective, start, unknowns, priors, NO_STEP, Differences::Central, progress)
 }
 
 fn minimize(
@@ -101,73 +101,152 @@ fn minimize(
     unknowns: &[Unknown],
     priors: &[PriorResidual],
     no_step: f64,
-    derivatives: Derivatives,
+    differences: Differences,
     progress: &dyn Fn(usize),
 ) -> Polished {
     let scale: Vec<f64> = unknowns.iter().map(|unknown| start.step_unit(*unknown, objective.peak_current())).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
-    let (problem, report) = LevenbergMarquardt::new().with_ftol(no_step).with_xtol(no_step).with_patience(PATIENCE).minimize(Problem {
-        objective,
-        start,
-        unknowns,
-        priors,
-        scale,
-        units,
-        derivatives,
-        simulations: Cell::new(0),
-        progress,
-    });
-    let drive = problem.drive();
-    Polished { drive, cost: objective.cost_of(&drive), converged: report.termination.was_successful() }
+    let mut problem = Problem { objective, start, unknowns, priors, scale, differences, simulations: 0, progress, here: None, best: None };
+    problem.set_params(&units);
+    let (problem, report) = LevenbergMarquardt::new().with_ftol(no_step).with_xtol(no_step).with_patience(PATIENCE).minimize(problem);
+    let (drive, cost) = problem.here.map_or((*start, f64::NAN), |here| (here.drive, here.cost));
+    Polished { drive, cost, converged: report.termination.was_successful() }
+}
+
+/// How derivatives are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Differences {
+    Central,
+    Forward,
+}
+
+impl Differences {
+    /// How far each unknown is moved, SI.
+    fn steps(self, drive: &Adjustable, unknowns: &[Unknown], peak_current: f64) -> Vec<f64> {
+        let step = match self {
+            Self::Central => STEP,
+            Self::Forward => FORWARD_STEP,
+        };
+        unknowns.iter().map(|unknown| step * drive.step_unit(*unknown, peak_current)).collect()
+    }
+
+    /// The drives whose residuals are compared: one or two per unknown.
+    fn moved(self, drive: &Adjustable, unknowns: &[Unknown], steps: &[f64]) -> Vec<Adjustable> {
+        let moved = |(unknown, step): (&Unknown, &f64)| match self {
+            Self::Central => [*step, -step].map(|by| drive.with(*unknown, drive.get(*unknown) + by)).to_vec(),
+            Self::Forward => vec![drive.with(*unknown, drive.get(*unknown) + step)],
+        };
+        unknowns.iter().zip(steps).flat_map(moved).collect()
+    }
+
+    /// The derivatives, given the residuals of those drives and those of the drive itself, which central differences do not need.
+    fn slopes(self, moved: &[Vec<f64>], here: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+        let difference = |one: &[f64], other: &[f64], step: f64| one.iter().zip(other).map(|(one, other)| (one - other) / step).collect();
+        match self {
+            Self::Central => moved.chunks_exact(2).zip(steps).map(|(both, step)| difference(&both[0], &both[1], 2.0 * step)).collect(),
+            Self::Forward => moved.iter().zip(steps).map(|(moved, step)| difference(moved, here, *step)).collect(),
+        }
+    }
 }
 
 /// Derivatives of the residuals by each unknown, A per SI unit: a column each.
 pub fn jacobian(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Vec<f64>> {
-    let steps: Vec<f64> = unknowns.iter().map(|unknown| STEP * drive.step_unit(*unknown, objective.peak_current())).collect();
-    let moved =
-        unknowns.iter().zip(&steps).flat_map(|(unknown, step)| [*step, -step].map(|by| drive.with(*unknown, drive.get(*unknown) + by)));
-    let residuals = objective.residuals_of_all(&moved.collect::<Vec<_>>());
-    let columns = residuals
-        .chunks_exact(2)
-        .zip(&steps)
-        .map(|(both, step)| both[0].iter().zip(&both[1]).map(|(above, below)| (above - below) / (2.0 * step)).collect());
-    columns.collect()
+    let steps = Differences::Central.steps(drive, unknowns, objective.peak_current());
+    let moved = objective.residuals_of_all(&Differences::Central.moved(drive, unknowns, &steps));
+    Differences::Central.slopes(&moved, &[], &steps)
 }
 
-/// The same by forward differences, for what is only compared.
-pub(crate) fn rough_jacobian(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Vec<f64>> {
-    let steps: Vec<f64> = unknowns.iter().map(|unknown| FORWARD_STEP * drive.step_unit(*unknown, objective.peak_current())).collect();
-    let moved = unknowns.iter().zip(&steps).map(|(unknown, step)| drive.with(*unknown, drive.get(*unknown) + step));
-    let mut residuals = objective.residuals_of_all(&moved.chain([*drive]).collect::<Vec<_>>());
-    let here = residuals.pop().unwrap_or_default();
-    let slopes = |(moved, step): (&Vec<f64>, &f64)| moved.iter().zip(&here).map(|(moved, here)| (moved - here) / step).collect();
-    residuals.iter().zip(&steps).map(slopes).collect()
+/// The residuals of a drive, A, and their derivatives, A per SI unit.
+#[derive(Default)]
+pub(crate) struct Linearized {
+    pub(crate) residuals: Vec<f64>,
+    /// A column per unknown.
+    pub(crate) slopes: Vec<Vec<f64>>,
 }
 
-/// How derivatives of the residuals are found.
-type Derivatives = fn(&OutputError, &Adjustable, &[Unknown]) -> Vec<Vec<f64>>;
+/// Residuals and their derivatives by forward differences, for what is only compared, of many drives at once: no lane is idle.
+pub(crate) fn linearized(objective: &OutputError, drives: &[(Adjustable, Vec<Unknown>)]) -> Vec<Linearized> {
+    by_differences(objective, drives, Differences::Forward)
+}
 
+/// The same of one drive.
+pub(crate) fn linearized_one(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown]) -> Linearized {
+    linearized(objective, &[(*drive, unknowns.to_vec())]).pop().unwrap_or_default()
+}
+
+fn by_differences(objective: &OutputError, drives: &[(Adjustable, Vec<Unknown>)], differences: Differences) -> Vec<Linearized> {
+    let steps: Vec<Vec<f64>> =
+        drives.iter().map(|(drive, unknowns)| differences.steps(drive, unknowns, objective.peak_current())).collect();
+    let with_moved = |((drive, unknowns), steps): (&(Adjustable, Vec<Unknown>), &Vec<f64>)| {
+        let moved = differences.moved(drive, unknowns, steps);
+        std::iter::once(*drive).chain(moved)
+    };
+    let all: Vec<Adjustable> = drives.iter().zip(&steps).flat_map(with_moved).collect();
+    let mut residuals = objective.residuals_of_all(&all).into_iter();
+    let one = |steps: &Vec<f64>| {
+        let here = residuals.next().unwrap_or_default();
+        let count = if differences == Differences::Central { 2 * steps.len() } else { steps.len() };
+        let moved: Vec<Vec<f64>> = residuals.by_ref().take(count).collect();
+        Linearized { slopes: differences.slopes(&moved, &here, steps), residuals: here }
+    };
+    steps.iter().map(one).collect()
+}
+
+/// The problem as the minimizer sees it: as many residuals as unknowns, and one, whose squares and derivatives are those of all rows
+/// together. What a point needs is computed when it is set, its derivatives too, because they share a batch with its residuals.
 struct Problem<'a> {
     objective: &'a OutputError,
     start: &'a Adjustable,
     unknowns: &'a [Unknown],
     priors: &'a [PriorResidual],
     scale: Vec<f64>,
-    units: DVector<f64>,
-    derivatives: Derivatives,
-    simulations: Cell<usize>,
+    differences: Differences,
+    simulations: usize,
     progress: &'a dyn Fn(usize),
+    here: Option<Point>,
+    /// Of all that were set, that of least cost: the one that a step in vain goes back to.
+    best: Option<Point>,
+}
+
+/// What is known of a point.
+#[derive(Clone)]
+struct Point {
+    units: DVector<f64>,
+    drive: Adjustable,
+    /// Without priors; infinite where a residual is no number, so that it loses every comparison.
+    cost: f64,
+    residuals: DVector<f64>,
+    /// None if a derivative is no number.
+    jacobian: Option<DMatrix<f64>>,
 }
 
 impl Problem<'_> {
-    fn simulated(&self, times: usize) {
-        self.simulations.update(|simulations| simulations + times);
-        (self.progress)(self.simulations.get());
-    }
-
-    fn drive(&self) -> Adjustable {
-        let values = self.units.iter().zip(&self.scale).map(|(units, scale)| units * scale);
-        self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value))
+    fn point(&self, units: &DVector<f64>) -> Point {
+        let values = units.iter().zip(&self.scale).map(|(units, scale)| units * scale);
+        let drive = self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value));
+        let point = by_differences(self.objective, &[(drive, self.unknowns.to_vec())], self.differences).pop();
+        let Linearized { mut residuals, mut slopes } = point.unwrap_or_default();
+        let squares = dot(&residuals, &residuals);
+        let cost = if squares.is_nan() { f64::INFINITY } else { squares };
+        // A bad candidate is no failure: the next step is shorter.
+        residuals.iter_mut().filter(|residual| residual.abs() > HOPELESS || residual.is_nan()).for_each(|residual| *residual = HOPELESS);
+        residuals.extend(self.priors.iter().map(|prior| prior.weight * (prior.value - drive.get(prior.unknown))));
+        for ((column, unknown), scale) in slopes.iter_mut().zip(self.unknowns).zip(&self.scale) {
+            column.iter_mut().for_each(|slope| *slope *= scale);
+            column.extend(self.priors.iter().map(|prior| if prior.unknown == *unknown { -prior.weight * scale } else { 0.0 }));
+        }
+        let count = slopes.len();
+        let right = DVector::from_iterator(count, slopes.iter().map(|column| dot(column, &residuals)));
+        let squares = dot(&residuals, &residuals);
+        let normal = NormalMatrix::of(&slopes);
+        let (jacobian, explained) = if normal.is_finite() && right.iter().all(|number| number.is_finite()) {
+            let FewRows { matrix, right } = normal.few_rows(&right);
+            (Some(matrix.insert_row(count, 0.0)), right)
+        } else {
+            (None, DVector::zeros(count))
+        };
+        let rest = (squares - explained.norm_squared()).max(0.0).sqrt();
+        Point { units: units.clone(), drive, cost, residuals: explained.push(rest), jacobian }
     }
 }
 
@@ -177,36 +256,28 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     type JacobianStorage = Owned<f64, Dyn, Dyn>;
 
     fn set_params(&mut self, units: &DVector<f64>) {
-        self.units = units.clone();
+        if let Some(best) = self.best.as_ref().filter(|best| best.units == *units) {
+            self.here = Some(best.clone());
+            return;
+        }
+        let point = self.point(units);
+        self.simulations += 1 + if self.differences == Differences::Central { 2 } else { 1 } * self.unknowns.len();
+        (self.progress)(self.simulations);
+        if self.best.as_ref().is_none_or(|best| point.residuals.norm() < best.residuals.norm()) {
+            self.best = Some(point.clone());
+        }
+        self.here = Some(point);
     }
 
     fn params(&self) -> DVector<f64> {
-        self.units.clone()
+        self.here.as_ref().map(|here| here.units.clone()).unwrap_or_default()
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        let drive = self.drive();
-        let mut residuals = self.objective.residuals(&drive);
-        self.simulated(1);
-        // A bad candidate is no failure: the next step is shorter.
-        residuals.iter_mut().filter(|residual| residual.abs() > HOPELESS || residual.is_nan()).for_each(|residual| *residual = HOPELESS);
-        residuals.extend(self.priors.iter().map(|prior| prior.weight * (prior.value - drive.get(prior.unknown))));
-        Some(DVector::from_vec(residuals))
+        self.here.as_ref().map(|here| here.residuals.clone())
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let columns = (self.derivatives)(self.objective, &self.drive(), self.unknowns);
-        self.simulated(2 * self.unknowns.len());
-        let rows = columns.first().map_or(0, Vec::len);
-        let mut matrix = DMatrix::zeros(rows + self.priors.len(), self.unknowns.len());
-        for (k, column) in columns.iter().enumerate() {
-            for (row, slope) in column.iter().enumerate() {
-                matrix[(row, k)] = slope * self.scale[k];
-            }
-            for (row, prior) in self.priors.iter().enumerate().filter(|(_, prior)| prior.unknown == self.unknowns[k]) {
-                matrix[(rows + row, k)] = -prior.weight * self.scale[k];
-            }
-        }
-        matrix.iter().all(|entry| entry.is_finite()).then_some(matrix)
+        self.here.as_ref()?.jacobian.clone()
     }
 }

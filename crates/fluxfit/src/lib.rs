@@ -62,6 +62,7 @@ pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod log;
 pub mod motor;
+mod normal_matrix;
 pub mod objective;
 pub mod paper;
 mod parallel;

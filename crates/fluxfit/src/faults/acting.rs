@@ -95,10 +95,7 @@ impl FaultKinds {
             delay,
             filter: faults.filter.phases != 0.0 || faults.filter.currents != 0.0,
             voltages: turns || faults.speed_lag != none.speed_lag || faults.filter.voltages != 0.0,
-            loss: LossKinds {
-                edges: faults.dead_time.voltage != 0.0 && faults.dead_time.lasting != 1.0,
-                lasting: faults.dead_time.voltage != 0.0 && faults.dead_time.lasting != 0.0,
-            },
+            loss: LossKinds::of(&faults.dead_time),
             phase: faults.dead_time.phase != 0.0,
             beside: faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
@@ -115,7 +112,7 @@ impl FaultKinds {
             delay: self.delay || other.delay,
             filter: self.filter || other.filter,
             voltages: self.voltages || other.voltages,
-            loss: LossKinds { edges: self.loss.edges || other.loss.edges, lasting: self.loss.lasting || other.loss.lasting },
+            loss: self.loss.or(other.loss),
             phase: self.phase || other.phase,
             beside: self.beside || other.beside,
             flux: self.flux || other.flux,
@@ -242,14 +239,14 @@ impl<V: Number> Acting<V> {
         self.in_magnets_frame(lost, place)
     }
 
-    /// Of a vector in the frame of the logged angle.
+    /// A vector of the logged angle's frame, in the magnet's.
     #[inline(always)]
     fn in_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;
         self.undelayed(turned(vector, cos, sin), place.omega_e, false)
     }
 
-    /// Of a vector in the frame of the magnet.
+    /// A vector of the magnet's frame, in that of the logged angle.
     #[inline(always)]
     fn in_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;

@@ -92,10 +92,11 @@ impl Identification {
 /// the verdicts say so.
 pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<Identification, Error> {
     request.check()?;
-    let Fitted { model, steady, output, saturation } = fitted(log, request, progress)?;
+    let Fitted { model, steady, output, saturation } = fitted(log, request, None, progress)?;
     let finding = finding(steady.as_ref(), output.as_ref())?;
     let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
     let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
+    let half_widths = |log: &Log, request: &Request| half_widths(log, request, output.as_ref());
     let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), &half_widths);
     let parameters = explained(judged, finding, Some(trials));
     let method = swarm::method(request, model.model);
@@ -138,8 +139,8 @@ struct Fitted {
     saturation: Option<SaturationFinding>,
 }
 
-/// Prepares and fits.
-fn fitted(log: &Log, request: &Request, progress: Progress) -> Result<Fitted, Error> {
+/// Prepares and fits; what is known of the drive from another log is not looked for.
+fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Progress) -> Result<Fitted, Error> {
     let _ = progress(Step::OperatingPoints);
     let steady = SteadyFit::of(log, request);
     let model = model::choose(log, request.model);
@@ -148,7 +149,7 @@ fn fitted(log: &Log, request: &Request, progress: Progress) -> Result<Fitted, Er
         Model::OutputError => {
             log.refuse_short_circuit()?;
             let steady = steady.ok();
-            let output = OutputFit::of(log, steady.as_ref(), request, progress)?;
+            let output = OutputFit::of(log, steady.as_ref(), request, known, progress)?;
             (steady, Some(output))
         }
     };
@@ -160,9 +161,10 @@ fn fitted(log: &Log, request: &Request, progress: Progress) -> Result<Fitted, Er
     Ok(Fitted { model, steady, output, saturation })
 }
 
-/// Half-widths of a log's parameters as fractions of their values, infinite where there is no value; nothing if it has no answer.
-fn half_widths(log: &Log, request: &Request) -> Option<[f64; PARAMETERS]> {
-    let Fitted { steady, output, saturation, .. } = fitted(log, request, &silent).ok()?;
+/// Half-widths of a log's parameters as fractions of their values, infinite where there is no value; nothing if it has no answer. Of a
+/// drive that is `known`.
+fn half_widths(log: &Log, request: &Request, known: Option<&OutputFit>) -> Option<[f64; PARAMETERS]> {
+    let Fitted { steady, output, saturation, .. } = fitted(log, request, known, &silent).ok()?;
     let finding = finding(steady.as_ref(), output.as_ref()).ok()?;
     let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
     Some(judged.map(|one| if one.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { one.relative_half_width() }))

@@ -77,7 +77,7 @@ impl Columns {
     }
 
     /// A copy of some rows.
-    pub(super) fn of_rows(&self, rows: Range<usize>) -> Self {
+    pub(crate) fn of_rows(&self, rows: Range<usize>) -> Self {
         let of = |column: &Vec<f64>| column[rows.clone()].to_vec();
         Self {
             t: of(&self.t),

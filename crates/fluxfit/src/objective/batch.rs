@@ -7,7 +7,7 @@ use super::{
     acting_voltage::Held,
     adjustable::Adjustable,
     simulated_segment::{LINEAR_UNKNOWNS, SimulatedSegment},
-    simulation::{Drives, Sums},
+    simulation::{Drives, Sums, Trace},
     transition_lanes::MotorLanes,
     transition_polynomials::TransitionPlan,
 };
@@ -182,10 +182,13 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
         let Self { set, rows, drives, residuals } = self;
         let kinds = drives.iter().map(|drive| FaultKinds::of(&drive.faults)).fold(FaultKinds::default(), FaultKinds::or);
         let group: Drives<Lanes<S, K>, C> = lanes(set, rows, kinds, |lane| drives[lane.min(drives.len() - 1)]);
-        let mut results = vec![Simulated::default(); drives.len()];
-        let mut errors = Vec::new();
+        let count = if residuals { 2 * rows.segments.iter().map(|segment| segment.measured.len()).sum::<usize>() } else { 0 };
+        let mut results: Vec<Simulated> = drives.iter().map(|_| Simulated { cost: 0.0, residuals: vec![0.0; count] }).collect();
+        let mut first = 0;
         for segment in &rows.segments {
-            let sums = group.sums(segment);
+            let lanes = Lanes::<S, K>::COUNT;
+            let mut trace = residuals.then(|| Trace::of(segment, lanes));
+            let sums = group.sums(segment, trace.as_mut());
             let (totals, solved) =
                 (sums.total, drives.iter().enumerate().map(|(lane, _)| linear_unknowns(&sums, lane, segment.alternates)));
             let solved: Vec<_> = solved.collect();
@@ -200,23 +203,41 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
                 continue;
             }
             let linear = std::array::from_fn(|k| Lanes::of(set, |lane| solved.get(lane).map_or(0.0, |(best, _)| best[k])));
-            let lanes = Lanes::<S, K>::COUNT;
-            errors.resize(2 * lanes * segment.measured.len(), 0.0);
-            group.errors(segment, &linear, lanes, &mut errors);
+            // No closure: it would not be compiled for these instructions.
+            let mut trace = match trace {
+                Some(trace) => trace,
+                None => {
+                    let mut trace = Trace::of(segment, lanes);
+                    group.sums(segment, Some(&mut trace));
+                    trace
+                }
+            };
+            group.errors(segment, &linear, &mut trace);
+            let errors = trace.errors;
             for (lane, result) in results.iter_mut().enumerate() {
-                let own = |row: &[f64]| [row[lane], row[lane + lanes]];
                 if cancelled(lane) {
-                    result.cost += errors.chunks_exact(2 * lanes).flat_map(own).map(|error| error * error).sum::<f64>();
+                    result.cost += squares_of_lane(&errors, lane, lanes);
                 }
                 if residuals {
-                    result.residuals.reserve(2 * segment.measured.len());
-                    for row in errors.chunks_exact(2 * lanes) {
-                        result.residuals.extend(own(row));
-                    }
+                    copy_lane(&errors, lane, lanes, &mut result.residuals[first..]);
                 }
             }
+            first += 2 * segment.measured.len();
         }
         results
+    }
+}
+
+/// Sum of the squares of one lane.
+fn squares_of_lane(errors: &[f64], lane: usize, lanes: usize) -> f64 {
+    errors.chunks_exact(2 * lanes).map(|row| row[lane].powi(2) + row[lane + lanes].powi(2)).sum()
+}
+
+/// One lane alone: `d, q` of each row in turn.
+fn copy_lane(errors: &[f64], lane: usize, lanes: usize, to: &mut [f64]) {
+    let (to, _) = to.as_chunks_mut::<2>();
+    for (to, row) in to.iter_mut().zip(errors.chunks_exact(2 * lanes)) {
+        *to = [row[lane], row[lane + lanes]];
     }
 }
 

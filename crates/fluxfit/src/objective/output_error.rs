@@ -117,6 +117,11 @@ impl OutputError {
         self.simulated.costs(std::slice::from_ref(drive)).into_iter().sum()
     }
 
+    /// The same of many drives at once.
+    pub fn costs_of_all(&self, drives: &[Adjustable]) -> Vec<f64> {
+        self.simulated.costs(drives)
+    }
+
     /// Measured less simulated current, A: `d, q` of each row in turn.
     pub fn residuals(&self, drive: &Adjustable) -> Vec<f64> {
         self.residuals_of_all(std::slice::from_ref(drive)).into_iter().flatten().collect()
@@ -168,6 +173,6 @@ impl Objective for OutputError {
     fn evaluate(&self, candidates: &[f64], costs: &mut [f64]) {
         let (candidates, _) = candidates.as_chunks::<PARAMETERS>();
         let drives = candidates.iter().map(|candidate| Adjustable { motor: Motor::from(*candidate), faults: *self.held });
-        costs.copy_from_slice(&self.simulated.costs(&drives.collect::<Vec<_>>()));
+        costs.copy_from_slice(&self.costs_of_all(&drives.collect::<Vec<_>>()));
     }
 }

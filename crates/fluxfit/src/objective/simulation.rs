@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{faults::Acting, lanes::Number};
 use pulp::NullaryFnOnce;
+use std::ops::Range;
 
 /// Rows between two looks at what has died out.
 const BLOCK: usize = 64;
@@ -22,6 +23,9 @@ const BLOCK: usize = 64;
 /// A response to a first current of one ampere that is smaller than this, A, has died out: what it adds to a sum of squares is below
 /// rounding.
 const DIED_OUT: f64 = 1e-12;
+
+/// Linear unknowns of which the first current makes two; the others are those of the first vector.
+const FIRST_CURRENT: usize = 2;
 
 /// Products of two linear unknowns, each pair once.
 const PAIRS: usize = LINEAR_UNKNOWNS * (LINEAR_UNKNOWNS + 1) / 2;
@@ -58,7 +62,8 @@ struct State<V> {
     error: [V; 2],
     /// Its response to each linear unknown.
     response: [[V; 2]; LINEAR_UNKNOWNS],
-    /// Where a filter lies between the motor and the log: its output; of the response above, which is the filter's, the motor's part.
+    /// Where a filter lies between the motor and the log: its output; of the response above, which is the filter's, the motor's part. Else
+    /// the latter is zero.
     filtered: [V; 2],
     motor_response: [[V; 2]; LINEAR_UNKNOWNS],
 }
@@ -69,6 +74,13 @@ fn store<V: Number>([d, q]: [V; 2], numbers: &mut [f64]) {
     let (of_d, of_q) = numbers.split_at_mut(numbers.len() / 2);
     d.store(of_d);
     q.store(of_q);
+}
+
+/// Reads them again.
+#[inline(always)]
+fn load<V: Number>(kind: V, numbers: &[f64]) -> [V; 2] {
+    let (of_d, of_q) = numbers.split_at(numbers.len() / 2);
+    [kind.load(of_d), kind.load(of_q)]
 }
 
 /// Drives side by side, ready to be simulated.
@@ -91,16 +103,16 @@ impl<V: Number, const C: usize> Drives<V, C> {
         Self { motors, faults, polynomials, held: plan.held }
     }
 
-    /// Simulates a segment and sums its squares and products.
+    /// Simulates a segment and sums its squares and products; what [`errors`](Self::errors) will need of it goes into a trace.
     #[inline(always)]
-    pub(super) fn sums(&self, segment: &SimulatedSegment) -> Sums<V> {
+    pub(super) fn sums(&self, segment: &SimulatedSegment, trace: Option<&mut Trace>) -> Sums<V> {
         let (zero, one) = (self.motors.rs.constant(0.0), self.motors.rs.constant(1.0));
         let mut sums = Sums { total: zero, right: [zero; LINEAR_UNKNOWNS], normal: [zero; PAIRS] };
         // The first row's error is zero by definition; a first current changes it one for one.
         (sums.normal[pair(0, 0)], sums.normal[pair(1, 1)]) = (one, one);
         let mut state = self.start(segment);
         if !self.take_the_short_path() {
-            self.faulty_rows(segment, &mut state, Into::Sums(&mut sums));
+            self.faulty_rows(segment, &mut state, &mut sums, trace);
             return sums;
         }
         let polynomials = &self.polynomials[..];
@@ -116,19 +128,27 @@ impl<V: Number, const C: usize> Drives<V, C> {
         sums
     }
 
-    /// Measured less simulated currents of every row with these values of the linear unknowns, into `errors`: of each row the lanes of d,
-    /// then those of q.
+    /// Measured less simulated currents of every row with these values of the linear unknowns, into the trace of its sums.
     #[inline(always)]
-    pub(super) fn errors(&self, segment: &SimulatedSegment, linear: &[V; LINEAR_UNKNOWNS], lanes: usize, errors: &mut [f64]) {
-        let (first, errors) = errors.split_at_mut(2 * lanes);
+    pub(super) fn errors(&self, segment: &SimulatedSegment, linear: &[V; LINEAR_UNKNOWNS], trace: &mut Trace) {
+        let lanes = trace.lanes;
+        let (first, errors) = trace.errors.split_at_mut(2 * lanes);
         store([-linear[0], -linear[1]], first);
-        let mut state = self.start(segment);
+        let errors = errors.chunks_exact_mut(2 * lanes);
         if self.take_the_short_path() {
-            let i = [state.i[0] + linear[0], state.i[1] + linear[1]];
-            perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, i, errors.chunks_exact_mut(2 * lanes));
+            let i = self.start(segment).i;
+            perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, [i[0] + linear[0], i[1] + linear[1]], errors);
             return;
         }
-        self.faulty_rows(segment, &mut state, Into::Errors { linear, lanes, errors });
+        for (errors, responses) in errors.zip(trace.responses.chunks_exact(2 * lanes * LINEAR_UNKNOWNS)) {
+            let zero = linear[0].constant(0.0);
+            let mut left = load(zero, errors);
+            for (value, response) in linear.iter().zip(responses.chunks_exact(2 * lanes)) {
+                let [d, q] = load(zero, response);
+                left = [left[0] - *value * d, left[1] - *value * q];
+            }
+            store(left, errors);
+        }
     }
 
     /// Whether there is no fault and no period of a length of its own.
@@ -145,12 +165,13 @@ impl<V: Number, const C: usize> Drives<V, C> {
         let i = self.faults.motor_current([zero.constant(measured.d), zero.constant(measured.q)], segment.turns[0], omega_e);
         let response = [[one, zero], [zero, one], [zero; 2], [zero; 2]];
         // A filter is taken to have settled.
-        State { i, error: [zero; 2], response, filtered: i, motor_response: response }
+        let motor_response = if self.faults.kinds.filter { response } else { [[zero; 2]; LINEAR_UNKNOWNS] };
+        State { i, error: [zero; 2], response, filtered: i, motor_response }
     }
 
     /// All rows of drives with faults, or with periods of lengths of their own: block by block, the transitions first.
     #[inline(always)]
-    fn faulty_rows(&self, segment: &SimulatedSegment, state: &mut State<V>, mut into: Into<V>) {
+    fn faulty_rows(&self, segment: &SimulatedSegment, state: &mut State<V>, sums: &mut Sums<V>, mut trace: Option<&mut Trace>) {
         let mut transitions = Vec::with_capacity(BLOCK);
         for first in (0..segment.periods.len()).step_by(BLOCK) {
             self.transitions(segment, first, &mut transitions);
@@ -162,7 +183,8 @@ impl<V: Number, const C: usize> Drives<V, C> {
                 transitions: &transitions,
                 per_henry: [self.motors.rs.constant(1.0) / self.motors.ld, self.motors.rs.constant(1.0) / self.motors.lq],
                 state,
-                into: &mut into,
+                sums,
+                trace: trace.as_deref_mut(),
             });
         }
     }
@@ -251,16 +273,23 @@ fn perfect_errors<'a, V: Number, const C: usize>(
     }
 }
 
-/// Where a row goes.
-enum Into<'a, V> {
-    /// Into sums.
-    Sums(&'a mut Sums<V>),
-    /// What these values of the linear unknowns leave, into an array: of each row the lanes of d, then those of q.
-    Errors { linear: &'a [V; LINEAR_UNKNOWNS], lanes: usize, errors: &'a mut [f64] },
+/// Rows of drives with faults as they were simulated, before the linear unknowns are known: of each row the lanes of d, then those of q.
+pub(super) struct Trace {
+    lanes: usize,
+    /// Measured less simulated current, A.
+    pub(super) errors: Vec<f64>,
+    /// Responses to each linear unknown, from the second row on, as long as any is left.
+    responses: Vec<f64>,
+}
+
+impl Trace {
+    pub(super) fn of(segment: &SimulatedSegment, lanes: usize) -> Self {
+        Self { lanes, errors: vec![0.0; 2 * lanes * segment.measured.len()], responses: Vec::new() }
+    }
 }
 
 /// Rows of drives with faults.
-struct FaultyBlock<'a, 'b, V> {
+struct FaultyBlock<'a, V> {
     motors: &'a MotorLanes<V>,
     faults: &'a Acting<V>,
     segment: &'a SimulatedSegment,
@@ -269,34 +298,44 @@ struct FaultyBlock<'a, 'b, V> {
     /// Inverse inductances, 1/H.
     per_henry: [V; 2],
     state: &'a mut State<V>,
-    into: &'a mut Into<'b, V>,
+    sums: &'a mut Sums<V>,
+    trace: Option<&'a mut Trace>,
 }
 
-impl<V: Number> NullaryFnOnce for FaultyBlock<'_, '_, V> {
+impl<V: Number> NullaryFnOnce for FaultyBlock<'_, V> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
-        let mut state = *self.state;
-        state.forget();
+    fn call(mut self) {
+        let (mut state, mut trace) = (*self.state, self.trace.take());
+        let (first, alternates) = (state.forget(), self.segment.alternates);
+        let alive = if first { 0 } else { FIRST_CURRENT }..if alternates { LINEAR_UNKNOWNS } else { FIRST_CURRENT };
+        if let Some(trace) = trace.as_deref_mut()
+            && (first || alternates)
+        {
+            trace.responses.resize(2 * trace.lanes * LINEAR_UNKNOWNS * (self.first + self.transitions.len()), 0.0);
+        }
         for (k, transitions) in self.transitions.iter().enumerate() {
-            self.row(self.first + k, transitions, &mut state);
-            match self.into {
-                Into::Sums(sums) => state.add::<true, true>(sums),
-                Into::Errors { linear, lanes, errors } => {
-                    let row = 2 * *lanes * (self.first + k);
-                    store(state.left(linear), &mut errors[row..row + 2 * *lanes]);
-                }
+            self.row(self.first + k, transitions, alive.clone(), &mut state);
+            match (first, alternates) {
+                (false, false) => state.add::<false, false>(self.sums),
+                (false, true) => state.add::<false, true>(self.sums),
+                (true, false) => state.add::<true, false>(self.sums),
+                (true, true) => state.add::<true, true>(self.sums),
+            }
+            if let Some(trace) = trace.as_deref_mut() {
+                state.write(self.first + k, first || alternates, trace);
             }
         }
         *self.state = state;
     }
 }
 
-impl<V: Number> FaultyBlock<'_, '_, V> {
-    /// One row. Faults that depend on the current follow the simulated one: the measured one would bring its noise into the prediction.
+impl<V: Number> FaultyBlock<'_, V> {
+    /// One row, with those responses that are alive. Faults that depend on the current follow the simulated one: the measured one would
+    /// bring its noise into the prediction.
     #[inline(always)]
-    fn row(&self, row: usize, transitions: &TransitionLanes<V>, state: &mut State<V>) {
+    fn row(&self, row: usize, transitions: &TransitionLanes<V>, alive: Range<usize>, state: &mut State<V>) {
         let segment = self.segment;
         let period = &segment.rows_of_periods[row];
         let zero = self.motors.rs.constant(0.0);
@@ -317,7 +356,7 @@ impl<V: Number> FaultyBlock<'_, '_, V> {
             transitions.after(start, u)
         };
         let [alpha_d, alpha_q] = zero.constants(period.alternating);
-        for k in 0..LINEAR_UNKNOWNS {
+        for k in alive {
             let filter = self.faults.kinds.filter;
             let [of_motor, compared] =
                 self.faults.remaining(if filter { state.motor_response[k] } else { state.response[k] }, state.response[k]);
@@ -327,7 +366,9 @@ impl<V: Number> FaultyBlock<'_, '_, V> {
                 _ => transitions.driven_response(of_motor, [-alpha_q, alpha_d]),
             };
             state.response[k] = self.faults.filtered(compared, [of_motor, after], &place);
-            state.motor_response[k] = after;
+            if filter {
+                state.motor_response[k] = after;
+            }
         }
         state.filtered = self.faults.filtered(filtered, [start, state.i], &place);
         let measured = self.faults.motor_current(zero.constants(period.measured), place.end, place.omega_e);
@@ -358,12 +399,15 @@ impl<V: Number> State<V> {
         let mut left = false;
         let zero = self.error[0].constant(0.0);
         let (one, limit) = (zero.constant(1.0), zero.constant(DIED_OUT));
-        for k in 0..2 {
+        for k in 0..FIRST_CURRENT {
             for axis in 0..2 {
-                let response = self.response[k][axis];
+                // What a filter holds dies out after what it filters, or before.
+                let (response, of_motor) = (self.response[k][axis], self.motor_response[k][axis]);
                 // What is no number is kept: it has to be seen.
                 left |= zero.any_less(response.abs().if_less(limit, zero, one));
+                left |= zero.any_less(of_motor.abs().if_less(limit, zero, one));
                 self.response[k][axis] = response.abs().if_less(limit, zero, response);
+                self.motor_response[k][axis] = of_motor.abs().if_less(limit, zero, of_motor);
             }
         }
         left
@@ -386,13 +430,16 @@ impl<V: Number> State<V> {
         }
     }
 
-    /// The error that is left with these values of the linear unknowns.
+    /// Writes the error at a period's end into a trace, and the responses, if any is alive.
     #[inline(always)]
-    fn left(&self, linear: &[V; LINEAR_UNKNOWNS]) -> [V; 2] {
-        let mut left = self.error;
-        for (value, [d, q]) in linear.iter().zip(&self.response) {
-            left = [left[0] - *value * *d, left[1] - *value * *q];
+    fn write(&self, period: usize, alive: bool, trace: &mut Trace) {
+        let row = 2 * trace.lanes;
+        store(self.error, &mut trace.errors[row * (period + 1)..row * (period + 2)]);
+        if alive {
+            for (k, response) in self.response.iter().enumerate() {
+                let place = LINEAR_UNKNOWNS * period + k;
+                store(*response, &mut trace.responses[row * place..row * (place + 1)]);
+            }
         }
-        left
     }
 }

@@ -19,7 +19,7 @@
 //! time: `V` times the mean of the sign along the way from sample to edge to sample. Where a row is half a carrier period, each phase has
 //! one edge in it, up in one row and down in the next.
 
-use super::super::Place;
+use super::{super::Place, DeadTime};
 use crate::{
     frames::{clarke, inverse_clarke},
     lanes::Number,
@@ -50,6 +50,16 @@ pub(crate) struct LossKinds {
 }
 
 impl LossKinds {
+    pub(crate) fn of(dead_time: &DeadTime) -> Self {
+        let loses = dead_time.voltage != 0.0;
+        Self { edges: loses && dead_time.lasting != 1.0, lasting: loses && dead_time.lasting != 0.0 }
+    }
+
+    /// Those that either has.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self { edges: self.edges || other.edges, lasting: self.lasting || other.lasting }
+    }
+
     pub(crate) fn any(self) -> bool {
         self.edges || self.lasting
     }
@@ -74,13 +84,20 @@ impl<V: Number> SwitchedLoss<V> {
         let carrier = one + self.halves.abs();
         let rising = half * (one + self.halves * zero.constant(place.half));
         let amperes = by_volt_seconds(self.ripple * carrier * zero.constant(place.length), per_henry, place);
+        // By how much each phase is later than each other one, V: by that over the DC voltage, and half a period, it switches after it.
+        let mut later = [[zero; 3]; 3];
+        for x in 0..3 {
+            for y in 0..3 {
+                later[x][y] = higher(zero, v[y] - v[x]);
+            }
+        }
         // The currents at the edges, but for what the others lose before.
         let (mut low, mut up, mut down) = ([zero; 3], [zero; 3], [zero; 3]);
         for x in 0..3 {
             low[x] = half - v[x] * per_bus;
             let mut commanded = zero;
             for y in 0..3 {
-                let driven = half * (later(v[y], v[x]) - half * v[y] + v[x] * v[y] * per_bus);
+                let driven = half * (later[x][y] - half * v[y] + v[x] * v[y] * per_bus);
                 commanded = amperes[x][y].mul_add(driven, commanded);
             }
             let (when, way) = (half * carrier * low[x], end[x] - start[x]);
@@ -88,30 +105,41 @@ impl<V: Number> SwitchedLoss<V> {
             up[x] = when.mul_add(way, start[x]) + bent + commanded;
             down[x] = (one - when).mul_add(way, start[x]) + bent - commanded;
         }
-        // Edge by edge: what the phases that switch before have lost, as far as their dead time is over.
+        // Edge by edge: what the phases that switch before have lost, as far as their dead time is over. What is up later is down earlier.
+        let ramp = Ramp::of(self.width);
         let lost = self.voltage * (one - self.lasting);
-        let before_up = self.after_others(up, v, lost, amperes);
-        let (mut falls, out) = (down, self.out(before_up));
-        let risen = lost * (one - self.halves.abs());
+        let (mut before_up, mut before_down) = ([[zero; 3]; 3], [[zero; 3]; 3]);
         for x in 0..3 {
             for y in 0..3 {
-                falls[x] = falls[x] - amperes[x][y] * risen * out[y];
+                let until = lower(half * later[x][y], lost);
+                before_up[x][y] = amperes[x][y] * until;
+                before_down[y][x] = amperes[y][x] * until;
             }
         }
-        // An edge down gives where an edge up takes, and the lowest phase is first.
-        let mirrored = self.after_others([-falls[0], -falls[1], -falls[2]], [-v[0], -v[1], -v[2]], lost, amperes);
+        let up = after_others(up, before_up, ramp);
+        let out = ramp.out(up);
+        let risen = lost * (one - self.halves.abs());
+        let mut mirrored = [zero; 3];
+        for x in 0..3 {
+            mirrored[x] = -down[x];
+            for y in 0..3 {
+                mirrored[x] = mirrored[x] + amperes[x][y] * risen * out[y];
+            }
+        }
+        // An edge down gives where an edge up takes.
+        let mirrored = after_others(mirrored, before_down, ramp);
         let mut loss = [zero; 3];
         for x in 0..3 {
-            let (up, down) = (before_up[x], -mirrored[x]);
+            let (up, down) = (up[x], -mirrored[x]);
             if kinds.edges {
-                let at_edges = rising * ramp(up, self.width) + (one - rising) * ramp(down, self.width);
+                let at_edges = rising * ramp.at(up) + (one - rising) * ramp.at(down);
                 loss[x] = (one - self.lasting) * at_edges;
             }
             if kinds.lasting {
                 let half_way = half * carrier * (end[x] - start[x]);
                 let (top, bottom) = (start[x] + half_way, end[x] - half_way);
-                let of_up = low[x] * mean_of_ramp(start[x], up, self.width) + (one - low[x]) * mean_of_ramp(up, top, self.width);
-                let of_down = (one - low[x]) * mean_of_ramp(bottom, down, self.width) + low[x] * mean_of_ramp(down, end[x], self.width);
+                let of_up = low[x] * ramp.mean(start[x], up) + (one - low[x]) * ramp.mean(up, top);
+                let of_down = (one - low[x]) * ramp.mean(bottom, down) + low[x] * ramp.mean(down, end[x]);
                 loss[x] = loss[x] + self.lasting * (rising * of_up + (one - rising) * of_down);
             }
         }
@@ -120,33 +148,22 @@ impl<V: Number> SwitchedLoss<V> {
     }
 }
 
-impl<V: Number> SwitchedLoss<V> {
-    /// Currents at the edges up, given what they would be if no phase lost anything in this half of the carrier.
-    #[inline(always)]
-    fn after_others(&self, alone: [V; 3], v: [V; 3], lost: V, amperes: [[V; 3]; 3]) -> [V; 3] {
-        let half = lost.constant(0.5);
-        let mut i = alone;
-        // The second phase waits for the first, the third for both.
-        for _ in 0..2 {
-            let out = self.out(i);
-            i = alone;
-            for x in 0..3 {
-                for y in 0..3 {
-                    let until = half * later(v[y], v[x]);
-                    i[x] = i[x] - amperes[x][y] * until.if_less(lost, until, lost) * out[y];
-                }
+/// Currents at edges, given what they would be if no phase lost anything in this half of the carrier, and the current, A, that each phase
+/// `x` misses at its edge for a phase `y` out of which current flows at its own, at `[x][y]`.
+#[inline(always)]
+fn after_others<V: Number>(alone: [V; 3], missed: [[V; 3]; 3], ramp: Ramp<V>) -> [V; 3] {
+    let mut i = alone;
+    // The second phase waits for the first, the third for both.
+    for _ in 0..2 {
+        let out = ramp.out(i);
+        i = alone;
+        for x in 0..3 {
+            for y in 0..3 {
+                i[x] = i[x] - missed[x][y] * out[y];
             }
         }
-        i
     }
-
-    /// One where a current flows out of its leg, zero where it flows in.
-    #[inline(always)]
-    fn out(&self, i: [V; 3]) -> [V; 3] {
-        let (half, one) = (i[0].constant(0.5), i[0].constant(1.0));
-        let [a, b, c] = i;
-        [half * (one + ramp(a, self.width)), half * (one + ramp(b, self.width)), half * (one + ramp(c, self.width))]
-    }
+    i
 }
 
 /// Phase voltages as space vector modulation makes them: all shifted alike, so that the highest is as far from its limit as the lowest.
@@ -162,11 +179,10 @@ fn lower<V: Number>(a: V, b: V) -> V {
     a.if_less(b, a, b)
 }
 
-/// By how much one voltage is later, V: by that over the DC voltage, and half a period, its phase switches before the other.
+/// The higher of two numbers.
 #[inline(always)]
-fn later<V: Number>(v: V, than: V) -> V {
-    let (zero, ahead) = (v.constant(0.0), v - than);
-    zero.if_less(ahead, ahead, zero)
+fn higher<V: Number>(a: V, b: V) -> V {
+    a.if_less(b, b, a)
 }
 
 /// Phase currents, A, that a volt over so many seconds on each phase makes: those of phase `x` by phase `y` at `[x][y]`.
@@ -188,32 +204,52 @@ fn by_volt_seconds<V: Number>(seconds: V, [per_ld, per_lq]: [V; 2], place: &Plac
 }
 
 /// `i / width`, but at most one and at least minus one.
-#[inline(always)]
-fn ramp<V: Number>(i: V, width: V) -> V {
-    let (zero, one) = (i.constant(0.0), i.constant(1.0));
-    let sign = zero.if_less(i, one, i.if_less(zero, -one, zero));
-    i.abs().if_less(width, i / width, sign)
+#[derive(Clone, Copy)]
+struct Ramp<V> {
+    width: V,
+    per_width: V,
 }
 
 /// A way this short, as a fraction of its ends, leaves no digits in a difference of integrals.
 const SHORT: f64 = 1e-6;
 
-/// Mean of the ramp while its argument goes from one value to another.
-#[inline(always)]
-fn mean_of_ramp<V: Number>(from: V, to: V, width: V) -> V {
-    // Over a short way the ramp is straight, or about to be.
-    let straight = ramp(from.constant(0.5) * (from + to), width);
-    let way = to - from;
-    let long = from.constant(SHORT) * (from.abs() + to.abs());
-    long.if_less(way.abs(), (integral_of_ramp(to, width) - integral_of_ramp(from, width)) / way, straight)
-}
+impl<V: Number> Ramp<V> {
+    #[inline(always)]
+    fn of(width: V) -> Self {
+        Self { width, per_width: width.constant(1.0) / width }
+    }
 
-/// The ramp's integral: a parabola up to the width, straight from there on.
-#[inline(always)]
-fn integral_of_ramp<V: Number>(i: V, width: V) -> V {
-    let (zero, half) = (i.constant(0.0), i.constant(0.5));
-    let beyond = zero.if_less(width, half * width, zero);
-    i.abs().if_less(width, half * i * i / width, i.abs() - beyond)
+    #[inline(always)]
+    fn at(self, i: V) -> V {
+        let (zero, one) = (i.constant(0.0), i.constant(1.0));
+        let sign = zero.if_less(i, one, i.if_less(zero, -one, zero));
+        i.abs().if_less(self.width, i * self.per_width, sign)
+    }
+
+    /// One where a current flows out of its leg, zero where it flows in.
+    #[inline(always)]
+    fn out(self, [a, b, c]: [V; 3]) -> [V; 3] {
+        let (half, one) = (a.constant(0.5), a.constant(1.0));
+        [half * (one + self.at(a)), half * (one + self.at(b)), half * (one + self.at(c))]
+    }
+
+    /// Its mean while its argument goes from one value to another.
+    #[inline(always)]
+    fn mean(self, from: V, to: V) -> V {
+        // Over a short way the ramp is straight, or about to be.
+        let straight = self.at(from.constant(0.5) * (from + to));
+        let way = to - from;
+        let long = from.constant(SHORT) * (from.abs() + to.abs());
+        long.if_less(way.abs(), (self.integral(to) - self.integral(from)) / way, straight)
+    }
+
+    /// Its integral: a parabola up to the width, straight from there on.
+    #[inline(always)]
+    fn integral(self, i: V) -> V {
+        let (zero, half) = (i.constant(0.0), i.constant(0.5));
+        let beyond = zero.if_less(self.width, half * self.width, zero);
+        i.abs().if_less(self.width, half * i * i * self.per_width, i.abs() - beyond)
+    }
 }
 
 #[cfg(test)]
@@ -228,7 +264,7 @@ mod tests {
             const POINTS: u32 = 20_000;
             let point = |k: u32| ((from + (to - from) * (f64::from(k) + 0.5) / f64::from(POINTS)) / width).clamp(-1.0, 1.0);
             let expected = (0..POINTS).map(point).sum::<f64>() / f64::from(POINTS);
-            prop_assert!((mean_of_ramp(from, to, width) - expected).abs() < 1e-4);
+            prop_assert!((Ramp::of(width).mean(from, to) - expected).abs() < 1e-4);
         }
     }
 

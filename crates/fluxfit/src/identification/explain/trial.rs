@@ -179,7 +179,7 @@ impl<'a> Trials<'a> {
         if !(step.d.is_finite() && step.q.is_finite()) {
             return None;
         }
-        let mut columns = rows_of(self.log.columns(), at);
+        let mut columns = self.log.columns().of_rows(at.rows.clone());
         let begin = columns.t[0];
         let first = columns.theta_e.as_ref().map(|theta_e| theta_e[0]);
         for k in 0..columns.t.len() {
@@ -199,7 +199,8 @@ impl<'a> Trials<'a> {
         Some(columns)
     }
 
-    /// What dead time and devices take at a current, V; of an unknown angle its mean over a turn.
+    /// What dead time and devices take at a current, V; of an unknown angle its mean over a turn. Ripple is left out: only the difference
+    /// between two currents at one speed counts, and their ripple is nearly the same.
     fn loss(&self, i: Dq, theta_e: Option<f64>) -> Dq {
         let dead_time = self.losses.faults.dead_time;
         let magnitude = i.magnitude();
@@ -224,36 +225,9 @@ const GAP: f64 = 100.0;
 /// How many times longer than another window the longest may be, so that both are operating points.
 const LONGER: f64 = 4.0;
 
-/// The rows of a point.
-fn rows_of(all: &Columns, at: &OperatingPoint) -> Columns {
-    let of = |column: &Vec<f64>| column[at.rows.clone()].to_vec();
-    Columns {
-        t: of(&all.t),
-        ud: of(&all.ud),
-        uq: of(&all.uq),
-        id: of(&all.id),
-        iq: of(&all.iq),
-        omega_e: of(&all.omega_e),
-        theta_e: all.theta_e.as_ref().map(of),
-        u_dc: all.u_dc.as_ref().map(of),
-        temperature: all.temperature.as_ref().map(of),
-    }
-}
-
 /// So many rows from the first on, which begin at a time, s.
 fn part(columns: &Columns, rows: usize, begin: f64) -> Columns {
-    let of = |column: &Vec<f64>| column[..rows.min(column.len())].to_vec();
-    let mut part = Columns {
-        t: of(&columns.t),
-        ud: of(&columns.ud),
-        uq: of(&columns.uq),
-        id: of(&columns.id),
-        iq: of(&columns.iq),
-        omega_e: of(&columns.omega_e),
-        theta_e: columns.theta_e.as_ref().map(of),
-        u_dc: columns.u_dc.as_ref().map(of),
-        temperature: columns.temperature.as_ref().map(of),
-    };
+    let mut part = columns.of_rows(0..rows.min(columns.t.len()));
     let by = begin - part.t.first().copied().unwrap_or_default();
     part.t.iter_mut().for_each(|t| *t += by);
     part

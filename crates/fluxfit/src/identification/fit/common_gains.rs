@@ -13,13 +13,14 @@
 //! with `m` -1, 0 or 1, the known value `x_q`, and `K_q` what a unit of `x_q` does to the estimate. It is one for the parameter itself if
 //! that is fixed.
 
-use super::{finding::Finding, normal_matrix::inverse_normal, output::OutputFit, steady::SteadyFit};
+use super::{finding::Finding, output::OutputFit, steady::SteadyFit};
 use crate::{
     error::Error,
     identification::request::{Known, Request},
     levenberg_marquardt::{MOTOR, jacobian},
     log::Log,
     motor::{Motor, PARAMETERS},
+    normal_matrix::NormalMatrix,
     objective::{adjustable::Unknown, output_error::OutputError},
 };
 
@@ -116,7 +117,7 @@ fn by_known_of_currents(log: &Log, fit: &OutputFit, request: &Request) -> Result
     for (row, q) in free.iter().enumerate() {
         columns.iter_mut().enumerate().for_each(|(column, slopes)| slopes.push(if row == column { weight(*q) } else { 0.0 }));
     }
-    let inverse = inverse_normal(&columns);
+    let inverse = NormalMatrix::of(&columns).inverse();
     for (q, known) in request.known.iter().enumerate() {
         // What a unit of the known value asks of each unknown, before the others answer.
         let asked: Vec<f64> = match known {

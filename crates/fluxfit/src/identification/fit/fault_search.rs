@@ -14,13 +14,13 @@
 
 use super::{
     long_run::effective_sample_size,
-    normal_matrix::{dot, inverse_normal},
-    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, TimingTrial, VERY_STRONG, readings},
+    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest, readings},
     voltage_accuracy,
 };
 use crate::{
     faults::{AngleNeed, Fault, Faults},
-    levenberg_marquardt::{Polished, PriorResidual, polish_to_choose, rough_jacobian},
+    levenberg_marquardt::{Linearized, Polished, PriorResidual, linearized, linearized_one, polish_to_choose, step},
+    normal_matrix::{NormalMatrix, dot},
     objective::{
         acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
@@ -29,6 +29,7 @@ use crate::{
     parallel,
 };
 use nalgebra::DVector;
+use std::collections::BTreeSet;
 
 /// A fault that was tried.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +79,9 @@ impl FaultOutcome {
 /// Least part of the residual's power that a fault must explain to be taken when no parameter moves, or where the motor is disturbed.
 const NOTICEABLE: f64 = 0.02;
 
+/// A fault is not fitted where the score test expects less than this part of what would matter: it is not more wrong than that.
+const LEAST_EXPECTED: f64 = 0.25;
+
 /// Residuals below this fraction of the largest current are rounding and the model's own discretization: nothing to explain.
 pub(crate) const LEAST_RESIDUAL: f64 = 1e-4;
 
@@ -96,6 +100,8 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) unknowns: Vec<Unknown>,
     pub(crate) cost: f64,
     pub(crate) voltage_accuracy: f64,
+    /// Every reading with this drive's faults, the best first; empty where they were not compared since it changed.
+    pub(crate) compared: Vec<(usize, TimingTrial)>,
     /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
     pub(crate) ruled_out: Vec<Fault>,
 }
@@ -143,7 +149,7 @@ impl FaultSearch<'_> {
             self.choose_kinds(&taken, false);
         }
         let observer = match observer {
-            Some(_) => self.drop_observer(),
+            Some(_) => self.drop_observer(&taken),
             None => FaultTrial { fault: Fault::Disturbance, gain: 0.0, outcome: FaultOutcome::NotNeeded },
         };
         let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(not_taken).collect();
@@ -151,57 +157,54 @@ impl FaultSearch<'_> {
         all
     }
 
+    /// Whether there is an observer: then residuals are those of a simple filter of unknown disturbances, and small gains prove little.
+    fn is_disturbed(&self) -> bool {
+        self.unknowns.iter().any(|unknown| unknown.is_observer_gain())
+    }
+
     /// Chooses the reading of the voltages again: with the faults found, another one may fit better.
     fn choose_reading(&mut self) {
-        if let Some((place, best)) =
-            readings(self.objectives, &self.drive, &self.unknowns, self.priors, HOPELESS_AFTER_A_FIT).into_iter().next()
-        {
-            (self.reading, self.drive, self.cost) = (place, best.polished.drive, best.polished.cost);
+        self.compared = readings(self.objectives, &self.drive, &self.unknowns, self.priors, HOPELESS_AFTER_A_FIT);
+        if let Some((place, best)) = self.compared.first() {
+            (self.reading, self.drive, self.cost) = (*place, best.polished.drive, best.polished.cost);
         }
     }
 
     /// Some faults have kinds of which no fit leads from one to the other: another one may fit better, now that their numbers are known;
-    /// where `anew`, perhaps under another reading, because a half of the carrier passes for a delay.
-    fn choose_kinds(&mut self, taken: &[FaultTrial], anew: bool) {
-        let peak = self.objective().peak_current();
-        let kinds: Vec<Faults> = taken.iter().flat_map(|trial| trial.fault.kinds(&self.drive.faults, peak)).collect();
-        let all: Vec<(usize, Faults)> =
-            (0..self.objectives.len()).flat_map(|reading| kinds.iter().map(move |faults| (reading, *faults))).collect();
-        let (mut here, mut elsewhere): (Vec<_>, Vec<_>) = all.into_iter().partition(|(reading, _)| *reading == self.reading);
-        if anew {
-            let costs = parallel::map(&elsewhere, |(reading, faults)| {
-                let objective = &self.objectives[*reading].1;
-                objective.cost_of(&Adjustable { faults: *faults, ..self.drive }) / objective.rows() as f64
-            });
-            let mut order: Vec<usize> = (0..elsewhere.len()).collect();
-            order.sort_by(|one, other| costs[*one].total_cmp(&costs[*other]));
-            elsewhere = order.into_iter().take(FITTED_ELSEWHERE).map(|place| elsewhere[place]).collect();
-            here.append(&mut elsewhere);
-        }
-        let trials = parallel::map(&here, |(reading, faults)| {
-            let (timing, objective) = &self.objectives[*reading];
-            let start = Adjustable { faults: *faults, ..self.drive };
-            let polished = polish_to_choose(objective, &start, &self.unknowns, self.priors);
-            (*reading, TimingTrial { timing: *timing, polished, rows: objective.rows() })
-        });
+    /// `under_other_readings` too, where asked, because a half of the carrier passes for a delay.
+    fn choose_kinds(&mut self, taken: &[FaultTrial], under_other_readings: bool) {
+        let mut starts = self.kinds(taken, &self.drive);
+        starts.retain(|(reading, _)| under_other_readings || *reading == self.reading);
+        let fitted = contest(self.objectives, starts, &self.unknowns, self.priors, &KINDS);
         let (timing, objective) = &self.objectives[self.reading];
         let now = Polished { drive: self.drive, cost: self.cost, converged: false };
         let now = TimingTrial { timing: *timing, polished: now, rows: objective.rows() };
-        let best = trials.into_iter().min_by(|(_, one), (_, other)| one.rank().total_cmp(&other.rank()));
-        if let Some((reading, best)) = best.filter(|(_, best)| best.rank() < now.rank()) {
-            (self.reading, self.drive, self.cost) = (reading, best.polished.drive, best.polished.cost);
+        if let Some((reading, best)) = fitted.first().filter(|(_, best)| best.rank() < now.rank()) {
+            (self.reading, self.drive, self.cost) = (*reading, best.polished.drive, best.polished.cost);
+            self.compared.clear();
         }
     }
 
+    /// A drive with all kinds of its faults, under every reading.
+    fn kinds(&self, taken: &[FaultTrial], drive: &Adjustable) -> Vec<(usize, Adjustable)> {
+        let peak = self.objective().peak_current();
+        let kinds: Vec<Faults> = taken.iter().flat_map(|trial| trial.fault.kinds(&drive.faults, peak)).collect();
+        let with = |reading: usize| kinds.iter().map(move |faults| (reading, Adjustable { faults: *faults, ..*drive }));
+        (0..self.objectives.len()).flat_map(with).collect()
+    }
+
     /// Whether the observer is still worth its unknowns; if not, it goes.
-    fn drop_observer(&mut self) -> FaultTrial {
+    fn drop_observer(&mut self, taken: &[FaultTrial]) -> FaultTrial {
         let trial = |gain, outcome| FaultTrial { fault: Fault::Disturbance, gain, outcome };
         let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect();
-        let Some((place, without)) =
-            readings(self.objectives, &self.drive.without_observer(), &unknowns, self.priors, HOPELESS).into_iter().next()
-        else {
-            return trial(0.0, FaultOutcome::Taken);
-        };
+        let alone = self.drive.without_observer();
+        let as_found = (0..self.objectives.len()).map(|reading| (reading, alone));
+        let starts = as_found.chain(self.kinds(taken, &alone)).collect();
+        let mut compared = contest(self.objectives, starts, &unknowns, self.priors, &WITHOUT_OBSERVER);
+        // The best of each reading.
+        let mut seen = BTreeSet::new();
+        compared.retain(|(reading, _)| seen.insert(*reading));
+        let Some(&(place, without)) = compared.first() else { return trial(0.0, FaultOutcome::Taken) };
         let (rows, peak) = (2.0 * self.objective().rows() as f64, self.objective().peak_current());
         let gain = schwarz(without.polished.cost, self.cost, self.unknowns.len() - unknowns.len(), rows);
         let nothing_left = (without.polished.cost / rows).sqrt() <= LEAST_RESIDUAL * peak;
@@ -213,6 +216,7 @@ impl FaultSearch<'_> {
             FaultOutcome::NotPhysical
         };
         (self.reading, self.drive, self.cost, self.unknowns) = (place, without.polished.drive, without.polished.cost, unknowns);
+        self.compared = compared;
         trial(gain, outcome)
     }
 
@@ -221,8 +225,8 @@ impl FaultSearch<'_> {
         let test = ScoreTest::of(self, faults);
         let left: Vec<Fault> = faults.iter().copied().filter(|fault| !taken.iter().any(|taken| taken.fault == *fault)).collect();
         let this = &*self;
-        let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = parallel::map(&left, |fault| {
-            let outcome = if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
+        let outcome = |fault: &Fault| {
+            if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
                 FaultOutcome::Covered
             } else if this.ruled_out.iter().any(|ruled_out| ruled_out.family() == fault.family()) {
                 FaultOutcome::NotPhysical
@@ -230,20 +234,27 @@ impl FaultSearch<'_> {
                 FaultOutcome::NeedsAngle
             } else {
                 FaultOutcome::NotNeeded
-            };
-            let (gain, starts) = if outcome == FaultOutcome::NotNeeded { test.expected_gain(this, *fault) } else { (0.0, Vec::new()) };
-            (FaultTrial { fault: *fault, gain, outcome }, starts)
-        });
+            }
+        };
+        let (judged, others): (Vec<Fault>, Vec<Fault>) = left.into_iter().partition(|fault| outcome(fault) == FaultOutcome::NotNeeded);
+        let gains = test.expected_gains(self, &judged).into_iter().chain(others.iter().map(|_| (0.0, Vec::new())));
+        let trial = |(fault, (gain, starts)): (&Fault, _)| (FaultTrial { fault: *fault, gain, outcome: outcome(fault) }, starts);
+        let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = judged.iter().chain(&others).zip(gains).map(trial).collect();
         trials.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
         for place in 0..trials.len() {
             let (trial, starts) = &mut trials[place];
             if trial.gain <= VERY_STRONG {
                 break;
             }
+            if starts.is_empty() {
+                trial.outcome = FaultOutcome::NoMatter;
+                continue;
+            }
             let (outcome, fitted) = test.fit(self, trial.fault, starts);
             trial.outcome = outcome;
             if let (FaultOutcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
                 (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
+                self.compared.clear();
                 trials.swap(0, place);
                 break;
             }
@@ -252,8 +263,14 @@ impl FaultSearch<'_> {
     }
 }
 
-/// Kinds of a fault under other readings of the voltages that are fitted: the best as they stand.
-const FITTED_ELSEWHERE: usize = 4;
+/// Of the kinds of a fault: as they stand, most are far from the best.
+const KINDS: Rules = Rules { stepped: 6, fitted: 3, hopeless: HOPELESS };
+
+/// Of all kinds and readings where an observer would stay: what it hides may be one of them, and its numbers far from those found here.
+const WITHOUT_OBSERVER: Rules = Rules { stepped: 30, fitted: 12, hopeless: HOPELESS };
+
+/// Starts of faults whose derivatives are computed side by side: they fill the lanes of both cores, and their residuals the memory.
+const SIDE_BY_SIDE: usize = 8;
 
 /// Starts of a fault that are fitted: the most promising of all.
 const FITTED_STARTS: usize = 2;
@@ -288,6 +305,7 @@ fn schwarz(before: f64, after: f64, unknowns: usize, independent: f64) -> f64 {
 struct ScoreTest {
     residuals: Vec<f64>,
     jacobian: Vec<Vec<f64>>,
+    normal: NormalMatrix,
     /// Standard errors of the motor's unknowns, roughly.
     standard_errors: Vec<f64>,
     /// How many independent residuals there are.
@@ -299,48 +317,69 @@ impl ScoreTest {
     fn of(search: &FaultSearch, faults: &[Fault]) -> Self {
         let FaultSearch { drive, unknowns, cost, .. } = search;
         let objective = search.objective();
-        let residuals = objective.residuals(drive);
-        let jacobian = rough_jacobian(objective, drive, unknowns);
+        let Linearized { residuals, slopes: jacobian } = linearized_one(objective, drive, unknowns);
         // An observer takes away the correlation of the residuals: where it is judged, every row counts.
         let independent = if faults.contains(&Fault::Disturbance) { residuals.len() as f64 } else { effective_sample_size(&residuals) };
-        let inverse = inverse_normal(&jacobian);
+        let normal = NormalMatrix::of(&jacobian);
+        let inverse = normal.inverse();
         let accuracy = voltage_accuracy::covariance(objective, drive, &inverse, &jacobian, search.voltage_accuracy);
         let noise = inverse.diagonal() * (cost / independent);
         let standard_errors = (noise + accuracy.diagonal()).iter().map(|variance| variance.max(0.0).sqrt()).collect();
-        Self { residuals, jacobian, standard_errors, independent, peak: objective.peak_current() }
+        Self { residuals, jacobian, normal, standard_errors, independent, peak: objective.peak_current() }
     }
 
-    /// What a fault would gain by Schwarz's criterion if the cost were as quadratic as it looks from here, and where to start its fit.
-    fn expected_gain(&self, search: &FaultSearch, fault: Fault) -> (f64, Vec<Adjustable>) {
-        if (search.cost / self.residuals.len() as f64).sqrt() <= LEAST_RESIDUAL * self.peak {
-            return (0.0, Vec::new());
-        }
-        let unknowns: Vec<Unknown> = Unknown::of_fault(fault).collect();
-        let gain_from = |faults: &Faults| {
-            let start = calmed(Adjustable { faults: *faults, ..search.drive });
-            let cost = search.objective().cost_of(&start);
-            if cost.is_nan() || cost > TOO_FAR * search.cost {
-                return (f64::NEG_INFINITY, start);
+    /// What each fault would gain by Schwarz's criterion if the cost were as quadratic as it looks from here, and where to start its fit;
+    /// nowhere if it would not matter.
+    fn expected_gains(&self, search: &FaultSearch, faults: &[Fault]) -> Vec<(f64, Vec<Adjustable>)> {
+        let nothing_left = (search.cost / self.residuals.len() as f64).sqrt() <= LEAST_RESIDUAL * self.peak;
+        let starts = |fault: &Fault| if nothing_left { Vec::new() } else { fault.starts(&search.drive.faults, self.peak) };
+        let starts = faults.iter().enumerate().flat_map(|(place, fault)| starts(fault).into_iter().map(move |faults| (place, faults)));
+        let starts: Vec<(usize, Adjustable)> =
+            starts.map(|(place, faults)| (place, calmed(Adjustable { faults, ..search.drive }))).collect();
+        let mut gains: Vec<Vec<(f64, bool, Adjustable)>> = vec![Vec::new(); faults.len()];
+        for starts in starts.chunks(SIDE_BY_SIDE) {
+            let drives: Vec<(Adjustable, Vec<Unknown>)> =
+                starts.iter().map(|(place, start)| (*start, Unknown::of_fault(faults[*place]).collect())).collect();
+            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.expected_gain(search, start));
+            for ((place, start), (gain, matters)) in starts.iter().zip(expected) {
+                gains[*place].push((gain, matters, *start));
             }
-            let columns = rough_jacobian(search.objective(), &start, &unknowns);
-            let all = [self.jacobian.clone(), columns].concat();
-            let right = DVector::from_iterator(all.len(), all.iter().map(|column| dot(column, &self.residuals)));
-            let explained = right.dot(&(inverse_normal(&all) * &right)).min(search.cost);
-            (schwarz(search.cost, search.cost - explained, unknowns.len(), self.independent), start)
+        }
+        let best_first = |mut gains: Vec<(f64, bool, Adjustable)>| {
+            gains.sort_by(|one, other| other.0.total_cmp(&one.0));
+            let best = gains.first().map_or(f64::NEG_INFINITY, |best| best.0);
+            let matters = gains.iter().any(|(_, matters, _)| *matters);
+            (best, gains.into_iter().take(if matters { FITTED_STARTS } else { 0 }).map(|(.., start)| start).collect())
         };
-        let mut gains: Vec<(f64, Adjustable)> = parallel::map(&fault.starts(&search.drive.faults, self.peak), gain_from);
-        gains.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let best = gains.first().map_or(f64::NEG_INFINITY, |best| best.0);
-        (best, gains.into_iter().take(FITTED_STARTS).map(|(_, start)| start).collect())
+        gains.into_iter().map(best_first).collect()
+    }
+
+    /// The same of one start, and whether it may matter.
+    fn expected_gain(&self, search: &FaultSearch, start: &Linearized) -> (f64, bool) {
+        let cost = dot(&start.residuals, &start.residuals);
+        if cost.is_nan() || cost > TOO_FAR * search.cost {
+            return (f64::NEG_INFINITY, false);
+        }
+        let columns = self.jacobian.iter().chain(&start.slopes);
+        let right = DVector::from_iterator(columns.clone().count(), columns.map(|column| dot(column, &self.residuals)));
+        let shifts = self.normal.with(&self.jacobian, &start.slopes).inverse() * &right;
+        let explained = right.dot(&shifts).min(search.cost);
+        let motor = search.unknowns.iter().zip(&shifts).zip(&self.standard_errors);
+        let moves = motor
+            .filter(|((unknown, _), _)| matches!(unknown, Unknown::Motor(_)))
+            .any(|((_, shift), standard_error)| shift.abs() > LEAST_EXPECTED * standard_error);
+        let matters = moves && !search.is_disturbed() || explained > LEAST_EXPECTED * NOTICEABLE * search.cost;
+        (schwarz(search.cost, search.cost - explained, start.slopes.len(), self.independent), matters)
     }
 
     /// Fits a fault from these starts, and decides whether to take it; the drive, its cost and all unknowns if so.
     fn fit(&self, search: &FaultSearch, fault: Fault, starts: &[Adjustable]) -> (FaultOutcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
         let own: Vec<Unknown> = Unknown::of_fault(fault).collect();
         let unknowns = [&search.unknowns[..], &own].concat();
-        let polished = parallel::map(starts, |start| polish_to_choose(search.objective(), start, &unknowns, search.priors));
-        let polished = polished.into_iter().min_by(|one, other| one.cost.total_cmp(&other.cost));
-        let Some(polished) = polished else { return (FaultOutcome::NotNeeded, None) };
+        let stepped = parallel::map(starts, |start| step(search.objective(), start, &unknowns, search.priors));
+        let best = stepped.into_iter().min_by(|one, other| one.cost.total_cmp(&other.cost));
+        let Some(best) = best else { return (FaultOutcome::NotNeeded, None) };
+        let polished = polish_to_choose(search.objective(), &best.drive, &unknowns, search.priors);
         if schwarz(search.cost, polished.cost, own.len(), self.independent) <= VERY_STRONG {
             return (FaultOutcome::NotNeeded, None);
         }
@@ -351,9 +390,7 @@ impl ScoreTest {
         let moved = search.unknowns.iter().zip(&self.standard_errors).any(|(unknown, standard_error)| {
             matches!(unknown, Unknown::Motor(_)) && (polished.drive.get(*unknown) - search.drive.get(*unknown)).abs() > *standard_error
         });
-        // Beside an observer the residuals are those of a simple filter of unknown disturbances: small gains prove little.
-        let disturbed = search.unknowns.iter().any(|unknown| unknown.is_observer_gain());
-        if (!moved || disturbed) && polished.cost > (1.0 - NOTICEABLE) * search.cost {
+        if (!moved || search.is_disturbed()) && polished.cost > (1.0 - NOTICEABLE) * search.cost {
             return (FaultOutcome::NoMatter, None);
         }
         (FaultOutcome::Taken, Some((polished.drive, polished.cost, unknowns)))

@@ -10,7 +10,6 @@ mod frame_free;
 pub(crate) mod frame_lag;
 pub(crate) mod long_run;
 pub(crate) mod misfit;
-mod normal_matrix;
 mod open_loop;
 pub(crate) mod output;
 mod output_choice;

@@ -54,6 +54,8 @@ pub struct OutputFit {
     pub fault_trials: Vec<FaultTrial>,
     /// Numbers of the drive beside the motor that were found.
     pub fault_estimates: Vec<FaultEstimate>,
+    /// By how much the speed was advanced, s, before its lag was fitted.
+    pub(crate) undone_lag: f64,
     /// Stretches of the log whose rows are compared.
     pub stretches: Vec<Range<usize>>,
     /// Measured less simulated current, A: `d, q` of each of those rows in turn; with an observer, less the prediction from the row before.
@@ -74,18 +76,27 @@ pub struct OutputFit {
 const USUAL_STEPS: usize = 3;
 
 impl OutputFit {
-    /// Fits the rows of the log, or of the windows that are named.
+    /// Fits the rows of the log, or of the windows that are named. Of a drive that is `known` from another log neither the reading of the
+    /// voltages nor faults are looked for.
     ///
     /// # Errors
     /// If a window is not in the log, or no stretch is long enough.
-    pub fn of(log: &Log, steady: Option<&SteadyFit>, request: &Request, progress: Progress) -> Result<Self, Error> {
+    pub(crate) fn of(
+        log: &Log,
+        steady: Option<&SteadyFit>,
+        request: &Request,
+        known: Option<&Self>,
+        progress: Progress,
+    ) -> Result<Self, Error> {
         let stretches = stretches::fitted(log, &request.windows)?;
         let whole = stretches::as_points(log, &stretches);
         let scale = Excitation::of(&whole, &request.known).scale;
         let start = output_start::start(log, &stretches, steady, request, &scale);
-        let Advanced { log: advanced, lag, chosen } =
-            with_speed_in_time(log, |log, beside| choose(log, &stretches, &start, beside, request, progress))?;
-        let Chosen { reading, drive, unknowns, priors, readings, terms, independent, .. } = chosen;
+        let Advanced { log: advanced, lag, chosen } = match known {
+            Some(known) => known.refitted(log, &stretches, request)?,
+            None => with_speed_in_time(log, |log, beside| choose(log, &stretches, &start, beside, request, progress))?,
+        };
+        let Chosen { reading, drive, unknowns, priors, readings, terms, independent } = chosen;
         let log = advanced.as_ref().unwrap_or(log);
         let objective = &OutputError::of_rows(log, &stretches, reading)?;
         let usual = USUAL_STEPS * (1 + 2 * unknowns.len());
@@ -129,6 +140,7 @@ impl OutputFit {
             },
             fault_trials: terms,
             fault_estimates: with_lag(errors.nuisance(&drive, &unknowns), lag),
+            undone_lag: lag,
             stretches: objective.stretches().collect(),
             angle_known: objective.angle_known(),
             redundancy: residuals.len().saturating_sub(unknowns.len()),
@@ -138,6 +150,23 @@ impl OutputFit {
             residuals,
             cost,
         })
+    }
+
+    /// The same reading and faults for another log of the same drive.
+    fn refitted(&self, log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Advanced, Error> {
+        let advanced = (self.undone_lag != 0.0).then(|| log.without_speed_lag(self.undone_lag));
+        let of_faults = self.fault_estimates.iter().map(|estimate| estimate.unknown);
+        let chosen = Chosen {
+            reading: self.voltage_timing.value,
+            drive: self.drive,
+            unknowns: output_start::free(request).into_iter().chain(of_faults).collect(),
+            priors: output_start::priors(request, self.cost / self.residuals.len() as f64),
+            readings: self.timings.clone(),
+            terms: self.fault_trials.clone(),
+            independent: long_run::effective_sample_size(&self.residuals),
+        };
+        let chosen = chosen.again(advanced.as_ref().unwrap_or(log), stretches, request)?;
+        Ok(Advanced { log: advanced, lag: self.undone_lag, chosen })
     }
 
     /// Whether a fault is part of the answer.
@@ -211,7 +240,7 @@ struct Advanced {
 const LAG_ROUNDS: usize = 2;
 
 /// A speed that lags spoils the angle, which comes from it or is made smooth by it: what was found of the lag is undone, and all is chosen
-/// again, with what is left of it unknown.
+/// again, with what is left of it unknown: faults that were found beside a wrong angle are bent by it.
 fn with_speed_in_time(log: &Log, choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>) -> Result<Advanced, Error> {
     let mut found = Advanced { log: None, lag: 0.0, chosen: choose(log, &[])? };
     let Some(lags) =

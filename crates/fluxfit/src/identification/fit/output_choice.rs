@@ -30,11 +30,16 @@ pub(super) struct Chosen {
     pub(super) drive: Adjustable,
     pub(super) unknowns: Vec<Unknown>,
     pub(super) priors: Vec<PriorResidual>,
-    /// Every reading with these unknowns, the best first.
+    /// Every reading with these unknowns, the best first; empty until they are compared.
     pub(super) readings: Vec<TimingTrial>,
     pub(super) terms: Vec<FaultTrial>,
     /// Independent residuals of the rows by which it was chosen.
     pub(super) independent: f64,
+}
+
+/// What a search came to.
+struct Searched {
+    chosen: Chosen,
     /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
     criterion: f64,
     /// Whether what is left is noise, and next to no observer was needed to make it so.
@@ -68,13 +73,13 @@ pub(super) fn choose(
     let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
     let rough = readings::readings(&objectives, start, &free, &[], HOPELESS);
     let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
-    let mut best: Option<Chosen> = None;
+    let mut best: Option<Searched> = None;
     let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };
     let _ = progress(Step::Faults);
     let most = if is_control_rate(log) { TRIED_READINGS } else { 1 };
     for (place, tried) in tried.iter().copied().take(most) {
         // The search from the reading before has compared all of them, and ended with this one.
-        if best.as_ref().is_some_and(|best| best.reading == tried.timing) {
+        if best.as_ref().is_some_and(|best| best.chosen.reading == tried.timing) {
             break;
         }
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
@@ -86,6 +91,7 @@ pub(super) fn choose(
             unknowns: free.clone(),
             cost,
             voltage_accuracy,
+            compared: Vec::new(),
             ruled_out: Vec::new(),
         };
         let one = with_faults(search, &objectives, &priors);
@@ -97,19 +103,31 @@ pub(super) fn choose(
             break;
         }
     }
-    let mut best = best.ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
-    // Without a fault they were tried with these unknowns already.
-    let readings = if best.unknowns == free {
-        tried
-    } else {
-        readings::readings(&objectives, &best.drive, &best.unknowns, &priors, HOPELESS_AFTER_A_FIT)
-    };
-    best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
+    let Searched { chosen: mut best, .. } = best.ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
+    if best.readings.is_empty() {
+        // Without a fault they were tried with these unknowns already.
+        let again = || readings::readings(&objectives, &best.drive, &best.unknowns, &priors, HOPELESS_AFTER_A_FIT);
+        let readings = if best.unknowns == free { tried } else { again() };
+        best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
+    }
     Ok(best)
 }
 
+impl Chosen {
+    /// The same choice for a log that differs a little: its numbers and the reading are fitted again.
+    pub(super) fn again(self, log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Self, Error> {
+        let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
+        let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);
+        let readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
+        let Some((place, best)) = tried.first() else { return Ok(self) };
+        let drive = best.polished.drive;
+        let independent = long_run::effective_sample_size(&objectives[*place].1.residuals(&drive));
+        Ok(Self { reading: best.timing, drive, readings, independent, ..self })
+    }
+}
+
 /// The faults that a log carries under a reading, and the reading that suits them.
-fn with_faults(start: FaultSearch, objectives: &[(VoltageTiming, OutputError)], priors: &[PriorResidual]) -> Chosen {
+fn with_faults(start: FaultSearch, objectives: &[(VoltageTiming, OutputError)], priors: &[PriorResidual]) -> Searched {
     let mut search = start.clone();
     let mut terms = search.run();
     for _ in 0..MOST_RULED_OUT {
@@ -118,21 +136,23 @@ fn with_faults(start: FaultSearch, objectives: &[(VoltageTiming, OutputError)], 
         search = FaultSearch { ruled_out, ..start.clone() };
         terms = search.run();
     }
-    let FaultSearch { drive, unknowns, cost, reading, .. } = search;
+    let FaultSearch { drive, unknowns, cost, reading, compared, .. } = search;
     let (reading, objective) = &objectives[reading];
     let residuals = objective.residuals(&drive);
     let count = residuals.len() as f64;
     let independent = long_run::effective_sample_size(&residuals);
-    Chosen {
-        reading: *reading,
-        readings: Vec::new(),
-        independent,
+    Searched {
         criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
         explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
             || drive.faults.disturbance.gain.magnitude() < SMALL_GAIN && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
-        drive,
-        unknowns,
-        priors: priors.to_vec(),
-        terms,
+        chosen: Chosen {
+            reading: *reading,
+            readings: compared.into_iter().map(|(_, tried)| tried).collect(),
+            independent,
+            drive,
+            unknowns,
+            priors: priors.to_vec(),
+            terms,
+        },
     }
 }

@@ -6,7 +6,6 @@
 
 use super::{
     long_run,
-    normal_matrix::inverse_normal,
     uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
     voltage_accuracy,
 };
@@ -15,6 +14,7 @@ use crate::{
     frames::Dq,
     levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_unknowns},
     motor::{Motor, PARAMETERS},
+    normal_matrix::NormalMatrix,
     objective::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
@@ -118,7 +118,7 @@ impl Errors {
         for (column, unknown) in with_priors.iter_mut().zip(unknowns) {
             column.extend(priors.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
         }
-        let inverse = inverse_normal(&with_priors);
+        let inverse = NormalMatrix::of(&with_priors).inverse();
         let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
         let (rows, _) = residuals.as_chunks::<2>();
         // A score per row: both axes together.

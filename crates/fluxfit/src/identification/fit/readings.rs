@@ -74,8 +74,7 @@ pub(crate) const HOPELESS: f64 = 10.0;
 /// The same where the start is a fit of one of the readings: what others miss is the reading's own.
 pub(crate) const HOPELESS_AFTER_A_FIT: f64 = 3.0;
 
-/// Tries every reading from the same start. The best one first, with its place among the objectives. One step tells which are worth a
-/// whole fit.
+/// Tries every reading from the same start. The best one first, with its place among the objectives.
 pub(crate) fn readings(
     objectives: &[(VoltageTiming, OutputError)],
     start: &Adjustable,
@@ -83,18 +82,67 @@ pub(crate) fn readings(
     priors: &[PriorResidual],
     hopeless: f64,
 ) -> Vec<(usize, TimingTrial)> {
-    let trial =
-        |(timing, objective): &(VoltageTiming, OutputError), polished| TimingTrial { timing: *timing, polished, rows: objective.rows() };
-    let stepped = parallel::map(objectives, |one| trial(one, step(&one.1, start, unknowns, priors)));
-    let least = stepped.iter().map(TimingTrial::mean_square).fold(f64::INFINITY, f64::min);
-    let places: Vec<usize> = (0..objectives.len()).collect();
-    let mut tried: Vec<(usize, TimingTrial)> = parallel::map(&places, |place| {
-        let (one, stepped) = (&objectives[*place], stepped[*place]);
-        let is_hopeless = stepped.mean_square() > hopeless * least && least > 0.0;
-        (*place, if is_hopeless { stepped } else { trial(one, polish_to_choose(&one.1, &stepped.polished.drive, unknowns, priors)) })
+    let starts = (0..objectives.len()).map(|place| (place, *start)).collect();
+    contest(objectives, starts, unknowns, priors, &Rules { stepped: usize::MAX, fitted: usize::MAX, hopeless })
+}
+
+/// How many starts of a contest come how far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rules {
+    /// So many, the best as they stand, take a first step.
+    pub(crate) stepped: usize,
+    /// So many, the best after it, are fitted to the end.
+    pub(crate) fitted: usize,
+    /// But none whose mean square is so many times the least one then.
+    pub(crate) hopeless: f64,
+}
+
+/// Fits drives from starts under one reading or another, given by its place among the objectives. One step tells which are worth a whole
+/// fit. The best one first.
+pub(crate) fn contest(
+    objectives: &[(VoltageTiming, OutputError)],
+    mut starts: Vec<(usize, Adjustable)>,
+    unknowns: &[Unknown],
+    priors: &[PriorResidual],
+    rules: &Rules,
+) -> Vec<(usize, TimingTrial)> {
+    if starts.len() > rules.stepped {
+        starts = best_as_they_stand(objectives, &starts, rules.stepped);
+    }
+    let trial = |place: usize, polished| {
+        let (timing, objective) = &objectives[place];
+        (place, TimingTrial { timing: *timing, polished, rows: objective.rows() })
+    };
+    let mut stepped = parallel::map(&starts, |(place, start)| trial(*place, step(&objectives[*place].1, start, unknowns, priors)));
+    let least = stepped.iter().map(|(_, trial)| trial.mean_square()).fold(f64::INFINITY, f64::min);
+    stepped.sort_by(|(_, one), (_, other)| one.rank().total_cmp(&other.rank()));
+    let is_hopeless = |trial: &TimingTrial| trial.mean_square() > rules.hopeless * least && least > 0.0;
+    let ranked: Vec<(usize, &(usize, TimingTrial))> = stepped.iter().enumerate().collect();
+    let mut fitted = parallel::map(&ranked, |(rank, (place, stepped))| {
+        if *rank >= rules.fitted || is_hopeless(stepped) {
+            return (*place, *stepped);
+        }
+        trial(*place, polish_to_choose(&objectives[*place].1, &stepped.polished.drive, unknowns, priors))
     });
-    tried.sort_by(|(_, one), (_, other)| one.rank().total_cmp(&other.rank()));
-    tried
+    fitted.sort_by(|(_, one), (_, other)| one.rank().total_cmp(&other.rank()));
+    fitted
+}
+
+/// The starts of least mean square.
+fn best_as_they_stand(
+    objectives: &[(VoltageTiming, OutputError)],
+    starts: &[(usize, Adjustable)],
+    count: usize,
+) -> Vec<(usize, Adjustable)> {
+    // Those of one reading side by side in lanes.
+    let standing = objectives.iter().enumerate().flat_map(|(place, (_, objective))| {
+        let drives: Vec<Adjustable> = starts.iter().filter(|(own, _)| *own == place).map(|(_, drive)| *drive).collect();
+        let costs = objective.costs_of_all(&drives).into_iter().map(|cost| cost / objective.rows() as f64);
+        costs.zip(drives).map(move |(mean_square, drive)| (mean_square, place, drive)).collect::<Vec<_>>()
+    });
+    let mut standing: Vec<(f64, usize, Adjustable)> = standing.collect();
+    standing.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
+    standing.into_iter().take(count).map(|(_, place, drive)| (place, drive)).collect()
 }
 
 /// The readings that are not ruled out, given how many independent residuals there are. The best one first.

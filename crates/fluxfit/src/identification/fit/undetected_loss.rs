@@ -13,7 +13,6 @@
 
 use super::{
     long_run::effective_sample_size,
-    normal_matrix::{dot, inverse_normal},
     output_errors::{CORRELATED, correlation_of_neighbours},
     steady::SteadyFit,
     voltage_loss::{LossPrior, is_control_rate},
@@ -24,6 +23,7 @@ use crate::{
     levenberg_marquardt::jacobian,
     log::Log,
     motor::{PARAMETERS, Parameter},
+    normal_matrix::{NormalMatrix, dot},
     objective::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
@@ -60,7 +60,7 @@ pub(super) fn doubt(
     let Some(loss) = jacobian(objective, &with_loss, &[voltage]).pop() else { return [0.0; PARAMETERS] };
     // Residuals are measured less simulated: what an unknown takes up of a volt of the loss.
     let along: Vec<f64> = columns.iter().map(|column| dot(column, &loss)).collect();
-    let inverse = inverse_normal(&columns);
+    let inverse = NormalMatrix::of(&columns).inverse();
     let share: Vec<f64> = (0..unknowns.len()).map(|p| (0..unknowns.len()).map(|q| inverse[(p, q)] * along[q]).sum()).collect();
     let left = dot(&loss, &loss) - share.iter().zip(&along).map(|(share, along)| share * along).sum::<f64>();
     let variance = dot(residuals, residuals) / effective_sample_size(residuals);
