@@ -40,12 +40,7 @@ impl Summary {
             parameters.iter().filter(|judgement| is(judgement)).map(|judgement| judgement.parameter).collect()
         };
         let of = |verdict: Verdict| with(&|judgement| judgement.verdict == verdict && !is_given(judgement));
-        Self {
-            identified: of(Verdict::Identified),
-            given: with(&is_given),
-            weak: of(Verdict::Weak),
-            next: next_step(parameters),
-        }
+        Self { identified: of(Verdict::Identified), given: with(&is_given), weak: of(Verdict::Weak), next: next_step(parameters) }
     }
 }
 

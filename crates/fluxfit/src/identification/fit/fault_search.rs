@@ -104,14 +104,21 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) compared: Vec<(usize, TimingTrial)>,
     /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
     pub(crate) ruled_out: Vec<Fault>,
+    /// The first fault that was taken although another one, beside which it has no meaning, explains more without it.
+    pub(crate) contested: Option<Fault>,
 }
 
 impl FaultSearch<'_> {
     /// The first of these faults whose values have no physical meaning any more.
     pub(crate) fn unphysical(&self, trials: &[FaultTrial]) -> Option<Fault> {
+        self.unphysical_in(&self.drive, trials)
+    }
+
+    /// The same in another drive.
+    fn unphysical_in(&self, drive: &Adjustable, trials: &[FaultTrial]) -> Option<Fault> {
         let mut taken = trials.iter().filter(|trial| trial.outcome == FaultOutcome::Taken && trial.fault != Fault::Disturbance);
         let peak = self.objective().peak_current();
-        taken.find(|trial| !trial.fault.is_physical(&self.drive.faults, &self.drive.motor, peak)).map(|trial| trial.fault)
+        taken.find(|trial| !trial.fault.is_physical(&drive.faults, &drive.motor, peak)).map(|trial| trial.fault)
     }
 
     /// The output error under the reading that fits best now.
@@ -119,14 +126,21 @@ impl FaultSearch<'_> {
         &self.objectives[self.reading].1
     }
 
-    /// Adds the faults that the log carries: first the observer of a disturbed motor, if it would help, because beside it residuals are
-    /// white and faults are judged by their true worth; then faults; then the observer goes again, if they have made it useless.
-    /// Everything that was tried is returned, faults that were taken first.
-    pub(crate) fn run(&mut self) -> Vec<FaultTrial> {
-        let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == FaultOutcome::Taken);
-        if observer.is_some() {
-            self.choose_reading();
-        }
+    /// Adds the observer of a disturbed motor, if it would help: beside it residuals are white, and faults are judged by their true worth.
+    pub(crate) fn observe(&mut self) -> Option<FaultTrial> {
+        let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == FaultOutcome::Taken)?;
+        self.choose_reading();
+        Some(observer)
+    }
+
+    /// Whether another search stands where this one does.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.reading == other.reading && self.unknowns == other.unknowns && (self.cost / other.cost - 1.0).abs() < ALIKE
+    }
+
+    /// Adds the faults that the log carries; then the observer goes again, if they have made it useless. Everything that was tried is
+    /// returned, faults that were taken first.
+    pub(crate) fn run(&mut self, observer: Option<&FaultTrial>) -> Vec<FaultTrial> {
         // What stands in for a fault without the angle is no candidate beside it.
         let stands_in = |fault: Fault| fault.angle_need() == AngleNeed::OnlyTraced && self.objective().angle_known();
         let is_there = |fault: Fault| self.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
@@ -220,6 +234,13 @@ impl FaultSearch<'_> {
         trial(gain, outcome)
     }
 
+    /// Whether a drive fits better than the present one even without a fault that the present one has.
+    fn explains_more_without(&self, lost: Fault, drive: &Adjustable, unknowns: &[Unknown]) -> bool {
+        let start = Unknown::of_fault(lost).fold(*drive, |drive, unknown| drive.with(unknown, 0.0));
+        let unknowns: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| unknown.fault() != Some(lost)).collect();
+        polish_to_choose(self.objective(), &start, &unknowns, self.priors).cost < self.cost
+    }
+
     /// Judges faults; of those that deserve it the best is taken, and comes first.
     fn take_best(&mut self, faults: &[Fault], taken: &[FaultTrial]) -> Vec<FaultTrial> {
         let test = ScoreTest::of(self, faults);
@@ -253,6 +274,13 @@ impl FaultSearch<'_> {
             let (outcome, fitted) = test.fit(self, trial.fault, starts);
             trial.outcome = outcome;
             if let (FaultOutcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
+                if let Some(lost) = self.unphysical_in(&drive, taken) {
+                    trial.outcome = FaultOutcome::NotPhysical;
+                    if self.contested.is_none() && self.explains_more_without(lost, &drive, &unknowns) {
+                        self.contested = Some(lost);
+                    }
+                    continue;
+                }
                 (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
                 self.compared.clear();
                 trials.swap(0, place);
@@ -284,6 +312,9 @@ fn calmed(mut drive: Adjustable) -> Adjustable {
     (gain.d, gain.q) = (gain.d.min(LARGEST_GAIN), gain.q.min(LARGEST_GAIN));
     drive
 }
+
+/// Costs of two searches that differ by less than this part are of the same fit: fits that choose end so near to a minimum.
+const ALIKE: f64 = 1e-3;
 
 /// Cost of a start, over that without the fault, beyond which its derivatives say nothing of the fit: it is unstable.
 const TOO_FAR: f64 = 1e4;

@@ -19,7 +19,6 @@ use crate::{
     objective::{
         acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
-        output_error::OutputError,
     },
 };
 use std::ops::Range;
@@ -74,6 +73,7 @@ pub(super) fn choose(
     let rough = readings::readings(&objectives, start, &free, &[], HOPELESS);
     let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut best: Option<Searched> = None;
+    let mut begun: Vec<FaultSearch> = Vec::new();
     let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };
     let _ = progress(Step::Faults);
     let most = if is_control_rate(log) { TRIED_READINGS } else { 1 };
@@ -83,7 +83,7 @@ pub(super) fn choose(
             break;
         }
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
-        let search = FaultSearch {
+        let mut search = FaultSearch {
             objectives: &objectives,
             reading: place,
             priors: &priors,
@@ -93,8 +93,14 @@ pub(super) fn choose(
             voltage_accuracy,
             compared: Vec::new(),
             ruled_out: Vec::new(),
+            contested: None,
         };
-        let one = with_faults(search, &objectives, &priors);
+        let observer = search.observe();
+        if begun.iter().any(|other| search.is_like(other)) {
+            continue;
+        }
+        let one = with_faults(&search, observer.as_ref());
+        begun.push(search);
         let explained = one.explained;
         if best.as_ref().is_none_or(|best| one.criterion < best.criterion) {
             best = Some(one);
@@ -126,33 +132,50 @@ impl Chosen {
     }
 }
 
-/// The faults that a log carries under a reading, and the reading that suits them.
-fn with_faults(start: FaultSearch, objectives: &[(VoltageTiming, OutputError)], priors: &[PriorResidual]) -> Searched {
-    let mut search = start.clone();
-    let mut terms = search.run();
-    for _ in 0..MOST_RULED_OUT {
-        let Some(fault) = search.unphysical(&terms) else { break };
-        let ruled_out = [search.ruled_out, vec![fault]].concat();
-        search = FaultSearch { ruled_out, ..start.clone() };
-        terms = search.run();
+/// The faults that a log carries under a reading, and the reading that suits them. A fault whose value has no physical meaning, or would
+/// lose it beside a fault that explains more, is left out in another search; of those that mean something the best is taken.
+fn with_faults(start: &FaultSearch, observer: Option<&FaultTrial>) -> Searched {
+    let mut ruled_out = Vec::new();
+    let mut best: Option<(bool, Searched)> = None;
+    for _ in 0..=MOST_RULED_OUT {
+        let mut search = FaultSearch { ruled_out: ruled_out.clone(), ..start.clone() };
+        let terms = search.run(observer);
+        let unphysical = search.unphysical(&terms);
+        let contested = search.contested;
+        let one = (unphysical.is_some(), Searched::of(search, terms));
+        let is_better = |best: &(bool, Searched)| (one.0, one.1.criterion) < (best.0, best.1.criterion);
+        let is_done = !one.0 && one.1.explained;
+        if best.as_ref().is_none_or(is_better) {
+            best = Some(one);
+        }
+        match unphysical.or(contested) {
+            Some(fault) if !is_done => ruled_out.push(fault),
+            _ => break,
+        }
     }
-    let FaultSearch { drive, unknowns, cost, reading, compared, .. } = search;
-    let (reading, objective) = &objectives[reading];
-    let residuals = objective.residuals(&drive);
-    let count = residuals.len() as f64;
-    let independent = long_run::effective_sample_size(&residuals);
-    Searched {
-        criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
-        explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
-            || drive.faults.disturbance.gain.magnitude() < SMALL_GAIN && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
-        chosen: Chosen {
-            reading: *reading,
-            readings: compared.into_iter().map(|(_, tried)| tried).collect(),
-            independent,
-            drive,
-            unknowns,
-            priors: priors.to_vec(),
-            terms,
-        },
+    best.expect("a search was run").1
+}
+
+impl Searched {
+    fn of(search: FaultSearch, terms: Vec<FaultTrial>) -> Self {
+        let FaultSearch { drive, unknowns, cost, reading, compared, .. } = search;
+        let (reading, objective) = &search.objectives[reading];
+        let residuals = objective.residuals(&drive);
+        let count = residuals.len() as f64;
+        let independent = long_run::effective_sample_size(&residuals);
+        Self {
+            criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
+            explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
+                || drive.faults.disturbance.gain.magnitude() < SMALL_GAIN && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+            chosen: Chosen {
+                reading: *reading,
+                readings: compared.into_iter().map(|(_, tried)| tried).collect(),
+                independent,
+                drive,
+                unknowns,
+                priors: search.priors.to_vec(),
+                terms,
+            },
+        }
     }
 }
