@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind},
+    faults::Fault,
     levenberg_marquardt::PriorResidual,
     log::Log,
     objective::{
@@ -136,24 +137,40 @@ impl Chosen {
 /// lose it beside a fault that explains more, is left out in another search; of those that mean something the best is taken.
 fn with_faults(start: &FaultSearch, observer: Option<&FaultTrial>) -> Searched {
     let mut ruled_out = Vec::new();
-    let mut best: Option<(bool, Searched)> = None;
-    for _ in 0..=MOST_RULED_OUT {
-        let mut search = FaultSearch { ruled_out: ruled_out.clone(), ..start.clone() };
+    let mut best = Attempt::of(start, &ruled_out, observer);
+    let mut in_doubt = best.in_doubt;
+    for _ in 0..MOST_RULED_OUT {
+        let Some(fault) = in_doubt else { break };
+        ruled_out.push(fault);
+        let attempt = Attempt::of(start, &ruled_out, observer);
+        in_doubt = attempt.in_doubt;
+        if (attempt.is_unphysical, attempt.searched.criterion) < (best.is_unphysical, best.searched.criterion) {
+            best = attempt;
+        }
+    }
+    best.searched
+}
+
+/// A search, and what speaks against it.
+struct Attempt {
+    searched: Searched,
+    /// A fault that it took has no physical meaning.
+    is_unphysical: bool,
+    /// The fault to search without.
+    in_doubt: Option<Fault>,
+}
+
+impl Attempt {
+    fn of(start: &FaultSearch, ruled_out: &[Fault], observer: Option<&FaultTrial>) -> Self {
+        let mut search = FaultSearch { ruled_out: ruled_out.to_vec(), ..start.clone() };
         let terms = search.run(observer);
         let unphysical = search.unphysical(&terms);
         let contested = search.contested;
-        let one = (unphysical.is_some(), Searched::of(search, terms));
-        let is_better = |best: &(bool, Searched)| (one.0, one.1.criterion) < (best.0, best.1.criterion);
-        let is_done = !one.0 && one.1.explained;
-        if best.as_ref().is_none_or(is_better) {
-            best = Some(one);
-        }
-        match unphysical.or(contested) {
-            Some(fault) if !is_done => ruled_out.push(fault),
-            _ => break,
-        }
+        let searched = Searched::of(search, terms);
+        // Where nothing is left to explain, no other fault explains more.
+        let contested = contested.filter(|_| !searched.explained);
+        Self { searched, is_unphysical: unphysical.is_some(), in_doubt: unphysical.or(contested) }
     }
-    best.expect("a search was run").1
 }
 
 impl Searched {
