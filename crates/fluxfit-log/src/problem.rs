@@ -66,6 +66,14 @@ pub(crate) enum Problem {
     #[error("by its values this column is not the angle of the rotor; map theta_e to the angle, or log it")]
     NoAngle,
 
+    // Characteristics
+    #[error("the columns {} could each be the {quantity}; leave one of them in the table", columns(.headers))]
+    AmbiguousQuantity { quantity: &'static str, headers: Vec<String> },
+    #[error("the speed {} is electrical, and a table of a test bench needs that of the shaft; state the number of pole pairs", quote(.header))]
+    ElectricalSpeed { header: String },
+    #[error("this table of speeds has more than {most} rows; leave a row for each speed")]
+    LongCharacteristic { most: usize },
+
     // Data
     #[error(
         "ud, uq, id, iq and omega_e all have a mean near 0 and a standard deviation near 1: the file is standardized, so its values are not in V, A and rad/s; use the original data"
@@ -161,9 +169,11 @@ impl Problem {
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
             Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::Duplicate { .. } => FileErrorKind::Columns,
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle => FileErrorKind::Columns,
+            Self::AmbiguousQuantity { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
+            Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
-            Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) => FileErrorKind::Data,
+            Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) | Self::LongCharacteristic { .. } => FileErrorKind::Data,
             Self::ExternalHdf5 | Self::MatObject { .. } | Self::NewerHdf5 { .. } | Self::Hdf5Filter { .. } => FileErrorKind::Unsupported,
             Self::ParquetCodec { .. } | Self::LargeChunks { .. } | Self::OldMdf => FileErrorKind::Unsupported,
             #[cfg(not(feature = "mdf4"))]
@@ -187,6 +197,7 @@ impl Problem {
             Self::MappedHeader { channel, nearest: Some(header), .. } => vec![Advice::MapColumns(vec![(channel, Some(header.clone()))])],
             Self::NotALog { advice, .. } => advice.iter().cloned().collect(),
             Self::HeaderUnit { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
+            Self::ElectricalSpeed { .. } => vec![Advice::StatePolePairs],
             Self::PolePairs { channel, electrical, .. } => {
                 vec![Advice::StatePolePairs, Advice::StateUnit { channel, unit: Some(electrical) }]
             }

@@ -105,6 +105,19 @@ pub enum ErrorKind {
         /// Last time of the log, s.
         end: f64,
     },
+    /// A characteristic of too few speeds.
+    #[error("the table has {rows} speeds; at least {least} are needed: measure at more of them, from slow to fast")]
+    ShortCharacteristic {
+        /// Speeds given.
+        rows: usize,
+        /// Speeds needed.
+        least: usize,
+    },
+    /// Currents of a short circuit alone: twice the resistance, inductances and flux would give the same ones.
+    #[error(
+        "a short circuit's currents alone give only ratios of the parameters; add its torque, or an open-circuit table of the same motor"
+    )]
+    NoScale,
     /// A setting outside its range.
     #[error("{setting} is {value}; it must be {range}")]
     Setting {

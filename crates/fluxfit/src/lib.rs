@@ -36,6 +36,7 @@
 //! | [`Summary`], [`NextStep`] | the answer in a sentence, and the one thing to do next |
 //! | [`Promised`], [`Measurement`], [`Place`], [`Also`] | of a remedy: what to measure, where, and what it would bring |
 //! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is no error but a verdict |
+//! | [`characteristics`] | tables of tests on a bench instead of a log: open and shorted terminals |
 //! | [`check_columns`], [`ColumnFinding`] | what the columns contradict each other in, before anything is fitted |
 //! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
@@ -48,6 +49,7 @@
 //! Results depend on the log, the request and the seed: not on files, clocks or the number of threads.
 
 mod answer;
+pub mod characteristics;
 pub mod column_check;
 pub mod current_loop;
 #[cfg(feature = "serde")]

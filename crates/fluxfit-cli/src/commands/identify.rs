@@ -1,5 +1,6 @@
 //! `fluxfit identify`: arguments to a request, the library's answer to the terminal, to JSON, to a report and to exports.
 
+mod characteristics;
 mod current_loop;
 mod decisions;
 mod details;
@@ -96,6 +97,9 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     }
     report::check(&arguments.log, [])?;
     export::check(&arguments.log, &arguments.export)?;
+    if let Some(status) = characteristics::run(&arguments.log, &for_logs(arguments), input::pole_pairs(&arguments.log)?)? {
+        return Ok(status);
+    }
     let input = input::read(&arguments.log)?;
     let findings = input.findings();
     if let Some(finding) = findings.first().filter(|_| arguments.model == ModelArgument::Auto) {
@@ -126,6 +130,19 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     };
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
     Ok(if answer.is_complete() { exported } else { Status::Incomplete })
+}
+
+/// The options that are given and have no meaning for tables of a test bench.
+fn for_logs(arguments: &Identify) -> Vec<&'static str> {
+    let options = [
+        ("--export", !arguments.export.is_empty()),
+        ("--fix", !arguments.fix.is_empty()),
+        ("--prior", !arguments.prior.is_empty()),
+        ("--hold-out", arguments.hold_out),
+        ("--bandwidth", arguments.bandwidth.is_some()),
+        ("--model", arguments.model != ModelArgument::Auto),
+    ];
+    options.into_iter().filter(|(_, is_stated)| *is_stated).map(|(option, _)| option).collect()
 }
 
 /// Identifies, and shows the progress. The swarm's search can be interrupted; before it, people get a rough answer.

@@ -77,6 +77,12 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     Ok(Input { log: Arc::new(log), motor, name: names.join(", "), pole_pairs: options.pole_pairs, columns: read_columns })
 }
 
+/// The pole pairs that anything beside the logs tells.
+pub(crate) fn pole_pairs(arguments: &LogArguments) -> Result<Option<u32>, CommandError> {
+    let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
+    Ok(options(&arguments.columns, motor.pole_pairs)?.pole_pairs)
+}
+
 /// What the reader is told; the motor file's pole pairs count where nothing else tells them.
 pub(crate) fn options(arguments: &ColumnArguments, of_motor: Option<u32>) -> Result<LogOptions, CommandError> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?.unwrap_or_default();

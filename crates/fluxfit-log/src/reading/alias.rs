@@ -86,7 +86,8 @@ pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
     beside(0) == beside(1)
 }
 
-fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
+/// Whether a name is one of a channel's usual ones.
+pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
     let dimension = channel.dimension();
     let field = field(&head.name);
     let of_row = head.unit.as_deref().filter(|unit| !matches!(unit.trim(), "" | "-"));

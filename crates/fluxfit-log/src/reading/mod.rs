@@ -9,6 +9,7 @@
 mod alias;
 mod align;
 mod channels;
+mod characteristic;
 mod chosen;
 mod clock;
 mod columns;
@@ -30,6 +31,7 @@ mod selection;
 mod table;
 mod turning;
 
+pub use characteristic::{ReadCharacteristic, read_characteristic};
 pub use inspect::{InspectedColumn, Inspection, inspect};
 pub use layout::{LAYOUTS, Layout};
 pub use mapping::{Mapping, Park, read_mapping};

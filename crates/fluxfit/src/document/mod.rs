@@ -24,6 +24,7 @@
 mod by_key;
 mod by_parameter;
 mod channel;
+mod characteristics;
 mod convention;
 mod current_loop;
 mod diagnostics;
@@ -47,6 +48,7 @@ mod warning;
 pub use by_key::ByKey;
 pub use by_parameter::{ByParameter, MotorWithCost};
 pub use channel::PerChannel;
+pub use characteristics::{CHARACTERISTICS, CharacteristicsDocument, EstimateEntry, InstrumentEntry, TableEntry};
 pub use convention::{CandidateEntry, ColumnFactors, ConventionEntry, PatternEntry};
 pub use current_loop::{AxisGains, CurrentLoopEntry, GainEntry};
 pub use diagnostics::{Diagnostics, SystematicEntry};
@@ -71,6 +73,7 @@ pub fn schemas() -> Vec<(&'static str, schemars::Schema)> {
         (IDENTIFICATION, schema_of::<IdentificationDocument>()),
         (STUDY, schema_of::<StudyDocument>()),
         (VALIDATION, schema_of::<ValidationDocument>()),
+        (CHARACTERISTICS, schema_of::<CharacteristicsDocument>()),
         (TRUTH, schema_of::<TruthDocument<()>>()),
     ]
 }

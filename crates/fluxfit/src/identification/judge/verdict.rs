@@ -36,6 +36,17 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// By half of the 95 % interval, as a fraction of a value that is positive.
+    pub(crate) fn of_half_width(fraction: f64) -> Self {
+        if fraction <= IDENTIFIED {
+            Self::Identified
+        } else if fraction <= WEAK {
+            Self::Weak
+        } else {
+            Self::NotIdentifiable
+        }
+    }
+
     /// Name in files.
     pub fn key(self) -> &'static str {
         match self {
@@ -96,12 +107,10 @@ pub(crate) fn judge(
 
 fn by_interval(parameter: Parameter, finding: &Finding, uncertainty: ParameterUncertainty, known: Known) -> Judged {
     let raw = finding.motor.get(parameter);
-    let verdict = match uncertainty.half_width / raw.abs() {
-        _ if matches!(known, Known::Fixed(_)) => Verdict::Identified,
+    let verdict = match known {
+        Known::Fixed(_) => Verdict::Identified,
         _ if raw <= 0.0 => Verdict::NotIdentifiable,
-        width if width <= IDENTIFIED => Verdict::Identified,
-        width if width <= WEAK => Verdict::Weak,
-        _ => Verdict::NotIdentifiable,
+        _ => Verdict::of_half_width(uncertainty.half_width / raw.abs()),
     };
     let reason = match (known, verdict) {
         (Known::Fixed(_), _) => Some(Reason::Given),

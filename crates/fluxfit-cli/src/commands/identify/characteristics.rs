@@ -1,0 +1,129 @@
+//! Tables of a test bench in place of logs: read, identified together, shown.
+
+use crate::{
+    arguments::LogArguments,
+    commands::{input, status::Status},
+    error::CommandError,
+    json,
+    terminal::{self, BAD, DIM, GOOD, WARNING, table, wrapped},
+};
+use fluxfit::{
+    Verdict,
+    characteristics::{Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, identify_characteristics},
+    document::CharacteristicsDocument,
+    motor::Parameter,
+};
+use fluxfit_log::read_characteristic;
+use fluxfit_units::{Scale, significant};
+
+/// Identifies from tables, if tables are what is given; `None` of logs. `stated` are options that were given and are for logs alone.
+pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<u32>) -> Result<Option<Status>, CommandError> {
+    let logs = &arguments.logs;
+    let mut read = Vec::new();
+    for path in logs {
+        read.extend(read_characteristic(path, pole_pairs)?.map(|read| (input::name(path), read)));
+    }
+    if read.is_empty() {
+        return Ok(None);
+    }
+    if read.len() < logs.len() {
+        let (name, first) = (&read[0].0, read[0].1.table.label());
+        return Err(CommandError::Usage(format!(
+            "{name} is an {first}, and another file is none: identify the tables alone, then the log with their values (--prior psi_f=VALUE±ERROR)"
+        )));
+    }
+    let of_log = [("--report", arguments.report.is_some()), ("--figures", arguments.figures.is_some())];
+    let of_log = of_log.iter().filter(|(_, is_stated)| *is_stated).map(|(option, _)| option);
+    if let Some(option) = of_log.chain(stated).next() {
+        return Err(CommandError::Usage(format!("{option} is for logs of a drive, not for tables of a test bench; leave it out")));
+    }
+    for (name, one) in &read {
+        one.notes.iter().for_each(|note| terminal::note(&format!("{name}: {}", note.sentence)));
+    }
+    let tables: Vec<Characteristic> = read.iter().map(|(_, read)| read.table.clone()).collect();
+    let names: Vec<String> =
+        read.iter().map(|(name, read)| format!("{name}: {} of {} speeds", read.table.label(), read.table.rows())).collect();
+    let answer = identify_characteristics(&tables, pole_pairs).map_err(|error| input::of_log(&read[0].0, error))?;
+    if arguments.json {
+        terminal::print(&json::text(&CharacteristicsDocument::of(&tables, &answer))?)?;
+    } else {
+        show(&names, &answer)?;
+    }
+    Ok(Some(if answer.is_complete() { Status::Complete } else { Status::Incomplete }))
+}
+
+/// The symbol of what the tables tell: without pole pairs, inductances and flux times these.
+fn symbol(parameter: Parameter, answer: &CharacteristicsAnswer) -> String {
+    match (parameter, answer.pole_pairs) {
+        (Parameter::Rs, _) | (_, Some(_)) => parameter.symbol().to_owned(),
+        _ => format!("p {}", parameter.symbol()),
+    }
+}
+
+fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()> {
+    let of = |verdict: Verdict| answer.parameters.iter().filter(move |estimate| estimate.verdict == verdict);
+    let identified = of(Verdict::Identified).count();
+    let style = match identified {
+        4 => GOOD,
+        0 => BAD,
+        _ => WARNING,
+    }
+    .bold();
+    let symbols = |verdict: Verdict| of(verdict).map(|estimate| symbol(estimate.parameter, answer)).collect::<Vec<_>>().join(", ");
+    let mut status = if identified == 4 { "All 4 identified.".to_owned() } else { format!("{identified} of 4 identified.") };
+    if of(Verdict::Weak).count() > 0 {
+        status += &format!(" {} weak.", symbols(Verdict::Weak));
+    }
+    if of(Verdict::NotIdentifiable).count() > 0 {
+        let what = if answer.residual_rms[1].is_none() { "a short-circuit table of the same motor" } else { "speeds from slow to fast" };
+        status += &format!(" For {}: add {what}.", symbols(Verdict::NotIdentifiable));
+    }
+    if answer.pole_pairs.is_none() {
+        status += " p are the pole pairs: with --pole-pairs N the values are the motor's own.";
+    }
+    let mut text = format!("{style}{}{style:#}\n", wrapped("", &status).trim_end());
+    names.iter().for_each(|name| text += &format!("{DIM}{}{DIM:#}\n", wrapped("", name).trim_end()));
+    let rows = answer.parameters.iter().map(|estimate| cells(estimate, answer));
+    text += &format!("\n{}", table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows));
+    let left = [("voltages", 100.0, "%"), ("currents", 100.0, "%"), ("torques", 1.0, "N m")];
+    let left = left
+        .iter()
+        .zip(answer.residual_rms)
+        .filter_map(|((what, factor, unit), rms)| Some(format!("{what} by {} {unit}", significant(factor * rms?, 2))));
+    text += &format!("\n{}", wrapped("", &format!("Model: steady tests; misses {} rms.", left.collect::<Vec<_>>().join(", "))));
+    let unseen = answer.unseen.iter().map(|(instrument, changes)| {
+        let what = match instrument {
+            Instrument::Voltage => "all voltages",
+            Instrument::Current => "all currents",
+            Instrument::Torque => "all torques",
+        };
+        let moved = Parameter::ALL.iter().zip(changes).filter(|(_, change)| change.abs() >= LEAST_CHANGE);
+        let moved: Vec<String> =
+            moved.map(|(parameter, change)| format!("{} {:+.1} %", symbol(*parameter, answer), 100.0 * change)).collect();
+        format!("{what} read 1 % too large: {}", if moved.is_empty() { "nothing".to_owned() } else { moved.join(", ") })
+    });
+    let unseen = format!("Not in the intervals, because no table shows it: {}.", unseen.collect::<Vec<_>>().join("; "));
+    text += &format!("\n{DIM}{}{DIM:#}\n", wrapped("", &unseen).trim_end());
+    terminal::print(&text)?;
+    terminal::release_notes();
+    Ok(())
+}
+
+/// Changes below this part are not worth a word.
+const LEAST_CHANGE: f64 = 5e-4;
+
+fn cells(estimate: &CharacteristicEstimate, answer: &CharacteristicsAnswer) -> Vec<String> {
+    let (symbol, verdict) = (symbol(estimate.parameter, answer), estimate.verdict.key().replace('-', " "));
+    let Some((value, [low, high])) = estimate.value.zip(estimate.interval()) else {
+        return vec![symbol, "-".to_owned(), String::new(), String::new(), String::new(), verdict];
+    };
+    let (scale, error) = (Scale::for_value(estimate.parameter, value), estimate.uncertainty.standard_error());
+    vec![
+        symbol,
+        scale.format(value, error),
+        scale.unit(estimate.parameter.unit()),
+        format!("±{} %", significant(100.0 * estimate.uncertainty.half_width / value, 2)),
+        format!("{} .. {}", scale.format(low, error), scale.format(high, error)),
+        verdict,
+    ]
+}

@@ -1,0 +1,353 @@
+//! Tables of a test bench instead of a log: a row per speed, terminals open or shorted.
+//!
+//! A table is one if it has a speed, no time, no quantity of the dq frame, and either voltages alone, or currents without voltages. What
+//! makes power (a DC supply, shaft power, efficiency) belongs to a motor that is driven, and its table is no characteristic.
+
+use super::{
+    resemblance::{is_reference, words},
+    table::Table,
+};
+use crate::{
+    block::{ColumnHead, WantedColumn},
+    channel::Channel,
+    header_unit::{HeaderUnit, split_header, unit_in_row},
+    note::Note,
+    problem::Problem,
+};
+use fluxfit::characteristics::{Characteristic, OpenCircuit, OpenCircuitRow, ShortCircuit, ShortCircuitRow};
+use fluxfit_files::{FileError, input};
+use fluxfit_units::{Dimension, Unit, wording::quote};
+use std::path::Path;
+
+/// A characteristic, and what had to be inferred to read it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadCharacteristic {
+    /// The table, in SI units.
+    pub table: Characteristic,
+    /// What was inferred or left out.
+    pub notes: Vec<Note>,
+}
+
+/// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. Standard input is always
+/// taken for a log.
+///
+/// # Errors
+/// If it is one, but cannot be read as such.
+pub fn read_characteristic(path: &Path, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
+    if path.as_os_str() == "-" {
+        return Ok(None);
+    }
+    // What cannot be opened is told by whoever reads it as a log.
+    let Ok(table) = input::open(path).and_then(|bytes| Table::open(bytes, None)) else { return Ok(None) };
+    read(table, pole_pairs).map_err(|error| error.in_file(&input::name(path)))
+}
+
+/// What a column of a characteristic holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quantity {
+    Speed,
+    Voltage,
+    Current,
+    Torque,
+}
+
+impl Quantity {
+    const ALL: [Self; 4] = [Self::Speed, Self::Voltage, Self::Current, Self::Torque];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Voltage => "voltage",
+            Self::Current => "current",
+            Self::Torque => "torque",
+        }
+    }
+
+    /// Words of names that have no unit beside them, in several languages.
+    fn words(self) -> &'static [&'static str] {
+        match self {
+            Self::Speed => &["speed", "rpm", "drehzahl", "omega", "velocity", "vitesse", "velocita", "velocidad"],
+            Self::Voltage => {
+                &["voltage", "urms", "vrms", "ull", "vll", "bemf", "emf", "backemf", "spannung", "tension", "tensione", "voltaje"]
+            }
+            Self::Current => &["current", "irms", "iph", "strom", "courant", "corrente", "corriente"],
+            Self::Torque => &["torque", "drehmoment", "moment", "couple", "coppia", "par"],
+        }
+    }
+}
+
+/// Words of a table of a motor that is driven, or of a log.
+const DRIVEN: [&str; 12] =
+    ["power", "efficiency", "leistung", "wirkungsgrad", "puissance", "dc", "bus", "battery", "supply", "throttle", "duty", "pwm"];
+
+/// A column with its quantity and its size in SI units.
+struct Found {
+    index: usize,
+    header: String,
+    quantity: Quantity,
+    /// Whether the unit is stated: names without are less certain.
+    has_unit: bool,
+    in_si: f64,
+    is_electrical: bool,
+}
+
+fn found(index: usize, head: &ColumnHead) -> Option<Found> {
+    let header = head.name.trim().to_owned();
+    if is_reference(&header) {
+        return None;
+    }
+    let unit = |dimension: Dimension| match (split_header(&header, dimension).1, head.unit.as_deref()) {
+        (HeaderUnit::Known(unit), _) => Some(unit),
+        (_, Some(text)) => match unit_in_row(text, &header, dimension) {
+            HeaderUnit::Known(unit) => Some(unit),
+            _ => None,
+        },
+        _ => None,
+    };
+    let of =
+        |quantity, has_unit, in_si, is_electrical| Some(Found { index, header: header.clone(), quantity, has_unit, in_si, is_electrical });
+    if let Some(in_si) = torque_unit(&header).or_else(|| head.unit.as_deref().and_then(newton_metres)) {
+        return of(Quantity::Torque, true, in_si, false);
+    }
+    for (quantity, dimension) in
+        [(Quantity::Speed, Dimension::Speed), (Quantity::Voltage, Dimension::Voltage), (Quantity::Current, Dimension::Current)]
+    {
+        if let Some(unit) = unit(dimension) {
+            let is_electrical = matches!(unit, Unit::RpmElectrical | Unit::HertzElectrical)
+                || unit == Unit::RadianPerSecond && crate::header_unit::states_electrical(&header);
+            return of(quantity, true, unit.in_si(), is_electrical);
+        }
+    }
+    if [Dimension::Time, Dimension::Temperature, Dimension::Angle].into_iter().any(|dimension| unit(dimension).is_some()) {
+        return None;
+    }
+    let words = words(&header);
+    let quantity = Quantity::ALL.into_iter().find(|quantity| words.iter().any(|word| quantity.words().contains(&word.as_str())))?;
+    of(quantity, false, if quantity == Quantity::Speed { Unit::RpmMechanical.in_si() } else { 1.0 }, false)
+}
+
+/// The unit of a torque at the end of a header, in N m.
+fn torque_unit(header: &str) -> Option<f64> {
+    let bracket = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
+        let text = header.trim().strip_suffix(close)?;
+        text.rfind(open).map(|at| &text[at + 1..])
+    });
+    newton_metres(bracket.or_else(|| header.rsplit_once('_').map(|(_, unit)| unit))?)
+}
+
+fn newton_metres(unit: &str) -> Option<f64> {
+    let plain: String = unit.to_lowercase().chars().filter(|c| c.is_alphabetic()).collect();
+    match plain.as_str() {
+        "nm" => Some(1.0),
+        "mnm" => Some(1e-3),
+        "ncm" => Some(1e-2),
+        _ => None,
+    }
+}
+
+fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
+    let heads = table.heads();
+    let is_driven = |head: &ColumnHead| words(&head.name).iter().any(|word| DRIVEN.contains(&word.as_str()));
+    let is_of_log = |head: &ColumnHead| {
+        let channel = |channel: Channel| {
+            super::alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel)
+        };
+        head.is_time || head.instants.is_some() || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
+    };
+    if heads.iter().any(|head| is_driven(head) || is_of_log(head)) {
+        return Ok(None);
+    }
+    let columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
+    let has = |quantity: Quantity| columns.iter().any(|column| column.quantity == quantity);
+    if !has(Quantity::Speed) || has(Quantity::Voltage) == has(Quantity::Current) {
+        return Ok(None);
+    }
+    let wanted: Vec<WantedColumn> = columns
+        .iter()
+        .map(|column| WantedColumn {
+            index: column.index,
+            header: column.header.clone(),
+            is_time: false,
+            is_optional: true,
+            instants: None,
+        })
+        .collect();
+    let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+    let mut refused: Option<FileError> = None;
+    table.read(&wanted, &mut |block| {
+        values.iter_mut().zip(&block.values).for_each(|(all, values)| all.extend(values));
+        refused = refused.take().or(block.refused.iter().flatten().next().cloned());
+        if values[0].len() > MOST_ROWS { Err(Problem::LongCharacteristic { most: MOST_ROWS }.into()) } else { Ok(()) }
+    })?;
+    if let Some(error) = refused {
+        return Err(error);
+    }
+    // A column of zeros measures nothing.
+    let columns: Vec<(Found, Vec<f64>)> =
+        columns.into_iter().zip(values).filter(|(_, values)| values.iter().any(|value| *value != 0.0)).collect();
+    let mut notes = Vec::new();
+    let speed = channel(&columns, Quantity::Speed, pole_pairs, &mut notes)?;
+    let torque = channel(&columns, Quantity::Torque, pole_pairs, &mut notes)?;
+    let voltage = channel(&columns, Quantity::Voltage, pole_pairs, &mut notes)?;
+    let current = channel(&columns, Quantity::Current, pole_pairs, &mut notes)?;
+    let Some(speed) = speed else { return Ok(None) };
+    let of_row = |k: usize| torque.as_ref().map(|torque| torque[k].0).filter(|torque| torque.is_finite());
+    let rows = || speed.iter().map(|(speed, _)| *speed).enumerate();
+    let is_whole = |speed: f64, (value, _): (f64, f64)| speed.is_finite() && speed != 0.0 && value.is_finite() && value > 0.0;
+    let table = match (voltage, current) {
+        (Some(voltage), None) => {
+            let rows = rows().filter(|(k, speed)| is_whole(*speed, voltage[*k]));
+            let rows = rows.map(|(k, speed)| OpenCircuitRow { speed, voltage: voltage[k].0 });
+            Characteristic::OpenCircuit(OpenCircuit { rows: rows.collect() })
+        }
+        (None, Some(current)) => {
+            let rows = rows().filter(|(k, speed)| is_whole(*speed, current[*k]));
+            let rows =
+                rows.map(|(k, speed)| ShortCircuitRow { speed, current: current[k].0, current_error: current[k].1, torque: of_row(k) });
+            Characteristic::ShortCircuit(ShortCircuit { rows: rows.collect() })
+        }
+        _ => return Ok(None),
+    };
+    let left_out = speed.len() - table.rows();
+    if left_out > 0 {
+        notes.push(format!("{left_out} of {} rows have no speed or no value above zero and are left out", speed.len()).into());
+    }
+    Ok(Some(ReadCharacteristic { table, notes }))
+}
+
+/// Rows of a table of speeds beyond which it is none.
+const MOST_ROWS: usize = 100_000;
+
+/// The values of a quantity in SI units, each with the standard error by which three phases differ; from one column, or from three whose
+/// names differ by the phase alone. Columns with a unit are preferred.
+fn channel(
+    columns: &[(Found, Vec<f64>)],
+    quantity: Quantity,
+    pole_pairs: Option<u32>,
+    notes: &mut Vec<Note>,
+) -> Result<Option<Vec<(f64, f64)>>, FileError> {
+    let of_quantity: Vec<&(Found, Vec<f64>)> = columns.iter().filter(|(column, _)| column.quantity == quantity).collect();
+    let with_unit: Vec<&(Found, Vec<f64>)> = of_quantity.iter().copied().filter(|(column, _)| column.has_unit).collect();
+    let candidates = if with_unit.is_empty() { of_quantity } else { with_unit };
+    let Some((first, _)) = candidates.first() else { return Ok(None) };
+    let are_phases =
+        candidates.len() == 3 && candidates.iter().all(|(column, _)| without_phase(&column.header) == without_phase(&first.header));
+    if candidates.len() > 1 && !are_phases {
+        let headers = candidates.iter().map(|(column, _)| column.header.clone()).collect();
+        return Err(Problem::AmbiguousQuantity { quantity: quantity.name(), headers }.into());
+    }
+    let factor = first.in_si * convention(first, quantity, pole_pairs, notes)?;
+    let mean = |k: usize| {
+        let values: Vec<f64> = candidates.iter().map(|(_, values)| factor * values[k]).collect();
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        (mean, if are_phases { (squares / (count - 1.0) / count).sqrt() } else { 0.0 })
+    };
+    Ok(Some((0..candidates[0].1.len()).map(mean).collect()))
+}
+
+/// What a name says of the convention, as a factor; and what is assumed where it says nothing.
+fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<u32>, notes: &mut Vec<Note>) -> Result<f64, FileError> {
+    let words = words(&column.header);
+    let has = |some: &[&str]| words.iter().any(|word| some.contains(&word.as_str()));
+    let name = quote(&column.header);
+    let of_amplitude =
+        if has(&["peak", "pk", "amplitude", "amplitudes", "amp", "max", "spitze", "scheitel"]) { 0.5_f64.sqrt() } else { 1.0 };
+    let how = if of_amplitude == 1.0 { "rms" } else { "amplitude" };
+    match quantity {
+        Quantity::Voltage => {
+            let is_of_phase = has(&["phase", "ph", "ln", "strang", "neutral", "star"]);
+            let (factor, between) = if is_of_phase { (3.0_f64.sqrt(), "of a phase") } else { (1.0, "line to line") };
+            notes.push(
+                format!("the voltage {name} is read as {between}, {how}; a name with 'phase', 'line' or 'peak' in it is read so").into(),
+            );
+            Ok(factor * of_amplitude)
+        }
+        Quantity::Current => {
+            notes.push(format!("the current {name} is read as {how} of a phase; a name with 'peak' in it is read so").into());
+            Ok(of_amplitude)
+        }
+        Quantity::Speed if column.is_electrical => match pole_pairs {
+            Some(pole_pairs) => Ok(1.0 / f64::from(pole_pairs)),
+            None => Err(Problem::ElectricalSpeed { header: column.header.clone() }.into()),
+        },
+        Quantity::Speed => {
+            notes.push(format!("the speed {name} is read as that of the shaft").into());
+            Ok(1.0)
+        }
+        Quantity::Torque => Ok(1.0),
+    }
+}
+
+/// A name without the letter or digit of its phase.
+fn without_phase(header: &str) -> Vec<String> {
+    let is_phase = |word: &String| {
+        matches!(
+            word.as_str(),
+            "1" | "2" | "3" | "a" | "b" | "c" | "u" | "v" | "w" | "l1" | "l2" | "l3" | "ab" | "bc" | "ca" | "uv" | "vw" | "wu"
+        )
+    };
+    // `I1` and `Ia` end in it.
+    let of_word = |word: String| word.strip_suffix(['1', '2', '3', 'a', 'b', 'c']).map_or(word.clone(), str::to_owned);
+    let bare = header.split(['[', '(']).next().unwrap_or(header);
+    words(bare).into_iter().filter(|word| !is_phase(word)).map(of_word).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    fn of(text: &'static str) -> Result<Option<ReadCharacteristic>, FileError> {
+        read(Table::open(input::Bytes::Stream(Box::new(Cursor::new(text.as_bytes()))), None).unwrap(), None)
+    }
+
+    #[test]
+    fn three_phases_and_a_speed_of_the_shaft() {
+        let read = of("n [1/min];U_12 [V];U_23 [V];U_31 [V];Temp [°C]\n300;10;11;12;20\n600;20;22;24;20\n").unwrap().unwrap();
+        let Characteristic::OpenCircuit(table) = read.table else { panic!() };
+        assert_eq!(table.rows.len(), 2);
+        assert!((table.rows[0].speed - 31.415_926).abs() < 1e-5);
+        assert!((table.rows[1].voltage - 22.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn amplitudes_and_phases_are_told_by_their_name() {
+        let Some(ReadCharacteristic { table: Characteristic::OpenCircuit(table), .. }) =
+            of("speed_rpm,phase_voltage_peak_V\n1000,10\n2000,20\n").unwrap()
+        else {
+            panic!()
+        };
+        assert!((table.rows[0].voltage - 10.0 * 1.5_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn shorted_terminals_have_current_and_torque() {
+        let Some(ReadCharacteristic { table: Characteristic::ShortCircuit(table), .. }) =
+            of("Drehzahl (1/min),Strom (A),Drehmoment (mNm)\n0,0,0\n1000,10,-500\n").unwrap()
+        else {
+            panic!()
+        };
+        assert_eq!(table.rows.len(), 1);
+        assert!((table.rows[0].torque.unwrap() + 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn logs_and_curves_of_driven_motors_are_none() {
+        for text in [
+            "t,ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n1,1,2,3,4,5\n",
+            "Speed (RPM),Torque (Nm),Current (A),Supplied Power (W)\n1,2,3,4\n2,2,3,4\n",
+            "a,b\n1,2\n3,4\n",
+            "time_s,speed_rpm,voltage_V\n0,1,2\n1,1,2\n",
+        ] {
+            assert_eq!(of(text).unwrap(), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn two_torques_are_ambiguous() {
+        let error = of("n_rpm,I [A],M1 [Nm],torque shaft [Nm]\n1,2,3,4\n2,2,3,4\n").unwrap_err().to_string();
+        assert!(error.contains("'M1 [Nm]'") && error.contains("torque"), "{error}");
+    }
+}

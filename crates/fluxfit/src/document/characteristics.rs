@@ -1,0 +1,137 @@
+//! The document of `identify` where tables of a test bench are given: schema `fluxfit.characteristics/1`.
+
+use super::by_parameter::ByParameter;
+use crate::{
+    characteristics::{Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument},
+    motor::Parameter,
+};
+use serde::Serialize;
+
+/// The name of this document.
+pub const CHARACTERISTICS: &str = "fluxfit.characteristics/1";
+
+/// The document that `fluxfit identify --json` prints of characteristics. Fields are added in later versions, never renamed. What is not
+/// known is null.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(title = CHARACTERISTICS))]
+#[non_exhaustive]
+pub struct CharacteristicsDocument {
+    /// Name and version of this document.
+    #[cfg_attr(feature = "schema", schemars(extend("const" = CHARACTERISTICS)))]
+    pub schema: &'static str,
+    /// The tables.
+    pub tables: Vec<TableEntry>,
+    /// Pole pairs; null if they are not known.
+    pub pole_pairs: Option<u32>,
+    /// The motor's own parameters: without pole pairs only the resistance has a value.
+    pub parameters: ByParameter<EstimateEntry>,
+    /// What the tables tell without pole pairs: inductances and flux times these, and the resistance.
+    pub times_pole_pairs: ByParameter<EstimateEntry>,
+    /// What is left of the voltages, as a fraction, root mean square.
+    pub residual_voltage: Option<f64>,
+    /// What is left of the currents, as a fraction, root mean square.
+    pub residual_current: Option<f64>,
+    /// What is left of the torques, N m, root mean square.
+    pub residual_torque: Option<f64>,
+    /// Relative change of each parameter where an instrument reads 1 % too much, which the intervals do not count.
+    pub unseen: Vec<InstrumentEntry>,
+}
+
+/// A table.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct TableEntry {
+    /// Which test: `open-circuit` or `short-circuit`.
+    pub kind: &'static str,
+    /// Number of speeds.
+    pub rows: usize,
+}
+
+/// One parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct EstimateEntry {
+    /// Value; null if it is not identifiable.
+    pub value: Option<f64>,
+    /// The unit: ohm, H or Wb.
+    pub unit: &'static str,
+    /// Standard error.
+    pub standard_error: Option<f64>,
+    /// 95 % interval.
+    pub ci95: Option<[f64; 2]>,
+    /// `identified`, `weak` or `not-identifiable`.
+    pub verdict: &'static str,
+}
+
+impl EstimateEntry {
+    /// The estimate times a factor.
+    fn of(estimate: &CharacteristicEstimate, factor: f64) -> Self {
+        Self {
+            value: estimate.value.map(|value| factor * value),
+            unit: estimate.parameter.unit(),
+            standard_error: estimate.value.map(|_| factor * estimate.uncertainty.standard_error()),
+            ci95: estimate.interval().map(|interval| interval.map(|end| factor * end)),
+            verdict: estimate.verdict.key(),
+        }
+    }
+
+    fn unknown(parameter: Parameter) -> Self {
+        Self { value: None, unit: parameter.unit(), standard_error: None, ci95: None, verdict: "not-identifiable" }
+    }
+}
+
+/// An instrument that reads 1 % too much, and what that does to each parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct InstrumentEntry {
+    /// `voltage`, `current` or `torque`.
+    pub instrument: &'static str,
+    /// Relative changes.
+    pub changes: ByParameter<f64>,
+}
+
+impl CharacteristicsDocument {
+    /// The document of an answer.
+    pub fn of(tables: &[Characteristic], answer: &CharacteristicsAnswer) -> Self {
+        let pairs = answer.pole_pairs.map_or(1.0, f64::from);
+        let [residual_voltage, residual_current, residual_torque] = answer.residual_rms;
+        let table = |table: &Characteristic| TableEntry {
+            kind: match table {
+                Characteristic::OpenCircuit(_) => "open-circuit",
+                Characteristic::ShortCircuit(_) => "short-circuit",
+            },
+            rows: table.rows(),
+        };
+        let instrument = |(instrument, changes): &(Instrument, [f64; 4])| InstrumentEntry {
+            instrument: match instrument {
+                Instrument::Voltage => "voltage",
+                Instrument::Current => "current",
+                Instrument::Torque => "torque",
+            },
+            changes: (*changes).into(),
+        };
+        let is_own = |parameter: Parameter| parameter == Parameter::Rs || answer.pole_pairs.is_some();
+        Self {
+            schema: CHARACTERISTICS,
+            tables: tables.iter().map(table).collect(),
+            pole_pairs: answer.pole_pairs,
+            parameters: answer
+                .parameters
+                .each_ref()
+                .map(|one| if is_own(one.parameter) { EstimateEntry::of(one, 1.0) } else { EstimateEntry::unknown(one.parameter) })
+                .into(),
+            times_pole_pairs: answer
+                .parameters
+                .each_ref()
+                .map(|one| EstimateEntry::of(one, if one.parameter == Parameter::Rs { 1.0 } else { pairs }))
+                .into(),
+            residual_voltage,
+            residual_current,
+            residual_torque,
+            unseen: answer.unseen.iter().map(instrument).collect(),
+        }
+    }
+}
