@@ -57,6 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         identification: None,
         held_out: None,
         study: Some((&comparison, &timed)),
+        json: None,
         origin: &origin,
     };
     for figure in screen_figures(&report, Size::Wide) {
