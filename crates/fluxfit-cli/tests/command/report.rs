@@ -110,7 +110,7 @@ fn figures_are_files_in_a_directory_that_is_made() {
     }
     let run = fluxfit(&["compare", LOG, "--runs", "2", "--iterations", "5", "--figures", &path.display().to_string()]);
     assert_eq!(run.status, 0, "{}", run.err);
-    assert!(names(&path).contains(&"convergence.svg".to_owned()) && names(&path).len() == 12, "{:?}", names(&path));
+    assert!(names(&path).contains(&"convergence.svg".to_owned()) && names(&path).len() == 14, "{:?}", names(&path));
     let other = directory.path().join("other");
     let run = fluxfit(&["validate", LOG, "--motor", TRUTH, "--model", "steady", "--figures", &other.display().to_string()]);
     assert!(run.status < 2, "{}", run.err);
