@@ -1,12 +1,12 @@
 //! The summary below the heading of a page.
 
 use crate::{
-    judgement::is_given,
     report::Report,
-    typography::{amperes, capitalized, count, grouped, in_words, list, power, symbol},
+    sections::saturated,
+    typography::{amperes, capitalized, count, grouped, power, prose},
 };
 use fluxfit::{
-    Judgement, Verdict,
+    Summary,
     evidence::Identification,
     study::{MethodStudy, comparison::Comparison},
 };
@@ -23,20 +23,14 @@ pub(crate) fn headline(report: &Report) -> Markup {
     }
 }
 
+/// How many parameters are identified and what to do next, in the library's words; then the data behind it.
 fn identification(found: &Identification) -> Markup {
-    let with = |is: &dyn Fn(&Judgement) -> bool| -> Vec<Markup> {
-        found.parameters.iter().filter(|judgement| is(judgement)).map(|judgement| symbol(judgement.parameter)).collect()
-    };
-    let of = |verdict: Verdict| with(&|judgement| judgement.verdict == verdict && !is_given(judgement));
-    let given = with(&is_given);
-    let (good, weak, none) = (of(Verdict::Identified), of(Verdict::Weak), of(Verdict::NotIdentifiable));
     html! {
-        (capitalized(&in_words(good.len()))) " of " (count(found.parameters.len(), "parameter")) " identified"
-        @if !given.is_empty() { "; given: " (list(&given)) }
-        @if !weak.is_empty() { "; weak: " (list(&weak)) }
-        @if !none.is_empty() { "; not identifiable from this log: " (list(&none)) }
-        ". "
-        (basis(found))
+        strong { (prose(&Summary::of(&found.parameters).to_string())) }
+        @if found.is_complete() { " Nothing more is to be done." }
+        @if let Some(saturation) = &found.saturation { (saturated(saturation)) }
+        br;
+        span.basis { (basis(found)) }
     }
 }
 

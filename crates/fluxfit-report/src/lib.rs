@@ -27,6 +27,7 @@
 //!     identification: Some((&found, None)),
 //!     held_out: None,
 //!     study: None,
+//!     json: None,
 //!     origin: &origin,
 //! });
 //! assert!(page.starts_with("<!DOCTYPE html>"));
@@ -44,6 +45,7 @@
 //! | `interactive` | the data of interactive figures, and the script that draws them |
 //! | `drawing` | axes, plots, colours, conversion to SVG |
 //! | `current_comparison`, `residual_correlation` | measured against modelled currents, and the autocorrelation of their differences |
+//! | `row_times` | times of the rows of joined logs |
 //! | `operating_point_uncertainty`, `judgement` | uncertainty of voltage residuals; questions to a judgement |
 //! | `table`, `typography` | frames of tables; symbols, units and numbers |
 
@@ -59,6 +61,7 @@ mod operating_point_uncertainty;
 mod page;
 mod report;
 mod residual_correlation;
+mod row_times;
 mod section;
 mod sections;
 mod table;

@@ -16,17 +16,23 @@ const STYLE: &str = include_str!("style.css");
 
 /// The report as an HTML document.
 pub fn html(report: &Report) -> String {
-    document(report.title, &headline::headline(report), &sections::of_report(report), &figures::of_report(report), report.origin)
+    document(
+        report.title,
+        &headline::headline(report),
+        &sections::of_report(report),
+        &figures::of_report(report),
+        (report.json, report.origin),
+    )
 }
 
 /// A validation as an HTML document.
 pub fn validation_html(report: &ValidationReport) -> String {
     let title = format!("{} on {}", report.motor, report.title);
-    let summary = prose(&report.found.verdict());
-    document(&title, &summary, &sections::of_validation(report), &figures::of_validation(report), report.origin)
+    let summary = html! { (sections::badge(report.found.outcome)) " " (prose(&report.found.verdict())) };
+    document(&title, &summary, &sections::of_validation(report), &figures::of_validation(report), (report.json, report.origin))
 }
 
-fn document(title: &str, summary: &Markup, sections: &[Section], figures: &[Figure], origin: &Origin) -> String {
+fn document(title: &str, summary: &Markup, sections: &[Section], figures: &[Figure], (json, origin): (Option<&str>, &Origin)) -> String {
     let document = html! {
         (DOCTYPE)
         html lang="en" {
@@ -57,6 +63,7 @@ fn document(title: &str, summary: &Markup, sections: &[Section], figures: &[Figu
                         }
                     }
                 }
+                @if let Some(json) = json { div id="document" hidden { script type="application/json" { (PreEscaped(json.replace('<', "\\u003c"))) } } }
                 (interactive::script())
             }
         }

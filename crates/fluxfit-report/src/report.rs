@@ -27,6 +27,8 @@ pub struct Report<'a> {
     pub held_out: Option<(&'a Log, Option<&'a Validation>)>,
     /// The study's settings, and each method with the seconds per run.
     pub study: Option<(&'a Comparison, &'a [(MethodStudy, f64)])>,
+    /// The JSON document of the result, which a button of the page saves.
+    pub json: Option<&'a str>,
     /// How to reproduce the page.
     pub origin: &'a Origin,
 }
@@ -55,6 +57,8 @@ pub struct ValidationReport<'a> {
     pub notes: &'a [String],
     /// The result.
     pub found: &'a Validation,
+    /// The JSON document of the result, which a button of the page saves.
+    pub json: Option<&'a str>,
     /// How to reproduce the page.
     pub origin: &'a Origin,
 }

@@ -8,9 +8,11 @@ use maud::{Markup, PreEscaped, html};
 const HALF_WIDTH: f64 = 1.959_964;
 
 /// Symbols: the plain text, its letter, its subscript.
-const SYMBOLS: [(&str, &str, &str); 11] = [
+const SYMBOLS: [(&str, &str, &str); 13] = [
     ("omega_e", "ω", "e"),
     ("psi_f", "ψ", "f"),
+    ("psi_d", "ψ", "d"),
+    ("psi_q", "ψ", "q"),
     ("R_s", "R", "s"),
     ("L_d", "L", "d"),
     ("L_q", "L", "q"),
@@ -38,7 +40,8 @@ pub(crate) fn prose(text: &str) -> Markup {
 }
 
 fn set_word(word: &str) -> Markup {
-    const PUNCTUATION: [char; 7] = ['.', ',', ';', ':', ')', '(', '\''];
+    const PUNCTUATION: [char; 6] = ['.', ',', ';', ':', ')', '('];
+    // A word in quotes is the name of a column: it stays as it is.
     let core = word.trim_matches(PUNCTUATION);
     let (before, after) = word.split_once(core).unwrap_or((word, ""));
     let known = SYMBOLS.iter().find(|(name, ..)| *name == core && !core.is_empty());

@@ -1,13 +1,17 @@
 //! What an answer rests on: the fits behind it, their uncertainty, and what was tried.
 
 pub use crate::identification::{
-    explain::conventions::{Candidate, Convention, Ratio, TOLERANCE, compare_with_nameplate, patterns::Pattern},
+    explain::{
+        conventions::{Candidate, Convention, Ratio, TOLERANCE, compare_with_nameplate, patterns::Pattern},
+        left_out::{LeftOut, LeftOutReason},
+    },
     fit::{
         estimate::Estimate,
         excitation::{Direction, Excitation},
         fault_search::{FaultOutcome, FaultTrial},
         finding::{Finding, Trust},
         frame_lag::FrameLag,
+        incremental::Incremental,
         misfit::Misfit,
         output::OutputFit,
         output_errors::FaultEstimate,

@@ -95,14 +95,16 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
         display::interrupted(&comparison);
         return Ok(Status::Incomplete);
     }
+    let document = arguments.log.report.is_some().then(|| json::text(&StudyDocument::of(&comparison, &methods, false))).transpose()?;
     let shown = Report {
-        title: &input.name,
+        title: &input.title,
         log: &input.log,
         notes: &input.said(),
         operating_points: &comparison.problem.operating_points,
         identification: None,
         held_out: None,
         study: Some((&comparison, &methods)),
+        json: document.as_deref(),
         origin: &report::origin(arguments.log.seed),
     };
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;

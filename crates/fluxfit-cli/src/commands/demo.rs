@@ -53,6 +53,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
         identification: Some((found, found.method)),
         held_out: None,
         study: Some((&comparison, &methods)),
+        json: None,
         origin: &report::origin(arguments.seed),
     };
     report::write(Some(&arguments.report), || html(&shown), arguments.figures.as_deref(), || figures(&shown))?;

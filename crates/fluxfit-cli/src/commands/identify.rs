@@ -118,14 +118,16 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         display::show(&input.name, &answer)?;
     }
     let exported = export::write(&arguments.log, &arguments.export, &input, &answer)?;
+    let document = arguments.log.report.is_some().then(|| json::text(&answer)).transpose()?;
     let shown = Report {
-        title: &input.name,
+        title: &input.title,
         log: &answer.log,
         notes: &input.said(),
         operating_points: answer.identification.operating_points(),
         identification: Some((&answer.identification, answer.identification.method)),
         held_out: answer.held_out.as_ref().map(|held_out| (&held_out.log, held_out.validation.as_ref())),
         study: None,
+        json: document.as_deref(),
         origin: &report::origin(arguments.log.seed),
     };
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;

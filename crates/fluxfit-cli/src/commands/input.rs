@@ -18,6 +18,8 @@ pub(crate) struct Input {
     pub(crate) motor: MotorFile,
     /// Names of the logs, for headings.
     pub(crate) name: String,
+    /// The same without directories, for the title of a page.
+    pub(crate) title: String,
     /// Pole pairs, from whoever tells them.
     pub(crate) pole_pairs: Option<u32>,
     /// The columns of each log, as they were read.
@@ -74,7 +76,15 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
     log.source().columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
-    Ok(Input { log: Arc::new(log), motor, name: names.join(", "), pole_pairs: options.pole_pairs, columns: read_columns })
+    let titles: Vec<String> = arguments.logs.iter().map(|path| file_name(path)).collect();
+    Ok(Input {
+        log: Arc::new(log),
+        motor,
+        name: names.join(", "),
+        title: titles.join(", "),
+        pole_pairs: options.pole_pairs,
+        columns: read_columns,
+    })
 }
 
 /// The pole pairs that anything beside the logs tells.
@@ -134,6 +144,11 @@ pub(crate) fn of_log(name: &str, error: Error) -> CommandError {
 /// The file's name in a message.
 pub(crate) fn name(path: &Path) -> String {
     if path.as_os_str() == "-" { "standard input".to_owned() } else { one_line(&path.display().to_string()) }
+}
+
+/// Name of a file without its directory, for the title of a page.
+pub(crate) fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| name(path), |file| name(Path::new(file)))
 }
 
 /// The text of a DBC. Old tools write it in Windows-1252, whose letters beyond ASCII are in comments only.

@@ -53,8 +53,16 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
         display::show(&input.name, &name, &input.log, &found)?;
     }
     let origin = report::origin(arguments.log.seed);
-    let shown =
-        ValidationReport { title: &input.name, motor: &name, log: &input.log, notes: &input.said(), found: &found, origin: &origin };
+    let document = arguments.log.report.is_some().then(|| json::text(&ValidationDocument::of(&input.log, &found))).transpose()?;
+    let shown = ValidationReport {
+        title: &input.title,
+        motor: &input::file_name(path),
+        log: &input.log,
+        notes: &input.said(),
+        found: &found,
+        json: document.as_deref(),
+        origin: &origin,
+    };
     let (page, figures) = (|| validation_html(&shown), || validation_figures(&shown));
     report::write(arguments.log.report.as_deref(), page, arguments.log.figures.as_deref(), figures)?;
     Ok(if found.outcome == Outcome::Agrees { Status::Complete } else { Status::Incomplete })

@@ -53,7 +53,7 @@ fn the_terminal_and_the_page_say_what_is_counted() {
     let sentence = "In the intervals, as stated: the DC voltage read up to 0.50 % too large or too small.";
     assert!(super::unwrapped(&run.out).contains(sentence), "{}", run.out);
     assert!(!run.out.contains("the DC voltage read 1 % too large"), "{}", run.out);
-    assert!(std::fs::read_to_string(page).unwrap().contains("In the intervals, as stated: "));
+    assert!(std::fs::read_to_string(page).unwrap().contains("as stated: the DC voltage read up to 0.50 %"));
 }
 
 /// A difference that the sensors may make is none.

@@ -26,7 +26,7 @@ fn identify_writes_a_page_beside_the_same_answer() {
     assert_eq!(run.out, fluxfit(&["identify", LOG, "--model", "steady"]).out);
     let page = fs::read_to_string(&path).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>"));
-    for expected in ["Four of four parameters identified", "0.961", "Warning: no-redundancy", "'"] {
+    for expected in ["All 4 identified", "0.961", "Warning: no-redundancy", "'"] {
         assert!(page.contains(expected), "{expected} is not in the page");
     }
     assert_eq!(files(&directory), 1);
@@ -102,7 +102,7 @@ fn figures_are_files_in_a_directory_that_is_made() {
     assert_eq!(run.status, 0, "{}", run.err);
     assert!(run.err.contains(&format!("figures: {}", path.display())), "{}", run.err);
     assert_eq!(run.out, fluxfit(&["identify", LOG, "--model", "steady"]).out);
-    let expected = ["intervals", "joint-region", "operating-points", "residuals"];
+    let expected = ["intervals", "joint-region", "log", "operating-points", "residuals"];
     assert_eq!(names(&path), expected.iter().flat_map(|name| [format!("{name}.png"), format!("{name}.svg")]).collect::<Vec<_>>());
     for name in expected {
         assert!(fs::read(path.join(format!("{name}.png"))).unwrap().starts_with(b"\x89PNG\r\n"));
@@ -110,7 +110,7 @@ fn figures_are_files_in_a_directory_that_is_made() {
     }
     let run = fluxfit(&["compare", LOG, "--runs", "2", "--iterations", "5", "--figures", &path.display().to_string()]);
     assert_eq!(run.status, 0, "{}", run.err);
-    assert!(names(&path).contains(&"convergence.svg".to_owned()) && names(&path).len() == 12, "{:?}", names(&path));
+    assert!(names(&path).contains(&"convergence.svg".to_owned()) && names(&path).len() == 14, "{:?}", names(&path));
     let other = directory.path().join("other");
     let run = fluxfit(&["validate", LOG, "--motor", TRUTH, "--model", "steady", "--figures", &other.display().to_string()]);
     assert!(run.status < 2, "{}", run.err);

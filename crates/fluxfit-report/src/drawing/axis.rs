@@ -16,6 +16,11 @@ pub(crate) struct Axis {
 /// Margin at either end as a fraction of the range.
 const MARGIN: f64 = 0.06;
 
+/// Fraction of the values at either end that do not stretch a robust axis, and how far it reaches beyond the others, as a part of their
+/// range.
+const FEW: f64 = 0.01;
+const STRETCH: f64 = 0.5;
+
 impl Axis {
     /// From the smallest to the largest value, with about `count` ticks. Values that are not finite are ignored; equal values get a
     /// margin on both sides.
@@ -24,6 +29,19 @@ impl Axis {
         let span = high - low;
         let margin = if span > 0.0 { MARGIN * span } else { 0.5 * high.abs().max(1e-3) };
         Self::between(low - margin, high + margin, count)
+    }
+
+    /// As [`around`](Self::around), but a few values far from all others do not stretch it.
+    pub(crate) fn robust(values: impl IntoIterator<Item = f64>, count: usize) -> Self {
+        let mut values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
+        values.sort_by(f64::total_cmp);
+        let few = (FEW * values.len() as f64) as usize;
+        let (low, high) = match (values.get(few), values.get(values.len().saturating_sub(few + 1))) {
+            (Some(low), Some(high)) if high > low => (*low, *high),
+            _ => return Self::around(values, count),
+        };
+        let (least, most) = (low - STRETCH * (high - low), high + STRETCH * (high - low));
+        Self::around(values.into_iter().map(|value| value.clamp(least, most)), count)
     }
 
     /// From `low` to `high`, which is larger.
@@ -79,6 +97,15 @@ mod tests {
         let axis = Axis::around([-0.13, 0.07], 5);
         assert_eq!(axis.label(axis.ticks[0]), "−0.10");
         assert!(axis.ticks.iter().all(|tick| (axis.low..=axis.high).contains(tick)));
+    }
+
+    #[test]
+    fn one_value_far_away_does_not_stretch_a_robust_axis() {
+        let noise = || (0..1000).map(|k| f64::from(k % 11) - 5.0);
+        let axis = Axis::robust(noise().chain([4000.0]), 4);
+        assert!(axis.low >= -11.0 && axis.high <= 11.0, "{axis:?}");
+        assert_eq!(Axis::robust(noise(), 4), Axis::around(noise(), 4));
+        assert_eq!(Axis::robust([0.0, 3.0], 4), Axis::around([0.0, 3.0], 4));
     }
 
     #[test]

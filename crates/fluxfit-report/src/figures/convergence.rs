@@ -85,7 +85,7 @@ fn data(fitness: &Fitness, methods: &[(MethodStudy, f64)]) -> PlotData {
     let panel = Panel { name: cost_name(fitness), height: HEIGHTS.0, kind: PanelKind::Decades, ranges: None, series: series.collect() };
     let numbers: Vec<f64> = shown.iter().map(|k| *k as f64).collect();
     let x = XAxis { name: "iteration", unit: "", values: DeltaColumn::resolving(&numbers, 1.0) };
-    PlotData { x, panels: vec![panel], descriptions: Vec::new() }
+    PlotData { x, panels: vec![panel], descriptions: Vec::new(), spans: Vec::new() }
 }
 
 /// Name of the y axis.

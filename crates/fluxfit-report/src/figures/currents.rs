@@ -39,7 +39,7 @@ const RESIDUAL_HEIGHT: i32 = 150;
 const OVERLAP: i32 = 34;
 
 /// Left and right margin of a panel, pixels.
-const MARGINS: (i32, i32) = (50, 12);
+const MARGINS: (i32, i32) = (60, 12);
 
 /// Opacity of measured curves, behind those of the model.
 const MEASURED_OPACITY: f64 = 0.7;
@@ -53,8 +53,8 @@ const MEAN_SPANS: usize = 90;
 /// Milliampere, the unit of residuals below an ampere.
 const MILLIAMPERE: (f64, &str) = (1e3, "mA");
 
-/// Largest number of rows that are all in the data of a page, where they take 200 kilobytes.
-const MAX_ROWS: usize = 6_000;
+/// Largest number of rows that are all in the data of a page; a row takes about 30 bytes.
+const MAX_ROWS: usize = 100_000;
 
 /// Number of time spans of a longer log; of each the first, last, smallest and largest rows of every curve are in the data.
 const KEPT_SPANS: u32 = 600;
@@ -232,7 +232,7 @@ fn data(comparison: CurrentComparison) -> PlotData {
         [currents, residuals]
     });
     let x = XAxis { name: "time", unit: "s", values: DeltaColumn::resolving(&t, period * TIME_RESOLUTION) };
-    PlotData { x, panels: panels.collect(), descriptions: Vec::new() }
+    PlotData { x, panels: panels.collect(), descriptions: Vec::new(), spans: Vec::new() }
 }
 
 impl AxisCurrents<'_> {
@@ -271,10 +271,14 @@ impl AxisCurrents<'_> {
         let means = self.comparison.pieces().map(|rows| means(self.points(rows, |_, residual| residual), self.times, MEAN_SPANS));
         let (means, residuals) = (scaled(means.collect()), scaled(residuals));
         let zero = vec![self.times.map(|t| (t, 0.0)).to_vec()];
-        let y = Axis::around(residuals.iter().flatten().map(|(_, i)| *i).chain([0.0]), 4);
+        let y = Axis::robust(residuals.iter().flatten().map(|(_, i)| *i).chain([0.0]), 4);
+        let within = |curve: Curve| -> Curve {
+            curve.into_iter().map(|piece| piece.into_iter().map(|(t, i)| (t, i.clamp(y.low, y.high))).collect()).collect()
+        };
+        let (means, residuals) = (within(means), within(residuals));
         let name = format!("measured − {}, {unit}", self.comparison.name());
         let (behind, front) = (translucent(self.ink(), 0.8, RESIDUAL_OPACITY), line(self.ink(), 2.0));
-        self.panel(area, y, ("time, s", &name), size, &[(residuals, behind), (zero, line(Ink::Text, 1.0)), (means, front)])?;
+        self.panel(area, y.clone(), ("time, s", &name), size, &[(residuals, behind), (zero, line(Ink::Text, 1.0)), (means, front)])?;
         legend(area, size, &[(front, "mean", 67)])
     }
 

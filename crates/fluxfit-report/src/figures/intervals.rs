@@ -34,7 +34,7 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
     let (found, _) = report.identification?;
     Some(Figure {
         name: "intervals",
-        section: "answer",
+        section: "explanation",
         draw: Box::new(move |size| draw(found, size)),
         data: None,
         caption: html! {

@@ -3,11 +3,13 @@
 mod autocorrelation;
 mod convergence;
 mod currents;
+mod flux;
 mod intervals;
 mod joint_region;
 mod operating_points;
 mod parameters;
 mod prediction;
+mod recording;
 mod voltage_residuals;
 
 use crate::{
@@ -19,7 +21,9 @@ use crate::{
 type MakeFigure = for<'a> fn(&Report<'a>) -> Option<Figure<'a>>;
 
 /// All figures of a report, in the order of the page.
-const FIGURES: [MakeFigure; 9] = [
+const FIGURES: [MakeFigure; 11] = [
+    flux::figure,
+    recording::figure,
     intervals::figure,
     currents::figure,
     autocorrelation::figure,

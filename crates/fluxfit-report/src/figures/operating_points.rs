@@ -4,6 +4,7 @@ use crate::{
     drawing::{
         axis::Axis,
         canvas::{Area, Drawing, Drawn, UNITS, anchored, solid},
+        labels,
         palette::Ink,
         plot::Plot,
         size::Size,
@@ -20,11 +21,15 @@ use plotters::{
     style::text_anchor::{HPos, VPos},
 };
 
-/// Markers closer than this, pixels, share one label.
-const NEAR: i32 = 14;
+/// Residuals in standard uncertainties up to which a point agrees with the fit, and above which it contradicts it.
+const AGREES: f64 = 2.0;
+const CONTRADICTS: f64 = 4.0;
 
-/// Largest number of points in one label; further ones are abbreviated.
-const NUMBERS: usize = 3;
+/// The kinds of points by their residual, with their colours.
+const KINDS: [(&str, Ink); 3] = [("agrees", Ink::Identified), ("in doubt", Ink::Weak), ("contradicts", Ink::NotIdentifiable)];
+
+/// Left and right margin of the plot, pixels.
+const MARGINS: (i32, i32) = (60, 24);
 
 /// Smallest length of an axis relative to the other: noise of one current must not look like different operating points.
 const MIN_LENGTH: f64 = 0.25;
@@ -39,19 +44,21 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
     Some(Figure {
         name: "operating-points",
         section: "operating-points",
-        draw: Box::new(move |size| draw(&fit.operating_points, size)),
+        draw: Box::new(move |size| draw(fit, size)),
         data: Some(Box::new(move || data(fit))),
         caption: prose(
-            "The operating points in the plane of the currents, numbered as in the table. The farther apart they are, the better the parameters \
+            "The operating points in the plane of the currents, numbered as in the table. Green: both residuals are within two standard \
+             uncertainties; amber: within four; red: one is larger. The farther apart they are, the better the parameters \
              can be distinguished; L_d needs operating points with different i_d.",
         ),
     })
 }
 
 /// Draws the points with their numbers.
-fn draw(points: &[OperatingPoint], size: Size) -> Drawing {
+fn draw(found: &SteadyFit, size: Size) -> Drawing {
+    let points = &found.operating_points;
     let label = format!("{} operating points in the plane of i_d and i_q, in ampere", points.len());
-    Drawing::new((size.width(), HEIGHT), label, |area| paint(area, points, size))
+    Drawing::new((size.width(), HEIGHT), label, |area| paint(area, found, size))
 }
 
 fn currents(points: &[OperatingPoint]) -> impl Iterator<Item = Dq> {
@@ -65,17 +72,40 @@ fn axes(points: &[OperatingPoint], count: usize) -> [Axis; 2] {
     [Axis::around(widened(d, q), count), Axis::around(widened(q, d), 5)]
 }
 
+/// The kind of each point by the larger of its residuals in standard uncertainties.
+fn kinds(found: &SteadyFit) -> Vec<usize> {
+    let uncertainties = residual_uncertainties(found);
+    let both = found.estimate.residuals.iter().zip(uncertainties);
+    both.map(|(residual, uncertainty)| {
+        let largest = [0, 1].map(|axis| if uncertainty[axis] > 0.0 { (residual[axis] / uncertainty[axis]).abs() } else { 0.0 });
+        match largest[0].max(largest[1]) {
+            ratio if ratio <= AGREES => 0,
+            ratio if ratio <= CONTRADICTS => 1,
+            _ => 2,
+        }
+    })
+    .collect()
+}
+
 /// The data of the interactive plot, with a description of each point.
 fn data(found: &SteadyFit) -> PlotData {
     let all = found.operating_points.iter().zip(&found.estimate.residuals).zip(residual_uncertainties(found));
-    let mut points: Vec<(&OperatingPoint, String)> = (1..)
+    let mut points: Vec<(&OperatingPoint, String, usize)> = (1..)
         .zip(all)
-        .map(|(number, ((point, residual), uncertainty))| (point, description(number, point, *residual, uncertainty)))
-        .filter(|(point, _)| point.current().d.is_finite() && point.current().q.is_finite())
+        .zip(kinds(found))
+        .map(|((number, ((point, residual), uncertainty)), kind)| (point, description(number, point, *residual, uncertainty), kind))
+        .filter(|(point, ..)| point.current().d.is_finite() && point.current().q.is_finite())
         .collect();
-    points.sort_by(|(one, _), (other, _)| one.current().d.total_cmp(&other.current().d));
+    points.sort_by(|(one, ..), (other, ..)| one.current().d.total_cmp(&other.current().d));
     let column =
-        |value: &dyn Fn(&OperatingPoint) -> f64| DeltaColumn::new(&points.iter().map(|(point, _)| value(point)).collect::<Vec<_>>());
+        |value: &dyn Fn(&OperatingPoint) -> f64| DeltaColumn::new(&points.iter().map(|(point, ..)| value(point)).collect::<Vec<_>>());
+    // The first series holds all points, for the pointer; those of the kinds are drawn over it.
+    let of_kind = |(k, (name, ink)): (usize, (&'static str, Ink))| {
+        let values = points.iter().map(|(point, _, kind)| if *kind == k { point.current().q } else { f64::NAN }).collect::<Vec<_>>();
+        Series::new(name, ink, (1.0, 1.0), DeltaColumn::new(&values))
+    };
+    let all = Series::new("point", Ink::Axis, (1.0, 0.0), column(&|point| point.current().q));
+    let series = [all].into_iter().chain(KINDS.into_iter().enumerate().map(of_kind)).collect();
     PlotData {
         x: XAxis { name: "i_d", unit: "A", values: column(&|point| point.current().d) },
         panels: vec![Panel {
@@ -83,9 +113,10 @@ fn data(found: &SteadyFit) -> PlotData {
             height: HEIGHT as i32,
             kind: PanelKind::Plane,
             ranges: Some(axes(&found.operating_points, 6).map(|axis| [axis.low, axis.high])),
-            series: vec![Series::new("point", Ink::D, (1.0, 1.0), column(&|point| point.current().q))],
+            series,
         }],
-        descriptions: points.iter().map(|(_, description)| description.clone()).collect(),
+        descriptions: points.iter().map(|(_, description, _)| description.clone()).collect(),
+        spans: Vec::new(),
     }
 }
 
@@ -108,7 +139,8 @@ fn description(number_of_point: usize, point: &OperatingPoint, residual: [f64; 2
     )
 }
 
-fn paint(area: &Area, points: &[OperatingPoint], size: Size) -> Drawn {
+fn paint(area: &Area, found: &SteadyFit, size: Size) -> Drawn {
+    let points = &found.operating_points;
     let [x, y] = axes(points, size.pick(6, 4));
     let (x_label, y_label) = (x.clone(), y.clone());
     let plot = Plot {
@@ -116,27 +148,25 @@ fn paint(area: &Area, points: &[OperatingPoint], size: Size) -> Drawn {
         y,
         x_name: "i_d, A",
         y_name: "i_q, A",
-        left: 50,
-        right: 24,
+        left: MARGINS.0,
+        right: MARGINS.1,
         x_label: &|x| x_label.label(x),
         y_label: &|y| y_label.label(y),
     };
     let chart = plot.on(area)?;
-    // Each label: its position, and the numbers of its points.
-    let mut labels: Vec<((i32, i32), Vec<usize>)> = Vec::new();
-    for (number, i) in (1..).zip(currents(points)) {
-        let at = chart.place(i.d, i.q);
-        area.draw(&Circle::new(at, 4 * UNITS, solid(Ink::D)))?;
-        let near = |(x, y): (i32, i32)| (x - at.0).abs().max((y - at.1).abs()) < NEAR * UNITS;
-        match labels.iter_mut().find(|(place, _)| near(*place)) {
-            Some((_, numbers)) => numbers.push(number),
-            None => labels.push((at, vec![number])),
+    let (mut places, mut names) = (Vec::new(), Vec::new());
+    for ((number, point), kind) in (1..).zip(points).zip(kinds(found)) {
+        let i = point.current();
+        if i.d.is_finite() && i.q.is_finite() {
+            let at = chart.place(i.d, i.q);
+            area.draw(&Circle::new(at, 4 * UNITS, solid(KINDS[kind].1)))?;
+            places.push((at.0 / UNITS, at.1 / UNITS));
+            names.push(number.to_string());
         }
     }
-    for ((x, y), numbers) in labels {
-        let named: Vec<String> = numbers.iter().take(NUMBERS).map(ToString::to_string).collect();
-        let text = format!("{}{}", named.join(", "), if numbers.len() > NUMBERS { " …" } else { "" });
-        area.draw_text(&text, &anchored(Ink::Text, HPos::Center, VPos::Bottom), (x, y - 6 * UNITS))?;
+    let labelled = labels::places(&places, &names, (size.width() as i32, HEIGHT as i32)).into_iter().zip(names);
+    for ((x, y), name) in labelled.filter_map(|(place, name)| Some((place?, name))) {
+        area.draw_text(&name, &anchored(Ink::Text, HPos::Center, VPos::Center), (x * UNITS, y * UNITS))?;
     }
     Ok(())
 }

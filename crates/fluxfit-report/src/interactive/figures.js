@@ -61,7 +61,7 @@
       series.push({
         stroke: stroke(one, one.opacity), width: one.width, dash: one.dash, spanGaps: false,
         paths: points || panel.kind === "bars" ? () => null : undefined,
-        points: points ? { show: true, size: 9, width: 0, fill: stroke(one, 1) } : { show: false },
+        points: points ? { show: true, size: 9, width: 0, fill: stroke(one, one.opacity) } : { show: false },
       });
     });
     return { columns, series, bands, shown };
@@ -91,6 +91,22 @@
     if ((panel.kind === "bars" || panel.name.startsWith("measured")) && y > top && y < top + height) line(u, [left, y], [left + width, y], of(TEXT), 1);
   };
 
+  /* Windows and rows that were left out, below the curves; a single row is still visible. */
+  const SHADES = { true: ["#176F38", "#5FD083", 0.14], false: ["#565F69", "#A6AFB9", 0.28] };
+  const spans = data => u => {
+    const { left, top, width, height } = u.bbox;
+    u.ctx.save();
+    u.ctx.beginPath(); u.ctx.rect(left, top, width, height); u.ctx.clip();
+    (data.spans || []).forEach(({ is_window, ends }) => {
+      const [from, to] = ends.map(t => Math.min(Math.max(u.valToPos(t, "x", true), left - 9), left + width + 9));
+      if (to < left || from > left + width) return;
+      const shade = SHADES[is_window];
+      u.ctx.fillStyle = of(shade); u.ctx.globalAlpha = shade[2];
+      u.ctx.fillRect(from, top, Math.max(to - from, 2 * devicePixelRatio), height);
+    });
+    u.ctx.restore();
+  };
+
   /* Drawn by hand: error bars with their markers, and the numbers of points. */
   const extras = (panel, descriptions) => u => {
     const { left, top, width, height } = u.bbox, ratio = devicePixelRatio, ctx = u.ctx;
@@ -109,22 +125,42 @@
       });
     });
     if (panel.kind === "plane") {
-      const placed = [];
-      ctx.fillStyle = of(TEXT); ctx.textAlign = "center"; ctx.textBaseline = "bottom";
+      ctx.fillStyle = of(TEXT); ctx.textAlign = "center"; ctx.textBaseline = "middle";
       ctx.font = FONT.replace("12.5", 12.5 * ratio);
-      u.data[0].forEach((x, k) => {
-        const px = at(x, "x"), point = at(u.data[1][k], "y"), above = point - top > 22 * ratio;
-        const py = point + (above ? -6 : 22) * ratio;
-        if (placed.some(([qx, qy]) => Math.abs(qx - px) < 18 * ratio && Math.abs(qy - py) < 14 * ratio)) return;
-        placed.push([px, py]);
-        ctx.fillText(descriptions[k].match(/\d+/)[0], px, py);
+      /* As drawing/labels.rs: no label overprints another one or a point. */
+      const points = u.data[0].map((x, k) => [at(x, "x"), at(u.data[1][k], "y")]), m = 5 * ratio;
+      const boxes = points.map(([x, y]) => [x - m, y - m, x + m, y + m]);
+      points.forEach(([x, y], k) => {
+        const name = descriptions[k].match(/\d+/)[0], half = 0.5 * ctx.measureText(name).width + ratio, tall = 7 * ratio;
+        const aside = half + m + 2 * ratio, above = m + 2 * ratio + tall, far = aside + 2 * half + 4 * ratio;
+        for (const [dx, dy] of [[0, -above], [aside, 0], [-aside, 0], [0, above], [far, 0], [-far, 0], [aside, -above], [-aside, -above]]) {
+          const box = [x + dx - half, y + dy - tall, x + dx + half, y + dy + tall];
+          if (box[0] < left || box[1] < top || box[2] > left + width || box[3] > top + height) continue;
+          if (boxes.some(other => box[0] < other[2] && box[2] > other[0] && box[1] < other[3] && box[3] > other[1])) continue;
+          boxes.push(box);
+          ctx.fillText(name, x + dx, y + dy);
+          break;
+        }
       });
     }
     ctx.restore();
   };
 
-  const range = kind => (u, low, high) => {
+  /* A few residuals far from all others do not stretch their axis: as Axis::robust. */
+  const robust = panel => {
+    const sorted = Float64Array.from(panel.series.flatMap(one => column(one.values).filter(v => v !== null))).sort();
+    const few = Math.floor(0.01 * sorted.length), low = sorted[few], high = sorted[sorted.length - 1 - few];
+    return high > low ? [low - 0.5 * (high - low), high + 0.5 * (high - low)] : [-Infinity, Infinity];
+  };
+
+  const range = panel => (u, low, high) => {
+    const { kind } = panel;
     if (low === null) return [0, 1];
+    if (panel.name.startsWith("measured")) {
+      panel.reach = panel.reach || robust(panel);
+      const [from, to] = [Math.max(low, panel.reach[0]), Math.min(high, panel.reach[1])];
+      if (to > from) [low, high] = [from, to];
+    }
     if (kind === "decades") return [Math.floor(low), Math.max(Math.ceil(high), Math.floor(low) + 1)];
     const margin = high > low ? 0.06 * (high - low) : 0.5 * Math.max(Math.abs(high), 1e-3);
     return [low - margin, high + margin];
@@ -170,7 +206,7 @@
       u.setCursor({ left: u.valToPos(x[k], "x"), top: u.valToPos(y === null ? 0 : y, "y") });
     };
     const tools = element("span", "", bar);
-    [["+", "Zoom in", () => closer(0.5)], [MINUS, "Zoom out", () => closer(2)], ["reset", "Reset the zoom", back]].forEach(([text, title, act]) => {
+    [["PNG", "Save this figure as PNG", () => savePicture(plate, plots)], ["+", "Zoom in", () => closer(0.5)], [MINUS, "Zoom out", () => closer(2)], ["reset", "Reset the zoom", back]].forEach(([text, title, act]) => {
       const button = element("button", "", tools);
       button.type = "button"; button.textContent = text; button.title = title;
       button.setAttribute("aria-label", title);
@@ -186,10 +222,11 @@
 
     /* The index of the x value at the pointer. The pointer is over one panel; the others may not be updated yet. */
     const pointed = () => plots.map(u => u.cursor.left < 0 ? null : u.panel.kind === "plane" ? nearest(u) : u.cursor.idx).find(k => k !== null && k !== undefined);
+    const spanAt = t => (data.spans || []).filter(({ ends }) => t >= ends[0] && t <= ends[1]).map(({ text }) => " \u00b7 " + text).join("");
     const tell = () => {
       const k = pointed(), none = k === undefined;
       words(along, none ? "Drag to zoom, double click to reset"
-        : data.descriptions.length ? data.descriptions[k] : data.x.name + " " + fixed(x[k], decimals(data.x)) + (data.x.unit && " " + data.x.unit));
+        : data.descriptions.length ? data.descriptions[k] : data.x.name + " " + fixed(x[k], decimals(data.x)) + (data.x.unit && " " + data.x.unit) + spanAt(x[k]));
       plots.forEach(u => u.values.forEach((value, s) => {
         const y = none ? null : u.data[u.shown[s]][k], one = u.panel.series[s];
         value.textContent = y === null || y === undefined ? DASH
@@ -228,18 +265,18 @@
         },
         scales: {
           x: { time: false, range: plane ? (u, low, high) => [low, high] : undefined },
-          y: { range: (u, low, high) => panel.kind === "bars" || plane ? [low, high] : range(panel.kind)(u, low, high) },
+          y: { range: (u, low, high) => panel.kind === "bars" || plane ? [low, high] : range(panel)(u, low, high) },
         },
         axes: [
           { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: last ? 26 : 6, space: 60, gap: 6,
             incrs: panel.kind === "bars" || panel.kind === "decades" ? WHOLE : ROUND,
             values: last ? ticks : () => [] },
-          { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: 52, space: panel.height < 180 ? 22 : 34, gap: 6,
+          { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: 64, space: panel.height < 180 ? 22 : 34, gap: 6,
             incrs: panel.kind === "decades" ? DECADES : ROUND,
             values: panel.kind === "decades" ? (u, splits) => splits.map(v => "10" + raised(v)) : ticks },
         ],
         hooks: {
-          drawAxes: [zero(panel)],
+          drawClear: [spans(data)], drawAxes: [zero(panel)],
           draw: [extras(panel, data.descriptions)],
           setCursor: [tell],
           /* All panels of a figure show the same range of x. */
@@ -290,6 +327,75 @@
     /* Neither do the mouse events of a tap have movement. */
     u.over.addEventListener("click", event => u.setCursor({ left: event.offsetX, top: event.offsetY }));
   };
+
+  const save = (name, content) => {
+    const link = element("a", "", document.body);
+    link.href = URL.createObjectURL(content);
+    link.download = document.querySelector("h1").textContent.replace(/[^\w.-]+/g, "_") + name;
+    link.click();
+    link.remove();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  };
+
+  /* The panels of a figure below each other, each with its name, on the page's ground. */
+  const savePicture = (plate, plots) => {
+    const ratio = devicePixelRatio, head = 22 * ratio, sheet = document.createElement("canvas"), names = plate.querySelectorAll(".keys");
+    sheet.width = plots[0].ctx.canvas.width;
+    sheet.height = plots.reduce((sum, u) => sum + u.ctx.canvas.height + head, 0.5 * head);
+    const ctx = sheet.getContext("2d");
+    ctx.fillStyle = getComputedStyle(document.documentElement).backgroundColor;
+    ctx.fillRect(0, 0, sheet.width, sheet.height);
+    ctx.font = FONT.replace("12.5", 12.5 * ratio); ctx.fillStyle = of(TEXT); ctx.textBaseline = "middle";
+    let top = 0;
+    plots.forEach((u, k) => {
+      ctx.fillText(names[k].firstChild.textContent, 6 * ratio, top + 0.5 * head);
+      ctx.drawImage(u.ctx.canvas, 0, top + head);
+      top += head + u.ctx.canvas.height;
+    });
+    sheet.toBlob(blob => save(".png", blob));
+  };
+
+  /* Fitted and measured values: the rows of the currents, or of the table of operating points. */
+  const values = () => {
+    const figure = [...document.querySelectorAll("#currents figure, #prediction figure")].find(one => one.querySelector("script"));
+    const quoted = text => /[",\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text;
+    if (figure) {
+      const data = JSON.parse(figure.querySelector("script").textContent), names = [data.x.name + ", " + data.x.unit], columns = [column(data.x.values)];
+      data.panels.forEach(panel => panel.series.forEach(one => { names.push(panel.name + ": " + one.name); columns.push(column(one.values)); }));
+      const rows = columns[0].map((x, k) => columns.map(values => values[k] === null ? "" : String(values[k])).join(","));
+      return [names.map(quoted).join(",")].concat(rows).join("\n") + "\n";
+    }
+    const table = document.querySelector("[data-values] table");
+    if (!table) return null;
+    const cells = row => [...row.cells].map(cell => quoted(cell.textContent.trim().replaceAll(MINUS, "-"))).join(",");
+    return table.dataset.header + "\n" + [...table.tBodies[0].rows].map(cells).join("\n") + "\n";
+  };
+
+  const copy = async (text, button) => {
+    try { await navigator.clipboard.writeText(text); } catch (error) {
+      const area = element("textarea", "", document.body);
+      area.value = text; area.select(); document.execCommand("copy"); area.remove();
+    }
+    const name = button.textContent;
+    button.textContent = "Copied";
+    setTimeout(() => { button.textContent = name; }, 1500);
+  };
+
+  const actions = () => {
+    const command = document.querySelector("#reproduce pre"), json = document.querySelector("#document script"), csv = values();
+    const bar = document.createElement("p");
+    bar.className = "actions";
+    const add = (name, act) => {
+      const button = element("button", "", bar);
+      button.type = "button"; button.textContent = name;
+      button.addEventListener("click", () => act(button));
+    };
+    if (command) add("Copy the command", button => copy(command.textContent, button));
+    if (json) add("Save JSON", () => save(".json", new Blob([json.textContent], { type: "application/json" })));
+    if (csv) add("Save CSV, fitted and measured", () => save(".csv", new Blob([csv], { type: "text/csv" })));
+    document.querySelector("header").append(bar);
+  };
+  actions();
 
   document.querySelectorAll("figure").forEach(figure => {
     if (!figure.querySelector("script")) return;

@@ -30,6 +30,19 @@ pub(crate) struct PlotData {
     /// A description of each point, shown instead of the panels' values.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) descriptions: Vec<String>,
+    /// Spans of the x axis with a shade of their own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) spans: Vec<Span>,
+}
+
+/// A shaded span of the x axis.
+#[derive(Debug, Serialize)]
+pub(crate) struct Span {
+    /// Whether it is a window, or rows that were left out.
+    pub(crate) is_window: bool,
+    pub(crate) ends: [f64; 2],
+    /// What it is; shown for the values within it.
+    pub(crate) text: String,
 }
 
 /// The x axis of a figure.
@@ -169,7 +182,7 @@ mod tests {
     #[test]
     fn text_in_the_data_cannot_end_the_script_element() {
         let x = XAxis { name: "x", unit: "", values: DeltaColumn::new(&[1.0]) };
-        let data = PlotData { x, panels: Vec::new(), descriptions: vec!["</script><!--<script>".to_owned()] };
+        let data = PlotData { x, panels: Vec::new(), descriptions: vec!["</script><!--<script>".to_owned()], spans: Vec::new() };
         let page = data.element().into_string();
         assert_eq!(page.matches('<').count(), 2, "{page}");
         assert!(page.contains(r"\u003c/script>\u003c!--\u003cscript>"));

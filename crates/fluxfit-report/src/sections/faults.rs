@@ -7,6 +7,7 @@ use crate::{
     typography::{DASH, capitalized, fault, number, power, prose},
 };
 use fluxfit::{
+    Warning,
     evidence::{FaultOutcome, FaultTrial, OutputFit, Provenance, Resolved, TimingTrial},
     faults::Fault,
 };
@@ -20,7 +21,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     let content = html! {
         h3 { "Faults of the drive" }
         (identified(fit))
-        (tried(fit))
+        (tried(fit, &found.warnings))
         h3 { "Voltage timing" }
         (voltage_timings(fit))
     };
@@ -48,12 +49,12 @@ fn identified(fit: &OutputFit) -> Markup {
 }
 
 /// All faults that were tried.
-fn tried(fit: &OutputFit) -> Markup {
+fn tried(fit: &OutputFit, warnings: &[Warning]) -> Markup {
     html! {
         (table::scrolling("Faults that were tried", &html! {
             table.tried {
                 thead { tr { th scope="col" { "Fault tried" } th scope="col" { "Gain" } th.words scope="col" { "Outcome" } } }
-                tbody { @for tried in &fit.fault_trials { (row(tried)) } }
+                tbody { @for tried in &fit.fault_trials { (row(tried, warnings)) } }
             }
         }))
         p.small {
@@ -65,13 +66,25 @@ fn tried(fit: &OutputFit) -> Markup {
     }
 }
 
-fn row(tried: &FaultTrial) -> Markup {
+/// The warning of the operating points of the same effect, which the simulated currents did not confirm.
+fn warning_of(fault: Fault, warnings: &[Warning]) -> Option<&Warning> {
+    warnings.iter().find(|warning| {
+        matches!((fault, warning), (Fault::DeadTime, Warning::DeadTime { .. }) | (Fault::Saturation, Warning::Saturation { .. }))
+    })
+}
+
+fn row(tried: &FaultTrial, warnings: &[Warning]) -> Markup {
     let judged = !matches!(tried.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle);
     html! {
         tr {
             th scope="row" { (capitalized(tried.fault.label())) }
             td { @if judged { (number(tried.gain, gain)) } @else { (DASH) } }
-            td.words { @if tried.outcome == FaultOutcome::Taken { span.badge.identified { "taken" } } @else { (explained(tried)) } }
+            td.words { @if tried.outcome == FaultOutcome::Taken { span.badge.identified { "taken" } } @else {
+                (explained(tried))
+                @if let Some(warning) = warning_of(tried.fault, warnings) {
+                    "; the operating points alone show it (warning “" (warning.code()) "”)"
+                }
+            } }
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::{
     report::Report,
     section::Section,
     table,
-    typography::{decimals_of_span, grouped, minus, number, prose, symbol, unit},
+    typography::{decimals_of_span, grouped, minus, number, symbol, unit},
 };
 use fluxfit::{evidence::OutputFit, log::Log, motor::Parameter, steady::OperatingPoint};
 use fluxfit_units::{Scale, significant};
@@ -26,7 +26,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                 } }
             }
         }
-        @if !report.notes.is_empty() { ul { @for note in report.notes { li { (prose(note)) } } } }
+        @if !report.notes.is_empty() { ul { @for note in report.notes { li { (note) } } } }
         @if let Some(fit) = output(report) { (stretches(report, fit)) }
         @if !report.operating_points.is_empty() { (windows(report.operating_points)) }
     };

@@ -4,16 +4,21 @@ mod answer;
 mod correlation;
 mod currents;
 mod estimates;
+mod explanation;
 mod faults;
 mod flux;
 mod held_out;
 mod log;
 mod operating_points;
+mod recording;
 mod reproduction;
 mod residuals;
 mod search;
 mod study;
 mod validation;
+
+pub(crate) use flux::saturated;
+pub(crate) use validation::badge;
 
 use crate::{
     report::{Report, ValidationReport},
@@ -24,8 +29,10 @@ use crate::{
 type MakeSection = fn(&Report) -> Option<Section>;
 
 /// All sections of a report, in the order of the page.
-const SECTIONS: [MakeSection; 12] = [
+const SECTIONS: [MakeSection; 14] = [
     answer::section,
+    recording::section,
+    explanation::section,
     currents::section,
     residuals::section,
     held_out::section,

@@ -14,6 +14,14 @@ use maud::{Markup, html};
 /// Decimals of a voltage without uncertainty.
 const DECIMALS: usize = 3;
 
+/// Names of the table's columns in a file of comma-separated values.
+const HEADER: &str = "point,id,iq,omega_e,ud,ud_fitted,ud_residual_mV,uq,uq_fitted,uq_residual_mV";
+
+/// Places of the currents and the speed among the channels of an operating point.
+const ID: usize = 2;
+const IQ: usize = 3;
+const OMEGA: usize = 6;
+
 /// The section.
 pub(crate) fn section(report: &Report) -> Option<Section> {
     let (found, _) = report.identification?;
@@ -59,8 +67,8 @@ fn points(found: &SteadyFit) -> Markup {
     let least: [f64; 2] = [0, 1].map(|axis| uncertainties.iter().map(|both| both[axis]).fold(f64::INFINITY, f64::min));
     let rows = found.operating_points.iter().zip(&found.estimate.residuals).zip(uncertainties);
     html! {
-        (table::scrolling("Operating points, measured and fitted", &html! {
-            table {
+        div data-values { (table::scrolling("Operating points, measured and fitted", &html! {
+            table data-header=(HEADER) {
                 thead {
                     tr {
                         th scope="col" rowspan="2" { "Point" }
@@ -72,21 +80,23 @@ fn points(found: &SteadyFit) -> Markup {
                         th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual, mV" }
                     } }
                 }
-                tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, residual, uncertainty, least)) } }
+                tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, (residual, uncertainty), least)) } }
             }
-        }))
+        })) }
     }
 }
 
-fn row(k: usize, point: &OperatingPoint, residual: &[f64; 2], uncertainty: [f64; 2], least: [f64; 2]) -> Markup {
+fn row(k: usize, point: &OperatingPoint, (residual, uncertainty): (&[f64; 2], [f64; 2]), least: [f64; 2]) -> Markup {
     let (u, i) = (point.voltage(), point.current());
     let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
     html! {
         tr {
             th scope="row" { (k) }
-            @for value in [i.d, i.q, point.omega_e()] { td { (fixed(value, DECIMALS)) } }
+            @for (value, channel) in [(i.d, ID), (i.q, IQ), (point.omega_e(), OMEGA)] {
+                td { (fixed(value, decimals(point.covariance[channel][channel].sqrt(), DECIMALS).min(DECIMALS))) }
+            }
             @for (axis, measured) in [u.d, u.q].into_iter().enumerate() {
-                @let digits = decimals(least[axis], DECIMALS).max(DECIMALS);
+                @let digits = decimals(least[axis], DECIMALS);
                 @let tenths = decimals(1e3 * least[axis], 1);
                 td { (fixed(measured, digits)) }
                 td { (fixed(measured - residual[axis], digits)) }

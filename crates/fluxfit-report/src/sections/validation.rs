@@ -39,13 +39,13 @@ pub(crate) fn log_section(report: &ValidationReport) -> Section {
             (log::facts(report.log))
             dt { "Model" } dd { (report.found.own.model.model.label()) " (" (report.found.own.model.reason) ")" }
         }
-        @if !report.notes.is_empty() { ul { @for note in report.notes { li { (prose(note)) } } } }
+        @if !report.notes.is_empty() { ul { @for note in report.notes { li { (note) } } } }
     };
     Section { anchor: "log", heading: "Log", content }
 }
 
 /// An outcome on its background colour.
-fn badge(outcome: Outcome) -> Markup {
+pub(crate) fn badge(outcome: Outcome) -> Markup {
     html! { span class={ "badge " (outcome.key()) } { (outcome.label()) } }
 }
 
@@ -56,11 +56,12 @@ pub(crate) fn parameters(found: &Validation) -> Markup {
             table {
                 thead { tr {
                     th scope="col" { "Parameter" } th scope="col" { "Given" } th scope="col" { "From this log" }
-                    th scope="col" { "Difference" } th scope="col" { "± 95 %" } th scope="col" { "In standard errors" }
+                    th scope="col" { "Difference" } th scope="col" { "± 95 %" } th scope="col" { "In standard errors" } th scope="col" { "Verdict" }
                 } }
                 tbody { @for difference in &found.parameters { (parameter(difference)) } }
             }
         }))
+        @for hint in found.parameters.iter().filter_map(Difference::unit_hint) { p.next { strong { "Check the unit: " } (prose(&hint)) "." } }
         p.small {
             "The parameters from this log are identified without the given ones; the difference is that value less the given one. "
             @if found.test.tested > 0 {
@@ -96,8 +97,13 @@ fn parameter(difference: &Difference) -> Markup {
     let error = own.map_or(0.0, |own| own.standard_error);
     let show = |value: f64| number(value, |value| scale.format(value, error));
     let half_width = own.map(|own| 100.0 * own.half_width / given);
+    let outcome = match difference.is_different() {
+        _ if own.is_none() => Outcome::CannotTell,
+        true => Outcome::Contradicts,
+        false => Outcome::Agrees,
+    };
     html! {
-        tr {
+        tr class=[(outcome == Outcome::Contradicts).then_some("differs")] {
             th scope="row" { (symbol(parameter)) }
             td { (show(given)) " " (unit(parameter, &scale)) }
             @if let Some(own) = own {
@@ -111,6 +117,7 @@ fn parameter(difference: &Difference) -> Markup {
             } @else {
                 td { "not identifiable" } @for _ in 0..3 { td.none { (DASH) } }
             }
+            td { (badge(outcome)) }
         }
     }
 }

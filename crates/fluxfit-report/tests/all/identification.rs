@@ -32,9 +32,14 @@ fn an_identification_shows_values_verdicts_and_command() {
         identified(&TWO, &Request { model: Some(Model::Steady), swarm: Swarm::Method(Method::all()[0]), ..Request::default() });
     assert!(found.is_complete());
     let text = checked(&page);
-    for expected in
-        ["Four of four parameters identified", "Warning: no-redundancy", "tGFPA", "'a log.csv'", "seed 7", "read as <mechanical>"]
-    {
+    for expected in [
+        "All 4 identified. Nothing more is to be done.",
+        "Warning: no-redundancy",
+        "tGFPA",
+        "'a log.csv'",
+        "seed 7",
+        "read as <mechanical>",
+    ] {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
     assert_eq!(page.matches("class=\"badge identified\"").count(), 4 + 1, "four verdicts and the legend");
@@ -46,8 +51,8 @@ fn a_parameter_that_is_not_identifiable_has_no_number() {
     let ld = found.parameter(Parameter::Ld);
     assert_eq!(ld.verdict, Verdict::NotIdentifiable);
     let text = checked(&page);
-    assert!(text.contains("Three of four parameters identified; not identifiable from this log: Ld."));
-    assert!(text.contains("To do: add 0.2 s at id = −2 A, same speed: Ld to about ±"), "{text}");
+    assert!(text.contains("3 of 4 identified. Ld needs 0.2 s at id = −2 A: then about ±"));
+    assert!(text.contains("To do next: add 0.2 s at id = −2 A, same speed: Ld to about ±"), "{text}");
     // A row of the answer, and none of any other table.
     assert_eq!(page.matches("<th scope=\"row\"><i>L</i><sub>d</sub></th>").count(), 1);
     assert!(page.contains("<th scope=\"row\"><i>L</i><sub>d</sub></th><td class=\"value\">–</td>"));
@@ -56,11 +61,11 @@ fn a_parameter_that_is_not_identifiable_has_no_number() {
 #[test]
 fn one_operating_point_answers_nothing_but_lq_and_a_given_value_has_no_verdict() {
     let (_, page) = identified(&TWO[..1], &Request::default());
-    assert!(checked(&page).contains("One of four parameters identified"));
+    assert!(checked(&page).contains("1 of 4 identified"));
     let known = [Known::Fixed(0.958), Known::Nothing, Known::Nothing, Known::Nothing];
     let (_, page) = identified(&TWO, &Request { model: Some(Model::Steady), known, swarm: Swarm::Off, ..Request::default() });
     let text = checked(&page);
-    assert!(text.contains("given: Rs") && text.contains("Given, not identified.") && !text.contains("swarm"), "{text}");
+    assert!(text.contains("All 3 identified, Rs given.") && text.contains("Given, not identified.") && !text.contains("swarm"), "{text}");
 }
 
 #[test]
@@ -69,7 +74,7 @@ fn a_page_without_any_identified_parameter() {
     let mut found = identify(&log, &Request::default()).unwrap().identification;
     found.parameters.iter_mut().for_each(|judgement| judgement.verdict = Verdict::NotIdentifiable);
     let text = checked(&page("x", &log, &found, None));
-    assert!(text.contains("None of four parameters identified; not identifiable from this log: Rs, Ld, Lq and ψf."), "{text}");
+    assert!(text.contains("None of 4 identified."), "{text}");
     assert!(!text.contains("swarm") && !text.contains("Sources of uncertainty"));
 }
 
@@ -195,6 +200,7 @@ fn held_out_data_have_a_section() {
         identification: Some((&found, None)),
         held_out: Some((&kept_out, Some(&validation))),
         study: None,
+        json: None,
         origin: &origin,
     };
     let (page, files) = (html(&shown), figures(&shown));

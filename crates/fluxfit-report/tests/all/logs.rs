@@ -37,7 +37,17 @@ pub(crate) fn origin() -> Origin {
 /// A report of an identification, without a method.
 pub(crate) fn report<'a>(log: &'a Log, found: &'a Identification, origin: &'a Origin) -> Report<'a> {
     let operating_points = found.operating_points();
-    Report { title: "x", log, notes: &[], operating_points, identification: Some((found, None)), held_out: None, study: None, origin }
+    Report {
+        title: "x",
+        log,
+        notes: &[],
+        operating_points,
+        identification: Some((found, None)),
+        held_out: None,
+        study: None,
+        json: None,
+        origin,
+    }
 }
 
 /// A log of the paper's motor as a drive records it: up to speed in 0.1 s, a step of i_d on the way; noise of 50 mA on each current.

@@ -106,7 +106,8 @@ pub(crate) fn data(page: &str) -> Vec<Numbers> {
             .collect()
     };
     let texts = page.split("<script type=\"application/json\">").skip(1).map(|rest| rest.split_once("</script>").unwrap().0);
-    let figures = texts.map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap());
+    // The document of the result is no figure.
+    let figures = texts.map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap()).filter(|data| data["panels"].is_array());
     let series = |panel: &serde_json::Value| panel["series"].as_array().unwrap().iter().map(|one| column(&one["values"])).collect();
     figures.map(|live| (column(&live["x"]["values"]), live["panels"].as_array().unwrap().iter().map(series).collect())).collect()
 }

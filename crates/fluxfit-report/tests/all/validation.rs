@@ -26,6 +26,7 @@ fn validation_page(given: Motor, currents: &[(f64, f64)], change: impl FnOnce(&m
         log: &log,
         notes: &notes,
         found: &found,
+        json: None,
         origin: &origin,
     });
     (found, page)

@@ -3,6 +3,7 @@
 use super::{
     explain::{
         judgement::{Judgement, explained},
+        left_out::{self, LeftOut},
         temperature::AtTemperature,
         trial::{Losses, Trials},
         unseen::{self, Counted, Unseen},
@@ -66,6 +67,8 @@ pub struct Identification {
     pub unseen: Vec<Unseen>,
     /// Errors that no log shows either, and that the intervals count, because their size is stated.
     pub counted: Vec<Counted>,
+    /// Rows that the answer does not rest on, in the order of rows.
+    pub left_out: Vec<LeftOut>,
 }
 
 impl Identification {
@@ -115,6 +118,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let verdicts = parameters.each_ref().map(|judgement| judgement.verdict);
     let (unseen, counted) = (unseen::all(log, finding, verdicts, request), unseen::counted(verdicts, request));
     let temperature = AtTemperature::of(log, &parameters, steady.as_ref(), output.as_ref(), request);
+    let left_out = left_out::all(log, request, steady.as_ref(), output.as_ref());
     Ok(Identification {
         parameters,
         model,
@@ -128,6 +132,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
         warnings,
         unseen,
         counted,
+        left_out,
     })
 }
 

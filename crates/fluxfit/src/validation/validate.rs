@@ -31,6 +31,12 @@ pub const SIGNIFICANCE: f64 = 0.01;
 /// Share of the current (or voltage) vector up to which a difference is little: what current sensors of drives are good to.
 pub const LITTLE: f64 = 0.01;
 
+/// Standard errors from which on a parameter is different: as the test's significance, of one parameter alone.
+const DIFFERENT: f64 = 2.58;
+
+/// A ratio this close to a power of ten, in decades, is a matter of units: the parameters of one kind of motor do not differ more.
+const NEAR_A_DECADE: f64 = 0.1;
+
 /// A channel whose variance is less than this many times its noise's has no course of its own that could be explained.
 const COURSE: f64 = 2.0;
 
@@ -144,6 +150,20 @@ impl Difference {
     pub fn percent(&self) -> Option<f64> {
         let difference = self.difference().filter(|_| self.given > 0.0)?;
         Some(100.0 * difference / self.given)
+    }
+
+    /// Whether the log has another value, by more than chance lets a single parameter differ.
+    pub fn is_different(&self) -> bool {
+        self.standard_errors().is_some_and(|errors| errors.abs() >= DIFFERENT)
+    }
+
+    /// The power of ten, other than zero, by which the given value has to be multiplied to be that of the log: it then probably has
+    /// another unit than was read.
+    pub fn power_of_ten(&self) -> Option<i32> {
+        let own = self.own.filter(|own| own.value > 0.0 && self.given > 0.0 && own.half_width <= WEAK * own.value.max(self.given))?;
+        let decades = (own.value / self.given).log10();
+        let whole = decades.round();
+        (whole != 0.0 && (decades - whole).abs() <= NEAR_A_DECADE).then_some(whole as i32)
     }
 
     /// The same in standard errors.
@@ -302,5 +322,27 @@ fn channel(axis: usize, predicted: &Predicted, covariance: &Covariance) -> Chann
         share,
         outcome: Outcome::of(&test, share),
         test,
+    }
+}
+
+#[cfg(test)]
+mod unit_tests {
+    use super::*;
+
+    fn difference(given: f64, value: f64) -> Difference {
+        let own = Own { value, standard_error: 0.01 * value, half_width: 0.02 * value };
+        Difference { parameter: Parameter::Ld, given, own: Some(own) }
+    }
+
+    #[test]
+    fn a_value_in_millihenry_that_was_read_as_henry_is_noticed() {
+        assert_eq!(difference(5.25, 5.3e-3).power_of_ten(), Some(-3));
+        assert_eq!(difference(5.25e-6, 5.0e-3).power_of_ten(), Some(3));
+        assert_eq!(difference(5.25e-3, 5.0e-3).power_of_ten(), None);
+        assert_eq!(difference(5.25e-3, 2.0e-2).power_of_ten(), None);
+        assert_eq!(Difference { own: None, ..difference(1.0, 1.0) }.power_of_ten(), None);
+        let hint = difference(5.25, 5.3e-3).unit_hint().unwrap();
+        assert_eq!(hint, "the given L_d is about 1000 times that of this log");
+        assert_eq!(difference(5.25e-6, 5.0e-3).unit_hint().unwrap(), "the given L_d is about 1/1000 of that of this log");
     }
 }

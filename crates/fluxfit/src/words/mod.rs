@@ -3,6 +3,7 @@
 
 mod column_check;
 mod digits;
+mod left_out;
 mod model;
 mod nameplate;
 mod names;

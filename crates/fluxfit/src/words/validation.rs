@@ -3,9 +3,6 @@
 use super::digits::{digits, list};
 use crate::validation::validate::{Difference, Outcome, Validation};
 
-/// Standard errors from which on a parameter is named as one that differs: as the test's significance, of one parameter alone.
-const NAMED: f64 = 2.58;
-
 impl Validation {
     /// The verdict in one or two sentences.
     pub fn verdict(&self) -> String {
@@ -36,9 +33,19 @@ impl Validation {
         let mut differing: Vec<(&Difference, f64)> =
             self.parameters.iter().filter_map(|difference| Some((difference, difference.standard_errors()?))).collect();
         differing.sort_by(|one, other| other.1.abs().total_cmp(&one.1.abs()));
-        let named = differing.iter().filter(|(_, errors)| errors.abs() >= NAMED).count().max(1);
+        let named = differing.iter().filter(|(difference, _)| difference.is_different()).count().max(1);
         let asked: Vec<String> = differing.iter().take(named).map(|(difference, errors)| asked(difference, *errors)).collect();
         format!("The log asks for {}.", asked.join("; "))
+    }
+}
+
+impl Difference {
+    /// What to check where the given value is off by a power of ten, as half a sentence.
+    pub fn unit_hint(&self) -> Option<String> {
+        let (power, symbol) = (self.power_of_ten()?, self.parameter.symbol());
+        let factor = format!("1{}", "0".repeat(power.unsigned_abs() as usize));
+        let times = if power < 0 { format!("{factor} times") } else { format!("1/{factor} of") };
+        Some(format!("the given {symbol} is about {times} that of this log"))
     }
 }
 

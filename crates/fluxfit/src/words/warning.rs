@@ -1,6 +1,6 @@
 //! What the reader should know of the whole.
 
-use super::digits::{one_digit, three_digits};
+use super::digits::{one_digit, percent, three_digits};
 use crate::{
     current_loop::{DELAY_PERIODS, MIN_PHASE_MARGIN},
     identification::{explain::warning::Warning, fit::saturation::Apparent},
@@ -26,10 +26,11 @@ impl Display for Warning {
             ),
             Self::Misfit { ratio, voltage_accuracy } => write!(
                 f,
-                "the operating points contradict each other {ratio:.1} times beyond noise and accuracy, and agree only to {:.2} % of the \
+                "the operating points contradict each other {} times beyond noise and accuracy, and agree only to {} of the \
                  voltage: inductances fall with current (saturation), flux and resistance change with temperature, or these are not the \
                  voltages at the terminals (dead time, device drops, delay); the intervals are widened to the scatter of the points",
-                100.0 * voltage_accuracy
+                three_digits(*ratio),
+                percent(*voltage_accuracy)
             ),
             Self::DeadTime { voltage } => write!(
                 f,

@@ -152,7 +152,7 @@ fn explanations(found: &Identification) -> String {
     let mut shared: Vec<(Vec<&str>, &Reason)> = Vec::new();
     for judgement in &found.parameters {
         let Some(reason) = &judgement.reason else { continue };
-        match shared.iter_mut().find(|(_, other)| is_same(other, reason)) {
+        match shared.iter_mut().find(|(_, other)| other.is_told_with(reason)) {
             Some((symbols, _)) => symbols.push(judgement.parameter.symbol()),
             None => shared.push((vec![judgement.parameter.symbol()], reason)),
         }
@@ -178,14 +178,6 @@ fn explanations(found: &Identification) -> String {
         }
     }
     if text.is_empty() { text } else { format!("\n{text}") }
-}
-
-/// Whether two reasons are told as one: intervals that are wide by the same cause.
-fn is_same(one: &Reason, other: &Reason) -> bool {
-    match (one, other) {
-        (Reason::Wide { part: one, .. }, Reason::Wide { part: other, .. }) => one == other,
-        _ => one == other,
-    }
 }
 
 fn to_do(what: &str, remedy: &Remedy) -> String {

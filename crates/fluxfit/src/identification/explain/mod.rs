@@ -3,6 +3,7 @@
 
 pub(crate) mod conventions;
 pub(crate) mod judgement;
+pub(crate) mod left_out;
 pub(crate) mod measurement;
 mod promising;
 pub(crate) mod remedy;

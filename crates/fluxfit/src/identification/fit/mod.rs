@@ -8,6 +8,7 @@ pub(crate) mod fault_search;
 pub(crate) mod finding;
 mod frame_free;
 pub(crate) mod frame_lag;
+pub(crate) mod incremental;
 pub(crate) mod long_run;
 pub(crate) mod misfit;
 mod open_loop;

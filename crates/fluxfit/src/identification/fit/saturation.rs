@@ -7,8 +7,8 @@
 //! psi_q = (R_s i_d - u_d) / omega_e + L_d drift_d / omega_e
 //! ```
 //!
-//! Its *apparent* inductances are `psi_q / i_q` and `(psi_d - psi_f) / i_d`; the incremental ones, `d psi / d i`, are other
-//! numbers, and points that lie far apart do not tell them.
+//! Its *apparent* inductances are `psi_q / i_q` and `(psi_d - psi_f) / i_d`; the [incremental](super::incremental) ones, `d psi / d i`,
+//! are other numbers, and points that lie far apart do not tell them.
 //!
 //! Whether saturation is why operating points contradict each other is found by [`saturation_equations`](super::saturation_equations).
 
@@ -81,7 +81,7 @@ const LEAST_CURRENT: f64 = 0.05;
 const LIGHT: f64 = 0.5;
 
 /// A flux is told where its 95 % half-width is at most this part of it, as a weak parameter is.
-const TOLD: f64 = 0.5;
+pub(super) const TOLD: f64 = 0.5;
 
 /// The normal distribution's two-sided 95 % quantile, rounded down: an interval of that many standard deviations or more covers a spread.
 const QUANTILE: f64 = 1.95;
@@ -172,6 +172,12 @@ impl SaturationFinding {
         let by_current = |one: &Apparent, other: &Apparent| one.current.abs().total_cmp(&other.current.abs());
         let lq = told().min_by(by_current).zip(told().max_by(by_current)).map(|(least, most)| [least, most]);
         Self { rs, rs_uncertainty, fluxes, lq, small_currents, over_rows: [0.0; PARAMETERS] }
+    }
+
+    /// A finding with these fluxes, for tests.
+    #[cfg(test)]
+    pub(super) fn with_fluxes(fluxes: Vec<Option<Flux>>, small_currents: Motor) -> Self {
+        Self { rs: small_currents.rs, rs_uncertainty: 0.0, fluxes, lq: None, small_currents, over_rows: [0.0; PARAMETERS] }
     }
 
     /// Standard uncertainty of an answer with constant parameters: so large that its 95 % intervals hold what every operating point, or

@@ -57,6 +57,16 @@ pub enum Reason {
     },
 }
 
+impl Reason {
+    /// Whether parameters with these reasons can be told in one sentence, as `{:#}`: their intervals are wide by the same cause.
+    pub fn is_told_with(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Wide { part: one, .. }, Self::Wide { part: other, .. }) => one == other,
+            _ => self == other,
+        }
+    }
+}
+
 /// Means closer than this, as a fraction of the largest current or speed, are the same for a reason.
 pub(crate) const SAME: f64 = 0.05;
 

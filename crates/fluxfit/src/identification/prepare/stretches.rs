@@ -44,7 +44,7 @@ const CHOICE_ROWS: usize = 40_000;
 
 /// Rows that are fitted. Of more, the pieces that differ most are: noise has long ceased to limit the answer, and each row takes
 /// a kilobyte.
-const FIT_ROWS: usize = 1 << 17;
+pub(crate) const FIT_ROWS: usize = 1 << 17;
 
 /// Rows of a piece, of a log that is longer: transients and turns in it, and its start of a few rows does not weigh.
 const PIECE_ROWS: usize = 5_000;
