@@ -80,6 +80,12 @@ impl Draws {
         partners
     }
 
+    /// An index below `count`, each as likely; 0 if there is none.
+    pub(crate) fn index(&mut self, count: usize) -> usize {
+        let index = self.draw(|generator| generator.random_range(0..count.max(1)) as f64) as usize;
+        index.min(count.saturating_sub(1))
+    }
+
     fn draw(&mut self, from: impl FnOnce(&mut ChaCha8Rng) -> f64) -> f64 {
         match &mut self.0 {
             Source::Generator(generator) => from(generator),

@@ -135,6 +135,11 @@ impl Population {
         self.accept(|trial, held| trial < held);
     }
 
+    /// Takes the trials that are at least as good as their candidates.
+    pub(crate) fn accept_no_worse(&mut self) {
+        self.accept(|trial, held| trial <= held);
+    }
+
     /// Takes every trial.
     pub(crate) fn accept_all(&mut self) {
         self.accept(|_, _| true);

@@ -3,6 +3,7 @@
 //! A new method is a file here, with its idea, equations, paper, settings and moves; its `pub mod`; and its row of the table below.
 
 pub mod apso;
+pub mod de;
 pub mod fpa;
 pub mod lpso;
 pub mod particles;
@@ -128,6 +129,8 @@ table! {
     Lpso(lpso::Lpso), "lpso", "LPSO", 1, look('L', 4, 0x14_4a38, 0x4d_f0bb, &[20, 30]);
     /// Particle swarm, inertia weight adapted to each particle's cost.
     Apso(apso::Apso), "apso", "APSO", 1, look('A', 5, 0xb5_128f, 0xb7_8fc0, &[100, 35, 20, 35]);
+    /// Differential evolution, DE/rand/1/bin.
+    De(de::De), "de", "DE/rand/1/bin", 4, look('D', 1, 0xb0_2a1e, 0xff_8a7a, &[60, 25]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
