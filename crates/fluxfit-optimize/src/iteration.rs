@@ -32,12 +32,21 @@ pub(crate) struct Generation<'a> {
     pub(crate) number: usize,
     /// The last iteration of the search.
     pub(crate) limit: usize,
+    /// Candidates asked for.
+    pub(crate) size: usize,
     pub(crate) bounds: &'a Bounds,
     pub(crate) draws: &'a mut Draws,
     pub(crate) population: &'a mut Population,
 }
 
 impl Generation<'_> {
+    /// The part of the evaluations after the first `size` that are done or, with generations as large as the population, will be done
+    /// with this one: from `1 / limit` to 1, the `t / T` of many methods.
+    pub(crate) fn progress(&self) -> f64 {
+        let all = self.size as f64 * self.limit as f64;
+        (self.population.evaluations() as f64 / all.max(1.0)).min(1.0)
+    }
+
     /// Lets `propose` move each candidate's trial, which stands where its last one was, then keeps it in the box.
     pub(crate) fn try_each(&mut self, propose: impl FnMut(usize, &Population, &mut [f64], &mut Draws)) {
         self.try_some(self.population.len(), propose);

@@ -88,9 +88,10 @@ impl Optimizer {
     /// Proposes, evaluates and accepts until the evaluations of one iteration are done.
     fn advance(&mut self, objective: &impl Objective) {
         let Self { settings, bounds, draws, population, state, begun, iteration, .. } = self;
-        let mut left = settings.population;
+        let (size, limit) = (settings.population, settings.iterations);
+        let mut left = size;
         while left > 0 {
-            let mut generation = Generation { number: *iteration, limit: settings.iterations, bounds, draws, population };
+            let mut generation = Generation { number: *iteration, limit, size, bounds, draws, population };
             if generation.population.is_evaluated() {
                 state.propose(&mut generation);
             }

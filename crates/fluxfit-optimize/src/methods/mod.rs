@@ -5,6 +5,7 @@
 pub mod apso;
 pub mod de;
 pub mod fpa;
+pub mod gwo;
 pub mod lpso;
 pub mod particles;
 pub mod tgfpa;
@@ -131,6 +132,8 @@ table! {
     Apso(apso::Apso), "apso", "APSO", 1, look('A', 5, 0xb5_128f, 0xb7_8fc0, &[100, 35, 20, 35]);
     /// Differential evolution, DE/rand/1/bin.
     De(de::De), "de", "DE/rand/1/bin", 4, look('D', 1, 0xb0_2a1e, 0xff_8a7a, &[60, 25]);
+    /// Grey wolves.
+    Gwo(gwo::Gwo), "gwo", "GWO", 3, look('G', 8, 0x4a_5560, 0xa9_b6c2, &[20, 20]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.

@@ -163,7 +163,7 @@ mod tests {
         population.accept_all();
         let mut populations = vec![population.clone()];
         for number in 1..=limit {
-            let mut generation = Generation { number, limit, bounds, draws, population: &mut population };
+            let mut generation = Generation { number, limit, size, bounds, draws, population: &mut population };
             method.propose(&mut (), &mut generation);
             generation.population.evaluate(objective, size);
             method.accept(&mut (), &mut generation);
