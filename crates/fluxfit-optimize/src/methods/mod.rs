@@ -9,6 +9,7 @@ pub mod gwo;
 pub mod lpso;
 pub mod particles;
 pub mod tgfpa;
+pub mod woa;
 
 use crate::{
     error::Error,
@@ -134,6 +135,8 @@ table! {
     De(de::De), "de", "DE/rand/1/bin", 4, look('D', 1, 0xb0_2a1e, 0xff_8a7a, &[60, 25]);
     /// Grey wolves.
     Gwo(gwo::Gwo), "gwo", "GWO", 3, look('G', 8, 0x4a_5560, 0xa9_b6c2, &[20, 20]);
+    /// Whales.
+    Woa(woa::Woa), "woa", "WOA", 1, look('W', 6, 0x00_6a7a, 0x3f_c4d8, &[120, 30]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
