@@ -86,6 +86,11 @@ impl Draws {
         index.min(count.saturating_sub(1))
     }
 
+    /// -1 or 1.
+    pub(crate) fn sign(&mut self) -> f64 {
+        if self.uniform() < 0.5 { 1.0 } else { -1.0 }
+    }
+
     fn draw(&mut self, from: impl FnOnce(&mut ChaCha8Rng) -> f64) -> f64 {
         match &mut self.0 {
             Source::Generator(generator) => from(generator),

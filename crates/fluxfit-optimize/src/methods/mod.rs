@@ -8,6 +8,7 @@ pub mod fpa;
 pub mod gwo;
 pub mod lpso;
 pub mod particles;
+pub mod ssa;
 pub mod tgfpa;
 pub mod woa;
 
@@ -137,6 +138,8 @@ table! {
     Gwo(gwo::Gwo), "gwo", "GWO", 3, look('G', 8, 0x4a_5560, 0xa9_b6c2, &[20, 20]);
     /// Whales.
     Woa(woa::Woa), "woa", "WOA", 1, look('W', 6, 0x00_6a7a, 0x3f_c4d8, &[120, 30]);
+    /// Salps.
+    Ssa(ssa::Ssa), "ssa", "SSA", 2, look('s', 11, 0x6f_6a00, 0xc9_c23a, &[40, 20, 10, 20]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
