@@ -6,6 +6,7 @@ pub mod apso;
 pub mod de;
 pub mod fpa;
 pub mod gwo;
+pub mod hba;
 pub mod lpso;
 pub mod particles;
 pub mod ssa;
@@ -140,6 +141,8 @@ table! {
     Woa(woa::Woa), "woa", "WOA", 1, look('W', 6, 0x00_6a7a, 0x3f_c4d8, &[120, 30]);
     /// Salps.
     Ssa(ssa::Ssa), "ssa", "SSA", 2, look('s', 11, 0x6f_6a00, 0xc9_c23a, &[40, 20, 10, 20]);
+    /// Honey badgers.
+    Hba(hba::Hba), "hba", "HBA", 1, look('H', 13, 0x7a_1fa2, 0xd4_8cf0, &[90, 20]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
