@@ -86,6 +86,18 @@ impl Draws {
         index.min(count.saturating_sub(1))
     }
 
+    /// The indices below `count`, in any order, each as likely.
+    pub(crate) fn permutation(&mut self, count: usize) -> Vec<usize> {
+        if matches!(self.0, Source::Recorded(_)) {
+            return (0..count).map(|_| self.index(count)).collect();
+        }
+        let mut order: Vec<usize> = (0..count).collect();
+        for left in (1..count).rev() {
+            order.swap(left, self.index(left + 1));
+        }
+        order
+    }
+
     /// -1 or 1.
     pub(crate) fn sign(&mut self) -> f64 {
         if self.uniform() < 0.5 { 1.0 } else { -1.0 }

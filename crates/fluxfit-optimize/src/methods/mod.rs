@@ -3,6 +3,7 @@
 //! A new method is a file here, with its idea, equations, paper, settings and moves; its `pub mod`; and its row of the table below.
 
 pub mod apso;
+pub mod cuckoo;
 pub mod de;
 pub mod fpa;
 pub mod gwo;
@@ -143,6 +144,8 @@ table! {
     Ssa(ssa::Ssa), "ssa", "SSA", 2, look('s', 11, 0x6f_6a00, 0xc9_c23a, &[40, 20, 10, 20]);
     /// Honey badgers.
     Hba(hba::Hba), "hba", "HBA", 1, look('H', 13, 0x7a_1fa2, 0xd4_8cf0, &[90, 20]);
+    /// Cuckoos.
+    Cuckoo(cuckoo::Cuckoo), "cuckoo", "cuckoo search", 1, look('K', 10, 0x3d_6b1f, 0x9a_d66e, &[15, 45]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
