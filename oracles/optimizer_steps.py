@@ -70,7 +70,7 @@ CASES = [
 #   scale   nor on the units of the coordinates
 #   shift   nor on where the box and the function lie
 #   offset  nor on a constant added to the costs
-#   greedy  no candidate gets worse; strict: nor moves to a place that is only as good
+#   greedy  the population keeps its size, and no candidate gets worse; strict: nor moves to a place that is only as good
 LAWS = {
     "tgfpa": ["limit", "scale", "shift", "offset", "greedy", "strict"],
     "fpa": ["limit", "scale", "shift", "offset", "greedy", "strict"],

@@ -57,4 +57,10 @@ impl Generation<'_> {
         let draws = &mut *self.draws;
         self.population.propose(count, self.bounds, |k, population, trial| propose(k, population, trial, draws));
     }
+
+    /// Trials at these positions, row after row, each kept in the box.
+    pub(crate) fn try_these(&mut self, positions: &[f64]) {
+        let d = self.bounds.dimension();
+        self.population.propose(positions.len() / d, self.bounds, |k, _, trial| trial.copy_from_slice(&positions[k * d..(k + 1) * d]));
+    }
 }

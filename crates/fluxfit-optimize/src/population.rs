@@ -160,6 +160,24 @@ impl Population {
         self.positions[i * d..(i + 1) * d].copy_from_slice(&self.trials[trial * d..(trial + 1) * d]);
     }
 
+    /// Costs of the trials.
+    pub(crate) fn trial_costs(&self) -> &[f64] {
+        &self.trial_costs
+    }
+
+    /// The candidates' numbers, from the lowest cost to the highest.
+    pub(crate) fn ranking(&self) -> Vec<usize> {
+        let mut ranking: Vec<usize> = (0..self.len()).collect();
+        ranking.sort_by(|a, b| self.costs[*a].total_cmp(&self.costs[*b]));
+        ranking
+    }
+
+    /// The trials become the candidates.
+    pub(crate) fn replace(&mut self) {
+        self.positions.clone_from(&self.trials);
+        self.costs.clone_from(&self.trial_costs);
+    }
+
     /// Whether all parts have the sizes that this box asks for: what is read back may have been damaged.
     #[cfg(feature = "serde")]
     pub(crate) fn fits(&self, bounds: &Bounds) -> bool {

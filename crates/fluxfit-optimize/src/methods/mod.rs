@@ -3,6 +3,7 @@
 //! A new method is a file here, with its idea, equations, paper, settings and moves; its `pub mod`; and its row of the table below.
 
 pub mod apso;
+pub mod cma_es;
 pub mod cuckoo;
 pub mod de;
 pub mod fpa;
@@ -105,7 +106,7 @@ macro_rules! table {
             }
 
             /// Refuses settings out of range, of what was read back.
-            #[cfg(feature = "serde")]
+            #[cfg_attr(not(feature = "serde"), allow(dead_code))]
             pub(crate) fn check(&self) -> Result<(), Error> {
                 match self {
                     $(Self::$variant(method, _) => method.check(),)*
@@ -113,7 +114,7 @@ macro_rules! table {
             }
 
             /// Whether a population that was read back is large enough, and what is remembered beside it has its size.
-            #[cfg(feature = "serde")]
+            #[cfg_attr(not(feature = "serde"), allow(dead_code))]
             pub(crate) fn fits(&self, population: &Population) -> bool {
                 match self {
                     $(Self::$variant(_, memory) => population.len() >= $smallest && <$($path)::+ as Moves>::fits(memory, population),)*
@@ -146,6 +147,8 @@ table! {
     Hba(hba::Hba), "hba", "HBA", 1, look('H', 13, 0x7a_1fa2, 0xd4_8cf0, &[90, 20]);
     /// Cuckoos.
     Cuckoo(cuckoo::Cuckoo), "cuckoo", "cuckoo search", 1, look('K', 10, 0x3d_6b1f, 0x9a_d66e, &[15, 45]);
+    /// Adaptation of the covariance matrix.
+    CmaEs(cma_es::CmaEs), "cma-es", "CMA-ES", 1, look('C', 12, 0x2b_2f9e, 0xa3_a8ff, &[150, 40]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
