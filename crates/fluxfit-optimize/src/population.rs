@@ -172,6 +172,12 @@ impl Population {
         ranking
     }
 
+    /// The candidates of these numbers, in this order, become the candidates.
+    pub(crate) fn keep(&mut self, chosen: &[usize]) {
+        self.positions = chosen.iter().flat_map(|i| self.position(*i)).copied().collect();
+        self.costs = chosen.iter().map(|i| self.costs[*i]).collect();
+    }
+
     /// The trials become the candidates.
     pub(crate) fn replace(&mut self) {
         self.positions.clone_from(&self.trials);

@@ -9,6 +9,7 @@ pub mod de;
 pub mod fpa;
 pub mod gwo;
 pub mod hba;
+pub mod l_shade;
 pub mod lpso;
 pub mod particles;
 pub mod ssa;
@@ -149,6 +150,8 @@ table! {
     Cuckoo(cuckoo::Cuckoo), "cuckoo", "cuckoo search", 1, look('K', 10, 0x3d_6b1f, 0x9a_d66e, &[15, 45]);
     /// Adaptation of the covariance matrix.
     CmaEs(cma_es::CmaEs), "cma-es", "CMA-ES", 1, look('C', 12, 0x2b_2f9e, 0xa3_a8ff, &[150, 40]);
+    /// Differential evolution, its settings adapted to what succeeds, its population shrinking.
+    LShade(l_shade::LShade), "l-shade", "L-SHADE", 1, look('S', 9, 0xd0_1050, 0xff_7aa8, &[45, 15]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
