@@ -9,6 +9,7 @@ pub mod de;
 pub mod fpa;
 pub mod gwo;
 pub mod hba;
+pub mod ipop_cma_es;
 pub mod l_shade;
 pub mod lpso;
 pub mod particles;
@@ -152,6 +153,8 @@ table! {
     CmaEs(cma_es::CmaEs), "cma-es", "CMA-ES", 1, look('C', 12, 0x2b_2f9e, 0xa3_a8ff, &[150, 40]);
     /// Differential evolution, its settings adapted to what succeeds, its population shrinking.
     LShade(l_shade::LShade), "l-shade", "L-SHADE", 1, look('S', 9, 0xd0_1050, 0xff_7aa8, &[45, 15]);
+    /// CMA-ES, restarted with twice the samples.
+    IpopCmaEs(ipop_cma_es::IpopCmaEs), "ipop-cma-es", "IPOP-CMA-ES", 1, look('I', 14, 0x00_7a5a, 0x2f_e0b0, &[70, 20, 20, 20]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
