@@ -13,6 +13,7 @@ pub mod ipop_cma_es;
 pub mod l_shade;
 pub mod lpso;
 pub mod particles;
+pub mod so;
 pub mod ssa;
 pub mod tgfpa;
 pub mod woa;
@@ -155,6 +156,8 @@ table! {
     LShade(l_shade::LShade), "l-shade", "L-SHADE", 1, look('S', 9, 0xd0_1050, 0xff_7aa8, &[45, 15]);
     /// CMA-ES, restarted with twice the samples.
     IpopCmaEs(ipop_cma_es::IpopCmaEs), "ipop-cma-es", "IPOP-CMA-ES", 1, look('I', 14, 0x00_7a5a, 0x2f_e0b0, &[70, 20, 20, 20]);
+    /// Snakes.
+    So(so::So), "so", "SO", 4, look('O', 208, 0xa0_4a00, 0xff_b46a, &[30, 60]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
