@@ -3,6 +3,7 @@
 //! A new method is a file here, with its idea, equations, paper, settings and moves; its `pub mod`; and its row of the table below.
 
 pub mod apso;
+pub mod bfo;
 pub mod cma_es;
 pub mod cuckoo;
 pub mod de;
@@ -158,6 +159,8 @@ table! {
     IpopCmaEs(ipop_cma_es::IpopCmaEs), "ipop-cma-es", "IPOP-CMA-ES", 1, look('I', 14, 0x00_7a5a, 0x2f_e0b0, &[70, 20, 20, 20]);
     /// Snakes.
     So(so::So), "so", "SO", 4, look('O', 208, 0xa0_4a00, 0xff_b46a, &[30, 60]);
+    /// Foraging bacteria.
+    Bfo(bfo::Bfo), "bfo", "BFO", 2, look('B', 94, 0x6b_3d2e, 0xd0_a090, &[25, 15, 25, 45]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
