@@ -160,6 +160,15 @@ impl Population {
         self.positions[i * d..(i + 1) * d].copy_from_slice(&self.trials[trial * d..(trial + 1) * d]);
     }
 
+    /// Moves a candidate to a trial that is better; returns whether it is.
+    pub(crate) fn take_if_better(&mut self, i: usize, trial: usize) -> bool {
+        let is_better = self.trial_costs[trial] < self.costs[i];
+        if is_better {
+            self.take(i, trial);
+        }
+        is_better
+    }
+
     /// Costs of the trials.
     pub(crate) fn trial_costs(&self) -> &[f64] {
         &self.trial_costs

@@ -11,6 +11,7 @@ pub mod fpa;
 pub mod gwo;
 pub mod hba;
 pub mod ipop_cma_es;
+pub mod iso;
 pub mod l_shade;
 pub mod lpso;
 pub mod particles;
@@ -161,6 +162,8 @@ table! {
     So(so::So), "so", "SO", 4, look('O', 208, 0xa0_4a00, 0xff_b46a, &[30, 60]);
     /// Foraging bacteria.
     Bfo(bfo::Bfo), "bfo", "BFO", 2, look('B', 94, 0x6b_3d2e, 0xd0_a090, &[25, 15, 25, 45]);
+    /// Improved snakes, after \[10\], reconstructed.
+    Iso(iso::Iso), "iso", "improved SO, after [10], reconstructed", 4, look('o', 130, 0x8a_3a5a, 0xe0_98b8, &[110, 20, 15, 20]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
