@@ -14,6 +14,7 @@ pub mod ipop_cma_es;
 pub mod iso;
 pub mod l_shade;
 pub mod lpso;
+pub mod nbfo;
 pub mod particles;
 pub mod so;
 pub mod ssa;
@@ -164,6 +165,8 @@ table! {
     Bfo(bfo::Bfo), "bfo", "BFO", 2, look('B', 94, 0x6b_3d2e, 0xd0_a090, &[25, 15, 25, 45]);
     /// Improved snakes, after \[10\], reconstructed.
     Iso(iso::Iso), "iso", "improved SO, after [10], reconstructed", 4, look('o', 130, 0x8a_3a5a, 0xe0_98b8, &[110, 20, 15, 20]);
+    /// Bacteria in niches, after \[11\], reconstructed.
+    Nbfo(nbfo::Nbfo), "nbfo", "niche BFO, after [11], reconstructed", 4, look('N', 58, 0x55_5a2a, 0xb8_c080, &[35, 35]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
