@@ -18,6 +18,7 @@ pub mod nbfo;
 pub mod particles;
 pub mod so;
 pub mod ssa;
+pub mod ssa_cloud;
 pub mod tgfpa;
 pub mod woa;
 
@@ -167,6 +168,8 @@ table! {
     Iso(iso::Iso), "iso", "improved SO, after [10], reconstructed", 4, look('o', 130, 0x8a_3a5a, 0xe0_98b8, &[110, 20, 15, 20]);
     /// Bacteria in niches, after \[11\], reconstructed.
     Nbfo(nbfo::Nbfo), "nbfo", "niche BFO, after [11], reconstructed", 4, look('N', 58, 0x55_5a2a, 0xb8_c080, &[35, 35]);
+    /// Salps in a normal cloud, after \[13\], reconstructed.
+    SsaCloud(ssa_cloud::SsaCloud), "ssa-cloud", "SSA with a cloud, after [13], reconstructed", 2, look('c', 30, 0x1f_5f8a, 0x7cc0e8, &[55, 55]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
