@@ -21,9 +21,12 @@ class Method(Generations):
             self.accept_all(trials, costs)
             yield
 
+    def a(self):
+        return 2 * (1 - self.u)
+
     def trial(self, i):
         r_a, r_c, r_l, p = self.draws.uniform(4)
-        a = 2 * (1 - self.u)
+        a = self.a()
         big_a, big_c, l = 2 * a * r_a - a, 2 * r_c, 2 * r_l - 1
         if p >= 0.5:
             self.seen["spiral"] += 1

@@ -12,6 +12,7 @@ pub mod gwo;
 pub mod hba;
 pub mod ipop_cma_es;
 pub mod iso;
+pub mod iwoa;
 pub mod l_shade;
 pub mod lpso;
 pub mod nbfo;
@@ -170,6 +171,8 @@ table! {
     Nbfo(nbfo::Nbfo), "nbfo", "niche BFO, after [11], reconstructed", 4, look('N', 58, 0x55_5a2a, 0xb8_c080, &[35, 35]);
     /// Salps in a normal cloud, after \[13\], reconstructed.
     SsaCloud(ssa_cloud::SsaCloud), "ssa-cloud", "SSA with a cloud, after [13], reconstructed", 2, look('c', 30, 0x1f_5f8a, 0x7cc0e8, &[55, 55]);
+    /// Improved whales, after \[14\], reconstructed.
+    Iwoa(iwoa::Iwoa), "iwoa", "improved WOA, after [14], reconstructed", 1, look('w', 37, 0x2f_6f6a, 0x80_c8c0, &[80, 15, 10, 15, 10, 15]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
