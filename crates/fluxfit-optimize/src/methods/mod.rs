@@ -10,6 +10,7 @@ pub mod de;
 pub mod fpa;
 pub mod gwo;
 pub mod hba;
+pub mod igwo;
 pub mod ipop_cma_es;
 pub mod iso;
 pub mod iwoa;
@@ -173,6 +174,8 @@ table! {
     SsaCloud(ssa_cloud::SsaCloud), "ssa-cloud", "SSA with a cloud, after [13], reconstructed", 2, look('c', 30, 0x1f_5f8a, 0x7cc0e8, &[55, 55]);
     /// Improved whales, after \[14\], reconstructed.
     Iwoa(iwoa::Iwoa), "iwoa", "improved WOA, after [14], reconstructed", 1, look('w', 37, 0x2f_6f6a, 0x80_c8c0, &[80, 15, 10, 15, 10, 15]);
+    /// Improved grey wolves, after \[16\], reconstructed.
+    Igwo(igwo::Igwo), "igwo", "improved GWO, after [16], reconstructed", 3, look('g', 245, 0x6a_5a70, 0xc0_b0c8, &[10, 30]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
