@@ -22,6 +22,7 @@ pub mod so;
 pub mod ssa;
 pub mod ssa_cloud;
 pub mod tgfpa;
+pub mod tmfpa;
 pub mod woa;
 
 use crate::{
@@ -176,6 +177,8 @@ table! {
     Iwoa(iwoa::Iwoa), "iwoa", "improved WOA, after [14], reconstructed", 1, look('w', 37, 0x2f_6f6a, 0x80_c8c0, &[80, 15, 10, 15, 10, 15]);
     /// Improved grey wolves, after \[16\], reconstructed.
     Igwo(igwo::Igwo), "igwo", "improved GWO, after [16], reconstructed", 3, look('g', 245, 0x6a_5a70, 0xc0_b0c8, &[10, 30]);
+    /// Flower pollination with t mutation, after \[22\], reconstructed.
+    Tmfpa(tmfpa::Tmfpa), "tmfpa", "tMFPA, after [22], reconstructed", 5, look('T', 27, 0x0a_4fb5, 0x86_b0ff, &[200, 30]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
