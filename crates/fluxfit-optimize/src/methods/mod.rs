@@ -16,6 +16,7 @@ pub mod iso;
 pub mod iwoa;
 pub mod l_shade;
 pub mod lpso;
+pub mod msfpa;
 pub mod nbfo;
 pub mod particles;
 pub mod so;
@@ -179,6 +180,8 @@ table! {
     Igwo(igwo::Igwo), "igwo", "improved GWO, after [16], reconstructed", 3, look('g', 245, 0x6a_5a70, 0xc0_b0c8, &[10, 30]);
     /// Flower pollination with t mutation, after \[22\], reconstructed.
     Tmfpa(tmfpa::Tmfpa), "tmfpa", "tMFPA, after [22], reconstructed", 5, look('T', 27, 0x0a_4fb5, 0x86_b0ff, &[200, 30]);
+    /// Flower pollination with several strategies, after \[21\], reconstructed.
+    Msfpa(msfpa::Msfpa), "msfpa", "multi-strategy FPA, after [21], reconstructed", 4, look('M', 99, 0x5b_3fc0, 0xb8_a0ff, &[130, 20, 30, 20]);
 }
 
 /// A [`Look`] with its colours as red, green and blue in one number.
