@@ -1,11 +1,12 @@
-"""Golden courses of the four search methods (tGFPA, FPA, LPSO, APSO), computed independently of the library.
+"""Golden courses of the search methods, computed independently of the library: tGFPA, FPA, LPSO and APSO here, each other one in its
+file of optimizers/.
 
 Written from the methods' equations with numpy arrays. Every random number is drawn here and recorded in the order in which the library asks
 for it; the library, fed the same numbers, must walk the same course. The distributions themselves are therefore not checked by these numbers.
 
     python3 oracles/optimizer_steps.py        rewrites crates/fluxfit-optimize/tests/optimizer_steps.json; needs numpy
 
-Order of the draws (each array is recorded row after row):
+Order of the draws of the four (each array is recorded row after row):
     start     tgfpa logistic: b_1, one per dimension; otherwise positions; swarms then draw velocities, each component from 2 U(0,1) - 1
     flower    rand (p); tgfpa only: rand (m or q); then
               global: u, v of the Levy step per dimension; with the perturbation: T(t), j, k
@@ -15,30 +16,17 @@ Order of the draws (each array is recorded row after row):
 The seeds were chosen so that each course takes every branch of its method and meets the faces of the box; the script fails if one does not.
 """
 
+import importlib
 import json
 import math
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
 
+from search import ITERATIONS, MOTOR_BOX, OBJECTIVE, POPULATION, SHIFTED_BOX, Search
+
 # Beside the test that reads them.
 NUMBERS = Path(__file__).parent.parent / "crates/fluxfit-optimize/tests/optimizer_steps.json"
-
-POPULATION = 6
-ITERATIONS = 4
-
-# Widths as far apart as those of a motor's resistance, inductances and flux linkage, so that a step scaled by the wrong width shows.
-MOTOR_BOX = np.array([[0.0, 5.0], [0.0, 0.05], [0.0, 0.05], [0.0, 1.0]])
-# Faces away from zero, on both sides of it, so that a forgotten lower bound shows.
-SHIFTED_BOX = np.array([[-1.0, 4.0], [0.01, 0.06], [-0.05, 0.02], [0.25, 2.25]])
-
-# f = z' A z + (c . z)^4 with z = (x - lower) / (upper - lower) - centre: not separable, one minimum, inside the box.
-OBJECTIVE = {
-    "coupling": [[4.0, 1.5, -0.5, 0.75], [1.5, 3.0, 0.5, -1.0], [-0.5, 0.5, 2.0, 0.25], [0.75, -1.0, 0.25, 5.0]],
-    "quartic": [1.0, -2.0, 1.5, 0.5],
-    "centre": [0.19, 0.105, 0.24, 0.1827],
-}
 
 FPA = {"switch_probability": 0.8, "gamma": 0.1, "local_base": "accepted"}
 TGFPA = FPA | {"plain_global": 0.2, "plain_local": 0.2, "start": "logistic"}
@@ -77,6 +65,19 @@ CASES = [
     ),
 ]
 
+# What a method's formulas say of its courses, and tests/all/laws.rs holds them to; what is not listed must not hold.
+#   limit   the course does not depend on the limit of iterations
+#   scale   nor on the units of the coordinates
+#   shift   nor on where the box and the function lie
+#   offset  nor on a constant added to the costs
+#   greedy  the population keeps its size, and no candidate gets worse; strict: nor moves to a place that is only as good
+LAWS = {
+    "tgfpa": ["limit", "scale", "shift", "offset", "greedy", "strict"],
+    "fpa": ["limit", "scale", "shift", "offset", "greedy", "strict"],
+    "lpso": ["scale", "shift", "offset"],
+    "apso": ["limit", "scale", "shift", "offset"],
+}
+
 FLOWERS = {"plain global", "plain local", "clamped", "accepted", "rejected", "best moved"}
 SWARM = {"at the velocity limit", "below the velocity limit", "clamped", "own best kept", "own best moved", "best moved"}
 BRANCHES = {
@@ -85,70 +86,6 @@ BRANCHES = {
     "lpso": SWARM,
     "apso": SWARM | {"at or below the average", "above the average"},
 }
-
-
-class Draws:
-    """Draws random numbers and writes each of them down."""
-
-    def __init__(self, seed):
-        self.generator = np.random.default_rng(seed)
-        self.record = []
-
-    def _noted(self, numbers):
-        self.record += np.ravel(numbers).tolist()
-        return numbers
-
-    def uniform(self, *shape):
-        return self._noted(self.generator.random(shape))
-
-    def normal(self, *shape):
-        return self._noted(self.generator.standard_normal(shape))
-
-    def student_t(self, degrees):
-        return self._noted(self.generator.standard_t(degrees))
-
-    def partners(self, i, count):
-        return self._noted(self.generator.choice(np.delete(np.arange(POPULATION), i), count, replace=False))
-
-
-class Search:
-    """What all methods share: the box, the objective, the best seen, and which branches were taken."""
-
-    def __init__(self, settings, box, seed):
-        self.settings, self.draws, self.seen = settings, Draws(seed), Counter()
-        self.lower, self.upper = box.T
-        self.width = self.upper - self.lower
-        self.x = self.start()
-        self.f = self.cost(self.x)
-        self.g, self.f_g = self.x[np.argmin(self.f)].copy(), self.f.min()
-
-    def cost(self, x):
-        z = (x - self.lower) / self.width - np.array(OBJECTIVE["centre"])
-        quadratic = (z[:, :, None] * np.array(OBJECTIVE["coupling"]) * z[:, None, :]).sum(axis=(1, 2))
-        return quadratic + ((z * np.array(OBJECTIVE["quartic"])).sum(axis=1)) ** 4
-
-    def start(self):
-        return self.lower + self.draws.uniform(POPULATION, len(self.width)) * self.width
-
-    def clamp(self, x):
-        clamped = np.clip(x, self.lower, self.upper)
-        self.seen["clamped"] += int((clamped != x).sum())
-        return clamped
-
-    def less(self, x, f, x_held, f_held):
-        """Which costs are lower. A comparison that rounding could turn around would make a bad oracle: refused."""
-        same_place = (x == x_held).all(axis=-1)
-        assert (same_place | (abs(f - f_held) > 1e-9)).all(), "two costs are too close to compare; take another seed"
-        return ~same_place & (f < f_held)
-
-    def keep_best(self):
-        best = np.argmin(self.f)
-        if self.less(self.x[best], self.f[best], self.g, self.f_g):
-            self.g, self.f_g = self.x[best].copy(), self.f[best]
-            self.seen["best moved"] += 1
-
-    def state(self):
-        return {"positions": self.x.ravel().tolist(), "costs": self.f.tolist(), "best": self.g.tolist(), "best_cost": float(self.f_g)}
 
 
 class Flowers(Search):
@@ -258,6 +195,20 @@ def course(name, method, settings, box, seed):
         states.append(search.state())
     missing = BRANCHES[method] - {branch for branch, times in search.seen.items() if times}
     assert not missing, f"{name}: never {sorted(missing)}; take another seed"
+    return noted(name, method, settings, box, POPULATION, ITERATIONS, search, states)
+
+
+def courses(module):
+    """The cases of a method that has a file of its own."""
+    for name, settings, box, population, iterations, seed, branches in module.CASES:
+        search = module.Method(settings, box, seed, population, iterations)
+        states = search.course()
+        missing = branches - {branch for branch, times in search.seen.items() if times}
+        assert not missing, f"{module.KEY} {name}: never {sorted(missing)}; take another seed"
+        yield noted(f"{module.KEY} {name}", module.KEY, settings, box, population, iterations, search, states)
+
+
+def noted(name, method, settings, box, population, iterations, search, states):
     return {
         "name": name,
         "method": method,
@@ -265,8 +216,8 @@ def course(name, method, settings, box, seed):
         "dimension": len(box),
         "lower": box[:, 0].tolist(),
         "upper": box[:, 1].tolist(),
-        "population": POPULATION,
-        "iterations": ITERATIONS,
+        "population": population,
+        "iterations": iterations,
         "draws": search.draws.record,
         "states": states,
     }
@@ -275,8 +226,13 @@ def course(name, method, settings, box, seed):
 def main():
     compact = {"separators": (",", ":"), "allow_nan": False}
     # One line per case, so that a difference shows which case it is in.
-    cases = ",\n".join(json.dumps(course(*case), **compact) for case in CASES)
-    text = f'{{"objective":{json.dumps(OBJECTIVE, **compact)},"cases":[\n{cases}\n]}}\n'
+    paths = sorted((Path(__file__).parent / "optimizers").glob("*.py"))
+    modules = [importlib.import_module(f"optimizers.{path.stem}") for path in paths]
+    all_courses = [course(*case) for case in CASES] + [case for module in modules for case in courses(module)]
+    laws = LAWS | {module.KEY: module.LAWS for module in modules}
+    laws = ",\n".join(f"{json.dumps(key)}:{json.dumps(held, **compact)}" for key, held in laws.items())
+    cases = ",\n".join(json.dumps(course, **compact) for course in all_courses)
+    text = f'{{"objective":{json.dumps(OBJECTIVE, **compact)},"laws":{{\n{laws}\n}},"cases":[\n{cases}\n]}}\n'
     NUMBERS.write_text(text)
 
 

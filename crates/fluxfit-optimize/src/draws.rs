@@ -80,6 +80,29 @@ impl Draws {
         partners
     }
 
+    /// An index below `count`, each as likely; 0 if there is none.
+    pub(crate) fn index(&mut self, count: usize) -> usize {
+        let index = self.draw(|generator| generator.random_range(0..count.max(1)) as f64) as usize;
+        index.min(count.saturating_sub(1))
+    }
+
+    /// The indices below `count`, in any order, each as likely.
+    pub(crate) fn permutation(&mut self, count: usize) -> Vec<usize> {
+        if matches!(self.0, Source::Recorded(_)) {
+            return (0..count).map(|_| self.index(count)).collect();
+        }
+        let mut order: Vec<usize> = (0..count).collect();
+        for left in (1..count).rev() {
+            order.swap(left, self.index(left + 1));
+        }
+        order
+    }
+
+    /// -1 or 1.
+    pub(crate) fn sign(&mut self) -> f64 {
+        if self.uniform() < 0.5 { 1.0 } else { -1.0 }
+    }
+
     fn draw(&mut self, from: impl FnOnce(&mut ChaCha8Rng) -> f64) -> f64 {
         match &mut self.0 {
             Source::Generator(generator) => from(generator),

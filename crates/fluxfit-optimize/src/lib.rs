@@ -8,6 +8,7 @@ mod levy;
 mod logistic_map;
 mod look;
 pub mod methods;
+mod moves;
 mod objective;
 mod optimizer;
 mod population;

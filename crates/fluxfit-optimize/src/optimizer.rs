@@ -1,7 +1,9 @@
 //! A search under way: one optimizer for all methods.
 //!
-//! An [`Optimizer`] is data and a [`step`](Optimizer::step): its method proposes a trial per candidate, evaluates all of them as one
-//! batch, then accepts. From that one piece come running, stopping, saving (with serde), resuming and history.
+//! An [`Optimizer`] is data and a [`step`](Optimizer::step): as many evaluations as the population has candidates. Its method proposes a
+//! generation of trials; they are evaluated as one batch; then it accepts some. A generation of another size than the population may end
+//! within a step, or go on in the next one, so that every method keeps to the same number of evaluations. From that one piece come
+//! running, stopping, saving (with serde), resuming and history.
 //! A step depends on nothing but the state and the objective: running `N` times one iteration is running `N` iterations, and a
 //! restored optimizer goes on to the same bits.
 
@@ -9,10 +11,10 @@ use crate::{
     bounds::Bounds,
     draws::Draws,
     error::Error,
-    iteration::{Iteration, Setup},
+    iteration::{Generation, Setup},
     methods::{Method, State},
     objective::Objective,
-    population::Population,
+    population::{Population, WORST_COST},
     report::{Record, SearchReport, StopReason},
     setting::SearchSettings,
 };
@@ -29,6 +31,8 @@ pub struct Optimizer {
     draws: Draws,
     population: Population,
     state: State,
+    /// Whether the first candidates are all evaluated.
+    begun: bool,
     iteration: usize,
     history: Vec<Record>,
 }
@@ -63,18 +67,47 @@ impl Optimizer {
         if bounds.dimension() != objective.dimension() {
             return Err(Error::Dimension { bounds: bounds.dimension(), objective: objective.dimension() });
         }
-        let (population, state) = method.start(&mut Setup { size, bounds: &bounds, draws: &mut draws, objective })?;
-        let mut new = Self { settings, bounds, draws, population, state, iteration: 0, history: Vec::new() };
+        let (positions, state) = method.start(&mut Setup { size, bounds: &bounds, draws: &mut draws })?;
+        let population = Population::laid_out(positions, bounds.dimension());
+        let mut new = Self { settings, bounds, draws, population, state, begun: false, iteration: 0, history: Vec::new() };
+        new.advance(objective);
+        if new.population.best_cost() == WORST_COST {
+            return Err(Error::NonFiniteStart { population: size });
+        }
         new.record();
         Ok(new)
     }
 
-    /// One iteration: propose, evaluate as one batch, accept.
+    /// One iteration: as many evaluations as the population has candidates.
     pub fn step(&mut self, objective: &impl Objective) {
         self.iteration += 1;
-        let Self { settings, bounds, draws, population, state, iteration, .. } = self;
-        state.step(&mut Iteration { number: *iteration, limit: settings.iterations, bounds, draws, population, objective });
+        self.advance(objective);
         self.record();
+    }
+
+    /// Proposes, evaluates and accepts until the evaluations of one iteration are done.
+    fn advance(&mut self, objective: &impl Objective) {
+        let Self { settings, bounds, draws, population, state, begun, iteration, .. } = self;
+        let (size, limit) = (settings.population, settings.iterations);
+        let mut left = size;
+        while left > 0 {
+            let mut generation = Generation { number: *iteration, limit, size, bounds, draws, population };
+            if generation.population.is_evaluated() {
+                state.propose(&mut generation);
+            }
+            let evaluated = generation.population.evaluate(objective, left);
+            if generation.population.is_evaluated() {
+                if *begun {
+                    state.accept(&mut generation);
+                } else {
+                    generation.population.accept_all();
+                    state.begin(&mut generation);
+                    *begun = true;
+                }
+            }
+            // Every method proposes something; a loop that rests on it alone would be one that may not end.
+            left = if evaluated == 0 { 0 } else { left - evaluated };
+        }
     }
 
     /// Steps until a criterion stops it.
@@ -145,6 +178,7 @@ struct Saved {
     draws: Draws,
     population: Population,
     state: State,
+    begun: bool,
     iteration: usize,
     history: Vec<Record>,
 }
@@ -155,11 +189,12 @@ impl TryFrom<Saved> for Optimizer {
 
     /// Refuses parts that do not belong together, so that no step can fail.
     fn try_from(saved: Saved) -> Result<Self, Error> {
-        let Saved { settings, bounds, draws, population, state, iteration, history } = saved;
-        if !population.fits(&bounds) {
+        let Saved { settings, bounds, draws, population, state, begun, iteration, history } = saved;
+        settings.check()?;
+        if !population.fits(&bounds) || !state.fits(&population) {
             return Err(Error::SavedSearch);
         }
-        state.check(&population)?;
-        Ok(Self { settings, bounds, draws, population, state, iteration, history })
+        state.check()?;
+        Ok(Self { settings, bounds, draws, population, state, begun, iteration, history })
     }
 }

@@ -1,13 +1,13 @@
 //! Candidates, their costs and the best seen: the state that every method steps.
 
-use crate::{bounds::Bounds, error::Error, objective::Objective};
+use crate::{bounds::Bounds, objective::Objective};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Stands for a cost that is not finite: no finite cost is worse, and files can hold it.
 pub const WORST_COST: f64 = f64::MAX;
 
-/// Candidates in rows, with the trials of the step at hand beside them.
+/// Candidates in rows, with the trials of the generation at hand beside them.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Population {
@@ -16,32 +16,28 @@ pub struct Population {
     costs: Vec<f64>,
     trials: Vec<f64>,
     trial_costs: Vec<f64>,
+    /// Trials evaluated so far.
+    evaluated: usize,
     best: Vec<f64>,
     best_cost: f64,
     evaluations: u64,
 }
 
 impl Population {
-    /// Evaluates the candidates at these positions, row after row.
-    ///
-    /// # Errors
-    /// If none of them has a finite cost.
-    pub(crate) fn evaluated(positions: Vec<f64>, objective: &dyn Objective) -> Result<Self, Error> {
-        let dimension = objective.dimension();
-        let population = positions.len() / dimension;
-        let mut new = Self {
+    /// Candidates at these positions, row after row; they are the first trials too, and still to be evaluated.
+    pub(crate) fn laid_out(positions: Vec<f64>, dimension: usize) -> Self {
+        let rows = positions.len() / dimension;
+        Self {
             dimension,
             trials: positions.clone(),
             positions,
-            costs: vec![WORST_COST; population],
-            trial_costs: vec![WORST_COST; population],
+            costs: vec![WORST_COST; rows],
+            trial_costs: vec![WORST_COST; rows],
+            evaluated: 0,
             best: vec![0.0; dimension],
             best_cost: WORST_COST,
             evaluations: 0,
-        };
-        new.evaluate(objective);
-        new.accept_all();
-        if new.best_cost == WORST_COST { Err(Error::NonFiniteStart { population }) } else { Ok(new) }
+        }
     }
 
     /// How many candidates.
@@ -96,30 +92,52 @@ impl Population {
         trial.copy_from_slice(self.position(i));
     }
 
-    /// Lets `propose` move each candidate's trial, which stands where its last one was, then keeps it in the box.
-    pub(crate) fn propose_each(&mut self, bounds: &Bounds, mut propose: impl FnMut(usize, &Self, &mut [f64])) {
+    /// Lets `propose` move each of `count` trials, then keeps it in the box. A trial stands where the last one of its number was.
+    pub(crate) fn propose(&mut self, count: usize, bounds: &Bounds, mut propose: impl FnMut(usize, &Self, &mut [f64])) {
         let mut trials = std::mem::take(&mut self.trials);
-        for (i, trial) in trials.chunks_exact_mut(self.dimension).enumerate() {
-            propose(i, self, trial);
+        trials.resize(count * self.dimension, 0.0);
+        for (k, trial) in trials.chunks_exact_mut(self.dimension).enumerate() {
+            propose(k, self, trial);
             bounds.clamp(trial);
         }
         self.trials = trials;
+        self.trial_costs.clear();
+        self.trial_costs.resize(count, WORST_COST);
+        self.evaluated = 0;
     }
 
-    /// Evaluates the trials as one batch.
-    pub(crate) fn evaluate(&mut self, objective: &dyn Objective) {
-        objective.evaluate(&self.trials, &mut self.trial_costs);
-        for cost in &mut self.trial_costs {
+    /// Whether no trial is left to be evaluated.
+    pub(crate) fn is_evaluated(&self) -> bool {
+        self.evaluated >= self.trial_costs.len()
+    }
+
+    /// Evaluates the next trials as one batch, at most `most`; returns how many.
+    pub(crate) fn evaluate(&mut self, objective: &dyn Objective, most: usize) -> usize {
+        let d = self.dimension;
+        let batch = self.evaluated..self.trial_costs.len().min(self.evaluated.saturating_add(most));
+        objective.evaluate(&self.trials[batch.start * d..batch.end * d], &mut self.trial_costs[batch.clone()]);
+        for (cost, trial) in self.trial_costs[batch.clone()].iter_mut().zip(self.trials[batch.start * d..].chunks_exact(d)) {
             if !cost.is_finite() {
                 *cost = WORST_COST;
             }
+            if *cost < self.best_cost {
+                self.best_cost = *cost;
+                self.best.copy_from_slice(trial);
+            }
         }
-        self.evaluations += self.trial_costs.len() as u64;
+        self.evaluated = batch.end;
+        self.evaluations += batch.len() as u64;
+        batch.len()
     }
 
     /// Takes the trials that are better than their candidates.
     pub(crate) fn accept_better(&mut self) {
         self.accept(|trial, held| trial < held);
+    }
+
+    /// Takes the trials that are at least as good as their candidates.
+    pub(crate) fn accept_no_worse(&mut self) {
+        self.accept(|trial, held| trial <= held);
     }
 
     /// Takes every trial.
@@ -128,28 +146,62 @@ impl Population {
     }
 
     fn accept(&mut self, takes: impl Fn(f64, f64) -> bool) {
-        let d = self.dimension;
-        for i in 0..self.costs.len() {
-            let cost = self.trial_costs[i];
-            if takes(cost, self.costs[i]) {
-                self.costs[i] = cost;
-                self.positions[i * d..(i + 1) * d].copy_from_slice(&self.trials[i * d..(i + 1) * d]);
-            }
-            if cost < self.best_cost {
-                self.best_cost = cost;
-                self.best.copy_from_slice(&self.trials[i * d..(i + 1) * d]);
+        for i in 0..self.len().min(self.trial_costs.len()) {
+            if takes(self.trial_costs[i], self.costs[i]) {
+                self.take(i, i);
             }
         }
     }
+
+    /// Moves a candidate to a trial.
+    pub(crate) fn take(&mut self, i: usize, trial: usize) {
+        let d = self.dimension;
+        self.costs[i] = self.trial_costs[trial];
+        self.positions[i * d..(i + 1) * d].copy_from_slice(&self.trials[trial * d..(trial + 1) * d]);
+    }
+
+    /// Moves a candidate to a trial that is better; returns whether it is.
+    pub(crate) fn take_if_better(&mut self, i: usize, trial: usize) -> bool {
+        let is_better = self.trial_costs[trial] < self.costs[i];
+        if is_better {
+            self.take(i, trial);
+        }
+        is_better
+    }
+
+    /// Costs of the trials.
+    pub(crate) fn trial_costs(&self) -> &[f64] {
+        &self.trial_costs
+    }
+
+    /// The candidates' numbers, from the lowest cost to the highest.
+    pub(crate) fn ranking(&self) -> Vec<usize> {
+        let mut ranking: Vec<usize> = (0..self.len()).collect();
+        ranking.sort_by(|a, b| self.costs[*a].total_cmp(&self.costs[*b]));
+        ranking
+    }
+
+    /// The candidates of these numbers, in this order, become the candidates.
+    pub(crate) fn keep(&mut self, chosen: &[usize]) {
+        self.positions = chosen.iter().flat_map(|i| self.position(*i)).copied().collect();
+        self.costs = chosen.iter().map(|i| self.costs[*i]).collect();
+    }
+
+    /// The trials become the candidates.
+    pub(crate) fn replace(&mut self) {
+        self.positions.clone_from(&self.trials);
+        self.costs.clone_from(&self.trial_costs);
+    }
+
     /// Whether all parts have the sizes that this box asks for: what is read back may have been damaged.
     #[cfg(feature = "serde")]
     pub(crate) fn fits(&self, bounds: &Bounds) -> bool {
-        let (rows, numbers) = (self.costs.len(), self.positions.len());
+        let fill = |rows: &[f64], numbers: &[f64]| rows.len().checked_mul(self.dimension) == Some(numbers.len());
         self.dimension == bounds.dimension()
-            && rows > 0
-            && rows.checked_mul(self.dimension) == Some(numbers)
-            && self.trials.len() == numbers
-            && self.trial_costs.len() == rows
+            && !self.is_empty()
+            && fill(&self.costs, &self.positions)
+            && fill(&self.trial_costs, &self.trials)
+            && self.evaluated <= self.trial_costs.len()
             && self.best.len() == self.dimension
     }
 }

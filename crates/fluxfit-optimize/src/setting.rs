@@ -92,6 +92,11 @@ pub(crate) fn check_fraction_of_box(setting: &'static str, value: f64) -> Result
     within(setting, value, (0.0..=1.0).contains(&value), "a fraction of the box's width from 0 to 1")
 }
 
+/// Refuses a count of nothing.
+pub(crate) fn check_count(setting: &'static str, value: u32) -> Result<(), Error> {
+    within(setting, f64::from(value), value > 0, "at least 1")
+}
+
 fn within(setting: &'static str, value: f64, is_within: bool, range: &'static str) -> Result<(), Error> {
     if is_within { Ok(()) } else { Err(Error::Setting { setting, value, range }) }
 }

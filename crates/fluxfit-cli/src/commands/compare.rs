@@ -29,8 +29,8 @@ pub(crate) struct Compare {
     log: LogArguments,
     // The paper's four, unless others are asked for.
     #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method,
-          help = format!("Optimizers to compare: {}", method_keys()))]
-    methods: Vec<Method>,
+          help = format!("Optimizers to compare: all, {}", method_keys()))]
+    methods: Vec<AskedMethod>,
     /// Fitness that is minimized
     #[arg(long, help_heading = "Model", value_enum, default_value_t = StudyModel::Steady)]
     model: StudyModel,
@@ -66,8 +66,27 @@ pub(crate) enum StudyModel {
     OutputError,
 }
 
-fn parse_method(text: &str) -> Result<Method, String> {
-    Method::named(text).ok_or_else(|| format!("no method '{text}'; there are {}", method_keys()))
+/// One method, or all of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum AskedMethod {
+    All,
+    One(Method),
+}
+
+fn parse_method(text: &str) -> Result<AskedMethod, String> {
+    if text == "all" {
+        return Ok(AskedMethod::All);
+    }
+    Method::named(text).map(AskedMethod::One).ok_or_else(|| format!("no method '{text}'; there are all, {}", method_keys()))
+}
+
+/// The methods that were asked for, in that order.
+fn methods(asked: &[AskedMethod]) -> Vec<Method> {
+    let expand = |asked: &AskedMethod| match asked {
+        AskedMethod::All => Method::all().to_vec(),
+        AskedMethod::One(method) => vec![*method],
+    };
+    asked.iter().flat_map(expand).collect()
 }
 
 fn parse_id_zero(text: &str) -> Result<IdZero, String> {
@@ -145,7 +164,7 @@ fn request(arguments: &Compare, input: &input::Input) -> Result<ComparisonReques
             StudyModel::Steady => Model::Steady,
             StudyModel::OutputError => Model::OutputError,
         },
-        methods: arguments.methods.clone(),
+        methods: methods(&arguments.methods),
         runs: arguments.runs,
         id_zero: arguments.id_zero,
         tolerance: arguments.tolerance,

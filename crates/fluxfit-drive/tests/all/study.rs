@@ -47,7 +47,7 @@ fn study(problem: &mut StudyProblem, runs: usize, iterations: usize) -> Vec<Meth
     let settings = SearchSettings { population: 12, iterations, ..SearchSettings::default() };
     let run =
         |method: Method| run_method(method, runs, settings, &bounds(), &problem.fitness, || ControlFlow::Continue(())).unwrap().unwrap();
-    let mut studies = Method::all().map(run).to_vec();
+    let mut studies = paper::METHODS.map(run).to_vec();
     use_lowest_minimum(&mut problem.fitness, &mut studies);
     studies
 }

@@ -16,7 +16,8 @@
 use super::particles::{Flight, Particles};
 use crate::{
     error::Error,
-    iteration::{Iteration, Setup},
+    iteration::{Generation, Setup},
+    moves::Moves,
     population::{Population, WORST_COST},
     setting::check_factor,
 };
@@ -46,26 +47,6 @@ impl Apso {
     /// The settings where none are given.
     pub const DEFAULT: Self = Self { flight: Flight::DEFAULT, inertia_min: 0.4, inertia_max: 0.9 };
 
-    /// Refuses settings out of range.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        self.flight.check()?;
-        check_factor("inertia_min", self.inertia_min)?;
-        check_factor("inertia_max", self.inertia_max)
-    }
-
-    /// Particles uniform in the box, with their velocities.
-    pub(crate) fn start(&self, setup: &mut Setup) -> Result<(Population, Particles), Error> {
-        self.check()?;
-        Particles::start(&self.flight, setup)
-    }
-
-    /// One flight per particle.
-    pub(crate) fn step(&self, particles: &mut Particles, iteration: &mut Iteration) {
-        let costs = iteration.population.costs().to_vec();
-        let inertia = self.inertia(&costs);
-        particles.fly(&self.flight, |i| inertia(costs[i]), iteration);
-    }
-
     /// The inertia weight that follows from a particle's cost, given the current costs of the swarm.
     fn inertia(&self, costs: &[f64]) -> impl Fn(f64) -> f64 + use<> {
         let finite = || costs.iter().copied().filter(|cost| *cost < WORST_COST);
@@ -82,5 +63,40 @@ impl Apso {
                 inertia_min + (inertia_max - inertia_min) * (cost - lowest) / (average - lowest)
             }
         }
+    }
+}
+
+impl Moves for Apso {
+    type Memory = Particles;
+
+    fn check(&self) -> Result<(), Error> {
+        self.flight.check()?;
+        check_factor("inertia_min", self.inertia_min)?;
+        check_factor("inertia_max", self.inertia_max)
+    }
+
+    /// Particles uniform in the box, with their velocities.
+    fn start(&self, setup: &mut Setup) -> (Vec<f64>, Particles) {
+        Particles::start(&self.flight, setup)
+    }
+
+    fn begin(&self, particles: &mut Particles, generation: &mut Generation) {
+        particles.remember(generation.population);
+    }
+
+    /// One flight per particle.
+    fn propose(&self, particles: &mut Particles, generation: &mut Generation) {
+        let costs = generation.population.costs().to_vec();
+        let inertia = self.inertia(&costs);
+        particles.fly(&self.flight, |i| inertia(costs[i]), generation);
+    }
+
+    fn accept(&self, particles: &mut Particles, generation: &mut Generation) {
+        generation.population.accept_all();
+        particles.remember(generation.population);
+    }
+
+    fn fits(particles: &Particles, swarm: &Population) -> bool {
+        particles.fit(swarm)
     }
 }

@@ -18,8 +18,9 @@
 use crate::{
     draws::Draws,
     error::Error,
-    iteration::{Iteration, Setup},
+    iteration::{Generation, Setup},
     levy::levy,
+    moves::Moves,
     population::Population,
     setting::{check_factor, check_probability},
 };
@@ -58,33 +59,6 @@ impl Fpa {
     /// The settings where none are given.
     pub const DEFAULT: Self = Self { switch_probability: 0.8, gamma: 0.1, local_base: LocalBase::Accepted };
 
-    /// Smallest population: a flower and its two partners.
-    pub const SMALLEST_POPULATION: usize = 3;
-
-    /// Refuses settings out of range.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        check_probability("switch_probability", self.switch_probability)?;
-        check_factor("gamma", self.gamma)
-    }
-
-    /// Flowers uniform in the box.
-    pub(crate) fn start(&self, setup: &mut Setup) -> Result<Population, Error> {
-        self.check()?;
-        setup.uniform()
-    }
-
-    /// One trial per flower. Draws per flower: `rand`; then the Lévy steps, or `epsilon` and the partners.
-    pub(crate) fn step(&self, iteration: &mut Iteration) {
-        iteration.try_each(|i, flowers, trial, draws| {
-            if draws.uniform() > self.switch_probability {
-                self.global(i, flowers, trial, draws);
-            } else {
-                self.local(i, flowers, trial, draws);
-            }
-        });
-        iteration.population.accept_better();
-    }
-
     /// Equation (4).
     pub(crate) fn global(&self, i: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
         flowers.copy_position(i, trial);
@@ -107,5 +81,30 @@ impl Fpa {
             LocalBase::Accepted => flowers.copy_position(i, trial),
             LocalBase::LastTrial => {}
         }
+    }
+}
+
+impl Moves for Fpa {
+    type Memory = ();
+
+    fn check(&self) -> Result<(), Error> {
+        check_probability("switch_probability", self.switch_probability)?;
+        check_factor("gamma", self.gamma)
+    }
+
+    /// Flowers uniform in the box.
+    fn start(&self, setup: &mut Setup) -> (Vec<f64>, ()) {
+        (setup.uniform(), ())
+    }
+
+    /// One trial per flower. Draws per flower: `rand`; then the Lévy steps, or `epsilon` and the partners.
+    fn propose(&self, (): &mut (), generation: &mut Generation) {
+        generation.try_each(|i, flowers, trial, draws| {
+            if draws.uniform() > self.switch_probability {
+                self.global(i, flowers, trial, draws);
+            } else {
+                self.local(i, flowers, trial, draws);
+            }
+        });
     }
 }

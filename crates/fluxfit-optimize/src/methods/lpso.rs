@@ -13,7 +13,8 @@
 use super::particles::{Flight, Particles};
 use crate::{
     error::Error,
-    iteration::{Iteration, Setup},
+    iteration::{Generation, Setup},
+    moves::Moves,
     population::Population,
     setting::check_factor,
 };
@@ -43,29 +44,44 @@ impl Lpso {
     /// The settings where none are given.
     pub const DEFAULT: Self = Self { flight: Flight::DEFAULT, inertia_start: 0.9, inertia_end: 0.4 };
 
-    /// Refuses settings out of range.
-    pub(crate) fn check(&self) -> Result<(), Error> {
+    /// The inertia weight of iteration `iteration` (from 1) out of `iterations`; past the last one it stays.
+    fn inertia(&self, iteration: usize, iterations: usize) -> f64 {
+        let fraction = (iteration.saturating_sub(1) as f64 / iterations.saturating_sub(1).max(1) as f64).min(1.0);
+        self.inertia_start + (self.inertia_end - self.inertia_start) * fraction
+    }
+}
+
+impl Moves for Lpso {
+    type Memory = Particles;
+
+    fn check(&self) -> Result<(), Error> {
         self.flight.check()?;
         check_factor("inertia_start", self.inertia_start)?;
         check_factor("inertia_end", self.inertia_end)
     }
 
     /// Particles uniform in the box, with their velocities.
-    pub(crate) fn start(&self, setup: &mut Setup) -> Result<(Population, Particles), Error> {
-        self.check()?;
+    fn start(&self, setup: &mut Setup) -> (Vec<f64>, Particles) {
         Particles::start(&self.flight, setup)
     }
 
-    /// One flight per particle.
-    pub(crate) fn step(&self, particles: &mut Particles, iteration: &mut Iteration) {
-        let inertia = self.inertia(iteration.number, iteration.limit);
-        particles.fly(&self.flight, |_| inertia, iteration);
+    fn begin(&self, particles: &mut Particles, generation: &mut Generation) {
+        particles.remember(generation.population);
     }
 
-    /// The inertia weight of iteration `iteration` (from 1) out of `iterations`; past the last one it stays.
-    fn inertia(&self, iteration: usize, iterations: usize) -> f64 {
-        let fraction = (iteration.saturating_sub(1) as f64 / iterations.saturating_sub(1).max(1) as f64).min(1.0);
-        self.inertia_start + (self.inertia_end - self.inertia_start) * fraction
+    /// One flight per particle.
+    fn propose(&self, particles: &mut Particles, generation: &mut Generation) {
+        let inertia = self.inertia(generation.number, generation.limit);
+        particles.fly(&self.flight, |_| inertia, generation);
+    }
+
+    fn accept(&self, particles: &mut Particles, generation: &mut Generation) {
+        generation.population.accept_all();
+        particles.remember(generation.population);
+    }
+
+    fn fits(particles: &Particles, swarm: &Population) -> bool {
+        particles.fit(swarm)
     }
 }
 

@@ -1,42 +1,41 @@
 //! The methods: one file each, and the table of them.
 //!
-//! A new method is a file here, with its idea, equations, paper, settings, step and tests; a row of [`METHODS`]; and its line in each
-//! list of this file, which the compiler asks for once [`Method`] has its variant.
+//! A new method is a file here, with its idea, equations, paper, settings and moves; its `pub mod`; and its row of the table below.
 
 pub mod apso;
+pub mod bfo;
+pub mod cma_es;
+pub mod cuckoo;
+pub mod de;
 pub mod fpa;
+pub mod gwo;
+pub mod hba;
+pub mod igwo;
+pub mod ipop_cma_es;
+pub mod iso;
+pub mod iwoa;
+pub mod l_shade;
 pub mod lpso;
+pub mod msfpa;
+pub mod nbfo;
 pub mod particles;
+pub mod so;
+pub mod ssa;
+pub mod ssa_cloud;
 pub mod tgfpa;
+pub mod tmfpa;
+pub mod woa;
 
 use crate::{
     error::Error,
-    iteration::{Iteration, Setup},
+    iteration::{Generation, Setup},
     look::Look,
+    moves::Moves,
     population::Population,
 };
-use apso::Apso;
-use fpa::Fpa;
-use lpso::Lpso;
-use particles::Particles;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::mem::discriminant;
-use tgfpa::Tgfpa;
-
-/// The methods, each with its settings.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(tag = "method", content = "settings", rename_all = "kebab-case"))]
-pub enum Method {
-    /// Flower pollination with t and Gaussian perturbation: the paper's algorithm.
-    Tgfpa(Tgfpa),
-    /// Flower pollination.
-    Fpa(Fpa),
-    /// Particle swarm, inertia weight falling linearly.
-    Lpso(Lpso),
-    /// Particle swarm, inertia weight adapted to each particle's cost.
-    Apso(Apso),
-}
 
 /// A row of [`METHODS`]: all that other programs need to know of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,42 +52,151 @@ pub struct MethodFacts {
     pub look: Look,
 }
 
-/// The table of methods; the paper's four come first, in the paper's order.
-pub const METHODS: &[MethodFacts] = &[
-    MethodFacts {
-        key: "tgfpa",
-        label: "tGFPA",
-        default: Method::Tgfpa(Tgfpa::DEFAULT),
-        smallest_population: Tgfpa::SMALLEST_POPULATION,
-        look: Look { letter: 't', terminal: 2, light: [0x00, 0x5f, 0xe0], dark: [0x6d, 0x9b, 0xff], dashes: &[] },
-    },
-    MethodFacts {
-        key: "fpa",
-        label: "FPA",
-        default: Method::Fpa(Fpa::DEFAULT),
-        smallest_population: Fpa::SMALLEST_POPULATION,
-        look: Look { letter: 'F', terminal: 3, light: [0x8f, 0x5a, 0x00], dark: [0xff, 0x9a, 0x3d], dashes: &[75, 40] },
-    },
-    MethodFacts {
-        key: "lpso",
-        label: "LPSO",
-        default: Method::Lpso(Lpso::DEFAULT),
-        smallest_population: 1,
-        look: Look { letter: 'L', terminal: 4, light: [0x14, 0x4a, 0x38], dark: [0x4d, 0xf0, 0xbb], dashes: &[20, 30] },
-    },
-    MethodFacts {
-        key: "apso",
-        label: "APSO",
-        default: Method::Apso(Apso::DEFAULT),
-        smallest_population: 1,
-        look: Look { letter: 'A', terminal: 5, light: [0xb5, 0x12, 0x8f], dark: [0xb7, 0x8f, 0xc0], dashes: &[100, 35, 20, 35] },
-    },
-];
+/// Makes [`Method`], [`METHODS`] and what each method does of the rows of the table.
+macro_rules! table {
+    ($($(#[$doc:meta])* $variant:ident($($path:ident)::+), $key:literal, $label:literal, $smallest:literal, $look:expr;)*) => {
+        /// The methods, each with its settings.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+        #[cfg_attr(feature = "serde", serde(tag = "method", content = "settings", rename_all = "kebab-case"))]
+        pub enum Method {
+            $($(#[$doc])* $variant($($path)::+),)*
+        }
+
+        /// The table of methods; the paper's four come first, in the paper's order.
+        pub const METHODS: &[MethodFacts] = &[$(MethodFacts {
+            key: $key,
+            label: $label,
+            default: Method::$variant(<$($path)::+>::DEFAULT),
+            smallest_population: $smallest,
+            look: $look,
+        },)*];
+
+        /// A method under way: its settings, and what it remembers beside the [`Population`].
+        #[derive(Debug, Clone)]
+        #[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(rename_all = "kebab-case"))]
+        // One State per optimizer: its size does not matter.
+        #[allow(clippy::large_enum_variant)]
+        pub(crate) enum State {
+            $($variant($($path)::+, <$($path)::+ as Moves>::Memory),)*
+        }
+
+        impl Method {
+            /// The positions of its first candidates, row after row, and itself under way.
+            pub(crate) fn start(self, setup: &mut Setup) -> Result<(Vec<f64>, State), Error> {
+                match self {
+                    $(Self::$variant(method) => {
+                        method.check()?;
+                        let (positions, memory) = Moves::start(&method, setup);
+                        Ok((positions, State::$variant(method, memory)))
+                    })*
+                }
+            }
+        }
+
+        impl State {
+            /// Looks at the first candidates once they are evaluated.
+            pub(crate) fn begin(&mut self, generation: &mut Generation) {
+                match self {
+                    $(Self::$variant(method, memory) => method.begin(memory, generation),)*
+                }
+            }
+
+            /// Sets out the next trials.
+            pub(crate) fn propose(&mut self, generation: &mut Generation) {
+                match self {
+                    $(Self::$variant(method, memory) => method.propose(memory, generation),)*
+                }
+            }
+
+            /// Takes some of the evaluated trials.
+            pub(crate) fn accept(&mut self, generation: &mut Generation) {
+                match self {
+                    $(Self::$variant(method, memory) => method.accept(memory, generation),)*
+                }
+            }
+
+            /// Refuses settings out of range, of what was read back.
+            #[cfg_attr(not(feature = "serde"), allow(dead_code))]
+            pub(crate) fn check(&self) -> Result<(), Error> {
+                match self {
+                    $(Self::$variant(method, _) => method.check(),)*
+                }
+            }
+
+            /// Whether a population that was read back is large enough, and what is remembered beside it has its size.
+            #[cfg_attr(not(feature = "serde"), allow(dead_code))]
+            pub(crate) fn fits(&self, population: &Population) -> bool {
+                match self {
+                    $(Self::$variant(_, memory) => population.len() >= $smallest && <$($path)::+ as Moves>::fits(memory, population),)*
+                }
+            }
+        }
+    };
+}
+
+// Documentation; variant and settings; key; label; smallest population; letter, colour of the terminal, light, dark, dashes.
+#[rustfmt::skip]
+table! {
+    /// Flower pollination with t and Gaussian perturbation: the paper's algorithm.
+    Tgfpa(tgfpa::Tgfpa), "tgfpa", "tGFPA", 4, look('t', 2, 0x00_5fe0, 0x6d_9bff, &[]);
+    /// Flower pollination.
+    Fpa(fpa::Fpa), "fpa", "FPA", 3, look('F', 3, 0x8f_5a00, 0xff_9a3d, &[75, 40]);
+    /// Particle swarm, inertia weight falling linearly.
+    Lpso(lpso::Lpso), "lpso", "LPSO", 1, look('L', 4, 0x14_4a38, 0x4d_f0bb, &[20, 30]);
+    /// Particle swarm, inertia weight adapted to each particle's cost.
+    Apso(apso::Apso), "apso", "APSO", 1, look('A', 5, 0xb5_128f, 0xb7_8fc0, &[100, 35, 20, 35]);
+    /// Differential evolution, DE/rand/1/bin.
+    De(de::De), "de", "DE/rand/1/bin", 4, look('D', 1, 0xb0_2a1e, 0xff_8a7a, &[60, 25]);
+    /// Grey wolves.
+    Gwo(gwo::Gwo), "gwo", "GWO", 3, look('G', 8, 0x4a_5560, 0xa9_b6c2, &[20, 20]);
+    /// Whales.
+    Woa(woa::Woa), "woa", "WOA", 1, look('W', 6, 0x00_6a7a, 0x3f_c4d8, &[120, 30]);
+    /// Salps.
+    Ssa(ssa::Ssa), "ssa", "SSA", 2, look('s', 11, 0x6f_6a00, 0xc9_c23a, &[40, 20, 10, 20]);
+    /// Honey badgers.
+    Hba(hba::Hba), "hba", "HBA", 1, look('H', 13, 0x7a_1fa2, 0xd4_8cf0, &[90, 20]);
+    /// Cuckoos.
+    Cuckoo(cuckoo::Cuckoo), "cuckoo", "cuckoo search", 1, look('K', 10, 0x3d_6b1f, 0x9a_d66e, &[15, 45]);
+    /// Adaptation of the covariance matrix.
+    CmaEs(cma_es::CmaEs), "cma-es", "CMA-ES", 1, look('C', 12, 0x2b_2f9e, 0xa3_a8ff, &[150, 40]);
+    /// Differential evolution, its settings adapted to what succeeds, its population shrinking.
+    LShade(l_shade::LShade), "l-shade", "L-SHADE", 1, look('S', 9, 0xd0_1050, 0xff_7aa8, &[45, 15]);
+    /// CMA-ES, restarted with twice the samples.
+    IpopCmaEs(ipop_cma_es::IpopCmaEs), "ipop-cma-es", "IPOP-CMA-ES", 1, look('I', 14, 0x00_7a5a, 0x2f_e0b0, &[70, 20, 20, 20]);
+    /// Snakes.
+    So(so::So), "so", "SO", 4, look('O', 208, 0xa0_4a00, 0xff_b46a, &[30, 60]);
+    /// Foraging bacteria.
+    Bfo(bfo::Bfo), "bfo", "BFO", 2, look('B', 94, 0x6b_3d2e, 0xd0_a090, &[25, 15, 25, 45]);
+    /// Improved snakes, after \[10\], reconstructed.
+    Iso(iso::Iso), "iso", "improved SO, after [10], reconstructed", 4, look('o', 130, 0x8a_3a5a, 0xe0_98b8, &[110, 20, 15, 20]);
+    /// Bacteria in niches, after \[11\], reconstructed.
+    Nbfo(nbfo::Nbfo), "nbfo", "niche BFO, after [11], reconstructed", 4, look('N', 58, 0x55_5a2a, 0xb8_c080, &[35, 35]);
+    /// Salps in a normal cloud, after \[13\], reconstructed.
+    SsaCloud(ssa_cloud::SsaCloud), "ssa-cloud", "SSA with a cloud, after [13], reconstructed", 2, look('c', 30, 0x1f_5f8a, 0x7cc0e8, &[55, 55]);
+    /// Improved whales, after \[14\], reconstructed.
+    Iwoa(iwoa::Iwoa), "iwoa", "improved WOA, after [14], reconstructed", 1, look('w', 37, 0x2f_6f6a, 0x80_c8c0, &[80, 15, 10, 15, 10, 15]);
+    /// Improved grey wolves, after \[16\], reconstructed.
+    Igwo(igwo::Igwo), "igwo", "improved GWO, after [16], reconstructed", 3, look('g', 245, 0x6a_5a70, 0xc0_b0c8, &[10, 30]);
+    /// Flower pollination with t mutation, after \[22\], reconstructed.
+    Tmfpa(tmfpa::Tmfpa), "tmfpa", "tMFPA, after [22], reconstructed", 5, look('T', 27, 0x0a_4fb5, 0x86_b0ff, &[200, 30]);
+    /// Flower pollination with several strategies, after \[21\], reconstructed.
+    Msfpa(msfpa::Msfpa), "msfpa", "multi-strategy FPA, after [21], reconstructed", 4, look('M', 99, 0x5b_3fc0, 0xb8_a0ff, &[130, 20, 30, 20]);
+}
+
+/// A [`Look`] with its colours as red, green and blue in one number.
+const fn look(letter: char, terminal: u8, light: u32, dark: u32, dashes: &'static [u16]) -> Look {
+    const fn rgb(colour: u32) -> [u8; 3] {
+        let [_, red, green, blue] = colour.to_be_bytes();
+        [red, green, blue]
+    }
+    Look { letter, terminal, light: rgb(light), dark: rgb(dark), dashes }
+}
 
 /// tGFPA with its default settings.
 impl Default for Method {
     fn default() -> Self {
-        Self::Tgfpa(Tgfpa::DEFAULT)
+        Self::Tgfpa(tgfpa::Tgfpa::DEFAULT)
     }
 }
 
@@ -118,55 +226,6 @@ impl Method {
     /// Name in prose.
     pub fn label(&self) -> &'static str {
         self.facts().label
-    }
-
-    /// Lays out and evaluates the first population.
-    pub(crate) fn start(self, setup: &mut Setup) -> Result<(Population, State), Error> {
-        Ok(match self {
-            Self::Tgfpa(tgfpa) => (tgfpa.start(setup)?, State::Tgfpa(tgfpa)),
-            Self::Fpa(fpa) => (fpa.start(setup)?, State::Fpa(fpa)),
-            Self::Lpso(lpso) => {
-                let (swarm, particles) = lpso.start(setup)?;
-                (swarm, State::Lpso(lpso, particles))
-            }
-            Self::Apso(apso) => {
-                let (swarm, particles) = apso.start(setup)?;
-                (swarm, State::Apso(apso, particles))
-            }
-        })
-    }
-}
-
-/// A method under way: its settings, and what it remembers beside the [`Population`].
-#[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(rename_all = "kebab-case"))]
-pub(crate) enum State {
-    Tgfpa(Tgfpa),
-    Fpa(Fpa),
-    Lpso(Lpso, Particles),
-    Apso(Apso, Particles),
-}
-
-impl State {
-    /// One iteration: propose trials, evaluate them, accept some.
-    pub(crate) fn step(&mut self, iteration: &mut Iteration) {
-        match self {
-            Self::Tgfpa(tgfpa) => tgfpa.step(iteration),
-            Self::Fpa(fpa) => fpa.step(iteration),
-            Self::Lpso(lpso, particles) => lpso.step(particles, iteration),
-            Self::Apso(apso, particles) => apso.step(particles, iteration),
-        }
-    }
-
-    /// Refuses what was read back and cannot be stepped: settings out of range, a memory of another size than the population's.
-    #[cfg(feature = "serde")]
-    pub(crate) fn check(&self, population: &Population) -> Result<(), Error> {
-        match self {
-            Self::Tgfpa(tgfpa) => tgfpa.check(),
-            Self::Fpa(fpa) => fpa.check(),
-            Self::Lpso(lpso, particles) => lpso.check().and(particles.check(population)),
-            Self::Apso(apso, particles) => apso.check().and(particles.check(population)),
-        }
     }
 }
 

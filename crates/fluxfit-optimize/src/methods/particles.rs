@@ -9,8 +9,8 @@
 
 use crate::{
     error::Error,
-    iteration::{Iteration, Setup},
-    population::Population,
+    iteration::{Generation, Setup},
+    population::{Population, WORST_COST},
     setting::{check_factor, check_fraction_of_box},
 };
 #[cfg(feature = "serde")]
@@ -58,23 +58,23 @@ pub(crate) struct Particles {
 impl Particles {
     /// Particles uniform in the box, their velocities uniform within the limit. Draws one number per component, row after row: first
     /// of the positions, then of the velocities.
-    pub(crate) fn start(flight: &Flight, setup: &mut Setup) -> Result<(Population, Self), Error> {
-        let swarm = setup.uniform()?;
-        let mut velocities = Vec::with_capacity(swarm.positions().len());
-        for _ in 0..swarm.len() {
+    pub(crate) fn start(flight: &Flight, setup: &mut Setup) -> (Vec<f64>, Self) {
+        let positions = setup.uniform();
+        let mut velocities = Vec::with_capacity(positions.len());
+        for _ in 0..setup.size {
             let widths = setup.bounds.iter().map(|(lower, upper)| upper - lower);
             velocities.extend(widths.map(|width| flight.velocity_limit * width * (2.0 * setup.draws.uniform() - 1.0)));
         }
-        let particles = Self { velocities, own_best: swarm.positions().to_vec(), own_best_costs: swarm.costs().to_vec() };
-        Ok((swarm, particles))
+        let particles = Self { velocities, own_best: positions.clone(), own_best_costs: vec![WORST_COST; setup.size] };
+        (positions, particles)
     }
 
     /// Moves each particle `i` with inertia weight `inertia(i)`. Draws per component: `rand` of c1, `rand` of c2.
-    pub(crate) fn fly(&mut self, flight: &Flight, inertia: impl Fn(usize) -> f64, iteration: &mut Iteration) {
-        let bounds = iteration.bounds;
+    pub(crate) fn fly(&mut self, flight: &Flight, inertia: impl Fn(usize) -> f64, generation: &mut Generation) {
+        let bounds = generation.bounds;
         let d = bounds.dimension();
         let (velocities, own_best) = (&mut self.velocities, &self.own_best);
-        iteration.try_each(|i, swarm, trial, draws| {
+        generation.try_each(|i, swarm, trial, draws| {
             let w = inertia(i);
             swarm.copy_position(i, trial);
             let row = i * d..(i + 1) * d;
@@ -86,12 +86,10 @@ impl Particles {
                 *x += *v;
             }
         });
-        iteration.population.accept_all();
-        self.remember(iteration.population);
     }
 
     /// Remembers the places that are better than all before.
-    fn remember(&mut self, swarm: &Population) {
+    pub(crate) fn remember(&mut self, swarm: &Population) {
         for (i, &cost) in swarm.costs().iter().enumerate() {
             if cost < self.own_best_costs[i] {
                 let place = swarm.position(i);
@@ -102,11 +100,9 @@ impl Particles {
         }
     }
 
-    /// Refuses a memory of another size than the population's.
-    #[cfg(feature = "serde")]
-    pub(crate) fn check(&self, swarm: &Population) -> Result<(), Error> {
+    /// Whether the memory is that of a swarm of this size.
+    pub(crate) fn fit(&self, swarm: &Population) -> bool {
         let numbers = swarm.positions().len();
-        let fits = self.velocities.len() == numbers && self.own_best.len() == numbers && self.own_best_costs.len() == swarm.len();
-        if fits { Ok(()) } else { Err(Error::SavedSearch) }
+        self.velocities.len() == numbers && self.own_best.len() == numbers && self.own_best_costs.len() == swarm.len()
     }
 }

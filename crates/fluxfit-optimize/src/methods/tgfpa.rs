@@ -29,8 +29,9 @@ use super::fpa::Fpa;
 use crate::{
     draws::Draws,
     error::Error,
-    iteration::{Iteration, Setup},
+    iteration::{Generation, Setup},
     logistic_map::logistic_start,
+    moves::Moves,
     population::Population,
     setting::check_probability,
 };
@@ -73,42 +74,6 @@ impl Tgfpa {
     /// The settings where none are given.
     pub const DEFAULT: Self = Self { pollination: Fpa::DEFAULT, plain_global: 0.2, plain_local: 0.2, start: Start::Logistic };
 
-    /// Smallest population: a flower and its three partners.
-    pub const SMALLEST_POPULATION: usize = 4;
-
-    /// Refuses settings out of range.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        self.pollination.check()?;
-        check_probability("plain_global", self.plain_global)?;
-        check_probability("plain_local", self.plain_local)
-    }
-
-    /// Flowers on the logistic map, or uniform in the box.
-    pub(crate) fn start(&self, setup: &mut Setup) -> Result<Population, Error> {
-        self.check()?;
-        match self.start {
-            Start::Logistic => {
-                let positions = logistic_start(setup.size, setup.bounds, setup.draws);
-                setup.at(positions)
-            }
-            Start::Uniform => setup.uniform(),
-        }
-    }
-
-    /// One trial per flower. Draws per flower: `rand` (p), `rand` (m or q), then what the move needs, in the order of its
-    /// equation, partners last.
-    pub(crate) fn step(&self, iteration: &mut Iteration) {
-        let number = iteration.number;
-        iteration.try_each(|i, flowers, trial, draws| {
-            if draws.uniform() > self.pollination.switch_probability {
-                self.global(i, number, flowers, trial, draws);
-            } else {
-                self.local(i, flowers, trial, draws);
-            }
-        });
-        iteration.population.accept_better();
-    }
-
     /// Equation (9).
     fn global(&self, i: usize, iteration: usize, flowers: &Population, trial: &mut [f64], draws: &mut Draws) {
         let plain = draws.uniform() < self.plain_global;
@@ -131,6 +96,38 @@ impl Tgfpa {
             flowers.add_difference(trial, towards, j, i);
             flowers.add_difference(trial, across, l, k);
         }
+    }
+}
+
+impl Moves for Tgfpa {
+    type Memory = ();
+
+    fn check(&self) -> Result<(), Error> {
+        self.pollination.check()?;
+        check_probability("plain_global", self.plain_global)?;
+        check_probability("plain_local", self.plain_local)
+    }
+
+    /// Flowers on the logistic map, or uniform in the box.
+    fn start(&self, setup: &mut Setup) -> (Vec<f64>, ()) {
+        let positions = match self.start {
+            Start::Logistic => logistic_start(setup.size, setup.bounds, setup.draws),
+            Start::Uniform => setup.uniform(),
+        };
+        (positions, ())
+    }
+
+    /// One trial per flower. Draws per flower: `rand` (p), `rand` (m or q), then what the move needs, in the order of its
+    /// equation, partners last.
+    fn propose(&self, (): &mut (), generation: &mut Generation) {
+        let number = generation.number;
+        generation.try_each(|i, flowers, trial, draws| {
+            if draws.uniform() > self.pollination.switch_probability {
+                self.global(i, number, flowers, trial, draws);
+            } else {
+                self.local(i, flowers, trial, draws);
+            }
+        });
     }
 }
 
@@ -159,16 +156,20 @@ mod tests {
         size: usize,
         limit: usize,
         (bounds, draws, objective): (&Bounds, &mut Draws, &dyn Objective),
-        start: impl Fn(&mut Setup) -> Result<Population, Error>,
-        step: impl Fn(&mut Iteration),
-    ) -> Result<Vec<Population>, Error> {
-        let mut population = start(&mut Setup { size, bounds, draws, objective })?;
+        method: &impl Moves<Memory = ()>,
+    ) -> Vec<Population> {
+        let mut population = Population::laid_out(method.start(&mut Setup { size, bounds, draws }).0, bounds.dimension());
+        population.evaluate(objective, size);
+        population.accept_all();
         let mut populations = vec![population.clone()];
         for number in 1..=limit {
-            step(&mut Iteration { number, limit, bounds, draws, population: &mut population, objective });
+            let mut generation = Generation { number, limit, size, bounds, draws, population: &mut population };
+            method.propose(&mut (), &mut generation);
+            generation.population.evaluate(objective, size);
+            method.accept(&mut (), &mut generation);
             populations.push(population.clone());
         }
-        Ok(populations)
+        populations
     }
 
     proptest! {
@@ -209,9 +210,8 @@ mod tests {
             }
 
             let (mut for_fpa, mut for_tgfpa) = (Draws::replay(for_fpa), Draws::replay(for_tgfpa));
-            let plain = course(n, iterations, (&bounds, &mut for_fpa, &objective), |setup| fpa.start(setup), |iteration| fpa.step(iteration));
-            prop_assume!(plain.is_ok());
-            let same = course(n, iterations, (&bounds, &mut for_tgfpa, &objective), |setup| tgfpa.start(setup), |iteration| tgfpa.step(iteration));
+            let plain = course(n, iterations, (&bounds, &mut for_fpa, &objective), &fpa);
+            let same = course(n, iterations, (&bounds, &mut for_tgfpa, &objective), &tgfpa);
             prop_assert_eq!(plain, same);
         }
     }
@@ -230,7 +230,7 @@ mod tests {
 
         let mut own_draws = Draws::seeded(1, 0);
         let search = (&bounds, &mut own_draws, &objective as &dyn Objective);
-        let populations = course(n, 10, search, |setup| tgfpa.start(setup), |iteration| tgfpa.step(iteration)).unwrap();
+        let populations = course(n, 10, search, &tgfpa);
         let mut draws = Draws::seeded(1, 0);
         for _ in 0..n * d {
             draws.uniform();

@@ -2,6 +2,7 @@
 
 use fluxfit_optimize::{Bounds, Draws, Method, Objective, Optimizer, SearchSettings, objective_from};
 use serde::Deserialize;
+use std::{collections::BTreeMap, sync::LazyLock};
 
 /// Fraction of the box's width that a coordinate may differ by, and of the start's largest cost that a cost may.
 ///
@@ -13,6 +14,8 @@ const TOLERANCE: f64 = 1e-12;
 #[derive(Deserialize)]
 struct Oracle {
     objective: Quartic,
+    /// What the formulas of each method say of its courses, by its key.
+    laws: BTreeMap<String, Vec<String>>,
     cases: Vec<Case>,
 }
 
@@ -87,14 +90,19 @@ impl Case {
     }
 }
 
-fn oracle() -> Oracle {
+static ORACLE: LazyLock<Oracle> = LazyLock::new(|| {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/optimizer_steps.json");
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+});
+
+/// Whether a method's formulas say that a law holds for it.
+pub(crate) fn obeys(method: &Method, law: &str) -> bool {
+    ORACLE.laws[method.key()].iter().any(|held| held == law)
 }
 
 #[test]
 fn every_step_is_the_oracles() {
-    let oracle = oracle();
+    let oracle = &*ORACLE;
     for case in &oracle.cases {
         let objective = objective_from(case.dimension, |x| oracle.objective.cost(case, x));
         let mut optimizer = case.start(&objective);
@@ -113,7 +121,7 @@ fn every_step_is_the_oracles() {
 
 #[test]
 fn every_method_has_its_cases_and_the_oracles_default_settings() {
-    let oracle = oracle();
+    let oracle = &*ORACLE;
     let case = |name: &str| oracle.cases.iter().find(|case| case.name == name);
     for method in Method::all() {
         let [defaults, altered] = ["defaults", "altered"].map(|which| case(&format!("{} {which}", method.key())));

@@ -56,21 +56,25 @@ fn settings_out_of_range_are_refused() {
     assert!(refused >= 4, "{refused}");
 }
 
-/// A population that is smaller than its method starts with is stepped without failing: its moves have fewer partners.
+/// No method steps a population that is smaller than the one it needs.
 #[test]
-fn a_smaller_population_is_stepped() {
+fn a_population_smaller_than_the_methods_is_refused() {
     for mut saved in saves() {
-        for (part, numbers) in [("positions", 2), ("trials", 2), ("costs", 1), ("trial_costs", 1)] {
+        let key = saved["state"].as_object().unwrap().keys().next().unwrap().clone();
+        let least = Method::named(&key).unwrap().facts().smallest_population;
+        for (part, numbers) in [("positions", 2 * (least - 1)), ("costs", least - 1)] {
             saved["population"][part].as_array_mut().unwrap().truncate(numbers);
         }
-        for (name, numbers) in [("velocities", 2), ("own_best", 2), ("own_best_costs", 1)] {
-            for memory in ["/state/lpso/1/", "/state/apso/1/"] {
-                if let Some(Value::Array(array)) = saved.pointer_mut(&format!("{memory}{name}")) {
-                    array.truncate(numbers);
-                }
-            }
-        }
-        serde_json::from_value::<Optimizer>(saved).unwrap().run(&bowl());
+        assert!(serde_json::from_value::<Optimizer>(saved).is_err());
+    }
+}
+
+/// A save that asks for more than any search may is refused too.
+#[test]
+fn settings_of_the_search_are_checked_when_they_are_read() {
+    for mut saved in saves() {
+        saved["settings"]["population"] = json!(1_000_001);
+        assert!(serde_json::from_value::<Optimizer>(saved).is_err());
     }
 }
 

@@ -48,17 +48,17 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
 
 #[test]
 fn a_study_of_the_papers_motor_shows_the_papers_table() {
-    let text = checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, |_| ()));
+    let text = checked(&study_page(&paper::METHODS, Some(paper::MOTOR), &TWO, |_| ()));
     for expected in ["Four methods ran 3 times each", "0.9639", "5.283", "0.01414", "0.051", "cannot be known", "Fig. 4", "Fig. 5"] {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
     let other = Motor { rs: 1.0, ..paper::MOTOR };
-    assert!(!checked(&study_page(&Method::all(), Some(other), &TWO, |_| ())).contains("0.9639"));
+    assert!(!checked(&study_page(&paper::METHODS, Some(other), &TWO, |_| ())).contains("0.9639"));
 }
 
 #[test]
 fn one_method_no_truth_and_what_is_not_excited() {
-    let text = checked(&study_page(&Method::all()[3..], None, &[(0.0, 9.0), (0.0, 5.0)], |_| ()));
+    let text = checked(&study_page(&paper::METHODS[3..], None, &[(0.0, 9.0), (0.0, 5.0)], |_| ()));
     assert!(text.contains("APSO ran 3 times;") && text.contains("This log does not excite Ld"), "{text}");
 }
 
@@ -68,25 +68,25 @@ fn costs_of_zero_no_iterations_and_broken_numbers() {
         study.cost_above_optimum.fill(0.0);
         study.convergence.quartiles.fill([0.0; 3]);
     };
-    assert!(checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, zero)).contains("rounding errors and drawn at that value"));
+    assert!(checked(&study_page(&paper::METHODS, Some(paper::MOTOR), &TWO, zero)).contains("rounding errors and drawn at that value"));
     let empty = |study: &mut MethodStudy| study.convergence = ConvergenceCurves::default();
-    assert!(!checked(&study_page(&Method::all(), None, &TWO, empty)).contains("Fig. 4"));
+    assert!(!checked(&study_page(&paper::METHODS, None, &TWO, empty)).contains("Fig. 4"));
     let start_only = |study: &mut MethodStudy| {
         study.convergence.quartiles.truncate(1);
         study.convergence.parameters_median.truncate(1);
     };
-    checked(&study_page(&Method::all(), None, &TWO, start_only));
+    checked(&study_page(&paper::METHODS, None, &TWO, start_only));
     let broken = |study: &mut MethodStudy| {
         study.motors.fill(Motor { rs: f64::NAN, ld: f64::INFINITY, lq: 0.0, psi_f: -0.0 });
         study.cost_above_optimum.fill(f64::INFINITY);
         study.convergence.quartiles.fill([f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);
         study.convergence.parameters_median.fill([f64::NAN; 4]);
     };
-    checked(&study_page(&Method::all(), Some(paper::MOTOR), &TWO, broken));
+    checked(&study_page(&paper::METHODS, Some(paper::MOTOR), &TWO, broken));
 }
 
 #[test]
 fn the_same_input_is_the_same_page() {
-    let pages: [String; 2] = std::array::from_fn(|_| study_page(&Method::all(), None, &TWO, |_| ()));
+    let pages: [String; 2] = std::array::from_fn(|_| study_page(&paper::METHODS, None, &TWO, |_| ()));
     assert_eq!(pages[0], pages[1]);
 }
