@@ -9,6 +9,8 @@ mod accuracy;
 mod bad_input;
 #[path = "command/bad_scenario.rs"]
 mod bad_scenario;
+#[path = "command/characteristics.rs"]
+mod characteristics;
 #[path = "command/compare.rs"]
 mod compare;
 #[path = "command/craft.rs"]

@@ -28,13 +28,13 @@ pub struct ReadCharacteristic {
     pub notes: Vec<Note>,
 }
 
-/// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. Standard input is always
-/// taken for a log.
+/// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. What can be read only once
+/// (standard input, a pipe) is always taken for a log.
 ///
 /// # Errors
 /// If it is one, but cannot be read as such.
 pub fn read_characteristic(path: &Path, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
-    if path.as_os_str() == "-" {
+    if !path.is_file() {
         return Ok(None);
     }
     // What cannot be opened is told by whoever reads it as a log.

@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<
     if read.len() < logs.len() {
         let (name, first) = (&read[0].0, read[0].1.table.label());
         return Err(CommandError::Usage(format!(
-            "{name} is an {first}, and another file is none: identify the tables alone, then the log with their values (--prior psi_f=VALUE±ERROR)"
+            "{name} is a table ({first}), and another file a log: identify the tables alone, then the log with their values (--prior psi_f=VALUE±ERROR)"
         )));
     }
     let of_log = [("--report", arguments.report.is_some()), ("--figures", arguments.figures.is_some())];
@@ -43,7 +43,8 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<
     let tables: Vec<Characteristic> = read.iter().map(|(_, read)| read.table.clone()).collect();
     let names: Vec<String> =
         read.iter().map(|(name, read)| format!("{name}: {} of {} speeds", read.table.label(), read.table.rows())).collect();
-    let answer = identify_characteristics(&tables, pole_pairs).map_err(|error| input::of_log(&read[0].0, error))?;
+    let files = read.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+    let answer = identify_characteristics(&tables, pole_pairs).map_err(|error| CommandError::Log { log: files, error })?;
     if arguments.json {
         terminal::print(&json::text(&CharacteristicsDocument::of(&tables, &answer))?)?;
     } else {

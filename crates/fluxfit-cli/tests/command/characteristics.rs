@@ -1,0 +1,122 @@
+//! Tables of a test bench. The truth is a motor's whose currents come from Cramer's rule on equation (2), not from the program.
+
+use super::{fluxfit, json, shared};
+use std::{fmt::Write, fs, path::Path};
+
+const RS: f64 = 0.012;
+const LD: f64 = 0.2e-3;
+const LQ: f64 = 0.45e-3;
+const PSI_F: f64 = 0.06;
+const PAIRS: f64 = 3.0;
+const SPEEDS: [f64; 14] = [20.0, 50.0, 100.0, 150.0, 200.0, 300.0, 400.0, 600.0, 800.0, 1000.0, 1500.0, 2000.0, 3000.0, 4000.0];
+
+/// Numbers from -1 to 1 that look random.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+fn open_circuit(folder: &Path, noise: &mut Noise) -> String {
+    let mut text = "Drehzahl [1/min];Spannung verkettet eff. [V]\n".to_owned();
+    for rpm in SPEEDS {
+        let omega_e = PAIRS * rpm * std::f64::consts::TAU / 60.0;
+        let voltage = omega_e * PSI_F * 3.0_f64.sqrt() / 2.0_f64.sqrt() * (1.0 + 2e-3 * noise.next());
+        writeln!(text, "{rpm};{voltage:.5}").unwrap();
+    }
+    written(folder, "open.csv", &text)
+}
+
+/// With a drag of 0.3 N m, and 0.0002 N m more for each r/min.
+fn short_circuit(folder: &Path, noise: &mut Noise, with_torque: bool) -> String {
+    let mut text = format!("speed_rpm,Iu_rms [A],Iv_rms [A],Iw_rms [A]{}\n", if with_torque { ",shaft torque [Nm]" } else { "" });
+    for rpm in SPEEDS {
+        let omega_e = PAIRS * rpm * std::f64::consts::TAU / 60.0;
+        // R i_d - omega L_q i_q = 0, omega L_d i_d + R i_q = -omega psi_f.
+        let determinant = RS * RS + omega_e * LD * omega_e * LQ;
+        let (id, iq) = (-omega_e * PSI_F * omega_e * LQ / determinant, -omega_e * PSI_F * RS / determinant);
+        let mut phase = || id.hypot(iq) / 2.0_f64.sqrt() * (1.0 + 2e-3 * noise.next());
+        write!(text, "{rpm},{:.4},{:.4},{:.4}", phase(), phase(), phase()).unwrap();
+        if with_torque {
+            let torque = 1.5 * PAIRS * (PSI_F * iq + (LD - LQ) * id * iq);
+            write!(text, ",{:.4}", torque - 0.3 - 2e-4 * rpm + 0.05 * noise.next()).unwrap();
+        }
+        text.push('\n');
+    }
+    written(folder, "short.csv", &text)
+}
+
+fn written(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
+#[test]
+fn both_tables_together_tell_the_whole_motor() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut held, mut drawn) = (0, 0);
+    for seed in 1..=12 {
+        let noise = &mut Noise(seed);
+        let (open, short) = (open_circuit(folder.path(), noise), short_circuit(folder.path(), noise, seed % 2 == 0));
+        let (status, document) = json(&["identify", &open, &short, "--pole-pairs", "3"]);
+        for (key, truth, most) in [("rs", RS, 0.02), ("ld", LD, 0.005), ("lq", LQ, 0.03), ("psi_f", PSI_F, 0.002)] {
+            let parameter = &document["parameters"][key];
+            let (value, ci95) = (parameter["value"].as_f64().unwrap(), [0, 1].map(|end| parameter["ci95"][end].as_f64().unwrap()));
+            assert!((value / truth - 1.0).abs() < most, "seed {seed}: {key} {value}");
+            assert_eq!(parameter["verdict"], "identified", "seed {seed}: {key} {ci95:?}");
+            drawn += 1;
+            held += usize::from((ci95[0]..=ci95[1]).contains(&truth));
+        }
+        assert_eq!(status, 0);
+    }
+    // Of 48 intervals of 95 %, fewer than 42 hold with a probability of 1 in 100.
+    assert!(held >= 42, "{held} of {drawn}");
+}
+
+#[test]
+fn without_pole_pairs_the_values_are_times_these() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = &mut Noise(5);
+    let (open, short) = (open_circuit(folder.path(), noise), short_circuit(folder.path(), noise, true));
+    let (status, document) = json(&["identify", &open, &short]);
+    assert_eq!(status, 1);
+    assert!(document["parameters"]["psi_f"]["value"].is_null());
+    assert!((document["times_pole_pairs"]["psi_f"]["value"].as_f64().unwrap() / (PAIRS * PSI_F) - 1.0).abs() < 0.01);
+    let run = fluxfit(&["identify", &open, &short]);
+    assert!(run.out.contains("p psi_f") && run.out.contains("--pole-pairs"), "{}", run.out);
+    assert!(run.out.lines().all(|line| line.chars().count() <= 80), "{}", run.out);
+}
+
+#[test]
+fn a_table_alone_tells_what_it_can() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = &mut Noise(7);
+    let open = open_circuit(folder.path(), noise);
+    let (status, document) = json(&["identify", &open, "--pole-pairs", "3"]);
+    assert_eq!(status, 1);
+    assert_eq!(document["parameters"]["psi_f"]["verdict"], "identified");
+    assert!(["rs", "ld", "lq"].iter().all(|key| document["parameters"][key]["value"].is_null()));
+    let short = short_circuit(folder.path(), noise, false);
+    let run = fluxfit(&["identify", &short]);
+    assert!(run.status == 2 && run.err.contains("add its torque, or an open-circuit table"), "{}", run.err);
+    let log = "examples/logs/paper_rig_pwm_noise.csv";
+    let run = fluxfit(&["identify", &open, log]);
+    assert!(run.status == 2 && run.err.contains("--prior psi_f="), "{}", run.err);
+}
+
+/// A traction motor: R 6.87 mohm, p L_d 0.454 mH, p L_q 1.155 mH, p psi_f 0.253 Wb by the data's own description.
+#[test]
+fn a_traction_motor_on_its_bench() {
+    let Some(folder) = shared("real") else { return };
+    let file = |name: &str| format!("{folder}/{name}");
+    let tables = [file("ev_sbwcwso_open_circuit_20C.csv"), file("ev_sbwcwso_active_short_circuit_20C.csv")];
+    let (_, document) = json(&["identify", &tables[0], &tables[1]]);
+    for (key, value, most) in [("rs", 6.87e-3, 0.02), ("ld", 0.454e-3, 0.01), ("lq", 1.155e-3, 0.04), ("psi_f", 0.253, 0.01)] {
+        let found = document["times_pole_pairs"][key]["value"].as_f64().unwrap();
+        assert!((found / value - 1.0).abs() < most, "{key} {found}");
+    }
+}
