@@ -230,10 +230,10 @@ fn channel(
     let with_unit: Vec<&(Found, Vec<f64>)> = of_quantity.iter().copied().filter(|(column, _)| column.has_unit).collect();
     let candidates = if with_unit.is_empty() { of_quantity } else { with_unit };
     let Some((first, _)) = candidates.first() else { return Ok(None) };
-    let are_phases =
-        candidates.len() == 3 && candidates.iter().all(|(column, _)| without_phase(&column.header) == without_phase(&first.header));
+    let headers: Vec<&str> = candidates.iter().map(|(column, _)| column.header.as_str()).collect();
+    let are_phases = headers.first_chunk::<3>().is_some_and(|names| candidates.len() == 3 && are_phases(*names));
     if candidates.len() > 1 && !are_phases {
-        let headers = candidates.iter().map(|(column, _)| column.header.clone()).collect();
+        let headers = headers.into_iter().map(str::to_owned).collect();
         return Err(Problem::AmbiguousQuantity { quantity: quantity.name(), headers }.into());
     }
     let factor = first.in_si * convention(first, quantity, pole_pairs, notes)?;
@@ -280,18 +280,24 @@ fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<u32>, notes
     }
 }
 
-/// A name without the letter or digit of its phase.
-fn without_phase(header: &str) -> Vec<String> {
-    let is_phase = |word: &String| {
-        matches!(
-            word.as_str(),
-            "1" | "2" | "3" | "a" | "b" | "c" | "u" | "v" | "w" | "l1" | "l2" | "l3" | "ab" | "bc" | "ca" | "uv" | "vw" | "wu"
-        )
+/// Letters and digits of three phases.
+const PHASES: [[char; 3]; 4] = [['1', '2', '3'], ['a', 'b', 'c'], ['u', 'v', 'w'], ['r', 's', 't']];
+
+/// Whether three names differ by their phases alone: `Iu`, `Iv`, `Iw`; or `U_12`, `U_23`, `U_31`.
+fn are_phases(names: [&str; 3]) -> bool {
+    let letters = names.map(|name| name.to_lowercase().chars().collect::<Vec<char>>());
+    let [one, two, three] = &letters;
+    if one.len() != two.len() || one.len() != three.len() {
+        return false;
+    }
+    let is_phase = |place: usize| {
+        let mut of_three = [one[place], two[place], three[place]];
+        of_three.sort_unstable();
+        PHASES.contains(&of_three)
     };
-    // `I1` and `Ia` end in it.
-    let of_word = |word: String| word.strip_suffix(['1', '2', '3', 'a', 'b', 'c']).map_or(word.clone(), str::to_owned);
-    let bare = header.split(['[', '(']).next().unwrap_or(header);
-    words(bare).into_iter().filter(|word| !is_phase(word)).map(of_word).collect()
+    let differ = |place: &usize| one[*place] != two[*place] || one[*place] != three[*place];
+    let mut different = (0..one.len()).filter(differ).peekable();
+    different.peek().is_some() && different.all(is_phase)
 }
 
 #[cfg(test)]
@@ -342,6 +348,16 @@ mod tests {
             "time_s,speed_rpm,voltage_V\n0,1,2\n1,1,2\n",
         ] {
             assert_eq!(of(text).unwrap(), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn names_of_three_phases_differ_by_these_alone() {
+        for names in [["Iu", "Iv", "Iw"], ["U_ab [V]", "U_bc [V]", "U_ca [V]"], ["Phase A current", "Phase B current", "Phase C current"]] {
+            assert!(are_phases(names), "{names:?}");
+        }
+        for names in [["I1", "I2", "I4"], ["I1", "I2", "I12"], ["Iu", "Iu", "Iw"], ["M1", "M2", "n3"], ["I", "I", "I"]] {
+            assert!(!are_phases(names), "{names:?}");
         }
     }
 
