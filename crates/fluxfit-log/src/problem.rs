@@ -71,6 +71,10 @@ pub(crate) enum Problem {
     AmbiguousQuantity { quantity: &'static str, headers: Vec<String> },
     #[error("the speed {} is electrical, and a table of a test bench needs that of the shaft; state the number of pole pairs", quote(.header))]
     ElectricalSpeed { header: String },
+    #[error(
+        "this is the curve of a motor that drives a load, speed and torque with power: R_s, L_d, L_q and psi_f need dq voltages and currents over time, or tables with open and shorted terminals; log one of them"
+    )]
+    LoadCurve,
     #[error("this table of speeds has more than {most} rows; leave a row for each speed")]
     LongCharacteristic { most: usize },
 
@@ -169,7 +173,7 @@ impl Problem {
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
             Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::Duplicate { .. } => FileErrorKind::Columns,
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle => FileErrorKind::Columns,
-            Self::AmbiguousQuantity { .. } => FileErrorKind::Columns,
+            Self::AmbiguousQuantity { .. } | Self::LoadCurve => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,

@@ -154,11 +154,15 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
         };
         head.is_time || head.instants.is_some() || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
     };
-    if heads.iter().any(|head| is_driven(head) || is_of_log(head)) {
+    if heads.iter().any(is_of_log) {
         return Ok(None);
     }
     let columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
     let has = |quantity: Quantity| columns.iter().any(|column| column.quantity == quantity);
+    if heads.iter().any(is_driven) {
+        let is_curve = has(Quantity::Speed) && has(Quantity::Torque);
+        return if is_curve { Err(Problem::LoadCurve.into()) } else { Ok(None) };
+    }
     if !has(Quantity::Speed) || has(Quantity::Voltage) == has(Quantity::Current) {
         return Ok(None);
     }
@@ -228,7 +232,11 @@ fn channel(
 ) -> Result<Option<Vec<(f64, f64)>>, FileError> {
     let of_quantity: Vec<&(Found, Vec<f64>)> = columns.iter().filter(|(column, _)| column.quantity == quantity).collect();
     let with_unit: Vec<&(Found, Vec<f64>)> = of_quantity.iter().copied().filter(|(column, _)| column.has_unit).collect();
-    let candidates = if with_unit.is_empty() { of_quantity } else { with_unit };
+    let mut candidates = if with_unit.is_empty() { of_quantity } else { with_unit };
+    // The frequency beside the speed of the shaft says the same.
+    if candidates.iter().any(|(column, _)| !column.is_electrical) {
+        candidates.retain(|(column, _)| !column.is_electrical);
+    }
     let Some((first, _)) = candidates.first() else { return Ok(None) };
     let headers: Vec<&str> = candidates.iter().map(|(column, _)| column.header.as_str()).collect();
     let are_phases = headers.first_chunk::<3>().is_some_and(|names| candidates.len() == 3 && are_phases(*names));
@@ -343,12 +351,20 @@ mod tests {
     fn logs_and_curves_of_driven_motors_are_none() {
         for text in [
             "t,ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n1,1,2,3,4,5\n",
-            "Speed (RPM),Torque (Nm),Current (A),Supplied Power (W)\n1,2,3,4\n2,2,3,4\n",
+            "speed_rpm,DC current (A),Supplied Power (W)\n1,2,3\n2,2,3\n",
             "a,b\n1,2\n3,4\n",
             "time_s,speed_rpm,voltage_V\n0,1,2\n1,1,2\n",
         ] {
             assert_eq!(of(text).unwrap(), None, "{text}");
         }
+    }
+
+    #[test]
+    fn the_speed_of_the_shaft_is_taken_before_its_frequency() {
+        let read = of("f [Hz],n [1/min],U [V]\n50,1000,10\n100,2000,20\n").unwrap().unwrap();
+        let Characteristic::OpenCircuit(table) = read.table else { panic!() };
+        assert!((table.rows[0].speed - 104.719_755).abs() < 1e-5);
+        assert!(of("f [Hz],U [V]\n50,10\n100,20\n").unwrap_err().to_string().contains("number of pole pairs"));
     }
 
     #[test]
@@ -359,6 +375,12 @@ mod tests {
         for names in [["I1", "I2", "I4"], ["I1", "I2", "I12"], ["Iu", "Iu", "Iw"], ["M1", "M2", "n3"], ["I", "I", "I"]] {
             assert!(!are_phases(names), "{names:?}");
         }
+    }
+
+    #[test]
+    fn the_curve_of_a_driven_motor_is_named() {
+        let error = of("Speed (RPM),Torque (Nm),Current (A),Supplied Power (W)\n1,2,3,4\n2,2,3,4\n").unwrap_err().to_string();
+        assert!(error.contains("a motor that drives a load"), "{error}");
     }
 
     #[test]

@@ -219,7 +219,7 @@ impl Fit {
         }
         // As many as are independent.
         let of_groups = problem.groups();
-        let criterion = of_groups.iter().zip(errors).map(|(group, error)| 2.0 * group.len() as f64 * error.ln()).sum();
+        let criterion: f64 = of_groups.iter().zip(errors).map(|(group, error)| 2.0 * group.len() as f64 * error.ln()).sum();
         let independent = of_groups.each_ref().map(|group| effective_sample_size(group));
         for ((error, group), independent) in problem.errors.iter_mut().zip(&of_groups).zip(independent) {
             if independent > 0.0 {
@@ -230,7 +230,7 @@ impl Fit {
         let covariance = (jacobian.transpose() * jacobian).try_inverse();
         let machine = problem.machine();
         let count = problem.count();
-        if ![machine.rs, machine.p_ld, machine.p_lq, machine.p_psi_f].iter().all(|number| number.is_finite()) {
+        if ![machine.rs, machine.p_ld, machine.p_lq, machine.p_psi_f, criterion].iter().all(|number| number.is_finite()) {
             return None;
         }
         let rms = |group: &Vec<f64>, error: f64| (!group.is_empty()).then_some(error);

@@ -1,0 +1,16 @@
+//! No log is taken for a table of a test bench.
+
+use fluxfit_log::read_characteristic;
+use std::{fs, path::Path};
+
+#[test]
+fn no_log_of_the_corpus_is_a_characteristic() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus/logs");
+    let mut seen = 0;
+    for file in fs::read_dir(folder).unwrap() {
+        let path = file.unwrap().path();
+        assert_eq!(read_characteristic(&path, None), Ok(None), "{}", path.display());
+        seen += 1;
+    }
+    assert!(seen > 100, "{seen}");
+}
