@@ -118,6 +118,14 @@ pub enum ErrorKind {
         "a short circuit's currents alone give only ratios of the parameters; add its torque, or an open-circuit table of the same motor"
     )]
     NoScale,
+    /// Open-circuit voltages that the torque of the short circuit contradicts.
+    #[error(
+        "the voltages with open terminals and the torque with shorted ones contradict each other, and would agree if the voltages were {factor:.4} times as large: check their unit, and whether they are line to line or of a phase, rms or amplitudes (state it in the column's name: 'U_ll_rms [V]', 'U_phase_peak [V]')"
+    )]
+    VoltagesAgainstTorque {
+        /// What the voltages would have to be multiplied by.
+        factor: f64,
+    },
     /// A setting outside its range.
     #[error("{setting} is {value}; it must be {range}")]
     Setting {

@@ -21,10 +21,16 @@ impl Noise {
 }
 
 fn open_circuit(folder: &Path, noise: &mut Noise) -> String {
-    let mut text = "Drehzahl [1/min];Spannung verkettet eff. [V]\n".to_owned();
+    open_circuit_named(folder, noise, "Spannung verkettet eff. [V]", 1.0)
+}
+
+/// With a column's name, and what it holds over the voltage line to line.
+fn open_circuit_named(folder: &Path, noise: &mut Noise, name: &str, factor: f64) -> String {
+    let mut text = format!("Drehzahl [1/min];{name}\n");
     for rpm in SPEEDS {
         let omega_e = PAIRS * rpm * std::f64::consts::TAU / 60.0;
         let voltage = omega_e * PSI_F * 3.0_f64.sqrt() / 2.0_f64.sqrt() * (1.0 + 2e-3 * noise.next());
+        let voltage = factor * voltage;
         writeln!(text, "{rpm};{voltage:.5}").unwrap();
     }
     written(folder, "open.csv", &text)
@@ -106,6 +112,49 @@ fn a_table_alone_tells_what_it_can() {
     let log = "examples/logs/paper_rig_pwm_noise.csv";
     let run = fluxfit(&["identify", &open, log]);
     assert!(run.status == 2 && run.err.contains("--prior psi_f="), "{}", run.err);
+}
+
+#[test]
+fn voltages_of_a_phase_are_told_by_their_name_or_by_the_torque_or_left_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = &mut Noise(3);
+    let of_phase = 1.0 / 3.0_f64.sqrt();
+    let short = short_circuit(folder.path(), noise, true);
+    let without_torque = {
+        let folder = folder.path().join("currents");
+        fs::create_dir(&folder).unwrap();
+        short_circuit(&folder, noise, false)
+    };
+    for (name, factor, voltages) in [
+        ("phase voltage [V]", of_phase, "stated"),
+        ("U [V]", of_phase, "phase-by-torque"),
+        ("U [V]", 1.0, "lines-by-torque"),
+        ("U_ll_peak [V]", 2.0_f64.sqrt(), "stated"),
+    ] {
+        let open = open_circuit_named(folder.path(), noise, name, factor);
+        let (status, document) = json(&["identify", &open, &short, "--pole-pairs", "3"]);
+        assert_eq!((status, document["voltages"].as_str()), (0, Some(voltages)), "{name}");
+        for (key, truth) in [("rs", RS), ("psi_f", PSI_F)] {
+            let value = document["parameters"][key]["value"].as_f64().unwrap();
+            assert!((value / truth - 1.0).abs() < 0.02, "{name}: {key} {value}");
+        }
+    }
+    // Nothing tells: no number, but both in a sentence. psi_f would be 60 mWb line to line, 0.104 Wb of a phase.
+    let open = open_circuit_named(folder.path(), noise, "U [V]", 1.0);
+    for tables in [vec![open.as_str()], vec![&open, &without_torque]] {
+        let (status, document) = json(&[&["identify", "--pole-pairs", "3"], tables.as_slice()].concat());
+        assert_eq!((status, document["voltages"].as_str()), (1, Some("ambiguous")));
+        assert!(document["parameters"]["psi_f"]["value"].is_null());
+        let run = fluxfit(&[&["identify", "--pole-pairs", "3"], tables.as_slice()].concat());
+        let line = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+        let value = |from: &str| -> f64 { line.split(from).nth(1).unwrap().split("psi_f ").nth(1).unwrap()[..5].parse().unwrap() };
+        assert!((value("Line to line:") / 60.0 - 1.0).abs() < 0.005, "{line}");
+        assert!((value("Of a phase:") / 0.103_92 - 1.0).abs() < 0.01, "{line}");
+    }
+    // What the name states, and the torque contradicts.
+    let open = open_circuit_named(folder.path(), noise, "U_ll [V]", of_phase);
+    let run = fluxfit(&["identify", &open, &short]);
+    assert!(run.status == 2 && run.err.contains("1.7321 times as large"), "{}", run.err);
 }
 
 /// A traction motor: R 6.87 mohm, p L_d 0.454 mH, p L_q 1.155 mH, p psi_f 0.253 Wb by the data's own description.

@@ -14,7 +14,7 @@ use crate::{
     note::Note,
     problem::Problem,
 };
-use fluxfit::characteristics::{Characteristic, OpenCircuit, OpenCircuitRow, ShortCircuit, ShortCircuitRow};
+use fluxfit::characteristics::{Across, Characteristic, OpenCircuit, OpenCircuitRow, ShortCircuit, ShortCircuitRow};
 use fluxfit_files::{FileError, input};
 use fluxfit_units::{Dimension, Unit, wording::quote};
 use std::path::Path;
@@ -193,6 +193,7 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
     let speed = channel(&columns, Quantity::Speed, pole_pairs, &mut notes)?;
     let torque = channel(&columns, Quantity::Torque, pole_pairs, &mut notes)?;
     let voltage = channel(&columns, Quantity::Voltage, pole_pairs, &mut notes)?;
+    let across = across(&headers(&columns, Quantity::Voltage));
     let current = channel(&columns, Quantity::Current, pole_pairs, &mut notes)?;
     let Some(speed) = speed else { return Ok(None) };
     let of_row = |k: usize| torque.as_ref().map(|torque| torque[k].0).filter(|torque| torque.is_finite());
@@ -202,7 +203,7 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
         (Some(voltage), None) => {
             let rows = rows().filter(|(k, speed)| is_whole(*speed, voltage[*k]));
             let rows = rows.map(|(k, speed)| OpenCircuitRow { speed, voltage: voltage[k].0 });
-            Characteristic::OpenCircuit(OpenCircuit { rows: rows.collect() })
+            Characteristic::OpenCircuit(OpenCircuit { rows: rows.collect(), across })
         }
         (None, Some(current)) => {
             let rows = rows().filter(|(k, speed)| is_whole(*speed, current[*k]));
@@ -222,6 +223,22 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
 /// Rows of a table of speeds beyond which it is none.
 const MOST_ROWS: usize = 100_000;
 
+/// The columns that a quantity is taken from: those with a unit before those without.
+fn candidates(columns: &[(Found, Vec<f64>)], quantity: Quantity) -> Vec<&(Found, Vec<f64>)> {
+    let of_quantity: Vec<&(Found, Vec<f64>)> = columns.iter().filter(|(column, _)| column.quantity == quantity).collect();
+    let with_unit: Vec<&(Found, Vec<f64>)> = of_quantity.iter().copied().filter(|(column, _)| column.has_unit).collect();
+    let mut candidates = if with_unit.is_empty() { of_quantity } else { with_unit };
+    // The frequency beside the speed of the shaft says the same.
+    if candidates.iter().any(|(column, _)| !column.is_electrical) {
+        candidates.retain(|(column, _)| !column.is_electrical);
+    }
+    candidates
+}
+
+fn headers(columns: &[(Found, Vec<f64>)], quantity: Quantity) -> Vec<&str> {
+    candidates(columns, quantity).iter().map(|(column, _)| column.header.as_str()).collect()
+}
+
 /// The values of a quantity in SI units, each with the standard error by which three phases differ; from one column, or from three whose
 /// names differ by the phase alone. Columns with a unit are preferred.
 fn channel(
@@ -230,15 +247,9 @@ fn channel(
     pole_pairs: Option<u32>,
     notes: &mut Vec<Note>,
 ) -> Result<Option<Vec<(f64, f64)>>, FileError> {
-    let of_quantity: Vec<&(Found, Vec<f64>)> = columns.iter().filter(|(column, _)| column.quantity == quantity).collect();
-    let with_unit: Vec<&(Found, Vec<f64>)> = of_quantity.iter().copied().filter(|(column, _)| column.has_unit).collect();
-    let mut candidates = if with_unit.is_empty() { of_quantity } else { with_unit };
-    // The frequency beside the speed of the shaft says the same.
-    if candidates.iter().any(|(column, _)| !column.is_electrical) {
-        candidates.retain(|(column, _)| !column.is_electrical);
-    }
+    let candidates = candidates(columns, quantity);
     let Some((first, _)) = candidates.first() else { return Ok(None) };
-    let headers: Vec<&str> = candidates.iter().map(|(column, _)| column.header.as_str()).collect();
+    let headers = headers(columns, quantity);
     let are_phases = headers.first_chunk::<3>().is_some_and(|names| candidates.len() == 3 && are_phases(*names));
     if candidates.len() > 1 && !are_phases {
         let headers = headers.into_iter().map(str::to_owned).collect();
@@ -257,24 +268,13 @@ fn channel(
 
 /// What a name says of the convention, as a factor; and what is assumed where it says nothing.
 fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<u32>, notes: &mut Vec<Note>) -> Result<f64, FileError> {
-    let words = words(&column.header);
-    let has = |some: &[&str]| words.iter().any(|word| some.contains(&word.as_str()));
     let name = quote(&column.header);
-    let of_amplitude =
-        if has(&["peak", "pk", "amplitude", "amplitudes", "amp", "max", "spitze", "scheitel"]) { 0.5_f64.sqrt() } else { 1.0 };
-    let how = if of_amplitude == 1.0 { "rms" } else { "amplitude" };
     match quantity {
-        Quantity::Voltage => {
-            let is_of_phase = has(&["phase", "ph", "ln", "strang", "neutral", "star"]);
-            let (factor, between) = if is_of_phase { (3.0_f64.sqrt(), "of a phase") } else { (1.0, "line to line") };
-            notes.push(
-                format!("the voltage {name} is read as {between}, {how}; a name with 'phase', 'line' or 'peak' in it is read so").into(),
-            );
-            Ok(factor * of_amplitude)
-        }
-        Quantity::Current => {
-            notes.push(format!("the current {name} is read as {how} of a phase; a name with 'peak' in it is read so").into());
-            Ok(of_amplitude)
+        Quantity::Voltage | Quantity::Current => {
+            let (factor, how, is_stated) = to_rms(&column.header);
+            let doubt = if is_stated { "" } else { ", because its name does not say so; if it is an amplitude, add 'peak' to the name" };
+            notes.push(format!("the {} {name} is read as {how}{doubt}", quantity.name()).into());
+            Ok(factor)
         }
         Quantity::Speed if column.is_electrical => match pole_pairs {
             Some(pole_pairs) => Ok(1.0 / f64::from(pole_pairs)),
@@ -288,24 +288,73 @@ fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<u32>, notes
     }
 }
 
+/// The rms value over what a column holds, what that is, and whether its name states it.
+fn to_rms(header: &str) -> (f64, &'static str, bool) {
+    let words = words(header);
+    // Last in a word too: `Urms`, `Vpp`.
+    let ends = |ends: &[&str]| words.iter().any(|word| ends.iter().any(|end| word.ends_with(end)));
+    let are_two = |one: &str| words.windows(2).any(|pair| pair[0].ends_with(one) && pair[1] == one);
+    if ends(&["pp", "pkpk", "p2p", "peak2peak"]) || are_two("pk") || words.windows(3).any(|of| of[0] == "peak" && of[2] == "peak") {
+        (0.125_f64.sqrt(), "peak to peak", true)
+    } else if ends(&["peak", "pk", "amplitude", "amplitudes", "ampl", "spitze", "scheitel", "scheitelwert"]) {
+        (0.5_f64.sqrt(), "amplitude", true)
+    } else {
+        (1.0, "rms", ends(&["rms", "eff", "effektiv", "efficace", "efficaz"]))
+    }
+}
+
+/// Between which points voltages were measured, by the names of their columns: `U_12`, `Uab` and `line voltage` between lines, `U_a`,
+/// `U_1N` and `phase voltage` of a phase. Channels of an instrument, `U1` to `U3`, say nothing.
+fn across(headers: &[&str]) -> Option<Across> {
+    let words = words(headers.first()?);
+    let count = |some: &[&str]| words.iter().filter(|word| some.iter().any(|one| word.contains(one))).count();
+    let has = |some: &[&str]| words.iter().any(|word| some.contains(&word.as_str()));
+    let of_phase = count(&["phase", "strang", "stern", "neutral"]) + usize::from(has(&["ph", "ln", "vln", "uln", "star"]));
+    let pairs = words.windows(2).filter(|pair| pair[0] == pair[1] && ["l", "ph"].contains(&pair[0].as_str())).count();
+    let between_lines = pairs > 0 || of_phase > 1 || count(&["verkettet", "leiter", "line"]) > 0 || has(&["ll", "vll", "ull"]);
+    match (of_phase, between_lines) {
+        // Phase to phase is from line to line; line to neutral is of a phase.
+        (_, true) if !words.iter().any(|word| ["neutral", "star", "stern"].contains(&word.as_str())) => Some(Across::Lines),
+        (1.., _) => Some(Across::Phase),
+        (0, _) => headers.first_chunk::<3>().filter(|_| headers.len() == 3).and_then(|names| across_by_letters(*names)),
+    }
+}
+
+/// The same, by the letters in which three names differ: two of each, or one with an `n` behind it or with a letter of a phase.
+fn across_by_letters(names: [&str; 3]) -> Option<Across> {
+    let places = differing(names)?;
+    let letters: Vec<char> = names[0].to_lowercase().chars().collect();
+    match places.as_slice() {
+        [one, other] if one + 1 == *other => Some(Across::Lines),
+        [place] if letters.get(place + 1) == Some(&'n') => Some(Across::Phase),
+        [place] if letters[*place].is_alphabetic() => Some(Across::Phase),
+        _ => None,
+    }
+}
+
 /// Letters and digits of three phases.
 const PHASES: [[char; 3]; 4] = [['1', '2', '3'], ['a', 'b', 'c'], ['u', 'v', 'w'], ['r', 's', 't']];
 
 /// Whether three names differ by their phases alone: `Iu`, `Iv`, `Iw`; or `U_12`, `U_23`, `U_31`.
 fn are_phases(names: [&str; 3]) -> bool {
+    differing(names).is_some()
+}
+
+/// The places in which three names differ, if all of them hold phases.
+fn differing(names: [&str; 3]) -> Option<Vec<usize>> {
     let letters = names.map(|name| name.to_lowercase().chars().collect::<Vec<char>>());
     let [one, two, three] = &letters;
     if one.len() != two.len() || one.len() != three.len() {
-        return false;
+        return None;
     }
-    let is_phase = |place: usize| {
-        let mut of_three = [one[place], two[place], three[place]];
+    let is_phase = |place: &usize| {
+        let mut of_three = [one[*place], two[*place], three[*place]];
         of_three.sort_unstable();
         PHASES.contains(&of_three)
     };
     let differ = |place: &usize| one[*place] != two[*place] || one[*place] != three[*place];
-    let mut different = (0..one.len()).filter(differ).peekable();
-    different.peek().is_some() && different.all(is_phase)
+    let different: Vec<usize> = (0..one.len()).filter(differ).collect();
+    (!different.is_empty() && different.iter().all(is_phase)).then_some(different)
 }
 
 #[cfg(test)]
@@ -333,7 +382,49 @@ mod tests {
         else {
             panic!()
         };
-        assert!((table.rows[0].voltage - 10.0 * 1.5_f64.sqrt()).abs() < 1e-12);
+        assert!((table.rows[0].voltage - 10.0 * 0.5_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(table.across, Some(Across::Phase));
+    }
+
+    #[test]
+    fn names_tell_between_which_points_voltages_were_measured() {
+        let three = |one: &'static str, two: &'static str, three: &'static str| vec![one, two, three];
+        for (names, expected) in [
+            (three("U_12 [V]", "U_23 [V]", "U_31 [V]"), Some(Across::Lines)),
+            (three("Uuv", "Uvw", "Uwu"), Some(Across::Lines)),
+            (three("U_a [V]", "U_b [V]", "U_c [V]"), Some(Across::Phase)),
+            (three("U1N", "U2N", "U3N"), Some(Across::Phase)),
+            (three("PA1_URMS_1 [V]", "PA1_URMS_2 [V]", "PA1_URMS_3 [V]"), None),
+            (vec!["voltage_V"], None),
+            (vec!["U_ll_rms [V]"], Some(Across::Lines)),
+            (vec!["Line voltage (V)"], Some(Across::Lines)),
+            (vec!["L-L voltage [V]"], Some(Across::Lines)),
+            (vec!["phase-to-phase voltage [V]"], Some(Across::Lines)),
+            (vec!["line to line [V]"], Some(Across::Lines)),
+            (vec!["line-to-neutral voltage [V]"], Some(Across::Phase)),
+            (vec!["Strangspannung [V]"], Some(Across::Phase)),
+            (vec!["Spannung verkettet [V]"], Some(Across::Lines)),
+            (vec!["Phase voltage RMS (V)"], Some(Across::Phase)),
+        ] {
+            assert_eq!(across(&names), expected, "{names:?}");
+        }
+    }
+
+    #[test]
+    fn names_tell_what_of_a_wave_was_measured() {
+        let eighth = 0.125_f64.sqrt();
+        for (name, factor, is_stated) in [
+            ("Vpp [V]", eighth, true),
+            ("bemf pk-pk (V)", eighth, true),
+            ("U peak to peak [V]", eighth, true),
+            ("Vpk", 2.0 * eighth, true),
+            ("Scheitelwert U [V]", 2.0 * eighth, true),
+            ("PA1_URMS_1 [V]", 1.0, true),
+            ("current [A]", 1.0, false),
+        ] {
+            let (found, _, states) = to_rms(name);
+            assert_eq!((found, states), (factor, is_stated), "{name}");
+        }
     }
 
     #[test]

@@ -5,7 +5,12 @@
 //! rows err alike. What brakes besides the short circuit (bearings, air, iron) is fitted as `c_0 + c_1 |Omega|`; how far the motor moves
 //! without it is counted as the doubt of it.
 
-use super::{characteristic::Characteristic, machine::Machine, open_circuit::OpenCircuitRow, short_circuit::ShortCircuitRow};
+use super::{
+    characteristic::Characteristic,
+    machine::Machine,
+    open_circuit::{Across, OpenCircuitRow, SQRT_3},
+    short_circuit::ShortCircuitRow,
+};
 use crate::{
     error::{Error, ErrorKind},
     identification::{
@@ -20,6 +25,7 @@ use crate::{
 };
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use std::f64::consts::SQRT_2;
 
 /// What tables say of their motor.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +37,11 @@ pub struct CharacteristicsAnswer {
     pub pole_pairs: Option<u32>,
     /// What is left of voltages and currents, as a fraction, and of torques, N m: root mean squares; `None` where there are none.
     pub residual_rms: [Option<f64>; 3],
+    /// How open-circuit voltages were taken; `None` without any.
+    pub voltages: Option<VoltageReading>,
+    /// Where the voltages are [ambiguous](VoltageReading::Ambiguous): what the parameters would be if these are line to line. Of a phase, all
+    /// would be `sqrt 3` times as large.
+    pub if_line_to_line: [Option<f64>; PARAMETERS],
     /// Relative change of each parameter where an instrument reads 1 % too much, which no table shows.
     pub unseen: Vec<(Instrument, [f64; PARAMETERS])>,
 }
@@ -56,10 +67,25 @@ pub struct CharacteristicEstimate {
 }
 
 impl CharacteristicEstimate {
+    fn unknown(parameter: Parameter) -> Self {
+        Self { parameter, value: None, uncertainty: ParameterUncertainty::default(), verdict: Verdict::NotIdentifiable }
+    }
+
     /// The 95 % interval, SI.
     pub fn interval(&self) -> Option<[f64; 2]> {
         self.value.map(|value| [value - self.uncertainty.half_width, value + self.uncertainty.half_width])
     }
+}
+
+/// How open-circuit voltages were taken, which `sqrt 3` of the flux depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VoltageReading {
+    /// As the tables state.
+    Stated,
+    /// As the torque of the short circuit tells.
+    ByTorque(Across),
+    /// Line to line or of a phase, which nothing tells: then no parameter is.
+    Ambiguous,
 }
 
 /// What measured a column.
@@ -82,7 +108,7 @@ impl Instrument {
 /// # Errors
 /// If a table is too short, or the tables together hold neither voltage nor torque.
 pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u32>) -> Result<CharacteristicsAnswer, Error> {
-    let rows = Rows::of(tables)?;
+    let (rows, voltages) = Rows::of(tables)?.with_told_voltages()?;
     let fit = Fit::of(&rows, rows.has_torque())?;
     let of_drag = if rows.has_torque() { fit.distance(&Fit::of(&rows, false)?) } else { [0.0; PARAMETERS] };
     let doubt: [f64; PARAMETERS] = std::array::from_fn(|p| of_drag[p].hypot(fit.doubt_of_minima[p]));
@@ -92,8 +118,13 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
         .map(|instrument| Ok((instrument, fit.change_to(&Fit::of(&rows.read_too_large(instrument), rows.has_torque())?))))
         .collect::<Result<_, Error>>()?;
     let pairs = f64::from(pole_pairs.unwrap_or(1));
-    let parameters = Parameter::ALL.map(|parameter| fit.estimate(parameter, doubt[parameter as usize], pairs));
-    Ok(CharacteristicsAnswer { parameters, pole_pairs, residual_rms: fit.residual_rms, unseen })
+    let mut parameters = Parameter::ALL.map(|parameter| fit.estimate(parameter, doubt[parameter as usize], pairs));
+    let mut if_line_to_line = [None; PARAMETERS];
+    if voltages == Some(VoltageReading::Ambiguous) {
+        if_line_to_line = parameters.map(|estimate| estimate.value);
+        parameters = parameters.map(|estimate| CharacteristicEstimate::unknown(estimate.parameter));
+    }
+    Ok(CharacteristicsAnswer { parameters, pole_pairs, residual_rms: fit.residual_rms, voltages, if_line_to_line, unseen })
 }
 
 /// Fewest rows of a short-circuit characteristic: the motor and the drag have six numbers, and a row gives one or two.
@@ -105,16 +136,23 @@ const LEAST_OPEN: usize = 3;
 /// The rows of all tables, by kind.
 #[derive(Clone)]
 struct Rows {
+    /// Voltages line to line.
     open: Vec<OpenCircuitRow>,
     shorted: Vec<ShortCircuitRow>,
+    /// Whether all tables state between which points their voltages were measured.
+    are_voltages_stated: bool,
 }
 
 impl Rows {
     fn of(tables: &[Characteristic]) -> Result<Self, Error> {
-        let mut rows = Self { open: Vec::new(), shorted: Vec::new() };
+        let mut rows = Self { open: Vec::new(), shorted: Vec::new(), are_voltages_stated: true };
         for table in tables {
             match table {
-                Characteristic::OpenCircuit(table) => rows.open.extend(&table.rows),
+                Characteristic::OpenCircuit(table) => {
+                    let factor = table.across.unwrap_or(Across::Lines).to_lines();
+                    rows.open.extend(table.rows.iter().map(|row| OpenCircuitRow { voltage: factor * row.voltage, ..*row }));
+                    rows.are_voltages_stated &= table.across.is_some();
+                }
                 Characteristic::ShortCircuit(table) => rows.shorted.extend(&table.rows),
             }
         }
@@ -130,6 +168,39 @@ impl Rows {
             return Err(ErrorKind::NoScale.into());
         }
         Ok(rows)
+    }
+
+    /// The rows with their voltages as they were measured, by what the tables state or by the torque: the power of the shaft heats the
+    /// winding, which gives the resistance whatever the voltages are.
+    fn with_told_voltages(self) -> Result<(Self, Option<VoltageReading>), Error> {
+        if self.open.is_empty() {
+            return Ok((self, None));
+        }
+        if !self.has_torque() {
+            let reading = if self.are_voltages_stated { VoltageReading::Stated } else { VoltageReading::Ambiguous };
+            return Ok((self, Some(reading)));
+        }
+        let criterion = |factor: f64| Ok::<f64, Error>(Fit::of(&self.with_voltages(factor), true)?.criterion);
+        let limit = criterion(1.0)? - VERY_STRONG;
+        let others = VOLTAGE_MISTAKES.iter().map(|factor| Ok((*factor, criterion(*factor)?))).collect::<Result<Vec<_>, Error>>()?;
+        let better = others.iter().filter(|(_, criterion)| *criterion < limit).min_by(|one, other| one.1.total_cmp(&other.1));
+        // The first mistake is a phase taken for two lines.
+        let phase = others[0];
+        match better {
+            None if self.are_voltages_stated => Ok((self, Some(VoltageReading::Stated))),
+            None if phase.1 > limit + 2.0 * VERY_STRONG => Ok((self, Some(VoltageReading::ByTorque(Across::Lines)))),
+            None => Ok((self, Some(VoltageReading::Ambiguous))),
+            Some(best) if *best == phase && !self.are_voltages_stated => {
+                Ok((self.with_voltages(phase.0), Some(VoltageReading::ByTorque(Across::Phase))))
+            }
+            Some((factor, _)) => Err(ErrorKind::VoltagesAgainstTorque { factor: *factor }.into()),
+        }
+    }
+
+    fn with_voltages(&self, factor: f64) -> Self {
+        let mut rows = self.clone();
+        rows.open.iter_mut().for_each(|row| row.voltage *= factor);
+        rows
     }
 
     fn has_torque(&self) -> bool {
@@ -164,6 +235,10 @@ impl Rows {
         self.shorted.iter().fold(0.0, |largest, row| row.speed.abs().max(largest))
     }
 }
+
+/// What voltages are too small by where a phase is taken for two lines or the other way round, and rms for an amplitude or the other way
+/// round; powers of ten are those of units.
+const VOLTAGE_MISTAKES: [f64; 6] = [SQRT_3, 1.0 / SQRT_3, SQRT_2, 1.0 / SQRT_2, 1e3, 1e-3];
 
 /// Errors of voltage, current and torque that a fit starts with: half a percent, and of the largest torque a percent.
 const USUAL_ERRORS: [f64; 3] = [0.005, 0.005, 0.01];
@@ -272,13 +347,10 @@ impl Fit {
         let systematic = Systematic { misfit: doubt / pairs / 3.0_f64.sqrt(), ..Systematic::default() };
         let uncertainty = ParameterUncertainty::of(relative * raw, self.degrees_of_freedom, systematic);
         let verdict = Verdict::of_half_width(uncertainty.half_width / raw);
-        let is_told = verdict != Verdict::NotIdentifiable;
-        CharacteristicEstimate {
-            parameter,
-            value: is_told.then_some(raw),
-            uncertainty: if is_told { uncertainty } else { ParameterUncertainty::default() },
-            verdict,
+        if verdict == Verdict::NotIdentifiable {
+            return CharacteristicEstimate::unknown(parameter);
         }
+        CharacteristicEstimate { parameter, value: Some(raw), uncertainty, verdict }
     }
 }
 

@@ -17,6 +17,6 @@ mod open_circuit;
 mod short_circuit;
 
 pub use characteristic::Characteristic;
-pub use fit::{CharacteristicEstimate, CharacteristicsAnswer, Instrument, identify_characteristics};
-pub use open_circuit::{OpenCircuit, OpenCircuitRow};
+pub use fit::{CharacteristicEstimate, CharacteristicsAnswer, Instrument, VoltageReading, identify_characteristics};
+pub use open_circuit::{Across, OpenCircuit, OpenCircuitRow};
 pub use short_circuit::{ShortCircuit, ShortCircuitRow};

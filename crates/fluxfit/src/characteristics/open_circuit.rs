@@ -6,11 +6,35 @@
 
 use super::machine::Machine;
 
+/// A voltage between lines over that of a phase.
+pub(super) const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
 /// Voltage against speed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenCircuit {
     /// Speeds in any order.
     pub rows: Vec<OpenCircuitRow>,
+    /// Between which points the voltages were measured; `None` if nothing states it.
+    pub across: Option<Across>,
+}
+
+/// Between which points a voltage was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Across {
+    /// Two terminals.
+    Lines,
+    /// A terminal and the star point.
+    Phase,
+}
+
+impl Across {
+    /// The voltage between two terminals over this one.
+    pub(super) fn to_lines(self) -> f64 {
+        match self {
+            Self::Lines => 1.0,
+            Self::Phase => SQRT_3,
+        }
+    }
 }
 
 /// A speed and its voltage.
@@ -18,11 +42,12 @@ pub struct OpenCircuit {
 pub struct OpenCircuitRow {
     /// Mechanical rad/s, not zero.
     pub speed: f64,
-    /// Line to line, rms, V; of three the mean.
+    /// Rms, V; of three the mean.
     pub voltage: f64,
 }
 
 impl OpenCircuitRow {
+    /// Line to line, rms, V.
     pub(super) fn voltage_of(&self, machine: &Machine) -> f64 {
         1.5_f64.sqrt() * self.speed.abs() * machine.p_psi_f
     }

@@ -2,7 +2,7 @@
 
 use super::by_parameter::ByParameter;
 use crate::{
-    characteristics::{Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument},
+    characteristics::{Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, VoltageReading},
     motor::Parameter,
 };
 use serde::Serialize;
@@ -21,6 +21,14 @@ pub struct CharacteristicsDocument {
     pub schema: &'static str,
     /// The tables.
     pub tables: Vec<TableEntry>,
+    /// How the columns were read, a sentence each.
+    pub notes: Vec<String>,
+    /// How open-circuit voltages were taken: `stated` by the names of their columns, `lines-by-torque` or `phase-by-torque` by the torque of
+    /// the short circuit, `ambiguous` where nothing tells, which leaves the parameters null; null without any.
+    pub voltages: Option<&'static str>,
+    /// Where the voltages are ambiguous: inductances and flux times the pole pairs, and the resistance, if these are line to line. Of a phase,
+    /// all are sqrt 3 times as large.
+    pub times_pole_pairs_if_line_to_line: ByParameter<Option<f64>>,
     /// Pole pairs; null if they are not known.
     pub pole_pairs: Option<u32>,
     /// The motor's own parameters: without pole pairs only the resistance has a value.
@@ -94,8 +102,8 @@ pub struct InstrumentEntry {
 }
 
 impl CharacteristicsDocument {
-    /// The document of an answer.
-    pub fn of(tables: &[Characteristic], answer: &CharacteristicsAnswer) -> Self {
+    /// The document of an answer; `notes` say how the tables' columns were read.
+    pub fn of(tables: &[Characteristic], notes: Vec<String>, answer: &CharacteristicsAnswer) -> Self {
         let pairs = answer.pole_pairs.map_or(1.0, f64::from);
         let [residual_voltage, residual_current, residual_torque] = answer.residual_rms;
         let table = |table: &Characteristic| TableEntry {
@@ -117,6 +125,13 @@ impl CharacteristicsDocument {
         Self {
             schema: CHARACTERISTICS,
             tables: tables.iter().map(table).collect(),
+            notes,
+            voltages: answer.voltages.map(|reading| match reading {
+                VoltageReading::Stated => "stated",
+                VoltageReading::ByTorque(Across::Lines) => "lines-by-torque",
+                VoltageReading::ByTorque(Across::Phase) => "phase-by-torque",
+                VoltageReading::Ambiguous => "ambiguous",
+            }),
             pole_pairs: answer.pole_pairs,
             parameters: answer
                 .parameters
@@ -128,6 +143,10 @@ impl CharacteristicsDocument {
                 .each_ref()
                 .map(|one| EstimateEntry::of(one, if one.parameter == Parameter::Rs { 1.0 } else { pairs }))
                 .into(),
+            times_pole_pairs_if_line_to_line: std::array::from_fn(|p| {
+                answer.if_line_to_line[p].map(|value| if p == Parameter::Rs as usize { value } else { pairs * value })
+            })
+            .into(),
             residual_voltage,
             residual_current,
             residual_torque,

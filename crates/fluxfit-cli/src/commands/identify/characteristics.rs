@@ -9,7 +9,9 @@ use crate::{
 };
 use fluxfit::{
     Verdict,
-    characteristics::{Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, identify_characteristics},
+    characteristics::{
+        Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, VoltageReading, identify_characteristics,
+    },
     document::CharacteristicsDocument,
     motor::Parameter,
 };
@@ -27,9 +29,9 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<
         return Ok(None);
     }
     if read.len() < logs.len() {
-        let (name, first) = (&read[0].0, read[0].1.table.label());
+        let (name, kind) = (&read[0].0, read[0].1.table.label());
         return Err(CommandError::Usage(format!(
-            "{name} is a table ({first}), and another file a log: identify the tables alone, then the log with their values (--prior psi_f=VALUE±ERROR)"
+            "{name} is a table ({kind}), and another file a log: identify the tables alone, then the log with their values (--prior psi_f=VALUE±ERROR)"
         )));
     }
     let of_log = [("--report", arguments.report.is_some()), ("--figures", arguments.figures.is_some())];
@@ -37,16 +39,16 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<
     if let Some(option) = of_log.chain(stated).next() {
         return Err(CommandError::Usage(format!("{option} is for logs of a drive, not for tables of a test bench; leave it out")));
     }
-    for (name, one) in &read {
-        one.notes.iter().for_each(|note| terminal::note(&format!("{name}: {}", note.sentence)));
-    }
+    let notes: Vec<String> =
+        read.iter().flat_map(|(name, one)| one.notes.iter().map(move |note| format!("{name}: {}", note.sentence))).collect();
+    notes.iter().for_each(|note| terminal::note(note));
     let tables: Vec<Characteristic> = read.iter().map(|(_, read)| read.table.clone()).collect();
     let names: Vec<String> =
         read.iter().map(|(name, read)| format!("{name}: {} of {} speeds", read.table.label(), read.table.rows())).collect();
     let files = read.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
     let answer = identify_characteristics(&tables, pole_pairs).map_err(|error| CommandError::Log { log: files, error })?;
     if arguments.json {
-        terminal::print(&json::text(&CharacteristicsDocument::of(&tables, &answer))?)?;
+        terminal::print(&json::text(&CharacteristicsDocument::of(&tables, notes, &answer))?)?;
     } else {
         show(&names, &answer)?;
     }
@@ -75,7 +77,9 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     if of(Verdict::Weak).count() > 0 {
         status += &format!(" {} weak.", symbols(Verdict::Weak));
     }
-    if of(Verdict::NotIdentifiable).count() > 0 {
+    if answer.voltages == Some(VoltageReading::Ambiguous) {
+        status = "0 of 4 identified: are the voltages line to line or of a phase?".to_owned();
+    } else if of(Verdict::NotIdentifiable).count() > 0 {
         let what = if answer.residual_rms[1].is_none() { "a short-circuit table of the same motor" } else { "speeds from slow to fast" };
         status += &format!(" For {}: add {what}.", symbols(Verdict::NotIdentifiable));
     }
@@ -84,6 +88,28 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     }
     let mut text = format!("{style}{}{style:#}\n", wrapped("", &status).trim_end());
     names.iter().for_each(|name| text += &format!("{DIM}{}{DIM:#}\n", wrapped("", name).trim_end()));
+    match answer.voltages {
+        Some(VoltageReading::Ambiguous) => {
+            let value = |parameter: Parameter, factor: f64| {
+                let value = factor * answer.if_line_to_line[parameter as usize]?;
+                let scale = Scale::for_value(parameter, value);
+                Some(format!("{} {} {}", symbol(parameter, answer), scale.format(value, 1e-4 * value), scale.unit(parameter.unit())))
+            };
+            let values = |factor: f64| Parameter::ALL.iter().filter_map(|one| value(*one, factor)).collect::<Vec<_>>().join(", ");
+            let or = if answer.residual_rms[2].is_none() { ", or add a short-circuit table with torque" } else { "" };
+            let sentence = format!(
+                "Line to line: {}. Of a phase: {}. The columns' names do not say which; put 'll' or 'phase' into them{or}.",
+                values(1.0),
+                values(3.0_f64.sqrt())
+            );
+            text += &format!("\n{WARNING}{}{WARNING:#}\n", wrapped("", &sentence).trim_end());
+        }
+        Some(VoltageReading::ByTorque(across)) => {
+            let across = if across == Across::Lines { "line to line" } else { "of a phase" };
+            text += &format!("{DIM}{}{DIM:#}\n", wrapped("", &format!("Voltages: {across}, as the torque tells.")).trim_end());
+        }
+        Some(VoltageReading::Stated) | None => {}
+    }
     let rows = answer.parameters.iter().map(|estimate| cells(estimate, answer));
     text += &format!("\n{}", table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows));
     let left = [("voltages", 100.0, "%"), ("currents", 100.0, "%"), ("torques", 1.0, "N m")];
@@ -103,7 +129,10 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
             moved.map(|(parameter, change)| format!("{} {:+.1} %", symbol(*parameter, answer), 100.0 * change)).collect();
         format!("{what} read 1 % too large: {}", if moved.is_empty() { "nothing".to_owned() } else { moved.join(", ") })
     });
-    let unseen = format!("Not in the intervals, because no table shows it: {}.", unseen.collect::<Vec<_>>().join("; "));
+    let temperature = "the temperature: R_s +0.4 %, flux about -0.1 % for each K".to_owned();
+    let unseen = unseen.chain([temperature]).collect::<Vec<_>>().join("; ");
+    let saturation = if answer.residual_rms[1].is_some() { " Inductances are those at the currents of the short circuit." } else { "" };
+    let unseen = format!("Not in the intervals, because no table shows it: {unseen}.{saturation}");
     text += &format!("\n{DIM}{}{DIM:#}\n", wrapped("", &unseen).trim_end());
     terminal::print(&text)?;
     terminal::release_notes();
