@@ -118,6 +118,14 @@ pub enum ErrorKind {
         "a short circuit's currents alone give only ratios of the parameters; add its torque, or an open-circuit table of the same motor"
     )]
     NoScale,
+    /// Currents that no short circuit has.
+    #[error(
+        "the currents do not follow the speed as those of shorted terminals do: the best motor misses them by {:.0} % rms; if the motor drives a load in this table, identify from a log of its drive (voltages, currents, speed over time), or from tables with open and shorted terminals", 100.0 * .missed
+    )]
+    NoShortCircuit {
+        /// What the fit misses, as a fraction.
+        missed: f64,
+    },
     /// Open-circuit voltages that the torque of the short circuit contradicts.
     #[error(
         "the voltages with open terminals and the torque with shorted ones contradict each other, and would agree if the voltages were {factor:.4} times as large: check their unit, and whether they are line to line or of a phase, rms or amplitudes (state it in the column's name: 'U_ll_rms [V]', 'U_phase_peak [V]')"

@@ -157,6 +157,16 @@ fn voltages_of_a_phase_are_told_by_their_name_or_by_the_torque_or_left_open() {
     assert!(run.status == 2 && run.err.contains("1.7321 times as large"), "{}", run.err);
 }
 
+/// Torque that rises with the current, at speeds that do not matter: a motor that drives a load.
+#[test]
+fn the_table_of_a_driven_motor_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = "speed_rpm,current_A,torque_Nm\n".to_owned();
+    (1..15).for_each(|k| writeln!(text, "{},{k},{}", 1000 + k, 0.5 * f64::from(k) - 0.1).unwrap());
+    let run = fluxfit(&["identify", &written(folder.path(), "load.csv", &text)]);
+    assert!(run.status == 2 && run.err.contains("drives a load"), "{}", run.err);
+}
+
 /// A traction motor: R 6.87 mohm, p L_d 0.454 mH, p L_q 1.155 mH, p psi_f 0.253 Wb by the data's own description.
 #[test]
 fn a_traction_motor_on_its_bench() {

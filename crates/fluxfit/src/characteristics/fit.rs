@@ -42,7 +42,7 @@ pub struct CharacteristicsAnswer {
     /// Where the voltages are [ambiguous](VoltageReading::Ambiguous): what the parameters would be if these are line to line. Of a phase, all
     /// would be `sqrt 3` times as large.
     pub if_line_to_line: [Option<f64>; PARAMETERS],
-    /// Relative change of each parameter where an instrument reads 1 % too much, which no table shows.
+    /// Relative change of each parameter that has a value where an instrument reads 1 % too much, which no table shows.
     pub unseen: Vec<(Instrument, [f64; PARAMETERS])>,
 }
 
@@ -110,13 +110,11 @@ impl Instrument {
 pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u32>) -> Result<CharacteristicsAnswer, Error> {
     let (rows, voltages) = Rows::of(tables)?.with_told_voltages()?;
     let fit = Fit::of(&rows, rows.has_torque())?;
+    if let Some(missed) = fit.residual_rms[1].filter(|missed| *missed > LARGEST_MISS) {
+        return Err(ErrorKind::NoShortCircuit { missed }.into());
+    }
     let of_drag = if rows.has_torque() { fit.distance(&Fit::of(&rows, false)?) } else { [0.0; PARAMETERS] };
     let doubt: [f64; PARAMETERS] = std::array::from_fn(|p| of_drag[p].hypot(fit.doubt_of_minima[p]));
-    let unseen = Instrument::ALL
-        .into_iter()
-        .filter(|instrument| rows.has(*instrument))
-        .map(|instrument| Ok((instrument, fit.change_to(&Fit::of(&rows.read_too_large(instrument), rows.has_torque())?))))
-        .collect::<Result<_, Error>>()?;
     let pairs = f64::from(pole_pairs.unwrap_or(1));
     let mut parameters = Parameter::ALL.map(|parameter| fit.estimate(parameter, doubt[parameter as usize], pairs));
     let mut if_line_to_line = [None; PARAMETERS];
@@ -124,8 +122,17 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
         if_line_to_line = parameters.map(|estimate| estimate.value);
         parameters = parameters.map(|estimate| CharacteristicEstimate::unknown(estimate.parameter));
     }
+    let told = parameters.map(|estimate| estimate.value.is_some());
+    let change = |instrument: Instrument| {
+        let changes = fit.change_to(&Fit::of(&rows.read_too_large(instrument), rows.has_torque())?);
+        Ok((instrument, std::array::from_fn(|p| if told[p] { changes[p] } else { 0.0 })))
+    };
+    let unseen = Instrument::ALL.into_iter().filter(|instrument| rows.has(*instrument)).map(change).collect::<Result<_, Error>>()?;
     Ok(CharacteristicsAnswer { parameters, pole_pairs, residual_rms: fit.residual_rms, voltages, if_line_to_line, unseen })
 }
+
+/// What a short circuit's currents are missed by at most, as a fraction: a motor that saturates by half is missed by less.
+const LARGEST_MISS: f64 = 0.2;
 
 /// Fewest rows of a short-circuit characteristic: the motor and the drag have six numbers, and a row gives one or two.
 const LEAST_SHORTED: usize = 6;

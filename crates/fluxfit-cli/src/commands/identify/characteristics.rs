@@ -118,7 +118,7 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
         .zip(answer.residual_rms)
         .filter_map(|((what, factor, unit), rms)| Some(format!("{what} by {} {unit}", significant(factor * rms?, 2))));
     text += &format!("\n{}", wrapped("", &format!("Model: steady tests; misses {} rms.", left.collect::<Vec<_>>().join(", "))));
-    let unseen = answer.unseen.iter().map(|(instrument, changes)| {
+    let unseen = answer.unseen.iter().filter_map(|(instrument, changes)| {
         let what = match instrument {
             Instrument::Voltage => "all voltages",
             Instrument::Current => "all currents",
@@ -127,7 +127,7 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
         let moved = Parameter::ALL.iter().zip(changes).filter(|(_, change)| change.abs() >= LEAST_CHANGE);
         let moved: Vec<String> =
             moved.map(|(parameter, change)| format!("{} {:+.1} %", symbol(*parameter, answer), 100.0 * change)).collect();
-        format!("{what} read 1 % too large: {}", if moved.is_empty() { "nothing".to_owned() } else { moved.join(", ") })
+        (!moved.is_empty()).then(|| format!("{what} read 1 % too large: {}", moved.join(", ")))
     });
     let temperature = "the temperature: R_s +0.4 %, flux about -0.1 % for each K".to_owned();
     let unseen = unseen.chain([temperature]).collect::<Vec<_>>().join("; ");
