@@ -138,17 +138,26 @@ impl OperatingPoint {
 
     /// The point with its voltage turned forward by an angle, rad: seen in a frame that lags by it.
     pub(crate) fn turned(&self, angle: f64) -> Self {
+        self.with_turned(0, angle)
+    }
+
+    /// The same with its current too: the whole point in a frame that lags by the angle, rad.
+    pub(crate) fn in_frame_behind(&self, angle: f64) -> Self {
+        self.with_turned(0, angle).with_turned(2, angle)
+    }
+
+    /// With the vector of channels `d` and `d + 1` turned forward.
+    fn with_turned(&self, d: usize, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
-        let turn = |d: f64, q: f64| (cos * d - sin * q, sin * d + cos * q);
+        let turn = |(d, q): (f64, f64)| (cos * d - sin * q, sin * d + cos * q);
         let mut turned = self.clone();
-        let [ud, uq, ..] = &mut turned.means;
-        (*ud, *uq) = turn(*ud, *uq);
+        (turned.means[d], turned.means[d + 1]) = turn((turned.means[d], turned.means[d + 1]));
         for row in &mut turned.covariance {
-            (row[0], row[1]) = turn(row[0], row[1]);
+            (row[d], row[d + 1]) = turn((row[d], row[d + 1]));
         }
         for channel in 0..CHANNELS {
-            let (d, q) = turn(turned.covariance[0][channel], turned.covariance[1][channel]);
-            (turned.covariance[0][channel], turned.covariance[1][channel]) = (d, q);
+            let column = turn((turned.covariance[d][channel], turned.covariance[d + 1][channel]));
+            (turned.covariance[d][channel], turned.covariance[d + 1][channel]) = column;
         }
         turned
     }

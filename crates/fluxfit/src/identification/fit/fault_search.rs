@@ -161,6 +161,9 @@ impl FaultSearch<'_> {
         };
         if taken.len() > 1 {
             self.choose_kinds(&taken, false);
+            if std::env::var("FFX").is_ok() {
+                self.exchange(&faults, &mut taken);
+            }
         }
         let observer = match observer {
             Some(_) => self.drop_observer(&taken),
@@ -205,6 +208,42 @@ impl FaultSearch<'_> {
         let kinds: Vec<Faults> = taken.iter().flat_map(|trial| trial.fault.kinds(&drive.faults, peak)).collect();
         let with = |reading: usize| kinds.iter().map(move |faults| (reading, Adjustable { faults: *faults, ..*drive }));
         (0..self.objectives.len()).flat_map(with).collect()
+    }
+
+    /// The fault that is taken first explains most alone, but may stand in for others that were found later: each is tried once more
+    /// without it, and another one, or none, in its place.
+    fn exchange(&mut self, faults: &[Fault], taken: &mut Vec<FaultTrial>) {
+        for place in 0..taken.len() {
+            let fault = taken[place].fault;
+            if fault.family() == Fault::DeadTime.family() {
+                continue;
+            }
+            let own = |unknown: &Unknown| unknown.fault() == Some(fault);
+            let mut other = self.clone();
+            other.unknowns.retain(|unknown| !own(unknown));
+            let without = Unknown::of_fault(fault).fold(self.drive, |drive, unknown| drive.with(unknown, 0.0));
+            other.drive = without;
+            other.choose_reading();
+            let rest: Vec<FaultTrial> = taken.iter().filter(|trial| trial.fault != fault).cloned().collect();
+            let candidates: Vec<Fault> = faults.iter().copied().filter(|other| other.family() != fault.family()).collect();
+            for (reading, trial) in other.compared.clone().into_iter().take(EXCHANGED_READINGS) {
+                let (drive, cost) = (trial.polished.drive, trial.polished.cost);
+                let mut search = FaultSearch { reading, drive, cost, compared: Vec::new(), ..other.clone() };
+                let trials = search.take_best(&candidates, &rest);
+                let Some(found) = trials.into_iter().find(|trial| trial.outcome == FaultOutcome::Taken) else { continue };
+                if std::env::var("FFV").is_ok() {
+                    eprintln!(
+                        "exchange {:?} by {:?} {:?}: {} -> {}",
+                        fault, found.fault, self.objectives[reading].0, self.cost, search.cost
+                    );
+                }
+                if search.cost < self.cost {
+                    *self = search;
+                    taken[place] = found;
+                }
+            }
+            self.choose_reading();
+        }
     }
 
     /// Whether the observer is still worth its unknowns; if not, it goes.
@@ -290,6 +329,9 @@ impl FaultSearch<'_> {
         trials.into_iter().map(|(trial, _)| trial).collect()
     }
 }
+
+/// Readings under which a fault is exchanged for another.
+const EXCHANGED_READINGS: usize = 4;
 
 /// Of the kinds of a fault: as they stand, most are far from the best.
 const KINDS: Rules = Rules { stepped: 6, fitted: 3, hopeless: HOPELESS };

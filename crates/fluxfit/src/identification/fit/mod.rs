@@ -6,6 +6,7 @@ pub(crate) mod estimate;
 pub(crate) mod excitation;
 pub(crate) mod fault_search;
 pub(crate) mod finding;
+mod frame_angle;
 mod frame_free;
 pub(crate) mod frame_lag;
 pub(crate) mod incremental;

@@ -9,6 +9,7 @@ use super::{
     estimate::Estimate,
     excitation::Excitation,
     finding::{Bench, Finding, Trust, covariance},
+    frame_angle::{self, FrameAngle},
     frame_free,
     frame_lag::{self, FrameLag},
     misfit::{self, Misfit},
@@ -204,7 +205,7 @@ fn solve(
     frames: Option<&Frames>,
     request: &Request,
 ) -> Solved {
-    let Some(frames) = frames else { return solve_beside(log, unturned.to_vec(), &[], request) };
+    let Some(frames) = frames else { return solve_at_angle(log, unturned, request) };
     let (mut lag, mut psi_f) = (frames.lag, frame_lag::rough_flux(unturned));
     let mut round = |lag: &mut FrameLag| {
         let points = lag.turned_back(unturned);
@@ -219,6 +220,25 @@ fn solve(
     }
     let solved = round(&mut lag);
     Solved { lag: Some(lag), ..solved }
+}
+
+/// Solves points of a drive whose angle may be unknown; again with the points turned back by what was found of it. Points that contradict
+/// each other are left so: an angle bends to anything, and what makes them contradict each other may be something else.
+fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], request: &Request) -> Solved {
+    let at_the_angle = solve_beside(log, unturned.to_vec(), &[], request);
+    let Some(mut angle) = FrameAngle::possible(log, request).filter(|_| at_the_angle.misfit.is_none()) else { return at_the_angle };
+    let mut motor = Motor { rs: 0.0, ld: 0.0, lq: 0.0, psi_f: frame_lag::rough_flux(unturned) };
+    let mut round = |angle: &mut FrameAngle| {
+        let points = angle.turned_back(unturned);
+        let unknowns = angle.unknowns(&points, &motor);
+        let solved = solve_beside(log, points, &unknowns, request);
+        (*angle, motor) = (angle.with(&solved.estimate), solved.estimate.motor);
+        solved
+    };
+    for _ in 1..frame_angle::ROUNDS {
+        round(&mut angle);
+    }
+    round(&mut angle)
 }
 
 /// Solves points beside the losses and these unknowns of their frames.
