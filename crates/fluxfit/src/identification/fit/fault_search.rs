@@ -100,6 +100,8 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) unknowns: Vec<Unknown>,
     pub(crate) cost: f64,
     pub(crate) voltage_accuracy: f64,
+    /// Whether the rows may be the drive's own periods.
+    pub(crate) every_period: bool,
     /// Every reading with this drive's faults, the best first; empty where they were not compared since it changed.
     pub(crate) compared: Vec<(usize, TimingTrial)>,
     /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
@@ -161,9 +163,9 @@ impl FaultSearch<'_> {
         };
         if taken.len() > 1 {
             self.choose_kinds(&taken, false);
-            if std::env::var("FFX").is_ok() {
-                self.exchange(&faults, &mut taken);
-            }
+        }
+        if self.every_period && self.is_disturbed() {
+            self.exchange_filter(&faults, &mut taken);
         }
         let observer = match observer {
             Some(_) => self.drop_observer(&taken),
@@ -210,40 +212,35 @@ impl FaultSearch<'_> {
         (0..self.objectives.len()).flat_map(with).collect()
     }
 
-    /// The fault that is taken first explains most alone, but may stand in for others that were found later: each is tried once more
-    /// without it, and another one, or none, in its place.
-    fn exchange(&mut self, faults: &[Fault], taken: &mut Vec<FaultTrial>) {
-        for place in 0..taken.len() {
-            let fault = taken[place].fault;
-            if fault.family() == Fault::DeadTime.family() {
-                continue;
-            }
-            let own = |unknown: &Unknown| unknown.fault() == Some(fault);
-            let mut other = self.clone();
-            other.unknowns.retain(|unknown| !own(unknown));
-            let without = Unknown::of_fault(fault).fold(self.drive, |drive, unknown| drive.with(unknown, 0.0));
-            other.drive = without;
-            other.choose_reading();
-            let rest: Vec<FaultTrial> = taken.iter().filter(|trial| trial.fault != fault).cloned().collect();
-            let candidates: Vec<Fault> = faults.iter().copied().filter(|other| other.family() != fault.family()).collect();
-            for (reading, trial) in other.compared.clone().into_iter().take(EXCHANGED_READINGS) {
-                let (drive, cost) = (trial.polished.drive, trial.polished.cost);
-                let mut search = FaultSearch { reading, drive, cost, compared: Vec::new(), ..other.clone() };
-                let trials = search.take_best(&candidates, &rest);
-                let Some(found) = trials.into_iter().find(|trial| trial.outcome == FaultOutcome::Taken) else { continue };
-                if std::env::var("FFV").is_ok() {
-                    eprintln!(
-                        "exchange {:?} by {:?} {:?}: {} -> {}",
-                        fault, found.fault, self.objectives[reading].0, self.cost, search.cost
-                    );
-                }
-                if search.cost < self.cost {
-                    *self = search;
-                    taken[place] = found;
-                }
-            }
+    /// A filter of the voltages, with a reading that suits it, may stand in for an angle that is late: it is tried once more without it, and
+    /// another fault under another reading in its place.
+    fn exchange_filter(&mut self, faults: &[Fault], taken: &mut [FaultTrial]) {
+        let is_filter = |trial: &FaultTrial| [Fault::DqVoltageFilter, Fault::DqFilter].contains(&trial.fault);
+        let Some(place) = taken.iter().position(is_filter) else { return };
+        let filter = taken[place].fault;
+        let drive = Unknown::of_fault(filter).fold(self.drive, |drive, unknown| drive.with(unknown, 0.0));
+        let mut without = FaultSearch { drive, ..self.clone() };
+        without.unknowns.retain(|unknown| unknown.fault() != Some(filter));
+        without.choose_reading();
+        let rest: Vec<FaultTrial> = taken.iter().filter(|trial| trial.fault != filter).cloned().collect();
+        let candidates: Vec<Fault> = faults.iter().copied().filter(|fault| fault.family() != filter.family()).collect();
+        let best = without.compared.iter().take(EXCHANGED_READINGS).filter_map(|(reading, trial)| {
+            let (drive, cost) = (trial.polished.drive, trial.polished.cost);
+            let mut search = FaultSearch { reading: *reading, drive, cost, compared: Vec::new(), ..without.clone() };
+            let found = search.take_best(&candidates, &rest).into_iter().find(|trial| trial.outcome == FaultOutcome::Taken)?;
+            Some((search, found))
+        });
+        let best = best.min_by(|(one, _), (other, _)| one.mean_square().total_cmp(&other.mean_square()));
+        if let Some((search, found)) = best.filter(|(search, _)| search.mean_square() < self.mean_square()) {
+            *self = search;
+            taken[place] = found;
             self.choose_reading();
         }
+    }
+
+    /// Mean square of a residual, A².
+    fn mean_square(&self) -> f64 {
+        self.cost / (2 * self.objective().rows()) as f64
     }
 
     /// Whether the observer is still worth its unknowns; if not, it goes.
@@ -330,7 +327,7 @@ impl FaultSearch<'_> {
     }
 }
 
-/// Readings under which a fault is exchanged for another.
+/// Readings under which a filter is exchanged for another fault.
 const EXCHANGED_READINGS: usize = 4;
 
 /// Of the kinds of a fault: as they stand, most are far from the best.

@@ -77,14 +77,11 @@ pub(super) fn choose(
     let mut begun: Vec<FaultSearch> = Vec::new();
     let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };
     let _ = progress(Step::Faults);
-    let tr: usize = std::env::var("FFR").ok().and_then(|x| x.parse().ok()).unwrap_or(TRIED_READINGS);
-    let most = if is_control_rate(log) { tr } else { tr / 2 };
+    let every_period = is_control_rate(log);
+    let most = if every_period { TRIED_READINGS } else { 1 };
     for (place, tried) in tried.iter().copied().take(most) {
         // The search from the reading before has compared all of them, and ended with this one.
         if best.as_ref().is_some_and(|best| best.chosen.reading == tried.timing) {
-            if std::env::var("FFV").is_ok() {
-                eprintln!("start {:?} is best's", tried.timing);
-            }
             break;
         }
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
@@ -96,38 +93,17 @@ pub(super) fn choose(
             unknowns: free.clone(),
             cost,
             voltage_accuracy,
+            every_period,
             compared: Vec::new(),
             ruled_out: Vec::new(),
             contested: None,
         };
         let observer = search.observe();
-        // Beside an observer, which fits any reading after its manner, the next best that was not tried yet.
-        let is_new = |search: &FaultSearch| !begun.iter().any(|other: &FaultSearch| search.is_like(other));
-        if !is_new(&search) {
-            let others = search.compared.iter().map(|(place, trial)| {
-                let (drive, cost) = (trial.polished.drive, trial.polished.cost);
-                FaultSearch { reading: *place, drive, cost, compared: Vec::new(), ..search.clone() }
-            });
-            let Some(other) = others.into_iter().find(is_new) else { continue };
-            search = other;
+        if begun.iter().any(|other| search.is_like(other)) {
+            continue;
         }
         let one = with_faults(&search, observer.as_ref());
         begun.push(search);
-        if std::env::var("FFV").is_ok() {
-            eprintln!(
-                "start {:?} -> {:?} crit {} explained {} taken {:?}",
-                tried.timing,
-                one.chosen.reading,
-                one.criterion,
-                one.explained,
-                one.chosen
-                    .terms
-                    .iter()
-                    .filter(|t| t.outcome == super::fault_search::FaultOutcome::Taken)
-                    .map(|t| t.fault)
-                    .collect::<Vec<_>>()
-            );
-        }
         let explained = one.explained;
         if best.as_ref().is_none_or(|best| one.criterion < best.criterion) {
             best = Some(one);
