@@ -143,7 +143,10 @@ impl OperatingPoint {
 
     /// The same with its current too: the whole point in a frame that lags by the angle, rad.
     pub(crate) fn in_frame_behind(&self, angle: f64) -> Self {
-        self.with_turned(0, angle).with_turned(2, angle)
+        let (sin, cos) = angle.sin_cos();
+        let Dq { d, q } = self.drift;
+        let drift = Dq { d: cos * d - sin * q, q: sin * d + cos * q };
+        Self { drift, ..self.with_turned(0, angle).with_turned(2, angle).with_turned(4, angle) }
     }
 
     /// With the vector of channels `d` and `d + 1` turned forward.

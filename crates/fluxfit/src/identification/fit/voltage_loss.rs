@@ -30,11 +30,8 @@ const LARGEST_DROP: f64 = 0.02;
 /// Rows slower than this, Hz, need not be a drive's own periods: most drives control faster.
 const SLOWEST_CONTROL: f64 = 5e3;
 
-/// What such a log's drive is taken to switch at, Hz, for the size of the loss: faster ones have MOSFETs with short dead times.
+/// What such a log's drive is taken to switch at, Hz: faster ones have MOSFETs with short dead times.
 const USUAL_CARRIER: f64 = 20e3;
-
-/// The same for the shape of the loss, which a slower carrier bends more.
-const SLOW_CARRIER: f64 = 8e3;
 
 /// Bus voltage over the largest phase voltage of a log that says nothing else of it. It is at least sqrt 3; most drives keep a reserve.
 const BUS_OVER_VOLTAGE: f64 = 2.0;
@@ -85,10 +82,10 @@ impl LossPrior {
         let rated = request.nameplate.rating.map(|rating| BUS_OVER_VOLTAGE * rating.voltage);
         let seen = || largest(&mut columns.ud.iter().zip(&columns.uq).map(|(d, q)| d.hypot(*q))).map(|most| BUS_OVER_VOLTAGE * most);
         let bus = measured.or(rated).or_else(seen).unwrap_or(0.0);
-        let [carrier, slow] = if is_control_rate(log) { [1.0 / slowest_period(log); 2] } else { [USUAL_CARRIER, SLOW_CARRIER] };
+        let carrier = if is_control_rate(log) { 1.0 / slowest_period(log) } else { USUAL_CARRIER };
         let largest = 4.0 / PI * bus * (LONGEST_DEAD_TIME * carrier + LARGEST_DROP);
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
-        Self { expected: 0.0, standard_error: if are_exact { 0.0 } else { 0.5 * largest }, bus, carrier: slow }
+        Self { expected: 0.0, standard_error: if are_exact { 0.0 } else { 0.5 * largest }, bus, carrier }
     }
 
     /// The same, sharpened by what the points' harmonics say.
