@@ -65,8 +65,8 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         ),
         Part::FrameLag => write!(
             f,
-            "a recorder's voltages may turn with speed against its currents, by a lag that acts like inductance where the current follows \
-             the speed, which {leaves}"
+            "between rows so far apart the angle, or the voltages' frame against that of the currents, may be off or late, which acts like \
+             inductance and {leaves}"
         ),
         Part::ProcessNoise => {
             write!(f, "unknown voltages disturb the motor, and the answers with and without a model of them differ, which {leaves}")

@@ -41,10 +41,15 @@ pub(super) struct FrameAngle {
 }
 
 impl FrameAngle {
-    /// Where it may be unknown; not where voltages are exact, and not where every period of the drive is there.
+    /// Where it may be unknown; not where voltages are exact, not where every period of the drive is there, and not for whoever states the
+    /// steady model: that states its equations, the angle with them.
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
-        (!is_control_rate(log) && !are_exact).then_some(Self { offset: 0.0, delay: 0.0, errors: [USUAL_OFFSET, USUAL_DELAY] })
+        (!is_control_rate(log) && !are_exact && request.model.is_none()).then_some(Self {
+            offset: 0.0,
+            delay: 0.0,
+            errors: [USUAL_OFFSET, USUAL_DELAY],
+        })
     }
 
     pub(super) fn turned_back(&self, points: &[OperatingPoint]) -> Vec<OperatingPoint> {

@@ -14,7 +14,7 @@ pub enum Part {
     Timing,
     /// Dead time or device drops.
     DeadTime,
-    /// A recorder's voltages that may turn with speed against its currents.
+    /// A recorder's voltages that may turn with speed against its currents, or an angle that may be off and late where rows are far apart.
     FrameLag,
     /// Unknown voltages that disturb the motor.
     ProcessNoise,
