@@ -3,9 +3,9 @@
 
 use crate::{
     command_line,
-    commands::{Verb, compare, identify, identify::export, input, inspect, report, validate},
+    commands::{Verb, compare, fleet, identify, identify::export, input, inspect, report, validate},
     error::CommandError,
-    json,
+    explanations, json,
     terminal::{self, Detail, options},
 };
 use clap::FromArgMatches;
@@ -13,7 +13,7 @@ use fluxfit::{Answer, Log, Progress, Request, document::StudyDocument, document:
 use fluxfit_answer::export::Target;
 use fluxfit_drive::{Recording, simulate};
 use fluxfit_files::{FileErrorKind, write_atomically};
-use fluxfit_log::{MemoryTable, document::InspectionDocument, inspect as inspect_log};
+use fluxfit_log::{MemoryTable, document::InspectionDocument, inspect as inspect_log, read_table};
 use fluxfit_report::{Report, html};
 use fluxfit_setup::{GivenMotor, ReadScenario, paper_scenario, read_given_motor, read_motor, read_scenario, truth_of};
 use std::{ffi::OsString, ops::ControlFlow, path::Path, sync::Arc};
@@ -250,6 +250,40 @@ pub fn comparison(
     let asked = compare::request(&arguments, &input)?;
     let (comparison, methods) = compare::compared(&input.log, &asked, go_on).map_err(|error| input::of_log(&input.name, error))?;
     Ok(json::text(&StudyDocument::of(&comparison, &methods, !comparison.is_whole()))?)
+}
+
+/// The rows of a fleet for one motor, whose rows are a table in memory: a JSON list of objects with a value for each of [`fleet_columns`].
+/// What fails is a row with its reason; an error is what was asked.
+///
+/// # Errors
+/// If the words are no verb `fleet`, or name what cannot be read.
+pub fn fleet_rows(words: &[OsString], motor: &str, source: &str, table: MemoryTable) -> Result<String, Refusal> {
+    let Verb::Fleet(arguments) = parse(words)? else { return Err(misuse("the verb is not fleet")) };
+    let log = &arguments.identify.log;
+    let file = log.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
+    input::options(&log.columns, file.pole_pairs)?;
+    let mut table = Some(table);
+    let label = format!("motor {motor} of {source}");
+    let read = input::read_each(log, file, |_, options| read_table(&label, table.take().unwrap_or_default(), options));
+    Ok(json::text(&fleet::row::rows(motor, source, read, &arguments.identify, arguments.every))?)
+}
+
+/// The columns of the rows of a fleet: each with `text`, `number` or `count`.
+pub fn fleet_columns() -> Vec<(&'static str, &'static str)> {
+    let kind = |kind| match kind {
+        fleet::row::Kind::Text => "text",
+        fleet::row::Kind::Number => "number",
+        fleet::row::Kind::Count => "count",
+    };
+    fleet::row::COLUMNS.iter().map(|(name, of)| (*name, kind(*of))).collect()
+}
+
+/// The page of a code of a warning or finding.
+///
+/// # Errors
+/// If there is no such code; the sentence names all.
+pub fn explanation(code: &str) -> Result<String, Refusal> {
+    Ok(explanations::text_of(code)?.to_owned())
 }
 
 /// Where a scenario comes from.

@@ -23,6 +23,7 @@
 //! | `records` | other logs of text: JSON, LVM, CAN frames |
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
+//! | `groups` | a table of many motors, cut into theirs |
 //! | `memory_table` | a table that a program holds in memory |
 //! | [`document`] | the JSON document of an inspection |
 //! | `in_order` | work on all cores, with results in order |
@@ -38,6 +39,7 @@ mod channel;
 mod container;
 mod csv;
 pub mod document;
+mod groups;
 mod header_unit;
 mod in_order;
 mod instant;
@@ -49,6 +51,7 @@ mod records;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container};
+pub use groups::{Group, GroupRows, read_groups};
 pub use memory_table::{MemoryColumn, MemoryTable, ReadRows};
 pub use note::Note;
 pub use reading::{

@@ -24,7 +24,7 @@ use fluxfit_answer::export::Target;
 use fluxfit_report::{Report, figures, html};
 use std::{path::PathBuf, sync::Arc};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) log: LogArguments,
@@ -88,6 +88,14 @@ fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
             let unknown = || format!("no method '{text}'; there are auto, least-squares, {}", method_keys());
             Method::named(text).map(SearchMethod::Swarm).ok_or_else(unknown)
         }
+    }
+}
+
+impl Identify {
+    /// The options that are given and write something of one motor.
+    pub(crate) fn outputs_of_one(&self) -> impl Iterator<Item = &'static str> {
+        let options = [("--export", !self.export.is_empty()), ("--hold-out", self.hold_out), ("--bandwidth", self.bandwidth.is_some())];
+        options.into_iter().filter(|(_, is_stated)| *is_stated).map(|(option, _)| option)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::{
 };
 use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, check_columns, log::Source, optimizer};
 use fluxfit_files::FileError;
-use fluxfit_log::{LogOptions, MemoryTable, Note, ReadColumn, ReadLog, read_log_with_progress, read_mapping, read_table};
+use fluxfit_log::{LogOptions, MemoryTable, Note, ReadColumn, ReadLog, read_log, read_log_with_progress, read_mapping, read_table};
 use fluxfit_setup::{MotorFile, read_motor};
 use fluxfit_units::wording::one_line;
 use std::{fs, path::Path, sync::Arc};
@@ -25,6 +25,8 @@ pub(crate) struct Input {
     pub(crate) pole_pairs: Option<u32>,
     /// The columns of each log, as they were read.
     columns: Vec<Vec<ReadColumn>>,
+    /// What was inferred, with what changes it.
+    notes: Vec<Note>,
 }
 
 impl Input {
@@ -52,10 +54,13 @@ pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
 
 /// Reads the logs, where the motor file is read already.
 pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<Input, CommandError> {
-    read_each(arguments, motor, |path, options| {
+    let input = read_each(arguments, motor, |path, options| {
         let progress = terminal::reading(&format!("reading {}", name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
         read_log_with_progress(path, options, progress.teller())
-    })
+    })?;
+    input.notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
+    input.log.source().columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
+    Ok(input)
 }
 
 /// Takes a table in memory in place of the one log that the arguments name.
@@ -64,8 +69,13 @@ pub(crate) fn read_held(arguments: &LogArguments, motor: MotorFile, table: Memor
     read_each(arguments, motor, |path, options| read_table(&name(path), table.take().unwrap_or_default(), options))
 }
 
+/// Reads the logs, and shows nothing.
+pub(crate) fn read_silently(arguments: &LogArguments, motor: MotorFile) -> Result<Input, CommandError> {
+    read_each(arguments, motor, read_log)
+}
+
 /// Reads each log, and joins them.
-fn read_each(
+pub(crate) fn read_each(
     arguments: &LogArguments,
     motor: MotorFile,
     mut read: impl FnMut(&Path, &LogOptions) -> Result<ReadLog, FileError>,
@@ -90,8 +100,6 @@ fn read_each(
         notes.extend(read.notes.into_iter().map(|note| if is_only { note } else { Note { sentence: of_log(&note.sentence), ..note } }));
     }
     let log = Log::join(logs)?;
-    notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
-    log.source().columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
     let titles: Vec<String> = arguments.logs.iter().map(|path| file_name(path)).collect();
     Ok(Input {
@@ -101,6 +109,7 @@ fn read_each(
         title: titles.join(", "),
         pole_pairs: options.pole_pairs,
         columns: read_columns,
+        notes,
     })
 }
 
