@@ -28,6 +28,6 @@ mod _fluxfit {
     use crate::{
         identification::{Answer, identify, read_log},
         search::{AskTell, methods, minimize},
-        verbs::{command, compare, inspect, simulate, validate, version},
+        verbs::{command, compare, explain, fleet_columns, fleet_rows, inspect, simulate, validate, version},
     };
 }

@@ -84,3 +84,23 @@ pub(crate) fn simulate<'py>(
     let others = [("ud_ref", recording.ud_ref.as_slice()), ("uq_ref", recording.uq_ref.as_slice())];
     Ok((arrays::columns(py, &recording.columns, &others)?, truth))
 }
+
+/// The rows of a fleet for one motor: a JSON list of objects.
+#[pyfunction]
+pub(crate) fn fleet_rows(py: Python<'_>, words: Vec<OsString>, motor: &str, source: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
+    let held = Held::of(data)?;
+    let values = held.values()?;
+    py.detach(|| face::fleet_rows(&words, motor, source, values.table())).map_err(|refusal| raised(py, &refusal))
+}
+
+/// The columns of these rows: each with `text`, `number` or `count`.
+#[pyfunction]
+pub(crate) fn fleet_columns() -> Vec<(&'static str, &'static str)> {
+    face::fleet_columns()
+}
+
+/// The page of a code of a warning or finding.
+#[pyfunction]
+pub(crate) fn explain(py: Python<'_>, code: &str) -> PyResult<String> {
+    face::explanation(code).map_err(|refusal| raised(py, &refusal))
+}

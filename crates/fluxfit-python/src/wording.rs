@@ -39,9 +39,16 @@ pub(crate) fn in_python(sentence: &str) -> String {
             None => keyword.to_owned(),
         });
     }
-    let shown = text.replace("fluxfit --explain ", "fluxfit.explain ");
+    let shown = explained(&text);
     // Whatever is left has no keyword: its bare name.
     shown.replace("--", "")
+}
+
+/// `fluxfit --explain CODE` as a call.
+fn explained(text: &str) -> String {
+    let Some((before, after)) = text.split_once("fluxfit --explain ") else { return text.to_owned() };
+    let end = after.find(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).unwrap_or(after.len());
+    format!("{before}fluxfit.explain(\"{}\"){}", &after[..end], &after[end..])
 }
 
 /// Replaces an option and its argument, if one follows that is no word of the sentence.

@@ -10,7 +10,7 @@
 """
 
 from fluxfit import _fluxfit
-from fluxfit._api import Study, Validation, compare, identify, inspect, read_log, simulate, validate
+from fluxfit._api import Study, Validation, compare, explain, identify, inspect, read_log, simulate, validate
 from fluxfit._errors import DataError, Error, FileError, RequestError
 from fluxfit._identification import Estimate, Identification
 from fluxfit._log import Log
@@ -30,6 +30,7 @@ __all__ = [
     "Study",
     "Validation",
     "compare",
+    "explain",
     "identify",
     "inspect",
     "methods",

@@ -276,3 +276,15 @@ def simulate(scenario: Any = None, *, seed: "int | None" = None, draw: int = 0) 
         raise RequestError(f"seed={seed} is out of range; it must be from 0 to 4294967295")
     columns, truth = _fluxfit.simulate(path, text, seed, draw)
     return Log(columns, [], json.loads(truth))
+
+
+def explain(code: str) -> str:
+    """The page of a code of a warning or a finding.
+
+    Raises `RequestError` if there is no such code.
+
+    >>> import fluxfit
+    >>> "residuals" in fluxfit.explain("misfit") or "contradict" in fluxfit.explain("misfit")
+    True
+    """
+    return _fluxfit.explain(code)
