@@ -235,11 +235,7 @@ pub fn validation(words: &[OsString], table: Option<MemoryTable>, motor: Option<
 ///
 /// # Errors
 /// As the command.
-pub fn comparison(
-    words: &[OsString],
-    table: Option<MemoryTable>,
-    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
-) -> Result<String, Refusal> {
+pub fn comparison(words: &[OsString], table: Option<MemoryTable>, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Result<String, Refusal> {
     let Verb::Compare(arguments) = parse(words)? else { return Err(misuse("the verb is not compare")) };
     compare::check(&arguments)?;
     let motor = arguments.log.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();

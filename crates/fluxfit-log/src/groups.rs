@@ -154,7 +154,8 @@ fn of_text(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>)
         }
         let cell = cell(&line, separator, place);
         if rows > 0 && (is_end || key.as_deref() != Some(cell.as_ref())) {
-            let rows = if rows > MOST_ROWS { Err(too_many(rows)) } else { Ok(GroupRows::Text(std::mem::replace(&mut content, header.clone()))) };
+            let rows =
+                if rows > MOST_ROWS { Err(too_many(rows)) } else { Ok(GroupRows::Text(std::mem::replace(&mut content, header.clone()))) };
             let key = key.as_deref().map(|key| String::from_utf8_lossy(key).trim().to_owned()).filter(|key| !key.is_empty());
             if take(Group { key, rows }).is_break() {
                 return Ok(());

@@ -1,11 +1,6 @@
 //! An identification and its answer; a log alone.
 
-use crate::{
-    arrays,
-    columns::Held,
-    error::raised,
-    interruptible::interruptible,
-};
+use crate::{arrays, columns::Held, error::raised, interruptible::interruptible};
 use fluxfit_cli::face::{Refusal, Task, document};
 use pyo3::{prelude::*, types::PyDict};
 use std::{ffi::OsString, path::PathBuf};

@@ -91,7 +91,9 @@ pub(crate) fn interruptible<T: Send + 'static>(
                 progress.map_or(Ok(()), |progress| progress.call1((name, done, total)).map(drop)).and_then(|()| py.check_signals())
             }
             Err(RecvTimeoutError::Timeout) => py.check_signals(),
-            Err(RecvTimeoutError::Disconnected) => Err(PyRuntimeError::new_err("the computation ended without a result: please report this")),
+            Err(RecvTimeoutError::Disconnected) => {
+                Err(PyRuntimeError::new_err("the computation ended without a result: please report this"))
+            }
         };
         if let Err(error) = outcome {
             left.store(true, Ordering::Relaxed);

@@ -33,7 +33,8 @@ impl Function {
         let answer = self.call.bind(py).call1((rows,))?;
         let answer: PyReadonlyArray1<'_, f64> = answer.extract()?;
         if answer.len() != costs.len() {
-            let why = format!("the function returned {} costs for {} candidates; it must return one for each row", answer.len(), costs.len());
+            let why =
+                format!("the function returned {} costs for {} candidates; it must return one for each row", answer.len(), costs.len());
             return Err(PyValueError::new_err(why));
         }
         for (cost, answer) in costs.iter_mut().zip(answer.as_array()) {
@@ -226,7 +227,8 @@ impl AskTell {
         if let Some(Err(sentence)) = &self.over {
             return Err(misuse(py, sentence));
         }
-        let rows = |candidates: &Vec<f64>| PyArray1::from_slice(py, candidates).reshape([candidates.len() / self.dimension, self.dimension]);
+        let rows =
+            |candidates: &Vec<f64>| PyArray1::from_slice(py, candidates).reshape([candidates.len() / self.dimension, self.dimension]);
         self.open.as_ref().map(rows).transpose()
     }
 

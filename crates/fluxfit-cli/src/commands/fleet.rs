@@ -98,7 +98,12 @@ pub(crate) fn run(arguments: &Fleet) -> Result<Status, CommandError> {
 /// Refuses what has no meaning for many motors.
 fn check(arguments: &Fleet) -> Result<(), CommandError> {
     let log = &arguments.identify.log;
-    let stated = [("--json", log.json), ("--report", log.report.is_some()), ("--figures", log.figures.is_some()), ("--window", !log.window.is_empty())];
+    let stated = [
+        ("--json", log.json),
+        ("--report", log.report.is_some()),
+        ("--figures", log.figures.is_some()),
+        ("--window", !log.window.is_empty()),
+    ];
     let stated = stated.into_iter().filter(|(_, is_stated)| *is_stated).map(|(option, _)| option);
     if let Some(option) = stated.chain(arguments.identify.outputs_of_one()).next() {
         return Err(CommandError::Usage(format!("{option} is for one motor; leave it out, or identify that motor alone")));
@@ -171,7 +176,11 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
             if is_new && finished.contains(&motor) {
                 return ControlFlow::Continue(());
             }
-            if send.send(Waiting { motor, source: source.clone(), rows }).is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if send.send(Waiting { motor, source: source.clone(), rows }).is_err() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         let Some(by) = &arguments.by else {
             if pass(source.clone(), Ok(Source::File(path.clone()))).is_break() {

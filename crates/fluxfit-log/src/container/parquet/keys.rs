@@ -55,8 +55,7 @@ where
     loop {
         levels.clear();
         values.clear();
-        let (rows, _, _) =
-            guarded(FORMAT, || reader.read_records(ROWS, Some(&mut levels), None, &mut values).map_err(fault))?;
+        let (rows, _, _) = guarded(FORMAT, || reader.read_records(ROWS, Some(&mut levels), None, &mut values).map_err(fault))?;
         if rows == 0 {
             return Ok(());
         }
