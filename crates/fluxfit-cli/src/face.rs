@@ -2,13 +2,12 @@
 //! parsed and the logs read as the command does it, so that every face gives the same answers, to the bit, and the same sentences.
 
 use crate::{
-    command_line,
-    commands::{Verb, compare, fleet, identify, identify::export, input, inspect, report, validate},
+    commands::{compare, fleet, identify, identify::export, input, inspect, report, validate},
     error::CommandError,
     explanations, json,
     terminal::{self, Detail, options},
 };
-use clap::FromArgMatches;
+use clap::{Args, Command, FromArgMatches};
 use fluxfit::{Answer, Log, Progress, Request, document::StudyDocument, document::ValidationDocument, identify_with_progress};
 use fluxfit_answer::export::Target;
 use fluxfit_drive::{Recording, simulate};
@@ -72,18 +71,16 @@ fn misuse(sentence: impl Into<String>) -> Refusal {
     Refusal { about: About::Request, sentence: sentence.into() }
 }
 
-/// The verb that the words ask for.
-fn parse(words: &[OsString]) -> Result<Verb, Refusal> {
+/// The arguments of a verb. Its words are parsed alone: the whole command line takes longer to build than a small log to read.
+fn parse<T: Args + FromArgMatches>(words: &[OsString]) -> Result<T, Refusal> {
     terminal::tell(Detail::Quiet, false);
-    let program = OsString::from("fluxfit");
-    let parsed = command_line::command().try_get_matches_from([&program].into_iter().chain(words));
-    let command = parsed.and_then(|matches| command_line::Command::from_arg_matches(&matches));
+    let parsed = T::augment_args(Command::new("fluxfit")).try_get_matches_from(words);
     let sentence = |error: clap::Error| {
         let text = error.render().to_string();
         let text = text.split("\n\nUsage:").next().unwrap_or(&text).split("\n\nFor more").next().unwrap_or_default();
         text.trim_start_matches("error: ").split_whitespace().collect::<Vec<_>>().join(" ")
     };
-    command.map_err(|error| misuse(sentence(error)))?.verb.ok_or_else(|| misuse("a verb is missing"))
+    parsed.and_then(|matches| T::from_arg_matches(&matches)).map_err(|error| misuse(sentence(error)))
 }
 
 /// An identification that is ready to be made: the log is read, and what is asked is checked.
@@ -109,7 +106,7 @@ impl Task {
     /// # Errors
     /// As the command.
     pub fn read_log(words: &[OsString], table: Option<MemoryTable>) -> Result<Self, Refusal> {
-        let Verb::Identify(arguments) = parse(words)? else { return Err(misuse("the verb is not identify")) };
+        let arguments: identify::Identify = parse(words)?;
         let motor = arguments.log.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
         let input = match table {
             Some(table) => input::read_held(&arguments.log, motor, table)?,
@@ -206,7 +203,7 @@ pub fn document(answer: &Answer) -> Result<String, Refusal> {
 /// # Errors
 /// If the file is no table. A table that is no log is inspected all the same.
 pub fn inspection(words: &[OsString]) -> Result<String, Refusal> {
-    let Verb::Inspect(arguments) = parse(words)? else { return Err(misuse("the verb is not inspect")) };
+    let arguments: inspect::Inspect = parse(words)?;
     let inspect::Inspect { log, columns, .. } = &arguments;
     Ok(json::text(&InspectionDocument::of(&inspect_log(log, &input::options(columns, None)?)?))?)
 }
@@ -216,7 +213,7 @@ pub fn inspection(words: &[OsString]) -> Result<String, Refusal> {
 /// # Errors
 /// As the command.
 pub fn validation(words: &[OsString], table: Option<MemoryTable>, motor: Option<&[u8]>) -> Result<String, Refusal> {
-    let Verb::Validate(arguments) = parse(words)? else { return Err(misuse("the verb is not validate")) };
+    let arguments: validate::Validate = parse(words)?;
     let motor = match (motor, arguments.log.motor.as_deref()) {
         (Some(bytes), _) => GivenMotor::parse("motor", bytes)?,
         (None, Some(path)) => read_given_motor(path)?,
@@ -236,7 +233,7 @@ pub fn validation(words: &[OsString], table: Option<MemoryTable>, motor: Option<
 /// # Errors
 /// As the command.
 pub fn comparison(words: &[OsString], table: Option<MemoryTable>, go_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Result<String, Refusal> {
-    let Verb::Compare(arguments) = parse(words)? else { return Err(misuse("the verb is not compare")) };
+    let arguments: compare::Compare = parse(words)?;
     compare::check(&arguments)?;
     let motor = arguments.log.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
     let input = match table {
@@ -254,7 +251,7 @@ pub fn comparison(words: &[OsString], table: Option<MemoryTable>, go_on: &(dyn F
 /// # Errors
 /// If the words are no verb `fleet`, or name what cannot be read.
 pub fn fleet_rows(words: &[OsString], motor: &str, source: &str, table: MemoryTable) -> Result<String, Refusal> {
-    let Verb::Fleet(arguments) = parse(words)? else { return Err(misuse("the verb is not fleet")) };
+    let arguments: fleet::Fleet = parse(words)?;
     let log = &arguments.identify.log;
     let file = log.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
     input::options(&log.columns, file.pole_pairs)?;

@@ -31,7 +31,11 @@ impl Function {
     fn costs(&self, py: Python<'_>, candidates: &[f64], costs: &mut [f64]) -> PyResult<()> {
         let rows = PyArray1::from_slice(py, candidates).reshape([costs.len(), self.dimension])?;
         let answer = self.call.bind(py).call1((rows,))?;
-        let answer: PyReadonlyArray1<'_, f64> = answer.extract()?;
+        // What numpy computes of numbers of 64 bits is taken as it is, anything else converted.
+        let answer: PyReadonlyArray1<'_, f64> = match answer.extract() {
+            Ok(answer) => answer,
+            Err(_) => py.import("numpy")?.call_method1("asarray", (answer, "float64"))?.extract()?,
+        };
         if answer.len() != costs.len() {
             let why =
                 format!("the function returned {} costs for {} candidates; it must return one for each row", answer.len(), costs.len());

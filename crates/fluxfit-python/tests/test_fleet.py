@@ -34,8 +34,13 @@ def fleet_table(motors: int) -> Any:
 
 def descendants(of: int) -> "list[tuple[int, str]]":
     """The processes that a process has started, and those that they have: number and command."""
-    listed = subprocess.run(["ps", "-eo", "pid,ppid,args"], capture_output=True, text=True, check=True).stdout.splitlines()[1:]
-    processes = [(int(pid), int(parent), command) for pid, parent, command in (line.split(None, 2) for line in listed)]
+    processes = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+            processes.append((int(folder.name), parent, (folder / "cmdline").read_text()))
+        except OSError:  # it has ended meanwhile
+            continue
     found, parents = [], {of}
     while parents:
         children = [(pid, command) for pid, parent, command in processes if parent in parents]

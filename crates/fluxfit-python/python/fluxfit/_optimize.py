@@ -81,11 +81,9 @@ def minimize(
     """
     lower, upper = _box(bounds)
     pool: Any = None
+    batch: Callable[[Array], Any]
     if vectorized:
-
-        def batch(points: Array) -> Array:
-            return np.ascontiguousarray(fun(points, *args), dtype=np.float64)
-
+        batch = (lambda points: fun(points, *args)) if args else fun
     else:
         mapped: Any = map
         if callable(workers):
@@ -96,9 +94,7 @@ def minimize(
             pool = multiprocessing.Pool(None if workers == -1 else workers)
             mapped = pool.map
         one = _One(fun, args)
-
-        def batch(points: Array) -> Array:
-            return np.fromiter(mapped(one, points), dtype=np.float64, count=len(points))
+        batch = lambda points: np.fromiter(mapped(one, points), dtype=np.float64, count=len(points))  # noqa: E731
 
     def told(x: Array, cost: float) -> bool:
         try:
