@@ -3,7 +3,6 @@
 use crate::commands::{GROUPS, Verb};
 use anstyle::Style;
 use clap::{Args, CommandFactory, Parser};
-use std::{ffi::OsString, sync::OnceLock};
 
 /// Identifies a permanent magnet synchronous motor from a log of its drive
 #[derive(Debug, Parser)]
@@ -60,17 +59,3 @@ pub(crate) fn command() -> clap::Command {
 /// Styles of clap's own headings and names.
 const TITLE: Style = Style::new().bold().underline();
 const HEAD: Style = Style::new().bold();
-
-/// The words of the command that runs.
-static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
-
-/// Keeps the words of the command, so that a report can state them.
-pub(crate) fn remember(words: Vec<OsString>) {
-    // A process runs one command; of a second one, the first would be stated.
-    let _ = WORDS.set(words);
-}
-
-/// What follows the program's name; nothing, if no command runs.
-pub(crate) fn words() -> &'static [OsString] {
-    WORDS.get().and_then(|words| words.get(1..)).unwrap_or_default()
-}

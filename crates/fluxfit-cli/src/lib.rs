@@ -11,6 +11,7 @@ mod error;
 mod explanations;
 pub mod face;
 mod interrupt;
+mod invocation;
 mod json;
 mod shell;
 mod terminal;
@@ -28,7 +29,7 @@ use terminal::Detail;
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let words: Vec<OsString> = words.into_iter().collect();
     let matches = command_line::command().try_get_matches_from(&words);
-    command_line::remember(words);
+    invocation::remember(words);
     let matches = match matches {
         Ok(matches) => matches,
         Err(error) => {

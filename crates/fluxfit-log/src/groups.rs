@@ -17,8 +17,8 @@ use std::{
     path::Path,
 };
 
-/// Most rows of a motor: 16 million numbers of a log with ten columns take 300 MB. Whoever has more gives them a file of their own, of which
-/// the reader selects rows.
+/// Most rows of a motor: with ten columns they take 330 MB. Whoever has more gives them a file of their own, of which the reader selects
+/// rows.
 const MOST_ROWS: u64 = 1 << 22;
 
 /// Separators of the columns of a text.
@@ -38,19 +38,28 @@ pub struct Group {
 pub enum GroupRows {
     /// A table of text, with the header of the whole.
     Text(Vec<u8>),
-    /// Names, units and numbers.
-    Numbers(Vec<(String, Option<String>, Vec<f64>)>),
+    /// Columns of numbers.
+    Numbers(Vec<GroupColumn>),
+}
+
+/// A column of the rows of a motor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupColumn {
+    /// Its name in the file.
+    pub name: String,
+    /// The numbers are seconds since the first row of the file.
+    pub is_instant: bool,
+    /// One for each row; NaN where the file has none.
+    pub values: Vec<f64>,
 }
 
 impl GroupRows {
     /// Numbers as a table.
-    pub fn table(columns: &[(String, Option<String>, Vec<f64>)]) -> MemoryTable<'_> {
-        let column = |(name, unit, values): &'_ (String, Option<String>, Vec<f64>)| (name.clone(), unit.is_some(), values.len());
-        let named = columns.iter().map(column);
-        let columns = named.zip(columns).map(|((name, is_instant, rows), (_, _, values))| MemoryColumn {
-            name,
+    pub fn table(columns: &[GroupColumn]) -> MemoryTable<'_> {
+        let columns = columns.iter().map(|GroupColumn { name, is_instant, values }| MemoryColumn {
+            name: name.clone(),
             unit: is_instant.then_some("s"),
-            rows,
+            rows: values.len(),
             read: Box::new(move |rows, into| into.extend_from_slice(&values[rows])),
         });
         MemoryTable { columns: columns.collect(), unreadable: Vec::new() }
@@ -90,9 +99,9 @@ fn of_parquet(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<(
     let Binary::Parquet(parquet) = &binary else { return Err(no_column(by, &[])) };
     let Some(runs) = parquet.runs(by)? else { return Err(no_column(by, &parquet.names())) };
     let wanted: Vec<usize> = (0..binary.heads().len()).filter(|&index| binary.heads()[index].name != by).collect();
-    let empty = || -> Vec<(String, Option<String>, Vec<f64>)> {
-        let head = |&index: &usize| (binary.heads()[index].name.clone(), binary.heads()[index].unit.clone(), Vec::new());
-        wanted.iter().map(head).collect()
+    let empty = || -> Vec<GroupColumn> {
+        let heads = wanted.iter().map(|&index| &binary.heads()[index]);
+        heads.map(|head| GroupColumn { name: head.name.clone(), is_instant: head.unit.is_some(), values: Vec::new() }).collect()
     };
     let mut runs = runs.into_iter();
     let mut open = runs.next();
@@ -107,7 +116,7 @@ fn of_parquet(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<(
             let is_kept = *whole <= MOST_ROWS;
             let to = rows.min(from + usize::try_from(whole - held).unwrap_or(usize::MAX));
             if is_kept {
-                columns.iter_mut().zip(&block).for_each(|((_, _, values), block)| values.extend_from_slice(&block[from..to]));
+                columns.iter_mut().zip(&block).for_each(|(column, block)| column.values.extend_from_slice(&block[from..to]));
             }
             held += (to - from) as u64;
             from = to;

@@ -58,7 +58,8 @@ pub(crate) fn left_flag(watcher: &Watcher) -> Arc<AtomicBool> {
     Arc::clone(&watcher.left)
 }
 
-/// Does the work, without the interpreter's lock. `progress` is called with the name of each step, what is done of it and how much there is.
+/// Does the work, without the interpreter's lock. `progress` is called with the name of each step, what is done of it and how much there
+/// is.
 ///
 /// # Errors
 /// If a signal came, or `progress` raised.

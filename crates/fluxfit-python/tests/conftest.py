@@ -1,6 +1,7 @@
 """What several tests share."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,17 +22,18 @@ def rig() -> Path:
 def columns(rig: Path) -> dict[str, np.ndarray]:
     """Its columns, read by numpy and not by this package."""
     table = np.genfromtxt(rig, delimiter=",", names=True)
-    return {name: np.ascontiguousarray(table[name]) for name in table.dtype.names}
+    return {name: np.ascontiguousarray(table[name]) for name in table.dtype.names or ()}
 
 
 @pytest.fixture(scope="session")
 def steady() -> "fluxfit.Log":
     """A log of operating points that is identified at once: the motor's equations (1) of the paper, evaluated here."""
     rs, ld, lq, psi_f, omega = 0.958, 5.25e-3, 12e-3, 0.1827, 400.0
-    i_d, i_q = np.repeat([0.0, -2.0, 0.0], 100), np.repeat([9.0, 8.5, 4.0], 100)
+    i_d: Any = np.repeat([0.0, -2.0, 0.0], 100)
+    i_q: Any = np.repeat([9.0, 8.5, 4.0], 100)
     return fluxfit.Log(
         {
-            "t": np.arange(300) * 1e-3,
+            "t": np.arange(300, dtype=np.float64) * 1e-3,
             "ud": rs * i_d - omega * lq * i_q,
             "uq": rs * i_q + omega * (ld * i_d + psi_f),
             "id": i_d,

@@ -84,7 +84,7 @@ def test_the_equations_are_solved(steady: fluxfit.Log) -> None:
         assert estimate.value == pytest.approx(steady.truth[name], rel=1e-3)
         assert estimate.interval is not None and estimate.interval[0] < estimate.interval[1]
     assert found.covariance.shape == (4, 4)
-    assert np.allclose(np.sqrt(np.diag(found.covariance)), [e.standard_error for e in found.parameters.values()])
+    assert np.allclose(np.sqrt(np.diag(found.covariance)), [estimate.standard_error or np.nan for estimate in found.parameters.values()])
 
 
 def test_a_parameter_that_the_log_does_not_tell_has_no_number() -> None:

@@ -23,7 +23,7 @@ def test_all_ways_give_the_same_bits() -> None:
     mapped = fluxfit.minimize(valley, BOUNDS, workers=map)
     search = fluxfit.Search(BOUNDS)
     while (points := search.ask()) is not None:
-        assert points.shape == (50, 2) and (search.ask() == points).all()
+        assert points.shape == (50, 2) and np.array_equal(np.asarray(search.ask()), points)
         search.tell(valley(points))
     for other in (one_by_one, in_processes, mapped, search.result()):
         assert (other.x == whole.x).all() and other.fun == whole.fun and other.nfev == whole.nfev == 15050
@@ -54,9 +54,15 @@ def test_bounds_of_scipy_and_its_result() -> None:
 
 
 def test_refusals() -> None:
-    for keywords in ({"bounds": [(1, 0)]}, {"bounds": [1, 2]}, {"bounds": [(0, 1)], "method": "x"}, {"bounds": [(0, 1)], "population": 1}):
+    wrong: list[dict[str, Any]] = [
+        {"bounds": [(1, 0)]},
+        {"bounds": [1, 2]},
+        {"bounds": [(0, 1)], "method": "x"},
+        {"bounds": [(0, 1)], "population": 1},
+    ]
+    for keywords in wrong:
         with pytest.raises(fluxfit.RequestError):
-            fluxfit.minimize(lambda x: x[:, 0], vectorized=True, **keywords)  # type: ignore[arg-type]
+            fluxfit.minimize(lambda x: x[:, 0], vectorized=True, **keywords)
     with pytest.raises(ZeroDivisionError):
         fluxfit.minimize(lambda x: 1 / 0, BOUNDS)
     with pytest.raises(ValueError, match="one for each row"):

@@ -39,7 +39,7 @@ def files(paths: "list[str]", **request: Any) -> Any:
     Returns a lazy DataFrame with a partition for each log.
     """
     import dask.dataframe as dd
-    from dask import delayed
+    from dask.delayed import delayed
 
     asked = Request(**request)
     return dd.from_delayed([delayed(_file)(path, asked) for path in paths], meta=_frame([]))

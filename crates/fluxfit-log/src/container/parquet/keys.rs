@@ -9,6 +9,9 @@ use parquet::{
     file::reader::FileReader,
 };
 
+/// A name, or none, and how many rows have it one after the other.
+pub(crate) type Run = (Option<String>, u64);
+
 /// Rows that are read at a time.
 const ROWS: usize = 1 << 13;
 
@@ -24,9 +27,9 @@ impl Parquet {
     ///
     /// # Errors
     /// If the file is damaged, or the column holds something else.
-    pub(crate) fn runs(&self, name: &str) -> Result<Option<Vec<(Option<String>, u64)>>, FileError> {
+    pub(crate) fn runs(&self, name: &str) -> Result<Option<Vec<Run>>, FileError> {
         let Some(leaf) = self.names().iter().position(|other| other == name) else { return Ok(None) };
-        let mut runs: Vec<(Option<String>, u64)> = Vec::new();
+        let mut runs: Vec<Run> = Vec::new();
         for group in 0..self.file.num_row_groups() {
             let reader = guarded(FORMAT, || self.file.get_row_group(group).and_then(|group| group.get_column_reader(leaf)).map_err(fault))?;
             match reader {
@@ -43,11 +46,7 @@ impl Parquet {
 }
 
 /// Adds the values of a part of the column.
-fn read<T: DataType>(
-    mut reader: ColumnReaderImpl<T>,
-    name: impl Fn(&T::T) -> String,
-    runs: &mut Vec<(Option<String>, u64)>,
-) -> Result<(), FileError>
+fn read<T: DataType>(mut reader: ColumnReaderImpl<T>, name: impl Fn(&T::T) -> String, runs: &mut Vec<Run>) -> Result<(), FileError>
 where
     T::T: PartialEq,
 {
