@@ -3,6 +3,8 @@
 import doctest
 import importlib
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -35,3 +37,9 @@ def test_every_name_is_documented() -> None:
     for name in fluxfit.__all__:
         assert getattr(fluxfit, name).__doc__, name
     assert Path(fluxfit.__file__).with_name("py.typed").exists()
+
+
+@pytest.mark.parametrize("script", sorted((ROOT / "crates/fluxfit-python/gallery").glob("*.py")), ids=lambda path: path.stem)
+def test_gallery(script: Path) -> None:
+    run = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr

@@ -140,7 +140,7 @@ fn work(arguments: &Fleet, motor: &MotorFile, journal: &mut Journal) -> Result<(
                 loop {
                     let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).recv();
                     let Ok(next) = next else { return };
-                    let name = next.motor.clone();
+                    let name = next.*motor;
                     let rows = pool.install(|| rows_of(next, arguments, motor));
                     if give.send((name, rows)).is_err() {
                         return;
@@ -171,7 +171,7 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
             if interrupt::go_on().is_break() {
                 return ControlFlow::Break(());
             }
-            let is_new = seen.insert(motor.clone());
+            let is_new = seen.insert(*motor);
             let rows = if is_new { rows } else { Err(duplicate(&motor, arguments.by.as_deref())) };
             if is_new && finished.contains(&motor) {
                 return ControlFlow::Continue(());
@@ -228,15 +228,15 @@ fn rows_of(waiting: Waiting, arguments: &Fleet, motor: &MotorFile) -> Vec<Row> {
         Err(error) => return vec![row::unread(&name, &source, &arguments.identify, error)],
         Ok(Source::File(path)) => {
             let identify = one(&path);
-            return row::rows(&name, &source, input::read_silently(&identify.log, motor.clone()), &identify, arguments.every);
+            return row::rows(&name, &source, input::read_silently(&identify.log, *motor), &identify, arguments.every);
         }
         Ok(Source::Group(GroupRows::Text(text))) => {
             let parse = |_: &Path, options: &LogOptions| parse_log(&label, &text, options);
-            input::read_each(&one(Path::new(&label)).log, motor.clone(), parse)
+            input::read_each(&one(Path::new(&label)).log, *motor, parse)
         }
         Ok(Source::Group(GroupRows::Numbers(columns))) => {
             let parse = |_: &Path, options: &LogOptions| read_table(&label, GroupRows::table(&columns), options);
-            input::read_each(&one(Path::new(&label)).log, motor.clone(), parse)
+            input::read_each(&one(Path::new(&label)).log, *motor, parse)
         }
     };
     row::rows(&name, &source, read, &arguments.identify, arguments.every)
