@@ -34,7 +34,7 @@ np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=
 # %%
 inspection = fluxfit.inspect(path)
 for column in inspection["columns"]:
-    print(column["header"], "->", column["channel"])
+    print(column["name"], "->", column["channel"])
 
 # %% [markdown]
 # What can it tell? The names that are not known are mapped.

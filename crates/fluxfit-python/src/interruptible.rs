@@ -21,9 +21,12 @@ enum Message<T> {
     Done(T),
 }
 
+/// Takes the name of a step, and what is done of it and how much there is.
+type Tell = Box<dyn Fn(&'static str, Option<(usize, usize)>) + Send>;
+
 /// Who is told of each step, and says whether to go on.
 pub(crate) struct Watcher {
-    tell: Option<Box<dyn Fn(&'static str, Option<(usize, usize)>) + Send>>,
+    tell: Option<Tell>,
     left: Arc<AtomicBool>,
 }
 
@@ -74,7 +77,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     let tell = steps.map(|steps| {
         // Nobody listens any more: then nobody waits either.
         let tell = move |name, count| drop(steps.send(Message::Step(name, count)));
-        Box::new(tell) as Box<dyn Fn(&'static str, Option<(usize, usize)>) + Send>
+        Box::new(tell) as Tell
     });
     let watcher = Watcher { tell, left: Arc::clone(&left) };
     let run = move || drop(sender.send(Message::Done(work(watcher))));

@@ -140,7 +140,7 @@ fn work(arguments: &Fleet, motor: &MotorFile, journal: &mut Journal) -> Result<(
                 loop {
                     let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).recv();
                     let Ok(next) = next else { return };
-                    let name = next.*motor;
+                    let name = next.motor.clone();
                     let rows = pool.install(|| rows_of(next, arguments, motor));
                     if give.send((name, rows)).is_err() {
                         return;
@@ -171,7 +171,7 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
             if interrupt::go_on().is_break() {
                 return ControlFlow::Break(());
             }
-            let is_new = seen.insert(*motor);
+            let is_new = seen.insert(motor.clone());
             let rows = if is_new { rows } else { Err(duplicate(&motor, arguments.by.as_deref())) };
             if is_new && finished.contains(&motor) {
                 return ControlFlow::Continue(());

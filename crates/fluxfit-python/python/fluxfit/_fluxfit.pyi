@@ -6,6 +6,24 @@ from typing import Any, final
 
 import numpy as np
 
+__all__ = [
+    "Answer",
+    "AskTell",
+    "command",
+    "compare",
+    "explain",
+    "fleet_columns",
+    "fleet_rows",
+    "identify",
+    "inspect",
+    "methods",
+    "minimize",
+    "read_log",
+    "simulate",
+    "validate",
+    "version",
+]
+
 _Array = np.ndarray[Any, np.dtype[np.float64]]
 
 @final
