@@ -64,7 +64,16 @@ fn parse_every(text: &str) -> Result<f64, String> {
 struct Waiting {
     motor: String,
     source: String,
+    /// It came before: this is the refusal, which takes the place of any answer.
+    is_duplicate: bool,
     rows: Result<Source, CommandError>,
+}
+
+/// A motor that is identified.
+struct Done {
+    motor: String,
+    is_duplicate: bool,
+    rows: Vec<Row>,
 }
 
 /// Where its rows are.
@@ -127,7 +136,7 @@ fn work(arguments: &Fleet, motor: &MotorFile, journal: &mut Journal) -> Result<(
     // Few wait at a time: that bounds the memory.
     let (send, waiting) = sync_channel::<Waiting>(jobs);
     let waiting = Mutex::new(waiting);
-    let (give, take) = sync_channel::<(String, Vec<Row>)>(jobs);
+    let (give, take) = sync_channel::<Done>(jobs);
     interrupt::be_gentle(true);
     let done = std::thread::scope(|scope| {
         scope.spawn(|| read(arguments, &finished, send));
@@ -140,9 +149,9 @@ fn work(arguments: &Fleet, motor: &MotorFile, journal: &mut Journal) -> Result<(
                 loop {
                     let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).recv();
                     let Ok(next) = next else { return };
-                    let name = next.motor.clone();
+                    let (motor_name, is_duplicate) = (next.motor.clone(), next.is_duplicate);
                     let rows = pool.install(|| rows_of(next, arguments, motor));
-                    if give.send((name, rows)).is_err() {
+                    if give.send(Done { motor: motor_name, is_duplicate, rows }).is_err() {
                         return;
                     }
                 }
@@ -150,9 +159,14 @@ fn work(arguments: &Fleet, motor: &MotorFile, journal: &mut Journal) -> Result<(
         }
         drop(give);
         let mut outcome = Ok(());
-        for (name, rows) in take {
-            if outcome.is_ok() {
-                outcome = journal.add(&name, rows);
+        let mut refused = BTreeSet::new();
+        for Done { motor, is_duplicate, rows } in take {
+            // The answer of the first rows may come after the refusal of the others.
+            if outcome.is_ok() && (is_duplicate || !refused.contains(&motor)) {
+                outcome = journal.add(&motor, rows);
+            }
+            if is_duplicate {
+                refused.insert(motor);
             }
             progress.count("motors", journal.motors(), journal.motors());
         }
@@ -171,12 +185,13 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
             if interrupt::go_on().is_break() {
                 return ControlFlow::Break(());
             }
-            let is_new = seen.insert(motor.clone());
+            // Rows without a motor are refused wherever they stand.
+            let is_new = seen.insert(motor.clone()) || motor.is_empty();
             let rows = if is_new { rows } else { Err(duplicate(&motor, arguments.by.as_deref())) };
             if is_new && finished.contains(&motor) {
                 return ControlFlow::Continue(());
             }
-            if send.send(Waiting { motor, source: source.clone(), rows }).is_err() {
+            if send.send(Waiting { motor, source: source.clone(), is_duplicate: !is_new, rows }).is_err() {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())
@@ -217,7 +232,7 @@ fn duplicate(motor: &str, by: Option<&str>) -> CommandError {
 
 /// The rows of the results for a motor.
 fn rows_of(waiting: Waiting, arguments: &Fleet, motor: &MotorFile) -> Vec<Row> {
-    let Waiting { motor: name, source, rows } = waiting;
+    let Waiting { motor: name, source, rows, .. } = waiting;
     let one = |path: &Path| {
         let mut identify = arguments.identify.clone();
         identify.log.logs = vec![path.to_owned()];
