@@ -257,7 +257,10 @@ pub fn fleet_rows(words: &[OsString], motor: &str, source: &str, table: MemoryTa
     input::options(&log.columns, file.pole_pairs)?;
     let mut table = Some(table);
     let label = format!("motor {motor} of {source}");
-    let read = input::read_each(log, file, |_, options| read_table(&label, table.take().unwrap_or_default(), options));
+    let read = match (&arguments.by, motor) {
+        (Some(by), "") => Err(fleet::nameless(source, by)),
+        _ => input::read_each(log, file, |_, options| read_table(&label, table.take().unwrap_or_default(), options)),
+    };
     Ok(json::text(&fleet::row::rows(motor, source, read, &arguments.identify, arguments.every))?)
 }
 

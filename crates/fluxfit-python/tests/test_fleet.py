@@ -112,6 +112,17 @@ def test_dask_gives_the_same_rows_also_when_a_worker_is_killed(table: Any, expec
         assert comparable(found) == comparable(expected)
 
 
+def test_rows_without_a_motor_are_refused(table: Any) -> None:
+    dd = pytest.importorskip("dask.dataframe")
+    import fluxfit.dask
+
+    nameless = table[:600].copy()
+    nameless.loc[300:, "motor_id"] = None
+    found = fluxfit.dask.fleet(dd.from_pandas(nameless, npartitions=2), "motor_id").compute(scheduler="sync").sort_values("motor")
+    assert list(found["motor"]) == ["", "m000"]
+    assert found["error"].iloc[0] == "rows of table have no motor_id; name their motor" and found["rs_verdict"].iloc[1] == "identified"
+
+
 def test_dask_takes_files(rig: Path) -> None:
     pytest.importorskip("dask.dataframe")
     import fluxfit.dask

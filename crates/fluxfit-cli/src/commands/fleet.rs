@@ -36,7 +36,7 @@ pub(crate) struct Fleet {
     ///
     /// [default: each log is one motor, named by its file]
     #[arg(long, help_heading = "Fleet", value_name = "COLUMN")]
-    by: Option<String>,
+    pub(crate) by: Option<String>,
     /// Identify in windows of this length, e.g. 1h, 10min, 30s
     ///
     /// They are counted from the first row of each motor.
@@ -205,8 +205,7 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
         };
         let mut is_over = false;
         let read = read_groups(path, by, &mut |Group { key, rows }| {
-            let without = || CommandError::Usage(format!("rows of {source} have no {by}; name their motor"));
-            let rows = if key.is_some() { rows.map(Source::Group).map_err(CommandError::from) } else { Err(without()) };
+            let rows = if key.is_some() { rows.map(Source::Group).map_err(CommandError::from) } else { Err(nameless(&source, by)) };
             let passed = pass(key.unwrap_or_default(), rows);
             is_over |= passed.is_break();
             passed
@@ -221,6 +220,11 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
             return;
         }
     }
+}
+
+/// Why rows without a motor are not identified.
+pub(crate) fn nameless(source: &str, by: &str) -> CommandError {
+    CommandError::Usage(format!("rows of {source} have no {by}; name their motor"))
 }
 
 fn duplicate(motor: &str, by: Option<&str>) -> CommandError {

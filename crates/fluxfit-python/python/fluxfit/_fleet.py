@@ -26,6 +26,7 @@ class Request:
     def __init__(
         self,
         *,
+        by: "str | None" = None,
         every: "str | float | None" = None,
         source: str = "table",
         pole_pairs: "int | None" = None,
@@ -43,7 +44,7 @@ class Request:
             *_words.columns(mapping, unit),
             *_words.priors(prior),
             *_words.pairs("--fix", fix),
-            *_words.options(pole_pairs=pole_pairs, every=window, model=model, method=method, seed=seed),
+            *_words.options(by=by, pole_pairs=pole_pairs, every=window, model=model, method=method, seed=seed),
         ]
         self.words = ["fleet", *words, "-o", OUTPUT, "--", "data"]
 
@@ -53,7 +54,21 @@ class Request:
         Raises `RequestError` only if what is asked makes no sense for any motor.
         """
         _, held = logs_and_table(table)
-        # Both engines tell a whole number from a text; the results name motors by text, as the command does.
-        name = "" if motor is None or motor != motor else str(motor)
-        found: list[dict[str, Any]] = json.loads(_fluxfit.fleet_rows(self.words, name, self.source, held))
+        found: list[dict[str, Any]] = json.loads(_fluxfit.fleet_rows(self.words, _name(motor), self.source, held))
         return found
+
+
+def _name(motor: Any) -> str:
+    """A motor as text, as the command names it; nothing for a missing value of pandas or numpy.
+
+    >>> [_name(motor) for motor in ("m1", 7, 7.0, None, float("nan"))]
+    ['m1', '7', '7', '', '']
+    """
+    try:
+        is_missing = motor is None or bool(motor != motor)
+    except TypeError:  # pandas' NA is neither equal nor unequal to itself
+        is_missing = True
+    if is_missing:
+        return ""
+    # Whole numbers are floats beside missing ones.
+    return str(int(motor)) if isinstance(motor, float) and motor.is_integer() else str(motor)

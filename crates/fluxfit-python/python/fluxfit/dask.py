@@ -27,7 +27,7 @@ def fleet(frame: Any, by: str, *, sort: "str | None" = None, **request: Any) -> 
 
     Raises `RequestError` when it is computed, if what is asked makes no sense for any motor.
     """
-    asked = Request(**request)
+    asked = Request(by=by, **request)
     time = sort or ("t" if "t" in frame.columns else None)
     together = frame.shuffle(on=by)
     return together.map_partitions(_partition, by, time, asked, meta=_frame([]))

@@ -32,7 +32,7 @@ def fleet(frame: Any, by: str, *, sort: "str | None" = None, **request: Any) -> 
     Returns a lazy DataFrame with a row for each motor and window (`schema()`); what fails is a row with its reason in `error`.
     """
     time = sort or ("t" if "t" in frame.columns else None)
-    return frame.groupBy(by).applyInPandas(_rows_of(by, time, Request(**request)), schema())
+    return frame.groupBy(by).applyInPandas(_rows_of(by, time, Request(by=by, **request)), schema())
 
 
 def _rows_of(by: str, time: "str | None", asked: Request) -> "Callable[[Any, Any], Any]":
