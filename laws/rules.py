@@ -12,7 +12,7 @@ MOST_PUBLIC_TRAITS = 4
 LONGEST_COMMENT_LINE = 140
 
 # Crates with a user interface: they may name command-line options. Every other crate in crates/ is a library.
-FACES = {"fluxfit-cli"}
+FACES = {"fluxfit-cli", "fluxfit-python"}
 
 # The computing crates: double precision, no input from outside, the same bits in every run.
 COMPUTING = ("fluxfit", "fluxfit-optimize", "fluxfit-drive")

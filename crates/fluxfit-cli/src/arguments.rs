@@ -9,7 +9,7 @@ use fluxfit_units::{Unit, wording::choice};
 use std::path::PathBuf;
 
 /// Which log, and how to read it.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Log")]
 pub(crate) struct LogArguments {
     // Its help lists the containers: `help_of_logs`.
@@ -60,7 +60,7 @@ fn help_of_logs() -> String {
 }
 
 /// How accurate the drive's measurements are.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Prior knowledge")]
 pub(crate) struct AccuracyArguments {
     /// Standard uncertainty of the voltages, as a part of the vector, e.g. 0.1%
@@ -90,7 +90,7 @@ impl AccuracyArguments {
 }
 
 /// What a log's columns mean.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Log")]
 pub(crate) struct ColumnArguments {
     /// Columns with other names, e.g. ud=motor_vd_V,omega_e=speed

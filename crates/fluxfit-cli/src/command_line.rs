@@ -53,7 +53,7 @@ pub(crate) fn command() -> clap::Command {
             text += &format!("{TITLE}{title}:{TITLE:#}\n{lines}");
         }
     }
-    command.help_template(format!("{{about}}\n{{usage-heading}} {{usage}}\n\n{text}{TITLE}Options:{TITLE:#}\n{{options}}{{after-help}}"))
+    command.help_template(format!("{{about}}\n{{usage-heading}} {{usage}}\n{text}{TITLE}Options:{TITLE:#}\n{{options}}\n{EXIT_STATUS}"))
 }
 
 /// Styles of clap's own headings and names.

@@ -18,13 +18,21 @@ fn pages() -> impl Iterator<Item = (&'static str, &'static str)> {
     PAGES.split(TITLE).skip(1).filter_map(|page| page.split_once('\n')).map(|(code, text)| (code.trim(), text.trim()))
 }
 
-/// Prints the page of a code.
-pub(crate) fn show(code: &str) -> Result<Status, CommandError> {
-    let Some((code, text)) = pages().find(|(other, _)| *other == code) else {
+/// The page of a code.
+///
+/// # Errors
+/// If there is no such code.
+pub(crate) fn text_of(code: &str) -> Result<&'static str, CommandError> {
+    pages().find(|(other, _)| *other == code).map(|(_, text)| text).ok_or_else(|| {
         let codes: Vec<&str> = pages().map(|(code, _)| code).collect();
         let alike = did_you_mean(nearest(code, codes.iter().copied()));
-        return Err(CommandError::Usage(format!("there is no code {}{alike}; the codes are {}", quote(code), list(&codes))));
-    };
+        CommandError::Usage(format!("there is no code {}{alike}; the codes are {}", quote(code), list(&codes)))
+    })
+}
+
+/// Prints the page of a code.
+pub(crate) fn show(code: &str) -> Result<Status, CommandError> {
+    let text = text_of(code)?;
     let paragraphs: Vec<String> = text.split("\n\n").map(paragraph).collect();
     terminal::print(&format!("{HEADING}{code}{HEADING:#}\n\n{}", paragraphs.join("\n")))?;
     Ok(Status::Complete)

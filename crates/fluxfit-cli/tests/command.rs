@@ -21,6 +21,8 @@ mod edges;
 mod export;
 #[path = "command/findings.rs"]
 mod findings;
+#[path = "command/fleet.rs"]
+mod fleet;
 #[path = "command/identify.rs"]
 mod identify;
 #[cfg(unix)]

@@ -23,6 +23,8 @@
 //! | `records` | other logs of text: JSON, LVM, CAN frames |
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
+//! | `groups` | a table of many motors, cut into theirs |
+//! | `memory_table` | a table that a program holds in memory |
 //! | [`document`] | the JSON document of an inspection |
 //! | `in_order` | work on all cores, with results in order |
 //! | `channel` | the channels of a log and their names |
@@ -37,9 +39,11 @@ mod channel;
 mod container;
 mod csv;
 pub mod document;
+mod groups;
 mod header_unit;
 mod in_order;
 mod instant;
+mod memory_table;
 mod note;
 mod problem;
 mod reading;
@@ -47,8 +51,10 @@ mod records;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container};
+pub use groups::{Group, GroupColumn, GroupRows, read_groups};
+pub use memory_table::{MemoryColumn, MemoryTable, ReadRows};
 pub use note::Note;
 pub use reading::{
     InspectedColumn, Inspection, LAYOUTS, Layout, LogOptions, Mapping, Park, ReadCharacteristic, ReadColumn, ReadLog, inspect, parse_log,
-    read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping,
+    read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping, read_table,
 };

@@ -26,7 +26,7 @@ use std::{ops::ControlFlow, path::PathBuf, sync::Mutex, time::Instant};
 #[derive(Debug, Args)]
 pub(crate) struct Compare {
     #[command(flatten)]
-    log: LogArguments,
+    pub(crate) log: LogArguments,
     // The paper's four, unless others are asked for.
     #[arg(long, help_heading = "Search", value_name = "METHOD,..", value_delimiter = ',', default_value = "tgfpa,fpa,lpso,apso", value_parser = parse_method,
           help = format!("Optimizers to compare: all, {}", method_keys()))]
@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
     check(arguments)?;
     let input = input::read(&arguments.log)?;
     let asked = request(arguments, &input)?;
-    let (comparison, methods) = compared(&input.log, &asked).map_err(|error| input::of_log(&input.name, error))?;
+    let (comparison, methods) = compared(&input.log, &asked, &interrupt::go_on).map_err(|error| input::of_log(&input.name, error))?;
     let is_whole = comparison.is_whole();
     if arguments.log.json {
         terminal::print(&json::text(&StudyDocument::of(&comparison, &methods, !is_whole))?)?;
@@ -137,7 +137,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
 }
 
 /// Refuses options that the output error does not use, and limits that are no numbers.
-fn check(arguments: &Compare) -> Result<(), CommandError> {
+pub(crate) fn check(arguments: &Compare) -> Result<(), CommandError> {
     let stated = [("--window", !arguments.log.window.is_empty()), ("--id-zero", arguments.id_zero != IdZero::Measured)];
     if let Some((option, _)) = stated.into_iter().find(|(_, stated)| *stated && arguments.model == StudyModel::OutputError) {
         return Err(CommandError::Usage(format!("{option} is for --model steady; the output error takes every row as measured")));
@@ -150,7 +150,8 @@ fn check(arguments: &Compare) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn request(arguments: &Compare, input: &input::Input) -> Result<ComparisonRequest, CommandError> {
+/// What is asked of the library.
+pub(crate) fn request(arguments: &Compare, input: &input::Input) -> Result<ComparisonRequest, CommandError> {
     let search = SearchSettings {
         population: arguments.population,
         iterations: arguments.iterations,
@@ -173,7 +174,11 @@ fn request(arguments: &Compare, input: &input::Input) -> Result<ComparisonReques
 }
 
 /// Compares with a progress display; each method with the seconds of wall time that one of its runs took. The runs can be interrupted.
-pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparison, Vec<(MethodStudy, f64)>), Error> {
+pub(crate) fn compared(
+    log: &Log,
+    asked: &ComparisonRequest,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<(Comparison, Vec<(MethodStudy, f64)>), Error> {
     let iterations = asked.runs.saturating_mul(asked.methods.len()).saturating_mul(asked.request.search.iterations);
     let progress = terminal::counting("looking for the minimum", iterations);
     let starts = Mutex::new(Vec::new());
@@ -183,14 +188,14 @@ pub(super) fn compared(log: &Log, asked: &ComparisonRequest) -> Result<(Comparis
             progress.turn_to("comparing");
             // Before the line says that they begin: whoever has read it may interrupt them.
             interrupt::be_gentle(true);
-            let go_on = interrupt::go_on();
+            let go_on = go_on();
             terminal::detail(|| format!("{}: {} runs begin", method.label(), asked.runs));
             begun().push((Some(method), Instant::now()));
             go_on
         }
         ComparisonStep::Iteration => {
             progress.add(1);
-            interrupt::go_on()
+            go_on()
         }
         ComparisonStep::LowestMinimum => {
             begun().push((None, Instant::now()));

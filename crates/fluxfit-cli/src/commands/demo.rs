@@ -1,7 +1,7 @@
 //! `fluxfit demo`: the paper's rig, end to end: simulate, identify, compare four methods, write a report.
 
 use super::{Status, compare, identify::display, report};
-use crate::{error::CommandError, terminal};
+use crate::{error::CommandError, interrupt, terminal};
 use clap::Args;
 use fluxfit::{Error, Log, Request, identify, optimizer::SearchSettings, paper, study::comparison::ComparisonRequest};
 use fluxfit_drive::{Scenario, simulate};
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
     display::show(NAME, &answer)?;
 
     let asked = ComparisonRequest { request, truth: Some(paper::MOTOR), ..ComparisonRequest::default() };
-    let (comparison, methods) = compare::compared(&log, &asked)?;
+    let (comparison, methods) = compare::compared(&log, &asked, &interrupt::go_on)?;
     terminal::print("\n")?;
     compare::display::show(NAME, &comparison, &methods)?;
     if !comparison.is_whole() {

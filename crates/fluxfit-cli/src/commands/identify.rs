@@ -5,13 +5,14 @@ mod current_loop;
 mod decisions;
 mod details;
 pub(crate) mod display;
-mod export;
+pub(crate) mod export;
 
 use super::{Status, input, report};
 use crate::{
     arguments::{AccuracyArguments, LogArguments, ModelArgument, by_parameter, method_keys},
     error::CommandError,
-    interrupt, json, terminal,
+    interrupt, json,
+    terminal::{self, told::Told},
 };
 use clap::Args;
 use fluxfit::{
@@ -23,10 +24,10 @@ use fluxfit_answer::export::Target;
 use fluxfit_report::{Report, figures, html};
 use std::{path::PathBuf, sync::Arc};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Identify {
     #[command(flatten)]
-    log: LogArguments,
+    pub(crate) log: LogArguments,
     /// Model that is fitted to the log
     #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
     model: ModelArgument,
@@ -90,6 +91,14 @@ fn parse_search_method(text: &str) -> Result<SearchMethod, String> {
     }
 }
 
+impl Identify {
+    /// The options that are given and write something of one motor.
+    pub(crate) fn outputs_of_one(&self) -> impl Iterator<Item = &'static str> {
+        let options = [("--export", !self.export.is_empty()), ("--hold-out", self.hold_out), ("--bandwidth", self.bandwidth.is_some())];
+        options.into_iter().filter(|(_, is_stated)| *is_stated).map(|(option, _)| option)
+    }
+}
+
 /// Runs the verb.
 pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     if !arguments.log.json {
@@ -101,11 +110,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         return Ok(status);
     }
     let input = input::read(&arguments.log)?;
-    let findings = input.findings();
-    if let Some(finding) = findings.first().filter(|_| arguments.model == ModelArgument::Auto) {
-        return Err(CommandError::Columns { log: input.name, finding: finding.clone() });
-    }
-    findings.iter().for_each(terminal::warn_of_columns);
+    accepted(arguments, &input)?.iter().for_each(terminal::warn_of_columns);
     let request = request(arguments, &input)?;
     export::check_pole_pairs(&arguments.export, input.pole_pairs)?;
     let answer = identified(&input, &request, !arguments.log.json)?;
@@ -132,6 +137,15 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     };
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;
     Ok(if answer.is_complete() { exported } else { Status::Incomplete })
+}
+
+/// What the columns contradict each other in, if the model is stated all the same.
+pub(crate) fn accepted(arguments: &Identify, input: &input::Input) -> Result<Vec<Told>, CommandError> {
+    let findings = input.findings();
+    match findings.first().filter(|_| arguments.model == ModelArgument::Auto) {
+        Some(finding) => Err(CommandError::Columns { log: input.name.clone(), finding: finding.clone() }),
+        None => Ok(findings),
+    }
 }
 
 /// The options that are given and have no meaning for tables of a test bench.
@@ -184,7 +198,8 @@ fn identified(input: &input::Input, request: &Request, is_for_people: bool) -> R
     })
 }
 
-fn request(arguments: &Identify, input: &input::Input) -> Result<Request, CommandError> {
+/// What is asked of the library.
+pub(crate) fn request(arguments: &Identify, input: &input::Input) -> Result<Request, CommandError> {
     let mut request = input::request(&arguments.log, input)?;
     request.model = arguments.model.stated();
     arguments.accuracy.apply(input.motor.sensors, &mut request);

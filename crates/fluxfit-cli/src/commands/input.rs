@@ -6,7 +6,8 @@ use crate::{
     terminal::{self, mending, told::Told},
 };
 use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, check_columns, log::Source, optimizer};
-use fluxfit_log::{LogOptions, Note, ReadColumn, read_log_with_progress, read_mapping};
+use fluxfit_files::FileError;
+use fluxfit_log::{LogOptions, MemoryTable, Note, ReadColumn, ReadLog, read_log, read_log_with_progress, read_mapping, read_table};
 use fluxfit_setup::{MotorFile, read_motor};
 use fluxfit_units::wording::one_line;
 use std::{fs, path::Path, sync::Arc};
@@ -24,6 +25,8 @@ pub(crate) struct Input {
     pub(crate) pole_pairs: Option<u32>,
     /// The columns of each log, as they were read.
     columns: Vec<Vec<ReadColumn>>,
+    /// What was inferred, with what changes it.
+    notes: Vec<Note>,
 }
 
 impl Input {
@@ -51,6 +54,32 @@ pub(crate) fn read(arguments: &LogArguments) -> Result<Input, CommandError> {
 
 /// Reads the logs, where the motor file is read already.
 pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<Input, CommandError> {
+    let input = read_each(arguments, motor, |path, options| {
+        let progress = terminal::reading(&format!("reading {}", name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
+        read_log_with_progress(path, options, progress.teller())
+    })?;
+    input.notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
+    input.log.source().columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
+    Ok(input)
+}
+
+/// Takes a table in memory in place of the one log that the arguments name.
+pub(crate) fn read_held(arguments: &LogArguments, motor: MotorFile, table: MemoryTable) -> Result<Input, CommandError> {
+    let mut table = Some(table);
+    read_each(arguments, motor, |path, options| read_table(&name(path), table.take().unwrap_or_default(), options))
+}
+
+/// Reads the logs, and shows nothing.
+pub(crate) fn read_silently(arguments: &LogArguments, motor: MotorFile) -> Result<Input, CommandError> {
+    read_each(arguments, motor, read_log)
+}
+
+/// Reads each log, and joins them.
+pub(crate) fn read_each(
+    arguments: &LogArguments,
+    motor: MotorFile,
+    mut read: impl FnMut(&Path, &LogOptions) -> Result<ReadLog, FileError>,
+) -> Result<Input, CommandError> {
     if arguments.logs.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
         return Err(CommandError::Usage("standard input can be read only once; give - once".to_owned()));
     }
@@ -59,9 +88,7 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
     let mut read_columns = Vec::new();
     let is_only = arguments.logs.len() == 1;
     for path in &arguments.logs {
-        let progress = terminal::reading(&format!("reading {}", name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
-        let read = read_log_with_progress(path, &options, progress.teller())?;
-        drop(progress);
+        let read = read(path, &options)?;
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
         let of_log = |sentence: &str| format!("{}: {sentence}", name(path));
@@ -73,8 +100,6 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
         notes.extend(read.notes.into_iter().map(|note| if is_only { note } else { Note { sentence: of_log(&note.sentence), ..note } }));
     }
     let log = Log::join(logs)?;
-    notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
-    log.source().columns.iter().for_each(|columns| terminal::detail(|| columns.clone()));
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();
     let titles: Vec<String> = arguments.logs.iter().map(|path| file_name(path)).collect();
     Ok(Input {
@@ -84,6 +109,7 @@ pub(crate) fn read_beside(arguments: &LogArguments, motor: MotorFile) -> Result<
         title: titles.join(", "),
         pole_pairs: options.pole_pairs,
         columns: read_columns,
+        notes,
     })
 }
 

@@ -22,9 +22,9 @@ use std::{
 pub(crate) struct Inspect {
     /// The log; - is standard input
     #[arg(value_name = "LOG")]
-    log: PathBuf,
+    pub(crate) log: PathBuf,
     #[command(flatten)]
-    columns: ColumnArguments,
+    pub(crate) columns: ColumnArguments,
     /// Print the result as one JSON document and nothing else
     #[arg(long, help_heading = "Output")]
     json: bool,

@@ -2,12 +2,13 @@
 
 pub(crate) mod compare;
 mod demo;
+pub(crate) mod fleet;
 mod formats;
 pub(crate) mod identify;
-mod input;
-mod inspect;
+pub(crate) mod input;
+pub(crate) mod inspect;
 mod manual;
-mod report;
+pub(crate) mod report;
 mod simulate;
 mod status;
 pub(crate) mod validate;
@@ -19,7 +20,7 @@ use clap::Subcommand;
 
 /// The verbs as the first help shows them; a verb that no group names comes last.
 pub(crate) const GROUPS: [(&str, &[&str]); 3] = [
-    ("Motors", &["identify", "validate", "compare"]),
+    ("Motors", &["identify", "fleet", "validate", "compare"]),
     ("Logs", &["inspect", "formats", "simulate"]),
     ("Program", &["demo", "completions", "man", "help"]),
 ];
@@ -38,6 +39,11 @@ pub(crate) enum Verb {
     Demo(demo::Demo),
     /// Identify the parameters, with intervals and verdicts
     Identify(identify::Identify),
+    /// Identify many motors: one row each, as a table
+    ///
+    /// Many logs, or tables of many motors, on all cores. What fails is a row with its reason. A run that was killed goes on where it was,
+    /// if it is started again.
+    Fleet(Box<fleet::Fleet>),
     /// Compare swarm optimizers: many runs of each, against the minimum
     ///
     /// They minimize the paper's fitness (11), or the output error. After Ctrl-C, the finished runs are shown.
@@ -65,6 +71,7 @@ impl Verb {
             Self::Formats => formats::run(),
             Self::Demo(arguments) => demo::run(arguments),
             Self::Identify(arguments) => identify::run(arguments),
+            Self::Fleet(arguments) => fleet::run(arguments),
             Self::Compare(arguments) => compare::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Validate(arguments) => validate::run(arguments),

@@ -1,7 +1,7 @@
 //! `--report FILE.html` and `--figures DIR`: what the verbs do about them. They are refused before anything is computed, and written
 //! after the answer is printed.
 
-use crate::{arguments::LogArguments, error::CommandError, interrupt, shell, terminal};
+use crate::{arguments::LogArguments, error::CommandError, interrupt, invocation, shell, terminal};
 use fluxfit_files::write_atomically;
 use fluxfit_report::{FigureFile, Origin};
 use fluxfit_units::wording::one_line;
@@ -78,6 +78,6 @@ pub(crate) fn write(
 
 /// The command line, as a shell takes it.
 fn command() -> String {
-    let arguments = std::env::args_os().skip(1).map(|argument| shell::word(&argument));
+    let arguments = invocation::words().iter().map(|argument| shell::word(argument));
     ["fluxfit".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
 }

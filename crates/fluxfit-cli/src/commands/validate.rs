@@ -20,7 +20,7 @@ use std::path::Path;
 #[command(mut_arg("bounds", |bounds| bounds.hide(true)), mut_arg("seed", |seed| seed.hide(true)))]
 pub(crate) struct Validate {
     #[command(flatten)]
-    log: LogArguments,
+    pub(crate) log: LogArguments,
     /// Model that predicts the log
     #[arg(long, help_heading = "Model", value_enum, default_value_t = ModelArgument::Auto)]
     model: ModelArgument,
@@ -42,8 +42,7 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     let motor = read_given_motor(path)?;
     let input = input::read_beside(&arguments.log, motor.file)?;
     input.findings().iter().for_each(terminal::warn_of_columns);
-    let mut request = Request { model: arguments.model.stated(), ..input::request(&arguments.log, &input)? };
-    arguments.accuracy.apply(input.motor.sensors, &mut request);
+    let request = request(arguments, &input)?;
     let found = terminal::working(format!("fitting {} rows", input.log.rows()), || validate(&input.log, &motor.given, &request));
     let found = found.map_err(|error| input::of_log(&input.name, error))?;
     let name = path.display().to_string();
@@ -66,4 +65,11 @@ pub(crate) fn run(arguments: &Validate) -> Result<Status, CommandError> {
     let (page, figures) = (|| validation_html(&shown), || validation_figures(&shown));
     report::write(arguments.log.report.as_deref(), page, arguments.log.figures.as_deref(), figures)?;
     Ok(if found.outcome == Outcome::Agrees { Status::Complete } else { Status::Incomplete })
+}
+
+/// What is asked of the library.
+pub(crate) fn request(arguments: &Validate, input: &input::Input) -> Result<Request, CommandError> {
+    let mut request = Request { model: arguments.model.stated(), ..input::request(&arguments.log, input)? };
+    arguments.accuracy.apply(input.motor.sensors, &mut request);
+    Ok(request)
 }

@@ -5,6 +5,7 @@
 //! as integers: seconds since 1970 as one `f64` would have a resolution of only 0.24 µs. Texts, booleans and repeated fields are not
 //! columns of numbers.
 
+mod keys;
 mod pages;
 #[cfg(test)]
 mod tests;

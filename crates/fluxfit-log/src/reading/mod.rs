@@ -36,4 +36,4 @@ pub use inspect::{InspectedColumn, Inspection, inspect};
 pub use layout::{LAYOUTS, Layout};
 pub use mapping::{Mapping, Park, read_mapping};
 pub use options::LogOptions;
-pub use read::{ReadColumn, ReadLog, parse_log, read_log, read_log_from, read_log_with_progress};
+pub use read::{ReadColumn, ReadLog, parse_log, read_log, read_log_from, read_log_with_progress, read_table};

@@ -17,7 +17,13 @@ use super::{
     table::Table,
     turning,
 };
-use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
+use crate::{
+    block::ColumnHead,
+    channel::Channel,
+    memory_table::{Held, MemoryTable},
+    note::Note,
+    problem::Problem,
+};
 use fluxfit::log::{Columns, Log, Segment, Source, check_values};
 use fluxfit_files::{
     FileError,
@@ -115,6 +121,15 @@ pub fn read_log_from(name: &str, reader: impl Read + 'static, options: &LogOptio
 /// refuses the values.
 pub fn parse_log(name: &str, bytes: &[u8], options: &LogOptions) -> Result<ReadLog, FileError> {
     read_log_from(name, Cursor::new(bytes.to_vec()), options)
+}
+
+/// Reads a log from a table in memory; `name` stands for the file in messages, and rows count from 1.
+///
+/// # Errors
+/// As [`parse_log`], or if the columns have different lengths.
+pub fn read_table(name: &str, table: MemoryTable, options: &LogOptions) -> Result<ReadLog, FileError> {
+    let options = ResolvedOptions::resolve(options)?;
+    Held::of(table).and_then(|held| read(Table::Held(held), &options)).map_err(|error| error.in_file(name))
 }
 
 /// Reads a log from a table.

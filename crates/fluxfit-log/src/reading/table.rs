@@ -4,6 +4,7 @@ use crate::{
     block::{Block, ColumnHead, WantedColumn},
     container::{self, Binary, RandomAccess},
     csv::{Text, TextTable},
+    memory_table::Held,
     records::Records,
 };
 use fluxfit_files::{
@@ -13,25 +14,26 @@ use fluxfit_files::{
 use std::io::{Cursor, Read, Seek};
 
 /// A table of text or of another format.
-pub(super) enum Table {
+pub(super) enum Table<'a> {
     Text(TextTable),
     Records(Records),
     Binary(Binary),
+    Held(Held<'a>),
 }
 
 /// Bytes at the beginning of a file by which its format is recognized.
 const START: u64 = 1024;
 
-impl Table {
+impl Table<'_> {
     /// Reads up to the names of the columns.
     ///
     /// # Errors
     /// If the bytes cannot be read, or have no names of columns.
-    pub(super) fn open(bytes: Bytes, dbc: Option<&str>) -> Result<Self, FileError> {
+    pub(super) fn open(bytes: Bytes, dbc: Option<&str>) -> Result<Table<'static>, FileError> {
         let failed = |error: std::io::Error| FileError::from(io_problem("reading", &error));
         match bytes {
             Bytes::File(mut file, progress) => match Binary::open(RandomAccess::file(file.try_clone().map_err(failed)?)?)? {
-                Some(binary) => Ok(Self::Binary(binary)),
+                Some(binary) => Ok(Table::Binary(binary)),
                 None => {
                     file.rewind().map_err(failed)?;
                     Self::of_text(Box::new(Reporting { file, progress }), dbc)
@@ -46,16 +48,16 @@ impl Table {
                 stream.read_to_end(&mut start).map_err(failed)?;
                 let content = bytes::Bytes::from(start);
                 match Binary::open(RandomAccess::memory(content.clone()))? {
-                    Some(binary) => Ok(Self::Binary(binary)),
+                    Some(binary) => Ok(Table::Binary(binary)),
                     None => Self::of_text(Box::new(Cursor::new(content)), dbc),
                 }
             }
         }
     }
 
-    fn of_text(bytes: Box<dyn Read>, dbc: Option<&str>) -> Result<Self, FileError> {
+    fn of_text(bytes: Box<dyn Read>, dbc: Option<&str>) -> Result<Table<'static>, FileError> {
         let text = Text::open(bytes)?;
-        if Records::has(&text)? { Records::open(text, dbc).map(Self::Records) } else { TextTable::of(text).map(Self::Text) }
+        if Records::has(&text)? { Records::open(text, dbc).map(Table::Records) } else { TextTable::of(text).map(Table::Text) }
     }
 
     /// The columns.
@@ -64,6 +66,7 @@ impl Table {
             Self::Text(table) => &table.heads,
             Self::Records(records) => records.heads(),
             Self::Binary(table) => table.heads(),
+            Self::Held(held) => &held.heads,
         }
     }
 
@@ -73,6 +76,7 @@ impl Table {
             Self::Text(_) => &[],
             Self::Records(records) => records.unreadable(),
             Self::Binary(table) => table.unreadable(),
+            Self::Held(held) => &held.table.unreadable,
         }
     }
 
@@ -81,7 +85,7 @@ impl Table {
         match self {
             Self::Text(table) => &table.notes,
             Self::Records(records) => records.notes(),
-            Self::Binary(_) => &[],
+            Self::Binary(_) | Self::Held(_) => &[],
         }
     }
 
@@ -89,7 +93,7 @@ impl Table {
     pub(super) fn line(&self) -> Option<u64> {
         match self {
             Self::Text(table) => Some(table.line()),
-            Self::Records(_) | Self::Binary(_) => None,
+            Self::Records(_) | Self::Binary(_) | Self::Held(_) => None,
         }
     }
 
@@ -99,6 +103,7 @@ impl Table {
             Self::Records(records) => records.kind().to_owned(),
             Self::Text(table) => format!("text, separated by {}", table.separator()),
             Self::Binary(table) => table.kind().to_owned(),
+            Self::Held(_) => "a table in memory".to_owned(),
         }
     }
 
@@ -114,6 +119,7 @@ impl Table {
         match self {
             Self::Text(table) => table.read(wanted, take),
             Self::Records(records) => records.read(wanted, take),
+            Self::Held(held) => held.read(wanted, take).map(|()| Vec::new()),
             Self::Binary(table) => {
                 let columns: Vec<usize> = wanted.iter().map(|column| column.index).collect();
                 let mut row = 0;

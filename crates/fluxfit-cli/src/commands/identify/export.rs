@@ -28,7 +28,7 @@ pub(super) fn help() -> String {
 }
 
 /// `vesc=motor.xml`: a tool, and the file that is written for it.
-pub(super) fn parse(text: &str) -> Result<(Target, PathBuf), String> {
+pub(crate) fn parse(text: &str) -> Result<(Target, PathBuf), String> {
     let (name, file) = key_value(text, "TARGET=FILE", "vesc=motor.xml").map_err(|error| error.to_string())?;
     let keys = Target::ALL.map(Target::key);
     let unknown = || format!("{} is no target of --export; there are {}{}", quote(name), list(&keys), did_you_mean(nearest(name, keys)));
@@ -86,7 +86,7 @@ pub(super) fn write(log: &LogArguments, exports: &[Wanted], input: &Input, answe
 }
 
 /// The reason for no file, with the option that resolves it.
-fn with_option(refusal: &Refusal) -> String {
+pub(crate) fn with_option(refusal: &Refusal) -> String {
     match refusal {
         Refusal::PolePairs { .. } => format!("{refusal} (--pole-pairs N, or --motor FILE with pole_pairs)"),
         Refusal::NotIdentified { .. } => refusal.to_string(),
@@ -102,7 +102,7 @@ fn place(path: &Path) -> PathBuf {
 }
 
 /// Without its directories: an export is passed on, and where a log lay is nobody's business there.
-fn file_name(path: &Path) -> String {
+pub(crate) fn file_name(path: &Path) -> String {
     match path.file_name() {
         Some(_) if path.as_os_str() == "-" => "standard input".to_owned(),
         Some(name) => name.to_string_lossy().into_owned(),

@@ -1,0 +1,92 @@
+//! The command `fluxfit` as a library: its [`run`] is the whole program, for whoever carries it inside another one; [`face`] is for other
+//! faces, which want its arguments and its answers, and nothing printed. Arguments become settings, a verb becomes a file under `commands`.
+//!
+//! Answers go to standard output, everything else to standard error. Exit status: 0 everything asked for was identified, or the
+//! log agrees; 1 the log was read but cannot carry some parameter, or differs; 2 misuse or unreadable input; 130 interrupted.
+
+mod arguments;
+mod command_line;
+mod commands;
+mod error;
+mod explanations;
+pub mod face;
+mod interrupt;
+mod invocation;
+mod json;
+mod shell;
+mod terminal;
+
+use clap::{
+    FromArgMatches,
+    error::{ContextKind, ContextValue, ErrorKind},
+};
+use error::CommandError;
+use fluxfit_units::wording::one_line;
+use std::{ffi::OsString, path::Path, process::ExitCode};
+use terminal::Detail;
+
+/// Runs the command; the first word is the program's name. Where clap answers (help, version, misuse), the process ends.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let matches = command_line::command().try_get_matches_from(&words);
+    invocation::remember(words);
+    let matches = match matches {
+        Ok(matches) => matches,
+        Err(error) => {
+            if let Some(log) = log_in_place_of_verb(&error) {
+                terminal::print_error(&CommandError::Usage(log));
+                return ExitCode::from(2);
+            }
+            error.exit()
+        }
+    };
+    let command = match command_line::Command::from_arg_matches(&matches) {
+        Ok(command) => command,
+        Err(error) => error.format(&mut command_line::command()).exit(),
+    };
+    // Standard output is for a program: no progress.
+    let is_json = matches.subcommand().is_some_and(|(_, verb)| matches!(verb.try_get_one("json"), Ok(Some(true))));
+    terminal::tell(detail(&command.telling), !is_json);
+    if let Err(error) = interrupt::listen() {
+        terminal::note(&format!("Ctrl-C will end this without the best so far: {error}"));
+    }
+    let outcome = match (&command.verb, &command.explain) {
+        (Some(verb), _) => verb.run(command_line::command),
+        (None, Some(code)) => explanations::show(code),
+        (None, None) => {
+            let missing = clap::error::ErrorKind::MissingSubcommand;
+            command_line::command().error(missing, "a verb is missing, such as identify; see fluxfit --help").exit()
+        }
+    };
+    match outcome {
+        Ok(status) => interrupt::exit_status().map_or_else(|| status.into(), ExitCode::from),
+        // Whoever closed the pipe has seen enough.
+        Err(CommandError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => {
+            terminal::print_error(&error);
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// What to say to somebody who names a file where a verb belongs.
+fn log_in_place_of_verb(error: &clap::Error) -> Option<String> {
+    let word = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(word)) if error.kind() == ErrorKind::InvalidSubcommand => word,
+        _ => return None,
+    };
+    let path = Path::new(word);
+    let looks_like_file = path.is_file() || path.extension().is_some() || word.contains('/');
+    looks_like_file.then(|| {
+        let argument = shell::word(path.as_os_str());
+        format!("{} is no command; to identify a motor from this log: fluxfit identify {}", one_line(word), one_line(&argument))
+    })
+}
+
+fn detail(telling: &command_line::Telling) -> Detail {
+    match (telling.quiet, telling.verbose) {
+        (true, _) => Detail::Quiet,
+        (false, true) => Detail::Everything,
+        (false, false) => Detail::Notes,
+    }
+}

@@ -1,0 +1,196 @@
+//! Many motors: one row each, whatever happens.
+
+use super::{Run, fluxfit};
+use std::{
+    fmt::Write,
+    fs,
+    path::Path,
+    process::{Command, Stdio},
+    time::Duration,
+};
+
+const HEADER: &str = "motor_id,t,ud,uq,id,iq,omega_e\n";
+
+/// The log of a motor at three operating points, by the motor's equations: R_s is `rs` ohm.
+fn motor(id: &str, rs: f64) -> String {
+    let (ld, lq, psi_f, omega) = (5.25e-3, 12e-3, 0.1827, 400.0);
+    (0..300).fold(String::new(), |mut text, row| {
+        let (d, q) = [(0.0, 9.0), (-2.0, 8.5), (0.0, 4.0)][row / 100];
+        let (ud, uq) = (rs * d - omega * lq * q, rs * q + omega * (ld * d + psi_f));
+        let _ = writeln!(text, "{id},{},{ud},{uq},{d},{q},{omega}", row as f64 * 1e-3);
+        text
+    })
+}
+
+fn resistance(number: usize) -> f64 {
+    0.5 + number as f64 * 0.01
+}
+
+fn table(motors: usize) -> String {
+    (0..motors).fold(HEADER.to_owned(), |text, number| text + &motor(&format!("m{number:03}"), resistance(number)))
+}
+
+/// The rows of the results: cells by the names of the columns.
+fn rows(path: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(path).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+fn place(path: &Path, column: &str) -> usize {
+    let text = fs::read_to_string(path).unwrap();
+    text.lines().next().unwrap().split(',').position(|name| name == column).unwrap()
+}
+
+fn fleet(log: &Path, output: &Path, more: &[&str]) -> Run {
+    let arguments = [&["fleet", log.to_str().unwrap(), "--by", "motor_id", "-o", output.to_str().unwrap()], more].concat();
+    fluxfit(&arguments)
+}
+
+#[test]
+fn every_motor_has_its_row_with_its_values() {
+    let directory = tempfile::tempdir().unwrap();
+    let (log, output) = (directory.path().join("fleet.csv"), directory.path().join("results.csv"));
+    fs::write(&log, table(20)).unwrap();
+    let run = fleet(&log, &output, &[]);
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert_eq!(run.out, "20 motors, 20 rows: 20 with all 4 parameters identified, 0 with fewer, 0 without an answer.\n");
+    let (rs, verdict) = (place(&output, "rs"), place(&output, "rs_verdict"));
+    for (number, row) in rows(&output).iter().enumerate() {
+        assert_eq!((row[0].as_str(), row[verdict].as_str()), (format!("m{number:03}").as_str(), "identified"));
+        let found: f64 = row[rs].parse().unwrap();
+        assert!((found / resistance(number) - 1.0).abs() < 0.01, "{found}");
+    }
+    assert!(!directory.path().join("results.csv.journal").exists());
+    let again = directory.path().join("again.csv");
+    fleet(&log, &again, &["--jobs", "3"]);
+    assert_eq!(fs::read(&again).unwrap(), fs::read(&output).unwrap());
+    // A row has the numbers of the document.
+    let single = directory.path().join("m007.csv");
+    fs::write(&single, HEADER.to_owned() + &motor("m007", resistance(7))).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&fluxfit(&["identify", single.to_str().unwrap(), "--json"]).out).unwrap();
+    assert_eq!(rows(&output)[7][rs].parse::<f64>().unwrap(), document["parameters"]["rs"]["value"].as_f64().unwrap());
+}
+
+#[test]
+fn what_fails_is_a_row_with_its_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let (log, output) = (at("fleet.csv"), at("results.csv"));
+    let standing = motor("standing", 1.0).replace(",400\n", ",0\n");
+    let broken = motor("broken", 1.0).replacen(",9,", ",nine,", 1);
+    let nameless = motor("", 1.0);
+    let text = [HEADER.to_owned(), motor("a", 1.0), standing, broken, nameless, motor("b", 2.0), motor("a", 1.0), motor("c", 3.0)];
+    fs::write(&log, text.concat()).unwrap();
+    fs::write(at("damaged.parquet"), b"PAR1 and then nothing").unwrap();
+    fs::write(at("empty.csv"), "").unwrap();
+    let damaged = at("damaged.parquet");
+    let names = [&log, &damaged, &at("empty.csv"), &at("missing.csv")].map(|path| path.to_str().unwrap().to_owned());
+    let files: Vec<&str> = names.iter().map(String::as_str).collect();
+    let run = fluxfit(&[&["fleet"], &files[..], &["--by", "motor_id", "-o", output.to_str().unwrap()]].concat());
+    assert_eq!(run.status, 1, "{}", run.err);
+    let text = fs::read_to_string(&output).unwrap();
+    let line = |motor: &str| {
+        let found: Vec<&str> = text.lines().filter(|line| line.starts_with(&format!("{motor},"))).collect();
+        assert_eq!(found.len(), 1, "{motor}: {text}");
+        found[0].to_owned()
+    };
+    for (motor, reason) in [
+        ("standing", "omega_e is zero"),
+        ("broken", "is not a number"),
+        ("", "have no motor_id"),
+        ("a", "stand in several places"),
+        (files[1], "cannot be read"),
+        (files[2], "no column 'motor_id'"),
+        (files[3], "there is no such file"),
+    ] {
+        assert!(line(motor).contains(reason), "{motor}: {}", line(motor));
+    }
+    for motor in ["b", "c"] {
+        assert!(line(motor).contains(",identified,"), "{}", line(motor));
+    }
+    assert_eq!(text.lines().count(), 1 + 9);
+}
+
+#[test]
+fn each_log_is_a_motor_without_a_column() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = directory.path().join("results.parquet");
+    let logs = ["examples/logs/id_zero_two_loads.csv", "missing.csv"];
+    let run = fluxfit(&[&["fleet", "--model", "steady", "-o", output.to_str().unwrap()], &logs[..]].concat());
+    assert_eq!((run.status, run.out.starts_with("2 motors, 2 rows: 0 with all 4")), (1, true), "{}{}", run.out, run.err);
+    assert!(fs::read(&output).unwrap().starts_with(b"PAR1"));
+}
+
+#[test]
+fn windows_show_what_changes() {
+    let directory = tempfile::tempdir().unwrap();
+    let (log, output) = (directory.path().join("fleet.csv"), directory.path().join("results.csv"));
+    // The same motor in two hours, the second time with a warmer winding.
+    let later: String = motor("m", 1.2)
+        .lines()
+        .map(|line| {
+            let cells: Vec<&str> = line.splitn(3, ',').collect();
+            format!("m,{},{}\n", 3600.0 + cells[1].parse::<f64>().unwrap(), cells[2])
+        })
+        .collect();
+    fs::write(&log, HEADER.to_owned() + &motor("m", 1.0) + &later).unwrap();
+    assert_eq!(fleet(&log, &output, &["--every", "1h"]).status, 0);
+    let (rs, start) = (place(&output, "rs"), place(&output, "window_start"));
+    let found: Vec<(f64, f64)> = rows(&output).iter().map(|row| (row[start].parse().unwrap(), row[rs].parse().unwrap())).collect();
+    assert_eq!(found.iter().map(|(start, _)| *start).collect::<Vec<_>>(), [0.0, 3600.0]);
+    assert!((found[0].1 - 1.0).abs() < 0.01 && (found[1].1 - 1.2).abs() < 0.01, "{found:?}");
+}
+
+#[test]
+fn misuse_is_refused_before_the_work() {
+    let directory = tempfile::tempdir().unwrap();
+    let (log, output) = (directory.path().join("fleet.csv"), directory.path().join("results.csv"));
+    fs::write(&log, table(1)).unwrap();
+    for (more, sentence) in [
+        (&["--json"][..], "--json is for one motor"),
+        (&["--every", "0s"], "longer than zero"),
+        (&["--export", "vesc=x.xml"], "--export is for one motor"),
+        (&["--fix", "rs=1", "--prior", "rs=1±1%"], "give one of them"),
+    ] {
+        let run = fleet(&log, &output, more);
+        let refused = run.status == 2 && run.err.contains(sentence);
+        // What contradicts itself is the reason of every row.
+        assert!(refused || fs::read_to_string(&output).is_ok_and(|text| text.contains(sentence)), "{}", run.err);
+    }
+    let run = fluxfit(&["fleet", log.to_str().unwrap(), "-o", "results.xlsx"]);
+    assert!(run.status == 2 && run.err.contains("name them .csv or .parquet"), "{}", run.err);
+}
+
+#[cfg(unix)]
+#[test]
+fn killed_at_any_instant_and_started_again_every_motor_is_there_once() {
+    let directory = tempfile::tempdir().unwrap();
+    let (log, output) = (directory.path().join("fleet.csv"), directory.path().join("results.csv"));
+    let motors = 120;
+    fs::write(&log, table(motors)).unwrap();
+    let expected = directory.path().join("expected.csv");
+    assert_eq!(fleet(&log, &expected, &[]).status, 0);
+    let mut killed = 0;
+    for round in 0..10 {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_fluxfit"))
+            .args(["-q", "fleet", log.to_str().unwrap(), "--by", "motor_id", "-o", output.to_str().unwrap()])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(7 + 13 * round));
+        // Results are there as a whole or not at all.
+        killed += usize::from(child.try_wait().unwrap().is_none());
+        let _ = child.kill();
+        let _ = child.wait();
+        if output.exists() {
+            assert_eq!(fs::read(&output).unwrap(), fs::read(&expected).unwrap());
+        }
+    }
+    assert!(killed > 0);
+    assert_eq!(fleet(&log, &output, &[]).status, 0);
+    assert_eq!(fs::read(&output).unwrap(), fs::read(&expected).unwrap());
+    assert_eq!(rows(&output).len(), motors);
+    let left: Vec<_> = fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left.len(), 3, "{left:?}");
+}

@@ -1,0 +1,41 @@
+"""Identifies the electrical parameters of a permanent magnet synchronous motor from a log of its drive.
+
+>>> import fluxfit
+>>> found = fluxfit.identify(fluxfit.simulate())
+>>> sorted(found.parameters)
+['ld', 'lq', 'psi_f', 'rs']
+
+`identify` is the main function; `read_log`, `inspect`, `validate`, `compare`, `simulate` are the command's other verbs, `minimize` and
+`Search` its optimizers for any function. Every exception is an `Error`.
+"""
+
+from fluxfit import _fluxfit
+from fluxfit._api import Study, Validation, compare, explain, identify, inspect, read_log, simulate, validate
+from fluxfit._errors import DataError, Error, FileError, RequestError
+from fluxfit._identification import Estimate, Identification
+from fluxfit._log import Log
+from fluxfit._optimize import Search, methods, minimize
+
+__version__ = _fluxfit.version()
+
+__all__ = [
+    "DataError",
+    "Error",
+    "Estimate",
+    "FileError",
+    "Identification",
+    "Log",
+    "RequestError",
+    "Search",
+    "Study",
+    "Validation",
+    "compare",
+    "explain",
+    "identify",
+    "inspect",
+    "methods",
+    "minimize",
+    "read_log",
+    "simulate",
+    "validate",
+]
