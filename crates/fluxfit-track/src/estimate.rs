@@ -1,0 +1,21 @@
+//! What an estimator says.
+
+use fluxfit::motor::PARAMETERS;
+use serde::{Deserialize, Serialize};
+
+/// Largest relative standard error with which the last samples determine a parameter: its 95 % interval is then half its value, the
+/// limit of `weak` in `fluxfit identify`.
+pub(crate) const IDENTIFIABLE: f64 = 0.25;
+
+/// What an estimator knows after a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Values of rs, ld, lq and psi_f, SI.
+    pub values: [f64; PARAMETERS],
+    /// Their standard errors, SI; none of an estimator without an error covariance.
+    pub standard_errors: Option<[f64; PARAMETERS]>,
+    /// Whether the samples that are remembered determine each parameter; none of an estimator that cannot tell.
+    pub identifiable: Option<[bool; PARAMETERS]>,
+    /// Whether the last half second excited the parameters; none of an estimator that cannot tell.
+    pub excited: Option<bool>,
+}

@@ -1,0 +1,54 @@
+//! Recursive least squares over blocks of periods.
+//!
+//! When to use it: it needs no start values and no tuning, and tells which parameters the samples determine. Its errors are about twice
+//! those of the Kalman filter.
+//!
+//! The gated form is that of `fluxfit-core`; here it also has the forms of the literature.
+
+use crate::{
+    estimate::{Estimate, IDENTIFIABLE},
+    start::Start,
+};
+use fluxfit::motor::PARAMETERS;
+use fluxfit_core::{BlockRls, BlockRlsSettings, Period};
+use serde::{Deserialize, Serialize};
+
+/// Block least squares with gated forgetting.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rls {
+    inner: BlockRls<f64>,
+}
+
+impl Rls {
+    /// Begins with what is known; `nominal` are the values that are taken as one.
+    pub fn new(start: &Start, nominal: [f64; PARAMETERS], forgetting: f64) -> Self {
+        let settings = BlockRlsSettings { known: start.known(&nominal), rating: start.rating, forgetting, ..BlockRlsSettings::new(nominal) };
+        Self { inner: BlockRls::new(settings) }
+    }
+
+    /// Begins at a current, A.
+    pub fn begin(&mut self, i: [f64; 2]) {
+        self.inner.begin(i);
+    }
+
+    /// Goes on by a period to a current, A. True if the estimate changed.
+    pub fn advance(&mut self, period: &Period<f64>, i: [f64; 2]) -> bool {
+        self.inner.advance(period, i)
+    }
+
+    /// Whether the last half second excited the parameters.
+    pub fn is_excited(&self) -> bool {
+        self.inner.is_excited()
+    }
+
+    /// Values, standard errors, and which parameters are identifiable.
+    pub fn estimate(&self) -> Estimate {
+        let fluxfit_core::Estimate { value, standard_error } = self.inner.estimate();
+        Estimate {
+            values: value,
+            standard_errors: Some(standard_error),
+            identifiable: Some(std::array::from_fn(|j| standard_error[j] < IDENTIFIABLE * value[j].abs())),
+            excited: Some(self.inner.is_excited()),
+        }
+    }
+}
