@@ -21,6 +21,15 @@ const START_WEIGHT: f64 = 1e-3;
 /// Systematic standard uncertainty of a drive's voltages, as a part of the vector: that of `fluxfit identify`.
 const VOLTAGE_ACCURACY: f64 = 1e-4;
 
+/// Degrees of freedom below which a residual means nothing.
+const FEWEST: f64 = 8.0;
+
+/// Standard error, as a part of the nominal value, of what is not known: finite, so that it can be saved as text.
+const UNKNOWN: f64 = 1e9;
+
+/// Added to a variance, V², so that none is zero.
+const SMALLEST: f64 = 1e-20;
+
 /// Settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -65,8 +74,10 @@ pub struct BlockRls<T> {
     gate: Gate<T>,
     /// Weight of all blocks.
     weight: T,
-    /// Mean squared residual, V².
-    residual: T,
+    /// Sum of squared residuals, V².
+    squares: T,
+    /// Degrees of freedom of that sum.
+    freedom: T,
     /// Mean squared voltage, V².
     voltage: T,
     /// Weighted sum of [`Equations::by_noise`].
@@ -82,7 +93,8 @@ impl<T: Real> BlockRls<T> {
             root: SquareRoot::new(T::of(START_WEIGHT)),
             gate: Gate::new(settings.rating),
             weight: T::ZERO,
-            residual: T::ZERO,
+            squares: T::ZERO,
+            freedom: T::ZERO,
             voltage: T::ZERO,
             by_noise: [T::ZERO; PARAMETERS],
         }
@@ -115,7 +127,9 @@ impl<T: Real> BlockRls<T> {
         let keeps = if self.settings.gated && !self.gate.is_open() { T::ONE } else { self.settings.forgetting };
         if keeps < T::ONE {
             self.root.weigh(keeps);
-            self.weight = self.weight * keeps;
+            for sum in [&mut self.weight, &mut self.squares, &mut self.freedom] {
+                *sum = *sum * keeps;
+            }
             self.by_noise.iter_mut().for_each(|sum| *sum = *sum * keeps);
         }
         self.weight += T::ONE;
@@ -124,9 +138,10 @@ impl<T: Real> BlockRls<T> {
         for row in &equations.rows {
             let row = self.without_fixed(row);
             let error = (0..PARAMETERS).fold(row.y, |error, j| error - row.phi[j] * z[j]);
-            // Divided by what the uncertainty of the parameters explains.
-            let squared = error * error / (T::ONE + self.root.leverage(&row.phi));
-            self.residual += T::of(0.5) * part * (squared - self.residual);
+            // The first four equations fit anyhow: what the uncertainty of the parameters explains is no residual.
+            let share = T::ONE / (T::ONE + self.root.leverage(&row.phi));
+            self.squares += error * error * share;
+            self.freedom += share;
             self.root.add(&row);
         }
         self.voltage += part * (equations.voltage_squared - self.voltage);
@@ -150,7 +165,8 @@ impl<T: Real> BlockRls<T> {
 
     /// Variance of an equation's right side, V²: its residual, and no less than the accuracy of the voltages.
     fn variance(&self) -> T {
-        self.residual + T::of(VOLTAGE_ACCURACY * VOLTAGE_ACCURACY) * self.voltage + T::of(1e-20)
+        let residual = self.squares / self.freedom.larger(T::ONE);
+        residual + T::of(VOLTAGE_ACCURACY * VOLTAGE_ACCURACY) * self.voltage + T::of(SMALLEST)
     }
 
     /// The equations with those of the priors.
@@ -182,7 +198,16 @@ impl<T: Real> BlockRls<T> {
         self.gate.is_open()
     }
 
-    /// Values and standard errors.
+    /// An upper triangular `W` whose `W W'` is the covariance of the parameters, SI, without the bias by noise.
+    pub fn root(&self) -> [[T; PARAMETERS]; PARAMETERS] {
+        let (mut w, deviation) = (self.with_priors().inverse(), self.variance().sqrt());
+        for (row, nominal) in w.iter_mut().zip(self.settings.nominal) {
+            row.iter_mut().for_each(|value| *value = *value * deviation * nominal);
+        }
+        w
+    }
+
+    /// Values and standard errors. An error of 1e9 times the nominal value means that nothing is known yet.
     ///
     /// A standard error has two parts. The first is the residual's, `s² (R'R)^-1`; it is too large, because the errors of successive
     /// blocks cancel each other. The second is the bias by the noise of the currents in the coefficients, `-(R'R)^-1 C z` with `C` the
@@ -206,8 +231,12 @@ impl<T: Real> BlockRls<T> {
             let squares = (j..PARAMETERS).fold(T::ZERO, |sum, k| sum + inverse[j][k] * inverse[j][k]);
             let bias = (j..PARAMETERS).fold(T::ZERO, |sum, k| sum + inverse[j][k] * through[k]);
             estimate.value[j] = z[j] * nominal[j];
-            estimate.standard_error[j] =
-                if self.is_fixed(j) { T::ZERO } else { (variance * squares + bias * bias).sqrt() * nominal[j] };
+            let error = if self.freedom < T::of(FEWEST) && self.settings.known[j].is_none() {
+                T::of(UNKNOWN)
+            } else {
+                (variance * squares + bias * bias).sqrt().smaller(T::of(UNKNOWN))
+            };
+            estimate.standard_error[j] = if self.is_fixed(j) { T::ZERO } else { error * nominal[j] };
         }
         estimate
     }

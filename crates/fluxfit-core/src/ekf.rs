@@ -102,6 +102,7 @@ pub struct Ekf<T> {
     steps: u32,
     outliers: u32,
     surprise: T,
+    last_surprise: T,
 }
 
 impl<T: Real> Ekf<T> {
@@ -121,7 +122,16 @@ impl<T: Real> Ekf<T> {
             steps: 0,
             outliers: 0,
             surprise: T::ZERO,
+            last_surprise: T::ZERO,
         }
+    }
+
+    /// The filter with another covariance of its parameters, as parts of the nominal ones: `W W'` with an upper triangular `W`, as
+    /// [`BlockRls::root`](crate::BlockRls::root) has it.
+    #[must_use]
+    pub fn with_covariance(mut self, w: &[[T; PARAMETERS]; PARAMETERS]) -> Self {
+        self.ud.set_parameters(w);
+        self
     }
 
     /// Begins at a measured current, A: at the start, and after a gap. What is known of the parameters stays.
@@ -197,7 +207,9 @@ impl<T: Real> Ekf<T> {
             self.z[j] = self.z[j].larger(T::of(LEAST_PART));
         }
         let squared = innovation * innovation;
-        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
+        let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
+        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
+        self.last_surprise = if state == 0 { surprise } else { self.last_surprise + surprise };
         let seen = (squared - explained).smaller(T::of(LARGEST_SEEN) * self.noise);
         let adapted = self.noise + T::of(ADAPTION) * (seen - self.noise);
         self.noise = adapted.larger(T::of(LEAST_NOISE) * self.settings.noise);
@@ -244,5 +256,10 @@ impl<T: Real> Ekf<T> {
     /// with the least value is right (Magill 1965, doi 10.1109/TAC.1965.1098191).
     pub fn surprise(&self) -> T {
         self.surprise
+    }
+
+    /// What the last period added to that.
+    pub fn last_surprise(&self) -> T {
+        self.last_surprise
     }
 }

@@ -1,7 +1,7 @@
 //! A covariance `P = U D U'` with unit upper triangular `U` and diagonal `D` (Bierman and Thornton 1977, doi
 //! 10.1016/0005-1098(77)90006-1). It stays positive whatever the rounding.
 
-use crate::real::Real;
+use crate::{PARAMETERS, real::Real};
 
 /// States: i_d, i_q and the four parameters.
 pub const STATES: usize = 6;
@@ -20,6 +20,21 @@ impl<T: Real> Ud<T> {
         let mut u = [[T::ZERO; STATES]; STATES];
         (0..STATES).for_each(|j| u[j][j] = T::ONE);
         Self { u, d }
+    }
+
+    /// Makes the last states, the parameters, have the covariance `W W'` with an upper triangular `W`, independent of the first two.
+    pub fn set_parameters(&mut self, w: &[[T; PARAMETERS]; PARAMETERS]) {
+        let first = STATES - PARAMETERS;
+        for j in 0..PARAMETERS {
+            let own = w[j][j];
+            self.d[first + j] = own * own;
+            for i in 0..j {
+                self.u[first + i][first + j] = if own == T::ZERO { T::ZERO } else { w[i][j] / own };
+            }
+        }
+        for i in 0..first {
+            (first..STATES).for_each(|j| self.u[i][j] = T::ZERO);
+        }
     }
 
     /// Makes the first `count` states independent of all others, with this variance.
@@ -145,6 +160,11 @@ mod tests {
                 assert!(close(&covariance(&ud), &expected), "{round} {state}");
             }
         }
+        let mut set = ud;
+        set.set_parameters(&[[1.0, 0.5, 0.25, 2.0], [0.0, 2.0, 0.0, 1.0], [0.0, 0.0, 3.0, 0.5], [0.0, 0.0, 0.0, 4.0]]);
+        let p = covariance(&set);
+        // By hand: 1 + 1/4 + 1/16 + 4, 1 + 2, 8.
+        assert!((p[2][2] - 5.3125).abs() < 1e-12 && (p[2][3] - 3.0).abs() < 1e-12 && (p[2][5] - 8.0).abs() < 1e-12 && p[0][2] == 0.0);
         // The state without variance or noise stays exact.
         assert_eq!(ud.variance(4), 0.0);
         ud.forget_first(2, 4.0);

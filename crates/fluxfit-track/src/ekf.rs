@@ -34,6 +34,10 @@ const TRUSTED: f64 = 0.1;
 /// Standard errors between both that are a contradiction.
 const CONTRADICTION: f64 = 4.0;
 
+/// How many times larger the standard errors of least squares are taken where the filter starts with them: it sees them without their
+/// correlation, and some samples twice.
+const CAUTION: f64 = 2.0;
+
 /// Blocks of a contradiction after which the filter starts anew: half a second at 10 kHz.
 const PATIENCE: u32 = 100;
 
@@ -54,13 +58,16 @@ pub struct WatchedEkf {
     /// What least squares said last.
     watch: Estimate,
     was_trusted: [bool; PARAMETERS],
+    /// Parameters that began with a guess, and have not become identifiable yet.
+    is_guessed: [bool; PARAMETERS],
     contradictions: u32,
     restarts: u32,
 }
 
 impl WatchedEkf {
     /// A filter for constant parameters, or one that tracks them, at these values; current, A, and voltage, V, as in `scale` are usual.
-    pub fn new(start: &Start, values: [f64; PARAMETERS], scale: [f64; 2], is_tracking: bool) -> Self {
+    /// `is_guessed`: which values are no more than a guess.
+    pub fn new(start: &Start, values: [f64; PARAMETERS], is_guessed: [bool; PARAMETERS], scale: [f64; 2], is_tracking: bool) -> Self {
         // Of constant parameters all blocks count.
         let rls = Rls::new(start, values, if is_tracking { 0.99 } else { 1.0 });
         let mut pair = Self {
@@ -75,10 +82,11 @@ impl WatchedEkf {
             scale,
             last_i: [0.0; 2],
             was_trusted: [false; PARAMETERS],
+            is_guessed,
             contradictions: 0,
             restarts: 0,
         };
-        pair.fill(values);
+        pair.fill(values, [None; PARAMETERS]);
         pair
     }
 
@@ -133,21 +141,28 @@ impl WatchedEkf {
         let (own, own_errors) = (filter.values(), filter.standard_errors());
         let trusted: [bool; PARAMETERS] = std::array::from_fn(|j| relative[j] < TRUSTED && values[j] > 0.0);
         let contradicts = |j: usize, error: f64| trusted[j] && (own[j] - values[j]).abs() > CONTRADICTION * error;
-        let is_new = (0..PARAMETERS).any(|j| !self.was_trusted[j] && contradicts(j, errors[j]));
+        let is_new = (0..PARAMETERS).any(|j| trusted[j] && (self.is_guessed[j] || !self.was_trusted[j] && contradicts(j, errors[j])));
         let contradicts = (0..PARAMETERS).any(|j| contradicts(j, errors[j].hypot(own_errors[j])));
         self.contradictions = if contradicts { self.contradictions + 1 } else { 0 };
-        for (was, is) in self.was_trusted.iter_mut().zip(trusted) {
-            *was |= is;
+        for j in 0..PARAMETERS {
+            self.was_trusted[j] |= trusted[j];
+            self.is_guessed[j] &= !trusted[j];
         }
         if is_new || self.contradictions >= PATIENCE {
             self.contradictions = 0;
             self.restarts += 1;
-            self.fill(std::array::from_fn(|j| if trusted[j] { values[j] } else { own[j] }));
+            let values: [f64; PARAMETERS] = std::array::from_fn(|j| if trusted[j] { values[j] } else { own[j] });
+            self.fill(values, std::array::from_fn(|j| trusted[j].then_some(CAUTION * relative[j])));
+            if trusted == [true; PARAMETERS] && self.start.standard_errors == [None; PARAMETERS] {
+                let root = self.rls.root();
+                let w = std::array::from_fn(|i| root[i].map(|value| CAUTION * value / values[i]));
+                self.bank.iter_mut().for_each(|filter| *filter = filter.with_covariance(&w));
+            }
         }
     }
 
-    /// Fills the bank with filters at these values.
-    fn fill(&mut self, values: [f64; PARAMETERS]) {
+    /// Fills the bank with filters at these values, with these relative standard errors where they are known.
+    fn fill(&mut self, values: [f64; PARAMETERS], errors: [Option<f64>; PARAMETERS]) {
         // What is known beforehand is taken from there.
         let known = self.start.standard_errors;
         let nominal: [f64; PARAMETERS] =
@@ -156,8 +171,12 @@ impl WatchedEkf {
         let mut settings =
             if self.is_tracking { EkfSettings::tracking(nominal, current) } else { EkfSettings::constant(nominal, current) };
         for (j, known) in self.start.known(&nominal).into_iter().enumerate() {
-            if let Some(error) = known {
+            if let Some(error) = known.or(errors[j]) {
                 settings.start_error[j] = error;
+            }
+            // The walk is a part of the value that was given, not of where the filter starts.
+            if let Some(given) = self.start.values[j] {
+                settings.walk[j] *= given / nominal[j];
             }
             if known == Some(0.0) {
                 settings.walk[j] = 0.0;

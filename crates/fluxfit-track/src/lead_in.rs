@@ -50,9 +50,9 @@ impl LeadIn {
         &self.events
     }
 
-    /// Values to begin with, and whether any of them comes from the samples: from least squares where it tells them, else those that
+    /// Values to begin with, and which of them come from the samples: from least squares where it tells them, else those that
     /// were given, else guesses from the largest current, A, voltage, V, and speed.
-    pub(crate) fn values(&self, start: &Start, largest: [f64; 3]) -> ([f64; PARAMETERS], bool) {
+    pub(crate) fn values(&self, start: &Start, largest: [f64; 3]) -> ([f64; PARAMETERS], [bool; PARAMETERS]) {
         let guessed = guessed(largest);
         let nominal: [f64; PARAMETERS] = std::array::from_fn(|j| start.values[j].filter(|value| *value > 0.0).unwrap_or(guessed[j]));
         let mut rls = Rls::new(start, nominal, 1.0);
@@ -68,6 +68,6 @@ impl LeadIn {
         let errors = found.standard_errors.unwrap_or([f64::INFINITY; PARAMETERS]);
         let is_found = |j: usize| found.values[j] > 0.0 && errors[j] < STARTS * found.values[j];
         let values = std::array::from_fn(|j| if is_found(j) { found.values[j] } else { nominal[j] });
-        (values, (0..PARAMETERS).any(is_found))
+        (values, std::array::from_fn(is_found))
     }
 }

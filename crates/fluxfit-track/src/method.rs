@@ -43,10 +43,30 @@ impl Method {
         }
     }
 
+    /// Whether it tells how likely its currents are.
+    pub(crate) fn has_likelihood(self) -> bool {
+        matches!(self, Self::EkfTracking | Self::Ekf)
+    }
+
     /// The method of this name.
     pub fn named(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.key() == key)
     }
+}
+
+/// With what an estimator begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beginning {
+    /// What was known before.
+    pub start: Start,
+    /// Values that are taken as one: given ones, or about those of the motor.
+    pub nominal: [f64; PARAMETERS],
+    /// The same with what block least squares found in the first samples: a Kalman filter must begin near the motor.
+    pub seed: [f64; PARAMETERS],
+    /// Which of these are guesses.
+    pub is_guessed: [bool; PARAMETERS],
+    /// Usual current, A, and voltage, V.
+    pub scale: [f64; 2],
 }
 
 /// A running estimator.
@@ -59,12 +79,14 @@ pub enum Estimator {
 }
 
 impl Estimator {
-    /// An estimator that begins with `nominal`; a Kalman filter begins with `seed`, which block least squares found in the first samples.
-    /// `scale`: usual current, A, and voltage, V.
-    pub fn new(method: Method, start: &Start, nominal: [f64; PARAMETERS], seed: [f64; PARAMETERS], scale: [f64; 2]) -> Self {
+    /// An estimator at its beginning.
+    pub fn new(method: Method, beginning: &Beginning) -> Self {
+        let Beginning { start, nominal, seed, is_guessed, scale } = *beginning;
+        let filter = |is_tracking| Self::Ekf(Box::new(WatchedEkf::new(&start, seed, is_guessed, scale, is_tracking)));
         match method {
-            Method::EkfTracking | Method::Ekf => Self::Ekf(Box::new(WatchedEkf::new(start, seed, scale, method == Method::EkfTracking))),
-            Method::Rls => Self::Rls(Box::new(Rls::new(start, nominal, 0.99))),
+            Method::EkfTracking => filter(true),
+            Method::Ekf => filter(false),
+            Method::Rls => Self::Rls(Box::new(Rls::new(&start, nominal, 0.99))),
         }
     }
 

@@ -36,6 +36,11 @@ impl Rls {
         self.inner.advance(period, i)
     }
 
+    /// An upper triangular `W` whose `W W'` is the covariance, SI.
+    pub(crate) fn root(&self) -> [[f64; PARAMETERS]; PARAMETERS] {
+        self.inner.root()
+    }
+
     /// Whether the last half second excited the parameters.
     pub fn is_excited(&self) -> bool {
         self.inner.is_excited()

@@ -8,8 +8,8 @@
 
 use crate::{
     lead_in::LeadIn,
-    method::{Estimator, Method},
-    start::{Start, guessed},
+    method::{Beginning, Estimator, Method},
+    start::Start,
     stream::{LeftOut, Stream},
     timing::Timing,
     verdict::{Excitation, Tracked},
@@ -25,6 +25,9 @@ const LATEST_CHOICE: f64 = 5.0;
 
 /// Rows between two looks at the timings.
 const RACE: u64 = 64;
+
+/// Periods over which the likelihood of a timing is remembered: a filter that started badly must not decide for ever.
+const SURPRISE_MEMORY: f64 = 2e4;
 
 /// By how much minus twice the log-likelihood of the best timing must be less than that of any other: far beyond chance.
 const CLEAR: f64 = 100.0;
@@ -46,6 +49,10 @@ struct Lane {
     stream: Stream,
     lead_in: Option<LeadIn>,
     estimator: Option<Estimator>,
+    /// Beside an estimator without a likelihood, while timings are in question: a Kalman filter, which has one.
+    racer: Option<Estimator>,
+    /// Minus twice the log-likelihood of the last periods, but for a constant.
+    surprise: f64,
 }
 
 /// The tracker.
@@ -62,41 +69,48 @@ pub struct Tracker {
 
 impl Lane {
     fn new(timing: Timing) -> Self {
-        Self { stream: Stream::new(timing), lead_in: Some(LeadIn::new()), estimator: None }
+        Self { stream: Stream::new(timing), lead_in: Some(LeadIn::new()), estimator: None, racer: None, surprise: 0.0 }
     }
 
-    fn push(&mut self, row: &Row, method: Method, start: &Start) {
+    fn push(&mut self, row: &Row, method: Method, start: &Start, is_racing: bool) {
         let Some(event) = self.stream.push(row) else { return };
         if let Some(estimator) = &mut self.estimator {
             estimator.take(&event);
+            if let Some(racer) = &mut self.racer {
+                racer.take(&event);
+            }
         } else if let Some(lead_in) = &mut self.lead_in
             && lead_in.keep(event)
         {
             let largest = self.stream.largest();
             let (seed, is_found) = lead_in.values(start, largest);
-            let is_given = start.values.iter().all(Option::is_some);
+            let is_given: [bool; PARAMETERS] = std::array::from_fn(|j| start.values[j].is_some());
             // Without anything to begin with, it waits for the motor to run.
-            if is_found || is_given || lead_in.is_full() {
-                let guessed = guessed(largest);
-                let nominal = std::array::from_fn(|j| start.values[j].filter(|value| *value > 0.0).unwrap_or(if is_found { seed[j] } else { guessed[j] }));
-                let mut estimator = Estimator::new(method, start, nominal, seed, [largest[0], largest[1]]);
-                lead_in.events().iter().for_each(|event| estimator.take(event));
-                self.estimator = Some(estimator);
+            if is_found.contains(&true) || is_given == [true; PARAMETERS] || lead_in.is_full() {
+                let beginning = Beginning {
+                    start: *start,
+                    nominal: std::array::from_fn(|j| start.values[j].filter(|value| *value > 0.0).unwrap_or(seed[j])),
+                    seed,
+                    is_guessed: std::array::from_fn(|j| !is_found[j] && !is_given[j]),
+                    scale: [largest[0], largest[1]],
+                };
+                let run = |method| {
+                    let mut estimator = Estimator::new(method, &beginning);
+                    lead_in.events().iter().for_each(|event| estimator.take(event));
+                    estimator
+                };
+                self.racer = (is_racing && !method.has_likelihood()).then(|| run(Method::Ekf));
+                self.estimator = Some(run(method));
                 self.lead_in = None;
             }
         }
-    }
-
-    fn surprise(&self) -> Option<f64> {
-        match self.estimator.as_ref()? {
-            Estimator::Ekf(filter) => Some(filter.filter().surprise()),
-            Estimator::Rls(_) => None,
+        if let Some(Estimator::Ekf(filter)) = self.racer.as_ref().or(self.estimator.as_ref()) {
+            self.surprise += filter.filter().last_surprise() - self.surprise / SURPRISE_MEMORY;
         }
     }
 }
 
-impl Tracker {
-    /// A tracker before its first row.
+impl Tracker {    /// A tracker before its first row.
     pub fn new(settings: TrackSettings) -> Self {
         let lanes = match settings.timing {
             Some(timing) => vec![Lane::new(timing)],
@@ -109,10 +123,8 @@ impl Tracker {
     pub fn push(&mut self, row: &Row) {
         self.rows += 1;
         let is_racing = self.lanes.len() > 1;
-        // Only the likelihood of a Kalman filter tells which timing is right.
-        let method = if is_racing { self.racing_method() } else { self.settings.method };
         for lane in &mut self.lanes {
-            lane.push(row, method, &self.settings.start);
+            lane.push(row, self.settings.method, &self.settings.start, is_racing);
         }
         if row.t.is_finite() {
             self.t = row.t;
@@ -125,29 +137,19 @@ impl Tracker {
         }
     }
 
-    fn racing_method(&self) -> Method {
-        match self.settings.method {
-            Method::EkfTracking | Method::Ekf => self.settings.method,
-            Method::Rls => Method::Ekf,
-        }
-    }
-
     /// Puts the most likely timing first, and gives the others up when it is clear.
     fn race(&mut self) {
         if !self.lanes.iter().all(|lane| lane.estimator.is_some()) {
             return;
         }
         self.lanes.sort_by(|a, b| {
-            let [a, b] = [a, b].map(|lane| lane.surprise().unwrap_or(f64::INFINITY));
-            a.total_cmp(&b)
+            a.surprise.total_cmp(&b.surprise)
         });
         self.raced += RACE as f64 * self.lanes[0].stream.usual_period();
-        let margin = self.lanes[1].surprise().zip(self.lanes[0].surprise()).map_or(0.0, |(second, first)| second - first);
+        let margin = self.lanes[1].surprise - self.lanes[0].surprise;
         if self.raced > EARLIEST_CHOICE && margin > CLEAR || self.raced > LATEST_CHOICE {
             self.lanes.truncate(1);
-            if self.racing_method() != self.settings.method {
-                (self.lanes[0].estimator, self.lanes[0].lead_in) = (None, Some(LeadIn::new()));
-            }
+            self.lanes[0].racer = None;
         }
     }
 
