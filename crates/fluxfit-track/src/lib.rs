@@ -16,8 +16,10 @@
 //! | [`start`], [`lead_in`] | what is known before the first sample; the first samples |
 //! | [`method`] | the estimators, as one choice |
 //! | [`ekf`], [`rls`] | one estimator each |
+//! | [`temperature`], [`document`] | temperatures of winding and magnets; the JSON document |
 //! | [`estimate`], [`verdict`] | what an estimator says; what may be said of a parameter |
 
+pub mod document;
 pub mod ekf;
 pub mod estimate;
 pub mod lead_in;
@@ -25,6 +27,7 @@ pub mod method;
 pub mod rls;
 pub mod start;
 pub mod stream;
+pub mod temperature;
 pub mod timing;
 pub mod tracker;
 pub mod verdict;
@@ -33,6 +36,7 @@ pub use estimate::Estimate;
 pub use method::{Estimator, Method};
 pub use start::Start;
 pub use stream::{Event, LeftOut, Stream};
+pub use temperature::Thermometer;
 pub use timing::Timing;
 pub use tracker::{TrackSettings, Tracker};
 pub use verdict::{Tracked, Verdict};

@@ -12,7 +12,7 @@ use crate::{
     start::Start,
     stream::{LeftOut, Stream},
     timing::Timing,
-    verdict::{Excitation, Tracked},
+    verdict::{Excitation, Tracked, Verdict},
 };
 use fluxfit::{log::Row, motor::PARAMETERS};
 use serde::{Deserialize, Serialize};
@@ -187,5 +187,19 @@ impl Tracker {    /// A tracker before its first row.
     pub fn parameters(&self) -> Option<[Tracked; PARAMETERS]> {
         let estimator = self.lanes[0].estimator.as_ref()?;
         Some(self.excitation.judge(&estimator.estimate()))
+    }
+
+    /// The same, as not identifiable during the lead-in.
+    pub fn parameters_or_nothing(&self) -> [Tracked; PARAMETERS] {
+        let nothing = Tracked { value: None, standard_error: None, verdict: Verdict::NotIdentifiable };
+        self.parameters().unwrap_or([nothing; PARAMETERS])
+    }
+
+    /// Steps of parameters that were found.
+    pub fn steps(&self) -> u32 {
+        match self.estimator() {
+            Some(Estimator::Ekf(filter)) => filter.filter().steps(),
+            _ => 0,
+        }
     }
 }

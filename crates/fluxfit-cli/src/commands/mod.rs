@@ -10,6 +10,7 @@ mod manual;
 mod report;
 mod simulate;
 mod status;
+mod track;
 pub(crate) mod validate;
 
 pub(crate) use status::Status;
@@ -19,7 +20,7 @@ use clap::Subcommand;
 
 /// The verbs as the first help shows them; a verb that no group names comes last.
 pub(crate) const GROUPS: [(&str, &[&str]); 3] = [
-    ("Motors", &["identify", "validate", "compare"]),
+    ("Motors", &["identify", "track", "validate", "compare"]),
     ("Logs", &["inspect", "formats", "simulate"]),
     ("Program", &["demo", "completions", "man", "help"]),
 ];
@@ -38,6 +39,10 @@ pub(crate) enum Verb {
     Demo(demo::Demo),
     /// Identify the parameters, with intervals and verdicts
     Identify(identify::Identify),
+    /// Follow the parameters of a running motor
+    ///
+    /// Reads a log, or rows as they arrive, and tells each parameter over time with its interval. Exit status 3: an alarm.
+    Track(track::Track),
     /// Compare swarm optimizers: many runs of each, against the minimum
     ///
     /// They minimize the paper's fitness (11), or the output error. After Ctrl-C, the finished runs are shown.
@@ -65,6 +70,7 @@ impl Verb {
             Self::Formats => formats::run(),
             Self::Demo(arguments) => demo::run(arguments),
             Self::Identify(arguments) => identify::run(arguments),
+            Self::Track(arguments) => track::run(arguments),
             Self::Compare(arguments) => compare::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Validate(arguments) => validate::run(arguments),

@@ -53,6 +53,11 @@ impl Table {
         }
     }
 
+    /// A table of text, of which the beginning is known.
+    pub(super) fn beginning(text: Text) -> Result<Self, FileError> {
+        TextTable::of(text).map(Self::Text)
+    }
+
     fn of_text(bytes: Box<dyn Read>, dbc: Option<&str>) -> Result<Self, FileError> {
         let text = Text::open(bytes)?;
         if Records::has(&text)? { Records::open(text, dbc).map(Self::Records) } else { TextTable::of(text).map(Self::Text) }
