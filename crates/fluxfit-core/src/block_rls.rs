@@ -44,6 +44,8 @@ pub struct BlockRlsSettings<T> {
     pub forgetting: T,
     /// Whether blocks keep their weight while nothing excites the parameters.
     pub gated: bool,
+    /// Whether the equations have the derivative of the current; without it they hold in steady state only.
+    pub has_derivative: bool,
     /// Rated current, A, and speed, electrical rad/s; without them the largest seen.
     pub rating: Option<[T; 2]>,
 }
@@ -51,7 +53,7 @@ pub struct BlockRlsSettings<T> {
 impl<T: Real> BlockRlsSettings<T> {
     /// Blocks of 50 periods (5 ms at 10 kHz), of which 100 are remembered while they excite the parameters.
     pub fn new(nominal: [T; PARAMETERS]) -> Self {
-        Self { nominal, known: [None; PARAMETERS], periods: 50, forgetting: T::of(0.99), gated: true, rating: None }
+        Self { nominal, known: [None; PARAMETERS], periods: 50, forgetting: T::of(0.99), gated: true, has_derivative: true, rating: None }
     }
 }
 
@@ -117,7 +119,10 @@ impl<T: Real> BlockRls<T> {
             self.begin(i);
             return false;
         };
-        let Some(equations) = block.add(period, i, &self.settings.nominal) else { return false };
+        let Some(mut equations) = block.add(period, i, &self.settings.nominal) else { return false };
+        if !self.settings.has_derivative {
+            (equations.rows[0].phi[1], equations.rows[1].phi[2]) = (T::ZERO, T::ZERO);
+        }
         self.take(&equations);
         true
     }

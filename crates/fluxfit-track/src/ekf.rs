@@ -12,7 +12,7 @@
 
 use crate::{
     estimate::{Estimate, IDENTIFIABLE},
-    rls::Rls,
+    rls::{Form, Rls},
     start::Start,
 };
 use fluxfit::motor::PARAMETERS;
@@ -69,7 +69,7 @@ impl WatchedEkf {
     /// `is_guessed`: which values are no more than a guess.
     pub fn new(start: &Start, values: [f64; PARAMETERS], is_guessed: [bool; PARAMETERS], scale: [f64; 2], is_tracking: bool) -> Self {
         // Of constant parameters all blocks count.
-        let rls = Rls::new(start, values, if is_tracking { 0.99 } else { 1.0 });
+        let rls = Rls::new(start, values, if is_tracking { Form::Gated } else { Form::Constant });
         let mut pair = Self {
             watch: rls.estimate(),
             rls,

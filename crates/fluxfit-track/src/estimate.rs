@@ -19,3 +19,10 @@ pub struct Estimate {
     /// Whether the last half second excited the parameters; none of an estimator that cannot tell.
     pub excited: Option<bool>,
 }
+
+impl Estimate {
+    /// Values of an estimator that cannot tell how good they are.
+    pub(crate) fn without_covariance(values: [f64; PARAMETERS]) -> Self {
+        Self { values, standard_errors: None, identifiable: None, excited: None }
+    }
+}

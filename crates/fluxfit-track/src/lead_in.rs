@@ -1,7 +1,7 @@
 //! The first 0.15 s of a stream: kept until block least squares has found values to begin with, then played to the estimator.
 
 use crate::{
-    rls::Rls,
+    rls::{Form, Rls},
     start::{Start, guessed},
     stream::Event,
 };
@@ -55,7 +55,7 @@ impl LeadIn {
     pub(crate) fn values(&self, start: &Start, largest: [f64; 3]) -> ([f64; PARAMETERS], [bool; PARAMETERS]) {
         let guessed = guessed(largest);
         let nominal: [f64; PARAMETERS] = std::array::from_fn(|j| start.values[j].filter(|value| *value > 0.0).unwrap_or(guessed[j]));
-        let mut rls = Rls::new(start, nominal, 1.0);
+        let mut rls = Rls::new(start, nominal, Form::Constant);
         for event in &self.events {
             match event {
                 Event::Begin(i) => rls.begin(*i),

@@ -15,15 +15,21 @@
 //! | [`timing`], [`stream`] | rows become periods: voltage timing, gaps, garbage |
 //! | [`start`], [`lead_in`] | what is known before the first sample; the first samples |
 //! | [`method`] | the estimators, as one choice |
-//! | [`ekf`], [`rls`] | one estimator each |
+//! | [`ekf`], [`rls`], [`forgetting`], [`instrumental_variable`], [`bias_compensated`], [`mras`], [`adaline`] | one estimator each |
 //! | [`temperature`], [`document`] | temperatures of winding and magnets; the JSON document |
 //! | [`estimate`], [`verdict`] | what an estimator says; what may be said of a parameter |
 
+pub mod adaline;
+pub mod bias_compensated;
+mod cholesky;
 pub mod document;
 pub mod ekf;
 pub mod estimate;
+pub mod forgetting;
+pub mod instrumental_variable;
 pub mod lead_in;
 pub mod method;
+pub mod mras;
 pub mod rls;
 pub mod start;
 pub mod stream;
@@ -33,7 +39,7 @@ pub mod tracker;
 pub mod verdict;
 
 pub use estimate::Estimate;
-pub use method::{Estimator, Method};
+pub use method::{Beginning, Estimator, Method};
 pub use start::Start;
 pub use stream::{Event, LeftOut, Stream};
 pub use temperature::Thermometer;

@@ -1,9 +1,14 @@
 //! The estimators, as one choice.
 
 use crate::{
+    adaline::Adaline,
+    bias_compensated::BiasCompensated,
     ekf::WatchedEkf,
     estimate::Estimate,
-    rls::Rls,
+    forgetting::{Forgetting, Kind},
+    instrumental_variable::InstrumentalVariable,
+    mras::{Gain, Mras},
+    rls::{Form, Rls},
     start::Start,
     stream::Event,
 };
@@ -19,11 +24,48 @@ pub enum Method {
     Ekf,
     /// Least squares over blocks of 50 periods with gated forgetting.
     Rls,
+    /// The same with exponential forgetting, excited or not.
+    RlsExponential,
+    /// The same with Fortescue's forgetting.
+    RlsFortescue,
+    /// The same with fuzzy forgetting.
+    RlsFuzzy,
+    /// The same with directional forgetting.
+    RlsDirectional,
+    /// Least squares on single periods.
+    RlsSample,
+    /// The same without the derivative.
+    RlsSteady,
+    /// Instrumental variables on single periods.
+    InstrumentalVariable,
+    /// Block least squares with the bias by noise subtracted.
+    BiasCompensated,
+    /// Model reference adaptive system with a matrix gain.
+    Mras,
+    /// The same with scalar gains.
+    MrasScalar,
+    /// Adaline network.
+    Adaline,
 }
 
 impl Method {
     /// All of them; the recommended one first.
-    pub const ALL: [Self; 3] = [Self::EkfTracking, Self::Ekf, Self::Rls];
+    pub const ALL: [Self; 14] = [
+        Self::EkfTracking,
+        Self::Ekf,
+        Self::Rls,
+        Self::RlsExponential,
+        Self::RlsFortescue,
+        Self::RlsFuzzy,
+        Self::RlsDirectional,
+        Self::RlsSample,
+        Self::RlsSteady,
+        Self::InstrumentalVariable,
+        Self::BiasCompensated,
+        Self::Mras,
+        Self::MrasScalar,
+        Self::Adaline,
+    ];
 
     /// Name on the command line and in documents.
     pub fn key(self) -> &'static str {
@@ -31,6 +73,17 @@ impl Method {
             Self::EkfTracking => "ekf-tracking",
             Self::Ekf => "ekf",
             Self::Rls => "rls",
+            Self::RlsExponential => "rls-exponential",
+            Self::RlsFortescue => "rls-fortescue",
+            Self::RlsFuzzy => "rls-fuzzy",
+            Self::RlsDirectional => "rls-directional",
+            Self::RlsSample => "rls-sample",
+            Self::RlsSteady => "rls-steady",
+            Self::InstrumentalVariable => "iv",
+            Self::BiasCompensated => "bias-compensated",
+            Self::Mras => "mras",
+            Self::MrasScalar => "mras-scalar",
+            Self::Adaline => "adaline",
         }
     }
 
@@ -40,12 +93,28 @@ impl Method {
             Self::EkfTracking => "Kalman filter, tracking, with block least squares",
             Self::Ekf => "Kalman filter, constant parameters, with block least squares",
             Self::Rls => "least squares over blocks of 50 periods, gated",
+            Self::RlsExponential => "least squares over blocks, exponential forgetting",
+            Self::RlsFortescue => "least squares over blocks, Fortescue's forgetting",
+            Self::RlsFuzzy => "least squares over blocks, fuzzy forgetting",
+            Self::RlsDirectional => "least squares over blocks, directional forgetting",
+            Self::RlsSample => "least squares on single periods",
+            Self::RlsSteady => "least squares on single periods without derivative",
+            Self::InstrumentalVariable => "instrumental variables on single periods",
+            Self::BiasCompensated => "block least squares, bias compensated",
+            Self::Mras => "model reference adaptive system, matrix gain",
+            Self::MrasScalar => "model reference adaptive system, scalar gains",
+            Self::Adaline => "Adaline network, four stages",
         }
     }
 
     /// Whether it tells how likely its currents are.
     pub(crate) fn has_likelihood(self) -> bool {
         matches!(self, Self::EkfTracking | Self::Ekf)
+    }
+
+    /// Whether it tells how uncertain its values are.
+    pub fn has_covariance(self) -> bool {
+        matches!(self, Self::EkfTracking | Self::Ekf | Self::Rls | Self::RlsExponential | Self::RlsSample | Self::RlsSteady)
     }
 
     /// The method of this name.
@@ -76,6 +145,31 @@ pub enum Estimator {
     Ekf(Box<WatchedEkf>),
     /// Least squares.
     Rls(Box<Rls>),
+    /// Least squares with another kind of forgetting.
+    Forgetting(Box<Forgetting>),
+    /// Instrumental variables.
+    InstrumentalVariable(Box<InstrumentalVariable>),
+    /// Bias-compensated least squares.
+    BiasCompensated(Box<BiasCompensated>),
+    /// A model reference adaptive system.
+    Mras(Box<Mras>),
+    /// An Adaline network.
+    Adaline(Box<Adaline>),
+}
+
+/// Does the same with every kind of estimator.
+macro_rules! each {
+    ($estimator:expr, $inner:ident => $do:expr) => {
+        match $estimator {
+            Estimator::Ekf($inner) => $do,
+            Estimator::Rls($inner) => $do,
+            Estimator::Forgetting($inner) => $do,
+            Estimator::InstrumentalVariable($inner) => $do,
+            Estimator::BiasCompensated($inner) => $do,
+            Estimator::Mras($inner) => $do,
+            Estimator::Adaline($inner) => $do,
+        }
+    };
 }
 
 impl Estimator {
@@ -83,30 +177,31 @@ impl Estimator {
     pub fn new(method: Method, beginning: &Beginning) -> Self {
         let Beginning { start, nominal, seed, is_guessed, scale } = *beginning;
         let filter = |is_tracking| Self::Ekf(Box::new(WatchedEkf::new(&start, seed, is_guessed, scale, is_tracking)));
+        let rls = |form| Self::Rls(Box::new(Rls::new(&start, nominal, form)));
+        let forgetting = |kind| Self::Forgetting(Box::new(Forgetting::new(kind, nominal)));
         match method {
             Method::EkfTracking => filter(true),
             Method::Ekf => filter(false),
-            Method::Rls => Self::Rls(Box::new(Rls::new(&start, nominal, 0.99))),
+            Method::Rls => rls(Form::Gated),
+            Method::RlsExponential => rls(Form::Exponential),
+            Method::RlsSample => rls(Form::Sample),
+            Method::RlsSteady => rls(Form::Steady),
+            Method::RlsFortescue => forgetting(Kind::Fortescue),
+            Method::RlsFuzzy => forgetting(Kind::Fuzzy),
+            Method::RlsDirectional => forgetting(Kind::Directional),
+            Method::InstrumentalVariable => Self::InstrumentalVariable(Box::new(InstrumentalVariable::new(nominal))),
+            Method::BiasCompensated => Self::BiasCompensated(Box::new(BiasCompensated::new(nominal))),
+            Method::Mras => Self::Mras(Box::new(Mras::new(nominal, Gain::Matrix))),
+            Method::MrasScalar => Self::Mras(Box::new(Mras::new(nominal, Gain::Scalar))),
+            Method::Adaline => Self::Adaline(Box::new(Adaline::new(nominal))),
         }
     }
 
     /// Takes what a row brought.
     pub fn take(&mut self, event: &Event) {
         match event {
-            Event::Begin(i) => self.begin(*i),
-            Event::Period(period, i) => match self {
-                Self::Ekf(estimator) => estimator.advance(period, *i),
-                Self::Rls(estimator) => {
-                    estimator.advance(period, *i);
-                }
-            },
-        }
-    }
-
-    fn begin(&mut self, i: [f64; 2]) {
-        match self {
-            Self::Ekf(estimator) => estimator.begin(i),
-            Self::Rls(estimator) => estimator.begin(i),
+            Event::Begin(i) => each!(self, inner => inner.begin(*i)),
+            Event::Period(period, i) => each!(self, inner => { inner.advance(period, *i); }),
         }
     }
 
@@ -115,14 +210,12 @@ impl Estimator {
         match self {
             Self::Ekf(estimator) => Some(estimator.is_excited()),
             Self::Rls(estimator) => Some(estimator.is_excited()),
+            _ => None,
         }
     }
 
     /// What it knows.
     pub fn estimate(&self) -> Estimate {
-        match self {
-            Self::Ekf(estimator) => estimator.estimate(),
-            Self::Rls(estimator) => estimator.estimate(),
-        }
+        each!(self, inner => inner.estimate())
     }
 }

@@ -13,9 +13,9 @@
 //! 10.1109/TAC.1976.1101195), so that any gain is stable in continuous time. With four parameters a scalar gain is a gradient on a valley
 //! of 1 : 7000; the matrix gain `wn² (W + small)^-1`, with `W` the mean of `Phi'Phi`, makes all directions equally fast.
 
-use crate::estimate::Estimate;
+use crate::{cholesky::solved, estimate::Estimate};
 use fluxfit::motor::PARAMETERS;
-use fluxfit_core::Period;
+use fluxfit_core::{Period, period::current_after};
 use serde::{Deserialize, Serialize};
 
 /// Speed of the adaption, rad/s. Sampled at 10 kHz `wn Ts` must stay below 0.05.
@@ -53,74 +53,79 @@ pub enum Gain {
 pub struct Mras {
     nominal: [f64; PARAMETERS],
     gain: Gain,
-    /// Current of the model, A, and one period before.
+    /// Current of the model, A, and what is missing of the measured one.
     i: [f64; 2],
-    before: Option<[f64; 2]>,
+    error: [f64; 2],
     /// The integral part, and all of it, as parts of the nominal values.
     integral: [f64; PARAMETERS],
     z: [f64; PARAMETERS],
-    /// Mean of `Phi'Phi`, scaled.
+    /// Mean of `Phi'Phi`, scaled, and what it weighs of a whole mean.
     mean: [[f64; PARAMETERS]; PARAMETERS],
-}
-
-/// Solves `a x = b` with a positive definite matrix (Cholesky); none where it is not.
-pub(crate) fn solved(a: &[[f64; PARAMETERS]; PARAMETERS], b: &[f64; PARAMETERS]) -> Option<[f64; PARAMETERS]> {
-    let mut l = [[0.0; PARAMETERS]; PARAMETERS];
-    for i in 0..PARAMETERS {
-        for j in 0..=i {
-            let rest = (0..j).fold(a[i][j], |rest, k| rest - l[i][k] * l[j][k]);
-            if i == j {
-                if rest.is_nan() || rest <= 0.0 {
-                    return None;
-                }
-                l[i][i] = rest.sqrt();
-            } else {
-                l[i][j] = rest / l[j][j];
-            }
-        }
-    }
-    let mut x = *b;
-    for i in 0..PARAMETERS {
-        x[i] = (0..i).fold(x[i], |rest, k| rest - l[i][k] * x[k]) / l[i][i];
-    }
-    for i in (0..PARAMETERS).rev() {
-        x[i] = (i + 1..PARAMETERS).fold(x[i], |rest, k| rest - l[k][i] * x[k]) / l[i][i];
-    }
-    Some(x)
+    weight: f64,
 }
 
 impl Mras {
     /// Begins with these values.
     pub fn new(nominal: [f64; PARAMETERS], gain: Gain) -> Self {
-        Self {
-            nominal,
-            gain,
-            i: [0.0; 2],
-            before: None,
-            integral: [1.0; PARAMETERS],
-            z: [1.0; PARAMETERS],
-            mean: [[0.0; PARAMETERS]; PARAMETERS],
-        }
+        let mean = [[0.0; PARAMETERS]; PARAMETERS];
+        Self { nominal, gain, i: [0.0; 2], error: [0.0; 2], integral: [1.0; PARAMETERS], z: [1.0; PARAMETERS], mean, weight: 0.0 }
     }
 
     /// Begins at a current, A.
     pub fn begin(&mut self, i: [f64; 2]) {
-        (self.i, self.before) = (i, None);
+        (self.i, self.error) = (i, [0.0; 2]);
     }
 
     /// Goes on by a period to a current, A.
     pub fn advance(&mut self, period: &Period<f64>, measured: [f64; 2]) {
         let theta: [f64; PARAMETERS] = std::array::from_fn(|j| self.z[j] * self.nominal[j]);
-        let start = self.i;
-        let [sin, cos] = [(0.5 * period.omega_e * period.length).sin(), (0.5 * period.omega_e * period.length).cos()];
-        let _ = (sin, cos);
-        // The feedback acts as a voltage with the error at the beginning.
-        let feedback = FEEDBACK * self.nominal[0];
-        let error = self.before.map_or([0.0; 2], |_| [0, 1].map(|c| measured[c] - start[c]));
-        let _ = error;
-        let fed = Period { u: [0, 1].map(|c| period.u[c] + feedback * self.last_error(c)), ..*period };
-        self.i = fluxfit_core::period::current_after(&theta, start, &fed);
-        self.set_last_error([0, 1].map(|c| measured[c] - self.i[c]));
-        self.adapt(start, period);
+        let before = self.i;
+        let u = [0, 1].map(|c| period.u[c] + FEEDBACK * self.nominal[0] * self.error[c]);
+        self.i = current_after(&theta, before, &Period { u, ..*period });
+        self.error = [0, 1].map(|c| measured[c] - self.i[c]);
+        let slope = [0, 1].map(|c| (self.i[c] - before[c]) / period.length);
+        let ([rs, ld, lq, psi_f], omega) = (self.nominal, period.omega_e);
+        let phi = [
+            [rs * self.i[0], ld * slope[0], -lq * omega * self.i[1], 0.0],
+            [rs * self.i[1], ld * omega * self.i[0], lq * slope[1], psi_f * omega],
+        ];
+        let flux_error = [ld * self.error[0], lq * self.error[1]];
+        let gradient: [f64; PARAMETERS] = std::array::from_fn(|j| phi[0][j] * flux_error[0] + phi[1][j] * flux_error[1]);
+        let part = (period.length / MEMORY).min(1.0);
+        self.weight += part * (1.0 - self.weight);
+        for i in 0..PARAMETERS {
+            for j in 0..PARAMETERS {
+                self.mean[i][j] += part * (phi[0][i] * phi[0][j] + phi[1][i] * phi[1][j] - self.mean[i][j]);
+            }
+        }
+        let speed = SPEED.min(LARGEST_ANGLE / period.length);
+        let Some(direction) = self.direction(&phi, &gradient) else { return };
+        for j in 0..PARAMETERS {
+            let rate = speed * speed * direction[j];
+            self.integral[j] = (self.integral[j] - rate * period.length).clamp(LIMITS[0], LIMITS[1]);
+            self.z[j] = (self.integral[j] - PROPORTIONAL / speed * rate).clamp(LIMITS[0], LIMITS[1]);
+        }
+    }
+
+    /// The gradient divided by the mean square of the coefficients.
+    fn direction(&self, phi: &[[f64; PARAMETERS]; 2], gradient: &[f64; PARAMETERS]) -> Option<[f64; PARAMETERS]> {
+        let mean = self.mean.map(|row| row.map(|value| value / self.weight));
+        match self.gain {
+            Gain::Scalar => Some(std::array::from_fn(|j| {
+                let square = (phi[0][j] * phi[0][j] + phi[1][j] * phi[1][j]).max(mean[j][j]);
+                if square > 0.0 { gradient[j] / square } else { 0.0 }
+            })),
+            Gain::Matrix => {
+                let trace: f64 = (0..PARAMETERS).map(|j| mean[j][j]).sum();
+                let mut regular = mean;
+                (0..PARAMETERS).for_each(|j| regular[j][j] += REGULAR * trace);
+                solved(&regular, gradient)
+            }
+        }
+    }
+
+    /// The values; no error covariance.
+    pub fn estimate(&self) -> Estimate {
+        Estimate::without_covariance(std::array::from_fn(|j| self.z[j] * self.nominal[j]))
     }
 }

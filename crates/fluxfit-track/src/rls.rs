@@ -13,7 +13,22 @@ use fluxfit::motor::PARAMETERS;
 use fluxfit_core::{BlockRls, BlockRlsSettings, Period};
 use serde::{Deserialize, Serialize};
 
-/// Block least squares with gated forgetting.
+/// Which form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Form {
+    /// Blocks of 50 periods; older ones are forgotten only while the parameters are excited.
+    Gated,
+    /// Blocks of 50 periods; older ones are always forgotten.
+    Exponential,
+    /// Blocks of 50 periods; nothing is forgotten.
+    Constant,
+    /// Single periods: the "dynamic" regression of the literature.
+    Sample,
+    /// Single periods without the derivative: the "steady" regression of the literature.
+    Steady,
+}
+
+/// Least squares.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rls {
     inner: BlockRls<f64>,
@@ -21,8 +36,16 @@ pub struct Rls {
 
 impl Rls {
     /// Begins with what is known; `nominal` are the values that are taken as one.
-    pub fn new(start: &Start, nominal: [f64; PARAMETERS], forgetting: f64) -> Self {
-        let settings = BlockRlsSettings { known: start.known(&nominal), rating: start.rating, forgetting, ..BlockRlsSettings::new(nominal) };
+    pub fn new(start: &Start, nominal: [f64; PARAMETERS], form: Form) -> Self {
+        let usual = BlockRlsSettings { known: start.known(&nominal), rating: start.rating, ..BlockRlsSettings::new(nominal) };
+        // The last two keep about as many seconds as 0.99 of a block.
+        let settings = match form {
+            Form::Gated => usual,
+            Form::Exponential => BlockRlsSettings { gated: false, ..usual },
+            Form::Constant => BlockRlsSettings { forgetting: 1.0, ..usual },
+            Form::Sample => BlockRlsSettings { gated: false, periods: 1, forgetting: 0.9999, ..usual },
+            Form::Steady => BlockRlsSettings { gated: false, periods: 1, forgetting: 0.9995, has_derivative: false, ..usual },
+        };
         Self { inner: BlockRls::new(settings) }
     }
 
