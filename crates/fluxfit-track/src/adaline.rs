@@ -24,8 +24,11 @@ const STEP: f64 = 0.02;
 /// Part by which means follow per sample.
 const FOLLOWED: f64 = 0.02;
 
-/// Largest slope of the mean current that is steady, A/s, for a current of 10 A; in parts of the largest current per second.
-const STEADY: f64 = 5.0;
+/// Part by which what is stored at i_d = 0 follows per sample: so slowly that the first samples of a step of i_d hardly matter.
+const STORED: f64 = 2e-3;
+
+/// Largest slope of the mean current that is steady, in parts of the largest current per second: 50 A/s of 14 A.
+const STEADY: f64 = 3.5;
 
 /// Part of the largest current below which i_d is zero.
 const ZERO: f64 = 0.05;
@@ -80,7 +83,7 @@ impl Adaline {
         if id.abs() < ZERO * self.largest {
             let now = [u[0], u[1], iq, omega];
             let stored = self.stored.get_or_insert(now);
-            stored.iter_mut().zip(now).for_each(|(mean, value)| *mean += FOLLOWED * (value - *mean));
+            stored.iter_mut().zip(now).for_each(|(mean, value)| *mean += STORED * (value - *mean));
             self.adjust(0, 2, -omega * iq, u[0] - rs * id);
             self.adjust(1, 3, omega, u[1] - rs * iq - omega * ld * id);
         } else if let Some([ud0, uq0, iq0, omega0]) = self.stored.filter(|[_, _, iq0, omega0]| iq0 * omega0 != 0.0) {

@@ -27,8 +27,8 @@ const LARGEST_ANGLE: f64 = 0.05;
 /// Proportional gain as a part of the integral one over the speed of the adaption.
 const PROPORTIONAL: f64 = 0.3;
 
-/// Feedback of the current error, in resistances: about doubles the damping of the model.
-const FEEDBACK: f64 = 2.0;
+/// Feedback of the current error, in resistances: the damping of the model is four times that of the winding.
+const FEEDBACK: f64 = 3.0;
 
 /// Memory of the mean of `Phi'Phi`, s.
 const MEMORY: f64 = 1.0;
@@ -59,16 +59,15 @@ pub struct Mras {
     /// The integral part, and all of it, as parts of the nominal values.
     integral: [f64; PARAMETERS],
     z: [f64; PARAMETERS],
-    /// Mean of `Phi'Phi`, scaled, and what it weighs of a whole mean.
+    /// Mean of `Phi'Phi`, scaled; from zero on, so that the first samples move the parameters fast.
     mean: [[f64; PARAMETERS]; PARAMETERS],
-    weight: f64,
 }
 
 impl Mras {
     /// Begins with these values.
     pub fn new(nominal: [f64; PARAMETERS], gain: Gain) -> Self {
         let mean = [[0.0; PARAMETERS]; PARAMETERS];
-        Self { nominal, gain, i: [0.0; 2], error: [0.0; 2], integral: [1.0; PARAMETERS], z: [1.0; PARAMETERS], mean, weight: 0.0 }
+        Self { nominal, gain, i: [0.0; 2], error: [0.0; 2], integral: [1.0; PARAMETERS], z: [1.0; PARAMETERS], mean }
     }
 
     /// Begins at a current, A.
@@ -92,7 +91,6 @@ impl Mras {
         let flux_error = [ld * self.error[0], lq * self.error[1]];
         let gradient: [f64; PARAMETERS] = std::array::from_fn(|j| phi[0][j] * flux_error[0] + phi[1][j] * flux_error[1]);
         let part = (period.length / MEMORY).min(1.0);
-        self.weight += part * (1.0 - self.weight);
         for i in 0..PARAMETERS {
             for j in 0..PARAMETERS {
                 self.mean[i][j] += part * (phi[0][i] * phi[0][j] + phi[1][i] * phi[1][j] - self.mean[i][j]);
@@ -109,7 +107,7 @@ impl Mras {
 
     /// The gradient divided by the mean square of the coefficients.
     fn direction(&self, phi: &[[f64; PARAMETERS]; 2], gradient: &[f64; PARAMETERS]) -> Option<[f64; PARAMETERS]> {
-        let mean = self.mean.map(|row| row.map(|value| value / self.weight));
+        let mean = &self.mean;
         match self.gain {
             Gain::Scalar => Some(std::array::from_fn(|j| {
                 let square = (phi[0][j] * phi[0][j] + phi[1][j] * phi[1][j]).max(mean[j][j]);
@@ -117,7 +115,7 @@ impl Mras {
             })),
             Gain::Matrix => {
                 let trace: f64 = (0..PARAMETERS).map(|j| mean[j][j]).sum();
-                let mut regular = mean;
+                let mut regular = *mean;
                 (0..PARAMETERS).for_each(|j| regular[j][j] += REGULAR * trace);
                 solved(&regular, gradient)
             }
