@@ -159,13 +159,15 @@ impl Warming {
     }
 
     /// The next row, whose voltage acts from it on. i_d alternates between 0 and -2 A every 0.25 s, the speed by 10 % over 2 s; from 20 to
-    /// 30 s both stand still, if the motor warms. From 40 s on i_q is 3 A more, as where saturation comes from load.
+    /// 30 s both stand still, if the motor warms. i_q is 2 A more or less while the speed rises or falls, and from 40 s on 3 A more, as where
+    /// saturation comes from load.
     pub fn row(&mut self, has_quiet: bool) -> Row {
         let t = self.k as f64 * PERIOD;
         let is_quiet = has_quiet && (20.0..30.0).contains(&t);
         let id = if !is_quiet && (t / 0.25) as u64 % 2 == 1 { -2.0 } else { 0.0 };
-        let iq = if t >= 40.0 && has_quiet { 12.0 } else { 9.0 };
-        let swing = if is_quiet { 0.0 } else { 0.1 * (std::f64::consts::TAU * t / 2.0).sin() };
+        let (swing, rise) = if is_quiet { (0.0, 0.0) } else { (std::f64::consts::TAU * t / 2.0).sin_cos() };
+        let (swing, rise) = (0.1 * swing, 2.0 * rise);
+        let iq = rise + if t >= 40.0 && has_quiet { 12.0 } else { 9.0 };
         let omega_e = 419.0 * (1.0 + swing);
         let theta = (self.parameters)(t);
         let [rs, ld, lq, psi_f] = theta;
@@ -190,6 +192,9 @@ fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
     [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]]
 }
 
+/// Start values as parts of the true ones: -30, +40, -25 and -12 %.
+pub const START: [f64; PARAMETERS] = [0.7, 1.4, 0.75, 0.88];
+
 /// How the tracking filter followed the warming log.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Followed {
@@ -206,8 +211,8 @@ pub struct Followed {
 /// Follows the warming log with an estimator.
 pub fn followed(method: Method, noise: f64, draw: u64) -> Followed {
     let mut motor = Warming::new(warming, noise, draw);
-    let start = random_start(&fluxfit::paper::MOTOR, 1.3, &mut Draws::seeded(7, draw));
-    let start = Start { rating: Some([10.0, 419.0]), ..start };
+    let values = [0, 1, 2, 3].map(|j| Some(START[j] * fluxfit::paper::MOTOR.to_array()[j]));
+    let start = Start { values, rating: Some([10.0, 419.0]), ..Start::default() };
     let timing = Some(Timing::Delayed { delay: 0, at_row: false });
     let mut tracker = Tracker::new(TrackSettings { method, timing, start });
     let mut squares = SVector::<f64, PARAMETERS>::zeros();

@@ -21,8 +21,8 @@ const START_WEIGHT: f64 = 1e-3;
 /// Systematic standard uncertainty of a drive's voltages, as a part of the vector: that of `fluxfit identify`.
 const VOLTAGE_ACCURACY: f64 = 1e-4;
 
-/// Degrees of freedom below which a residual means nothing.
-const FEWEST: f64 = 8.0;
+/// Degrees of freedom below which a residual means too little: with 20, four standard errors are still exceeded once in a thousand times.
+const FEWEST: f64 = 20.0;
 
 /// Standard error, as a part of the nominal value, of what is not known: finite, so that it can be saved as text.
 const UNKNOWN: f64 = 1e9;

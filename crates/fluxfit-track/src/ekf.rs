@@ -38,6 +38,9 @@ const CONTRADICTION: f64 = 4.0;
 /// correlation, and some samples twice.
 const CAUTION: f64 = 2.0;
 
+/// Part of a value by which a filter that started badly is off: overconfident, it would stay there.
+const FAR: f64 = 0.1;
+
 /// Blocks of a contradiction after which the filter starts anew: half a second at 10 kHz.
 const PATIENCE: u32 = 100;
 
@@ -52,8 +55,8 @@ pub struct WatchedEkf {
     active: [bool; LEVELS.len()],
     best: usize,
     periods: u64,
-    /// Current, A, and voltage, V, from which noise and levels are derived.
-    scale: [f64; 2],
+    /// Current, A, voltage, V, and noise of each current, A, with which a filter starts.
+    scale: [f64; 3],
     last_i: [f64; 2],
     /// What least squares said last.
     watch: Estimate,
@@ -65,9 +68,9 @@ pub struct WatchedEkf {
 }
 
 impl WatchedEkf {
-    /// A filter for constant parameters, or one that tracks them, at these values; current, A, and voltage, V, as in `scale` are usual.
+    /// A filter for constant parameters, or one that tracks them, at these values; current, A, voltage, V, and noise, A, as in `scale` are usual.
     /// `is_guessed`: which values are no more than a guess.
-    pub fn new(start: &Start, values: [f64; PARAMETERS], is_guessed: [bool; PARAMETERS], scale: [f64; 2], is_tracking: bool) -> Self {
+    pub fn new(start: &Start, values: [f64; PARAMETERS], is_guessed: [bool; PARAMETERS], scale: [f64; 3], is_tracking: bool) -> Self {
         // Of constant parameters all blocks count.
         let rls = Rls::new(start, values, if is_tracking { Form::Gated } else { Form::Constant });
         let mut pair = Self {
@@ -99,7 +102,7 @@ impl WatchedEkf {
 
     /// Goes on by a period to a current, A.
     pub fn advance(&mut self, period: &Period<f64>, i: [f64; 2]) {
-        self.scale = [self.scale[0].max(i[0].hypot(i[1])), self.scale[1].max(period.u[0].hypot(period.u[1]))];
+        self.scale = [self.scale[0].max(i[0].hypot(i[1])), self.scale[1].max(period.u[0].hypot(period.u[1])), self.scale[2]];
         self.last_i = i;
         for (filter, _) in self.bank.iter_mut().zip(self.active).filter(|(_, active)| *active) {
             filter.advance(period, i);
@@ -141,7 +144,8 @@ impl WatchedEkf {
         let (own, own_errors) = (filter.values(), filter.standard_errors());
         let trusted: [bool; PARAMETERS] = std::array::from_fn(|j| relative[j] < TRUSTED && values[j] > 0.0);
         let contradicts = |j: usize, error: f64| trusted[j] && (own[j] - values[j]).abs() > CONTRADICTION * error;
-        let is_new = (0..PARAMETERS).any(|j| trusted[j] && (self.is_guessed[j] || !self.was_trusted[j] && contradicts(j, errors[j])));
+        let is_off = |j: usize| (own[j] - values[j]).abs() > FAR * values[j] && contradicts(j, errors[j]);
+        let is_new = (0..PARAMETERS).any(|j| trusted[j] && (self.is_guessed[j] || !self.was_trusted[j] && is_off(j)));
         let contradicts = (0..PARAMETERS).any(|j| contradicts(j, errors[j].hypot(own_errors[j])));
         self.contradictions = if contradicts { self.contradictions + 1 } else { 0 };
         for j in 0..PARAMETERS {
@@ -170,6 +174,8 @@ impl WatchedEkf {
         let current = self.start.rating.map_or(self.scale[0], |rating| rating[0]);
         let mut settings =
             if self.is_tracking { EkfSettings::tracking(nominal, current) } else { EkfSettings::constant(nominal, current) };
+        // With too little noise at first, the filter would be overconfident before it knows better.
+        settings.noise = settings.noise.max(self.scale[2] * self.scale[2]);
         for (j, known) in self.start.known(&nominal).into_iter().enumerate() {
             if let Some(error) = known.or(errors[j]) {
                 settings.start_error[j] = error;

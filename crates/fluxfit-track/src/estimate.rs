@@ -3,9 +3,9 @@
 use fluxfit::motor::PARAMETERS;
 use serde::{Deserialize, Serialize};
 
-/// Largest relative standard error with which the last samples determine a parameter: its 95 % interval is then half its value, the
-/// limit of `weak` in `fluxfit identify`.
-pub(crate) const IDENTIFIABLE: f64 = 0.25;
+/// Largest relative standard error of block least squares with which the last samples determine a parameter. With a larger one, only
+/// model errors and chance tell the parameter, and the interval of a Kalman filter is too narrow.
+pub(crate) const IDENTIFIABLE: f64 = 0.1;
 
 /// What an estimator knows after a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -50,6 +50,25 @@ impl LeadIn {
         &self.events
     }
 
+    /// Standard deviation of the noise of each current, A, from their second differences, in which changes of the current count as noise.
+    pub(crate) fn noise(&self) -> f64 {
+        let current = |event: &Event| match event {
+            Event::Begin(i) | Event::Period(_, i) => *i,
+        };
+        let second = |three: &[Event]| -> f64 {
+            let [a, b, c] = [0, 1, 2].map(|k| current(&three[k]));
+            (0..2).map(|axis| (a[axis] - 2.0 * b[axis] + c[axis]).powi(2)).sum()
+        };
+        let within = |three: &&[Event]| !three[1..].iter().any(|event| matches!(event, Event::Begin(_)));
+        let (mut sum, mut count) = (0.0, 0.0);
+        for three in self.events.windows(3).filter(within) {
+            sum += second(three);
+            count += 2.0;
+        }
+        // 1 + 4 + 1 times the variance of one sample.
+        if count > 0.0 { (sum / count / 6.0_f64).sqrt() } else { 0.0 }
+    }
+
     /// Values to begin with, and which of them come from the samples: from least squares where it tells them, else those that
     /// were given, else guesses from the largest current, A, voltage, V, and speed.
     pub(crate) fn values(&self, start: &Start, largest: [f64; 3]) -> ([f64; PARAMETERS], [bool; PARAMETERS]) {

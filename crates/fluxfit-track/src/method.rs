@@ -134,8 +134,8 @@ pub struct Beginning {
     pub seed: [f64; PARAMETERS],
     /// Which of these are guesses.
     pub is_guessed: [bool; PARAMETERS],
-    /// Usual current, A, and voltage, V.
-    pub scale: [f64; 2],
+    /// Usual current, A, voltage, V, and noise of each current, A.
+    pub scale: [f64; 3],
 }
 
 /// A running estimator.

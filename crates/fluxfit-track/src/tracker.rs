@@ -92,7 +92,7 @@ impl Lane {
                     nominal: std::array::from_fn(|j| start.values[j].filter(|value| *value > 0.0).unwrap_or(seed[j])),
                     seed,
                     is_guessed: std::array::from_fn(|j| !is_found[j] && !is_given[j]),
-                    scale: [largest[0], largest[1]],
+                    scale: [largest[0], largest[1], lead_in.noise()],
                 };
                 let run = |method| {
                     let mut estimator = Estimator::new(method, &beginning);
