@@ -62,7 +62,7 @@ fn measured<T: Real>(name: &str, count: usize) {
 }
 
 fn main() {
-    let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(10_000_000);
+    let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(100_000);
     measured::<f64>("f64", count);
     measured::<f32>("f32", count);
 }

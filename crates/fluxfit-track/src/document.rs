@@ -134,5 +134,9 @@ impl TrackDocument {
 /// The name and the schema of each document of this crate.
 #[cfg(feature = "schema")]
 pub fn schemas() -> Vec<(&'static str, schemars::Schema)> {
-    vec![(TRACK, fluxfit::document::schema_of::<TrackDocument>())]
+    use crate::comparison::{ONLINE, OnlineDocument};
+    vec![
+        (TRACK, fluxfit::document::schema_of::<TrackDocument>()),
+        (ONLINE, fluxfit::document::schema_of::<OnlineDocument>()),
+    ]
 }

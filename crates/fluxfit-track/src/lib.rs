@@ -16,12 +16,14 @@
 //! | [`start`], [`lead_in`] | what is known before the first sample; the first samples |
 //! | [`method`] | the estimators, as one choice |
 //! | [`ekf`], [`rls`], [`forgetting`], [`instrumental_variable`], [`bias_compensated`], [`mras`], [`adaline`] | one estimator each |
+//! | [`comparison`] | all estimators on one log |
 //! | [`temperature`], [`document`] | temperatures of winding and magnets; the JSON document |
 //! | [`estimate`], [`verdict`] | what an estimator says; what may be said of a parameter |
 
 pub mod adaline;
 pub mod bias_compensated;
 mod cholesky;
+pub mod comparison;
 pub mod document;
 pub mod ekf;
 pub mod estimate;
