@@ -1,6 +1,12 @@
 //! Estimators on a stream, against the Cramér-Rao bound: many draws of the noise on the paper's rig, from random starts.
 
-use fluxfit::{Columns, frames::Dq, log::Row, motor::{Motor, PARAMETERS}, optimizer::Draws};
+use fluxfit::{
+    Columns,
+    frames::Dq,
+    log::Row,
+    motor::{Motor, PARAMETERS},
+    optimizer::Draws,
+};
 use fluxfit_core::period::arrival;
 use fluxfit_drive::{Scenario, simulate};
 use fluxfit_track::{Event, Method, Start, Stream, Timing, TrackSettings, Tracker};
@@ -35,7 +41,15 @@ pub struct Reached {
 pub fn rows(columns: &Columns, u: Option<(&[f64], &[f64])>) -> Vec<Row> {
     let (ud, uq) = u.unwrap_or((&columns.ud, &columns.uq));
     (0..columns.t.len())
-        .map(|k| Row { t: columns.t[k], ud: ud[k], uq: uq[k], id: columns.id[k], iq: columns.iq[k], omega_e: columns.omega_e[k], ..Row::default() })
+        .map(|k| Row {
+            t: columns.t[k],
+            ud: ud[k],
+            uq: uq[k],
+            id: columns.id[k],
+            iq: columns.iq[k],
+            omega_e: columns.omega_e[k],
+            ..Row::default()
+        })
         .collect()
 }
 
@@ -108,13 +122,20 @@ pub fn reached(scenario: &Scenario, noise: f64, methods: &[Method], draws: u64, 
     Ok(methods.iter().enumerate().map(|(place, method)| summary(*method, place, &ends, &bound)).collect())
 }
 
-fn summary(method: Method, place: usize, ends: &[Vec<([f64; PARAMETERS], Option<[f64; PARAMETERS]>)>], bound: &[f64; PARAMETERS]) -> Reached {
+fn summary(
+    method: Method,
+    place: usize,
+    ends: &[Vec<([f64; PARAMETERS], Option<[f64; PARAMETERS]>)>],
+    bound: &[f64; PARAMETERS],
+) -> Reached {
     let count = ends.len() as f64;
     let of = |j: usize, value: &dyn Fn(f64, Option<f64>) -> f64| {
         ends.iter().map(|ends| value(ends[place].0[j], ends[place].1.map(|errors| errors[j]))).sum::<f64>() / count
     };
     let coverage = ends.first().and_then(|ends| ends[place].1).map(|_| {
-        std::array::from_fn(|j| of(j, &|error, standard| f64::from(u8::from(standard.is_some_and(|own| error.abs() <= HALF_WIDTH95 * own)))))
+        std::array::from_fn(|j| {
+            of(j, &|error, standard| f64::from(u8::from(standard.is_some_and(|own| error.abs() <= HALF_WIDTH95 * own))))
+        })
     });
     Reached {
         method,
@@ -159,8 +180,8 @@ impl Warming {
     }
 
     /// The next row, whose voltage acts from it on. i_d alternates between 0 and -2 A every 0.25 s, the speed by 10 % over 2 s; from 20 to
-    /// 30 s both stand still, if the motor warms. i_q is 2 A more or less while the speed rises or falls, and from 40 s on 3 A more, as where
-    /// saturation comes from load.
+    /// 30 s both stand still, if the motor warms. i_q is 2 A more or less while the speed rises or falls, and from 40 s on 3 A more, as
+    /// where saturation comes from load.
     pub fn row(&mut self, has_quiet: bool) -> Row {
         let t = self.k as f64 * PERIOD;
         let is_quiet = has_quiet && (20.0..30.0).contains(&t);
@@ -182,7 +203,11 @@ impl Warming {
         let next_swing = if has_quiet && (20.0..30.0).contains(&next) { 0.0 } else { 0.1 * (std::f64::consts::TAU * next / 2.0).sin() };
         let omega = 0.5 * (omega_e + 419.0 * (1.0 + next_swing));
         // The stream turns the vector from the middle that the speed of the row foretells to the middle that came.
-        self.i = fluxfit_core::period::current_after(&theta, self.i, &fluxfit_core::Period { u: turned(u, (omega_e - omega) * 0.5 * PERIOD), omega_e: omega, length: PERIOD });
+        self.i = fluxfit_core::period::current_after(
+            &theta,
+            self.i,
+            &fluxfit_core::Period { u: turned(u, (omega_e - omega) * 0.5 * PERIOD), omega_e: omega, length: PERIOD },
+        );
         row
     }
 }

@@ -39,8 +39,10 @@ pub struct FluxfitEstimate {
 }
 
 /// Does not compile unless the memory is enough for what is put into it.
-const FITS: [(); 1] = [(); (size_of::<BlockRls<f32>>() <= RLS_BYTES && align_of::<BlockRls<f32>>() <= align_of::<FluxfitRls>()
-    && size_of::<Ekf<f32>>() <= EKF_BYTES && align_of::<Ekf<f32>>() <= align_of::<FluxfitEkf>()) as usize];
+const FITS: [(); 1] = [(); (size_of::<BlockRls<f32>>() <= RLS_BYTES
+    && align_of::<BlockRls<f32>>() <= align_of::<FluxfitRls>()
+    && size_of::<Ekf<f32>>() <= EKF_BYTES
+    && align_of::<Ekf<f32>>() <= align_of::<FluxfitEkf>()) as usize];
 const _: [(); 1] = FITS;
 
 /// Creates block least squares with gated forgetting; `nominal` has rs, ld, lq and psi_f within a factor of some tens.

@@ -57,8 +57,13 @@ fn measured<T: Real>(name: &str, count: usize) {
         }
     }
     let of_ekf = begun.elapsed().as_secs_f64() / count as f64;
-    println!("{name}: block least squares {:.1} ns, worst error {:.3} %; Kalman filter {:.0} ns, worst error {:.3} %, least standard error {least:.3e}",
-        1e9 * of_rls, 100.0 * worst(rls.estimate().value), 1e9 * of_ekf, 100.0 * worst(ekf.values()));
+    println!(
+        "{name}: block least squares {:.1} ns, worst error {:.3} %; Kalman filter {:.0} ns, worst error {:.3} %, least standard error {least:.3e}",
+        1e9 * of_rls,
+        100.0 * worst(rls.estimate().value),
+        1e9 * of_ekf,
+        100.0 * worst(ekf.values())
+    );
 }
 
 fn main() {

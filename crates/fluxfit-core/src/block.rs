@@ -59,7 +59,17 @@ impl<T: Real> Block<T> {
     /// A block of so many periods, at least one, from a measured current on.
     pub fn new(periods: u32, start: [T; 2]) -> Self {
         let zero = [T::ZERO; 2];
-        Self { wanted: if periods == 0 { 1 } else { periods }, count: 0, start, last: start, i: zero, omega_i: zero, omega: T::ZERO, u: zero, time: T::ZERO }
+        Self {
+            wanted: if periods == 0 { 1 } else { periods },
+            count: 0,
+            start,
+            last: start,
+            i: zero,
+            omega_i: zero,
+            omega: T::ZERO,
+            u: zero,
+            time: T::ZERO,
+        }
     }
 
     /// Adds a period with the current measured at its end; the equations, if the block is full, with coefficients for parameters as parts
@@ -72,10 +82,7 @@ impl<T: Real> Block<T> {
         let sinc = T::ONE - x_squared * (T::of(1.0 / 6.0) - x_squared * T::of(1.0 / 120.0));
         let u = [period.u[0] * sinc, period.u[1] * sinc];
         let bow = omega * length * length * T::of(1.0 / 12.0);
-        let i = [
-            half * (self.last[0] + end[0]) - bow * u[1] / nominal[1],
-            half * (self.last[1] + end[1]) + bow * u[0] / nominal[2],
-        ];
+        let i = [half * (self.last[0] + end[0]) - bow * u[1] / nominal[1], half * (self.last[1] + end[1]) + bow * u[0] / nominal[2]];
         for c in 0..2 {
             self.i[c] += i[c];
             self.omega_i[c] += omega * i[c];

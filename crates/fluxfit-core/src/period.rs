@@ -152,8 +152,7 @@ impl<T: Real> Arrival<T> {
 fn part_of<T: Real>(rates: &Rates<T>, i: [T; 2], u_start: [T; 2], h: T) -> Arrival<T> {
     let omega_e = rates.omega_e;
     let [inv_d, inv_q] = rates.inverse;
-    let mut arrival =
-        Arrival { i, by_current: [[T::ONE, T::ZERO], [T::ZERO, T::ONE]], by_parameter: [[T::ZERO; 2]; PARAMETERS] };
+    let mut arrival = Arrival { i, by_current: [[T::ONE, T::ZERO], [T::ZERO, T::ONE]], by_parameter: [[T::ZERO; 2]; PARAMETERS] };
     let (mut u, mut term, mut weight) = (u_start, i, T::ONE);
     let mut by_current = arrival.by_current;
     let mut by_parameter = [[T::ZERO; 2]; PARAMETERS];
@@ -205,10 +204,7 @@ mod tests {
             let angle = period.omega_e * (0.5 * period.length - t);
             let (sin, cos) = libm::sincos(angle);
             let u = [cos * period.u[0] - sin * period.u[1], sin * period.u[0] + cos * period.u[1]];
-            [
-                (u[0] - rs * i[0] + period.omega_e * lq * i[1]) / ld,
-                (u[1] - rs * i[1] - period.omega_e * (ld * i[0] + psi_f)) / lq,
-            ]
+            [(u[0] - rs * i[0] + period.omega_e * lq * i[1]) / ld, (u[1] - rs * i[1] - period.omega_e * (ld * i[0] + psi_f)) / lq]
         };
         let along = |i: [f64; 2], by: f64, k: [f64; 2]| [i[0] + by * k[0], i[1] + by * k[1]];
         (0..steps).fold(i, |i, step| {

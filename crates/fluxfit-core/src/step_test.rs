@@ -35,7 +35,13 @@ impl<T: Real> StepTest<T> {
 
     /// Notes a period: derivatives of its current, those to the scaled parameters as columns, its innovations, A, and their variance, A².
     /// At the end of a window with a step: which parameter, and its squared size.
-    pub fn note(&mut self, by_current: &[[T; 2]; 2], by_scaled: &[[T; 2]; PARAMETERS], innovation: [T; 2], variance: T) -> Option<(usize, T)> {
+    pub fn note(
+        &mut self,
+        by_current: &[[T; 2]; 2],
+        by_scaled: &[[T; 2]; PARAMETERS],
+        innovation: [T; 2],
+        variance: T,
+    ) -> Option<(usize, T)> {
         for j in 0..PARAMETERS {
             let [d, q] = self.g[j];
             let moved = |c: usize| by_current[0][c] * d + by_current[1][c] * q + by_scaled[j][c];

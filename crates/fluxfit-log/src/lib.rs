@@ -49,6 +49,6 @@ pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container};
 pub use note::Note;
 pub use reading::{
-    InspectedColumn, Inspection, LAYOUTS, Layout, LiveLog, LogOptions, Mapping, Park, ReadCharacteristic, ReadColumn, ReadLog, inspect, parse_log,
-    read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping,
+    InspectedColumn, Inspection, LAYOUTS, Layout, LiveLog, LogOptions, Mapping, Park, ReadCharacteristic, ReadColumn, ReadLog, inspect,
+    parse_log, read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping,
 };

@@ -174,7 +174,9 @@ impl Problem {
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
             Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::Duplicate { .. } => FileErrorKind::Columns,
-            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => FileErrorKind::Columns,
+            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
+                FileErrorKind::Columns
+            }
             Self::AmbiguousQuantity { .. } | Self::LoadCurve => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,

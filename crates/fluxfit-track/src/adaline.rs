@@ -3,8 +3,8 @@
 //! When to use it: for comparison. It has no error covariance; each stage inherits the error of the one before (0.2 % of lq are 4 % of rs);
 //! and without steps of i_d, rs and ld stay where they began.
 //!
-//! The stages are decoupled as in Liu et al. (2011, doi 10.1109/TIE.2010.2054055): at i_d = 0 lq and psi_f are learned, in the other mode rs,
-//! psi_f and ld from the difference to what was stored at i_d = 0 (subscript 0), with `h = omega i_q / (omega_0 i_q0)`,
+//! The stages are decoupled as in Liu et al. (2011, doi 10.1109/TIE.2010.2054055): at i_d = 0 lq and psi_f are learned, in the other mode
+//! rs, psi_f and ld from the difference to what was stored at i_d = 0 (subscript 0), with `h = omega i_q / (omega_0 i_q0)`,
 //! `g = omega / omega_0`:
 //!
 //! ```text

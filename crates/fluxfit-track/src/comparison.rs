@@ -109,12 +109,23 @@ pub fn compare_online(log: &Log, timing: Timing, start: &Start, truth: Option<&M
             let reference = truth.map(|truth| truth.get(parameter)).or(batch[j].value);
             EndEntry {
                 value,
-                standard_error: estimate.and_then(|estimate| estimate.standard_errors).map(|errors| errors[j]).filter(|error| error.is_finite()),
+                standard_error: estimate
+                    .and_then(|estimate| estimate.standard_errors)
+                    .map(|errors| errors[j])
+                    .filter(|error| error.is_finite()),
                 identifiable: estimate.and_then(|estimate| estimate.identifiable).map(|identifiable| identifiable[j]),
-                error_percent: value.zip(reference).map(|(value, reference)| 100.0 * (value / reference - 1.0)).filter(|error| error.is_finite()),
+                error_percent: value
+                    .zip(reference)
+                    .map(|(value, reference)| 100.0 * (value / reference - 1.0))
+                    .filter(|error| error.is_finite()),
             }
         };
-        EstimatorEntry { method: method.key(), label: method.label(), has_covariance: method.has_covariance(), parameters: ByParameter::each(end) }
+        EstimatorEntry {
+            method: method.key(),
+            label: method.label(),
+            has_covariance: method.has_covariance(),
+            parameters: ByParameter::each(end),
+        }
     };
     OnlineDocument {
         schema: ONLINE,

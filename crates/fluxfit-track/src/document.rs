@@ -135,8 +135,5 @@ impl TrackDocument {
 #[cfg(feature = "schema")]
 pub fn schemas() -> Vec<(&'static str, schemars::Schema)> {
     use crate::comparison::{ONLINE, OnlineDocument};
-    vec![
-        (TRACK, fluxfit::document::schema_of::<TrackDocument>()),
-        (ONLINE, fluxfit::document::schema_of::<OnlineDocument>()),
-    ]
+    vec![(TRACK, fluxfit::document::schema_of::<TrackDocument>()), (ONLINE, fluxfit::document::schema_of::<OnlineDocument>())]
 }

@@ -68,7 +68,7 @@ pub struct WatchedEkf {
 }
 
 impl WatchedEkf {
-    /// A filter for constant parameters, or one that tracks them, at these values; current, A, voltage, V, and noise, A, as in `scale` are usual.
+    /// A filter for constant parameters, or one that tracks them, at these values; `scale` has usual current, A, voltage, V, and noise, A.
     /// `is_guessed`: which values are no more than a guess.
     pub fn new(start: &Start, values: [f64; PARAMETERS], is_guessed: [bool; PARAMETERS], scale: [f64; 3], is_tracking: bool) -> Self {
         // Of constant parameters all blocks count.
@@ -172,8 +172,7 @@ impl WatchedEkf {
         let nominal: [f64; PARAMETERS] =
             std::array::from_fn(|j| known[j].and(self.start.values[j]).filter(|value| *value > 0.0).unwrap_or(values[j]));
         let current = self.start.rating.map_or(self.scale[0], |rating| rating[0]);
-        let mut settings =
-            if self.is_tracking { EkfSettings::tracking(nominal, current) } else { EkfSettings::constant(nominal, current) };
+        let mut settings = if self.is_tracking { EkfSettings::tracking(nominal, current) } else { EkfSettings::constant(nominal, current) };
         // With too little noise at first, the filter would be overconfident before it knows better.
         settings.noise = settings.noise.max(self.scale[2] * self.scale[2]);
         for (j, known) in self.start.known(&nominal).into_iter().enumerate() {

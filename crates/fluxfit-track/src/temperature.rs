@@ -90,7 +90,11 @@ mod tests {
     use super::*;
 
     fn parameters(rs: f64, psi_f: f64) -> [Tracked; 4] {
-        [rs, 5e-3, 12e-3, psi_f].map(|value| Tracked { value: Some(value), standard_error: Some(0.01 * value), verdict: Verdict::Identified })
+        [rs, 5e-3, 12e-3, psi_f].map(|value| Tracked {
+            value: Some(value),
+            standard_error: Some(0.01 * value),
+            verdict: Verdict::Identified,
+        })
     }
 
     #[test]

@@ -110,7 +110,8 @@ impl Lane {
     }
 }
 
-impl Tracker {    /// A tracker before its first row.
+impl Tracker {
+    /// A tracker before its first row.
     pub fn new(settings: TrackSettings) -> Self {
         let lanes = match settings.timing {
             Some(timing) => vec![Lane::new(timing)],
@@ -142,9 +143,7 @@ impl Tracker {    /// A tracker before its first row.
         if !self.lanes.iter().all(|lane| lane.estimator.is_some()) {
             return;
         }
-        self.lanes.sort_by(|a, b| {
-            a.surprise.total_cmp(&b.surprise)
-        });
+        self.lanes.sort_by(|a, b| a.surprise.total_cmp(&b.surprise));
         self.raced += RACE as f64 * self.lanes[0].stream.usual_period();
         let margin = self.lanes[1].surprise - self.lanes[0].surprise;
         if self.raced > EARLIEST_CHOICE && margin > CLEAR || self.raced > LATEST_CHOICE {

@@ -16,7 +16,13 @@ fn row(reached: &Reached) -> String {
     let four = |values: [f64; 4], digits: usize| values.map(|value| format!("{value:.digits$}")).join(" / ");
     let coverage = reached.coverage.map_or_else(|| "none".to_owned(), |coverage| four(coverage.map(|share| 100.0 * share), 1));
     let key = reached.method.key();
-    format!("| {key} | {} | {} | {coverage} | {}/{} |", four(reached.over_bound, 2), four(reached.bias_percent, 3), reached.settled, reached.draws)
+    format!(
+        "| {key} | {} | {} | {coverage} | {}/{} |",
+        four(reached.over_bound, 2),
+        four(reached.bias_percent, 3),
+        reached.settled,
+        reached.draws
+    )
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -37,7 +43,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     for method in [Method::EkfTracking, Method::Rls, Method::RlsExponential] {
         let followed = followed(method, NOISE, 1);
-        println!("warming, {}: rms % {:.3?}, quiet % {:.1?}, step {:.3} s, coverage {:.3?}", method.key(), followed.rms_percent, followed.quiet_percent, followed.step_s, followed.coverage);
+        println!(
+            "warming, {}: rms % {:.3?}, quiet % {:.1?}, step {:.3} s, coverage {:.3?}",
+            method.key(),
+            followed.rms_percent,
+            followed.quiet_percent,
+            followed.step_s,
+            followed.coverage
+        );
     }
     println!("false alarms in 300 s of constant parameters: {}", false_alarms(300, NOISE, 2));
     println!("rank-deficient logs, (printed, of them right) by parameter: {:?}", rank_deficient(200));

@@ -20,10 +20,14 @@ use std::path::Path;
 pub(super) fn run(arguments: &LogArguments, truth: Option<&Path>) -> Result<Status, CommandError> {
     let input = input::read(arguments)?;
     let truth = truth.map(read_truth).transpose()?.map(|truth| truth.motor);
-    let answer = terminal::working("identifying".to_owned(), || identify(&input.log, &input::request(arguments, &input)?).map_err(|error| CommandError::Usage(error.to_string())))?;
+    let answer = terminal::working("identifying".to_owned(), || {
+        identify(&input.log, &input::request(arguments, &input)?).map_err(|error| CommandError::Usage(error.to_string()))
+    })?;
     let of_fit = answer.identification.output.as_ref().map(|fit| fit.voltage_timing.value);
     let timing = arguments.voltage_timing.stated().or(of_fit).unwrap_or(VoltageTiming::Centered);
-    let unsupported = || CommandError::Usage("the voltages of this log stand still in the rotor's frame, which no estimator of a stream supports".to_owned());
+    let unsupported = || {
+        CommandError::Usage("the voltages of this log stand still in the rotor's frame, which no estimator of a stream supports".to_owned())
+    };
     let timing = Timing::of(timing).ok_or_else(unsupported)?;
     let batch = Parameter::ALL.map(|parameter| {
         let judgement = answer.parameter(parameter);

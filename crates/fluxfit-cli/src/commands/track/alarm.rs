@@ -21,14 +21,11 @@ pub(crate) fn parse(text: &str) -> Result<Alarm, String> {
     let known = || format!("\"{key}\" is not a parameter; the parameters are rs, ld, lq and psi_f");
     let parameter = parameter.ok_or_else(known)?;
     let both = change.starts_with(['+', '-']);
-    let size = fluxfit_units::parse_fraction(if both && !change.starts_with("+-") && !change.starts_with("+/-") { &change[1..] } else { change })
-        .map_err(|error| error.to_string())?;
+    let size =
+        fluxfit_units::parse_fraction(if both && !change.starts_with("+-") && !change.starts_with("+/-") { &change[1..] } else { change })
+            .map_err(|error| error.to_string())?;
     let is_signed = |sign: char| change.starts_with(sign) && !change.starts_with("+-") && !change.starts_with("+/-");
-    Ok(Alarm {
-        parameter,
-        fall: (!is_signed('+')).then_some(size),
-        rise: (!is_signed('-')).then_some(size),
-    })
+    Ok(Alarm { parameter, fall: (!is_signed('+')).then_some(size), rise: (!is_signed('-')).then_some(size) })
 }
 
 /// All bands, and whether one was left.

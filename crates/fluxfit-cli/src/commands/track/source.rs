@@ -48,13 +48,24 @@ pub(super) fn file(path: &Path, options: &LogOptions, take: &mut Take) -> Result
     drop(progress);
     read.notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
     if read.log.is_interpolated() {
-        terminal::warn_of("interpolated", "the channels of this log were sampled at different instants; what is told of it may be wrong: use fluxfit identify");
+        terminal::warn_of(
+            "interpolated",
+            "the channels of this log were sampled at different instants; what is told of it may be wrong: use fluxfit identify",
+        );
     }
     let columns = read.log.columns();
     interrupt::doing("tracking");
     interrupt::be_gentle(true);
     for k in 0..columns.t.len() {
-        let row = Row { t: columns.t[k], ud: columns.ud[k], uq: columns.uq[k], id: columns.id[k], iq: columns.iq[k], omega_e: columns.omega_e[k], ..Row::default() };
+        let row = Row {
+            t: columns.t[k],
+            ud: columns.ud[k],
+            uq: columns.uq[k],
+            id: columns.id[k],
+            iq: columns.iq[k],
+            omega_e: columns.omega_e[k],
+            ..Row::default()
+        };
         if !take(&row)? {
             break;
         }
@@ -79,7 +90,8 @@ pub(super) fn stream(path: &Path, follows: bool, options: &LogOptions, take: &mu
 
 /// Waits for connections, one after the other, and reads lines from each.
 pub(super) fn listen(place: &str, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
-    let cannot = |error: std::io::Error| CommandError::Usage(format!("{place} cannot be listened on: {error}; write HOST:PORT of this machine"));
+    let cannot =
+        |error: std::io::Error| CommandError::Usage(format!("{place} cannot be listened on: {error}; write HOST:PORT of this machine"));
     let listener = TcpListener::bind(place).map_err(cannot)?;
     if let Ok(address) = listener.local_addr() {
         terminal::note(&format!("listening on {address}"));

@@ -24,7 +24,9 @@ struct StateOf<'a> {
 /// Reads a state.
 pub(super) fn read(path: &Path) -> Result<Tracker, CommandError> {
     let bytes = input::read(path)?;
-    let refuse = |reason: String| FileError::from(Problem::Syntax { format: "a state that fluxfit track has saved", message: reason }).in_file(&input::name(path));
+    let refuse = |reason: String| {
+        FileError::from(Problem::Syntax { format: "a state that fluxfit track has saved", message: reason }).in_file(&input::name(path))
+    };
     let state: State = serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
     if state.schema != STATE {
         return Err(refuse(format!("its schema is {:?}", state.schema)).into());
