@@ -39,7 +39,7 @@ const CONTRADICTION: f64 = 4.0;
 const CAUTION: f64 = 2.0;
 
 /// Part of a value by which a filter that started badly is off: overconfident, it would stay there.
-const FAR: f64 = 0.1;
+const FAR: f64 = 0.2;
 
 /// Blocks of a contradiction after which the filter starts anew: half a second at 10 kHz.
 const PATIENCE: u32 = 100;

@@ -208,7 +208,7 @@ fn lines_are_written_as_rows_arrive() {
     assert!((running.line()["t"].as_f64().unwrap() - 0.3).abs() < 1e-9);
     assert!(begun.elapsed() < Duration::from_millis(100), "{:?}", begun.elapsed());
     drop(input);
-    assert_eq!(running.until(0.3).get("last"), Some(&false.into()));
+    assert_eq!(running.until(0.3).get("last"), Some(&true.into()));
     assert!(running.child.wait().is_ok());
 }
 
