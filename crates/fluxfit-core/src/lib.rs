@@ -32,6 +32,7 @@
 //! | [`step_test`] | likelihood-ratio test for steps of a parameter |
 //! | [`ekf`] | extended Kalman filter of currents and parameters |
 #![no_std]
+#![allow(clippy::needless_range_loop, reason = "the formulas of matrices have indices")]
 
 pub mod block;
 pub mod block_rls;

@@ -39,12 +39,12 @@ pub trait Real:
 
     /// The larger of two numbers; the other one, if one is NaN.
     fn larger(self, other: Self) -> Self {
-        if self > other || other != other { self } else { other }
+        if self > other || other.partial_cmp(&other).is_none() { self } else { other }
     }
 
     /// The smaller of two numbers; the other one, if one is NaN.
     fn smaller(self, other: Self) -> Self {
-        if self < other || other != other { self } else { other }
+        if self < other || other.partial_cmp(&other).is_none() { self } else { other }
     }
 }
 

@@ -19,6 +19,7 @@
 //! | [`comparison`] | all estimators on one log |
 //! | [`temperature`], [`document`] | temperatures of winding and magnets; the JSON document |
 //! | [`estimate`], [`verdict`] | what an estimator says; what may be said of a parameter |
+#![allow(clippy::needless_range_loop, reason = "the formulas of matrices have indices")]
 
 pub mod adaline;
 pub mod bias_compensated;
