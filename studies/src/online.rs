@@ -9,7 +9,7 @@ use fluxfit::{
 };
 use fluxfit_core::period::arrival;
 use fluxfit_drive::{Scenario, simulate};
-use fluxfit_track::{Event, Method, Start, Stream, Timing, TrackSettings, Tracker};
+use fluxfit_track::{Estimator, Event, Method, Start, Stream, Timing, TrackSettings, Tracker};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use std::error::Error;
@@ -33,6 +33,10 @@ pub struct Reached {
     pub coverage: Option<[f64; PARAMETERS]>,
     /// Draws in which all four ended within 5 %.
     pub settled: usize,
+    /// Draws in which a filter was started anew.
+    pub anew: usize,
+    /// Root mean square of the errors over the bound, in the other draws.
+    pub over_bound_otherwise: [f64; PARAMETERS],
     /// Draws.
     pub draws: usize,
 }
@@ -90,6 +94,9 @@ pub fn random_start(motor: &Motor, factor: f64, draws: &mut Draws) -> Start {
     Start { values: motor.to_array().map(|value| Some(off(value, draws))), ..Start::default() }
 }
 
+/// Of one draw, for each method: errors as parts of the truth, standard errors likewise, and whether a filter started anew.
+type Ends = Vec<([f64; PARAMETERS], Option<[f64; PARAMETERS]>, bool)>;
+
 /// What the estimators reach in so many draws of a scenario's noise, from starts within a factor of the truth.
 ///
 /// # Errors
@@ -99,8 +106,6 @@ pub fn reached(scenario: &Scenario, noise: f64, methods: &[Method], draws: u64, 
     let truth = motor.to_array();
     let first = simulate(scenario, 0, || ())?;
     let bound = bound(&rows(&first.columns, Some((&first.ud_ref, &first.uq_ref))), &motor, noise);
-    // Of each draw and method: errors as parts of the truth, and standard errors.
-    type Ends = Vec<([f64; PARAMETERS], Option<[f64; PARAMETERS]>)>;
     let ends: Vec<Ends> = (0..draws)
         .into_par_iter()
         .map(|draw| -> Result<Ends, String> {
@@ -111,9 +116,10 @@ pub fn reached(scenario: &Scenario, noise: f64, methods: &[Method], draws: u64, 
                 let mut tracker = Tracker::new(TrackSettings { method: *method, timing: Some(COMMANDS), start });
                 rows.iter().for_each(|row| tracker.push(row));
                 let estimate = tracker.estimator().map(fluxfit_track::Estimator::estimate);
-                estimate.map_or(([f64::NAN; PARAMETERS], None), |estimate| {
+                estimate.map_or(([f64::NAN; PARAMETERS], None, false), |estimate| {
                     let error = std::array::from_fn(|j| estimate.values[j] / truth[j] - 1.0);
-                    (error, estimate.standard_errors.map(|errors| std::array::from_fn(|j| errors[j] / truth[j])))
+                    let is_anew = matches!(tracker.estimator(), Some(Estimator::Ekf(filter)) if filter.restarts() > 0);
+                    (error, estimate.standard_errors.map(|errors| std::array::from_fn(|j| errors[j] / truth[j])), is_anew)
                 })
             };
             Ok(methods.iter().map(end).collect())
@@ -122,12 +128,7 @@ pub fn reached(scenario: &Scenario, noise: f64, methods: &[Method], draws: u64, 
     Ok(methods.iter().enumerate().map(|(place, method)| summary(*method, place, &ends, &bound)).collect())
 }
 
-fn summary(
-    method: Method,
-    place: usize,
-    ends: &[Vec<([f64; PARAMETERS], Option<[f64; PARAMETERS]>)>],
-    bound: &[f64; PARAMETERS],
-) -> Reached {
+fn summary(method: Method, place: usize, ends: &[Ends], bound: &[f64; PARAMETERS]) -> Reached {
     let count = ends.len() as f64;
     let of = |j: usize, value: &dyn Fn(f64, Option<f64>) -> f64| {
         ends.iter().map(|ends| value(ends[place].0[j], ends[place].1.map(|errors| errors[j]))).sum::<f64>() / count
@@ -142,6 +143,11 @@ fn summary(
         over_bound: std::array::from_fn(|j| of(j, &|error, _| error * error).sqrt() / bound[j]),
         bias_percent: std::array::from_fn(|j| 100.0 * of(j, &|error, _| error)),
         coverage,
+        anew: ends.iter().filter(|ends| ends[place].2).count(),
+        over_bound_otherwise: std::array::from_fn(|j| {
+            let others: Vec<f64> = ends.iter().filter(|ends| !ends[place].2).map(|ends| ends[place].0[j].powi(2)).collect();
+            (others.iter().sum::<f64>() / others.len() as f64).sqrt() / bound[j]
+        }),
         settled: ends.iter().filter(|ends| ends[place].0.iter().all(|error| error.abs() < 0.05)).count(),
         draws: ends.len(),
     }
@@ -247,7 +253,7 @@ pub fn followed(method: Method, noise: f64, draw: u64) -> Followed {
         let row = motor.row(true);
         tracker.push(&row);
         let Some(estimator) = tracker.estimator() else { continue };
-        if motor.k % 10 != 0 {
+        if !motor.k.is_multiple_of(10) {
             continue;
         }
         let (truth, estimate) = (warming(row.t), estimator.estimate());
@@ -261,7 +267,7 @@ pub fn followed(method: Method, noise: f64, draw: u64) -> Followed {
             squares += SVector::from(error.map(|error| error * error));
             counted += 1;
         }
-        if row.t > 1.0 && motor.k % 1000 == 0 {
+        if row.t > 1.0 && motor.k.is_multiple_of(1000) {
             for (j, tracked) in tracker.parameters_or_nothing().iter().enumerate() {
                 if let Some([low, high]) = tracked.interval() {
                     printed[j] += 1;

@@ -1,5 +1,8 @@
 //! The C example is compiled against the header and the static library, and run.
 
+// Helpers of tests fail as tests do.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use fluxfit_core_c::{EKF_BYTES, FluxfitEkf, FluxfitRls, RLS_BYTES};
 use std::{
     env, fs,

@@ -33,6 +33,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let best = [Method::Ekf, Method::EkfTracking, Method::Rls];
     for method in reached(&scenario, NOISE, &best, draws, 1.35)? {
         println!("{}", row(&method));
+        println!(
+            "{}: a filter started anew in {} draws; rms / bound of the others {:.2?}",
+            method.method.key(),
+            method.anew,
+            method.over_bound_otherwise
+        );
     }
     let others: Vec<Method> = Method::ALL.into_iter().filter(|method| !best.contains(method)).collect();
     for method in reached(&scenario, NOISE, &others, draws.min(500), 1.35)? {
