@@ -3,7 +3,7 @@
 //! When to use it: for comparison. Exponential forgetting runs away without excitation; the others lag a slow drift.
 //!
 //! - Fortescue, Kershenbaum and Ydstie (1981, doi 10.1016/0005-1098(81)90070-4): `lambda = 1 - e²/((1 + q) s² N0)`.
-//! - Fuzzy, after the idea of [8] of the paper: four rules on `|e|/s` and its change, as a Sugeno mean.
+//! - Fuzzy, after the idea of the paper's reference 8: four rules on `|e|/s` and its change, as a Sugeno mean.
 //! - Directional (Kulhavy 1987, doi 10.1016/0005-1098(87)90054-9): only in the direction of the row.
 
 use crate::estimate::Estimate;
