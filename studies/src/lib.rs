@@ -3,5 +3,6 @@
 pub mod coverage;
 pub mod drives;
 pub mod known;
+pub mod online;
 pub mod rated;
 pub mod remedies;

@@ -28,7 +28,7 @@ pub(crate) struct Telling {
     pub(crate) verbose: bool,
 }
 
-const EXIT_STATUS: &str = "Exit status: 0 identified, or agrees; 1 not all, or differs; 2 error; 130 Ctrl-C";
+const EXIT_STATUS: &str = "Exit status: 0 complete, agrees; 1 not all, differs; 2 error; 3 alarm; 130 ^C";
 
 /// The command with its verbs in groups.
 pub(crate) fn command() -> clap::Command {

@@ -40,6 +40,8 @@ mod report;
 mod schema;
 #[path = "command/simulate.rs"]
 mod simulate;
+#[path = "command/track.rs"]
+mod track;
 #[path = "command/validate.rs"]
 mod validate;
 

@@ -55,6 +55,6 @@ pub use groups::{Group, GroupColumn, GroupRows, read_groups};
 pub use memory_table::{MemoryColumn, MemoryTable, ReadRows};
 pub use note::Note;
 pub use reading::{
-    InspectedColumn, Inspection, LAYOUTS, Layout, LogOptions, Mapping, Park, ReadCharacteristic, ReadColumn, ReadLog, inspect, parse_log,
-    read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping, read_table,
+    InspectedColumn, Inspection, LAYOUTS, Layout, LiveLog, LogOptions, Mapping, Park, ReadCharacteristic, ReadColumn, ReadLog, inspect,
+    parse_log, read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping, read_table,
 };

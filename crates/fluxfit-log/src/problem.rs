@@ -11,6 +11,8 @@ pub(crate) enum Problem {
     Gzip { reason: String },
     #[error("this is {what}; save the table as CSV")]
     Document { what: &'static str },
+    #[error("a log that is read while it is written needs columns of ud, uq, id, iq and omega_e in dq; give the finished log as a file")]
+    NotLive,
     #[error("there is no row below the header; export the log with its rows")]
     NoRows,
     #[error("the cell is empty or NaN; write a number or remove the row")]
@@ -172,7 +174,9 @@ impl Problem {
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
             Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::Duplicate { .. } => FileErrorKind::Columns,
-            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle => FileErrorKind::Columns,
+            Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
+                FileErrorKind::Columns
+            }
             Self::AmbiguousQuantity { .. } | Self::LoadCurve => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,

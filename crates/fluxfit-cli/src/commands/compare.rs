@@ -1,6 +1,7 @@
 //! `fluxfit compare`: arguments to a request, the library's comparison to the terminal, to JSON and to a report.
 
 pub(crate) mod display;
+mod online;
 
 use super::{Status, input, report};
 use crate::{
@@ -55,6 +56,9 @@ pub(crate) struct Compare {
     /// File of true parameters (LOG.truth.json), for the errors of the runs
     #[arg(long, help_heading = "Prior knowledge", value_name = "FILE")]
     truth: Option<PathBuf>,
+    /// Compare the estimators of fluxfit track on this log instead, beside the batch answer
+    #[arg(long, help_heading = "Model", conflicts_with_all = ["model", "runs", "population", "iterations", "tolerance", "target_cost", "id_zero", "methods", "report", "figures"])]
+    online: bool,
 }
 
 /// Models that `compare` knows.
@@ -99,6 +103,9 @@ fn parse_id_zero(text: &str) -> Result<IdZero, String> {
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
+    if arguments.online {
+        return online::run(&arguments.log, arguments.truth.as_deref());
+    }
     report::check(&arguments.log, arguments.truth.as_deref())?;
     check(arguments)?;
     let input = input::read(&arguments.log)?;

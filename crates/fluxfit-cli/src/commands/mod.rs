@@ -11,6 +11,7 @@ mod manual;
 pub(crate) mod report;
 mod simulate;
 mod status;
+mod track;
 pub(crate) mod validate;
 
 pub(crate) use status::Status;
@@ -20,7 +21,7 @@ use clap::Subcommand;
 
 /// The verbs as the first help shows them; a verb that no group names comes last.
 pub(crate) const GROUPS: [(&str, &[&str]); 3] = [
-    ("Motors", &["identify", "fleet", "validate", "compare"]),
+    ("Motors", &["identify", "track", "fleet", "validate", "compare"]),
     ("Logs", &["inspect", "formats", "simulate"]),
     ("Program", &["demo", "completions", "man", "help"]),
 ];
@@ -44,6 +45,10 @@ pub(crate) enum Verb {
     /// Many logs, or tables of many motors, on all cores. What fails is a row with its reason. A run that was killed goes on where it was,
     /// if it is started again.
     Fleet(Box<fleet::Fleet>),
+    /// Follow the parameters of a running motor
+    ///
+    /// Reads a log, or rows as they arrive, and tells each parameter over time with its interval. Exit status 3: an alarm.
+    Track(track::Track),
     /// Compare swarm optimizers: many runs of each, against the minimum
     ///
     /// They minimize the paper's fitness (11), or the output error. After Ctrl-C, the finished runs are shown.
@@ -72,6 +77,7 @@ impl Verb {
             Self::Demo(arguments) => demo::run(arguments),
             Self::Identify(arguments) => identify::run(arguments),
             Self::Fleet(arguments) => fleet::run(arguments),
+            Self::Track(arguments) => track::run(arguments),
             Self::Compare(arguments) => compare::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Validate(arguments) => validate::run(arguments),

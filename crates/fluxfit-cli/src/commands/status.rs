@@ -9,6 +9,8 @@ pub(crate) enum Status {
     Complete,
     /// The log cannot carry some parameter.
     Incomplete,
+    /// A parameter left the band that was asked for.
+    Alarm,
 }
 
 impl From<Status> for ExitCode {
@@ -16,6 +18,7 @@ impl From<Status> for ExitCode {
         match status {
             Status::Complete => Self::SUCCESS,
             Status::Incomplete => Self::from(1),
+            Status::Alarm => Self::from(3),
         }
     }
 }

@@ -181,6 +181,14 @@ pub(crate) fn release_notes() {
     held.into_iter().flatten().for_each(|message| say_note(&message));
 }
 
+/// Replaces the line of present values on a terminal; an empty one removes it.
+pub(crate) fn live(line: &str) {
+    if detail_level() > Detail::Quiet {
+        // Nobody listening on standard error is no reason to stop.
+        let _ = write!(anstream::stderr().lock(), "\r\x1b[2K{line}");
+    }
+}
+
 /// Says that a file was written, and what it is.
 pub(crate) fn wrote(what: &str, file: &Path) {
     if detail_level() > Detail::Quiet && file.as_os_str() != "-" {

@@ -4,7 +4,7 @@
 use super::{fluxfit, fluxfit_with_input, json};
 
 const LOG: &str = "examples/logs/paper_rig_pwm_noise.csv";
-const VERBS: [&str; 8] = ["identify", "fleet", "validate", "compare", "simulate", "demo", "completions", "man"];
+const VERBS: [&str; 9] = ["identify", "track", "fleet", "validate", "compare", "simulate", "demo", "completions", "man"];
 
 #[test]
 fn the_first_help_fits_a_screen_and_names_every_verb() {

@@ -13,6 +13,7 @@ fn console_blocks_are_true() {
         "docs/study.md",
         "docs/drive.md",
         "docs/report.md",
+        "docs/track.md",
         "docs/reproduction.md",
     ] {
         let text = std::fs::read_to_string(root().join(page)).unwrap();

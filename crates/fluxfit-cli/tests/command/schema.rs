@@ -16,7 +16,8 @@ fn file(document: &str) -> PathBuf {
 
 #[test]
 fn the_schemas_are_those_of_the_types() {
-    for (document, schema) in fluxfit::document::schemas().into_iter().chain(fluxfit_log::document::schemas()) {
+    let libraries = [fluxfit::document::schemas(), fluxfit_log::document::schemas(), fluxfit_track::document::schemas()];
+    for (document, schema) in libraries.into_iter().flatten() {
         let (file, text) = (file(document), serde_json::to_string_pretty(&schema).unwrap() + "\n");
         if env::var_os(WRITE).is_some() {
             fs::write(&file, &text).unwrap();

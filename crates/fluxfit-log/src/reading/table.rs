@@ -55,6 +55,11 @@ impl Table<'_> {
         }
     }
 
+    /// A table of text, of which the beginning is known.
+    pub(super) fn beginning(text: Text) -> Result<Table<'static>, FileError> {
+        TextTable::of(text).map(Table::Text)
+    }
+
     fn of_text(bytes: Box<dyn Read>, dbc: Option<&str>) -> Result<Table<'static>, FileError> {
         let text = Text::open(bytes)?;
         if Records::has(&text)? { Records::open(text, dbc).map(Table::Records) } else { TextTable::of(text).map(Table::Text) }

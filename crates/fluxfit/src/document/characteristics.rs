@@ -26,8 +26,8 @@ pub struct CharacteristicsDocument {
     /// How open-circuit voltages were taken: `stated` by the names of their columns, `lines-by-torque` or `phase-by-torque` by the torque of
     /// the short circuit, `ambiguous` where nothing tells, which leaves the parameters null; null without any.
     pub voltages: Option<&'static str>,
-    /// Where the voltages are ambiguous: inductances and flux times the pole pairs, and the resistance, if these are line to line. Of a phase,
-    /// all are sqrt 3 times as large.
+    /// Where the voltages are ambiguous: inductances and flux times the pole pairs, and the resistance, if these are line to line. Of a
+    /// phase, all are sqrt 3 times as large.
     pub times_pole_pairs_if_line_to_line: ByParameter<Option<f64>>,
     /// Pole pairs; null if they are not known.
     pub pole_pairs: Option<u32>,

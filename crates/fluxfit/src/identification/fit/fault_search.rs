@@ -212,8 +212,8 @@ impl FaultSearch<'_> {
         (0..self.objectives.len()).flat_map(with).collect()
     }
 
-    /// A filter of the voltages, with a reading that suits it, may stand in for an angle that is late: it is tried once more without it, and
-    /// another fault under another reading in its place.
+    /// A filter of the voltages, with a reading that suits it, may stand in for an angle that is late: the search goes back to before it,
+    /// and tries another fault under another reading in its place.
     fn exchange_filter(&mut self, faults: &[Fault], taken: &mut [FaultTrial]) {
         let is_filter = |trial: &FaultTrial| [Fault::DqVoltageFilter, Fault::DqFilter].contains(&trial.fault);
         let Some(place) = taken.iter().position(is_filter) else { return };

@@ -1,0 +1,71 @@
+//! `fluxfit compare --online`: the estimators of `track` on a log, beside the batch answer.
+
+use super::super::{Status, input};
+use crate::{
+    arguments::LogArguments,
+    error::CommandError,
+    json,
+    terminal::{self, HEADING, table, wrapped},
+};
+use fluxfit::{Parameter, VoltageTiming, identify};
+use fluxfit_setup::read_truth;
+use fluxfit_track::{
+    Start, Timing,
+    comparison::{BatchEntry, EndEntry, OnlineDocument, compare_online},
+};
+use fluxfit_units::significant;
+use std::path::Path;
+
+/// Runs it.
+pub(super) fn run(arguments: &LogArguments, truth: Option<&Path>) -> Result<Status, CommandError> {
+    let input = input::read(arguments)?;
+    let truth = truth.map(read_truth).transpose()?.map(|truth| truth.motor);
+    let answer = terminal::working("identifying".to_owned(), || {
+        identify(&input.log, &input::request(arguments, &input)?).map_err(|error| CommandError::Usage(error.to_string()))
+    })?;
+    let of_fit = answer.identification.output.as_ref().map(|fit| fit.voltage_timing.value);
+    let timing = arguments.voltage_timing.stated().or(of_fit).unwrap_or(VoltageTiming::Centered);
+    let unsupported = || {
+        CommandError::Usage("the voltages of this log stand still in the rotor's frame, which no estimator of a stream supports".to_owned())
+    };
+    let timing = Timing::of(timing).ok_or_else(unsupported)?;
+    let batch = Parameter::ALL.map(|parameter| {
+        let judgement = answer.parameter(parameter);
+        BatchEntry::new(judgement.value(), judgement.value().map(|_| judgement.uncertainty.statistical))
+    });
+    let motor = &input.motor;
+    let start = Start { values: [motor.rs, motor.ld, motor.lq, motor.psi_f], ..Start::default() };
+    let document = terminal::working("tracking".to_owned(), || compare_online(&input.log, timing, &start, truth.as_ref(), batch));
+    if arguments.json {
+        terminal::print(&json::text(&document)?)?;
+    } else {
+        terminal::print(&shown(&input.name, &document))?;
+    }
+    Ok(Status::Complete)
+}
+
+fn shown(name: &str, document: &OnlineDocument) -> String {
+    let reference = if document.truth.is_some() { "the true values" } else { "the batch values" };
+    let about = format!(
+        "{} rows, voltages read as {}; difference to {reference} at the end, %; in brackets what the estimator itself does not call identifiable",
+        document.rows, document.voltage_timing
+    );
+    let cell = |end: &EndEntry| {
+        let error = end.error_percent.map_or_else(|| "-".to_owned(), |error| significant(error, 2));
+        if end.identifiable == Some(false) { format!("[{error}]") } else { error }
+    };
+    let rows = document.estimators.iter().map(|estimator| {
+        let of = &estimator.parameters;
+        let covariance = if estimator.has_covariance { "yes" } else { "none" };
+        vec![estimator.method.to_owned(), cell(&of.rs), cell(&of.ld), cell(&of.lq), cell(&of.psi_f), covariance.to_owned()]
+    });
+    let bound = |entry: &BatchEntry| match (entry.value, entry.statistical) {
+        (Some(value), Some(error)) => format!("±{}", significant(100.0 * error / value.abs(), 2)),
+        _ => "-".to_owned(),
+    };
+    let of = &document.batch;
+    let last = vec!["batch, its noise".to_owned(), bound(&of.rs), bound(&of.ld), bound(&of.lq), bound(&of.psi_f), "yes".to_owned()];
+    let symbols = Parameter::ALL.map(Parameter::symbol);
+    let heading = ["", symbols[0], symbols[1], symbols[2], symbols[3], "covariance"];
+    format!("{HEADING}{name}{HEADING:#}\n{}\n{}", wrapped("", &about), table(&heading, 1, rows.chain([last])))
+}

@@ -1,0 +1,140 @@
+//! What is told while a motor is followed, and at the end.
+
+use crate::terminal::{self, HEADING, table, wrapped};
+use fluxfit::Parameter;
+use fluxfit_track::{Thermometer, Tracked, Tracker, document::TrackDocument};
+use fluxfit_units::{Scale, significant};
+use std::io::IsTerminal;
+
+/// How it is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    /// A table at the end; on a terminal, the present values while it runs.
+    Table,
+    Csv,
+    Json,
+}
+
+/// Lines at a rate in the log's time.
+#[derive(Debug)]
+pub(super) struct Lines {
+    format: Format,
+    every: f64,
+    /// Number of the interval in which a line was told last.
+    told: Option<f64>,
+    is_live: bool,
+}
+
+impl Lines {
+    pub(super) fn new(format: Format, every: f64) -> Self {
+        let is_live = format == Format::Table && std::io::stderr().is_terminal();
+        Self { format, every, told: None, is_live }
+    }
+
+    /// The header.
+    pub(super) fn begin(&self) -> std::io::Result<()> {
+        if self.format != Format::Csv {
+            return Ok(());
+        }
+        let mut header = "t".to_owned();
+        for parameter in Parameter::ALL {
+            let key = parameter.key();
+            header += &format!(",{key},{key}_low,{key}_high,{key}_verdict");
+        }
+        terminal::print(&(header + ",winding_temperature,magnet_temperature\n"))
+    }
+
+    /// Whether a line is due at this time.
+    pub(super) fn is_due(&mut self, t: f64) -> bool {
+        // A sample at a multiple of the interval belongs to it, whatever the rounding.
+        let interval = (t / self.every + 1e-9).floor();
+        let is_due = self.told.is_none_or(|told| told != interval);
+        self.told = Some(interval);
+        is_due
+    }
+
+    /// Tells what is known now.
+    pub(super) fn show(&self, tracker: &Tracker, thermometer: Option<&Thermometer>, last: bool) -> std::io::Result<()> {
+        match self.format {
+            Format::Json => {
+                let document = TrackDocument::of(tracker, thermometer, last);
+                terminal::print(&(serde_json::to_string(&document)? + "\n"))
+            }
+            Format::Csv => terminal::print(&csv(tracker, thermometer)),
+            Format::Table if self.is_live => {
+                terminal::live(&live(tracker));
+                Ok(())
+            }
+            Format::Table => Ok(()),
+        }
+    }
+
+    /// Tells the state at the end.
+    pub(super) fn end(&self, name: &str, tracker: &Tracker, thermometer: Option<&Thermometer>) -> std::io::Result<()> {
+        if self.is_live {
+            terminal::live("");
+        }
+        match self.format {
+            Format::Table => terminal::print(&at_the_end(name, tracker, thermometer)),
+            Format::Csv | Format::Json => self.show(tracker, thermometer, true),
+        }
+    }
+}
+
+fn csv(tracker: &Tracker, thermometer: Option<&Thermometer>) -> String {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let parameters = tracker.parameters_or_nothing();
+    let mut line = tracker.time().to_string();
+    for tracked in &parameters {
+        let [low, high] = tracked.interval().map_or([None; 2], |ends| ends.map(Some));
+        line += &format!(",{},{},{},{}", number(tracked.value), number(low), number(high), tracked.verdict.key());
+    }
+    let told = thermometer.map(|thermometer| thermometer.read(&parameters));
+    let winding = told.and_then(|told| told.winding).map(|(value, _)| value);
+    let magnets = told.and_then(|told| told.magnets).map(|(value, _)| value);
+    line + &format!(",{},{}\n", number(winding), number(magnets))
+}
+
+fn shown(parameter: Parameter, tracked: &Tracked) -> (String, String) {
+    let Some(value) = tracked.value else { return ("-".to_owned(), String::new()) };
+    let scale = Scale::for_value(parameter, value);
+    let error = tracked.standard_error.unwrap_or(value.abs() * 1e-3);
+    (scale.format(value, error), scale.unit(parameter.unit()))
+}
+
+/// A line for a terminal.
+fn live(tracker: &Tracker) -> String {
+    let values = Parameter::ALL.into_iter().zip(tracker.parameters_or_nothing()).map(|(parameter, tracked)| {
+        let (value, unit) = shown(parameter, &tracked);
+        format!("{} {value} {unit}", parameter.symbol())
+    });
+    format!("{:.1} s  {}", tracker.time(), values.collect::<Vec<_>>().join("  "))
+}
+
+fn at_the_end(name: &str, tracker: &Tracker, thermometer: Option<&Thermometer>) -> String {
+    let parameters = tracker.parameters_or_nothing();
+    let (timing, is_settled) = tracker.timing();
+    let settled = if is_settled { "" } else { ", which is not settled yet" };
+    let about = format!(
+        "{} rows to t = {} s; {}; voltages read as {}{settled}",
+        tracker.rows(),
+        significant(tracker.time(), 4),
+        tracker.settings().method.label(),
+        timing.key(),
+    );
+    let rows = Parameter::ALL.into_iter().zip(&parameters).map(|(parameter, tracked)| {
+        let (value, unit) = shown(parameter, tracked);
+        let margin = match (tracked.half_width(), tracked.value) {
+            (Some(half_width), Some(value)) => format!("±{} %", significant(100.0 * half_width / value.abs(), 2)),
+            _ => String::new(),
+        };
+        vec![parameter.symbol().to_owned(), value, unit, margin, tracked.verdict.to_string()]
+    });
+    let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n{}", wrapped("", &about), table(&["", "value", "", "95 %", "now"], 1, rows));
+    let told = thermometer.map(|thermometer| thermometer.read(&parameters));
+    let temperatures = [("winding", told.and_then(|told| told.winding)), ("magnets", told.and_then(|told| told.magnets))];
+    for (what, (value, margin)) in temperatures.into_iter().filter_map(|(what, told)| Some((what, told?))) {
+        text += &format!("\n{what}: {value:.1} ±{margin:.1} degC");
+    }
+    if text.ends_with('\n') { text } else { text + "\n" }
+}

@@ -1,0 +1,73 @@
+//! Nanoseconds a sample of each estimator, and a long run in single precision: `speed [PERIODS]`.
+// Numbers on standard output are what this program is for.
+#![allow(clippy::print_stdout)]
+
+use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, Period, Real, period::current_after};
+use std::time::Instant;
+
+const TRUTH: [f64; 4] = [0.958, 5.25e-3, 12e-3, 0.1827];
+
+/// Periods that are simulated once and then repeated: two changes of i_d, one of the speed.
+const RECORDED: usize = 20_000;
+
+fn recorded<T: Real>() -> Vec<(Period<T>, [T; 2])> {
+    let mut i = [0.0, 9.0];
+    // Twice around, so that the end leads to the beginning.
+    let mut periods = Vec::new();
+    let mut state = 1_u32;
+    let mut noise = || {
+        let uniform = |state: &mut u32| {
+            *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(*state) / f64::from(u32::MAX) - 0.5
+        };
+        0.04 * (0..12).map(|_| uniform(&mut state)).sum::<f64>()
+    };
+    for k in 0..2 * RECORDED {
+        let id = if k / 2500 % 2 == 1 { -2.0 } else { 0.0 };
+        let omega_e = 419.0 + 40.0 * (k as f64 * std::f64::consts::TAU / RECORDED as f64).sin();
+        let u = [
+            600.0 * TRUTH[1] * (id - i[0]) - omega_e * TRUTH[2] * 9.0 + TRUTH[0] * id,
+            600.0 * TRUTH[2] * (9.0 - i[1]) + omega_e * (TRUTH[1] * id + TRUTH[3]) + TRUTH[0] * 9.0,
+        ];
+        i = current_after(&TRUTH, i, &Period { u, omega_e, length: 1e-4 });
+        let period = Period { u: u.map(T::of), omega_e: T::of(omega_e), length: T::of(1e-4) };
+        periods.push((period, i.map(|i| T::of(i + noise()))));
+    }
+    periods.split_off(RECORDED)
+}
+
+fn measured<T: Real>(name: &str, count: usize) {
+    let (periods, nominal) = (recorded::<T>(), [1.0, 5e-3, 1e-2, 0.2].map(T::of));
+    let mut rls = BlockRls::new(BlockRlsSettings::new(nominal));
+    let mut ekf = Ekf::new(EkfSettings::tracking(nominal, T::of(10.0)), [T::ONE; 4]);
+    let worst = |values: [T; 4]| values.iter().zip(TRUTH).map(|(value, truth)| (value.to_f64() / truth - 1.0).abs()).fold(0.0, f64::max);
+    let begun = Instant::now();
+    for k in 0..count {
+        let (period, i) = &periods[k % RECORDED];
+        rls.advance(period, *i);
+    }
+    let of_rls = begun.elapsed().as_secs_f64() / count as f64;
+    let begun = Instant::now();
+    let mut least = f64::INFINITY;
+    for k in 0..count {
+        let (period, i) = &periods[k % RECORDED];
+        ekf.advance(period, *i);
+        if k % 1_000_000 == 999_999 {
+            least = ekf.standard_errors().iter().map(|error| error.to_f64()).fold(least, f64::min);
+        }
+    }
+    let of_ekf = begun.elapsed().as_secs_f64() / count as f64;
+    println!(
+        "{name}: block least squares {:.1} ns, worst error {:.3} %; Kalman filter {:.0} ns, worst error {:.3} %, least standard error {least:.3e}",
+        1e9 * of_rls,
+        100.0 * worst(rls.estimate().value),
+        1e9 * of_ekf,
+        100.0 * worst(ekf.values())
+    );
+}
+
+fn main() {
+    let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(100_000);
+    measured::<f64>("f64", count);
+    measured::<f32>("f32", count);
+}

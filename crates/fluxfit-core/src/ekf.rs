@@ -1,0 +1,265 @@
+//! The extended Kalman filter of currents and parameters; without process noise the recursive prediction error method.
+//!
+//! When to use it: it reaches the Cramér-Rao bound and follows drifting parameters; its intervals hold where the parameters are
+//! identifiable. It must start near them, and where they are not identifiable its intervals are too narrow: start and watch it with
+//! [`BlockRls`](crate::BlockRls).
+//!
+//! The state is `(i_d, i_q, z_1..z_4)` with `z` the parameters as parts of nominal values:
+//!
+//! ```text
+//! i <- period(i, u, theta)   z <- z     P <- Phi P Phi' + Q   Phi = [F  S diag(nominal); 0  I]
+//! measured: i_d, then i_q, with the variance r, which adapts itself (Mehra 1970, doi 10.1109/TAC.1970.1099422)
+//! ```
+//!
+//! Innovations beyond three standard deviations count as if they were three (Huber).
+
+use crate::{
+    PARAMETERS,
+    period::{Period, arrival},
+    real::Real,
+    step_test::StepTest,
+    ud::{STATES, Ud},
+};
+
+/// Standard error of a start value, as a part of it.
+const START_ERROR: f64 = 0.5;
+
+/// Random walk of rs, ld, lq and psi_f while they are followed, as a part per square root of a second: copper warms fastest.
+const WALK: [f64; PARAMETERS] = [1e-2, 2e-3, 2e-3, 2e-3];
+
+/// Part of the rated current that the noise is thought to be at first.
+const START_NOISE: f64 = 5e-3;
+
+/// How fast the variance of the noise adapts: over a thousand periods.
+const ADAPTION: f64 = 1e-3;
+
+/// Largest squared innovation that the adaption sees, in variances: five standard deviations.
+const LARGEST_SEEN: f64 = 25.0;
+
+/// Least part of the start's variance that the noise's may fall to: a converter's step is not much less.
+const LEAST_NOISE: f64 = 1e-4;
+
+/// Standard deviations beyond which an innovation is an outlier.
+const OUTLIER: f64 = 3.0;
+
+/// Least part of a nominal value that rs, ld and lq may fall to.
+const LEAST_PART: f64 = 0.05;
+
+/// Periods over which the likelihood is remembered.
+const MEMORY: f64 = 1e5;
+
+/// Settings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct EkfSettings<T> {
+    /// The values, SI, that are taken as one.
+    pub nominal: [T; PARAMETERS],
+    /// Standard errors of the start values, as parts of the nominal ones; zero: the parameter is exact.
+    pub start_error: [T; PARAMETERS],
+    /// Random walk of each parameter, as a part of its nominal value per square root of a second; zero: it is constant.
+    pub walk: [T; PARAMETERS],
+    /// Standard deviation of an unknown white voltage, V.
+    pub unknown_voltage: T,
+    /// Variance of the noise of each current at first, A².
+    pub noise: T,
+    /// Whether steps of a parameter are looked for.
+    pub steps: bool,
+}
+
+impl<T: Real> EkfSettings<T> {
+    /// For constant parameters, of a motor with this rated current, A.
+    pub fn constant(nominal: [T; PARAMETERS], rated_current: T) -> Self {
+        let noise = T::of(START_NOISE) * rated_current;
+        Self {
+            nominal,
+            start_error: [T::of(START_ERROR); PARAMETERS],
+            walk: [T::ZERO; PARAMETERS],
+            unknown_voltage: T::ZERO,
+            noise: noise * noise,
+            steps: false,
+        }
+    }
+
+    /// For parameters that drift and step.
+    pub fn tracking(nominal: [T; PARAMETERS], rated_current: T) -> Self {
+        Self { walk: WALK.map(T::of), steps: true, ..Self::constant(nominal, rated_current) }
+    }
+}
+
+/// The filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Ekf<T> {
+    settings: EkfSettings<T>,
+    is_begun: bool,
+    i: [T; 2],
+    z: [T; PARAMETERS],
+    ud: Ud<T>,
+    noise: T,
+    test: StepTest<T>,
+    /// Variance that the next period adds to each parameter, because a step was found.
+    stepped: [T; PARAMETERS],
+    steps: u32,
+    outliers: u32,
+    surprise: T,
+    last_surprise: T,
+}
+
+impl<T: Real> Ekf<T> {
+    /// A filter at its start values, as parts of the nominal ones.
+    pub fn new(settings: EkfSettings<T>, z: [T; PARAMETERS]) -> Self {
+        let variance = |j: usize| settings.start_error[j] * settings.start_error[j];
+        let of_current = T::of(4.0) * settings.noise;
+        Self {
+            settings,
+            is_begun: false,
+            i: [T::ZERO; 2],
+            z,
+            ud: Ud::new([of_current, of_current, variance(0), variance(1), variance(2), variance(3)]),
+            noise: settings.noise,
+            test: StepTest::new(),
+            stepped: [T::ZERO; PARAMETERS],
+            steps: 0,
+            outliers: 0,
+            surprise: T::ZERO,
+            last_surprise: T::ZERO,
+        }
+    }
+
+    /// The filter with another covariance of its parameters, as parts of the nominal ones: `W W'` with an upper triangular `W`, as
+    /// [`BlockRls::root`](crate::BlockRls::root) has it.
+    #[must_use]
+    pub fn with_covariance(mut self, w: &[[T; PARAMETERS]; PARAMETERS]) -> Self {
+        self.ud.set_parameters(w);
+        self
+    }
+
+    /// Begins at a measured current, A: at the start, and after a gap. What is known of the parameters stays.
+    pub fn begin(&mut self, i: [T; 2]) {
+        self.is_begun = i[0].is_finite() && i[1].is_finite();
+        self.i = i;
+        self.ud.forget_first(2, T::of(4.0) * self.noise);
+        self.test = StepTest::new();
+    }
+
+    /// Goes on by a period with the current, A, measured at its end. What is no number is left out, as a gap.
+    pub fn advance(&mut self, period: &Period<T>, measured: [T; 2]) {
+        let is_sound = [period.u[0], period.u[1], period.omega_e, measured[0], measured[1]].iter().all(|value| value.is_finite());
+        if !(is_sound && period.length > T::ZERO) {
+            self.is_begun = false;
+            return;
+        }
+        if !self.is_begun {
+            self.begin(measured);
+            return;
+        }
+        let nominal = self.settings.nominal;
+        let theta = self.values();
+        let arrived = arrival(&theta, self.i, period);
+        let mut by_scaled = arrived.by_parameter;
+        for (column, nominal) in by_scaled.iter_mut().zip(nominal) {
+            *column = [column[0] * nominal, column[1] * nominal];
+        }
+        let [fd, fq] = arrived.by_current;
+        let phi = [0, 1].map(|c| [fd[c], fq[c], by_scaled[0][c], by_scaled[1][c], by_scaled[2][c], by_scaled[3][c]]);
+        self.ud.propagate(&phi, &self.process_noise(&theta, period.length));
+        self.stepped = [T::ZERO; PARAMETERS];
+        self.i = arrived.i;
+        let innovation = [measured[0] - self.i[0], measured[1] - self.i[1]];
+        if self.settings.steps
+            && let Some((j, variance)) = self.test.note(&arrived.by_current, &by_scaled, innovation, self.noise)
+            && self.settings.start_error[j] > T::ZERO
+        {
+            self.stepped[j] = variance;
+            self.steps = self.steps.saturating_add(1);
+        }
+        self.measure(0, measured[0]);
+        self.measure(1, measured[1]);
+    }
+
+    fn process_noise(&self, theta: &[T; PARAMETERS], length: T) -> [T; STATES] {
+        let of_current = |l: T| {
+            let kick = length * self.settings.unknown_voltage / l;
+            kick * kick
+        };
+        let of_z = |j: usize| self.settings.walk[j] * self.settings.walk[j] * length + self.stepped[j];
+        [of_current(theta[1]), of_current(theta[2]), of_z(0), of_z(1), of_z(2), of_z(3)]
+    }
+
+    fn measure(&mut self, state: usize, measured: T) {
+        let innovation = measured - self.i[state];
+        let explained = self.ud.variance(state);
+        let variance = explained + self.noise;
+        let (size, deviation) = (innovation.abs(), variance.sqrt());
+        let mut noise = self.noise;
+        if size > T::of(OUTLIER) * deviation {
+            noise = size * deviation / T::of(OUTLIER) - explained;
+            self.outliers = self.outliers.saturating_add(1);
+        }
+        let (gain, innovation_variance) = self.ud.measure(state, noise);
+        let step = innovation / innovation_variance;
+        self.i[0] += gain[0] * step;
+        self.i[1] += gain[1] * step;
+        for j in 0..PARAMETERS {
+            self.z[j] += gain[j + 2] * step;
+        }
+        for j in 0..PARAMETERS - 1 {
+            self.z[j] = self.z[j].larger(T::of(LEAST_PART));
+        }
+        let squared = innovation * innovation;
+        let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
+        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
+        self.last_surprise = if state == 0 { surprise } else { self.last_surprise + surprise };
+        let seen = (squared - explained).smaller(T::of(LARGEST_SEEN) * self.noise);
+        let adapted = self.noise + T::of(ADAPTION) * (seen - self.noise);
+        self.noise = adapted.larger(T::of(LEAST_NOISE) * self.settings.noise);
+    }
+
+    /// The parameters, SI.
+    pub fn values(&self) -> [T; PARAMETERS] {
+        let (z, nominal) = (&self.z, &self.settings.nominal);
+        [z[0] * nominal[0], z[1] * nominal[1], z[2] * nominal[2], z[3] * nominal[3]]
+    }
+
+    /// Their standard errors, SI.
+    pub fn standard_errors(&self) -> [T; PARAMETERS] {
+        [0, 1, 2, 3].map(|j| self.ud.variance(j + 2).sqrt() * self.settings.nominal[j].abs())
+    }
+
+    /// A filter that knows the same and reckons with another unknown voltage, V.
+    #[must_use]
+    pub fn with_unknown_voltage(&self, unknown_voltage: T) -> Self {
+        Self { settings: EkfSettings { unknown_voltage, ..self.settings }, ..*self }
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &EkfSettings<T> {
+        &self.settings
+    }
+
+    /// Variance of the noise of the currents, A².
+    pub fn noise(&self) -> T {
+        self.noise
+    }
+
+    /// How many steps of parameters were found.
+    pub fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// How many currents lay beyond three standard deviations.
+    pub fn outliers(&self) -> u32 {
+        self.outliers
+    }
+
+    /// Minus twice the logarithm of the likelihood of the last periods, but for a constant: of several filters that saw the same, the one
+    /// with the least value is right (Magill 1965, doi 10.1109/TAC.1965.1098191).
+    pub fn surprise(&self) -> T {
+        self.surprise
+    }
+
+    /// What the last period added to that.
+    pub fn last_surprise(&self) -> T {
+        self.last_surprise
+    }
+}

@@ -1,0 +1,89 @@
+//! The numbers that the estimators compute with: `f32` in firmware, `f64` on a desktop.
+
+use core::{
+    fmt::Debug,
+    ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign},
+};
+
+/// A floating-point number. It is a trait because the same equations run in `f32` in firmware and in `f64` elsewhere.
+pub trait Real:
+    Copy
+    + Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// Zero.
+    const ZERO: Self;
+    /// One.
+    const ONE: Self;
+    /// The nearest number to a constant.
+    fn of(value: f64) -> Self;
+    /// The same number in double precision.
+    fn to_f64(self) -> f64;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+
+    /// The larger of two numbers; the other one, if one is NaN.
+    fn larger(self, other: Self) -> Self {
+        if self > other || other.partial_cmp(&other).is_none() { self } else { other }
+    }
+
+    /// The smaller of two numbers; the other one, if one is NaN.
+    fn smaller(self, other: Self) -> Self {
+        if self < other || other.partial_cmp(&other).is_none() { self } else { other }
+    }
+}
+
+macro_rules! real {
+    ($number:ty, $sqrt:path, $abs:path, $sincos:path, $ln:path) => {
+        impl Real for $number {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as Self
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $abs(self)
+            }
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                $sincos(self)
+            }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                <$number>::is_finite(self)
+            }
+        }
+    };
+}
+
+real!(f32, libm::sqrtf, libm::fabsf, libm::sincosf, libm::logf);
+real!(f64, libm::sqrt, libm::fabs, libm::sincos, libm::log);

@@ -1,0 +1,227 @@
+//! The recommended pair: a Kalman filter for values and intervals, started and watched by block least squares, which tells what is
+//! identifiable.
+//!
+//! When to use it: always, unless a processor is too small for it. It reaches the Cramér-Rao bound; in the tracking form it follows
+//! drifts and steps.
+//!
+//! - A filter that starts far from the motor is overconfident. So it starts at what block least squares found in the
+//!   [lead-in](crate::lead_in).
+//! - A bank of filters, each with another level of unknown voltage, decides by the likelihood how much of the innovations is noise of the
+//!   currents and how much is voltage that acted but is not in the log. A level that is guessed wrong makes the values biased.
+//! - Where a parameter becomes identifiable later, or the filter contradicts the least squares for long, the filter starts anew.
+
+use crate::{
+    estimate::{Estimate, IDENTIFIABLE},
+    rls::{Form, Rls},
+    start::Start,
+};
+use fluxfit::motor::PARAMETERS;
+use fluxfit_core::{Ekf, EkfSettings, Period};
+use serde::{Deserialize, Serialize};
+
+/// Levels of unknown voltage, as parts of the largest voltage: 0.03 to 3 V beside 100 V.
+const LEVELS: [f64; 6] = [0.0, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
+
+/// Periods between two choices of the level.
+const CHOICE: u64 = 64;
+
+/// Periods for which all levels run; later only the best one and its neighbours.
+const ALL_LEVELS: u64 = 20_000;
+
+/// Relative standard error with which least squares is trusted against the filter.
+const TRUSTED: f64 = 0.1;
+
+/// Standard errors between both that are a contradiction.
+const CONTRADICTION: f64 = 4.0;
+
+/// How many times larger the standard errors of least squares are taken where the filter starts with them: it sees them without their
+/// correlation, and some samples twice.
+const CAUTION: f64 = 2.0;
+
+/// Part of a value by which a filter that started badly is off: overconfident, it would stay there.
+const FAR: f64 = 0.2;
+
+/// Blocks of a contradiction after which the filter starts anew: half a second at 10 kHz.
+const PATIENCE: u32 = 100;
+
+/// The pair.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WatchedEkf {
+    rls: Rls,
+    start: Start,
+    is_tracking: bool,
+    /// A filter for each level.
+    bank: Vec<Ekf<f64>>,
+    active: [bool; LEVELS.len()],
+    best: usize,
+    periods: u64,
+    /// Current, A, voltage, V, and noise of each current, A, with which a filter starts.
+    scale: [f64; 3],
+    last_i: [f64; 2],
+    /// What least squares said last.
+    watch: Estimate,
+    was_trusted: [bool; PARAMETERS],
+    /// Parameters that began with a guess, and have not become identifiable yet.
+    is_guessed: [bool; PARAMETERS],
+    contradictions: u32,
+    restarts: u32,
+}
+
+impl WatchedEkf {
+    /// A filter for constant parameters, or one that tracks them, at these values; `scale` has usual current, A, voltage, V, and noise, A.
+    /// `is_guessed`: which values are no more than a guess.
+    pub fn new(start: &Start, values: [f64; PARAMETERS], is_guessed: [bool; PARAMETERS], scale: [f64; 3], is_tracking: bool) -> Self {
+        // Of constant parameters all blocks count.
+        let rls = Rls::new(start, values, if is_tracking { Form::Gated } else { Form::Constant });
+        let mut pair = Self {
+            watch: rls.estimate(),
+            rls,
+            start: *start,
+            is_tracking,
+            bank: Vec::with_capacity(LEVELS.len()),
+            active: [true; LEVELS.len()],
+            best: 0,
+            periods: 0,
+            scale,
+            last_i: [0.0; 2],
+            was_trusted: [false; PARAMETERS],
+            is_guessed,
+            contradictions: 0,
+            restarts: 0,
+        };
+        pair.fill(values, [None; PARAMETERS]);
+        pair
+    }
+
+    /// Begins at a current, A.
+    pub fn begin(&mut self, i: [f64; 2]) {
+        self.last_i = i;
+        self.rls.begin(i);
+        self.bank.iter_mut().for_each(|filter| filter.begin(i));
+    }
+
+    /// Goes on by a period to a current, A.
+    pub fn advance(&mut self, period: &Period<f64>, i: [f64; 2]) {
+        self.scale = [self.scale[0].max(i[0].hypot(i[1])), self.scale[1].max(period.u[0].hypot(period.u[1])), self.scale[2]];
+        self.last_i = i;
+        for (filter, _) in self.bank.iter_mut().zip(self.active).filter(|(_, active)| *active) {
+            filter.advance(period, i);
+        }
+        self.choose();
+        if self.rls.advance(period, i) {
+            self.watch = self.rls.estimate();
+            self.look();
+        }
+    }
+
+    /// The level with the greatest likelihood, and which levels go on.
+    fn choose(&mut self) {
+        self.periods += 1;
+        if !self.periods.is_multiple_of(CHOICE) {
+            return;
+        }
+        let surprise = |level: usize| self.bank[level].surprise();
+        let best = (0..LEVELS.len()).filter(|level| self.active[*level]).min_by(|a, b| surprise(*a).total_cmp(&surprise(*b)));
+        self.best = best.unwrap_or(0);
+        if self.periods < ALL_LEVELS {
+            return;
+        }
+        for level in 0..LEVELS.len() {
+            let goes_on = level.abs_diff(self.best) <= 1;
+            if goes_on && !self.active[level] {
+                // Joins at what the best one knows.
+                self.bank[level] = self.bank[self.best].with_unknown_voltage(self.bank[level].settings().unknown_voltage);
+            }
+            self.active[level] = goes_on;
+        }
+    }
+
+    /// After each block: whether the filter starts, or starts anew.
+    fn look(&mut self) {
+        let Estimate { values, standard_errors: Some(errors), .. } = self.watch else { return };
+        let relative: [f64; PARAMETERS] = std::array::from_fn(|j| errors[j] / values[j].abs());
+        let filter = &self.bank[self.best];
+        let (own, own_errors) = (filter.values(), filter.standard_errors());
+        let trusted: [bool; PARAMETERS] = std::array::from_fn(|j| relative[j] < TRUSTED && values[j] > 0.0);
+        let contradicts = |j: usize, error: f64| trusted[j] && (own[j] - values[j]).abs() > CONTRADICTION * error;
+        let is_off = |j: usize| (own[j] - values[j]).abs() > FAR * values[j] && contradicts(j, errors[j]);
+        let is_new = (0..PARAMETERS).any(|j| trusted[j] && (self.is_guessed[j] || !self.was_trusted[j] && is_off(j)));
+        let contradicts = (0..PARAMETERS).any(|j| contradicts(j, errors[j].hypot(own_errors[j])));
+        self.contradictions = if contradicts { self.contradictions + 1 } else { 0 };
+        for j in 0..PARAMETERS {
+            self.was_trusted[j] |= trusted[j];
+            self.is_guessed[j] &= !trusted[j];
+        }
+        if is_new || self.contradictions >= PATIENCE {
+            self.contradictions = 0;
+            self.restarts += 1;
+            let values: [f64; PARAMETERS] = std::array::from_fn(|j| if trusted[j] { values[j] } else { own[j] });
+            self.fill(values, std::array::from_fn(|j| trusted[j].then_some(CAUTION * relative[j])));
+            if trusted == [true; PARAMETERS] && self.start.standard_errors == [None; PARAMETERS] {
+                let root = self.rls.root();
+                let w = std::array::from_fn(|i| root[i].map(|value| CAUTION * value / values[i]));
+                self.bank.iter_mut().for_each(|filter| *filter = filter.with_covariance(&w));
+            }
+        }
+    }
+
+    /// Fills the bank with filters at these values, with these relative standard errors where they are known.
+    fn fill(&mut self, values: [f64; PARAMETERS], errors: [Option<f64>; PARAMETERS]) {
+        // What is known beforehand is taken from there.
+        let known = self.start.standard_errors;
+        let nominal: [f64; PARAMETERS] =
+            std::array::from_fn(|j| known[j].and(self.start.values[j]).filter(|value| *value > 0.0).unwrap_or(values[j]));
+        let current = self.start.rating.map_or(self.scale[0], |rating| rating[0]);
+        let mut settings = if self.is_tracking { EkfSettings::tracking(nominal, current) } else { EkfSettings::constant(nominal, current) };
+        // With too little noise at first, the filter would be overconfident before it knows better.
+        settings.noise = settings.noise.max(self.scale[2] * self.scale[2]);
+        for (j, known) in self.start.known(&nominal).into_iter().enumerate() {
+            if let Some(error) = known.or(errors[j]) {
+                settings.start_error[j] = error;
+            }
+            // The walk is a part of the value that was given, not of where the filter starts.
+            if let Some(given) = self.start.values[j] {
+                settings.walk[j] *= given / nominal[j];
+            }
+            if known == Some(0.0) {
+                settings.walk[j] = 0.0;
+            }
+        }
+        self.bank.clear();
+        for level in LEVELS {
+            let mut filter = Ekf::new(EkfSettings { unknown_voltage: level * self.scale[1], ..settings }, [1.0; PARAMETERS]);
+            filter.begin(self.last_i);
+            self.bank.push(filter);
+        }
+        (self.active, self.best, self.periods) = ([true; LEVELS.len()], 0, 0);
+    }
+
+    /// Whether the last half second excited the parameters.
+    pub fn is_excited(&self) -> bool {
+        self.rls.is_excited()
+    }
+
+    /// The filter that is most likely.
+    pub fn filter(&self) -> &Ekf<f64> {
+        &self.bank[self.best]
+    }
+
+    /// How often the filter was started anew.
+    pub fn restarts(&self) -> u32 {
+        self.restarts
+    }
+
+    /// Values and intervals of the filter; what is identifiable, by least squares.
+    pub fn estimate(&self) -> Estimate {
+        let filter = self.filter();
+        let (values, errors) = (filter.values(), filter.standard_errors());
+        let is_known = |j: usize| self.start.standard_errors[j].is_some() && errors[j] < IDENTIFIABLE * values[j].abs();
+        let of_watch = self.watch.identifiable.unwrap_or_default();
+        Estimate {
+            values,
+            standard_errors: Some(errors),
+            identifiable: Some(std::array::from_fn(|j| of_watch[j] || is_known(j))),
+            excited: self.watch.excited,
+        }
+    }
+}

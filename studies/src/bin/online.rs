@@ -1,0 +1,64 @@
+//! Estimators on a stream: many draws against the Cramér-Rao bound, random starts, the warming motor, rank-deficient logs.
+//!
+//! `online [DRAWS]`; the default is 200 draws.
+// A table on standard output is what this program is for.
+#![allow(clippy::print_stdout)]
+
+use fluxfit_drive::scenario::reference_cases::two_modes;
+use fluxfit_studies::online::{Reached, false_alarms, followed, rank_deficient, reached};
+use fluxfit_track::Method;
+use std::error::Error;
+
+/// Standard deviation of the noise of each axis, A: 50 mA of each of three sensors.
+const NOISE: f64 = 0.040_824_829;
+
+fn row(reached: &Reached) -> String {
+    let four = |values: [f64; 4], digits: usize| values.map(|value| format!("{value:.digits$}")).join(" / ");
+    let coverage = reached.coverage.map_or_else(|| "none".to_owned(), |coverage| four(coverage.map(|share| 100.0 * share), 1));
+    let key = reached.method.key();
+    format!(
+        "| {key} | {} | {} | {coverage} | {}/{} |",
+        four(reached.over_bound, 2),
+        four(reached.bias_percent, 3),
+        reached.settled,
+        reached.draws
+    )
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let draws: u64 = std::env::args().nth(1).map_or(Ok(200), |text| text.parse())?;
+    let mut scenario = two_modes();
+    scenario.duration = 0.9;
+    println!("| {draws} draws | rms / bound | bias % | 95 % coverage | within 5 % |\n|---|---|---|---|---|");
+    let best = [Method::Ekf, Method::EkfTracking, Method::Rls];
+    for method in reached(&scenario, NOISE, &best, draws, 1.35)? {
+        println!("{}", row(&method));
+        println!(
+            "{}: a filter started anew in {} draws; rms / bound of the others {:.2?}",
+            method.method.key(),
+            method.anew,
+            method.over_bound_otherwise
+        );
+    }
+    let others: Vec<Method> = Method::ALL.into_iter().filter(|method| !best.contains(method)).collect();
+    for method in reached(&scenario, NOISE, &others, draws.min(500), 1.35)? {
+        println!("{}", row(&method));
+    }
+    for method in reached(&scenario, NOISE, &best[..2], draws.min(500), 3.0)? {
+        println!("starts within a factor of 3: {}: {} of {} end within 5 %", method.method.key(), method.settled, method.draws);
+    }
+    for method in [Method::EkfTracking, Method::Rls, Method::RlsExponential] {
+        let followed = followed(method, NOISE, 1);
+        println!(
+            "warming, {}: rms % {:.3?}, quiet % {:.1?}, step {:.3} s, coverage {:.3?}",
+            method.key(),
+            followed.rms_percent,
+            followed.quiet_percent,
+            followed.step_s,
+            followed.coverage
+        );
+    }
+    println!("false alarms in 300 s of constant parameters: {}", false_alarms(300, NOISE, 2));
+    println!("rank-deficient logs, (printed, of them right) by parameter: {:?}", rank_deficient(200));
+    Ok(())
+}
