@@ -39,8 +39,8 @@ pub struct CharacteristicsAnswer {
     pub residual_rms: [Option<f64>; 3],
     /// How open-circuit voltages were taken; `None` without any.
     pub voltages: Option<VoltageReading>,
-    /// Where the voltages are [ambiguous](VoltageReading::Ambiguous): what the parameters would be if these are line to line. Of a phase, all
-    /// would be `sqrt 3` times as large.
+    /// Where the voltages are [ambiguous](VoltageReading::Ambiguous): what the parameters would be if these are line to line. Of a phase,
+    /// all would be `sqrt 3` times as large.
     pub if_line_to_line: [Option<f64>; PARAMETERS],
     /// Relative change of each parameter that has a value where an instrument reads 1 % too much, which no table shows.
     pub unseen: Vec<(Instrument, [f64; PARAMETERS])>,

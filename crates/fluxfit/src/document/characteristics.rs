@@ -23,8 +23,8 @@ pub struct CharacteristicsDocument {
     pub tables: Vec<TableEntry>,
     /// How the columns were read, a sentence each.
     pub notes: Vec<String>,
-    /// How open-circuit voltages were taken: `stated` by the names of their columns, `lines-by-torque` or `phase-by-torque` by the torque of
-    /// the short circuit, `ambiguous` where nothing tells, which leaves the parameters null; null without any.
+    /// How open-circuit voltages were taken: `stated` by the names of their columns, `lines-by-torque` or `phase-by-torque` by the torque
+    /// of the short circuit, `ambiguous` where nothing tells, which leaves the parameters null; null without any.
     pub voltages: Option<&'static str>,
     /// Where the voltages are ambiguous: inductances and flux times the pole pairs, and the resistance, if these are line to line. Of a
     /// phase, all are sqrt 3 times as large.
