@@ -52,9 +52,10 @@ fn a_validation_shows_verdict_parameters_and_channels() {
     {
         assert!(text.contains(expected), "{expected} is not in\n{text}");
     }
-    let (_, page) = validation_page(Motor { lq: 1.03 * paper::MOTOR.lq, ..paper::MOTOR }, &TWO, |_| ());
+    // Rows a millisecond apart: an angle that may be off leaves 17 % of L_q.
+    let (_, page) = validation_page(Motor { lq: 1.6 * paper::MOTOR.lq, ..paper::MOTOR }, &TWO, |_| ());
     let text = checked(&page);
-    assert!(text.contains("Contradicts: ") && text.contains("The log asks for Lq 2.9") && text.contains("less than"), "{text}");
+    assert!(text.contains("Contradicts: ") && text.contains("The log asks for Lq 37") && text.contains("lower"), "{text}");
 }
 
 #[test]
