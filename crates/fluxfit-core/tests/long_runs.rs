@@ -40,7 +40,7 @@ fn worst(values: [f32; 4]) -> f32 {
     values.iter().zip(TRUTH).map(|(value, truth)| (value / truth - 1.0).abs()).fold(0.0, f32::max)
 }
 
-/// Three million periods, five minutes at 10 kHz; the figure of 10^9 is in the README.
+/// Three million periods, five minutes at 10 kHz.
 #[test]
 fn single_precision_neither_drifts_nor_loses_its_covariance() {
     let mut rls = BlockRls::<f32>::new(BlockRlsSettings::new([1.0, 5e-3, 1e-2, 0.2]));

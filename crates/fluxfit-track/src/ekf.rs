@@ -1,8 +1,8 @@
 //! The recommended pair: a Kalman filter for values and intervals, started and watched by block least squares, which tells what is
 //! identifiable.
 //!
-//! When to use it: always, unless a processor is too small for it. It reaches the Cramér-Rao bound; in the tracking form it follows
-//! drifts and steps.
+//! When to use it: always, unless a processor is too small for it. Of constant parameters it reaches the Cramér-Rao bound, but for L_d
+//! (figures: docs/track.md). In the tracking form it follows drifts and steps.
 //!
 //! - A filter that starts far from the motor is overconfident. So it starts at what block least squares found in the
 //!   [lead-in](crate::lead_in).
