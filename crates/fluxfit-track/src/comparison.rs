@@ -9,7 +9,6 @@ use crate::{
 use fluxfit::{
     Log, Parameter,
     document::ByParameter,
-    log::Row,
     motor::{Motor, PARAMETERS},
 };
 use serde::Serialize;
@@ -90,18 +89,9 @@ pub struct OnlineDocument {
 /// Runs all estimators over a log.
 pub fn compare_online(log: &Log, timing: Timing, start: &Start, truth: Option<&Motor>, batch: [BatchEntry; PARAMETERS]) -> OnlineDocument {
     let columns = log.columns();
-    let row = |k: usize| Row {
-        t: columns.t[k],
-        ud: columns.ud[k],
-        uq: columns.uq[k],
-        id: columns.id[k],
-        iq: columns.iq[k],
-        omega_e: columns.omega_e[k],
-        ..Row::default()
-    };
     let run = |method: Method| {
         let mut tracker = Tracker::new(TrackSettings { method, timing: Some(timing), start: *start });
-        (0..log.rows()).for_each(|k| tracker.push(&row(k)));
+        (0..log.rows()).filter_map(|k| columns.row(k)).for_each(|row| tracker.push(&row));
         let estimate = tracker.estimator().map(crate::Estimator::estimate);
         let end = |parameter: Parameter| {
             let j = parameter as usize;

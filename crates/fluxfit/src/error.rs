@@ -106,7 +106,7 @@ pub enum ErrorKind {
         end: f64,
     },
     /// A characteristic of too few speeds.
-    #[error("the table has {rows} speeds; at least {least} are needed: measure at more of them, from slow to fast")]
+    #[error("the table has too few speeds ({rows}; at least {least} are needed): measure at more of them, from slow to fast")]
     ShortCharacteristic {
         /// Speeds given.
         rows: usize,

@@ -59,6 +59,14 @@ pub struct Row {
 }
 
 impl Columns {
+    /// A row; `None` if the log is shorter.
+    pub fn row(&self, k: usize) -> Option<Row> {
+        let [t, ud, uq, id, iq, omega_e] = self.named().map(|(_, column)| column.get(k).copied());
+        let [theta_e, u_dc, temperature] =
+            [&self.theta_e, &self.u_dc, &self.temperature].map(|column| column.as_ref().and_then(|column| column.get(k).copied()));
+        Some(Row { t: t?, ud: ud?, uq: uq?, id: id?, iq: iq?, omega_e: omega_e?, theta_e, u_dc, temperature })
+    }
+
     /// Canonical names and columns that every log has, `t` first.
     pub fn named(&self) -> [(&'static str, &Vec<f64>); 6] {
         [("t", &self.t), ("ud", &self.ud), ("uq", &self.uq), ("id", &self.id), ("iq", &self.iq), ("omega_e", &self.omega_e)]

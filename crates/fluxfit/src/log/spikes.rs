@@ -218,7 +218,7 @@ fn is_too_fast(columns: &Columns, run: &Range<usize>, segment: &Range<usize>) ->
 mod tests {
     use super::*;
     use crate::{
-        log::{Log, LogBuilder, Row},
+        log::{Log, LogBuilder},
         optimizer::Draws,
     };
 
@@ -345,16 +345,7 @@ mod tests {
         columns.omega_e[123] = 1e6;
         let mut builder = LogBuilder::new();
         for k in 0..500 {
-            let row = Row {
-                t: columns.t[k],
-                ud: columns.ud[k],
-                uq: columns.uq[k],
-                id: columns.id[k],
-                iq: columns.iq[k],
-                omega_e: columns.omega_e[k],
-                ..Row::default()
-            };
-            builder.push(row).unwrap();
+            builder.push(columns.row(k).unwrap()).unwrap();
         }
         let (whole, by_row) = (Log::new(columns).unwrap(), builder.finish().unwrap());
         assert_eq!(whole.spikes(), by_row.spikes());

@@ -20,12 +20,17 @@ pub(crate) fn parse(text: &str) -> Result<Alarm, String> {
     let parameter = Parameter::ALL.into_iter().find(|parameter| parameter.key().eq_ignore_ascii_case(key));
     let known = || format!("\"{key}\" is not a parameter; the parameters are rs, ld, lq and psi_f");
     let parameter = parameter.ok_or_else(known)?;
-    let both = change.starts_with(['+', '-']);
-    let size =
-        fluxfit_units::parse_fraction(if both && !change.starts_with("+-") && !change.starts_with("+/-") { &change[1..] } else { change })
-            .map_err(|error| error.to_string())?;
-    let is_signed = |sign: char| change.starts_with(sign) && !change.starts_with("+-") && !change.starts_with("+/-");
-    Ok(Alarm { parameter, fall: (!is_signed('+')).then_some(size), rise: (!is_signed('-')).then_some(size) })
+    let is_of_both = change.starts_with("+-") || change.starts_with("+/-");
+    let is_signed = |sign: char| change.starts_with(sign) && !is_of_both;
+    let size = if is_signed('+') || is_signed('-') { &change[1..] } else { change };
+    let part = fluxfit_units::parse_fraction(size).map_err(|error| error.to_string())?;
+    if part >= 1.0 && !size.contains('%') {
+        return Err(format!(
+            "a change of {size} is {} % of the start; write \"{key}={change}%\" for percent",
+            significant(100.0 * part, 3)
+        ));
+    }
+    Ok(Alarm { parameter, fall: (!is_signed('+')).then_some(part), rise: (!is_signed('-')).then_some(part) })
 }
 
 /// All bands, and whether one was left.
@@ -87,5 +92,7 @@ mod tests {
         assert!(rung("rs=-5%", 0.9, 0.01) && !rung("rs=-5%", 1.5, 0.01));
         assert!(rung("rs=10%", 0.8, 0.01) && rung("rs=±10%", 1.2, 0.01) && rung("rs=+-10%", 0.8, 0.01) && !rung("rs=10%", 1.05, 0.01));
         assert!(parse("x=1%").is_err() && parse("rs=").is_err() && parse("rs=+x").is_err() && parse("rs=--5%").is_err());
+        // 20 is meant as percent; a part of the value, or more than all of it in percent, is as it stands.
+        assert!(parse("rs=20").unwrap_err().contains("\"rs=20%\"") && parse("rs=0.2").is_ok() && parse("rs=+150%").is_ok());
     }
 }

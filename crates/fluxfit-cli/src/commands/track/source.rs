@@ -56,16 +56,7 @@ pub(super) fn file(path: &Path, options: &LogOptions, take: &mut Take) -> Result
     let columns = read.log.columns();
     interrupt::doing("tracking");
     interrupt::be_gentle(true);
-    for k in 0..columns.t.len() {
-        let row = Row {
-            t: columns.t[k],
-            ud: columns.ud[k],
-            uq: columns.uq[k],
-            id: columns.id[k],
-            iq: columns.iq[k],
-            omega_e: columns.omega_e[k],
-            ..Row::default()
-        };
+    for row in (0..columns.t.len()).filter_map(|k| columns.row(k)) {
         if !take(&row)? {
             break;
         }
