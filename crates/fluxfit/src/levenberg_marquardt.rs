@@ -108,7 +108,10 @@ fn minimize(
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
     let mut problem = Problem { objective, start, unknowns, priors, scale, differences, simulations: 0, progress, here: None, best: None };
     problem.set_params(&units);
-    let (problem, report) = LevenbergMarquardt::new().with_ftol(no_step).with_xtol(no_step).with_patience(PATIENCE).minimize(problem);
+    // The unknowns are scaled already. By the lengths of their columns, one that does nothing here could move as far as it likes, and
+    // would hold back all others when its steps fail: the width of a loss where another limit than the width rules.
+    let method = LevenbergMarquardt::new().with_scale_diag(false).with_ftol(no_step).with_xtol(no_step).with_patience(PATIENCE);
+    let (problem, report) = method.minimize(problem);
     let (drive, cost) = problem.here.map_or((*start, f64::NAN), |here| (here.drive, here.cost));
     Polished { drive, cost, converged: report.termination.was_successful() }
 }

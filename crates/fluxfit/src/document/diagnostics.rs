@@ -72,6 +72,8 @@ pub struct SystematicEntry {
     pub frame_lag: Option<f64>,
     /// From unknown voltages that disturb the motor.
     pub process_noise: Option<f64>,
+    /// From faults of the drive that the log neither proves nor rules out.
+    pub faults_in_doubt: Option<f64>,
     /// From current sensors whose gains differ.
     pub sensors: Option<f64>,
     /// From the stated accuracy of a gain common to all current sensors.
@@ -96,6 +98,7 @@ impl SystematicEntry {
             dead_time: finite(parts.dead_time),
             frame_lag: finite(parts.frame_lag),
             process_noise: finite(parts.process_noise),
+            faults_in_doubt: finite(parts.faults_in_doubt),
             sensors: finite(parts.sensors),
             current_gain: finite(parts.current_gain),
             bus_voltage: finite(parts.bus_voltage),

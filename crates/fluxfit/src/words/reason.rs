@@ -71,6 +71,9 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         Part::ProcessNoise => {
             write!(f, "unknown voltages disturb the motor, and the answers with and without a model of them differ, which {leaves}")
         }
+        Part::FaultsInDoubt => {
+            write!(f, "faults of the drive that the log neither proves nor rules out may be there, which {leaves}")
+        }
         Part::Sensors => write!(f, "the current sensors differ, and it is not known which of them is right, which {leaves}"),
         Part::CurrentGain => write!(f, "the stated accuracy of the current sensors {leaves}"),
         Part::BusVoltage => write!(f, "the stated accuracy of the DC voltage {leaves}"),

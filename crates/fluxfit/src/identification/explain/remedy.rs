@@ -129,7 +129,7 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, measure: impl F
                 None => or,
             }
         }
-        Part::Accuracy | Part::Excitation => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
+        Part::Accuracy | Part::Excitation | Part::FaultsInDoubt => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Part::Timing => Remedy::StateVoltageTiming,
         Part::DeadTime => measure().unwrap_or(Remedy::CompensateDeadTime),
         Part::FrameLag => Remedy::TellFrameLag,

@@ -20,6 +20,7 @@ use super::{
 use crate::{
     faults::{AngleNeed, Fault, Faults},
     levenberg_marquardt::{Linearized, Polished, PriorResidual, linearized, linearized_one, polish_to_choose, step},
+    motor::{PARAMETERS, Parameter},
     normal_matrix::{NormalMatrix, dot},
     objective::{
         acting_voltage::VoltageTiming,
@@ -37,11 +38,20 @@ use std::collections::BTreeSet;
 pub struct FaultTrial {
     /// The fault.
     pub fault: Fault,
-    /// Schwarz's criterion: what it gains, less what its unknowns cost; positive is evidence for it. As the score test expects it; for
-    /// an observer that was fitted, the fit's own.
+    /// Schwarz's criterion: what it gains, less what its unknowns cost; positive is evidence for it. The fit's own where it was fitted,
+    /// else as the score test expects it.
     pub gain: f64,
     /// Taken or not, and why.
     pub outcome: FaultOutcome,
+    /// How far each parameter would move with it, SI: as fitted where it was, else as the score test expects; zeros where it was not
+    /// judged.
+    pub moves: [f64; PARAMETERS],
+}
+
+impl FaultTrial {
+    fn not_judged(fault: Fault, outcome: FaultOutcome) -> Self {
+        Self { fault, gain: 0.0, outcome, moves: [0.0; PARAMETERS] }
+    }
 }
 
 /// Whether a fault was taken.
@@ -76,7 +86,7 @@ impl FaultOutcome {
     }
 }
 
-/// Least part of the residual's power that a fault must explain to be taken when no parameter moves, or where the motor is disturbed.
+/// Least part of the residual's power that a fault must explain to be taken when no parameter moves.
 const NOTICEABLE: f64 = 0.02;
 
 /// A fault is not fitted where the score test expects less than this part of what would matter: it is not more wrong than that.
@@ -149,34 +159,42 @@ impl FaultSearch<'_> {
         let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault) && !is_there(*fault));
         let faults: Vec<Fault> = faults.collect();
         let mut taken = Vec::new();
-        let not_taken = loop {
-            if taken.len() == MOST_TAKEN {
-                break Vec::new();
-            }
-            let trials = self.take_best(&faults, &taken);
-            match trials.iter().find(|trial| trial.outcome == FaultOutcome::Taken) {
-                Some(best) => taken.push(best.clone()),
-                None => break trials,
-            }
-            self.choose_kinds(&taken[taken.len() - 1..], true);
-            self.choose_reading();
-        };
+        let mut not_taken = self.add(&faults, &mut taken);
         if taken.len() > 1 {
             self.choose_kinds(&taken, false);
         }
-        if self.every_period && self.is_disturbed() {
+        let was_disturbed = self.is_disturbed();
+        if self.every_period && was_disturbed {
             self.exchange_filter(&faults, &mut taken);
         }
         let observer = match observer {
             Some(_) => self.drop_observer(&taken),
-            None => FaultTrial { fault: Fault::Disturbance, gain: 0.0, outcome: FaultOutcome::NotNeeded },
+            None => FaultTrial::not_judged(Fault::Disturbance, FaultOutcome::NotNeeded),
         };
+        if was_disturbed && !self.is_disturbed() {
+            // An observer follows a part of what a fault does: without it, more of the fault shows.
+            not_taken = self.add(&faults, &mut taken);
+        }
         let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(not_taken).collect();
         all.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);
         all
     }
 
-    /// Whether there is an observer: then residuals are those of a simple filter of unknown disturbances, and small gains prove little.
+    /// Adds faults to those `taken` as long as one deserves it; returns the trials of the others.
+    fn add(&mut self, faults: &[Fault], taken: &mut Vec<FaultTrial>) -> Vec<FaultTrial> {
+        while taken.len() < MOST_TAKEN {
+            let trials = self.take_best(faults, taken);
+            match trials.iter().find(|trial| trial.outcome == FaultOutcome::Taken) {
+                Some(best) => taken.push(best.clone()),
+                None => return trials,
+            }
+            self.choose_kinds(&taken[taken.len() - 1..], true);
+            self.choose_reading();
+        }
+        Vec::new()
+    }
+
+    /// Whether there is an observer.
     fn is_disturbed(&self) -> bool {
         self.unknowns.iter().any(|unknown| unknown.is_observer_gain())
     }
@@ -245,7 +263,7 @@ impl FaultSearch<'_> {
 
     /// Whether the observer is still worth its unknowns; if not, it goes.
     fn drop_observer(&mut self, taken: &[FaultTrial]) -> FaultTrial {
-        let trial = |gain, outcome| FaultTrial { fault: Fault::Disturbance, gain, outcome };
+        let trial = |gain, outcome| FaultTrial { gain, ..FaultTrial::not_judged(Fault::Disturbance, outcome) };
         let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect();
         let alone = self.drive.without_observer();
         let as_found = (0..self.objectives.len()).map(|reading| (reading, alone));
@@ -294,9 +312,11 @@ impl FaultSearch<'_> {
             }
         };
         let (judged, others): (Vec<Fault>, Vec<Fault>) = left.into_iter().partition(|fault| outcome(fault) == FaultOutcome::NotNeeded);
-        let gains = test.expected_gains(self, &judged).into_iter().chain(others.iter().map(|_| (0.0, Vec::new())));
-        let trial = |(fault, (gain, starts)): (&Fault, _)| (FaultTrial { fault: *fault, gain, outcome: outcome(fault) }, starts);
-        let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = judged.iter().chain(&others).zip(gains).map(trial).collect();
+        let judged = judged.iter().zip(test.expected(self, &judged)).map(|(fault, Expected { gain, moves, starts })| {
+            (FaultTrial { gain, moves, ..FaultTrial::not_judged(*fault, FaultOutcome::NotNeeded) }, starts)
+        });
+        let others = others.iter().map(|fault| (FaultTrial::not_judged(*fault, outcome(fault)), Vec::new()));
+        let mut trials: Vec<(FaultTrial, Vec<Adjustable>)> = judged.chain(others).collect();
         trials.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
         for place in 0..trials.len() {
             let (trial, starts) = &mut trials[place];
@@ -307,9 +327,10 @@ impl FaultSearch<'_> {
                 trial.outcome = FaultOutcome::NoMatter;
                 continue;
             }
-            let (outcome, fitted) = test.fit(self, trial.fault, starts);
-            trial.outcome = outcome;
-            if let (FaultOutcome::Taken, Some((drive, cost, unknowns))) = (outcome, fitted) {
+            let Some(fitted) = test.fit(self, trial.fault, starts) else { continue };
+            *trial = fitted.trial;
+            if trial.outcome == FaultOutcome::Taken {
+                let Fitted { drive, cost, unknowns, .. } = fitted;
                 if let Some(lost) = self.unphysical_in(&drive, taken) {
                     trial.outcome = FaultOutcome::NotPhysical;
                     if self.contested.is_none() && self.explains_more_without(lost, &drive, &unknowns) {
@@ -371,6 +392,38 @@ fn schwarz(before: f64, after: f64, unknowns: usize, independent: f64) -> f64 {
     independent * (before / after).ln() - unknowns as f64 * independent.ln()
 }
 
+/// What the score test expects of a fault.
+struct Expected {
+    /// What it gains by Schwarz's criterion.
+    gain: f64,
+    /// How far it moves each parameter, SI.
+    moves: [f64; PARAMETERS],
+    /// Where to start its fit; nowhere if it would not matter.
+    starts: Vec<Adjustable>,
+}
+
+/// The same from one of its starts.
+#[derive(Clone, Copy)]
+struct FromStart {
+    gain: f64,
+    moves: [f64; PARAMETERS],
+    /// Whether it may matter.
+    matters: bool,
+}
+
+impl FromStart {
+    /// Of a start that says nothing.
+    const NOTHING: Self = Self { gain: f64::NEG_INFINITY, moves: [0.0; PARAMETERS], matters: false };
+}
+
+/// A fault that was fitted beside the others.
+struct Fitted {
+    trial: FaultTrial,
+    drive: Adjustable,
+    cost: f64,
+    unknowns: Vec<Unknown>,
+}
+
 /// Residuals and derivatives without the faults that are judged.
 struct ScoreTest {
     residuals: Vec<f64>,
@@ -398,72 +451,74 @@ impl ScoreTest {
         Self { residuals, jacobian, normal, standard_errors, independent, peak: objective.peak_current() }
     }
 
-    /// What each fault would gain by Schwarz's criterion if the cost were as quadratic as it looks from here, and where to start its fit;
-    /// nowhere if it would not matter.
-    fn expected_gains(&self, search: &FaultSearch, faults: &[Fault]) -> Vec<(f64, Vec<Adjustable>)> {
+    /// What to expect of each fault if the cost were as quadratic as it looks from its starts.
+    fn expected(&self, search: &FaultSearch, faults: &[Fault]) -> Vec<Expected> {
         let nothing_left = (search.cost / self.residuals.len() as f64).sqrt() <= LEAST_RESIDUAL * self.peak;
         let starts = |fault: &Fault| if nothing_left { Vec::new() } else { fault.starts(&search.drive.faults, self.peak) };
         let starts = faults.iter().enumerate().flat_map(|(place, fault)| starts(fault).into_iter().map(move |faults| (place, faults)));
         let starts: Vec<(usize, Adjustable)> =
             starts.map(|(place, faults)| (place, calmed(Adjustable { faults, ..search.drive }))).collect();
-        let mut gains: Vec<Vec<(f64, bool, Adjustable)>> = vec![Vec::new(); faults.len()];
+        let mut each: Vec<Vec<(FromStart, Adjustable)>> = vec![Vec::new(); faults.len()];
         for starts in starts.chunks(SIDE_BY_SIDE) {
             let drives: Vec<(Adjustable, Vec<Unknown>)> =
                 starts.iter().map(|(place, start)| (*start, Unknown::of_fault(faults[*place]).collect())).collect();
-            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.expected_gain(search, start));
-            for ((place, start), (gain, matters)) in starts.iter().zip(expected) {
-                gains[*place].push((gain, matters, *start));
-            }
+            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.from_start(search, start));
+            starts.iter().zip(expected).for_each(|((place, start), expected)| each[*place].push((expected, *start)));
         }
-        let best_first = |mut gains: Vec<(f64, bool, Adjustable)>| {
-            gains.sort_by(|one, other| other.0.total_cmp(&one.0));
-            let best = gains.first().map_or(f64::NEG_INFINITY, |best| best.0);
-            let matters = gains.iter().any(|(_, matters, _)| *matters);
-            (best, gains.into_iter().take(if matters { FITTED_STARTS } else { 0 }).map(|(.., start)| start).collect())
+        let best_first = |mut each: Vec<(FromStart, Adjustable)>| {
+            each.sort_by(|(one, _), (other, _)| other.gain.total_cmp(&one.gain));
+            let FromStart { gain, moves, .. } = each.first().map_or(FromStart::NOTHING, |(best, _)| *best);
+            let fitted = if each.iter().any(|(expected, _)| expected.matters) { FITTED_STARTS } else { 0 };
+            Expected { gain, moves, starts: each.into_iter().take(fitted).map(|(_, start)| start).collect() }
         };
-        gains.into_iter().map(best_first).collect()
+        each.into_iter().map(best_first).collect()
     }
 
-    /// The same of one start, and whether it may matter.
-    fn expected_gain(&self, search: &FaultSearch, start: &Linearized) -> (f64, bool) {
+    /// The same from one start.
+    fn from_start(&self, search: &FaultSearch, start: &Linearized) -> FromStart {
         let cost = dot(&start.residuals, &start.residuals);
         if cost.is_nan() || cost > TOO_FAR * search.cost {
-            return (f64::NEG_INFINITY, false);
+            return FromStart::NOTHING;
         }
         let columns = self.jacobian.iter().chain(&start.slopes);
         let right = DVector::from_iterator(columns.clone().count(), columns.map(|column| dot(column, &self.residuals)));
-        let shifts = self.normal.with(&self.jacobian, &start.slopes).inverse() * &right;
-        let explained = right.dot(&shifts).min(search.cost);
-        let motor = search.unknowns.iter().zip(&shifts).zip(&self.standard_errors);
-        let moves = motor
-            .filter(|((unknown, _), _)| matches!(unknown, Unknown::Motor(_)))
-            .any(|((_, shift), standard_error)| shift.abs() > LEAST_EXPECTED * standard_error);
-        let matters = moves && !search.is_disturbed() || explained > LEAST_EXPECTED * NOTICEABLE * search.cost;
-        (schwarz(search.cost, search.cost - explained, start.slopes.len(), self.independent), matters)
+        // The slopes are those of measured less simulated currents.
+        let shifts = self.normal.with(&self.jacobian, &start.slopes).inverse() * -&right;
+        let explained = -right.dot(&shifts);
+        let place = |parameter| search.unknowns.iter().position(|unknown| *unknown == Unknown::Motor(parameter));
+        let is_moved = |k: usize| shifts[k].abs() > LEAST_EXPECTED * self.standard_errors[k];
+        FromStart {
+            gain: schwarz(search.cost, search.cost - explained.min(search.cost), start.slopes.len(), self.independent),
+            moves: Parameter::ALL.map(|parameter| place(parameter).map_or(0.0, |k| shifts[k])),
+            matters: Parameter::ALL.into_iter().filter_map(place).any(is_moved) || explained > LEAST_EXPECTED * NOTICEABLE * search.cost,
+        }
     }
 
-    /// Fits a fault from these starts, and decides whether to take it; the drive, its cost and all unknowns if so.
-    fn fit(&self, search: &FaultSearch, fault: Fault, starts: &[Adjustable]) -> (FaultOutcome, Option<(Adjustable, f64, Vec<Unknown>)>) {
+    /// Fits a fault from these starts, and decides whether to take it.
+    fn fit(&self, search: &FaultSearch, fault: Fault, starts: &[Adjustable]) -> Option<Fitted> {
         let own: Vec<Unknown> = Unknown::of_fault(fault).collect();
         let unknowns = [&search.unknowns[..], &own].concat();
         let stepped = parallel::map(starts, |start| step(search.objective(), start, &unknowns, search.priors));
-        let best = stepped.into_iter().min_by(|one, other| one.cost.total_cmp(&other.cost));
-        let Some(best) = best else { return (FaultOutcome::NotNeeded, None) };
-        let polished = polish_to_choose(search.objective(), &best.drive, &unknowns, search.priors);
-        if schwarz(search.cost, polished.cost, own.len(), self.independent) <= VERY_STRONG {
-            return (FaultOutcome::NotNeeded, None);
-        }
-        // An observer need not be physical yet: it makes residuals white while faults are looked for.
-        if fault != Fault::Disturbance && !fault.is_physical(&polished.drive.faults, &polished.drive.motor, self.peak) {
-            return (FaultOutcome::NotPhysical, None);
-        }
-        let moved = search.unknowns.iter().zip(&self.standard_errors).any(|(unknown, standard_error)| {
-            matches!(unknown, Unknown::Motor(_)) && (polished.drive.get(*unknown) - search.drive.get(*unknown)).abs() > *standard_error
+        let best = stepped.into_iter().min_by(|one, other| one.cost.total_cmp(&other.cost))?;
+        let Polished { drive, cost, .. } = polish_to_choose(search.objective(), &best.drive, &unknowns, search.priors);
+        let gain = schwarz(search.cost, cost, own.len(), self.independent);
+        let moves = Parameter::ALL.map(|parameter| drive.motor.get(parameter) - search.drive.motor.get(parameter));
+        let is_moved = search.unknowns.iter().zip(&self.standard_errors).any(|(unknown, standard_error)| match unknown {
+            Unknown::Motor(parameter) => moves[*parameter as usize].abs() > *standard_error,
+            Unknown::Fault(_) => false,
         });
-        if (!moved || search.is_disturbed()) && polished.cost > (1.0 - NOTICEABLE) * search.cost {
-            return (FaultOutcome::NoMatter, None);
-        }
-        (FaultOutcome::Taken, Some((polished.drive, polished.cost, unknowns)))
+        // An observer need not be physical yet: it makes residuals white while faults are looked for.
+        let is_physical = fault == Fault::Disturbance || fault.is_physical(&drive.faults, &drive.motor, self.peak);
+        let outcome = if gain <= VERY_STRONG {
+            FaultOutcome::NotNeeded
+        } else if !is_physical {
+            FaultOutcome::NotPhysical
+        } else if !is_moved && cost > (1.0 - NOTICEABLE) * search.cost {
+            FaultOutcome::NoMatter
+        } else {
+            FaultOutcome::Taken
+        };
+        Some(Fitted { trial: FaultTrial { fault, gain, outcome, moves }, drive, cost, unknowns })
     }
 }
 

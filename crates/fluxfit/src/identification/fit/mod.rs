@@ -5,6 +5,7 @@ pub(crate) mod common_gains;
 pub(crate) mod estimate;
 pub(crate) mod excitation;
 pub(crate) mod fault_search;
+mod faults_in_doubt;
 pub(crate) mod finding;
 mod frame_angle;
 mod frame_free;

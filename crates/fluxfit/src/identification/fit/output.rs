@@ -12,6 +12,7 @@ use super::{
     },
     excitation::Excitation,
     fault_search::{FaultOutcome, FaultTrial, LEAST_RESIDUAL},
+    faults_in_doubt,
     finding::{Bench, Finding, Trust, covariance},
     long_run,
     output_choice::{Chosen, choose},
@@ -113,6 +114,7 @@ impl OutputFit {
         let shifts = OutputShifts {
             timing: readings::doubt(&readings, independent),
             process_noise: other_kind_of_fit(objective, &drive, &unknowns, &priors, is_noise),
+            faults_in_doubt: faults_in_doubt::doubt(&terms),
             sensors: sensors(&drive),
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };

@@ -38,6 +38,7 @@ pub struct FaultEstimate {
 pub(super) struct OutputShifts {
     pub(super) timing: [f64; PARAMETERS],
     pub(super) process_noise: [f64; PARAMETERS],
+    pub(super) faults_in_doubt: [f64; PARAMETERS],
     pub(super) sensors: [f64; PARAMETERS],
     pub(super) dead_time: [f64; PARAMETERS],
 }
@@ -176,6 +177,7 @@ impl Errors {
                 prior: self.priors.iter().map(|prior| prior[k].powi(2)).sum::<f64>().sqrt(),
                 timing: shifts.timing[p],
                 process_noise: shifts.process_noise[p],
+                faults_in_doubt: shifts.faults_in_doubt[p],
                 sensors: shifts.sensors[p],
                 dead_time: shifts.dead_time[p],
                 excitation: self.open[k],

@@ -18,6 +18,8 @@ pub enum Part {
     FrameLag,
     /// Unknown voltages that disturb the motor.
     ProcessNoise,
+    /// Faults of the drive that the log neither proves nor rules out.
+    FaultsInDoubt,
     /// Current sensors whose gains differ.
     Sensors,
     /// A gain common to all current sensors.
@@ -43,6 +45,7 @@ impl Part {
             Self::DeadTime => "dead_time",
             Self::FrameLag => "frame_lag",
             Self::ProcessNoise => "process_noise",
+            Self::FaultsInDoubt => "faults_in_doubt",
             Self::Sensors => "sensors",
             Self::CurrentGain => "current_gain",
             Self::BusVoltage => "bus_voltage",
@@ -62,6 +65,7 @@ impl Part {
             Self::DeadTime => "dead time",
             Self::FrameLag => "frame lag",
             Self::ProcessNoise => "disturbances",
+            Self::FaultsInDoubt => "faults in doubt",
             Self::Sensors => "current sensors",
             Self::CurrentGain => "current accuracy",
             Self::BusVoltage => "bus accuracy",

@@ -8,6 +8,7 @@
 //! - the timing of the voltage columns, where nobody stated it;
 //! - what the [losses](super::voltage_loss) of dead time and devices may be, as far as the points do not tell them, and the
 //!   [lags](super::frame_lag) of a recorder;
+//! - [faults](super::faults_in_doubt) of the drive that the log neither proves nor rules out;
 //! - directions that the log does not excite, a uniform distribution over their reach;
 //! - [saturation](super::saturation), where the log shows it, so that the interval holds what each point would call the parameter;
 //! - [gains](super::common_gains) common to all current sensors and to all voltages, where their accuracy is stated;
@@ -42,6 +43,8 @@ pub struct Systematic {
     pub frame_lag: f64,
     /// Of unknown voltages that disturb the motor.
     pub process_noise: f64,
+    /// Of faults of the drive that the log neither proves nor rules out.
+    pub faults_in_doubt: f64,
     /// Of current sensors whose gains differ: it is not known which of them is right.
     pub sensors: f64,
     /// Of a gain common to all current sensors, where its accuracy is [stated](crate::Request::current_accuracy).
@@ -64,13 +67,14 @@ impl Systematic {
     }
 
     /// Every part, with its name.
-    pub fn parts(&self) -> [(f64, Part); 12] {
+    pub fn parts(&self) -> [(f64, Part); 13] {
         [
             (self.prior, Part::Prior),
             (self.timing, Part::Timing),
             (self.dead_time, Part::DeadTime),
             (self.frame_lag, Part::FrameLag),
             (self.process_noise, Part::ProcessNoise),
+            (self.faults_in_doubt, Part::FaultsInDoubt),
             (self.sensors, Part::Sensors),
             (self.current_gain, Part::CurrentGain),
             (self.bus_voltage, Part::BusVoltage),

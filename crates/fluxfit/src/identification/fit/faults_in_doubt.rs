@@ -1,0 +1,50 @@
+//! What faults of the drive that may be there, but were not taken, could do to the parameters.
+//!
+//! The answer is that of the drive without them. Each of them has a probability by Schwarz's criterion, `1 / (1 + exp(-gain / 2))`, with
+//! which the parameters are those beside it, so that their mean square distance from the answer grows by that part of the square of the
+//! move. Of faults that explain the same, the one that matters most counts.
+//!
+//! R. E. Kass and A. E. Raftery, "Bayes factors", Journal of the American Statistical Association 90 (1995) 773,
+//! doi:10.1080/01621459.1995.10476572; J. A. Hoeting et al., "Bayesian model averaging: a tutorial", Statistical Science 14 (1999) 382,
+//! doi:10.1214/ss/1009212519.
+
+use super::fault_search::{FaultOutcome, FaultTrial};
+use crate::motor::PARAMETERS;
+use std::collections::BTreeMap;
+
+/// How far each parameter could be moved by them, SI, as a standard deviation.
+pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
+    let mut families: BTreeMap<&str, [f64; PARAMETERS]> = BTreeMap::new();
+    // What fits without a physical meaning says nothing of where the parameters are.
+    for trial in trials.iter().filter(|trial| [FaultOutcome::NotNeeded, FaultOutcome::NoMatter].contains(&trial.outcome)) {
+        let probability = 1.0 / (1.0 + (-0.5 * trial.gain).exp());
+        let family = families.entry(trial.fault.family()).or_default();
+        *family = std::array::from_fn(|p| family[p].max(probability * trial.moves[p].powi(2)));
+    }
+    std::array::from_fn(|p| families.values().map(|family| family[p]).sum::<f64>().sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::faults::Fault;
+
+    /// Without evidence for or against it a fault is there with a probability of one half; 2 ln 3 more make it three to one.
+    #[test]
+    fn a_fault_counts_by_its_probability() {
+        let trial = |fault, gain, outcome, move_of_rs| FaultTrial { fault, gain, outcome, moves: [move_of_rs, 0.0, 0.0, 0.0] };
+        let even = trial(Fault::AngleDelay, 0.0, FaultOutcome::NotNeeded, 2.0);
+        assert_eq!(doubt(std::slice::from_ref(&even)), [2.0_f64.sqrt(), 0.0, 0.0, 0.0]);
+        let likely = trial(Fault::ResistanceDrift, 2.0 * 3.0_f64.ln(), FaultOutcome::NoMatter, -4.0);
+        assert!((doubt(&[even.clone(), likely])[0] - (2.0_f64 + 12.0).sqrt()).abs() < 1e-12);
+        let no_evidence = [
+            trial(Fault::ResistanceDrift, f64::NEG_INFINITY, FaultOutcome::NotNeeded, 1.0),
+            trial(Fault::ResistanceDrift, 100.0, FaultOutcome::NotPhysical, 1.0),
+            trial(Fault::ResistanceDrift, 100.0, FaultOutcome::Taken, 1.0),
+        ];
+        assert_eq!(doubt(&no_evidence), [0.0; PARAMETERS]);
+        // Both filters say the same.
+        let filters = [Fault::CurrentFilter, Fault::DqCurrentFilter].map(|filter| trial(filter, 0.0, FaultOutcome::NotNeeded, 2.0));
+        assert_eq!(doubt(&filters), doubt(&[even]));
+    }
+}
