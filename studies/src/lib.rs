@@ -1,5 +1,6 @@
 //! What the programs of this crate share with each other and with its tests.
 
+pub mod bbob;
 pub mod coverage;
 pub mod drives;
 pub mod known;
