@@ -7,3 +7,4 @@ pub mod known;
 pub mod online;
 pub mod rated;
 pub mod remedies;
+pub mod swarms;
