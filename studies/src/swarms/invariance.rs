@@ -57,8 +57,7 @@ const SPHERE: usize = 10;
 /// Half the width of its box; optima that are shifted lie within four fifths of it.
 const HALF_BOX: f64 = 5.0;
 
-/// Medians over the runs on a sphere: with the optimum in the origin, in the centre of a box that does not hold the origin inside (0 .. 10),
-/// and anywhere.
+/// Medians over the runs on a sphere: with the optimum in the origin, in the centre of a box beside the origin (0 .. 10), and anywhere.
 ///
 /// # Errors
 /// If the method refuses the problem.

@@ -74,7 +74,7 @@ pub fn expected_running_time<'a>(runs: impl IntoIterator<Item = &'a BbobRun>, ta
     (successes > 0).then(|| spent as f64 / f64::from(successes))
 }
 
-/// The share of all targets of all runs that are reached within so many evaluations: a point of the empirical distribution of running times.
+/// The share of all targets of all runs that are reached within so many evaluations: a point of the distribution of running times.
 pub fn share_reached<'a>(runs: impl IntoIterator<Item = &'a BbobRun>, evaluations: u64) -> f64 {
     let (mut reached, mut all) = (0, 0);
     for run in runs {

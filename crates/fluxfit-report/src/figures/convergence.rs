@@ -69,6 +69,9 @@ fn draw(facts: &Comparison, methods: &[(MethodStudy, f64)], size: Size) -> Drawi
 /// Height of the panel of one of many methods, pixels.
 const PANEL: u32 = 150;
 
+/// Points of a grey curve, some three pixels apart: all points of all curves in all panels would be megabytes.
+const GREY_POINTS: usize = 60;
+
 /// One of many methods, before the others' medians.
 fn paint_one(area: &Area, study: &MethodStudy, all: &[&MethodStudy]) -> Drawn {
     let costs = all.iter().flat_map(|study| study.convergence.quartiles.iter().flatten());
@@ -87,7 +90,8 @@ fn paint_one(area: &Area, study: &MethodStudy, all: &[&MethodStudy]) -> Drawn {
     let mut chart = plot.on(area)?;
     for other in all.iter().filter(|other| other.method != study.method) {
         // Down to the axis, and not along it.
-        let above: Vec<(f64, f64)> = medians(other).into_iter().take_while(|(_, y)| *y > ROUNDING.log10()).collect();
+        let points = medians(other).into_iter().step_by(last as usize / GREY_POINTS + 1);
+        let above: Vec<(f64, f64)> = points.take_while(|(_, y)| *y > ROUNDING.log10()).collect();
         chart.series.draw_series([PathElement::new(above, line(Ink::Grid, 1.0))])?;
     }
     band(&mut chart, study)?;
