@@ -15,7 +15,7 @@ pub struct Sensitivity {
     pub offset: bool,
 }
 
-/// A run counts as changed if its best place differs by this part of the box: rounding drifts far less in so few iterations.
+/// A run counts as changed if a candidate differs by this part of the box: rounding drifts far less in so few iterations.
 const CHANGED: f64 = 1e-6;
 
 /// Short runs, so that rounding has no time to grow.
@@ -30,7 +30,7 @@ const UNITS: [f64; 3] = [0.25, 1.0, 64.0];
 /// If the method refuses the problem.
 pub fn sensitivity(method: Method) -> Result<Sensitivity, Error> {
     let plain = course(method, 0.0, [1.0; 3], 0.0)?;
-    let changes = |other: Vec<f64>| plain.iter().zip(&other).any(|(a, b)| (a - b).abs() > CHANGED);
+    let changes = |other: Vec<f64>| other.len() != plain.len() || plain.iter().zip(&other).any(|(a, b)| (a - b).abs() > CHANGED);
     Ok(Sensitivity {
         shift: changes(course(method, 4.0, [1.0; 3], 0.0)?),
         scale: changes(course(method, 0.0, UNITS, 0.0)?),
@@ -38,7 +38,7 @@ pub fn sensitivity(method: Method) -> Result<Sensitivity, Error> {
     })
 }
 
-/// The best places of a run, in the unit box.
+/// The candidates at the end of a run, in the unit box.
 fn course(method: Method, shift: f64, units: [f64; 3], offset: f64) -> Result<Vec<f64>, Error> {
     let lower = units.map(|unit| unit * (1.0 + shift));
     let inside = |x: &[f64]| -> Vec<f64> { x.iter().zip(&lower).zip(&units).map(|((x, lower), unit)| (x - lower) / unit).collect() };
@@ -47,8 +47,9 @@ fn course(method: Method, shift: f64, units: [f64; 3], offset: f64) -> Result<Ve
         offset + z.iter().map(|z| z * z).sum::<f64>() + 20.0 * z.iter().sum::<f64>().powi(2)
     });
     let bounds = Bounds::new(lower.to_vec(), lower.iter().zip(&units).map(|(lower, unit)| lower + unit).collect())?;
-    let report = Optimizer::start(method, SHORT, bounds, &objective)?.run(&objective);
-    Ok(report.history.iter().flat_map(|record| inside(&record.best)).collect())
+    let mut optimizer = Optimizer::start(method, SHORT, bounds, &objective)?;
+    optimizer.run(&objective);
+    Ok(optimizer.population().positions().chunks_exact(units.len()).flat_map(inside).collect())
 }
 
 /// Dimensions of the sphere.

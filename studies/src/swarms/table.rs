@@ -31,8 +31,8 @@ pub struct Results {
 /// Evaluations at which the share of targets is told, beside that at the end.
 const EARLY: u64 = 1500;
 
-/// Costs on a sphere below this are all zero for us.
-const NOTHING: f64 = 1e-16;
+/// Costs on a sphere below this are all the same: squares of roundings of its coordinates.
+const NOTHING: f64 = 1e-30;
 
 /// A run on a sphere that ends so much closer where the optimum is the origin is drawn to it.
 const DRAWN: f64 = 1e3;
@@ -93,7 +93,7 @@ impl Results {
             let names: Vec<&str> = (0..METHODS.len()).filter(|k| is(*k)).map(|k| METHODS[k].key).collect();
             if names.is_empty() { "none".to_owned() } else { names.join(", ") }
         };
-        let closer = |k: usize| self.spheres[k][2].max(NOTHING) / self.spheres[k][0].max(f64::MIN_POSITIVE);
+        let closer = |k: usize| self.spheres[k][1].max(NOTHING) / self.spheres[k][0].max(NOTHING);
         let turned = |k: usize| {
             let solved_of = |function: u64| solved(self.bbob[k].iter().filter(|run| run.function == function), EXACT);
             let along = solved_of(2) + solved_of(3);
@@ -101,7 +101,7 @@ impl Results {
         };
         format!(
             "- The run changes when box and function are shifted: {}.\n- when the units of the coordinates change: {}.\n- when a constant is \
-             added to the cost: {}.\n- On a sphere of ten dimensions the run ends more than {DRAWN} times closer if the optimum is the origin: {}.\n\
+             added to the cost: {}.\n- On a sphere of ten dimensions the run ends more than {DRAWN} times closer if the centre of the box, where the optimum is, is the origin: {}.\n\
              - Solves the ellipsoid and Rastrigin's function along the axes (f2, f3) more than twice as often as turned (f10, f15): {}.\n",
             names(&|k| self.sensitivity[k].shift),
             names(&|k| self.sensitivity[k].scale),
