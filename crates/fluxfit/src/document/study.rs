@@ -1,9 +1,7 @@
 //! The document of `compare`: schema `fluxfit.study/1`.
 
 use super::by_parameter::{ByParameter, MotorWithCost};
-use crate::{
-    study::{ConvergenceCurves, MethodStudy, comparison::Comparison, fitness::Fitness},
-};
+use crate::study::{ConvergenceCurves, MethodStudy, comparison::Comparison, fitness::Fitness};
 use serde::Serialize;
 
 /// The name of this document.
