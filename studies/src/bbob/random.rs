@@ -38,7 +38,9 @@ pub(super) fn uniform(count: usize, seed: u64) -> Vec<f64> {
         state = next(state);
         state
     };
-    (0..THROWN_AWAY).for_each(|_| drop(draw()));
+    for _ in 0..THROWN_AWAY {
+        draw();
+    }
     // The table is filled from its end.
     let mut table = [0; TABLE];
     table.iter_mut().rev().for_each(|place| *place = draw());
