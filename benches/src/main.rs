@@ -1,6 +1,7 @@
 //! Our side of the comparison: times fluxfit on the log that `peers.py` wrote, one thread, and prints the figures as JSON.
 //!
-//! `fluxfit-benches LOG.csv`; `peers.py` calls it and sets the figures beside those of other programs.
+//! `fluxfit-benches LOG.csv [METHOD..]`, the paper's four methods unless others are named; `peers.py` and `methods.py` call it and set the
+//! figures beside those of other programs.
 // The JSON on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
@@ -13,7 +14,7 @@ use fluxfit::{
     log::Log,
     motor::{Motor, PARAMETERS},
     objective::voltage_error::{IdZero, VoltageError},
-    optimizer::Bounds,
+    optimizer::{Bounds, Method},
     paper,
     steady::zero_order_hold::ZeroOrderHold,
 };
@@ -33,7 +34,11 @@ struct Figures {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args_os().nth(1).ok_or("usage: fluxfit-benches LOG.csv")?;
+    let path = std::env::args_os().nth(1).ok_or("usage: fluxfit-benches LOG.csv [METHOD..]")?;
+    let keys: Vec<String> = std::env::args().skip(2).collect();
+    let named = |key: &String| Method::named(key).ok_or_else(|| format!("no method '{key}'"));
+    let asked = keys.iter().map(named).collect::<Result<Vec<Method>, _>>()?;
+    let methods = if asked.is_empty() { paper::METHODS.to_vec() } else { asked };
     let log = read_log(Path::new(&path), &LogOptions::default())?.log;
     // As the peers have them: without a correction.
     let modes = modes(&log)?.map(|rows| (rows, ZeroOrderHold::NONE));
@@ -44,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         motor_least_squares: objective.least_squares().motor,
         nanoseconds_per_evaluation: fitness::nanoseconds_per_evaluation(&objective, &bounds),
         least_squares: exact::measure(&log, &modes),
-        swarms: paper::METHODS.into_iter().map(|method| swarm::measure(method, &bounds, &objective)).collect::<Result<_, _>>()?,
+        swarms: methods.into_iter().map(|method| swarm::measure(method, &bounds, &objective)).collect::<Result<_, _>>()?,
     };
     println!("{}", serde_json::to_string_pretty(&figures)?);
     Ok(())

@@ -19,14 +19,14 @@ class Method(Generations):
         step = size * d / np.linalg.norm(d) * self.width
         if self.draws.uniform() >= 0.5:
             self.seen["not drawn"] += 1
-            return step
+            return step, 0 * step
         better = np.flatnonzero(self.f < self.f[i])
         if not len(better):
             self.seen["nobody better"] += 1
-            return step
+            return step, 0 * step
         self.seen["drawn"] += 1
         distance = (((self.x[better] - self.x[i]) / self.width) ** 2).sum(axis=1)
-        return step + self.settings["pull"] * self.draws.uniform(self.d) * (self.x[better[np.argmin(distance)]] - self.x[i])
+        return step, self.settings["pull"] * self.draws.uniform(self.d) * (self.x[better[np.argmin(distance)]] - self.x[i])
 
     def generations(self):
         n = self.population
@@ -38,10 +38,11 @@ class Method(Generations):
             for split in range(self.settings["splits"]):
                 for tumble in range(self.settings["tumbles"]):
                     size = self.settings["step"] * 10 ** (-6 * self.u)
-                    step = np.array([self.step(i, size) for i in range(n)])
+                    step, pull = (np.array(parts) for parts in zip(*[self.step(i, size) for i in range(n)]))
                     who = np.arange(n)
                     for swim in range(5):
-                        trials = self.clamp(self.x[who] + step[who])
+                        # Only the tumble is drawn; the swim goes on along its direction.
+                        trials = self.clamp(self.x[who] + step[who] + (pull[who] if swim == 0 else 0))
                         costs = yield trials
                         on = self.less(trials, costs, self.x[who], self.f[who])
                         self.x, self.f = self.x.copy(), self.f.copy()

@@ -50,6 +50,14 @@ pub enum Error {
         /// Candidates tried.
         population: usize,
     },
+    /// Another number of costs than candidates that were asked for.
+    #[error("{told} costs were told for {asked} candidates; tell one for each, in their order")]
+    Told {
+        /// Costs told.
+        told: usize,
+        /// Candidates asked for.
+        asked: usize,
+    },
     /// A setting outside its range.
     #[error("{setting} is {value}; it must be {range}")]
     Setting {

@@ -41,8 +41,7 @@ impl Optimizer {
     /// Lays out and evaluates the first population.
     ///
     /// # Errors
-    /// If the population is too small for the method, population or iterations are [too many](SearchSettings::check), a setting of the
-    /// method is out of range, the box has another dimension than the objective, or no candidate of the start has a finite cost.
+    /// As [`asking`](Self::asking); or if the box has another dimension than the objective, or no candidate of the start has a finite cost.
     pub fn start(method: Method, settings: SearchSettings, bounds: Bounds, objective: &impl Objective) -> Result<Self, Error> {
         let draws = Draws::seeded(settings.seed, settings.run);
         Self::start_from(method, settings, bounds, draws, objective)
@@ -56,57 +55,135 @@ impl Optimizer {
         method: Method,
         settings: SearchSettings,
         bounds: Bounds,
-        mut draws: Draws,
+        draws: Draws,
         objective: &impl Objective,
     ) -> Result<Self, Error> {
+        if bounds.dimension() != objective.dimension() {
+            return Err(Error::Dimension { bounds: bounds.dimension(), objective: objective.dimension() });
+        }
+        let mut new = Self::asking_from(method, settings, bounds, draws)?;
+        new.advance(objective);
+        if new.population.best_cost() == WORST_COST {
+            return Err(Error::NonFiniteStart { population: settings.population });
+        }
+        Ok(new)
+    }
+
+    /// Lays out the first population and evaluates nothing: for who [asks](Self::ask) for candidates and [tells](Self::tell) their costs.
+    ///
+    /// # Errors
+    /// If the population is too small for the method, population or iterations are [too many](SearchSettings::check), or a setting of the
+    /// method is out of range.
+    pub fn asking(method: Method, settings: SearchSettings, bounds: Bounds) -> Result<Self, Error> {
+        Self::asking_from(method, settings, bounds, Draws::seeded(settings.seed, settings.run))
+    }
+
+    fn asking_from(method: Method, settings: SearchSettings, bounds: Bounds, mut draws: Draws) -> Result<Self, Error> {
         let (size, facts) = (settings.population, method.facts());
         if size < facts.smallest_population {
             return Err(Error::Population { method: facts.label, given: size, least: facts.smallest_population });
         }
         settings.check()?;
-        if bounds.dimension() != objective.dimension() {
-            return Err(Error::Dimension { bounds: bounds.dimension(), objective: objective.dimension() });
-        }
         let (positions, state) = method.start(&mut Setup { size, bounds: &bounds, draws: &mut draws })?;
         let population = Population::laid_out(positions, bounds.dimension());
-        let mut new = Self { settings, bounds, draws, population, state, begun: false, iteration: 0, history: Vec::new() };
-        new.advance(objective);
-        if new.population.best_cost() == WORST_COST {
-            return Err(Error::NonFiniteStart { population: size });
-        }
-        new.record();
-        Ok(new)
+        Ok(Self { settings, bounds, draws, population, state, begun: false, iteration: 0, history: Vec::new() })
     }
 
-    /// One iteration: as many evaluations as the population has candidates.
+    /// One iteration: as many evaluations as the population has candidates. Of one that was begun by [`ask`](Self::ask), the rest.
     pub fn step(&mut self, objective: &impl Objective) {
-        self.iteration += 1;
+        self.begin_iteration();
         self.advance(objective);
-        self.record();
     }
 
-    /// Proposes, evaluates and accepts until the evaluations of one iteration are done.
+    /// The candidates whose costs are wanted next, row after row; the same ones until they are told. Those of a whole iteration are asked
+    /// for at once or in parts, as the method's generations are. None once a criterion stops the search.
+    pub fn ask(&mut self) -> &[f64] {
+        if self.left() == 0 {
+            if self.stop_reason().is_some() {
+                return &[];
+            }
+            self.begin_iteration();
+        }
+        self.waiting()
+    }
+
+    /// The costs of the candidates that were [asked](Self::ask) for, in their order. One that is not finite counts as the worst.
+    ///
+    /// # Errors
+    /// If they are not as many as were asked for, or no candidate of the start has a finite cost.
+    pub fn tell(&mut self, costs: &[f64]) -> Result<(), Error> {
+        let asked = self.ask().len() / self.bounds.dimension();
+        if costs.len() != asked {
+            return Err(Error::Told { told: costs.len(), asked });
+        }
+        if asked > 0 {
+            self.take(costs);
+        }
+        if self.iteration == 0 && self.left() == 0 && self.population.best_cost() == WORST_COST {
+            return Err(Error::NonFiniteStart { population: self.settings.population });
+        }
+        Ok(())
+    }
+
+    /// Evaluations that are left of this iteration.
+    fn left(&self) -> usize {
+        due(&self.settings, self.iteration).saturating_sub(self.population.evaluations()) as usize
+    }
+
+    fn begin_iteration(&mut self) {
+        if self.left() == 0 {
+            self.iteration += 1;
+        }
+    }
+
+    /// The next trials of this iteration; proposes some if none is left.
+    fn waiting(&mut self) -> &[f64] {
+        let left = self.left();
+        if self.population.is_evaluated() {
+            let (state, mut generation) = self.generation();
+            state.propose(&mut generation);
+        }
+        self.population.waiting(left)
+    }
+
+    /// Takes the costs of the next trials, accepts where a generation is done, and records where an iteration is.
+    fn take(&mut self, costs: &[f64]) {
+        self.population.tell(costs);
+        if self.population.is_evaluated() {
+            let begun = std::mem::replace(&mut self.begun, true);
+            let (state, mut generation) = self.generation();
+            if begun {
+                state.accept(&mut generation);
+            } else {
+                generation.population.accept_all();
+                state.begin(&mut generation);
+            }
+        }
+        if self.left() == 0 {
+            self.record();
+        }
+    }
+
+    /// What the method works with.
+    fn generation(&mut self) -> (&mut State, Generation<'_>) {
+        let Self { settings, bounds, draws, population, state, iteration, .. } = self;
+        (state, Generation { number: *iteration, limit: settings.iterations, size: settings.population, bounds, draws, population })
+    }
+
+    /// Proposes, evaluates and accepts until the evaluations of this iteration are done.
     fn advance(&mut self, objective: &impl Objective) {
-        let Self { settings, bounds, draws, population, state, begun, iteration, .. } = self;
-        let (size, limit) = (settings.population, settings.iterations);
-        let mut left = size;
-        while left > 0 {
-            let mut generation = Generation { number: *iteration, limit, size, bounds, draws, population };
-            if generation.population.is_evaluated() {
-                state.propose(&mut generation);
+        let mut costs = Vec::new();
+        while self.left() > 0 {
+            let dimension = self.bounds.dimension();
+            if self.waiting().is_empty() {
+                // Every method proposes something; a loop that rests on it alone would be one that may not end.
+                self.population.forgo(self.left());
             }
-            let evaluated = generation.population.evaluate(objective, left);
-            if generation.population.is_evaluated() {
-                if *begun {
-                    state.accept(&mut generation);
-                } else {
-                    generation.population.accept_all();
-                    state.begin(&mut generation);
-                    *begun = true;
-                }
-            }
-            // Every method proposes something; a loop that rests on it alone would be one that may not end.
-            left = if evaluated == 0 { 0 } else { left - evaluated };
+            let waiting = self.waiting();
+            costs.clear();
+            costs.resize(waiting.len() / dimension, WORST_COST);
+            objective.evaluate(waiting, &mut costs);
+            self.take(&costs);
         }
     }
 
@@ -169,6 +246,11 @@ impl Optimizer {
     }
 }
 
+/// Evaluations at the end of an iteration.
+fn due(settings: &SearchSettings, iteration: usize) -> u64 {
+    (settings.population as u64).saturating_mul((iteration as u64).saturating_add(1))
+}
+
 /// A search as it is read back, before it is checked.
 #[cfg(feature = "serde")]
 #[derive(Deserialize)]
@@ -191,7 +273,9 @@ impl TryFrom<Saved> for Optimizer {
     fn try_from(saved: Saved) -> Result<Self, Error> {
         let Saved { settings, bounds, draws, population, state, begun, iteration, history } = saved;
         settings.check()?;
-        if !population.fits(&bounds) || !state.fits(&population) {
+        let due = due(&settings, iteration);
+        let is_in_iteration = (due.saturating_sub(settings.population as u64)..=due).contains(&population.evaluations());
+        if !is_in_iteration || !population.fits(&bounds) || !state.fits(&population) {
             return Err(Error::SavedSearch);
         }
         state.check()?;

@@ -1,6 +1,8 @@
 //! Candidates, their costs and the best seen: the state that every method steps.
 
-use crate::{bounds::Bounds, objective::Objective};
+use crate::bounds::Bounds;
+#[cfg(test)]
+use crate::objective::Objective;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -111,23 +113,37 @@ impl Population {
         self.evaluated >= self.trial_costs.len()
     }
 
-    /// Evaluates the next trials as one batch, at most `most`; returns how many.
-    pub(crate) fn evaluate(&mut self, objective: &dyn Objective, most: usize) -> usize {
-        let d = self.dimension;
-        let batch = self.evaluated..self.trial_costs.len().min(self.evaluated.saturating_add(most));
-        objective.evaluate(&self.trials[batch.start * d..batch.end * d], &mut self.trial_costs[batch.clone()]);
-        for (cost, trial) in self.trial_costs[batch.clone()].iter_mut().zip(self.trials[batch.start * d..].chunks_exact(d)) {
-            if !cost.is_finite() {
-                *cost = WORST_COST;
-            }
-            if *cost < self.best_cost {
-                self.best_cost = *cost;
+    /// The next trials to be evaluated, at most `most`, row after row.
+    pub(crate) fn waiting(&self, most: usize) -> &[f64] {
+        let end = self.trial_costs.len().min(self.evaluated.saturating_add(most));
+        &self.trials[self.evaluated * self.dimension..end * self.dimension]
+    }
+
+    /// The costs of the first trials that wait; no more than wait.
+    pub(crate) fn tell(&mut self, costs: &[f64]) {
+        let waiting = self.trials[self.evaluated * self.dimension..].chunks_exact(self.dimension);
+        for ((held, told), trial) in self.trial_costs[self.evaluated..].iter_mut().zip(costs).zip(waiting) {
+            *held = if told.is_finite() { *told } else { WORST_COST };
+            if *held < self.best_cost {
+                self.best_cost = *held;
                 self.best.copy_from_slice(trial);
             }
         }
-        self.evaluated = batch.end;
-        self.evaluations += batch.len() as u64;
-        batch.len()
+        self.evaluated += costs.len();
+        self.evaluations += costs.len() as u64;
+    }
+
+    /// Counts evaluations that are not made.
+    pub(crate) fn forgo(&mut self, evaluations: usize) {
+        self.evaluations += evaluations as u64;
+    }
+
+    /// Evaluates the next trials as one batch, at most `most`.
+    #[cfg(test)]
+    pub(crate) fn evaluate(&mut self, objective: &dyn Objective, most: usize) {
+        let mut costs = vec![WORST_COST; self.waiting(most).len() / self.dimension];
+        objective.evaluate(self.waiting(most), &mut costs);
+        self.tell(&costs);
     }
 
     /// Takes the trials that are better than their candidates.

@@ -2,7 +2,10 @@
 //! without colour; and the courses of a log's channels.
 
 use anstyle::{Ansi256Color, AnsiColor};
-use fluxfit::{log::Log, study::MethodStudy};
+use fluxfit::{
+    log::Log,
+    study::{MethodStudy, ROUNDING},
+};
 use fluxfit_units::significant;
 use ratatui_core::{buffer::Buffer, layout::Rect, style::Color, symbols::Marker, widgets::Widget};
 use ratatui_widgets::chart::{Axis, Chart, Dataset, GraphType};
@@ -17,9 +20,6 @@ const WIDEST: u16 = 96;
 fn width() -> u16 {
     u16::try_from(super::width()).unwrap_or(WIDEST).min(WIDEST)
 }
-
-/// Costs below this are drawn at it: rounding, where a logarithm means nothing.
-const FLOOR: f64 = 1e-12;
 
 /// A method's letter and colour, in the chart's terms and in the terminal's.
 fn pen(study: &MethodStudy) -> (char, Color, anstyle::Color) {
@@ -49,6 +49,37 @@ pub(crate) fn convergence(methods: &[(MethodStudy, f64)]) -> String {
     chart.render(area, &mut buffer);
     let pens: Vec<_> = methods.iter().map(|(study, _)| pen(study)).map(|(_, color, ansi)| (color, ansi)).collect();
     format!("{}{}\n", text(&buffer, &pens), legend(methods))
+}
+
+/// Characters of a method's course, and of its name before it.
+const SPARKS: usize = 52;
+const NAME: usize = 22;
+
+/// Heights of a character.
+const HEIGHTS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// The medians of the cost above the minimum of many methods: a line for each, with the scale of all of them.
+pub(crate) fn courses_of_methods(methods: &[&(MethodStudy, f64)]) -> String {
+    let curves: Vec<Vec<(f64, f64)>> = methods.iter().map(|(study, _)| curve(study)).collect();
+    let all = || curves.iter().flatten().map(|(_, y)| *y);
+    let (low, high) = (all().fold(f64::INFINITY, f64::min).floor(), all().fold(f64::NEG_INFINITY, f64::max).ceil());
+    let last = curves.iter().map(Vec::len).max().unwrap_or(1).max(2) - 1;
+    let mut text = String::new();
+    for (points, (study, _)) in curves.iter().zip(methods) {
+        let (_, _, color) = pen(study);
+        let style = color.on_default();
+        // A run that stopped early keeps its last value.
+        let spark = |k: usize| {
+            let (_, y) = points.get(k * last / (SPARKS - 1)).or(points.last()).copied().unwrap_or((0.0, low));
+            let height = (y - low) / (high - low).max(1.0) * (HEIGHTS.len() - 1) as f64;
+            HEIGHTS[(height.ceil() as usize).min(HEIGHTS.len() - 1)]
+        };
+        let sparks: String = (0..SPARKS).map(spark).collect();
+        text += format!("{:<NAME$}{style}{sparks}{style:#}", study.method.short_label()).trim_end();
+        text.push('\n');
+    }
+    let scale = format!("iteration 0 to {last}; height: from 1e{low:+.0} (empty) to 1e{high:+.0} (full), logarithmic");
+    text + &super::wrapped("", &scale)
 }
 
 /// Lines of one course, and of the axis below the last one.
@@ -135,7 +166,7 @@ fn curve(study: &MethodStudy) -> Vec<(f64, f64)> {
         .quartiles
         .iter()
         .enumerate()
-        .map(|(iteration, [_, median, _])| (iteration as f64, median.max(FLOOR).log10()))
+        .map(|(iteration, [_, median, _])| (iteration as f64, median.max(ROUNDING).log10()))
         .collect()
 }
 

@@ -227,6 +227,14 @@ impl Method {
     pub fn label(&self) -> &'static str {
         self.facts().label
     }
+
+    /// Name where room is short: a star stands for "after \[n\], reconstructed".
+    pub fn short_label(&self) -> String {
+        match self.label().split_once(", after") {
+            Some((name, _)) => format!("{name} *"),
+            None => self.label().to_owned(),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -250,11 +258,19 @@ mod tests {
             assert_eq!(one.default.facts(), one);
             for other in &METHODS[..k] {
                 assert!(one.key != other.key && one.label != other.label, "{}", one.key);
+                assert!(one.default.short_label() != other.default.short_label(), "{}", one.key);
                 assert!(one.look.letter != other.look.letter, "{}", one.key);
                 assert!(one.look.light != other.look.light && one.look.dark != other.look.dark, "{}", one.key);
             }
         }
         assert_eq!(Method::named("ga"), None);
+    }
+
+    #[test]
+    fn a_star_marks_the_reconstructed_where_room_is_short() {
+        let short = |key: &str| Method::named(key).map(|method| method.short_label());
+        assert_eq!(short("iwoa").as_deref(), Some("improved WOA *"));
+        assert_eq!(short("woa").as_deref(), Some("WOA"));
     }
 
     #[test]

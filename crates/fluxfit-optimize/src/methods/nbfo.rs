@@ -6,7 +6,7 @@
 //! ```text
 //! step      C = 0.1 · 10^(-6 t/T)
 //! tumble    x' = x_i + C d/|d| (U - L), and with probability 1/2 + 1.5 r (n_i - x_i)     n_i the nearest better one, in the unit box
-//! swim      the same step again, up to 4 times while it is better
+//! swim      on by C d/|d| (U - L), up to 4 times while it is better
 //! split     after 20 tumbles the better half has offspring in the places of the other: x + r (x_j - x_k), j, k of the better half
 //! scatter   after 4 splits each but the best is drawn anew in the box with probability 0.05
 //! ```
@@ -53,21 +53,23 @@ impl Nbfo {
     /// The settings where none are given.
     pub const DEFAULT: Self = Self { step: 0.1, pull: 1.5, scattered: 0.05, tumbles: 20, splits: 4 };
 
-    /// A step of one bacterium. Draws the direction, whether a neighbour draws it, and r if so and there is one.
-    fn step(&self, size: f64, i: usize, generation: &Generation, draws: &mut Draws) -> Vec<f64> {
+    /// A step of one bacterium, in which it swims on too, and the pull of its neighbour. Draws the direction, whether a neighbour draws it,
+    /// and r if so and there is one.
+    fn step(&self, size: f64, i: usize, generation: &Generation, draws: &mut Draws) -> (Vec<f64>, Vec<f64>) {
         let bacteria = &*generation.population;
         let mut step = tumble(generation.bounds.dimension(), draws);
         for (d, (lower, upper)) in step.iter_mut().zip(generation.bounds.iter()) {
             *d *= size * (upper - lower);
         }
+        let mut pull = vec![0.0; step.len()];
         if draws.uniform() < DRAWN
             && let Some(neighbour) = nearest_better(i, generation)
         {
-            for ((d, to), from) in step.iter_mut().zip(bacteria.position(neighbour)).zip(bacteria.position(i)) {
-                *d += self.pull * draws.uniform() * (to - from);
+            for ((d, to), from) in pull.iter_mut().zip(bacteria.position(neighbour)).zip(bacteria.position(i)) {
+                *d = self.pull * draws.uniform() * (to - from);
             }
         }
-        step
+        (step, pull)
     }
 }
 
@@ -99,7 +101,7 @@ pub(crate) struct Niches {
     phase: Phase,
     /// Whose trials are under way.
     moving: Vec<bool>,
-    /// The last step of each.
+    /// The last step of each, without the pull.
     steps: Vec<f64>,
     swims: u32,
     tumbles: u32,
@@ -157,20 +159,24 @@ impl Moves for Nbfo {
             });
             return;
         }
+        // Only a tumble is drawn to a neighbour.
+        let mut pulls = vec![0.0; niches.steps.len()];
         if niches.phase == Phase::Tumble {
             niches.swims = 0;
             niches.moving = vec![true; count];
             let size = self.step * 10f64.powf(-DECADES * generation.progress());
             // The steps look at the whole generation while they draw.
             let mut draws = std::mem::replace(generation.draws, Draws::replay(Vec::new()));
-            niches.steps = (0..count).flat_map(|i| self.step(size, i, generation, &mut draws)).collect();
+            let (steps, drawn): (Vec<_>, Vec<_>) = (0..count).map(|i| self.step(size, i, generation, &mut draws)).unzip();
+            (niches.steps, pulls) = (steps.concat(), drawn.concat());
             *generation.draws = draws;
         }
         let (movers, steps) = (niches.movers(), &niches.steps);
         generation.try_some(movers.len(), |k, bacteria, trial, _| {
             let i = movers[k];
             bacteria.copy_position(i, trial);
-            trial.iter_mut().zip(&steps[i * bounds.dimension()..]).for_each(|(x, step)| *x += step);
+            let first = i * bounds.dimension();
+            trial.iter_mut().zip(&steps[first..]).zip(&pulls[first..]).for_each(|((x, step), pull)| *x += step + pull);
         });
     }
 

@@ -13,15 +13,12 @@ use crate::{
     interactive::{DeltaColumn, Panel, PanelKind, PlotData, Series, XAxis},
     report::Report,
 };
-use fluxfit::study::{MethodStudy, fitness::Fitness};
+use fluxfit::study::{MethodStudy, ROUNDING, comparison::Comparison, fitness::Fitness};
 use maud::html;
 use plotters::{
     element::{Circle, PathElement, Polygon},
     style::text_anchor::{HPos, VPos},
 };
-
-/// Smaller costs are drawn at this value: they are rounding errors.
-const FLOOR: f64 = 1e-12;
 
 /// Smallest distance between two names, pixels.
 const NAMES_APART: i32 = 16;
@@ -34,11 +31,13 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
     has_curves.then(|| Figure {
         name: "convergence",
         section: "study",
-        draw: Box::new(move |size| draw(fitness, methods, size)),
-        data: Some(Box::new(move || data(fitness, methods))),
+        draw: Box::new(move |size| draw(facts, methods, size)),
+        // An interactive plot of all curves would be as full as one drawing of them.
+        data: if facts.is_crowded() { None } else { Some(Box::new(move || data(fitness, methods))) },
         caption: html! {
             "Convergence (Fig. 4 of the paper, here on a logarithmic scale): F\u{a0}−\u{a0}F" sub { (fitness.minimum_subscript()) } " against "
             "iteration. Lines are medians over the runs, bands reach from the lower to the upper quartile."
+            @if facts.is_crowded() { " Each panel has one method, with those of the others in grey; the best stands first." }
             @if has_values_below_floor(methods) {
                 " Values below 10" sup { "\u{2212}12" } " " (fitness.unit()) ", including zero, are rounding errors and drawn at that value."
             }
@@ -47,14 +46,56 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
 }
 
 /// Draws the curves of all methods.
-fn draw(fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> Drawing {
+fn draw(facts: &Comparison, methods: &[(MethodStudy, f64)], size: Size) -> Drawing {
+    let fitness = &facts.problem.fitness;
     let names: Vec<&str> = methods.iter().map(|(study, _)| study.method.label()).collect();
     let label = format!(
         "Curves: cost above the {} against iteration, logarithmic, median and quartiles over the runs, for {}",
         fitness.minimum_label(),
         names.join(", ")
     );
+    if facts.is_crowded() {
+        let ranked: Vec<&MethodStudy> = facts.ranking().into_iter().filter_map(|place| Some(&methods.get(place)?.0)).collect();
+        let columns = size.pick(4, 2);
+        let rows = ranked.len().div_ceil(columns).max(1);
+        return Drawing::new((size.width(), PANEL * rows as u32), label, |area| {
+            let panels = area.split_evenly((rows, columns));
+            ranked.iter().zip(&panels).try_for_each(|(study, panel)| paint_one(panel, study, &ranked))
+        });
+    }
     Drawing::new((size.width(), size.pick(HEIGHTS.0, HEIGHTS.1).unsigned_abs()), label, |area| paint(area, fitness, methods, size))
+}
+
+/// Height of the panel of one of many methods, pixels.
+const PANEL: u32 = 150;
+
+/// Points of a grey curve, some three pixels apart: all points of all curves in all panels would be megabytes.
+const GREY_POINTS: usize = 60;
+
+/// One of many methods, before the others' medians.
+fn paint_one(area: &Area, study: &MethodStudy, all: &[&MethodStudy]) -> Drawn {
+    let costs = all.iter().flat_map(|study| study.convergence.quartiles.iter().flatten());
+    let last = all.iter().map(|study| study.convergence.quartiles.len().saturating_sub(1)).max().unwrap_or(0).max(1) as f64;
+    let name = study.method.short_label();
+    let plot = Plot {
+        x: Axis::between(0.0, last, 2),
+        y: Axis::decades(costs.map(|cost| height(*cost)), 4),
+        x_name: "",
+        y_name: &name,
+        left: 36,
+        right: 10,
+        x_label: &|x| format!("{x:.0}"),
+        y_label: &power_of_ten,
+    };
+    let mut chart = plot.on(area)?;
+    for other in all.iter().filter(|other| other.method != study.method) {
+        // Down to the axis, and not along it.
+        let points = medians(other).into_iter().step_by(last as usize / GREY_POINTS + 1);
+        let above: Vec<(f64, f64)> = points.take_while(|(_, y)| *y > ROUNDING.log10()).collect();
+        chart.series.draw_series([PathElement::new(above, line(Ink::Grid, 1.0))])?;
+    }
+    band(&mut chart, study)?;
+    median(&mut chart, study)
 }
 
 /// Height of the figure, pixels: wide and narrow.
@@ -93,15 +134,15 @@ fn cost_name(fitness: &Fitness) -> String {
     format!("F − F_{}, {}", fitness.minimum_subscript(), fitness.unit())
 }
 
-/// Whether some cost is drawn at [`FLOOR`].
+/// Whether some cost is drawn at [`ROUNDING`].
 fn has_values_below_floor(methods: &[(MethodStudy, f64)]) -> bool {
-    methods.iter().flat_map(|(study, _)| &study.convergence.quartiles).flatten().any(|cost| *cost < FLOOR)
+    methods.iter().flat_map(|(study, _)| &study.convergence.quartiles).flatten().any(|cost| *cost < ROUNDING)
 }
 
 /// Decadic logarithm of a cost.
 fn height(cost: f64) -> f64 {
     // A cost that is not finite is drawn at the upper end.
-    if cost.is_finite() { cost.max(FLOOR).log10() } else { f64::MAX.log10() }
+    if cost.is_finite() { cost.max(ROUNDING).log10() } else { f64::MAX.log10() }
 }
 
 fn paint(area: &Area, fitness: &Fitness, methods: &[(MethodStudy, f64)], size: Size) -> Drawn {
@@ -141,10 +182,14 @@ fn band(chart: &mut Chart, study: &MethodStudy) -> Drawn {
     Ok(())
 }
 
+/// Iterations and heights of the median.
+fn medians(study: &MethodStudy) -> Vec<(f64, f64)> {
+    study.convergence.quartiles.iter().enumerate().map(|(k, [_, median, _])| (k as f64, height(*median))).collect()
+}
+
 fn median(chart: &mut Chart, study: &MethodStudy) -> Drawn {
     let ink = Ink::of_method(&study.method);
-    let points: Vec<(f64, f64)> =
-        study.convergence.quartiles.iter().enumerate().map(|(k, [_, median, _])| (k as f64, height(*median))).collect();
+    let points = medians(study);
     match points.as_slice() {
         [] => {}
         [start] => drop(chart.series.draw_series([Circle::new(*start, 3 * UNITS, shade(ink, 1.0))])?),

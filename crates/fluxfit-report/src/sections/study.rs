@@ -29,7 +29,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
             }
         }
         h3 { "Cost above the " (fitness.minimum_label()) }
-        (ranking(fitness, methods))
+        (ranking(facts, methods))
     };
     Some(Section { anchor: "study", heading: "Comparison of methods", content })
 }
@@ -66,7 +66,9 @@ fn rows(facts: &Comparison) -> String {
 /// Iterations at which the ranking is shown, as fractions of their number: 50, 100, 200 and 300 of the paper's 300.
 const MILESTONES: [(usize, usize); 4] = [(1, 6), (1, 3), (2, 3), (1, 1)];
 
-fn ranking(fitness: &Fitness, methods: &[(MethodStudy, f64)]) -> Markup {
+/// The methods, the best first.
+fn ranking(facts: &Comparison, methods: &[(MethodStudy, f64)]) -> Markup {
+    let (fitness, noise) = (&facts.problem.fitness, facts.problem.noise());
     let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len().saturating_sub(1)).max().unwrap_or(0);
     let mut milestones: Vec<usize> = MILESTONES.iter().map(|(numerator, denominator)| last * numerator / denominator).collect();
     milestones.dedup();
@@ -77,22 +79,29 @@ fn ranking(fitness: &Fitness, methods: &[(MethodStudy, f64)]) -> Markup {
                     tr {
                         th scope="col" rowspan="2" { "Method" }
                         th scope="colgroup" colspan=(milestones.len()) { "Median F\u{a0}−\u{a0}F" sub { (fitness.minimum_subscript()) } ", " (fitness.unit()) ", at iteration" }
-                        th scope="col" rowspan="2" { "Worst run" } th scope="col" rowspan="2" { "Evaluations" }
+                        th scope="col" rowspan="2" { "Worst run" } th scope="col" rowspan="2" { "Runs within the noise" }
+                        th scope="col" rowspan="2" { "Evaluations to the noise" } th scope="col" rowspan="2" { "Evaluations" }
                         th scope="col" rowspan="2" { "ms per run" }
                     }
                     tr { @for iteration in &milestones { th scope="col" { (iteration) } } }
                 }
-                tbody { @for (study, seconds) in methods {
+                tbody { @for (study, seconds) in facts.ranking().into_iter().filter_map(|place| methods.get(place)) {
                     tr {
                         th scope="row" { (study.method.label()) }
                         @for iteration in &milestones { td { (median_at(study, *iteration)) } }
                         td { (power(study.worst())) }
+                        td { (format!("{:.0} %", 100.0 * study.share_within(noise))) }
+                        td { (facts.evaluations_to_noise(study).map_or_else(|| DASH.to_string(), grouped)) }
                         td { (grouped(study.evaluations_per_run)) }
                         td { (number(1e3 * seconds, |ms| significant(ms, 2))) }
                     }
                 } }
             }
         }))
+        p.small {
+            "The best stands first. The noise of the data is " (power(noise)) "\u{a0}" (fitness.unit()) ": so far above the minimum lies the true "
+            "motor on average, if the residuals are white noise. Ends within it are equally good; the evaluations to it are those of the median run."
+        }
         p.small { "The time is that of all runs divided by their number, on all cores. It is the only number here that is not reproducible." }
     }
 }

@@ -1,10 +1,7 @@
 //! The document of `compare`: schema `fluxfit.study/1`.
 
 use super::by_parameter::{ByParameter, MotorWithCost};
-use crate::{
-    motor::Motor,
-    study::{ConvergenceCurves, MethodStudy, comparison::Comparison, fitness::Fitness},
-};
+use crate::study::{ConvergenceCurves, MethodStudy, comparison::Comparison, fitness::Fitness};
 use serde::Serialize;
 
 /// The name of this document.
@@ -40,6 +37,8 @@ pub struct StudyDocument {
     pub minimum: MotorWithCost<f64>,
     /// Whether the polish that found the minimum converged; always true for `steady`.
     pub converged: bool,
+    /// The noise of the data as a cost above the minimum: that of the true motor, on average.
+    pub noise: f64,
     /// The exact minimum by least squares, SI units; null for `output-error`.
     pub least_squares: Option<MotorWithCost<f64>>,
     /// Rank of the least squares problem: 4 if it holds every parameter; null for `output-error`.
@@ -75,11 +74,12 @@ impl StudyDocument {
             truth: facts.truth.as_ref().map(ByParameter::from),
             minimum: MotorWithCost { motor: (&motor).into(), cost },
             converged: fitness.has_converged(),
+            noise: facts.problem.noise(),
             least_squares: solution.map(|solution| MotorWithCost { motor: (&solution.motor).into(), cost: solution.cost }),
             rank: solution.map(|solution| solution.rank),
             rows: facts.problem.rows.clone(),
             search_box: ByParameter::of_box(&facts.bounds),
-            methods: methods.iter().map(|(study, seconds)| MethodEntry::of(study, *seconds, facts.truth.as_ref())).collect(),
+            methods: methods.iter().map(|(study, seconds)| MethodEntry::of(study, *seconds, facts)).collect(),
             interrupted,
         }
     }
@@ -104,20 +104,26 @@ pub struct MethodEntry {
     pub mean_error_percent: Option<ByParameter<Option<f64>>>,
     /// Cost above the minimum at the ends of the runs.
     pub cost_above_optimum: CostAboveOptimum,
+    /// The part of the runs, 0 to 1, that end within the noise of the data.
+    pub share_within_noise: f64,
+    /// Evaluations after which the median over the runs is within the noise of the data; null if it ends above.
+    pub evaluations_to_noise: Option<u64>,
     /// The course of the runs.
     pub convergence: ConvergenceEntry,
 }
 
 impl MethodEntry {
-    fn of(study: &MethodStudy, seconds_per_run: f64, truth: Option<&Motor>) -> Self {
+    fn of(study: &MethodStudy, seconds_per_run: f64, facts: &Comparison) -> Self {
         Self {
             method: study.method.key(),
             runs: study.motors.len(),
             evaluations_per_run: study.evaluations_per_run,
             seconds_per_run,
             mean: (&study.mean()).into(),
-            mean_error_percent: truth.map(|truth| study.mean_error_percent(truth).into()),
+            mean_error_percent: facts.truth.as_ref().map(|truth| study.mean_error_percent(truth).into()),
             cost_above_optimum: CostAboveOptimum { median: study.median(), worst: study.worst() },
+            share_within_noise: study.share_within(facts.problem.noise()),
+            evaluations_to_noise: facts.evaluations_to_noise(study),
             convergence: ConvergenceEntry::of(&study.convergence),
         }
     }

@@ -1,7 +1,7 @@
 //! The comparison of methods: one call, [`compare`], does everything that `fluxfit compare` shows.
 
 use super::{
-    MethodStudy,
+    MethodStudy, ROUNDING,
     fitness::{Fitness, StudyProblem},
     run_method, use_lowest_minimum,
 };
@@ -15,6 +15,9 @@ use crate::{
     paper,
 };
 use std::ops::ControlFlow;
+
+/// Most methods whose curves an eye tells apart in one plot, and whose columns fit into 80 characters.
+const MOST_TOGETHER: usize = 5;
 
 /// What is asked of a comparison. The default is the paper's: its four methods, 50 runs each, on fitness (11).
 #[derive(Debug, Clone, PartialEq)]
@@ -87,6 +90,31 @@ impl Comparison {
     /// Whether every method has finished all its runs.
     pub fn is_whole(&self) -> bool {
         self.studies.len() == self.asked.len() && self.studies.iter().all(|study| study.motors.len() == self.runs)
+    }
+
+    /// Whether there are too many methods for a table with a column for each, and for one plot of all their curves.
+    pub fn is_crowded(&self) -> bool {
+        self.studies.len() > MOST_TOGETHER
+    }
+
+    /// Evaluations after which the median of a method's runs is within the noise of the data; none if it ends above.
+    pub fn evaluations_to_noise(&self, study: &MethodStudy) -> Option<u64> {
+        study.evaluations_within(self.problem.noise(), self.settings.population)
+    }
+
+    /// The places of the studies, the best first: by the median of the final costs, then by the evaluations to the noise of the data,
+    /// then by the worst run. Rounding errors count as equal.
+    pub fn ranking(&self) -> Vec<usize> {
+        let key = |place: &usize| {
+            let study = &self.studies[*place];
+            (study.median().max(ROUNDING), self.evaluations_to_noise(study).unwrap_or(u64::MAX), study.worst().max(ROUNDING))
+        };
+        let mut places: Vec<usize> = (0..self.studies.len()).collect();
+        places.sort_by(|a, b| {
+            let (a, b) = (key(a), key(b));
+            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.total_cmp(&b.2))
+        });
+        places
     }
 }
 

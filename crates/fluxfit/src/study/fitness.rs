@@ -129,6 +129,15 @@ impl StudyProblem {
     }
 }
 
+impl StudyProblem {
+    /// The noise of the data as a cost: how far above the minimum the true motor lies on average, `p F / (n - p)` of `p` parameters and
+    /// `n` equations, two per row, if the residuals at the minimum are white noise. Ends closer to the minimum than this are equally good.
+    pub fn noise(&self) -> f64 {
+        let (parameters, equations) = (PARAMETERS as f64, 2.0 * self.rows.iter().sum::<usize>() as f64);
+        parameters * self.fitness.minimum().1 / (equations - parameters).max(1.0)
+    }
+}
+
 impl Fitness {
     /// Name in files: that of the model.
     pub fn key(&self) -> &'static str {

@@ -46,6 +46,9 @@ pub struct ConvergenceCurves {
 /// Most records of convergence, of 40 bytes each: 400 MB. The paper's study has 15 050 of each method.
 const MOST_RECORDS: f64 = 1e7;
 
+/// Costs above the minimum that are smaller than this are rounding errors, and rank equal.
+pub const ROUNDING: f64 = 1e-12;
+
 /// Runs one method `runs` times. `go_on` is called after each iteration, from any thread, and can interrupt the study: then only the
 /// finished runs count, with the results of an uninterrupted study; `None` if no run is finished.
 ///
@@ -118,6 +121,17 @@ impl MethodStudy {
     /// Largest final cost above the minimum.
     pub fn worst(&self) -> f64 {
         self.cost_above_optimum.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The part of the runs, 0 to 1, whose final cost above the minimum is at most this.
+    pub fn share_within(&self, cost: f64) -> f64 {
+        self.cost_above_optimum.iter().filter(|above| **above <= cost).count() as f64 / self.cost_above_optimum.len() as f64
+    }
+
+    /// Evaluations after which the median over the runs is at most this, of as many per iteration as `population`; none if it ends above.
+    pub fn evaluations_within(&self, cost: f64, population: usize) -> Option<u64> {
+        let iteration = self.convergence.quartiles.iter().position(|[_, median, _]| *median <= cost)?;
+        Some((population * (iteration + 1)) as u64)
     }
 }
 

@@ -29,16 +29,27 @@ pub(crate) fn show(name: &str, facts: &Comparison, methods: &[(MethodStudy, f64)
     if methods.is_empty() {
         return terminal::print(&text);
     }
-    text += &format!("\n{HEADING}Mean of the runs' estimates{HEADING:#} (Table 2 of the paper)\n{}", table_2(facts, methods));
+    let estimates = if facts.is_crowded() { estimates(facts, methods) } else { table_2(facts, methods) };
+    text += &format!("\n{HEADING}{}{HEADING:#} (Table 2 of the paper)\n{estimates}", title_of_estimates(facts));
     let cost = format!(
-        "{HEADING}Cost above the {minimum}{HEADING:#}, F - F_{index}, {}, median over the runs; F_{index} = {}",
+        "{HEADING}Cost above the {minimum}{HEADING:#}, F - F_{index}, {}, the best first; F_{index} = {}; within the noise of the data: at most {}",
         fitness.unit(),
         small(fitness.minimum().1),
+        small(facts.problem.noise()),
     );
-    text += &format!("\n{}{}", wrapped("", &cost), ranking(methods));
-    text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_{index} (Fig. 4 of the paper)\n{}", plot::convergence(methods));
+    text += &format!("\n{}{}", wrapped("", &cost), ranking(facts, methods));
+    let curves = if facts.is_crowded() { plot::courses_of_methods(&ranked(facts, methods)) } else { plot::convergence(methods) };
+    text += &format!("\n{HEADING}Convergence{HEADING:#} of the median F - F_{index} (Fig. 4 of the paper)\n{curves}");
+    if methods.iter().any(|(study, _)| study.method.short_label() != study.method.label()) {
+        text += "* after a work that the paper cites, reconstructed from its abstract\n";
+    }
     text += &format!("\n{DIM}{}{DIM:#}\n", wrapped("", remark(fitness)).trim_end());
     terminal::print(&text)
+}
+
+/// The methods, the best first.
+fn ranked<'a>(facts: &Comparison, methods: &'a [(MethodStudy, f64)]) -> Vec<&'a (MethodStudy, f64)> {
+    facts.ranking().into_iter().filter_map(|place| methods.get(place)).collect()
 }
 
 /// Prints how many runs an interrupted study has finished.
@@ -113,24 +124,60 @@ fn percent(error: Option<f64>) -> String {
     error.map_or_else(|| "-".to_owned(), |error| significant(error, 3))
 }
 
-/// Iterations at which the ranking is shown: a sixth, a third, two thirds and all of them; 50, 100, 200 and 300 of the paper's.
-const MILESTONES: [(usize, usize); 4] = [(1, 6), (1, 3), (2, 3), (1, 1)];
+/// What the table of the estimates shows.
+fn title_of_estimates(facts: &Comparison) -> &'static str {
+    match facts.truth {
+        Some(_) if facts.is_crowded() => "Mean error of the runs' estimates, %",
+        _ => "Mean of the runs' estimates",
+    }
+}
 
-fn ranking(methods: &[(MethodStudy, f64)]) -> String {
-    let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len()).max().unwrap_or(1) - 1;
-    let milestones = MILESTONES.map(|(numerator, denominator)| last * numerator / denominator);
-    let rows = methods.iter().map(|(study, seconds)| {
-        let at = |iteration: &usize| {
-            study.convergence.quartiles.get(*iteration).or(study.convergence.quartiles.last()).map_or(0.0, |quartiles| quartiles[1])
+/// A row for each of many methods: its estimates, or their errors where the truth is known.
+fn estimates(facts: &Comparison, methods: &[(MethodStudy, f64)]) -> String {
+    let (lowest, _) = facts.problem.fitness.minimum();
+    let scales = Parameter::ALL.map(|parameter| Scale::for_value(parameter, lowest.get(parameter)));
+    let row = |name: String, mean: &Motor, errors: &dyn Fn(Parameter) -> Option<f64>| {
+        let cell = |(parameter, scale): (Parameter, &Scale)| match facts.truth {
+            Some(_) => percent(errors(parameter)),
+            None => scale.format(mean.get(parameter), mean.get(parameter).abs() * 2e-5),
         };
-        let mut row = vec![study.method.label().to_owned()];
-        row.extend(milestones.iter().map(|iteration| small(at(iteration))));
-        row.extend([small(study.worst()), study.evaluations_per_run.to_string(), significant(1e3 * seconds, 2)]);
-        row
+        [name].into_iter().chain(Parameter::ALL.into_iter().zip(&scales).map(cell)).collect::<Vec<String>>()
+    };
+    let error = |motor: &Motor, parameter: Parameter| error_percent(motor, facts.truth.as_ref()?, parameter);
+    let mut rows = vec![row(facts.problem.fitness.solver().to_owned(), &lowest, &|parameter| error(&lowest, parameter))];
+    rows.extend(ranked(facts, methods).into_iter().map(|(study, _)| {
+        let errors = facts.truth.as_ref().map(|truth| study.mean_error_percent(truth));
+        row(study.method.short_label(), &study.mean(), &|parameter| errors.and_then(|errors| errors[parameter as usize]))
+    }));
+    let of = |(parameter, scale): (Parameter, &Scale)| match facts.truth {
+        Some(_) => parameter.symbol().to_owned(),
+        None => format!("{}\n{}", parameter.symbol(), scale.unit(parameter.unit())),
+    };
+    let titles: Vec<String> = Parameter::ALL.into_iter().zip(&scales).map(of).collect();
+    let heading: Vec<&str> = [""].into_iter().chain(titles.iter().map(String::as_str)).collect();
+    table(&heading, 1, rows)
+}
+
+/// The ranking: the median after a third of the iterations and at the end; the worst run; how many runs end within the noise of the
+/// data; how soon the median is there.
+fn ranking(facts: &Comparison, methods: &[(MethodStudy, f64)]) -> String {
+    let last = methods.iter().map(|(study, _)| study.convergence.quartiles.len()).max().unwrap_or(1) - 1;
+    let noise = facts.problem.noise();
+    let rows = ranked(facts, methods).into_iter().map(|(study, seconds)| {
+        let quartiles = &study.convergence.quartiles;
+        let at_third = quartiles.get(last / 3).or(quartiles.last()).map_or(0.0, |quartiles| quartiles[1]);
+        vec![
+            study.method.short_label(),
+            small(at_third),
+            small(study.median()),
+            small(study.worst()),
+            format!("{:.0} %", 100.0 * study.share_within(noise)),
+            facts.evaluations_to_noise(study).map_or_else(|| "-".to_owned(), |evaluations| evaluations.to_string()),
+            study.evaluations_per_run.to_string(),
+            significant(1e3 * seconds, 2),
+        ]
     });
-    let titles = milestones.map(|iteration| format!("iteration\n{iteration}"));
-    let mut heading = vec![""];
-    heading.extend(titles.iter().map(String::as_str));
-    heading.extend(["worst\nrun", "evalua-\ntions", "ms per\nrun"]);
+    let third = format!("iteration\n{}", last / 3);
+    let heading = ["", &third, "median\nat end", "worst\nrun", "within\nnoise", "evals to\nnoise", "evals", "ms per\nrun"];
     table(&heading, 1, rows)
 }
