@@ -209,7 +209,9 @@ impl<T: Real> Ekf<T> {
         for j in 0..PARAMETERS {
             let change = gain[j + 2] * step;
             if IS_LOGARITHM[j] {
-                self.z[j] = (self.z[j] * change.exp()).larger(T::of(LEAST_PART)).smaller(T::of(1.0 / LEAST_PART));
+                // Not as a product with the exponential: in single precision that is rounded down more often than up.
+                self.z[j] += self.z[j] * change.exp_m1();
+                self.z[j] = self.z[j].larger(T::of(LEAST_PART)).smaller(T::of(1.0 / LEAST_PART));
             } else {
                 self.z[j] += change;
             }
