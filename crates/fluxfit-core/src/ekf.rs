@@ -108,6 +108,8 @@ pub struct Ekf<T> {
     stepped: [T; PARAMETERS],
     steps: u32,
     outliers: u32,
+    #[cfg_attr(feature = "serde", serde(default))]
+    left_out: u32,
     surprise: T,
     last_surprise: T,
 }
@@ -128,6 +130,7 @@ impl<T: Real> Ekf<T> {
             stepped: [T::ZERO; PARAMETERS],
             steps: 0,
             outliers: 0,
+            left_out: 0,
             surprise: T::ZERO,
             last_surprise: T::ZERO,
         }
@@ -153,6 +156,7 @@ impl<T: Real> Ekf<T> {
     pub fn advance(&mut self, period: &Period<T>, measured: [T; 2]) {
         let is_sound = [period.u[0], period.u[1], period.omega_e, measured[0], measured[1]].iter().all(|value| value.is_finite());
         if !(is_sound && period.length > T::ZERO) {
+            self.left_out = self.left_out.saturating_add(1);
             self.is_begun = false;
             return;
         }
@@ -263,6 +267,11 @@ impl<T: Real> Ekf<T> {
     /// How many steps of parameters were found.
     pub fn steps(&self) -> u32 {
         self.steps
+    }
+
+    /// How many periods were left out, because something in them was no number.
+    pub fn left_out(&self) -> u32 {
+        self.left_out
     }
 
     /// How many currents lay beyond three standard deviations.
