@@ -293,7 +293,7 @@ mod tests {
 
         /// One value of the template replaced by anything.
         #[test]
-        fn no_value_panics(line in 0usize..72, value in "\\PC{0,12}|-?[0-9]{1,20}|\"-?[0-9.e]{1,9} ?(s|A|V|Hz|rpm|H)?\"|\\[[0-9,]{0,9}\\]|\\{[a-z=0-9]{0,9}\\}|nan|true") {
+        fn no_value_panics(line in 0usize..76, value in "\\PC{0,12}|-?[0-9]{1,20}|\"-?[0-9.e]{1,9} ?(s|A|V|Hz|rpm|H)?\"|\\[[0-9,]{0,9}\\]|\\{[a-z=0-9]{0,9}\\}|nan|true") {
             let change = |(at, text): (usize, &str)| match text.split_once(" = ") {
                 Some((key, _)) if at == line => format!("{} = {value}", key.trim_start_matches("# ")),
                 _ => text.to_owned(),
