@@ -8,8 +8,8 @@ use fluxfit::{
     optimizer::Draws,
 };
 use fluxfit_core::period::arrival;
-use fluxfit_drive::{Scenario, simulate};
-use fluxfit_track::{Estimator, Event, Method, Start, Stream, Timing, TrackSettings, Tracker};
+use fluxfit_drive::{Drive, Scenario, simulate};
+use fluxfit_track::{DriveFaults, Event, Method, Start, Stream, Timing, TrackSettings, Tracker};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use std::error::Error;
@@ -33,10 +33,6 @@ pub struct Reached {
     pub coverage: Option<[f64; PARAMETERS]>,
     /// Draws in which all four ended within 5 %.
     pub settled: usize,
-    /// Draws in which a filter was started anew.
-    pub anew: usize,
-    /// Root mean square of the errors over the bound, in the other draws.
-    pub over_bound_otherwise: [f64; PARAMETERS],
     /// Draws.
     pub draws: usize,
 }
@@ -62,7 +58,7 @@ pub fn rows(columns: &Columns, u: Option<(&[f64], &[f64])>) -> Vec<Row> {
 pub fn bound(rows: &[Row], motor: &Motor, noise: f64) -> [f64; PARAMETERS] {
     const STATES: usize = PARAMETERS + 2;
     let theta = motor.to_array();
-    let mut stream = Stream::new(COMMANDS);
+    let mut stream = Stream::new(COMMANDS, DriveFaults::default());
     let mut g = SMatrix::<f64, 2, STATES>::zeros();
     (g[(0, 0)], g[(1, 1)]) = (1.0, 1.0);
     let mut information = SMatrix::<f64, STATES, STATES>::zeros();
@@ -94,8 +90,8 @@ pub fn random_start(motor: &Motor, factor: f64, draws: &mut Draws) -> Start {
     Start { values: motor.to_array().map(|value| Some(off(value, draws))), ..Start::default() }
 }
 
-/// Of one draw, for each method: errors as parts of the truth, standard errors likewise, and whether a filter started anew.
-type Ends = Vec<([f64; PARAMETERS], Option<[f64; PARAMETERS]>, bool)>;
+/// Of one draw, for each method: errors as parts of the truth, and standard errors likewise.
+type Ends = Vec<([f64; PARAMETERS], Option<[f64; PARAMETERS]>)>;
 
 /// What the estimators reach in so many draws of a scenario's noise, from starts within a factor of the truth.
 ///
@@ -113,13 +109,12 @@ pub fn reached(scenario: &Scenario, noise: f64, methods: &[Method], draws: u64, 
             let rows = rows(&recording.columns, Some((&recording.ud_ref, &recording.uq_ref)));
             let start = random_start(&motor, factor, &mut Draws::seeded(7, draw));
             let end = |method: &Method| {
-                let mut tracker = Tracker::new(TrackSettings { method: *method, timing: Some(COMMANDS), start });
+                let mut tracker = Tracker::new(TrackSettings { start, ..TrackSettings::new(*method, Some(COMMANDS)) });
                 rows.iter().for_each(|row| tracker.push(row));
                 let estimate = tracker.estimator().map(fluxfit_track::Estimator::estimate);
-                estimate.map_or(([f64::NAN; PARAMETERS], None, false), |estimate| {
+                estimate.map_or(([f64::NAN; PARAMETERS], None), |estimate| {
                     let error = std::array::from_fn(|j| estimate.values[j] / truth[j] - 1.0);
-                    let is_anew = matches!(tracker.estimator(), Some(Estimator::Ekf(filter)) if filter.restarts() > 0);
-                    (error, estimate.standard_errors.map(|errors| std::array::from_fn(|j| errors[j] / truth[j])), is_anew)
+                    (error, estimate.standard_errors.map(|errors| std::array::from_fn(|j| errors[j] / truth[j])))
                 })
             };
             Ok(methods.iter().map(end).collect())
@@ -143,84 +138,27 @@ fn summary(method: Method, place: usize, ends: &[Ends], bound: &[f64; PARAMETERS
         over_bound: std::array::from_fn(|j| of(j, &|error, _| error * error).sqrt() / bound[j]),
         bias_percent: std::array::from_fn(|j| 100.0 * of(j, &|error, _| error)),
         coverage,
-        anew: ends.iter().filter(|ends| ends[place].2).count(),
-        over_bound_otherwise: std::array::from_fn(|j| {
-            let others: Vec<f64> = ends.iter().filter(|ends| !ends[place].2).map(|ends| ends[place].0[j].powi(2)).collect();
-            (others.iter().sum::<f64>() / others.len() as f64).sqrt() / bound[j]
-        }),
         settled: ends.iter().filter(|ends| ends[place].0.iter().all(|error| error.abs() < 0.05)).count(),
         draws: ends.len(),
     }
 }
 
-/// A motor whose parameters change, run without a drive: exact periods with given voltages, and noise on the measured currents.
-#[derive(Debug)]
-pub struct Warming {
-    i: [f64; 2],
-    k: u64,
-    draws: Draws,
-    /// Standard deviation of the noise of each axis, A.
-    noise: f64,
-    /// Parameters at a time, s.
-    parameters: fn(f64) -> [f64; PARAMETERS],
-}
-
 /// Length of a period, s.
-pub const PERIOD: f64 = 1e-4;
+const PERIOD: f64 = 1e-4;
 
-/// The parameters of the warming log at a time, s: in 60 s R_s grows by 30 % and psi_f falls by 5 %; at 40 s L_q falls by 17 %.
-pub fn warming(t: f64) -> [f64; PARAMETERS] {
-    let [rs, ld, lq, psi_f] = fluxfit::paper::MOTOR.to_array();
-    [rs * (1.0 + 0.3 * t / 60.0), ld, if t >= 40.0 { 0.83 * lq } else { lq }, psi_f * (1.0 - 0.05 * t / 60.0)]
-}
-
-/// The paper's motor at any time, s.
-pub fn constant(_: f64) -> [f64; PARAMETERS] {
-    fluxfit::paper::MOTOR.to_array()
-}
-
-impl Warming {
-    /// Before the first row.
-    pub fn new(parameters: fn(f64) -> [f64; PARAMETERS], noise: f64, draw: u64) -> Self {
-        Self { i: [0.0, 9.0], k: 0, draws: Draws::seeded(11, draw), noise, parameters }
+/// The rows of a drive one by one, with its commands for voltages: what a stream sees.
+///
+/// # Errors
+/// If the scenario cannot be simulated.
+pub fn each_row(scenario: &Scenario, draw: u64, mut take: impl FnMut(&Row)) -> Result<(), Box<dyn Error>> {
+    scenario.check()?;
+    let mut drive = Drive::new(scenario, draw);
+    for _ in 0..scenario.rows() {
+        let row = drive.step()?;
+        let (u, i, theta_e) = (row.u_ref, row.i, Some(row.theta_e));
+        take(&Row { t: row.t, ud: u.d, uq: u.q, id: i.d, iq: i.q, omega_e: row.omega_e, theta_e, ..Row::default() });
     }
-
-    /// The next row, whose voltage acts from it on. i_d alternates between 0 and -2 A every 0.25 s, the speed by 10 % over 2 s; from 20 to
-    /// 30 s both stand still, if the motor warms. i_q is 2 A more or less while the speed rises or falls, and from 40 s on 3 A more, as
-    /// where saturation comes from load.
-    pub fn row(&mut self, has_quiet: bool) -> Row {
-        let t = self.k as f64 * PERIOD;
-        let is_quiet = has_quiet && (20.0..30.0).contains(&t);
-        let id = if !is_quiet && (t / 0.25) as u64 % 2 == 1 { -2.0 } else { 0.0 };
-        let (swing, rise) = if is_quiet { (0.0, 0.0) } else { (std::f64::consts::TAU * t / 2.0).sin_cos() };
-        let (swing, rise) = (0.1 * swing, 2.0 * rise);
-        let iq = rise + if t >= 40.0 && has_quiet { 12.0 } else { 9.0 };
-        let omega_e = 419.0 * (1.0 + swing);
-        let theta = (self.parameters)(t);
-        let [rs, ld, lq, psi_f] = theta;
-        // A proportional controller of 100 Hz on measured currents, with the motor's voltages fed forward.
-        let measured = [0, 1].map(|c| self.i[c] + self.noise * self.draws.normal());
-        let wanted = Motor { rs, ld, lq, psi_f }.steady_voltage(Dq { d: id, q: iq }, omega_e);
-        let gain = std::f64::consts::TAU * 100.0;
-        let u = [wanted.d + gain * ld * (id - measured[0]), wanted.q + gain * lq * (iq - measured[1])];
-        let row = Row { t, ud: u[0], uq: u[1], id: measured[0], iq: measured[1], omega_e, ..Row::default() };
-        self.k += 1;
-        let next = self.k as f64 * PERIOD;
-        let next_swing = if has_quiet && (20.0..30.0).contains(&next) { 0.0 } else { 0.1 * (std::f64::consts::TAU * next / 2.0).sin() };
-        let omega = 0.5 * (omega_e + 419.0 * (1.0 + next_swing));
-        // The stream turns the vector from the middle that the speed of the row foretells to the middle that came.
-        self.i = fluxfit_core::period::current_after(
-            &theta,
-            self.i,
-            &fluxfit_core::Period { u: turned(u, (omega_e - omega) * 0.5 * PERIOD), omega_e: omega, length: PERIOD },
-        );
-        row
-    }
-}
-
-fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
-    [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]]
+    Ok(())
 }
 
 /// Start values as parts of the true ones: -30, +40, -25 and -12 %.
@@ -237,26 +175,27 @@ pub struct Followed {
     pub step_s: f64,
     /// Share of the intervals that hold the truth, of those that were printed.
     pub coverage: [f64; PARAMETERS],
+    /// Steps of parameters that were found.
+    pub steps: u32,
 }
 
-/// Follows the warming log with an estimator.
-pub fn followed(method: Method, noise: f64, draw: u64) -> Followed {
-    let mut motor = Warming::new(warming, noise, draw);
+/// Follows the motor of `examples/scenarios/warming.toml`, or of one like it, with an estimator; `faults` are known.
+///
+/// # Errors
+/// If the scenario cannot be simulated.
+pub fn followed(scenario: &Scenario, method: Method, faults: DriveFaults, draw: u64) -> Result<Followed, Box<dyn Error>> {
     let values = [0, 1, 2, 3].map(|j| Some(START[j] * fluxfit::paper::MOTOR.to_array()[j]));
     let start = Start { values, rating: Some([10.0, 419.0]), ..Start::default() };
-    let timing = Some(Timing::Delayed { delay: 0, at_row: false });
-    let mut tracker = Tracker::new(TrackSettings { method, timing, start });
+    let mut tracker = Tracker::new(TrackSettings { start, faults, ..TrackSettings::new(method, Some(COMMANDS)) });
     let mut squares = SVector::<f64, PARAMETERS>::zeros();
-    let (mut counted, mut quiet, mut last_off) = (0_u64, [0.0_f64; PARAMETERS], 40.0);
+    let (mut counted, mut quiet, mut last_off, mut k) = (0_u64, [0.0_f64; PARAMETERS], 40.0, 0_u64);
     let (mut printed, mut held) = ([0_u64; PARAMETERS], [0_u64; PARAMETERS]);
-    while motor.k < 600_000 {
-        let row = motor.row(true);
-        tracker.push(&row);
-        let Some(estimator) = tracker.estimator() else { continue };
-        if !motor.k.is_multiple_of(10) {
-            continue;
-        }
-        let (truth, estimate) = (warming(row.t), estimator.estimate());
+    each_row(scenario, draw, |row| {
+        tracker.push(row);
+        k += 1;
+        let (Some(estimator), true) = (tracker.estimator(), k.is_multiple_of(10)) else { return };
+        let Some(truth) = scenario.motor.parameters_at(row.t, scenario.duration).map(Motor::to_array) else { return };
+        let estimate = estimator.estimate();
         let error: [f64; PARAMETERS] = std::array::from_fn(|j| 100.0 * (estimate.values[j] / truth[j] - 1.0));
         if row.t > 40.0 && row.t < 50.0 && error[2].abs() > 2.0 {
             last_off = row.t;
@@ -267,7 +206,7 @@ pub fn followed(method: Method, noise: f64, draw: u64) -> Followed {
             squares += SVector::from(error.map(|error| error * error));
             counted += 1;
         }
-        if row.t > 1.0 && motor.k.is_multiple_of(1000) {
+        if row.t > 1.0 && k.is_multiple_of(1000) {
             for (j, tracked) in tracker.parameters_or_nothing().iter().enumerate() {
                 if let Some([low, high]) = tracked.interval() {
                     printed[j] += 1;
@@ -275,25 +214,31 @@ pub fn followed(method: Method, noise: f64, draw: u64) -> Followed {
                 }
             }
         }
-    }
-    Followed {
+    })?;
+    Ok(Followed {
         rms_percent: std::array::from_fn(|j| (squares[j] / counted as f64).sqrt()),
         quiet_percent: quiet,
         step_s: last_off - 40.0,
         coverage: std::array::from_fn(|j| held[j] as f64 / printed[j] as f64),
-    }
+        steps: tracker.steps(),
+    })
 }
 
-/// Steps that the tracking filter found in so many seconds of constant parameters.
-pub fn false_alarms(seconds: u64, noise: f64, draw: u64) -> u32 {
-    let mut motor = Warming::new(constant, noise, draw);
-    let timing = Some(Timing::Delayed { delay: 0, at_row: false });
+/// Steps that the tracking filter found in so many draws of a scenario whose parameters do not change, here made of one whose do.
+///
+/// # Errors
+/// If the scenario cannot be simulated.
+pub fn false_alarms(scenario: &Scenario, draws: u64) -> Result<u32, Box<dyn Error>> {
+    let mut constant = scenario.clone();
+    constant.motor.changes = Default::default();
     let start = Start { values: fluxfit::paper::MOTOR.to_array().map(Some), ..Start::default() };
-    let mut tracker = Tracker::new(TrackSettings { method: Method::EkfTracking, timing, start });
-    for _ in 0..seconds * 10_000 {
-        tracker.push(&motor.row(false));
+    let mut steps = 0;
+    for draw in 0..draws {
+        let mut tracker = Tracker::new(TrackSettings { start, ..TrackSettings::new(Method::EkfTracking, Some(COMMANDS)) });
+        each_row(&constant, draw, |row| tracker.push(row))?;
+        steps += tracker.steps();
     }
-    tracker.steps()
+    Ok(steps)
 }
 
 /// Of drawn logs with i_d = 0 at one operating point: how many intervals were printed for each parameter, and how many hold the truth.
@@ -307,7 +252,7 @@ pub fn rank_deficient(draws: u64) -> [(usize, usize); PARAMETERS] {
         let noise = if draw % 2 == 0 { 0.0 } else { 0.04 };
         let start = random_start(&fluxfit::paper::MOTOR, 1.5, &mut random);
         let timing = Timing::Delayed { delay: 0, at_row: false };
-        let mut tracker = Tracker::new(TrackSettings { method: Method::EkfTracking, timing: Some(timing), start });
+        let mut tracker = Tracker::new(TrackSettings { start, ..TrackSettings::new(Method::EkfTracking, Some(timing)) });
         let (iq, omega) = (2.0 + 10.0 * random.uniform(), 100.0 + 500.0 * random.uniform());
         let wanted = Motor { rs, ld, lq, psi_f }.steady_voltage(Dq { d: 0.0, q: iq }, omega);
         let mut i = [0.0, iq];

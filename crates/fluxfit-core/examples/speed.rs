@@ -1,4 +1,4 @@
-//! Nanoseconds a sample of each estimator, and a long run in single precision: `speed [PERIODS]`.
+//! Nanoseconds a sample of each estimator, and long runs: `speed [PERIODS [f32|f64]]`. One period in ten thousand is garbage.
 // Numbers on standard output are what this program is for.
 #![allow(clippy::print_stdout)]
 
@@ -36,38 +36,59 @@ fn recorded<T: Real>() -> Vec<(Period<T>, [T; 2])> {
     periods.split_off(RECORDED)
 }
 
+/// Periods between two that are garbage; a prime number, so that they fall everywhere.
+const GARBAGE: usize = 10_007;
+
+/// The `k`-th period: in turn a current that is no number, one that is infinite, and a spike of 10 kA are put in its place.
+fn period<T: Real>(periods: &[(Period<T>, [T; 2])], k: usize) -> (Period<T>, [T; 2]) {
+    let (period, i) = periods[k % RECORDED];
+    if !k.is_multiple_of(GARBAGE) {
+        return (period, i);
+    }
+    let garbage = [f64::NAN, f64::NEG_INFINITY, 1e4][k / GARBAGE % 3];
+    (period, [T::of(garbage), i[1]])
+}
+
 fn measured<T: Real>(name: &str, count: usize) {
     let (periods, nominal) = (recorded::<T>(), [1.0, 5e-3, 1e-2, 0.2].map(T::of));
-    let mut rls = BlockRls::new(BlockRlsSettings::new(nominal));
+    let mut rls = BlockRls::new(BlockRlsSettings { rating: Some([10.0, 419.0].map(T::of)), ..BlockRlsSettings::new(nominal) });
     let mut ekf = Ekf::new(EkfSettings::tracking(nominal, T::of(10.0)), [T::ONE; 4]);
     let worst = |values: [T; 4]| values.iter().zip(TRUTH).map(|(value, truth)| (value.to_f64() / truth - 1.0).abs()).fold(0.0, f64::max);
     let begun = Instant::now();
     for k in 0..count {
-        let (period, i) = &periods[k % RECORDED];
-        rls.advance(period, *i);
+        let (period, i) = period(&periods, k);
+        rls.advance(&period, i);
     }
     let of_rls = begun.elapsed().as_secs_f64() / count as f64;
     let begun = Instant::now();
     let mut least = f64::INFINITY;
     for k in 0..count {
-        let (period, i) = &periods[k % RECORDED];
-        ekf.advance(period, *i);
+        let (period, i) = period(&periods, k);
+        ekf.advance(&period, i);
         if k % 1_000_000 == 999_999 {
             least = ekf.standard_errors().iter().map(|error| error.to_f64()).fold(least, f64::min);
         }
     }
     let of_ekf = begun.elapsed().as_secs_f64() / count as f64;
     println!(
-        "{name}: block least squares {:.1} ns, worst error {:.3} %; Kalman filter {:.0} ns, worst error {:.3} %, least standard error {least:.3e}",
+        "{name}: block least squares {:.1} ns, worst error {:.3} %, {} left out; Kalman filter {:.0} ns, worst error {:.3} %, least standard error {least:.3e}, {} left out, {} beyond three standard deviations",
         1e9 * of_rls,
         100.0 * worst(rls.estimate().value),
+        rls.left_out(),
         1e9 * of_ekf,
-        100.0 * worst(ekf.values())
+        100.0 * worst(ekf.values()),
+        ekf.left_out(),
+        ekf.outliers()
     );
 }
 
 fn main() {
     let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(100_000);
-    measured::<f64>("f64", count);
-    measured::<f32>("f32", count);
+    let only = std::env::args().nth(2);
+    if only.as_deref() != Some("f32") {
+        measured::<f64>("f64", count);
+    }
+    if only.as_deref() != Some("f64") {
+        measured::<f32>("f32", count);
+    }
 }

@@ -27,6 +27,9 @@ const FEWEST: f64 = 20.0;
 /// Standard error, as a part of the nominal value, of what is not known: finite, so that it can be saved as text.
 const UNKNOWN: f64 = 1e9;
 
+/// A current so many times the rated one is a spike, as in `fluxfit-track`: least squares would remember it.
+const SPIKE: f64 = 20.0;
+
 /// Added to a variance, V², so that none is zero.
 const SMALLEST: f64 = 1e-20;
 
@@ -46,7 +49,7 @@ pub struct BlockRlsSettings<T> {
     pub gated: bool,
     /// Whether the equations have the derivative of the current; without it they hold in steady state only.
     pub has_derivative: bool,
-    /// Rated current, A, and speed, electrical rad/s; without them the largest seen.
+    /// Rated current, A, and speed, electrical rad/s; without them the largest seen, and spikes are not looked for.
     pub rating: Option<[T; 2]>,
 }
 
@@ -84,6 +87,8 @@ pub struct BlockRls<T> {
     voltage: T,
     /// Weighted sum of [`Equations::by_noise`].
     by_noise: [T; PARAMETERS],
+    #[cfg_attr(feature = "serde", serde(default))]
+    left_out: u32,
 }
 
 impl<T: Real> BlockRls<T> {
@@ -99,6 +104,7 @@ impl<T: Real> BlockRls<T> {
             freedom: T::ZERO,
             voltage: T::ZERO,
             by_noise: [T::ZERO; PARAMETERS],
+            left_out: 0,
         }
     }
 
@@ -108,10 +114,12 @@ impl<T: Real> BlockRls<T> {
     }
 
     /// Goes on by a period with the current, A, measured at its end. True if a block is full, and the estimate has changed. What is no
-    /// number is left out, as a gap.
+    /// number, or a spike, is left out, as a gap.
     pub fn advance(&mut self, period: &Period<T>, i: [T; 2]) -> bool {
         let is_sound = [period.u[0], period.u[1], period.omega_e, i[0], i[1]].iter().all(|value| value.is_finite());
-        if !(is_sound && period.length > T::ZERO) {
+        let is_spike = self.settings.rating.is_some_and(|[rated, _]| i[0].abs() + i[1].abs() > T::of(SPIKE) * rated);
+        if !(is_sound && period.length > T::ZERO) || is_spike {
+            self.left_out = self.left_out.saturating_add(1);
             self.block = None;
             return false;
         }
@@ -196,6 +204,11 @@ impl<T: Real> BlockRls<T> {
     fn with_fixed(&self, mut z: [T; PARAMETERS]) -> [T; PARAMETERS] {
         (0..PARAMETERS).filter(|j| self.is_fixed(*j)).for_each(|j| z[j] = T::ONE);
         z
+    }
+
+    /// How many periods were left out: what is no number, and spikes.
+    pub fn left_out(&self) -> u32 {
+        self.left_out
     }
 
     /// Whether the last blocks excite the parameters.

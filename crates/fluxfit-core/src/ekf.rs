@@ -4,12 +4,15 @@
 //! identifiable. It must start near them, and where they are not identifiable its intervals are too narrow: start and watch it with
 //! [`BlockRls`](crate::BlockRls).
 //!
-//! The state is `(i_d, i_q, z_1..z_4)` with `z` the parameters as parts of nominal values:
+//! The state is `(i_d, i_q, z_1..z_4)`: rs and psi_f as parts of nominal values, ld and lq as logarithms of such parts.
 //!
 //! ```text
-//! i <- period(i, u, theta)   z <- z     P <- Phi P Phi' + Q   Phi = [F  S diag(nominal); 0  I]
+//! i <- period(i, u, theta)   z <- z     P <- Phi P Phi' + Q   Phi = [F  S diag(d theta/d z); 0  I]
 //! measured: i_d, then i_q, with the variance r, which adapts itself (Mehra 1970, doi 10.1109/TAC.1970.1099422)
 //! ```
+//!
+//! In the inductance itself, the sensitivity of the current grows with 1/L²: a filter that begins with an uncertain inductance and takes
+//! the first noise for a small one becomes so certain of it that it stays there. In its logarithm that does not happen.
 //!
 //! Innovations beyond three standard deviations count as if they were three (Huber).
 
@@ -42,8 +45,11 @@ const LEAST_NOISE: f64 = 1e-4;
 /// Standard deviations beyond which an innovation is an outlier.
 const OUTLIER: f64 = 3.0;
 
-/// Least part of a nominal value that rs, ld and lq may fall to.
+/// Least part of a nominal value that rs, ld and lq may fall to; ld and lq may grow to its inverse.
 const LEAST_PART: f64 = 0.05;
+
+/// Which parameters are estimated as logarithms.
+const IS_LOGARITHM: [bool; PARAMETERS] = [false, true, true, false];
 
 /// Periods over which the likelihood is remembered.
 const MEMORY: f64 = 1e5;
@@ -93,6 +99,7 @@ pub struct Ekf<T> {
     settings: EkfSettings<T>,
     is_begun: bool,
     i: [T; 2],
+    /// The parameters as parts of the nominal values.
     z: [T; PARAMETERS],
     ud: Ud<T>,
     noise: T,
@@ -101,6 +108,8 @@ pub struct Ekf<T> {
     stepped: [T; PARAMETERS],
     steps: u32,
     outliers: u32,
+    #[cfg_attr(feature = "serde", serde(default))]
+    left_out: u32,
     surprise: T,
     last_surprise: T,
 }
@@ -121,6 +130,7 @@ impl<T: Real> Ekf<T> {
             stepped: [T::ZERO; PARAMETERS],
             steps: 0,
             outliers: 0,
+            left_out: 0,
             surprise: T::ZERO,
             last_surprise: T::ZERO,
         }
@@ -146,6 +156,7 @@ impl<T: Real> Ekf<T> {
     pub fn advance(&mut self, period: &Period<T>, measured: [T; 2]) {
         let is_sound = [period.u[0], period.u[1], period.omega_e, measured[0], measured[1]].iter().all(|value| value.is_finite());
         if !(is_sound && period.length > T::ZERO) {
+            self.left_out = self.left_out.saturating_add(1);
             self.is_begun = false;
             return;
         }
@@ -153,12 +164,11 @@ impl<T: Real> Ekf<T> {
             self.begin(measured);
             return;
         }
-        let nominal = self.settings.nominal;
         let theta = self.values();
         let arrived = arrival(&theta, self.i, period);
         let mut by_scaled = arrived.by_parameter;
-        for (column, nominal) in by_scaled.iter_mut().zip(nominal) {
-            *column = [column[0] * nominal, column[1] * nominal];
+        for (column, scale) in by_scaled.iter_mut().zip(self.scale()) {
+            *column = [column[0] * scale, column[1] * scale];
         }
         let [fd, fq] = arrived.by_current;
         let phi = [0, 1].map(|c| [fd[c], fq[c], by_scaled[0][c], by_scaled[1][c], by_scaled[2][c], by_scaled[3][c]]);
@@ -201,11 +211,16 @@ impl<T: Real> Ekf<T> {
         self.i[0] += gain[0] * step;
         self.i[1] += gain[1] * step;
         for j in 0..PARAMETERS {
-            self.z[j] += gain[j + 2] * step;
+            let change = gain[j + 2] * step;
+            if IS_LOGARITHM[j] {
+                // Not as a product with the exponential: in single precision that is rounded down more often than up.
+                self.z[j] += self.z[j] * change.exp_m1();
+                self.z[j] = self.z[j].larger(T::of(LEAST_PART)).smaller(T::of(1.0 / LEAST_PART));
+            } else {
+                self.z[j] += change;
+            }
         }
-        for j in 0..PARAMETERS - 1 {
-            self.z[j] = self.z[j].larger(T::of(LEAST_PART));
-        }
+        self.z[0] = self.z[0].larger(T::of(LEAST_PART));
         let squared = innovation * innovation;
         let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
         self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
@@ -221,9 +236,16 @@ impl<T: Real> Ekf<T> {
         [z[0] * nominal[0], z[1] * nominal[1], z[2] * nominal[2], z[3] * nominal[3]]
     }
 
+    /// How much each parameter changes with its state.
+    fn scale(&self) -> [T; PARAMETERS] {
+        let values = self.values();
+        [0, 1, 2, 3].map(|j| if IS_LOGARITHM[j] { values[j] } else { self.settings.nominal[j] })
+    }
+
     /// Their standard errors, SI.
     pub fn standard_errors(&self) -> [T; PARAMETERS] {
-        [0, 1, 2, 3].map(|j| self.ud.variance(j + 2).sqrt() * self.settings.nominal[j].abs())
+        let scale = self.scale();
+        [0, 1, 2, 3].map(|j| self.ud.variance(j + 2).sqrt() * scale[j].abs())
     }
 
     /// A filter that knows the same and reckons with another unknown voltage, V.
@@ -245,6 +267,11 @@ impl<T: Real> Ekf<T> {
     /// How many steps of parameters were found.
     pub fn steps(&self) -> u32 {
         self.steps
+    }
+
+    /// How many periods were left out, because something in them was no number.
+    pub fn left_out(&self) -> u32 {
+        self.left_out
     }
 
     /// How many currents lay beyond three standard deviations.

@@ -34,6 +34,8 @@ pub trait Real:
     fn sin_cos(self) -> (Self, Self);
     /// Natural logarithm.
     fn ln(self) -> Self;
+    /// Exponential function less one, with all digits near zero.
+    fn exp_m1(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
@@ -49,7 +51,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($number:ty, $sqrt:path, $abs:path, $sincos:path, $ln:path) => {
+    ($number:ty, $sqrt:path, $abs:path, $sincos:path, $ln:path, $exp_m1:path) => {
         impl Real for $number {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -78,6 +80,10 @@ macro_rules! real {
                 $ln(self)
             }
             #[inline(always)]
+            fn exp_m1(self) -> Self {
+                $exp_m1(self)
+            }
+            #[inline(always)]
             fn is_finite(self) -> bool {
                 <$number>::is_finite(self)
             }
@@ -85,5 +91,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::sqrtf, libm::fabsf, libm::sincosf, libm::logf);
-real!(f64, libm::sqrt, libm::fabs, libm::sincos, libm::log);
+real!(f32, libm::sqrtf, libm::fabsf, libm::sincosf, libm::logf, libm::expm1f);
+real!(f64, libm::sqrt, libm::fabs, libm::sincos, libm::log, libm::expm1);

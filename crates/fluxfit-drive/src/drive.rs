@@ -103,7 +103,7 @@ impl<'a> Drive<'a> {
         let row = self.row(t, &measured, &command);
 
         self.set_load(t);
-        self.plant.rs = self.scenario.motor.rs_after(t / self.scenario.duration);
+        self.plant.change(t, t / self.scenario.duration);
         let duties = self.disturbed_duties();
         if !self.bridge.run(&mut self.plant, duties, t) {
             return Err(self.scenario.outside_map(t, self.plant.current()));

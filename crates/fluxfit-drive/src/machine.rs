@@ -3,8 +3,12 @@
 use crate::{
     flux_map::{FluxLinkage, FluxMap},
     harmonics::Harmonics,
+    schedule::Profile,
 };
-use fluxfit::{frames::Dq, motor::Motor};
+use fluxfit::{
+    frames::Dq,
+    motor::{Motor, PARAMETERS},
+};
 
 /// The simulated motor, whose parameters are the log's true ones.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +17,9 @@ pub struct SimulatedMotor {
     pub rs: f64,
     /// By which fraction the resistance has grown at the end of the simulated time; it grows linearly.
     pub rs_drift: f64,
+    /// By which fractions rs, ld, lq and psi_f have changed over time; of a flux map only the first counts. The current does not jump
+    /// where an inductance or the flux does, and the voltage that their change would induce is left out.
+    pub changes: [Profile; PARAMETERS],
     /// Flux linkage as a function of current.
     pub magnetics: Magnetics,
     /// Harmonics of the magnets' flux; those of a motor without magnets have no effect.
@@ -54,21 +61,31 @@ pub enum Mechanics {
 impl SimulatedMotor {
     /// A motor with a constant resistance, ohm, and a sinusoidal flux of the magnets.
     pub fn new(rs: f64, magnetics: Magnetics, pole_pairs: u32) -> Self {
-        Self { rs, rs_drift: 0.0, magnetics, harmonics: Harmonics::default(), pole_pairs }
+        Self { rs, rs_drift: 0.0, changes: Default::default(), magnetics, harmonics: Harmonics::default(), pole_pairs }
     }
 
-    /// Stator resistance, ohm, after a part of the simulated time, 0 to 1.
-    pub(crate) fn rs_after(&self, part: f64) -> f64 {
-        self.rs * (1.0 + self.rs_drift * part)
+    /// Stator resistance, ohm, at a time, s, which is a part, 0 to 1, of the simulated one.
+    pub(crate) fn rs_at(&self, t: f64, part: f64) -> f64 {
+        self.rs * (1.0 + self.rs_drift * part) * (1.0 + self.changes[0].at(t))
     }
 
-    /// The flux linkage at a current, A; `None` outside of a flux map.
+    /// Constant inductances, H, and flux linkage of the magnet, Wb, at a time, s; `None` of a flux map.
+    pub(crate) fn constants_at(&self, t: f64) -> Option<[f64; 3]> {
+        let Magnetics::Constant { ld, lq, psi_f } = &self.magnetics else { return None };
+        let [_, by_ld, by_lq, by_psi_f] = self.changes.each_ref().map(|change| 1.0 + change.at(t));
+        Some([ld * by_ld, lq * by_lq, psi_f * by_psi_f])
+    }
+
+    /// The flux linkage at a current, A, and a time, s; `None` outside of a flux map.
+    pub(crate) fn flux_at(&self, i: Dq, t: f64) -> Option<FluxLinkage> {
+        self.constants_at(t).map_or_else(|| self.flux(i), |[ld, lq, psi_f]| Some(linear_flux(i, ld, lq, psi_f)))
+    }
+
+    /// The flux linkage at a current, A, before any change; `None` outside of a flux map.
     #[inline]
     pub(crate) fn flux(&self, i: Dq) -> Option<FluxLinkage> {
         match &self.magnetics {
-            Magnetics::Constant { ld, lq, psi_f } => {
-                Some(FluxLinkage { psi: Dq { d: ld * i.d + psi_f, q: lq * i.q }, inductance: [[*ld, 0.0], [0.0, *lq]] })
-            }
+            Magnetics::Constant { ld, lq, psi_f } => Some(linear_flux(i, *ld, *lq, *psi_f)),
             Magnetics::Map(map) => map.at(i),
         }
     }
@@ -98,7 +115,12 @@ impl SimulatedMotor {
         }
     }
 
-    /// The true parameters, if they are constant.
+    /// The true parameters at a time, s, of `duration`; `None` of a flux map.
+    pub fn parameters_at(&self, t: f64, duration: f64) -> Option<Motor> {
+        self.constants_at(t).map(|[ld, lq, psi_f]| Motor { rs: self.rs_at(t, t / duration), ld, lq, psi_f })
+    }
+
+    /// The true parameters before any change, if they do not depend on the current.
     pub fn constant_parameters(&self) -> Option<Motor> {
         matches!(self.magnetics, Magnetics::Constant { .. }).then(|| self.unsaturated())
     }
@@ -107,6 +129,10 @@ impl SimulatedMotor {
     pub(crate) fn torque(&self, psi: Dq, i: Dq) -> f64 {
         1.5 * f64::from(self.pole_pairs) * (psi.d * i.q - psi.q * i.d)
     }
+}
+
+fn linear_flux(i: Dq, ld: f64, lq: f64, psi_f: f64) -> FluxLinkage {
+    FluxLinkage { psi: Dq { d: ld * i.d + psi_f, q: lq * i.q }, inductance: [[ld, 0.0], [0.0, lq]] }
 }
 
 impl From<Motor> for Magnetics {

@@ -32,8 +32,8 @@ pub struct Plant<'a> {
     field: Field<'a>,
     /// Harmonics of the magnets' flux and the flux linkage of their fundamental, Wb, if there are any.
     harmonics: Option<(Harmonics, f64)>,
-    /// Stator resistance, ohm; the drive lets it drift.
-    pub(crate) rs: f64,
+    /// Stator resistance, ohm.
+    rs: f64,
     /// The inverse of the inertia, and friction over inertia; zero for a dynamometer, whose speed no torque changes.
     per_inertia: f64,
     friction_rate: f64,
@@ -63,6 +63,12 @@ enum Field<'a> {
         psi_f: f64,
     },
     Map(&'a FluxMap),
+}
+
+impl Field<'_> {
+    fn constant(ld: f64, lq: f64, psi_f: f64) -> Self {
+        Self::Constant { inductance: Dq { d: ld, q: lq }, inverse: Dq { d: 1.0 / ld, q: 1.0 / lq }, psi_f }
+    }
 }
 
 /// Slopes of currents, speed and mechanical angle; powers.
@@ -96,9 +102,7 @@ impl<'a> Plant<'a> {
             Mechanics::Dyno => (0.0, 0.0),
         };
         let field = match &motor.magnetics {
-            Magnetics::Constant { ld, lq, psi_f } => {
-                Field::Constant { inductance: Dq { d: *ld, q: *lq }, inverse: Dq { d: 1.0 / ld, q: 1.0 / lq }, psi_f: *psi_f }
-            }
+            Magnetics::Constant { ld, lq, psi_f } => Field::constant(*ld, *lq, *psi_f),
             Magnetics::Map(map) => Field::Map(map),
         };
         Self {
@@ -117,6 +121,17 @@ impl<'a> Plant<'a> {
             steps_per_second: 0.0,
             load: 0.0,
             acceleration: 0.0,
+        }
+    }
+
+    /// Sets the parameters to those of a time, s, which is a part, 0 to 1, of the simulated one.
+    pub(crate) fn change(&mut self, t: f64, part: f64) {
+        self.rs = self.motor.rs_at(t, part);
+        if let Some([ld, lq, psi_f]) = self.motor.constants_at(t) {
+            self.field = Field::constant(ld, lq, psi_f);
+            if let Some((_, of_harmonics)) = &mut self.harmonics {
+                *of_harmonics = psi_f;
+            }
         }
     }
 
@@ -174,9 +189,16 @@ impl<'a> Plant<'a> {
     /// The fastest rate of the state, 1/s: decay of winding and friction, rotation, and the oscillation of a light rotor,
     /// `p psi sqrt(3/2 / (J L))`.
     fn fastest_rate(&self) -> f64 {
-        let Some(flux) = self.motor.flux(self.i) else { return f64::INFINITY };
-        let inductance = flux.inductance[0][0].min(flux.inductance[1][1]);
-        let (psi, omega_e) = (flux.psi, self.omega_e());
+        let (inductance, psi) = match self.field {
+            Field::Constant { inductance, psi_f, .. } => {
+                (inductance.d.min(inductance.q), Dq { d: inductance.d * self.i.d + psi_f, q: inductance.q * self.i.q })
+            }
+            Field::Map(map) => {
+                let Some(flux) = map.at(self.i) else { return f64::INFINITY };
+                (flux.inductance[0][0].min(flux.inductance[1][1]), flux.psi)
+            }
+        };
+        let omega_e = self.omega_e();
         let psi_squared = psi.d * psi.d + psi.q * psi.q;
         let oscillation_squared = self.pole_pairs * self.pole_pairs * psi_squared * 1.5 * self.per_inertia / inductance;
         let periods = if self.harmonics.is_some() { PERIODS } else { 1.0 };

@@ -42,6 +42,7 @@ const SHAPE: Shape = Shape {
     keys: &["duration", "seed"],
     tables: &[
         ("motor", machine::MOTOR_KEYS),
+        ("changes", schedule::CHANGES_KEYS),
         ("mechanics", machine::MECHANICS_KEYS),
         ("inverter", supply::INVERTER_KEYS),
         ("control", supply::CONTROL_KEYS),
@@ -85,7 +86,8 @@ fn parse(text: &str, folder: &Path) -> Result<ReadScenario, FileError> {
     let root = document.root();
     let duration = root.needed("duration", Dimension::Time)?;
     let seed = root.get("seed").map_or(Ok(SEED), |entry| entry.whole(0, "a whole number, zero or more"))?;
-    let motor = machine::motor(&document.table("motor"), folder)?;
+    let changes = schedule::changes(&document.table("changes"))?;
+    let motor = machine::motor(&document.table("motor"), changes, folder)?;
     let mechanics = machine::mechanics(&document.table("mechanics"))?;
     let scenario = Scenario {
         duration,
@@ -146,6 +148,9 @@ mod tests {
         let keys = keys.iter().chain(&["# field_weakening", "# current_", "# adc_", "# angle_", "# encoder_", "# [injection]"]);
         let keys = keys.chain(&["# axis", "# waveform", "# frequency", "# voltage"]);
         let keys = keys.chain(&[
+            "# [changes]",
+            "# rs = [",
+            "# psi_f = [",
             "# rs_drift",
             "# flux_harmonics",
             "# u_dc_gain",
@@ -178,6 +183,8 @@ mod tests {
             u_dc_gain: 1.02,
         };
         expected.motor.rs_drift = 0.2;
+        expected.motor.changes[0] = Profile::new(vec![Ramp { at: 0.0, to: 0.3, over: 0.9 }]);
+        expected.motor.changes[3] = Profile::new(vec![Ramp { at: 0.5, to: -0.05, over: 0.0 }]);
         expected.motor.harmonics = Harmonics { fifth: 0.006, seventh: 0.003 };
         expected.logging = Logging {
             filter_frame: FilterFrame::Dq,
@@ -193,6 +200,14 @@ mod tests {
         let slower = "current_bandwidth = \"150 Hz\"";
         expected.control.current_bandwidth = 150.0;
         assert_eq!(read(&text.replace("current_bandwidth = \"200 Hz\"", slower)).unwrap().scenario, expected);
+    }
+
+    #[test]
+    fn a_move_repeats_itself() {
+        let wave = "id = [{ at = \"0.1 s\", to = \"-2 A\", every = \"0.2 s\", times = 3 }, { at = 0.2, to = 0, every = 0.2, times = 2 }]";
+        let read = read(&PAPER_RIG.replace("id = [{ at = \"0.6 s\", to = \"-2 A\" }]", wave)).unwrap();
+        let found = [0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.85].map(|t| read.scenario.schedule.id.at(t));
+        assert_eq!(found, [0.0, -2.0, 0.0, -2.0, 0.0, -2.0, -2.0, -2.0]);
     }
 
     #[test]
@@ -224,7 +239,11 @@ mod tests {
                 "line 52, key 'duration': this key belongs above all tables; move it to the top of the file",
             ),
             ("at = \"0.2 s\", ", "", "line 42: the key at is missing; write at = \"0.5 s\""),
-            ("to = \"10 N m\"", "too = 10", "line 42, key 'too': this key is not known; a move can hold at, to and over; did you mean to?"),
+            (
+                "to = \"10 N m\"",
+                "too = 10",
+                "line 42, key 'too': this key is not known; a move can hold at, to, over, every and times; did you mean to?",
+            ),
             (
                 "to = \"10 N m\"",
                 "to = \"10 A\"",
@@ -274,7 +293,7 @@ mod tests {
 
         /// One value of the template replaced by anything.
         #[test]
-        fn no_value_panics(line in 0usize..72, value in "\\PC{0,12}|-?[0-9]{1,20}|\"-?[0-9.e]{1,9} ?(s|A|V|Hz|rpm|H)?\"|\\[[0-9,]{0,9}\\]|\\{[a-z=0-9]{0,9}\\}|nan|true") {
+        fn no_value_panics(line in 0usize..76, value in "\\PC{0,12}|-?[0-9]{1,20}|\"-?[0-9.e]{1,9} ?(s|A|V|Hz|rpm|H)?\"|\\[[0-9,]{0,9}\\]|\\{[a-z=0-9]{0,9}\\}|nan|true") {
             let change = |(at, text): (usize, &str)| match text.split_once(" = ") {
                 Some((key, _)) if at == line => format!("{} = {value}", key.trim_start_matches("# ")),
                 _ => text.to_owned(),

@@ -90,7 +90,7 @@ pub struct OnlineDocument {
 pub fn compare_online(log: &Log, timing: Timing, start: &Start, truth: Option<&Motor>, batch: [BatchEntry; PARAMETERS]) -> OnlineDocument {
     let columns = log.columns();
     let run = |method: Method| {
-        let mut tracker = Tracker::new(TrackSettings { method, timing: Some(timing), start: *start });
+        let mut tracker = Tracker::new(TrackSettings { start: *start, ..TrackSettings::new(method, Some(timing)) });
         (0..log.rows()).filter_map(|k| columns.row(k)).for_each(|row| tracker.push(&row));
         let estimate = tracker.estimator().map(crate::Estimator::estimate);
         let end = |parameter: Parameter| {

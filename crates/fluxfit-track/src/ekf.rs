@@ -1,8 +1,8 @@
 //! The recommended pair: a Kalman filter for values and intervals, started and watched by block least squares, which tells what is
 //! identifiable.
 //!
-//! When to use it: always, unless a processor is too small for it. Of constant parameters it reaches the Cramér-Rao bound, but for L_d
-//! (figures: docs/track.md). In the tracking form it follows drifts and steps.
+//! When to use it: always, unless a processor is too small for it. Of constant parameters it reaches the Cramér-Rao bound (figures:
+//! docs/track.md). In the tracking form it follows drifts and steps.
 //!
 //! - A filter that starts far from the motor is overconfident. So it starts at what block least squares found in the
 //!   [lead-in](crate::lead_in).
@@ -64,7 +64,9 @@ pub struct WatchedEkf {
     /// Parameters that began with a guess, and have not become identifiable yet.
     is_guessed: [bool; PARAMETERS],
     contradictions: u32,
-    restarts: u32,
+    /// Steps that were found before it was started anew.
+    #[serde(default)]
+    steps_before: u32,
 }
 
 impl WatchedEkf {
@@ -87,7 +89,7 @@ impl WatchedEkf {
             was_trusted: [false; PARAMETERS],
             is_guessed,
             contradictions: 0,
-            restarts: 0,
+            steps_before: 0,
         };
         pair.fill(values, [None; PARAMETERS]);
         pair
@@ -154,7 +156,7 @@ impl WatchedEkf {
         }
         if is_new || self.contradictions >= PATIENCE {
             self.contradictions = 0;
-            self.restarts += 1;
+            self.steps_before += self.filter().steps();
             let values: [f64; PARAMETERS] = std::array::from_fn(|j| if trusted[j] { values[j] } else { own[j] });
             self.fill(values, std::array::from_fn(|j| trusted[j].then_some(CAUTION * relative[j])));
             if trusted == [true; PARAMETERS] && self.start.standard_errors == [None; PARAMETERS] {
@@ -206,9 +208,9 @@ impl WatchedEkf {
         &self.bank[self.best]
     }
 
-    /// How often the filter was started anew.
-    pub fn restarts(&self) -> u32 {
-        self.restarts
+    /// How many steps of parameters were found.
+    pub fn steps(&self) -> u32 {
+        self.steps_before + self.filter().steps()
     }
 
     /// Values and intervals of the filter; what is identifiable, by least squares.

@@ -2,9 +2,9 @@
 //!
 //! ```
 //! use fluxfit::{Motor, frames::Dq, log::Row};
-//! use fluxfit_track::{Method, Start, TrackSettings, Tracker};
+//! use fluxfit_track::{Method, TrackSettings, Tracker};
 //!
-//! let mut tracker = Tracker::new(TrackSettings { method: Method::EkfTracking, timing: None, start: Start::default() });
+//! let mut tracker = Tracker::new(TrackSettings::new(Method::EkfTracking, None));
 //! tracker.push(&Row { t: 0.0, ud: 0.0, uq: 1.0, id: 0.0, iq: 0.1, omega_e: 5.0, ..Row::default() });
 //! assert!(tracker.parameters().is_none()); // Too few rows yet.
 //! ```
@@ -13,6 +13,7 @@
 //! |---|---|
 //! | [`tracker`] | the whole: rows in, what is known of the motor out |
 //! | [`timing`], [`stream`] | rows become periods: voltage timing, gaps, garbage |
+//! | [`faults`] | faults of the drive that are known |
 //! | [`start`], [`lead_in`] | what is known before the first sample; the first samples |
 //! | [`method`] | the estimators, as one choice |
 //! | [`ekf`], [`rls`], [`forgetting`], [`instrumental_variable`], [`bias_compensated`], [`mras`], [`adaline`] | one estimator each |
@@ -28,6 +29,7 @@ pub mod comparison;
 pub mod document;
 pub mod ekf;
 pub mod estimate;
+pub mod faults;
 pub mod forgetting;
 pub mod instrumental_variable;
 pub mod lead_in;
@@ -42,6 +44,7 @@ pub mod tracker;
 pub mod verdict;
 
 pub use estimate::Estimate;
+pub use faults::DriveFaults;
 pub use method::{Beginning, Estimator, Method};
 pub use start::Start;
 pub use stream::{Event, LeftOut, Stream};

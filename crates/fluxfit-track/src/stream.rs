@@ -3,7 +3,10 @@
 //! A jump in time begins anew, and so does a row with a value that is no number or that no drive had; such rows are counted. The first
 //! rows whose acting voltage is not known are left out. Taking them as 0 V would throw the inductances by 200 %.
 
-use crate::timing::{LONGEST_DELAY, Timing};
+use crate::{
+    faults::DriveFaults,
+    timing::{LONGEST_DELAY, Timing},
+};
 use fluxfit::log::Row;
 use fluxfit_core::Period;
 use serde::{Deserialize, Serialize};
@@ -46,18 +49,24 @@ pub struct LeftOut {
     pub gaps: u64,
 }
 
-/// A vector as it was logged, and the angle at its row.
+/// A row as it was logged, but for the offset of its sensors.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct Logged {
     u: [f64; 2],
+    i: [f64; 2],
     omega_e: f64,
+    /// The integral of the speed.
     theta: f64,
+    /// The logged angle, if any.
+    angle: f64,
 }
 
 /// Rows in, periods out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stream {
     timing: Timing,
+    #[serde(default)]
+    faults: DriveFaults,
     last_t: Option<f64>,
     /// The last rows of this stretch, newest first, and how many.
     rows: [Logged; LONGEST_DELAY + 2],
@@ -79,9 +88,10 @@ fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
 
 impl Stream {
     /// A stream without rows yet.
-    pub fn new(timing: Timing) -> Self {
+    pub fn new(timing: Timing, faults: DriveFaults) -> Self {
         Self {
             timing,
+            faults,
             last_t: None,
             rows: [Logged::default(); LONGEST_DELAY + 2],
             count: 0,
@@ -115,7 +125,7 @@ impl Stream {
         self.largest
     }
 
-    /// What the next row brings; nothing, if the voltage that acts from its predecessor on is not known.
+    /// What the next row brings, freed of the faults of the drive; nothing, if the voltage that acts from its predecessor on is not known.
     pub fn push(&mut self, row: &Row) -> Option<Event> {
         if !self.is_sound(row) {
             self.count = 0;
@@ -133,9 +143,10 @@ impl Stream {
         // Wrapped, so that it keeps its digits in a stream of days; only differences within a few rows matter.
         let theta = if theta.abs() > 1e4 { self.rewind(theta) } else { theta };
         self.rows.rotate_right(1);
-        self.rows[0] = Logged { u: [row.ud, row.uq], omega_e: row.omega_e, theta };
+        let (i, angle) = (self.faults.current(row), row.theta_e.unwrap_or(0.0));
+        self.rows[0] = Logged { u: [row.ud, row.uq], i, omega_e: row.omega_e, theta, angle };
         self.count += 1;
-        self.event(length, [row.id, row.iq])
+        self.event(length)
     }
 
     /// Subtracts whole turns from all angles.
@@ -145,7 +156,8 @@ impl Stream {
         theta - turns
     }
 
-    fn event(&mut self, length: f64, i: [f64; 2]) -> Option<Event> {
+    fn event(&mut self, length: f64) -> Option<Event> {
+        let i = self.faults.in_magnets_frame(self.rows[0].i);
         let lost = match self.timing {
             Timing::Centered => 0,
             Timing::Delayed { delay, .. } => delay,
@@ -177,6 +189,9 @@ impl Stream {
                 turned(logged.u, logged.theta + ahead - middle)
             }
         };
+        let mean = [0.5 * (start.i[0] + end.i[0]), 0.5 * (start.i[1] + end.i[1])];
+        let lost = self.faults.lost(mean, start.angle + 0.5 * (end.theta - start.theta));
+        let u = self.faults.in_magnets_frame([u[0] - lost[0], u[1] - lost[1]]);
         Some(Event::Period(Period { u, omega_e: (end.theta - start.theta) / length, length }, i))
     }
 

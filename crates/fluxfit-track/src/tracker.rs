@@ -7,6 +7,7 @@
 //! Nothing is allocated after the lead-in but for a timing that is given up. A tracker that is saved and resumed goes on to the same bits.
 
 use crate::{
+    faults::DriveFaults,
     lead_in::LeadIn,
     method::{Beginning, Estimator, Method},
     start::Start,
@@ -41,6 +42,16 @@ pub struct TrackSettings {
     pub timing: Option<Timing>,
     /// What is known beforehand.
     pub start: Start,
+    /// Faults of the drive that are known.
+    #[serde(default)]
+    pub faults: DriveFaults,
+}
+
+impl TrackSettings {
+    /// Of a motor of which nothing is known, in a drive without faults.
+    pub fn new(method: Method, timing: Option<Timing>) -> Self {
+        Self { method, timing, start: Start::default(), faults: DriveFaults::default() }
+    }
 }
 
 /// One reading of the voltages, and what follows from it.
@@ -68,8 +79,8 @@ pub struct Tracker {
 }
 
 impl Lane {
-    fn new(timing: Timing) -> Self {
-        Self { stream: Stream::new(timing), lead_in: Some(LeadIn::new()), estimator: None, racer: None, surprise: 0.0 }
+    fn new(timing: Timing, faults: DriveFaults) -> Self {
+        Self { stream: Stream::new(timing, faults), lead_in: Some(LeadIn::new()), estimator: None, racer: None, surprise: 0.0 }
     }
 
     fn push(&mut self, row: &Row, method: Method, start: &Start, is_racing: bool) {
@@ -114,8 +125,8 @@ impl Tracker {
     /// A tracker before its first row.
     pub fn new(settings: TrackSettings) -> Self {
         let lanes = match settings.timing {
-            Some(timing) => vec![Lane::new(timing)],
-            None => Timing::USUAL.map(Lane::new).to_vec(),
+            Some(timing) => vec![Lane::new(timing, settings.faults)],
+            None => Timing::USUAL.map(|timing| Lane::new(timing, settings.faults)).to_vec(),
         };
         Self { settings, lanes, t: 0.0, raced: 0.0, rows: 0, excitation: Excitation::default() }
     }
@@ -197,7 +208,7 @@ impl Tracker {
     /// Steps of parameters that were found.
     pub fn steps(&self) -> u32 {
         match self.estimator() {
-            Some(Estimator::Ekf(filter)) => filter.filter().steps(),
+            Some(Estimator::Ekf(filter)) => filter.steps(),
             _ => 0,
         }
     }

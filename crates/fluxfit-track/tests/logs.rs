@@ -4,7 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use fluxfit::log::Row;
-use fluxfit_track::{Estimator, Method, Start, Timing, TrackSettings, Tracker, Verdict};
+use fluxfit_drive::{scenario::reference_cases::two_modes, simulate};
+use fluxfit_track::{DriveFaults, Estimator, Method, Start, Timing, TrackSettings, Tracker, Verdict};
 use std::{fs, path::Path};
 
 const TRUTH: [f64; 4] = [0.958, 5.25e-3, 12e-3, 0.1827];
@@ -34,7 +35,8 @@ fn commands(name: &str) -> Vec<Row> {
 
 fn settings(method: Method) -> TrackSettings {
     let values = [0, 1, 2, 3].map(|j| Some(START[j] * TRUTH[j]));
-    TrackSettings { method, timing: Some(COMMANDS), start: Start { values, rating: Some([10.0, 419.0]), ..Start::default() } }
+    let start = Start { values, rating: Some([10.0, 419.0]), ..Start::default() };
+    TrackSettings { start, ..TrackSettings::new(method, Some(COMMANDS)) }
 }
 
 fn followed(settings: TrackSettings, rows: &[Row]) -> Tracker {
@@ -94,7 +96,7 @@ fn estimators_without_a_covariance_say_so() {
 fn the_stream_finds_start_and_timing_itself() {
     for (voltages, timing) in [(["ud", "uq"], Timing::Centered), (["ud_ref", "uq_ref"], COMMANDS)] {
         let rows = rows("paper_rig_pwm_noise.csv", voltages);
-        let tracker = followed(TrackSettings { method: Method::EkfTracking, timing: None, start: Start::default() }, &rows);
+        let tracker = followed(TrackSettings::new(Method::EkfTracking, None), &rows);
         assert_eq!(tracker.timing(), (timing, true));
         for (j, tracked) in tracker.parameters().unwrap().iter().enumerate() {
             let [low, high] = tracked.interval().unwrap();
@@ -176,4 +178,32 @@ fn a_quiet_spell_is_said() {
     let parameters = tracker.parameters().unwrap();
     assert!(matches!(parameters[0].verdict, Verdict::Holding { since } if (1.0..2.5).contains(&since)), "{parameters:?}");
     assert!(matches!(tracker.estimator(), Some(Estimator::Ekf(_))));
+}
+
+/// Dead time, sensor offset and angle offset that are known are undone; unknown, each makes something wrong by more than 5 %.
+#[test]
+fn known_faults_of_the_drive_are_undone() {
+    let mut scenario = two_modes();
+    scenario.inverter.dead_time = 2e-6;
+    scenario.sensors.current_offset = [0.3, 0.0, 0.0];
+    scenario.sensors.angle_offset = 0.05;
+    let recording = simulate(&scenario, 0, || ()).unwrap();
+    let rows: Vec<Row> = (0..recording.columns.t.len())
+        .filter_map(|k| Some(Row { ud: recording.ud_ref[k], uq: recording.uq_ref[k], ..recording.columns.row(k)? }))
+        .collect();
+    let faults = DriveFaults {
+        // Dead time times carrier times DC voltage, and two thirds of an offset of phase a.
+        dead_time_voltage: 2e-6 * 5e3 * 310.0,
+        dead_time_width: 0.0,
+        current_offset: [0.2, 0.0],
+        angle_offset: 0.05,
+    };
+    let known = errors(&followed(TrackSettings { faults, ..settings(Method::Ekf) }, &rows));
+    assert!(known.iter().all(|error| error.abs() < 1.0), "{known:?}");
+    for left in ["dead_time_voltage", "angle_offset"] {
+        let mut rest = faults;
+        *rest.number(left).unwrap() = 0.0;
+        let unknown = errors(&followed(TrackSettings { faults: rest, ..settings(Method::Ekf) }, &rows));
+        assert!(unknown.iter().any(|error| error.abs() > 5.0), "{left}: {unknown:?}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod alarm;
 mod display;
+mod faults;
 mod source;
 mod state;
 
@@ -43,6 +44,9 @@ pub(crate) struct Track {
     // Its help lists the estimators.
     #[arg(long, help_heading = "Model", default_value = "ekf-tracking", value_parser = parse_method, help = help_of_methods())]
     method: Method,
+    /// The JSON of fluxfit identify, from a log of the same drive: its dead time, sensor offset and angle offset are undone
+    #[arg(long, value_name = "ANSWER.json", help_heading = "Prior knowledge", conflicts_with = "resume")]
+    faults: Option<PathBuf>,
     /// Motor file: pole pairs, values to begin with, rating, magnets' coefficient
     #[arg(long, value_name = "MOTOR.toml", help_heading = "Prior knowledge")]
     motor: Option<PathBuf>,
@@ -114,9 +118,10 @@ pub(crate) fn run(arguments: &Track) -> Result<Status, CommandError> {
     if let Some(path) = &arguments.save_state {
         fluxfit_files::check_writable(path)?;
     }
+    let faults = arguments.faults.as_deref().map(faults::read).transpose()?.unwrap_or_default();
     let tracker = match &arguments.resume {
         Some(path) => state::read(path)?,
-        None => Tracker::new(TrackSettings { method: arguments.method, timing: timing(arguments)?, start }),
+        None => Tracker::new(TrackSettings { start, faults, ..TrackSettings::new(arguments.method, timing(arguments)?) }),
     };
     let mut run = Running {
         watch: Watch::new(&arguments.alarm, &start.values),
@@ -159,6 +164,10 @@ struct Running {
 impl Running {
     /// Takes a row. False if no more are wanted.
     fn take(&mut self, row: &Row) -> Result<bool, CommandError> {
+        if row.theta_e.is_none() && self.tracker.settings().faults.need_angle() {
+            let sentence = "--faults: dead time and sensor offsets stand still in the stator, so each row needs the electrical angle; add a column theta_e, or leave --faults out";
+            return Err(CommandError::Usage(sentence.to_owned()));
+        }
         self.tracker.push(row);
         if self.lines.is_due(self.tracker.time()) {
             let parameters = self.tracker.parameters_or_nothing();

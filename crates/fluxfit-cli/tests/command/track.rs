@@ -287,3 +287,26 @@ fn all_estimators_stand_beside_the_batch_answer() {
     let run = fluxfit(&["compare", NOISY, "--online"]);
     assert!(run.out.lines().all(|line| line.chars().count() <= 80) && run.out.contains("adaline"), "{}", run.out);
 }
+
+/// The faults of an answer are undone: an angle that is said to be 90 degrees too large makes d of q, and no motor is found so.
+#[test]
+fn known_faults_are_undone_and_others_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let answer = folder.path().join("answer.json");
+    let with = |nuisance: &str| {
+        fs::write(&answer, format!(r#"{{"schema": "fluxfit.identification/1", "nuisance": {nuisance}}}"#)).unwrap();
+        fluxfit(&["track", NOISY, "--json", "--faults", answer.to_str().unwrap()])
+    };
+    let none = with(r#"{"voltage_timing": null}"#);
+    assert_eq!(none.out, fluxfit(&["track", NOISY, "--json"]).out);
+    assert_holds_the_truth(documents(&none.out).last().unwrap());
+    let turned = with(r#"{"angle_offset": {"value": 0.1}, "speed_lag": {"value": 0.001}}"#);
+    let lq = documents(&turned.out).last().unwrap()["lq"]["value"].as_f64().unwrap();
+    assert!((lq / 12e-3 - 1.0).abs() > 0.02, "{lq}");
+    assert!(unwrapped(&turned.err).contains("--faults: what a stream is not freed of: speed_lag"), "{}", turned.err);
+    let phase = with(r#"{"dead_time_voltage": {"value": 3}, "dead_time_phase": {"value": 0.1}}"#);
+    assert!(phase.status == 2 && unwrapped(&phase.err).contains("found without an electrical angle"), "{}", phase.err);
+    fs::write(&answer, r#"{"schema": "fluxfit.track/1"}"#).unwrap();
+    let other = fluxfit(&["track", NOISY, "--faults", answer.to_str().unwrap()]);
+    assert!(other.status == 2 && other.err.contains("its schema is"), "{}", other.err);
+}

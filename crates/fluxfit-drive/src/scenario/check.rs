@@ -82,6 +82,7 @@ impl Scenario {
         ] {
             check_ramps(key, profile)?;
         }
+        self.check_changes()?;
         if let Some(Injection { frequency, voltage, .. }) = &self.schedule.injection {
             positive("injection.frequency", *frequency)?;
             if *frequency > 0.5 * self.inverter.sample_rate() {
@@ -90,6 +91,22 @@ impl Scenario {
             check_ramps("injection.voltage", voltage)?;
             if let Some(most) = voltage.ramps().iter().find(|amplitude| amplitude.to.abs() > self.inverter.voltage_limit()) {
                 return Err(setting("injection.voltage", most.to, "at most u_dc / sqrt(3)"));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_changes(&self) -> Result<(), Error> {
+        let keys = ["changes.rs", "changes.ld", "changes.lq", "changes.psi_f"];
+        let is_map = matches!(self.motor.magnetics, Magnetics::Map(_));
+        for (key, profile) in keys.into_iter().zip(&self.motor.changes) {
+            check_ramps(key, profile)?;
+            if let Some(gone) = profile.ramps().iter().find(|ramp| ramp.to <= -1.0) {
+                return Err(setting(key, gone.to, "above -1: nothing of the parameter would be left"));
+            }
+            if is_map && key != "changes.rs" && !profile.is_zero() {
+                let remedy = "a flux map does not change: leave it out";
+                return Err(Error::Incompatible { key, with: "motor.ld, motor.lq and motor.psi_f", remedy });
             }
         }
         Ok(())
@@ -121,7 +138,7 @@ impl Scenario {
             return Err(setting("duration", self.duration, "at least the time from one sample to the next"));
         }
         let motor = self.motor.unsaturated();
-        let time_constant = motor.ld.min(motor.lq) / motor.rs.max(self.motor.rs_after(1.0));
+        let time_constant = motor.ld.min(motor.lq) / motor.rs.max(self.motor.rs_at(self.duration, 1.0));
         if sample_period > time_constant {
             let carrier = self.inverter.carrier * sample_period / time_constant;
             return Err(Error::SlowSampling { sample_period, time_constant, carrier: carrier.ceil() });

@@ -29,9 +29,8 @@ impl Scenario {
     /// Refuses a schedule that is not feasible, with its first infeasible point.
     pub(super) fn check_feasibility(&self) -> Result<(), Error> {
         let schedule = &self.schedule;
-        let profiles = [&schedule.id, &schedule.iq, &schedule.speed, &schedule.load];
-        let mut times: Vec<f64> =
-            profiles.iter().flat_map(|profile| profile.ramps()).flat_map(|ramp| [ramp.at, ramp.at + ramp.over]).collect();
+        let profiles = [&schedule.id, &schedule.iq, &schedule.speed, &schedule.load].into_iter().chain(&self.motor.changes);
+        let mut times: Vec<f64> = profiles.flat_map(|profile| profile.ramps()).flat_map(|ramp| [ramp.at, ramp.at + ramp.over]).collect();
         times.extend([0.0, self.duration]);
         times.retain(|t| (0.0..=self.duration).contains(t));
         times.sort_by(f64::total_cmp);
@@ -75,7 +74,7 @@ impl Scenario {
         let most = self.motor.within_map(Dq { d: id, q: allowed.copysign(torque) }).q;
         let torque_at = |iq: f64| -> Result<f64, Error> {
             let i = Dq { d: id, q: iq };
-            self.motor.flux(i).map(|flux| self.motor.torque(flux.psi, i)).ok_or_else(|| self.outside_map(t, i))
+            self.motor.flux_at(i, t).map(|flux| self.motor.torque(flux.psi, i)).ok_or_else(|| self.outside_map(t, i))
         };
         // The torque at a thousandth of the largest current shows its direction.
         if torque_at(1e-3 * most)? * torque <= 0.0 {
@@ -101,11 +100,11 @@ impl Scenario {
     fn check_current(&self, point: &ScheduledPoint, i: Dq) -> Result<(), Error> {
         let ScheduledPoint { t, speed, .. } = *point;
         let omega_e = speed * f64::from(self.motor.pole_pairs);
-        let Some(flux) = self.motor.flux(i) else { return Err(self.outside_map(t, i)) };
+        let Some(flux) = self.motor.flux_at(i, t) else { return Err(self.outside_map(t, i)) };
         if let Some(adc) = self.sensors.adc.filter(|adc| i.magnitude() > adc.range) {
             return Err(Error::ConverterRange { t, needed: i.magnitude(), range: adc.range });
         }
-        let rs = self.motor.rs_after(t / self.duration);
+        let rs = self.motor.rs_at(t, t / self.duration);
         let u = Dq { d: rs * i.d - omega_e * flux.psi.q, q: rs * i.q + omega_e * flux.psi.d };
         let available = self.available_voltage();
         if u.magnitude() <= available {

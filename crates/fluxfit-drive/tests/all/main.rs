@@ -2,6 +2,7 @@
 //!
 //! `cargo test -p fluxfit-drive --test all faults -- --nocapture` runs one topic and prints what it found.
 
+mod changes;
 mod common_gains;
 mod control;
 mod conventions;

@@ -1,9 +1,11 @@
 //! The tables `[motor]` and `[mechanics]`.
 
 use crate::{flux_map::read_flux_map, problem::Problem};
+use fluxfit::motor::PARAMETERS;
 use fluxfit_drive::{
     Error,
     scenario::{Harmonics, Magnetics, Mechanics, SimulatedMotor},
+    schedule::Profile,
 };
 use fluxfit_files::{FileError, Problem as FileProblem, toml_table::Table};
 use fluxfit_units::Dimension;
@@ -12,10 +14,11 @@ use std::path::Path;
 /// Keys of `[motor]`.
 pub(super) const MOTOR_KEYS: &[&str] = &["rs", "rs_drift", "ld", "lq", "psi_f", "flux_map", "flux_harmonics", "pole_pairs"];
 
-pub(super) fn motor(table: &Table<'_>, folder: &Path) -> Result<SimulatedMotor, FileError> {
+pub(super) fn motor(table: &Table<'_>, changes: [Profile; PARAMETERS], folder: &Path) -> Result<SimulatedMotor, FileError> {
     Ok(SimulatedMotor {
         rs: table.needed("rs", Dimension::Resistance)?,
         rs_drift: table.quantity("rs_drift", Dimension::Ratio)?.unwrap_or(0.0),
+        changes,
         magnetics: magnetics(table, folder)?,
         harmonics: harmonics(table)?,
         pole_pairs: match table.get("pole_pairs") {

@@ -1,5 +1,6 @@
-//! The tables `[schedule]` and `[injection]`.
+//! The tables `[schedule]`, `[changes]` and `[injection]`.
 
+use fluxfit::motor::PARAMETERS;
 use fluxfit_drive::{
     scenario::{Axis, Injection, Schedule, Waveform},
     schedule::{Profile, Ramp},
@@ -9,6 +10,9 @@ use fluxfit_files::{
     toml_table::{Entry, Table},
 };
 use fluxfit_units::Dimension;
+
+/// Most repetitions of a move: a step every tenth of a second of the longest log.
+const MOST_TIMES: u32 = 30_000;
 
 /// A ramp, as an example in messages.
 const RAMP: &str = "{ at = \"0.2 s\", to = .., over = \"10 ms\" }";
@@ -25,6 +29,19 @@ pub(super) fn schedule(table: &Table<'_>, injection: &Table<'_>) -> Result<Sched
         load: course("load", Dimension::Torque)?,
         injection: if injection.is_present() { Some(test_voltage(injection)?) } else { None },
     })
+}
+
+/// Keys of `[changes]`, in the order of the parameters.
+pub(super) const CHANGES_KEYS: &[&str] = &["rs", "ld", "lq", "psi_f"];
+
+pub(super) fn changes(table: &Table<'_>) -> Result<[Profile; PARAMETERS], FileError> {
+    let mut changes: [Profile; PARAMETERS] = Default::default();
+    for (change, key) in changes.iter_mut().zip(CHANGES_KEYS) {
+        if let Some(entry) = table.get(key) {
+            *change = course(&entry, Dimension::Ratio)?;
+        }
+    }
+    Ok(changes)
 }
 
 /// Keys of `[injection]`.
@@ -46,14 +63,30 @@ fn course(entry: &Entry<'_>, dimension: Dimension) -> Result<Profile, FileError>
         let wanted = || entry.refuse(FileProblem::Value { wanted: format!("a quantity, or a list of ramps as in [{RAMP}]") });
         return entry.as_written().ok_or_else(wanted).and_then(|_| entry.quantity(dimension)).map(Profile::constant);
     };
-    items.iter().map(|item| one_move(item, dimension)).collect::<Result<_, _>>().map(Profile::new)
+    let mut ramps = Vec::new();
+    for item in &items {
+        ramps.extend(moves(item, dimension)?);
+    }
+    Ok(Profile::new(ramps))
 }
 
-fn one_move(item: &Entry<'_>, dimension: Dimension) -> Result<Ramp, FileError> {
-    let table = item.table(&["at", "to", "over"], "a move", RAMP)?;
-    Ok(Ramp {
-        at: table.needed("at", Dimension::Time)?,
-        to: table.needed("to", dimension)?,
-        over: table.quantity("over", Dimension::Time)?.unwrap_or(0.0),
-    })
+/// A move, and its repetitions.
+fn moves(item: &Entry<'_>, dimension: Dimension) -> Result<impl Iterator<Item = Ramp> + use<>, FileError> {
+    let table = item.table(&["at", "to", "over", "every", "times"], "a move", RAMP)?;
+    let (at, to) = (table.needed("at", Dimension::Time)?, table.needed("to", dimension)?);
+    let over = table.quantity("over", Dimension::Time)?.unwrap_or(0.0);
+    let (every, times) = match (table.quantity("every", Dimension::Time)?, table.get("times")) {
+        (None, None) => (0.0, 1),
+        (Some(every), Some(times)) => {
+            let range = "a whole number from 1 to 30000";
+            let count = times.whole(1, range)?;
+            if count > MOST_TIMES {
+                return Err(times.out_of_range(range));
+            }
+            (every, count)
+        }
+        (None, Some(_)) => return Err(table.missing("every", "\"0.5 s\"")),
+        (Some(_), None) => return Err(table.missing("times", "10")),
+    };
+    Ok((0..times).map(move |time| Ramp { at: at + f64::from(time) * every, to, over }))
 }
