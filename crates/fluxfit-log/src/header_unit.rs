@@ -63,7 +63,8 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
 /// The name in a header without its unit, and the unit that the header states. The unit is at the end: in brackets, after `@`, or
 /// after `_` or a space. Only in brackets and after `@` is an unknown unit reported: `uq_s` may be the q voltage of the stator.
 pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderUnit<'_>) {
-    let header = header.trim();
+    // Simulink writes signals in angle brackets.
+    let header = header.trim().trim_start_matches('<').trim_end_matches('>');
     let rotation = rotation(header);
     let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
         let at = header.strip_suffix(close)?.rfind(open)?;
@@ -155,6 +156,7 @@ mod tests {
             ("uq [pu]", Voltage, ("uq", HeaderUnit::Unknown("pu"))),
             ("uq@mA", Voltage, ("uq", HeaderUnit::Unknown("mA"))),
             ("rpm_mech", Speed, ("", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("<speed wm (rad/s)>", Speed, ("speed wm", HeaderUnit::Known(Unit::RadianPerSecond))),
             ("speed_krpm", Speed, ("speed", HeaderUnit::Unknown("krpm"))),
             ("Vd_pu", Voltage, ("Vd", HeaderUnit::Unknown("pu"))),
             ("pu", Voltage, ("pu", HeaderUnit::None)),

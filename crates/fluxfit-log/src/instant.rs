@@ -203,7 +203,7 @@ impl Style {
 const UNITS: [(&str, f64); 6] = [("sec", 1e9), ("s", 1e9), ("ms", 1e6), ("us", 1e3), ("µs", 1e3), ("min", 6e10)];
 
 /// The number and the unit of a cell that has both.
-fn counted(text: &str) -> Option<(f64, f64)> {
+pub(crate) fn counted(text: &str) -> Option<(f64, f64)> {
     let (number, unit) = text.trim().rsplit_once(' ')?;
     let (_, unit) = UNITS.iter().find(|(name, _)| *name == unit)?;
     let number: f64 = number.trim().replace(',', ".").parse().ok()?;
