@@ -164,7 +164,7 @@ fn duty_cycle(table: &mut Table, duty: usize, speed: &Found, pole_pairs: Option<
     if rows.iter().any(|row| row.duty > 1.0) {
         return Ok(None);
     }
-    let duty_name = quote(heads[duty].name.trim()).clone();
+    let duty_name = quote(heads[duty].name.trim());
     notes.push(
         format!("a duty {duty_name} of 1 is read as a phase amplitude of u_dc / sqrt 3, as VESC counts it; where it is u_dc / 2, all values are 0.866 times these")
             .into(),

@@ -116,7 +116,7 @@ impl<'a> Problem<'a> {
 
     /// Logarithms of the numbers that duty cycles alone depend on, over their vague errors.
     fn vague(&self) -> impl Iterator<Item = f64> {
-        let is_vague = |p: Parameter| self.rows.shorted.is_empty() && !(p == Parameter::Rs && !self.rows.direct.is_empty());
+        let is_vague = |p: Parameter| self.rows.shorted.is_empty() && (p != Parameter::Rs || self.rows.direct.is_empty());
         let free = Parameter::ALL.into_iter().filter(|p| self.is_free[*p as usize]).enumerate();
         let vague = free.filter(move |(_, p)| !self.rows.duty.is_empty() && matches!(p, Parameter::Rs | Parameter::Lq) && is_vague(*p));
         vague.map(|(place, _)| self.unknowns[place] / VAGUE)
