@@ -59,8 +59,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     match outcome {
+        Ok(_) if terminal::is_unread() => ExitCode::from(2),
         Ok(status) => interrupt::exit_status().map_or_else(|| status.into(), ExitCode::from),
-        // Whoever closed the pipe has seen enough.
+        // Whoever closed the pipe of a stream has seen enough.
         Err(CommandError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(error) => {
             terminal::print_error(&error);

@@ -15,6 +15,9 @@ const FILES: usize = 10_000;
 /// The environment variable with another number of files; the first of them are the same.
 const COUNT: &str = "FLUXFIT_MUTATED_FILES";
 
+/// The environment variable with the number of files before the first, for runs in slices.
+const BEFORE: &str = "FLUXFIT_MUTATED_BEFORE";
+
 /// Of so many files one is identified; the others are inspected, which reads them too.
 const ONE_IDENTIFIED: usize = 50;
 
@@ -140,7 +143,8 @@ fn run(arguments: &[&str], out: &Path) -> (Option<i32>, Duration) {
 
 #[test]
 fn mutated_files_are_read_or_refused() {
-    let files = std::env::var(COUNT).map_or(FILES, |count| count.parse().expect("a number of files"));
+    let stated = |name: &str| std::env::var(name).ok().map(|count| count.parse().expect("a number of files"));
+    let (files, before): (usize, usize) = (stated(COUNT).unwrap_or(FILES), stated(BEFORE).unwrap_or(0));
     let seeds = seeds();
     let folder = tempfile::tempdir().unwrap();
     let dbc = corpus().join("mappings/drive.dbc");
@@ -149,7 +153,7 @@ fn mutated_files_are_read_or_refused() {
         let (log, said) = (folder.path().join(format!("{thread}.log")), folder.path().join(format!("{thread}.txt")));
         let (log, dbc) = (log.to_str().unwrap(), dbc.to_str().unwrap());
         let mut counts = [0; 3];
-        for number in (thread..files).step_by(threads) {
+        for number in (before + thread..before + files).step_by(threads) {
             let bytes = mutate(&mut Random(number as u64), &seeds);
             fs::write(log, &bytes).unwrap();
             let verb = if number % ONE_IDENTIFIED == 0 { "identify" } else { "inspect" };

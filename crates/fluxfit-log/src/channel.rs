@@ -23,6 +23,11 @@ pub(crate) enum Channel {
     UA,
     UB,
     UC,
+    /// Of the stator's frame, whose alpha axis lies on phase a.
+    IAlpha,
+    IBeta,
+    UAlpha,
+    UBeta,
     /// Number of the run that a row belongs to; time is not continuous where it changes.
     Run,
 }
@@ -34,8 +39,9 @@ impl Channel {
     /// The optional channels.
     pub(crate) const OPTIONAL: [Self; 3] = [Self::ThetaE, Self::UDc, Self::Temperature];
 
-    /// Phase quantities, from which dq quantities are computed with the angle.
-    pub(crate) const PHASES: [Self; 6] = [Self::UA, Self::UB, Self::UC, Self::IA, Self::IB, Self::IC];
+    /// Quantities of the phases and of the stator's frame, from which dq quantities are computed with the angle.
+    pub(crate) const PHASES: [Self; 10] =
+        [Self::UA, Self::UB, Self::UC, Self::IA, Self::IB, Self::IC, Self::UAlpha, Self::UBeta, Self::IAlpha, Self::IBeta];
 
     /// All channels.
     pub(crate) fn all() -> impl Iterator<Item = Self> + Clone {
@@ -60,6 +66,10 @@ impl Channel {
             Self::UA => "ua",
             Self::UB => "ub",
             Self::UC => "uc",
+            Self::UAlpha => "ualpha",
+            Self::UBeta => "ubeta",
+            Self::IAlpha => "ialpha",
+            Self::IBeta => "ibeta",
             Self::Run => "run",
         }
     }
@@ -68,8 +78,8 @@ impl Channel {
     pub(crate) fn unit(self) -> Unit {
         match self {
             Self::T => Unit::Second,
-            Self::Ud | Self::Uq | Self::UDc | Self::UA | Self::UB | Self::UC => Unit::Volt,
-            Self::Id | Self::Iq | Self::IA | Self::IB | Self::IC => Unit::Ampere,
+            Self::Ud | Self::Uq | Self::UDc | Self::UA | Self::UB | Self::UC | Self::UAlpha | Self::UBeta => Unit::Volt,
+            Self::Id | Self::Iq | Self::IA | Self::IB | Self::IC | Self::IAlpha | Self::IBeta => Unit::Ampere,
             Self::Run => Unit::Number,
             Self::OmegaE => Unit::RadianPerSecond,
             Self::ThetaE => Unit::Radian,
@@ -104,6 +114,10 @@ impl Channel {
             Self::UA => &["ua", "uu", "va", "v1", "u1", "voltagea", "phaseavoltage"],
             Self::UB => &["ub", "uv", "vb", "v2", "u2", "voltageb", "phasebvoltage"],
             Self::UC => &["uc", "uw", "vc", "v3", "u3", "voltagec", "phasecvoltage"],
+            Self::UAlpha => &["ualpha", "valpha", "voltagealpha"],
+            Self::UBeta => &["ubeta", "vbeta", "voltagebeta"],
+            Self::IAlpha => &["ialpha", "currentalpha"],
+            Self::IBeta => &["ibeta", "currentbeta"],
             Self::Run => &["run", "profileid"],
         }
     }
@@ -138,15 +152,15 @@ mod tests {
         let message = |name| Channel::from_name(name).unwrap_err().to_string();
         assert_eq!(
             message("speed"),
-            "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+            "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic, ualpha, ubeta, ialpha, ibeta and run; did you mean omega_e?"
         );
         assert_eq!(
             message("time"),
-            "\"time\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run; did you mean t?"
+            "\"time\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic, ualpha, ubeta, ialpha, ibeta and run; did you mean t?"
         );
         assert_eq!(
             message("flux_density"),
-            "\"flux_density\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run"
+            "\"flux_density\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic, ualpha, ubeta, ialpha, ibeta and run"
         );
     }
 

@@ -3,7 +3,7 @@
 //! Its fields are the document's keys, in this order, and their comments are the descriptions of its JSON Schema (`docs/schema`, feature
 //! `schema`). Fields are added, never renamed.
 
-use crate::reading::{InspectedColumn, Inspection, ReadLog};
+use crate::reading::{InspectedColumn, Inspection};
 use fluxfit::{ColumnFinding, check_columns, log::Log};
 use serde::Serialize;
 
@@ -27,11 +27,13 @@ pub struct InspectionDocument {
     pub columns: Vec<ColumnEntry>,
     /// The log; null if the file cannot be read as one.
     pub log: Option<InspectedLogEntry>,
-    /// What reading the log inferred or repaired; one sentence each.
+    /// The table of a test bench that the file is in place of a log: `open-circuit characteristic`; null if it is none.
+    pub table: Option<&'static str>,
+    /// What reading the log, or the table, inferred or repaired; one sentence each.
     pub notes: Vec<String>,
     /// What the columns contradict each other in; empty if they agree, or if there is no log.
     pub findings: Vec<FindingEntry>,
-    /// Why the file cannot be read as a log, in one sentence; null if it can.
+    /// Why the file cannot be read as a log, in one sentence; null if it can, or if it is a table of a test bench.
     pub error: Option<String>,
 }
 
@@ -99,15 +101,18 @@ impl InspectionDocument {
     /// The document of an inspection.
     pub fn of(inspection: &Inspection) -> Self {
         let read = inspection.log.as_ref();
+        let of_table = || inspection.table.as_ref().map(|table| table.notes.as_slice());
+        let notes = read.ok().map(|read| read.notes.as_slice()).or_else(of_table).unwrap_or_default();
         Self {
             schema: INSPECTION,
             format: inspection.kind.clone(),
             layout: inspection.layout.map(|layout| layout.name),
             columns: inspection.columns.iter().map(ColumnEntry::of).collect(),
             log: read.ok().map(|read| InspectedLogEntry::of(&read.log)),
-            notes: read.map_or(Vec::new(), |ReadLog { notes, .. }| notes.iter().map(|note| note.sentence.clone()).collect()),
+            table: inspection.table.as_ref().map(|read| read.table.label()),
+            notes: notes.iter().map(|note| note.sentence.clone()).collect(),
             findings: read.map_or(Vec::new(), |read| check_columns(&read.log).iter().map(FindingEntry::of).collect()),
-            error: read.err().map(ToString::to_string),
+            error: read.err().filter(|_| inspection.table.is_none()).map(ToString::to_string),
         }
     }
 }

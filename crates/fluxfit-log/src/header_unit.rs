@@ -47,12 +47,15 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         "rad/s" | "rad_s" | "rad.s" | "rads" | "rad_per_s" | "radps" => {
             by_rotation(Unit::RadianPerSecond, Unit::RadianPerSecondMechanical, Unit::RadianPerSecond)
         }
+        "rps" | "rev/s" | "revs/s" | "turn/s" | "turns/s" => {
+            by_rotation(Unit::HertzElectrical, Unit::HertzMechanical, Unit::HertzMechanical)
+        }
         "hz" => by_rotation(Unit::HertzElectrical, Unit::HertzMechanical, Unit::HertzElectrical),
         "rad" => by_rotation(Unit::Radian, Unit::RadianMechanical, Unit::Radian),
         "deg" | "degree" | "degrees" | "°" => by_rotation(Unit::Degree, Unit::DegreeMechanical, Unit::Degree),
         // Lower case: the unit may be °C or C.
         "degc" | "°c" | "c" | "celsius" => Unit::Celsius,
-        _ => return Unit::from_name(&text, dimension),
+        _ => return Unit::from_name(&text, dimension).or_else(|| Unit::from_name(&text.replace('_', "-"), dimension)),
     };
     (unit.dimension() == dimension).then_some(unit)
 }
@@ -60,7 +63,8 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
 /// The name in a header without its unit, and the unit that the header states. The unit is at the end: in brackets, after `@`, or
 /// after `_` or a space. Only in brackets and after `@` is an unknown unit reported: `uq_s` may be the q voltage of the stator.
 pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderUnit<'_>) {
-    let header = header.trim();
+    // Simulink writes signals in angle brackets.
+    let header = header.trim().trim_start_matches('<').trim_end_matches('>');
     let rotation = rotation(header);
     let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
         let at = header.strip_suffix(close)?.rfind(open)?;
@@ -68,19 +72,44 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
     });
     if let Some((name, text)) = brackets.or_else(|| header.rsplit_once('@')) {
         let unit = spelled(text, dimension, rotation);
-        return (name.trim_end_matches([' ', '_']), unit.map_or(HeaderUnit::Unknown(text), HeaderUnit::Known));
+        return (without_preposition(name), unit.map_or(HeaderUnit::Unknown(text), HeaderUnit::Known));
+    }
+    // Quantity over unit, as in the axes of a diagram: `t/s`, `n / min^-1`. In `rad/s` the word before is no quantity.
+    if let Some((name, text)) = header.split_once('/').filter(|(name, _)| !NUMERATORS.contains(&last_word(name)))
+        && let Some(unit) = spelled(text, dimension, rotation)
+    {
+        return (name.trim_end(), HeaderUnit::Known(unit));
     }
     // From the left: the unit of `speed_rad_s` is `rad_s`.
     for (at, _) in header.match_indices(['_', ' ']) {
         if let Some(unit) = spelled(&header[at + 1..], dimension, rotation) {
-            return (header[..at].trim_end_matches([' ', '_']), HeaderUnit::Known(unit));
+            return (without_preposition(&header[..at]), HeaderUnit::Known(unit));
         }
+    }
+    if let Some(unit) = header.rsplit(['_', ' ']).next().filter(|last| *last != header && NO_SI.contains(&last.to_lowercase().as_str())) {
+        return (without_preposition(&header[..header.len() - unit.len()]), HeaderUnit::Unknown(unit));
     }
     // A header may be a unit and nothing else; a single letter is more likely a phase.
     match spelled(header, dimension, rotation) {
         Some(unit) if header.len() > 1 => ("", HeaderUnit::Known(unit)),
         _ => (header, HeaderUnit::None),
     }
+}
+
+/// Units without brackets that would be read as SI if they were not known: thousands, shares of a base value, digits of a converter.
+const NO_SI: [&str; 13] = ["krpm", "kv", "ka", "pu", "mrad/s", "krad/s", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
+
+/// Units and counts that a unit of speed begins with.
+const NUMERATORS: [&str; 10] = ["rad", "r", "rev", "revs", "turn", "turns", "u", "1", "m", "km"];
+
+fn last_word(text: &str) -> &str {
+    text.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or(text)
+}
+
+/// The name before a unit: `Ud in V`, `n / (1/min)`.
+fn without_preposition(name: &str) -> &str {
+    let name = name.trim_end_matches([' ', '_', '/', ',']);
+    name.strip_suffix(" in").unwrap_or(name).trim_end()
 }
 
 /// The unit that a row of units, or a container, states for a column with this header.
@@ -126,6 +155,11 @@ mod tests {
             ("UD_MV", Voltage, ("UD", HeaderUnit::Known(Unit::Millivolt))),
             ("uq [pu]", Voltage, ("uq", HeaderUnit::Unknown("pu"))),
             ("uq@mA", Voltage, ("uq", HeaderUnit::Unknown("mA"))),
+            ("rpm_mech", Speed, ("", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("<speed wm (rad/s)>", Speed, ("speed wm", HeaderUnit::Known(Unit::RadianPerSecond))),
+            ("speed_krpm", Speed, ("speed", HeaderUnit::Unknown("krpm"))),
+            ("Vd_pu", Voltage, ("Vd", HeaderUnit::Unknown("pu"))),
+            ("pu", Voltage, ("pu", HeaderUnit::None)),
             ("uq_s", Voltage, ("uq_s", HeaderUnit::None)),
             ("A", Current, ("A", HeaderUnit::None)),
             ("id [A]", Current, ("id", HeaderUnit::Known(Unit::Ampere))),
@@ -147,6 +181,12 @@ mod tests {
             ("temperature (K)", Temperature, ("temperature", HeaderUnit::Unknown("K"))),
             ("theta_e_rad", Angle, ("theta_e", HeaderUnit::Known(Unit::Radian))),
             ("speed_rad", Speed, ("speed_rad", HeaderUnit::None)),
+            ("n / min^-1", Speed, ("n", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("omega/(rad/s)", Speed, ("omega", HeaderUnit::Known(Unit::RadianPerSecond))),
+            ("Ud in V", Voltage, ("Ud", HeaderUnit::Known(Unit::Volt))),
+            ("t/s", Time, ("t", HeaderUnit::Known(Unit::Second))),
+            ("speed rad/s", Time, ("speed rad/s", HeaderUnit::None)),
+            ("velocity [turns/s]", Speed, ("velocity", HeaderUnit::Known(Unit::HertzMechanical))),
             ("ü)", Speed, ("ü)", HeaderUnit::None)),
         ];
         for (header, dimension, expected) in cases {

@@ -67,13 +67,17 @@ enum Style {
     Date { items: Vec<Item<'static>>, order: &'static str, has_zone: bool },
     /// A time of day.
     Clock,
+    /// A number and its unit, of so many ns.
+    Count(f64),
 }
 
 impl Instants {
     /// From the first cells of a column; none if they are other texts, or other numbers.
     pub(crate) fn of(cells: &[&str]) -> Option<Self> {
         let first = *cells.first()?;
-        let styles = if first.contains(':') || first.len() > 8 && first.contains(['T', ' ', '_']) {
+        let styles = if let Some((_, unit)) = counted(first) {
+            vec![Style::Count(unit)]
+        } else if first.contains(':') || first.len() > 8 && first.contains(['T', ' ', '_']) {
             Style::of_text(first)
         } else {
             Style::of_number(first).into_iter().collect()
@@ -89,7 +93,7 @@ impl Instants {
         // Of equal ones the first.
         let ((_, step), first, style) = fitting.reduce(|best, next| if next.0 < best.0 { next } else { best })?;
         let is_log = !matches!(style, Style::Epoch(..)) || (step as f64) < LONGEST_STEP * NANO as f64;
-        is_log.then_some(Self { first: if style == Style::Clock { 0 } else { first }, style })
+        is_log.then_some(Self { first: if matches!(style, Style::Clock | Style::Count(_)) { 0 } else { first }, style })
     }
 
     /// Numbers of seconds, counted from zero.
@@ -128,6 +132,7 @@ impl Instants {
                 format!("dates ({order}) and times; t counts from {}{}", start(), if *has_zone { " UTC" } else { "" })
             }
             Style::Clock => "the time of day".to_owned(),
+            Style::Count(_) => "numbers with their unit".to_owned(),
         }
     }
 }
@@ -173,6 +178,9 @@ impl Style {
     fn nanoseconds(&self, text: &str) -> Option<i64> {
         let text = text.trim();
         match self {
+            Self::Count(of_column) => {
+                counted(text).filter(|(_, unit)| unit == of_column).map(|(number, unit)| (number * unit).round() as i64)
+            }
             Self::Epoch(digits, _) => epoch(text, *digits),
             Self::Date { items, has_zone, .. } => {
                 let point = text.contains(',').then(|| text.replace(',', "."));
@@ -189,6 +197,17 @@ impl Style {
             }
         }
     }
+}
+
+/// Units behind the numbers of a column of times, as MATLAB writes durations; ns.
+const UNITS: [(&str, f64); 6] = [("sec", 1e9), ("s", 1e9), ("ms", 1e6), ("us", 1e3), ("µs", 1e3), ("min", 6e10)];
+
+/// The number and the unit of a cell that has both.
+pub(crate) fn counted(text: &str) -> Option<(f64, f64)> {
+    let (number, unit) = text.trim().rsplit_once(' ')?;
+    let (_, unit) = UNITS.iter().find(|(name, _)| *name == unit)?;
+    let number: f64 = number.trim().replace(',', ".").parse().ok()?;
+    number.is_finite().then_some((number, *unit))
 }
 
 /// A number of 10^-digits seconds, in ns, without rounding what a nanosecond can hold.
@@ -227,6 +246,8 @@ mod tests {
             ["12-Feb-2016 10:31:00", "12-Feb-2016 10:31:00.0001", "12-Feb-2016 10:31:01"],
             ["20160212T103100", "20160212T103100.0001", "20160212T103101"],
             ["10:31:00", "10:31:00.0001", "10:31:01"],
+            ["0 sec", "0.0001 sec", "1 sec"],
+            ["5 ms", "5,1 ms", "1005 ms"],
         ] {
             let t = seconds(&cells);
             assert_eq!([t[1] - t[0], t[2] - t[0]].map(|step| (step * 1e9).round() / 1e9), [1e-4, 1.0], "{cells:?}");

@@ -52,7 +52,7 @@ pub(crate) enum Problem {
         shorten(.header), columns(.present), did_you_mean(.nearest.as_ref().map(|name| format!("'{}'", shorten(name))).as_deref())
     )]
     MappedHeader { channel: &'static str, header: String, present: Vec<String>, nearest: Option<String> },
-    #[error("{} in the header is not a known unit of {channel}; state the unit: {}", quote(.text), choice(.units))]
+    #[error("{} in the header is not a known unit of {channel}; state the unit: {}; of another one also the scale to it, in a mapping file", quote(.text), choice(.units))]
     HeaderUnit { channel: &'static str, text: String, units: Vec<&'static str> },
     #[error(
         "the {what} is in {unit}, and converting it takes the number of pole pairs; state it, or state that the unit is {electrical_unit}"
@@ -73,6 +73,8 @@ pub(crate) enum Problem {
     AmbiguousQuantity { quantity: &'static str, headers: Vec<String> },
     #[error("the speed {} is electrical, and a table of a test bench needs that of the shaft; state the number of pole pairs", quote(.header))]
     ElectricalSpeed { header: String },
+    #[error("the name of the voltage {} does not say between which points it was measured; put 'll' (two terminals in series) or 'phase' (a terminal and the star point) into it", quote(.header))]
+    DirectVoltage { header: String },
     #[error(
         "this is the curve of a motor that drives a load, speed and torque with power: R_s, L_d, L_q and psi_f need dq voltages and currents over time, or tables with open and shorted terminals; log one of them"
     )]
@@ -177,7 +179,7 @@ impl Problem {
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
-            Self::AmbiguousQuantity { .. } | Self::LoadCurve => FileErrorKind::Columns,
+            Self::AmbiguousQuantity { .. } | Self::LoadCurve | Self::DirectVoltage { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
@@ -232,7 +234,12 @@ fn object_remedy(name: &str, class: &str) -> String {
     let name = shorten(name);
     match class {
         "table" => format!("save it as text with writetable({name}, 'log.csv')"),
-        "timetable" => format!("save it as text with writetimetable({name}, 'log.csv')"),
+        "timetable" => format!(
+            "save it as text with {name}.t = seconds({name}.Properties.RowTimes - {name}.Properties.RowTimes(1)); writetable(timetable2table({name}, 'ConvertRowTimes', false), 'log.csv')"
+        ),
+        "Simulink.SimulationData.Dataset" | "Simulink.SimulationOutput" => {
+            format!("save it as text with writetimetable(extractTimetable({name}), 'log.csv')")
+        }
         "timeseries" => format!("save its numbers with s = struct('Time', {name}.Time, 'Data', {name}.Data); save('log.mat', 's')"),
         _ => "save its numbers as vectors, or as a structure of vectors".to_owned(),
     }

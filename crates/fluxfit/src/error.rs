@@ -126,6 +126,24 @@ pub enum ErrorKind {
         /// What the fit misses, as a fraction.
         missed: f64,
     },
+    /// Voltages that no motor with open terminals has.
+    #[error(
+        "the voltages do not grow with the speed as those of open terminals do: they miss the best line by {:.0} % rms; if the motor is driven in this table, identify from a log of its drive (voltages, currents, speed over time)", 100.0 * .missed
+    )]
+    NoOpenCircuit {
+        /// What the line misses, as a fraction.
+        missed: f64,
+    },
+    /// Rows that no motor has in such a test.
+    #[error(
+        "the {what} are not those of such a table: the best motor misses them by {:.0} % of the largest, rms; check the units of the columns and what they hold", 100.0 * .missed
+    )]
+    NoSuchTable {
+        /// What is missed.
+        what: &'static str,
+        /// By how much, as a fraction of the largest.
+        missed: f64,
+    },
     /// Open-circuit voltages that the torque of the short circuit contradicts.
     #[error(
         "the voltages with open terminals and the torque with shorted ones contradict each other, and would agree if the voltages were {factor:.4} times as large: check their unit, and whether they are line to line or of a phase, rms or amplitudes (state it in the column's name: 'U_ll_rms [V]', 'U_phase_peak [V]')"

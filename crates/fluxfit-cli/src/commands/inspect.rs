@@ -50,8 +50,8 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
         terminal::wrote("mapping", path);
     }
     match inspection.log {
-        Ok(_) => Ok(Status::Complete),
-        Err(error) => Err(error.into()),
+        Err(error) if inspection.table.is_none() => Err(error.into()),
+        _ => Ok(Status::Complete),
     }
 }
 

@@ -35,11 +35,24 @@ pub(crate) const BAD: Style = AnsiColor::Red.on_default();
 pub(crate) const DIM: Style = Style::new().dimmed();
 pub(crate) const HEADING: Style = Style::new().bold();
 
-/// Prints an answer.
+/// Whether nobody reads the answer any more.
+static IS_UNREAD: AtomicBool = AtomicBool::new(false);
+
+/// Prints an answer. Whoever closes the pipe early, as `head` does, still gets the report and the other files.
 pub(crate) fn print(text: &str) -> std::io::Result<()> {
     let mut out = anstream::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
+            IS_UNREAD.store(true, Ordering::Relaxed);
+            Ok(())
+        }
+        printed => printed,
+    }
+}
+
+/// Whether an answer was not read to its end.
+pub(crate) fn is_unread() -> bool {
+    IS_UNREAD.load(Ordering::Relaxed)
 }
 
 /// Prints an answer as it is made, through a buffer.

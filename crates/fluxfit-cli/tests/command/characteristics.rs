@@ -179,3 +179,111 @@ fn a_traction_motor_on_its_bench() {
         assert!((found / value - 1.0).abs() < most, "{key} {found}");
     }
 }
+
+/// Writes a row of `columns` for each of some numbers.
+fn table_of(folder: &Path, name: &str, header: &str, rows: impl Iterator<Item = Vec<f64>>) -> String {
+    let row = |row: Vec<f64>| row.iter().map(|value| format!("{value:.6}")).collect::<Vec<_>>().join(",") + "\n";
+    written(folder, name, &format!("{header}\n{}", rows.map(row).collect::<String>()))
+}
+
+/// A torque sensor that reads 50 mN m too little, and errs by up to 20 mN m; with i_d of minus 0.4 i_q or without.
+fn torque_of_current(folder: &Path, noise: &mut Noise, ratio: f64) -> String {
+    let rows = (1..16).map(|k| {
+        let iq = 2.0 * f64::from(k);
+        let id = ratio * iq;
+        vec![id, iq, 1.5 * PAIRS * (PSI_F * iq + (LD - LQ) * id * iq) - 0.05 + 0.02 * noise.next()]
+    });
+    table_of(folder, "torque.csv", "Id [A],Iq [A],shaft torque [Nm]", rows)
+}
+
+/// Between two terminals, and 20 mV of a contact.
+fn direct_current(folder: &Path, noise: &mut Noise) -> String {
+    let currents = [5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 100.0];
+    let rows = currents.iter().map(|current| vec![2.0 * RS * current + 0.02 + 0.003 * noise.next(), *current]);
+    table_of(folder, "direct.csv", "U_ll [V],I [A]", rows)
+}
+
+/// Of space vector modulation, whose switches lose 0.3 V.
+fn duty_cycle(folder: &Path, noise: &mut Noise) -> String {
+    let rows = (0..80).map(|k| {
+        let (omega_e, iq) = (300.0 + 900.0 * (0.07 * f64::from(k)).sin().abs(), 60.0 + 50.0 * (0.31 * f64::from(k)).sin());
+        let voltage = (RS * iq + omega_e * PSI_F).hypot(omega_e * LQ * iq) + 0.3;
+        let duty = voltage * 3.0_f64.sqrt() / 180.0 + 5e-4 * noise.next();
+        vec![0.1 * f64::from(k), omega_e / PAIRS * 60.0 / std::f64::consts::TAU, duty, 180.0, iq]
+    });
+    table_of(folder, "duty.csv", "t,speed_rpm,duty,input voltage [V],motor current [A]", rows)
+}
+
+#[test]
+fn torque_direct_current_and_duty_cycle_tell_their_parts_within_their_intervals() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut held, mut drawn) = (0, 0);
+    for seed in 1..=12 {
+        let noise = &mut Noise(seed);
+        let tables = [
+            (torque_of_current(folder.path(), noise, 0.0), &["psi_f"][..]),
+            (torque_of_current(folder.path(), noise, -0.4), &["psi_f"]),
+            (direct_current(folder.path(), noise), &["rs"]),
+            (duty_cycle(folder.path(), noise), &["psi_f", "lq"]),
+        ];
+        for (table, keys) in tables {
+            let (_, document) = json(&["identify", &table, "--pole-pairs", "3"]);
+            for key in ["rs", "ld", "lq", "psi_f"] {
+                let parameter = &document["parameters"][key];
+                let truth = [("rs", RS), ("ld", LD), ("lq", LQ), ("psi_f", PSI_F)].into_iter().find(|(name, _)| *name == key).unwrap().1;
+                if keys.contains(&key) {
+                    let ci95 = [0, 1].map(|end| parameter["ci95"][end].as_f64().unwrap());
+                    assert!((ci95[1] - ci95[0]) / truth < 0.1, "{table}: {key} {ci95:?}");
+                    (held, drawn) = (held + usize::from((ci95[0]..=ci95[1]).contains(&truth)), drawn + 1);
+                } else if !table.contains("duty") {
+                    assert!(parameter["value"].is_null(), "{table}: {key}");
+                }
+            }
+        }
+    }
+    // Of 60 intervals of 95 %, fewer than 52 hold with a probability of 1 in 200.
+    assert!(drawn == 60 && held >= 52, "{held} of {drawn}");
+}
+
+#[test]
+fn tables_of_several_kinds_are_one_identification() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = &mut Noise(11);
+    let short = short_circuit(folder.path(), noise, false);
+    let direct = direct_current(folder.path(), noise);
+    // Currents of a short circuit tell all but the scale, which the resistance gives.
+    let (status, document) = json(&["identify", &short, &direct, "--pole-pairs", "3"]);
+    for (key, truth) in [("rs", RS), ("ld", LD), ("lq", LQ), ("psi_f", PSI_F)] {
+        let value = document["parameters"][key]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.03, "{key} {value}");
+    }
+    assert_eq!((status, document["tables"][1]["kind"].as_str()), (0, Some("direct-current")));
+    // The torque of a current tells between which points voltages were measured.
+    let open = open_circuit_named(folder.path(), noise, "U [V]", 1.0 / 3.0_f64.sqrt());
+    let torque = torque_of_current(folder.path(), noise, -0.4);
+    let (_, document) = json(&["identify", &open, &torque]);
+    assert_eq!(document["voltages"], "phase-by-torque");
+}
+
+#[test]
+fn a_table_is_shown_as_what_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = short_circuit(folder.path(), &mut Noise(2), true);
+    let run = fluxfit(&["inspect", &table]);
+    assert!(run.status == 0 && run.out.starts_with("A table of a test bench: short-circuit characteristic"), "{}", run.out);
+    let (status, document) = json(&["inspect", &table]);
+    assert_eq!((status, document["table"].as_str(), document["error"].is_null()), (0, Some("short-circuit characteristic"), true));
+}
+
+/// Positions, speeds and voltages of a drive over time are no open-circuit table; no unit of them is guessed.
+#[test]
+fn what_only_looks_like_a_table_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let wave = |k: i32| (0.3 * f64::from(k)).sin();
+    let log = table_of(folder.path(), "wave.csv", "speed_rpm,voltage [V]", (1..40).map(|k| vec![100.0 * wave(k), wave(2 * k)]));
+    assert!(fluxfit(&["identify", &log]).err.contains("are missing"));
+    let load =
+        table_of(folder.path(), "load.csv", "speed_rpm,U_ll [V]", (1..40).map(|k| vec![100.0 + f64::from(k), 20.0 + 19.0 * wave(7 * k)]));
+    let run = fluxfit(&["identify", &load]);
+    assert!(run.status == 2 && run.err.contains("do not grow with the speed"), "{}", run.err);
+}

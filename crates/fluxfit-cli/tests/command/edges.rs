@@ -76,6 +76,25 @@ fn outputs_through_links_keep_the_links_and_leftovers_are_removed() {
     assert!(!left.exists());
 }
 
+/// As `fluxfit identify LOG --report page.html | head -1`, whose `head` is gone before the answer comes.
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_is_exit_status_2_and_the_report_is_written_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.html");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_fluxfit"))
+        .args(["identify", "examples/logs/paper_rig_pwm_noise.csv", "--model", "steady", "--report"])
+        .arg(&page)
+        .current_dir(super::root())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(2));
+    assert!(fs::read_to_string(page).is_ok_and(|page| page.contains("</html>")));
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_exit_status_2() {

@@ -197,13 +197,16 @@ fn a_simulation_leaves_no_file() {
     let directory = tempfile::tempdir().unwrap();
     let scenario = long_scenario(directory.path());
     let log = directory.path().join("log.csv");
-    let mut running = Running::start(&["simulate", &scenario, "-o", log.to_str().unwrap()]);
-    running.wait_for("simulating");
-    running.send("INT");
-    let (status, out, err) = running.end();
-    assert_eq!((status, out.as_str()), (Some(130), ""), "{err}");
-    assert!(err.contains("interrupted: while simulating"), "{err}");
-    assert_eq!(names(directory.path()), ["long.toml"]);
+    // Of a terminal that is closed it is HUP.
+    for (signal, expected) in [("INT", 130), ("HUP", 129)] {
+        let mut running = Running::start(&["simulate", &scenario, "-o", log.to_str().unwrap()]);
+        running.wait_for("simulating");
+        running.send(signal);
+        let (status, out, err) = running.end();
+        assert_eq!((status, out.as_str()), (Some(expected), ""), "{err}");
+        assert!(err.contains("interrupted: while simulating"), "{err}");
+        assert_eq!(names(directory.path()), ["long.toml"]);
+    }
 }
 
 #[test]

@@ -22,8 +22,8 @@ pub struct Header {
     pub body_line: u64,
 }
 
-/// Maximum number of title lines above a header.
-const TITLES: usize = 20;
+/// Maximum number of title lines above a header: oscilloscopes write thirty settings.
+const TITLES: usize = 40;
 
 /// Maximum length of a unit in a row of units, in characters: that of `electrical rad/s`.
 const LONGEST_UNIT: usize = 16;
@@ -118,6 +118,11 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         _ => at(text, start, stated_separator.unwrap_or_else(|| most_frequent_separator(first))),
     };
     let is_value = |name: &String| is_number(name.trim_end_matches(';'), header.separator);
+    // Settings of an oscilloscope beside its first samples: columns may be called 1 and 2, but not 0.5.
+    let fractions = header.names.iter().filter(|name| is_value(name) && name.contains(['.', ','])).count();
+    if fractions > 1 && !header.names.iter().all(is_value) {
+        return Err(FileError::from(Problem::NumbersForHeader { text: header.names.join(", ") }).at_line(header.line));
+    }
     if header.names.len() > 1 && header.names.iter().all(is_value) {
         return from_comments(text, &comments, start, header, notes);
     }
@@ -186,7 +191,7 @@ fn from_comments(text: &str, comments: &[(usize, &str)], body: usize, first: Hea
 
 /// Whether a line is a title, a timestamp or a line of information above the header: it has one cell or begins with a digit, and the
 /// next line has more cells; or it has at most half as many cells as the first row of numbers below; or it has empty cells, and the line
-/// below has fewer and is no row of numbers either.
+/// below has fewer and is no row of numbers either; or it belongs to a preamble.
 fn is_title(text: &str, start: usize, line: &str) -> bool {
     let header = at(text, start, most_frequent_separator(line));
     let cells = header.names.len();
@@ -197,10 +202,34 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
     if cells > 1 && !dated {
         let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell, b';')).count() * 2 > cells.len();
         let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
-        return row.is_some_and(|row| 2 * cells <= row.len()) || header.names.iter().any(String::is_empty) && is_above_names(&header, text);
+        return row.is_some_and(|row| 2 * cells <= row.len())
+            || header.names.iter().any(String::is_empty) && is_above_names(&header, text)
+            || is_preamble(&header, text);
     }
     below().next().is_some_and(|(_, line)| cells_of(line).len() > cells)
 }
+
+/// Whether a line belongs to a preamble: above the rows of numbers another line has as many names as these have cells, and this one has
+/// not, or it has only their units.
+fn is_preamble(line: &Header, text: &str) -> bool {
+    let cells: Vec<Vec<String>> = lines(&text[line.body..])
+        .map(|(_, below)| below.trim())
+        .filter(|below| !below.is_empty() && !below.starts_with(['#', '%']))
+        .take(TITLES)
+        .map(|below| record::first_record(below, most_frequent_separator(below)).0)
+        .collect();
+    let numbers = |cells: &[String]| cells.iter().filter(|cell| is_number(cell, b';')).count();
+    let filled = |cells: &[String]| cells.iter().filter(|cell| !cell.is_empty()).count();
+    let is_row = |cells: &[String]| numbers(cells) > 1 && numbers(cells) == filled(cells);
+    let body = cells.windows(2).position(|pair| is_row(&pair[0]) && is_row(&pair[1]) && pair[0].len() == pair[1].len());
+    let Some((above, width)) = body.map(|at| (&cells[..at], cells[at].len())) else { return false };
+    let has_names = above.iter().any(|cells| cells.len() == width && filled(cells) == width && numbers(cells) == 0);
+    let are_units = line.names.iter().filter(|name| UNITS.contains(&name.to_lowercase().as_str())).count() * 2 > line.names.len();
+    has_names && (line.names.len() != width || are_units)
+}
+
+/// What a row above the names that holds their units has in most of its cells.
+const UNITS: [&str; 16] = ["s", "ms", "us", "v", "mv", "a", "ma", "rpm", "1/min", "min^-1", "rad/s", "rad", "deg", "°", "nm", "hz"];
 
 /// Whether a line below a line with empty cells, and above the first row of numbers, has more names in it.
 fn is_above_names(line: &Header, text: &str) -> bool {
@@ -302,6 +331,21 @@ mod tests {
         assert_eq!(found("t;ud;uq;\n1;2;3"), (names(), 1, b';', "1;2;3"));
         // A column without a name, as pandas writes its index.
         assert_eq!(found(",ud,uq\n0,1,2\n").0, ["", "ud", "uq"]);
+    }
+
+    #[test]
+    fn preambles_of_instruments_are_titles() {
+        let names = || vec!["Time".to_owned(), "Ampl".to_owned()];
+        let lecroy =
+            "LECROY,12345,Waveform\nSegments,1,SegmentSize,9000\nSegment,TrigTime,Since\n#1,14-Aug-2012,0\nTime,Ampl\n0.1,1\n0.2,2\n";
+        assert_eq!(found(lecroy), (names(), 5, b',', "0.1,1\n0.2,2\n"));
+        let dspace = "unit,s,V\n\npath,,Root/a\n\nnames,Time,Ampl\n,0.1,1\n,0.2,2\n";
+        assert_eq!(found(dspace), (vec!["names".into(), "Time".into(), "Ampl".into()], 5, b',', ",0.1,1\n,0.2,2\n"));
+        // Settings beside the samples, and no names at all.
+        let beside = "Record Length,2500,,0.0,1.2\nSample Interval,4e-6,,0.1,1.3\n";
+        assert!(find(beside, &mut Vec::new()).is_err_and(|error| error.to_string().contains("in place of a header")));
+        // A wider row of data has no other line of names above it.
+        assert_eq!(found("a,b\n1,2,3\n1,2,3\n").1, 1);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What the first rows of a table tell about its columns: which hold instants.
 
-use crate::instant::Instants;
+use crate::instant::{Instants, counted};
 use fluxfit_files::csv::{
     header::{Header, is_number},
     record::first_record,
@@ -19,7 +19,10 @@ pub(super) fn instants(head: &str, header: &Header) -> Vec<Option<Instants>> {
     let Some(first) = rows.next().map(cells) else { return Vec::new() };
     let is_likely = |cell: &String| match is_number(cell, header.separator) {
         true => cell.bytes().take_while(u8::is_ascii_digit).count() >= EPOCH_DIGITS,
-        false => cell.starts_with(|c: char| c.is_ascii_alphanumeric()) && cell.bytes().filter(u8::is_ascii_digit).count() > 3,
+        false => {
+            let digits = cell.bytes().filter(u8::is_ascii_digit).count();
+            counted(cell).is_some() || cell.starts_with(|c: char| c.is_ascii_alphanumeric()) && digits > 3
+        }
     };
     if !first.iter().any(is_likely) {
         return Vec::new();

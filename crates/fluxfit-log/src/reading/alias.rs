@@ -10,7 +10,7 @@ use crate::{
 use fluxfit_units::Dimension;
 
 /// Words that say only that a value was measured, and where.
-const BESIDE: [&str; 16] = [
+const BESIDE: [&str; 23] = [
     "meas",
     "measured",
     "measurement",
@@ -27,10 +27,18 @@ const BESIDE: [&str; 16] = [
     "foc",
     "drive",
     "inverter",
+    // Of several motors or axes, where one alone is logged.
+    "m1",
+    "m2",
+    "motor1",
+    "motor2",
+    "axis0",
+    "axis1",
+    "mtr",
 ];
 
 /// Further ones beside a speed or an angle.
-const ROTATION: [&str; 14] = [
+const ROTATION: [&str; 20] = [
     "rotor",
     "shaft",
     "angular",
@@ -45,6 +53,12 @@ const ROTATION: [&str; 14] = [
     "elektrisch",
     "m",
     "r",
+    "est",
+    "estimate",
+    "estimated",
+    "encoder",
+    "enc",
+    "resolver",
 ];
 
 const CURRENT: [&str; 8] = ["i", "is", "current", "strom", "courant", "corrente", "corriente", "stroem"];
@@ -69,9 +83,55 @@ const TIME: [&str; 18] = [
     "tiempo",
     "xvalue",
 ];
-const SPEED: [&str; 12] =
-    ["omega", "w", "speed", "velocity", "rpm", "erpm", "n", "drehzahl", "vitesse", "velocita", "velocidad", "winkelgeschwindigkeit"];
-const ANGLE: [&str; 8] = ["theta", "angle", "phi", "epsilon", "winkel", "rotorwinkel", "position", "rotorangle"];
+const SPEED: [&str; 24] = [
+    "omega",
+    "w",
+    "speed",
+    "velocity",
+    "vel",
+    "velo",
+    "rpm",
+    "erpm",
+    "n",
+    "wm",
+    "wr",
+    "we",
+    "omegam",
+    "omegar",
+    "omegae",
+    "omegael",
+    "freq",
+    "frequency",
+    "frequenz",
+    "drehzahl",
+    "vitesse",
+    "velocita",
+    "velocidad",
+    "winkelgeschwindigkeit",
+];
+/// Names of the axis of a plot: the time, where no other unit is stated.
+const X: [&str; 2] = ["xaxis", "xachse"];
+
+const UDC: [&str; 15] = [
+    "udc",
+    "vdc",
+    "ubus",
+    "vbus",
+    "uzk",
+    "dcvoltage",
+    "dclinkvoltage",
+    "dcbusvoltage",
+    "busvoltage",
+    "zwischenkreisspannung",
+    "vdcbus",
+    "udcbus",
+    "vbusvoltage",
+    "vdclink",
+    "udclink",
+];
+
+const ANGLE: [&str; 12] =
+    ["thetam", "thetae", "thetar", "thetael", "theta", "angle", "phi", "epsilon", "winkel", "rotorwinkel", "position", "rotorangle"];
 
 /// The column of a channel, if exactly one has one of its usual names, and no other unit.
 pub(super) fn find(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
@@ -82,80 +142,126 @@ pub(super) fn find(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
 
 /// Whether the names of the two axes differ in nothing but the axis: `motor_id` beside `iq` may be a number of the motor.
 pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
-    let beside = |k: usize| named(channels[k], names[k]).map(|(_, beside)| beside);
+    let beside = |k: usize| {
+        let (stem, unit) = stem(channels[k], names[k]);
+        named(channels[k], stem, unit).map(|(_, beside)| beside)
+    };
     beside(0) == beside(1)
 }
 
 /// Whether a name is one of a channel's usual ones.
 pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
     let dimension = channel.dimension();
-    let field = field(&head.name);
     let of_row = head.unit.as_deref().filter(|unit| !matches!(unit.trim(), "" | "-"));
-    let has_unit = |unit: HeaderUnit| matches!(unit, HeaderUnit::Known(_));
-    match (split_header(field, dimension).1, of_row) {
+    let in_row = of_row.map(|unit| matches!(unit_in_row(unit, &head.name, dimension), HeaderUnit::Known(_)));
+    let (stem, unit) = stem(channel, &head.name);
+    let has_unit = match (unit, in_row) {
         // A unit of another dimension, or none that is known.
-        (HeaderUnit::Unknown(_), _) => return false,
-        (HeaderUnit::None, Some(unit)) if !has_unit(unit_in_row(unit, field, dimension)) => return false,
-        _ => {}
-    }
-    if is_reference(field) {
+        (HeaderUnit::Unknown(_), _) | (HeaderUnit::None, Some(false)) => return false,
+        (HeaderUnit::Known(_), _) | (_, Some(true)) => true,
+        _ => false,
+    };
+    // Of a path every part, but not the unit: `n / min^-1`.
+    if is_reference(split_header(&head.name, dimension).0) {
         return false;
     }
-    let Some((name, beside)) = named(channel, field) else { return false };
+    let Some((name, beside)) = named(channel, stem, unit) else { return false };
     match channel {
         // `t_motor` is its temperature.
-        Channel::T => beside.is_empty() && (TIME.contains(&name.as_str()) || name.is_empty()),
-        Channel::OmegaE => SPEED.contains(&name.as_str()) || name.is_empty(),
-        Channel::ThetaE => ANGLE.contains(&name.as_str()),
-        Channel::Ud => is_of_axis(&name, "d", &VOLTAGE),
-        Channel::Uq => is_of_axis(&name, "q", &VOLTAGE),
-        Channel::Id => is_of_axis(&name, "d", &CURRENT),
-        Channel::Iq => is_of_axis(&name, "q", &CURRENT),
+        Channel::T => {
+            beside.is_empty() && (TIME.contains(&name.as_str()) || name.is_empty() || X.contains(&name.as_str()) || has_unit && name == "x")
+        }
+        Channel::OmegaE => is_one_of(&name, "speed", &SPEED) || name.is_empty(),
+        Channel::ThetaE => is_one_of(&name, "angle", &ANGLE),
+        // `d_V`: the unit says the quantity.
+        Channel::Ud => is_of_axis(&name, "d", &VOLTAGE) || has_unit && name == "d",
+        Channel::Uq => is_of_axis(&name, "q", &VOLTAGE) || has_unit && name == "q",
+        Channel::Id => is_of_axis(&name, "d", &CURRENT) || has_unit && name == "d",
+        Channel::Iq => is_of_axis(&name, "q", &CURRENT) || has_unit && name == "q",
         Channel::IA | Channel::IB | Channel::IC => is_of_phase(channel, &name, "i"),
         Channel::UA | Channel::UB | Channel::UC => is_of_phase(channel, &name, "u") || is_of_phase(channel, &name, "v"),
-        Channel::UDc => {
-            ["udc", "vdc", "ubus", "vbus", "uzk", "dcvoltage", "dclinkvoltage", "dcbusvoltage", "busvoltage", "zwischenkreisspannung"]
-                .contains(&name.as_str())
-        }
+        Channel::UAlpha => is_of_axis(&name, "alpha", &VOLTAGE),
+        Channel::UBeta => is_of_axis(&name, "beta", &VOLTAGE),
+        Channel::IAlpha => is_of_axis(&name, "alpha", &CURRENT),
+        Channel::IBeta => is_of_axis(&name, "beta", &CURRENT),
+        Channel::UDc => UDC.contains(&name.as_str()),
         Channel::Temperature => ["windingtemperature", "wicklungstemperatur"].contains(&name.as_str()),
         Channel::Run => false,
     }
 }
 
-/// Of a structure, the field; a point before a digit belongs to the name.
+/// The last part of a structure or of a path that names something: `log.id`, `Model Root/FOC/id/Out1`, `Machine: i_d`. A mark before a
+/// digit belongs to the name.
 fn field(name: &str) -> &str {
-    name.rsplit_once('.').map_or(name, |(_, field)| if field.starts_with(|c: char| c.is_ascii_digit()) { name } else { field })
+    let name = name.trim().trim_matches(['<', '>', '"']);
+    let Some(at) = name.rfind(['.', '/', ':', '|', '\\']) else { return name };
+    let last = name[at + 1..].trim();
+    match last.to_lowercase().as_str() {
+        "out1" | "in1" | "value" | "data" => field(&name[..at]),
+        _ if last.is_empty() || last.starts_with(|c: char| c.is_ascii_digit()) => name,
+        _ => last,
+    }
+}
+
+/// The field of a name without its unit, and the unit.
+fn stem(channel: Channel, name: &str) -> (&str, HeaderUnit<'_>) {
+    let name = name.trim().trim_matches(['<', '>', '"']);
+    let dimension = channel.dimension();
+    let (stem, unit) = match split_header(name, dimension) {
+        (stem, unit @ HeaderUnit::Known(_)) => (field(stem), unit),
+        // Of a unit of the field alone: `log.ms_today`.
+        _ => split_header(field(name), dimension),
+    };
+    // `i_a` is the current of a phase, not one in A; `I [A]` is in A.
+    if stem.len() == 1 && Channel::PHASES.contains(&channel) && !name.contains(['[', '(']) {
+        (field(name), HeaderUnit::None)
+    } else {
+        (stem, unit)
+    }
 }
 
 /// The words of a name without those beside it, as one; and those beside it. None if nothing but a unit is left of another channel than
 /// time or speed.
-fn named(channel: Channel, name: &str) -> Option<(String, Vec<String>)> {
+fn named(channel: Channel, stem: &str, unit: HeaderUnit) -> Option<(String, Vec<String>)> {
     let dimension = channel.dimension();
-    let (stem, unit) = split_header(field(name), dimension);
-    // `i_a` is the current of a phase, not one in A.
-    let (stem, unit) = if stem.len() == 1 && Channel::PHASES.contains(&channel) { (field(name), HeaderUnit::None) } else { (stem, unit) };
     let is_beside = |word: &String| {
         BESIDE.contains(&word.as_str()) || matches!(dimension, Dimension::Speed | Dimension::Angle) && ROTATION.contains(&word.as_str())
     };
-    let plain = |word: &String| word.replace('ä', "ae").replace('à', "a").replace('é', "e").replace('ó', "o").replace('ö', "oe");
+    let plain = |word: &String| {
+        let mut word = word.replace('α', "alpha").replace('β', "beta");
+        [('ä', "ae"), ('à', "a"), ('é', "e"), ('ó', "o"), ('ö', "oe")].iter().for_each(|(from, to)| word = word.replace(*from, to));
+        word
+    };
     let (mut beside, names): (Vec<String>, Vec<String>) = words(stem).into_iter().partition(is_beside);
     beside.sort();
     let may_be_unit = matches!(dimension, Dimension::Time | Dimension::Speed) && matches!(unit, HeaderUnit::Known(_)) && stem.is_empty();
     (!names.is_empty() || may_be_unit).then(|| (names.iter().map(plain).collect(), beside))
 }
 
-/// Whether a name is a quantity with the letter of its axis.
+/// Whether a name is one of a quantity's, or one of them behind the word for it: `Rotor speed wm`.
+fn is_one_of(name: &str, quantity: &str, names: &[&str]) -> bool {
+    names.contains(&name) || name.strip_prefix(quantity).is_some_and(|rest| names.contains(&rest))
+}
+
+/// Whether a name is a quantity with the letter of its axis, or the word of the quantity beside that: `Stator current is_q`.
 fn is_of_axis(name: &str, axis: &str, quantities: &[&str]) -> bool {
-    quantities.iter().any(|quantity| {
-        let orders = [format!("{quantity}{axis}"), format!("{quantity}{axis}axis"), format!("{quantity}{axis}achse")];
-        let reversed = [
-            format!("{axis}{quantity}"),
-            format!("{axis}axis{quantity}"),
-            format!("{axis}achse{quantity}"),
-            format!("{axis}achsen{quantity}"),
-        ];
-        orders.iter().any(|order| order == name) || quantity.len() > 2 && reversed.iter().any(|order| order == name)
-    })
+    let is = |name: &str| {
+        quantities.iter().any(|quantity| {
+            let orders = [format!("{quantity}{axis}"), format!("{quantity}{axis}axis"), format!("{quantity}{axis}achse")];
+            let reversed = [
+                format!("{axis}{quantity}"),
+                format!("{axis}axis{quantity}"),
+                format!("{axis}achse{quantity}"),
+                format!("{axis}achsen{quantity}"),
+            ];
+            // `i_qs`: q of the stator.
+            let of_stator = quantity.len() == 1 && name == format!("{quantity}{axis}s");
+            of_stator || orders.iter().any(|order| order == name) || quantity.len() > 2 && reversed.iter().any(|order| order == name)
+        })
+    };
+    let of_quantity = |word: &&&str| word.len() > 2;
+    let beside_word = |word: &&str| name.strip_prefix(word).or_else(|| name.strip_suffix(word)).is_some_and(is);
+    is(name) || quantities.iter().filter(of_quantity).any(beside_word)
 }
 
 /// Whether a name is that of a phase: by its letter, or of a current by u, v, w, where no line voltage can be meant.
@@ -180,9 +286,28 @@ mod tests {
     fn usual_names_are_read() {
         for (channel, names) in [
             (Channel::T, &["Time [ms]", "Zeit", "timestamp", "Zeit (s)", "micros", "Time Stamp", "temps_s", "log.time"][..]),
-            (Channel::Ud, &["u_d", "Vd", "vd_meas", "Spannung d [V]", "motor_vd", "d_axis_voltage", "usd", "drive.foc.Vd"]),
+            (Channel::Ud, &["u_d", "Vd", "vd_meas", "Spannung d [V]", "motor_vd", "d_axis_voltage", "usd", "drive.foc.Vd", "d_V", "v_ds"]),
+            (Channel::Id, &["Model Root/FOC/id/Out1", "Machine: i_d", "<Stator current is_d (A)>", "M1_Id [A]", "Id/A", "group\\id"]),
+            (Channel::UAlpha, &["u_alpha", "Valpha [V]", "uα", "foc.v_alpha"]),
             (Channel::Iq, &["i_q", "iq_meas", "Iq_measured (A)", "Strom_q [A]", "q-Achsen-Strom", "MotorIq", "iq_mA", "Courant q"]),
-            (Channel::OmegaE, &["erpm", "Drehzahl [1/min]", "speed_rpm", "omega_el", "Motor Speed (rpm)", "w_e", "n [U/min]", "rpm"]),
+            (
+                Channel::OmegaE,
+                &[
+                    "Encoder/n",
+                    "<Rotor speed wm (rad/s)>",
+                    "Machine: Rotational speed",
+                    "freq [Hz]",
+                    "n / min^-1",
+                    "erpm",
+                    "Drehzahl [1/min]",
+                    "speed_rpm",
+                    "omega_el",
+                    "Motor Speed (rpm)",
+                    "w_e",
+                    "n [U/min]",
+                    "rpm",
+                ],
+            ),
             (Channel::ThetaE, &["theta", "theta_el", "Rotorwinkel [°]", "electrical_angle_deg"]),
             (Channel::UDc, &["vbus", "V_dc", "dc_link_voltage [V]"]),
             (Channel::IA, &["i_a", "iu", "ia_meas [A]"]),
@@ -194,9 +319,13 @@ mod tests {
     #[test]
     fn references_other_units_and_other_words_are_not() {
         for (channel, names) in [
-            (Channel::T, &["LEW_SO_T_P1 [°C]", "T [°C]", "timestep", "time_step", "t_motor", "Time [Nm]", "timestep (8Hz)"][..]),
+            (
+                Channel::T,
+                &["LEW_SO_T_P1 [°C]", "T [°C]", "timestep", "time_step", "t_motor", "Time [Nm]", "timestep (8Hz)", "x", "x [mm]"][..],
+            ),
             (Channel::Iq, &["iq_ref", "iq_setpoint", "iq_step", "iq_target", "Iq [V]", "iq_error", "absorber_iq", "q", "i_q_limit"]),
-            (Channel::Id, &["vesc_id", "id_set", "run_id", "DC current", "direct current"]),
+            (Channel::Id, &["vesc_id", "id_set", "run_id", "DC current", "direct current", "target.id", "d", "motor 3/id_ref"]),
+            (Channel::IA, &["I [A]", "I (A)"]),
             (Channel::OmegaE, &["speed_step", "speed setpoint", "speed_meters_per_sec", "Velocity (m/s)", "wind speed", "SO_N_SOLL"]),
             (Channel::Ud, &["u_dc", "ud_ref", "vd [mA]", "u_d [°C]"]),
         ] {

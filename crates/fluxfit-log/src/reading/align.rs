@@ -33,7 +33,7 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
         return Err(channels.refuse(Problem::EmptyCell, channel, lines, first));
     }
     let t = channels.get(T).map(<[f64]>::to_vec).unwrap_or_default();
-    let base = if channels.get(Id).is_some() { Id } else { IA };
+    let base = [Id, IA].into_iter().find(|channel| channels.get(*channel).is_some()).unwrap_or(Channel::IAlpha);
     let instants: Vec<f64> = present(&t, channels.get(base).unwrap_or(&[])).map(|(t, _)| t).collect();
     let mut moved: Vec<Channel> = Vec::new();
     for (channel, _) in counts.iter().filter(|(channel, _)| *channel != T) {
@@ -58,7 +58,7 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
 /// Refuses to interpolate what turns with the rotor: phase quantities are not straight lines between two instants, and an angle jumps
 /// at the end of a turn. If dq quantities are logged, the angle is not needed and is left out.
 pub(super) fn refuse_turning(channels: &mut Channels, moved: &[Channel]) -> Result<(), FileError> {
-    let has_phases = channels.get(Channel::UA).is_some() || channels.get(IA).is_some();
+    let has_phases = Channel::PHASES.into_iter().any(|channel| channels.get(channel).is_some());
     let turns = |channel: &Channel| *channel == Channel::ThetaE || Channel::PHASES.contains(channel);
     if !moved.iter().any(turns) {
         return Ok(());

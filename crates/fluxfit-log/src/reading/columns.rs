@@ -66,8 +66,8 @@ pub(super) fn choose(
 
 /// What the columns of a table seem to be, whether they make a log or not.
 pub(super) struct Survey {
-    /// Columns that would be read.
-    pub(super) taken: Vec<(Channel, usize, Unit)>,
+    /// Columns that would be read, with the unit unless a speed's has to be stated.
+    pub(super) taken: Vec<(Channel, usize, Option<Unit>)>,
     /// Columns that resemble a needed channel, with the unit that the header states.
     pub(super) resembling: Vec<(Channel, usize, Option<Unit>)>,
 }
@@ -90,13 +90,17 @@ pub(super) fn survey(heads: &[ColumnHead], layout: Option<&'static Layout>, opti
             && survey.taken.iter().all(|(_, taken, _)| *taken != index)
         {
             let unit = finder.unit(channel, &heads[index], &mut Vec::new(), &mut Vec::new());
-            survey.taken.push((channel, index, unit.unwrap_or(channel.unit())));
+            let assumed = (channel.dimension() != Dimension::Speed).then_some(channel.unit());
+            survey.taken.push((channel, index, unit.ok().or(assumed)));
         }
     }
     let mut free = finder.names();
     survey.taken.iter().for_each(|(_, index, _)| free[*index].clear());
     for channel in Channel::NEEDED.into_iter().filter(|channel| survey.taken.iter().all(|(taken, ..)| taken != channel)) {
-        if let Some(index) = resemblance::propose(channel, &free) {
+        let fitting: Vec<String> = (free.iter().zip(heads))
+            .map(|(name, head)| if resemblance::has_other_unit(channel, head) { String::new() } else { name.clone() })
+            .collect();
+        if let Some(index) = resemblance::propose(channel, &fitting) {
             free[index].clear();
             let head = &heads[index];
             let in_name = split_header(&head.name, channel.dimension()).1;

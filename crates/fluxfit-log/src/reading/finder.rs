@@ -3,7 +3,7 @@
 use super::{
     alias,
     chosen::ChosenColumn,
-    layout::{Layout, is_called},
+    layout::{Layout, NotALog, is_called},
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
     resemblance::{has_other_unit, is_reference, propose},
@@ -16,7 +16,7 @@ use crate::{
     note::Note,
     problem::Problem,
 };
-use Channel::{IA, IB, IC, Id, Iq, OmegaE, T, ThetaE, UA, UB, UC, Ud, Uq};
+use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, OmegaE, T, ThetaE, UA, UAlpha, UB, UBeta, UC, Ud, Uq};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_units::{Dimension, Unit, wording::shorten};
 
@@ -51,7 +51,7 @@ impl Finder<'_> {
             index => take(T, index),
         }
         let mut has_phases = false;
-        for (dq, phases) in [([Ud, Uq], [UA, UB, UC]), ([Id, Iq], [IA, IB, IC])] {
+        for (dq, phases, stator) in [([Ud, Uq], [UA, UB, UC], [UAlpha, UBeta]), ([Id, Iq], [IA, IB, IC], [IAlpha, IBeta])] {
             let indices = self.pair(dq)?;
             let is_complete = indices.iter().all(Option::is_some);
             let of_phases = if is_complete { [None; 3] } else { [self.index(phases[0])?, self.index(phases[1])?, self.index(phases[2])?] };
@@ -61,6 +61,9 @@ impl Finder<'_> {
                 if third.is_some() {
                     take(phases[2], third);
                 }
+            } else if !is_complete && let (Some(alpha), Some(beta)) = (self.index(stator[0])?, self.index(stator[1])?) {
+                has_phases = true;
+                stator.into_iter().zip([alpha, beta]).for_each(|(channel, index)| take(channel, Some(index)));
             } else {
                 dq.into_iter().zip(indices).for_each(|(channel, index)| take(channel, index));
             }
@@ -239,6 +242,11 @@ impl Finder<'_> {
     }
 
     fn refuse_missing(&self, missing: &[Channel], found: &[(Channel, usize)]) -> FileError {
+        if [Ud, Uq].iter().all(|channel| missing.contains(channel))
+            && let Some((layout, refusal)) = NotALog::by_names(&self.names())
+        {
+            return Problem::NotALog { layout, reason: refusal.reason(), advice: refusal.advice() }.into();
+        }
         // Columns that are used already are not proposed for another channel, and references not for measured currents.
         let present = self.names();
         let mut free = present.clone();

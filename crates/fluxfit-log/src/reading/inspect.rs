@@ -1,6 +1,7 @@
 //! Inspection of a file: its columns, and how they are read, whether they make a log or not.
 
 use super::{
+    characteristic::{ReadCharacteristic, read_characteristic},
     columns,
     layout::Layout,
     options::{LogOptions, ResolvedOptions},
@@ -23,6 +24,8 @@ pub struct Inspection {
     pub layout: Option<&'static Layout>,
     /// Its columns, in order.
     pub columns: Vec<InspectedColumn>,
+    /// The table of a test bench, if it is one in place of a log.
+    pub table: Option<ReadCharacteristic>,
     /// The log, or why there is none.
     pub log: Result<ReadLog, FileError>,
 }
@@ -63,7 +66,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
     let layout = Layout::recognize(&names);
     let survey = columns::survey(table.heads(), layout, &resolved);
     let read_as = |index: usize| {
-        let taken = survey.taken.iter().find(|(_, place, _)| *place == index).map(|(_, _, unit)| *unit);
+        let taken = survey.taken.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit);
         let unit = taken.or_else(|| survey.resembling.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit))?;
         Some((unit.name(), unit.prose()))
     };
@@ -79,12 +82,15 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         is_time: head.is_time,
         is_instant: head.instants.is_some(),
     });
-    Ok(Inspection {
-        kind: table.kind(),
-        layout,
-        columns: inspected.collect(),
-        log: read(table, &resolved).map_err(|error| error.in_file(&name)),
-    })
+    let (kind, columns) = (table.kind(), inspected.collect());
+    let log = read(table, &resolved).map_err(|error| error.in_file(&name));
+    let (table, log) = match log.as_ref().err().map(|_| read_characteristic(path, resolved.pole_pairs)) {
+        Some(Ok(table)) => (table, log),
+        // It is a table, and that is what is wrong with it.
+        Some(Err(error)) => (None, Err(error)),
+        None => (None, log),
+    };
+    Ok(Inspection { kind, layout, columns, table, log })
 }
 
 /// Most stretches of a course; where there are more, each two become one.

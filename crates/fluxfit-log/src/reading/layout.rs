@@ -48,6 +48,8 @@ pub(crate) enum NotALog {
     FluxMap,
     /// It has current references in place of measured currents.
     CurrentReferences,
+    /// Its rows are motors.
+    Parameters,
 }
 
 impl NotALog {
@@ -57,16 +59,30 @@ impl NotALog {
             Self::FluxMap => {
                 "a flux map has currents and flux linkages, but no voltages and no time; it can be the motor of a simulation (flux_map in a scenario)"
             }
+            Self::Parameters => {
+                "its columns are what fluxfit finds of motors, and none is a voltage or a current of a drive; give the log of a drive, and one motor's values for comparison (motor file, or fluxfit validate)"
+            }
             Self::CurrentReferences => {
                 "IqReq and WeakenedId are current references, not measured currents; log the measured i_d and i_q too, and map id and iq to them"
             }
         }
     }
 
+    /// What a table is that lacks voltages, by the names of its other columns.
+    pub(crate) fn by_names(names: &[String]) -> Option<(&'static str, Self)> {
+        let stems: Vec<String> = names.iter().map(|name| stem_of_table(name)).collect();
+        let has = |some: &[&str]| stems.iter().any(|stem| some.contains(&stem.as_str()));
+        let both_axes = |stem: &str| ["d", "q"].iter().all(|axis| has(&[&format!("{stem}{axis}")]));
+        if ["psi", "flux", "lambda", "fluxlinkage", "lam"].into_iter().any(both_axes) && both_axes("i") {
+            return Some(("flux map", Self::FluxMap));
+        }
+        (both_axes("l") && has(&["rs", "r", "rph", "ra"])).then_some(("table of parameters", Self::Parameters))
+    }
+
     /// What the user can state to have it read all the same.
     pub(crate) fn advice(self) -> Option<Advice> {
         match self {
-            Self::FluxMap => None,
+            Self::FluxMap | Self::Parameters => None,
             Self::CurrentReferences => Some(Advice::MapColumns(vec![(Id.name(), None), (Iq.name(), None)])),
         }
     }
@@ -290,6 +306,15 @@ impl Layout {
     }
 }
 
+/// The letters of a name in lower case, without a unit of a flux, a current, an inductance or a resistance at its end.
+fn stem_of_table(name: &str) -> String {
+    let lower = name.to_lowercase();
+    let words: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let is_unit = |word: &&&str| ["wb", "mwb", "vs", "mvs", "a", "h", "mh", "uh", "ohm", "mohm", "ohms"].contains(word);
+    let kept = words.len() - usize::from(words.len() > 1 && words.last().as_ref().is_some_and(is_unit));
+    words[..kept].concat()
+}
+
 /// Whether a name is this header, apart from case and from a unit after `@` or in brackets.
 pub(crate) fn is_called(name: &str, header: &str) -> bool {
     let stem = name.split(['@', '[']).next().unwrap_or(name);
@@ -316,6 +341,17 @@ mod tests {
         assert_eq!(recognized("Time;BusVoltage (V);MotorId (A);MotorIq (A);MotorVd (V);MotorVq (V);MotorVelocity (rpm)"), Some("Tritium"));
         assert_eq!(recognized("I_d;I_q;Psi_d;Psi_q;Trq_msr"), Some("flux map"));
         assert_eq!(recognized("time;speed;torque"), None);
+    }
+
+    #[test]
+    fn tables_that_are_no_logs_are_named() {
+        let of = |header: &str| NotALog::by_names(&header.split(',').map(str::to_owned).collect::<Vec<_>>()).map(|(name, _)| name);
+        assert_eq!(of("id_A,iq_A,psi_d_Wb,psi_q_Wb"), Some("flux map"));
+        assert_eq!(of("Id (A),Iq (A),Flux d [Vs],Flux q [Vs],T [Nm]"), Some("flux map"));
+        assert_eq!(of("Ld_H,Lq_H,Rs_ohm,pole_pairs,psi_pm_Wb"), Some("table of parameters"));
+        for header in ["t,id,iq,ud,uq,omega_e", "speed,id,iq", "Ld,Lq,t", "psi_d,psi_q,t"] {
+            assert_eq!(of(header), None, "{header}");
+        }
     }
 
     #[test]

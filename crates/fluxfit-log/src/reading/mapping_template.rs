@@ -39,6 +39,9 @@ impl Inspection {
                 continue;
             }
             let (column, remark) = match (taken, resembling) {
+                (Some(column), _) if column.read_as.is_none() && !column.is_instant => {
+                    (column.header.as_str(), "  # nothing states its unit: rad/s, rpm-elec, rpm-mech, ..")
+                }
                 (Some(column), _) => (column.header.as_str(), ""),
                 (None, Some(column)) if column.read_as.is_none() => {
                     (column.header.as_str(), "  # by its name; check it, and add unit = .. unless it is SI")
@@ -48,8 +51,7 @@ impl Inspection {
             };
             // Of a column that only resembles the channel, the unit only if its header states it.
             let read_as = taken.or(resembling).and_then(|column| column.read_as);
-            let unit =
-                if taken.is_some() { Some(read_as.map_or(channel.unit().name(), |(unit, _)| unit)) } else { read_as.map(|(unit, _)| unit) };
+            let unit = if taken.is_some() { Some(read_as.map_or("?", |(unit, _)| unit)) } else { read_as.map(|(unit, _)| unit) };
             let is_instant = channel == Channel::T && taken.is_some_and(|column| column.is_instant);
             let unit =
                 unit.filter(|_| !is_instant).map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default() + &factor(channel, options);
@@ -69,8 +71,8 @@ impl Inspection {
     fn is_computed(&self, channel: Channel) -> bool {
         let has = |name: &str| self.columns.iter().any(|column| column.channel == Some(name));
         match channel {
-            Channel::Ud | Channel::Uq => has("ua") && has("theta_e"),
-            Channel::Id | Channel::Iq => has("ia") && has("theta_e"),
+            Channel::Ud | Channel::Uq => (has("ua") || has("ualpha")) && has("theta_e"),
+            Channel::Id | Channel::Iq => (has("ia") || has("ialpha")) && has("theta_e"),
             Channel::OmegaE => has("theta_e"),
             _ => false,
         }

@@ -8,6 +8,7 @@
 
 mod alias;
 mod align;
+mod bench_columns;
 mod channels;
 mod characteristic;
 mod chosen;
@@ -29,6 +30,7 @@ mod read;
 mod repair;
 mod resemblance;
 mod selection;
+mod steady_test;
 mod table;
 mod turning;
 

@@ -2,7 +2,10 @@
 
 use super::channels::Channels;
 use crate::channel::Channel;
-use fluxfit::{frames::Abc, log};
+use fluxfit::{
+    frames::{Abc, AlphaBeta},
+    log,
+};
 use fluxfit_units::significant;
 use std::f64::consts::{PI, TAU};
 
@@ -17,6 +20,23 @@ const SPEED_ERROR: f64 = 1e-3;
 
 /// A step of the angle of at least this size, rad, is an encoder's resolution; smaller ones are rounding.
 const COARSE: f64 = TAU / 5000.0;
+
+/// Replaces quantities of the stator's frame by those of the phases, which all further steps know.
+pub(super) fn of_stator_frame(channels: &mut Channels) {
+    let sets = [
+        ([Channel::UAlpha, Channel::UBeta], [Channel::UA, Channel::UB, Channel::UC]),
+        ([Channel::IAlpha, Channel::IBeta], [Channel::IA, Channel::IB, Channel::IC]),
+    ];
+    for ([alpha, beta], phases) in sets {
+        let (Some(alpha), Some(beta)) = (channels.take(alpha), channels.take(beta)) else { continue };
+        let mut values: [Vec<f64>; 3] = Default::default();
+        for (alpha, beta) in alpha.into_iter().zip(beta) {
+            let Abc { a, b, c } = AlphaBeta { alpha, beta }.to_abc();
+            values.iter_mut().zip([a, b, c]).for_each(|(values, value)| values.push(value));
+        }
+        phases.into_iter().zip(values).for_each(|(phase, values)| channels.set(phase, values));
+    }
+}
 
 /// Applies the Clarke and Park transforms where only phase quantities are logged, and computes the speed from the angle where no
 /// speed is. Returns notes.

@@ -149,6 +149,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     plausibility::refuse_standardized(&chosen, &channels)?;
     let is_interpolated = is_interpolated || aligned.is_some();
     let mut more: Vec<String> = aligned.into_iter().collect();
+    phases::of_stator_frame(&mut channels);
     turning::settle(&mut channels, &chosen, &mut notes)?;
     more.extend(repair::repair(&mut channels));
     more.extend(phases::transform(&mut channels));

@@ -100,6 +100,53 @@ def names(make):
                                                        "q-axis current (A)", "electrical speed (rpm)"), tolerances=rpm)
     renamed("names_french.csv", "French names", with_names(mechanical, "temps [s]", "tension d [V]", "tension q [V]", "courant d [A]", "courant q [A]", "vitesse [rpm]"),
             told=poles, tolerances=rpm)
+    path = "Model Root/FOC/"
+    renamed("names_paths.csv", "paths of a model, as ControlDesk exports them, and the time as x axis",
+            with_names(mechanical, "x-axis", f"{path}ud/Out1", f"{path}uq/Out1", f"{path}id/Out1", f"{path}iq/Out1", "Model Root/n_mech/Out1 [1/min]"),
+            told=poles, tolerances=rpm, separator=";")
+    renamed("names_blocks.csv", "names behind a colon, as PLECS writes them",
+            with_names(fast["omega_e"], "Time", "Machine: v_d", "Machine: v_q", "Machine: i_d", "Machine: i_q", "Machine: electrical speed (rad/s)"))
+    renamed("names_simulink.csv", "bus signals in angle brackets",
+            with_names(fast["omega_e"] / make.POLE_PAIRS, "time", "<Stator voltage vs_d (V)>", "<Stator voltage vs_q (V)>", "<Stator current is_d (A)>",
+                       "<Stator current is_q (A)>", "<Rotor mechanical speed wm (rad/s)>"), told=poles, tolerances=rpm)
+    renamed("names_units_alone.csv", "axes and units alone, within structures",
+            with_names(mechanical / 60.0, "timestamp", "servo_control.d_V", "servo_control.q_V", "servo_stats.d_A", "servo_stats.q_A", "servo_stats.velocity [turns/s]"),
+            told=poles, tolerances=rpm)
+    renamed("names_motor_1.csv", "a number of the motor, and tabs",
+            with_names(mechanical, "Time [s]", "M1_Ud [V]", "M1_Uq [V]", "M1_Id [A]", "M1_Iq [A]", "M1_Speed [rpm]"), told=poles, tolerances=rpm, separator="\t")
+    renamed("names_american.csv", "d and q of the stator, and the electrical speed",
+            with_names(fast["omega_e"], "t", "vds", "vqs", "ids", "iqs", "we_elec (rad/s)"))
+    renamed("units_over.csv", "quantity over unit", with_names(mechanical, "t/s", "ud/V", "uq/V", "id/A", "iq/A", "n / min^-1"), told=poles, tolerances=rpm, notes=())
+    renamed("units_in.csv", "'in' before the unit",
+            with_names(mechanical, "Zeit in s", "Ud in V", "Uq in V", "Id in A", "Iq in A", "Drehzahl in 1/min"), told=poles, tolerances=rpm)
+    renamed("durations.csv", "times with their unit, as MATLAB writes durations", with_names(fast["omega_e"], "Time", "ud", "uq", "id", "iq", "omega_e"),
+            form={"Time": lambda value: f"{value:g} sec"}, notes=("numbers with their unit",))
+    alpha_beta = {"t": fast["t"]}
+    for name, d, q in [("u", "ud", "uq"), ("i", "id", "iq")]:
+        angle = make.FAST["theta_e"]
+        alpha_beta[f"{name}_alpha"] = fast[d] * np.cos(angle) - fast[q] * np.sin(angle)
+        alpha_beta[f"{name}_beta"] = fast[d] * np.sin(angle) + fast[q] * np.cos(angle)
+    alpha_beta |= {"theta_e": make.FAST["theta_e"], "omega_e": fast["omega_e"]}
+    renamed("alpha_beta.csv", "the stator's frame and the angle", alpha_beta, form={name: make.fixed(9) for name in alpha_beta if "_a" in name or "_b" in name},
+            tolerances={name: 2e-9 for name in ("ud", "uq", "id", "iq")}, notes=("from the phase quantities",))
+    text = make.table(fast)
+    make.put("preamble_oscilloscope.csv", "SCOPE64,12345,Waveform\nSegments,1,SegmentSize,9000\nSegment,TrigTime,TimeSinceSegment1\n#1,14-Aug-2012 18:23:46,0\n" + text)
+    make.read("preamble_oscilloscope.csv", "settings of an oscilloscope above the names", fast, notes=["titles above the header"])
+    blank = "\n".join(f",{line}" for line in text.strip().split("\n")[1:])
+    make.put("preamble_paths.csv", "format,export\n\nunit,s,V,V,A,A,rad/s\n\npath,,Root/ud,Root/uq,Root/id,Root/iq,Root/omega\n\ntrace_values," + ",".join(fast) + "\n" + blank + "\n")
+    make.read("preamble_paths.csv", "units and paths above the names, and a column without values", fast)
+    thousand = with_names(mechanical / 1000.0, "t_s", "vd", "vq", "id", "iq", "speed_krpm")
+    make.refuse(make.put("unit_krpm.csv", make.table(thousand)), "thousands of r/min, mapped", "krpm", "not a known unit",
+                told={"map": ["omega_e=speed_krpm"], **poles})
+    per_unit = with_names(fast["omega_e"] / 800.0, "t", "ud_pu", "uq_pu", "id_pu", "iq_pu", "omega_pu")
+    make.refuse(make.put("per_unit.csv", make.table(per_unit)), "per unit", "may be ud", line=1)
+    make.refuse(make.put("settings_beside.csv", "Record Length,2500,,0.0,1.2\nSample Interval,4e-6,,0.1,1.3\nTrigger Point,1250,,0.2,1.3\n"),
+                "settings of an oscilloscope beside the samples, and no names", "in place of a header", line=1)
+    currents = {"id_A": np.repeat([-2.0, 0.0, 2.0], 3), "iq_A": np.tile([0.0, 1.0, 2.0], 3)}
+    flux = currents | {"psi_d_Wb": 0.1 + 0.001 * currents["id_A"], "psi_q_Wb": 0.002 * currents["iq_A"]}
+    make.refuse(make.put("flux_map_by_names.csv", make.table(flux)), "a flux map with units in its names", "flux map", line=1)
+    motors = {"Ld_H": np.array([1e-3, 2e-3]), "Lq_H": np.array([2e-3, 3e-3]), "Rs_ohm": np.array([0.1, 0.2]), "psi_pm_Wb": np.array([0.1, 0.2])}
+    make.refuse(make.put("motors.csv", make.table(motors)), "parameters of motors", "table of parameters", line=1)
     references = {"time": fast["t"], "vd": fast["ud"], "vq": fast["uq"], "id_ref": fast["id"] * 0 - 1, "id_meas": fast["id"], "iq_setpoint": fast["iq"] * 0 + 2,
                   "iq_meas": fast["iq"], "speed_step": np.arange(len(fast["t"])) // 10, "omega_e": fast["omega_e"]}
     renamed("names_beside_references.csv", "references and steps beside the measurements", references)

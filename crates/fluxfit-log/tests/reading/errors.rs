@@ -89,12 +89,12 @@ fn maps_and_units_that_do_not_fit_the_file_are_refused() {
     );
     assert_eq!(
         error("omega_e", &LogOptions { map: vec![("speed".into(), "omega_e".into())], ..LogOptions::default() }),
-        "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic and run; did you mean omega_e?"
+        "\"speed\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e, and optionally theta_e, u_dc, temperature, ua, ub, uc, ia, ib, ic, ualpha, ubeta, ialpha, ibeta and run; did you mean omega_e?"
     );
     assert_eq!(
         error("speed [km/h]", &map(&["omega=speed [km/h]"])),
         "drive.csv, line 1, column 'speed [km/h]': \"km/h\" in the header is not a known unit of omega_e; \
-         state the unit: rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
+         state the unit: rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech; of another one also the scale to it, in a mapping file"
     );
     let units = LogOptions { units: vec![("omega".into(), Unit::HertzMechanical)], ..LogOptions::default() };
     assert_eq!(
@@ -110,7 +110,7 @@ fn rows_are_refused_in_one_sentence() {
     let cases = [
         (
             below("a,b,c,d,e,f\n0,1,2,3,4,5\n1,1,2,3,4,5\n"),
-            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit: s, ms, us or ns",
+            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit: s, ms, us or ns; of another one also the scale to it, in a mapping file",
         ),
         (
             below("0,1,2,3,4,5\n\n1,1,2,3,4\n"),

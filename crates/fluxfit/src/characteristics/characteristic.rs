@@ -1,6 +1,9 @@
 //! A table of a test bench, of whatever kind.
 
-use super::{open_circuit::OpenCircuit, short_circuit::ShortCircuit};
+use super::{
+    direct_current::DirectCurrent, duty_cycle::DutyCycle, open_circuit::OpenCircuit, short_circuit::ShortCircuit,
+    torque_of_current::TorqueOfCurrent,
+};
 
 /// A table.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +12,12 @@ pub enum Characteristic {
     OpenCircuit(OpenCircuit),
     /// Terminals shorted.
     ShortCircuit(ShortCircuit),
+    /// Torque of currents.
+    TorqueOfCurrent(TorqueOfCurrent),
+    /// Direct current at rest.
+    DirectCurrent(DirectCurrent),
+    /// Duty cycles in place of voltages.
+    DutyCycle(DutyCycle),
 }
 
 impl Characteristic {
@@ -17,7 +26,30 @@ impl Characteristic {
         match self {
             Self::OpenCircuit(_) => "open-circuit characteristic",
             Self::ShortCircuit(_) => "short-circuit characteristic",
+            Self::TorqueOfCurrent(_) => "torque against current",
+            Self::DirectCurrent(_) => "voltage against direct current",
+            Self::DutyCycle(_) => "duty cycle against speed",
         }
+    }
+
+    /// The name of the test, which stays the same from version to version.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::OpenCircuit(_) => "open-circuit",
+            Self::ShortCircuit(_) => "short-circuit",
+            Self::TorqueOfCurrent(_) => "torque-of-current",
+            Self::DirectCurrent(_) => "direct-current",
+            Self::DutyCycle(_) => "duty-cycle",
+        }
+    }
+
+    /// In prose, with its rows.
+    pub fn describe(&self) -> String {
+        let of = match self {
+            Self::OpenCircuit(_) | Self::ShortCircuit(_) => "speeds",
+            Self::TorqueOfCurrent(_) | Self::DirectCurrent(_) | Self::DutyCycle(_) => "rows",
+        };
+        format!("{} of {} {of}", self.label(), self.rows())
     }
 
     /// Number of rows.
@@ -25,6 +57,9 @@ impl Characteristic {
         match self {
             Self::OpenCircuit(table) => table.rows.len(),
             Self::ShortCircuit(table) => table.rows.len(),
+            Self::TorqueOfCurrent(table) => table.rows.len(),
+            Self::DirectCurrent(table) => table.rows.len(),
+            Self::DutyCycle(table) => table.rows.len(),
         }
     }
 }

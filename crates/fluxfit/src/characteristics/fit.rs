@@ -8,8 +8,9 @@
 use super::{
     characteristic::Characteristic,
     machine::Machine,
-    open_circuit::{Across, OpenCircuitRow, SQRT_3},
-    short_circuit::ShortCircuitRow,
+    open_circuit::{Across, SQRT_3},
+    problem::{Problem, start},
+    rows::{Instrument, RESIDUALS, Residual, Rows},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -23,8 +24,8 @@ use crate::{
     },
     motor::{PARAMETERS, Parameter},
 };
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use levenberg_marquardt::LevenbergMarquardt;
+use nalgebra::DMatrix;
 use std::f64::consts::SQRT_2;
 
 /// What tables say of their motor.
@@ -35,8 +36,8 @@ pub struct CharacteristicsAnswer {
     pub parameters: [CharacteristicEstimate; PARAMETERS],
     /// Pole pairs, if they are known: then the parameters are the motor's own.
     pub pole_pairs: Option<u32>,
-    /// What is left of voltages and currents, as a fraction, and of torques, N m: root mean squares; `None` where there are none.
-    pub residual_rms: [Option<f64>; 3],
+    /// What is left, in the order of [`Residual::ALL`]: root mean squares, as a fraction or SI; `None` where there are none.
+    pub residual_rms: [Option<f64>; RESIDUALS],
     /// How open-circuit voltages were taken; `None` without any.
     pub voltages: Option<VoltageReading>,
     /// Where the voltages are [ambiguous](VoltageReading::Ambiguous): what the parameters would be if these are line to line. Of a phase,
@@ -82,25 +83,10 @@ impl CharacteristicEstimate {
 pub enum VoltageReading {
     /// As the tables state.
     Stated,
-    /// As the torque of the short circuit tells.
+    /// As a torque tells, or the resistance of a direct current.
     ByTorque(Across),
     /// Line to line or of a phase, which nothing tells: then no parameter is.
     Ambiguous,
-}
-
-/// What measured a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Instrument {
-    /// Of voltages.
-    Voltage,
-    /// Of currents.
-    Current,
-    /// Of torque.
-    Torque,
-}
-
-impl Instrument {
-    const ALL: [Self; 3] = [Self::Voltage, Self::Current, Self::Torque];
 }
 
 /// Identifies a motor from its characteristics.
@@ -108,10 +94,20 @@ impl Instrument {
 /// # Errors
 /// If a table is too short, or the tables together hold neither voltage nor torque.
 pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u32>) -> Result<CharacteristicsAnswer, Error> {
-    let (rows, voltages) = Rows::of(tables)?.with_told_voltages()?;
+    let (rows, voltages) = with_told_voltages(Rows::of(tables)?)?;
     let fit = Fit::of(&rows, rows.has_torque())?;
     if let Some(missed) = fit.residual_rms[1].filter(|missed| *missed > LARGEST_MISS) {
         return Err(ErrorKind::NoShortCircuit { missed }.into());
+    }
+    if let Some(missed) = fit.residual_rms[0].filter(|missed| *missed > LARGEST_MISS) {
+        return Err(ErrorKind::NoOpenCircuit { missed }.into());
+    }
+    for residual in [Residual::Torque, Residual::DirectVoltage, Residual::DutyVoltage] {
+        if let Some(missed) =
+            fit.residual_rms[residual as usize].map(|left| left / rows.unit(residual)).filter(|missed| *missed > LARGEST_MISS)
+        {
+            return Err(ErrorKind::NoSuchTable { what: residual.label(), missed }.into());
+        }
     }
     let of_drag = if rows.has_torque() { fit.distance(&Fit::of(&rows, false)?) } else { [0.0; PARAMETERS] };
     let doubt: [f64; PARAMETERS] = std::array::from_fn(|p| of_drag[p].hypot(fit.doubt_of_minima[p]));
@@ -120,7 +116,10 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
     let mut if_line_to_line = [None; PARAMETERS];
     if voltages == Some(VoltageReading::Ambiguous) {
         if_line_to_line = parameters.map(|estimate| estimate.value);
-        parameters = parameters.map(|estimate| CharacteristicEstimate::unknown(estimate.parameter));
+        // A direct current alone tells the resistance without them.
+        let is_told = |parameter: Parameter| parameter == Parameter::Rs && rows.shorted.is_empty();
+        parameters = parameters
+            .map(|estimate| if is_told(estimate.parameter) { estimate } else { CharacteristicEstimate::unknown(estimate.parameter) });
     }
     let told = parameters.map(|estimate| estimate.value.is_some());
     let change = |instrument: Instrument| {
@@ -131,127 +130,40 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
     Ok(CharacteristicsAnswer { parameters, pole_pairs, residual_rms: fit.residual_rms, voltages, if_line_to_line, unseen })
 }
 
-/// What a short circuit's currents are missed by at most, as a fraction: a motor that saturates by half is missed by less.
+/// What a short circuit's currents, or voltages of open terminals, are missed by at most, as a fraction: a motor that saturates by half is
+/// missed by less.
 const LARGEST_MISS: f64 = 0.2;
 
-/// Fewest rows of a short-circuit characteristic: the motor and the drag have six numbers, and a row gives one or two.
-const LEAST_SHORTED: usize = 6;
-
-/// Fewest rows of an open-circuit characteristic whose scatter means anything.
-const LEAST_OPEN: usize = 3;
-
-/// The rows of all tables, by kind.
-#[derive(Clone)]
-struct Rows {
-    /// Voltages line to line.
-    open: Vec<OpenCircuitRow>,
-    shorted: Vec<ShortCircuitRow>,
-    /// Whether all tables state between which points their voltages were measured.
-    are_voltages_stated: bool,
-}
-
-impl Rows {
-    fn of(tables: &[Characteristic]) -> Result<Self, Error> {
-        let mut rows = Self { open: Vec::new(), shorted: Vec::new(), are_voltages_stated: true };
-        for table in tables {
-            match table {
-                Characteristic::OpenCircuit(table) => {
-                    let factor = table.across.unwrap_or(Across::Lines).to_lines();
-                    rows.open.extend(table.rows.iter().map(|row| OpenCircuitRow { voltage: factor * row.voltage, ..*row }));
-                    rows.are_voltages_stated &= table.across.is_some();
-                }
-                Characteristic::ShortCircuit(table) => rows.shorted.extend(&table.rows),
-            }
-        }
-        // Neighbours in speed err alike, whatever their order in the file.
-        rows.open.sort_by(|one, other| one.speed.abs().total_cmp(&other.speed.abs()));
-        rows.shorted.sort_by(|one, other| one.speed.abs().total_cmp(&other.speed.abs()));
-        for (count, least) in [(rows.open.len(), LEAST_OPEN), (rows.shorted.len(), LEAST_SHORTED)] {
-            if (1..least).contains(&count) {
-                return Err(ErrorKind::ShortCharacteristic { rows: count, least }.into());
-            }
-        }
-        if rows.open.is_empty() && !rows.has_torque() {
-            return Err(ErrorKind::NoScale.into());
-        }
-        Ok(rows)
+/// The rows with their voltages as they were measured, by what the tables state or by the other tables: the power of the shaft heats
+/// the winding, which gives the resistance whatever the voltages are.
+fn with_told_voltages(rows: Rows) -> Result<(Rows, Option<VoltageReading>), Error> {
+    if rows.open.is_empty() {
+        return Ok((rows, None));
     }
-
-    /// The rows with their voltages as they were measured, by what the tables state or by the torque: the power of the shaft heats the
-    /// winding, which gives the resistance whatever the voltages are.
-    fn with_told_voltages(self) -> Result<(Self, Option<VoltageReading>), Error> {
-        if self.open.is_empty() {
-            return Ok((self, None));
+    if !rows.tells_flux() {
+        let reading = if rows.are_voltages_stated { VoltageReading::Stated } else { VoltageReading::Ambiguous };
+        return Ok((rows, Some(reading)));
+    }
+    let criterion = |factor: f64| Ok::<f64, Error>(Fit::of(&rows.with_voltages(factor), true)?.criterion);
+    let limit = criterion(1.0)? - VERY_STRONG;
+    let others = VOLTAGE_MISTAKES.iter().map(|factor| Ok((*factor, criterion(*factor)?))).collect::<Result<Vec<_>, Error>>()?;
+    let better = others.iter().filter(|(_, criterion)| *criterion < limit).min_by(|one, other| one.1.total_cmp(&other.1));
+    // The first mistake is a phase taken for two lines.
+    let phase = others[0];
+    match better {
+        None if rows.are_voltages_stated => Ok((rows, Some(VoltageReading::Stated))),
+        None if phase.1 > limit + 2.0 * VERY_STRONG => Ok((rows, Some(VoltageReading::ByTorque(Across::Lines)))),
+        None => Ok((rows, Some(VoltageReading::Ambiguous))),
+        Some(best) if *best == phase && !rows.are_voltages_stated => {
+            Ok((rows.with_voltages(phase.0), Some(VoltageReading::ByTorque(Across::Phase))))
         }
-        if !self.has_torque() {
-            let reading = if self.are_voltages_stated { VoltageReading::Stated } else { VoltageReading::Ambiguous };
-            return Ok((self, Some(reading)));
-        }
-        let criterion = |factor: f64| Ok::<f64, Error>(Fit::of(&self.with_voltages(factor), true)?.criterion);
-        let limit = criterion(1.0)? - VERY_STRONG;
-        let others = VOLTAGE_MISTAKES.iter().map(|factor| Ok((*factor, criterion(*factor)?))).collect::<Result<Vec<_>, Error>>()?;
-        let better = others.iter().filter(|(_, criterion)| *criterion < limit).min_by(|one, other| one.1.total_cmp(&other.1));
-        // The first mistake is a phase taken for two lines.
-        let phase = others[0];
-        match better {
-            None if self.are_voltages_stated => Ok((self, Some(VoltageReading::Stated))),
-            None if phase.1 > limit + 2.0 * VERY_STRONG => Ok((self, Some(VoltageReading::ByTorque(Across::Lines)))),
-            None => Ok((self, Some(VoltageReading::Ambiguous))),
-            Some(best) if *best == phase && !self.are_voltages_stated => {
-                Ok((self.with_voltages(phase.0), Some(VoltageReading::ByTorque(Across::Phase))))
-            }
-            Some((factor, _)) => Err(ErrorKind::VoltagesAgainstTorque { factor: *factor }.into()),
-        }
-    }
-
-    fn with_voltages(&self, factor: f64) -> Self {
-        let mut rows = self.clone();
-        rows.open.iter_mut().for_each(|row| row.voltage *= factor);
-        rows
-    }
-
-    fn has_torque(&self) -> bool {
-        self.shorted.iter().any(|row| row.torque.is_some())
-    }
-
-    fn has(&self, instrument: Instrument) -> bool {
-        match instrument {
-            Instrument::Voltage => !self.open.is_empty(),
-            Instrument::Current => !self.shorted.is_empty(),
-            Instrument::Torque => self.has_torque(),
-        }
-    }
-
-    /// The same as an instrument would have read it that reads 1 % too much.
-    fn read_too_large(&self, instrument: Instrument) -> Self {
-        const TOO_LARGE: f64 = 1.01;
-        let mut rows = self.clone();
-        match instrument {
-            Instrument::Voltage => rows.open.iter_mut().for_each(|row| row.voltage *= TOO_LARGE),
-            Instrument::Current => rows.shorted.iter_mut().for_each(|row| row.current *= TOO_LARGE),
-            Instrument::Torque => rows.shorted.iter_mut().for_each(|row| row.torque = row.torque.map(|torque| TOO_LARGE * torque)),
-        }
-        rows
-    }
-
-    fn largest_torque(&self) -> f64 {
-        self.shorted.iter().filter_map(|row| row.torque).fold(0.0, |largest, torque| torque.abs().max(largest))
-    }
-
-    fn largest_speed(&self) -> f64 {
-        self.shorted.iter().fold(0.0, |largest, row| row.speed.abs().max(largest))
+        Some((factor, _)) => Err(ErrorKind::VoltagesAgainstTorque { factor: *factor }.into()),
     }
 }
 
 /// What voltages are too small by where a phase is taken for two lines or the other way round, and rms for an amplitude or the other way
 /// round; powers of ten are those of units.
 const VOLTAGE_MISTAKES: [f64; 6] = [SQRT_3, 1.0 / SQRT_3, SQRT_2, 1.0 / SQRT_2, 1e3, 1e-3];
-
-/// Errors of voltage, current and torque that a fit starts with: half a percent, and of the largest torque a percent.
-const USUAL_ERRORS: [f64; 3] = [0.005, 0.005, 0.01];
-
-/// Errors below this part of a value are rounding.
-const LEAST_ERROR: f64 = 1e-7;
 
 /// Ratios of L_q to L_d that fits start from.
 const SALIENCIES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
@@ -271,7 +183,7 @@ struct Fit {
     /// Of the logarithms.
     covariance: DMatrix<f64>,
     degrees_of_freedom: f64,
-    residual_rms: [Option<f64>; 3],
+    residual_rms: [Option<f64>; RESIDUALS],
 }
 
 impl Fit {
@@ -290,10 +202,8 @@ impl Fit {
 
     /// The fit from one start; `None` if it runs away.
     fn from(start: &Machine, rows: &Rows, with_drag: bool) -> Option<Self> {
-        let is_free = if rows.shorted.is_empty() { [false, false, false, true] } else { [true; PARAMETERS] };
-        let mut errors = USUAL_ERRORS;
-        let mut problem = Problem { rows, is_free, with_drag, errors, unknowns: DVector::zeros(0), start: *start };
-        problem.unknowns = DVector::zeros(problem.count());
+        let mut problem = Problem::new(rows, *start, with_drag);
+        let mut errors = problem.errors;
         for _ in 0..ROUNDS {
             problem.errors = errors;
             (problem, _) = LevenbergMarquardt::new().minimize(problem);
@@ -302,6 +212,7 @@ impl Fit {
         // As many as are independent.
         let of_groups = problem.groups();
         let criterion: f64 = of_groups.iter().zip(errors).map(|(group, error)| 2.0 * group.len() as f64 * error.ln()).sum();
+        let is_free = problem.is_free;
         let independent = of_groups.each_ref().map(|group| effective_sample_size(group));
         for ((error, group), independent) in problem.errors.iter_mut().zip(&of_groups).zip(independent) {
             if independent > 0.0 {
@@ -316,7 +227,6 @@ impl Fit {
             return None;
         }
         let rms = |group: &Vec<f64>, error: f64| (!group.is_empty()).then_some(error);
-        let units = [1.0, 1.0, rows.largest_torque()];
         Some(Self {
             machine,
             criterion,
@@ -324,7 +234,7 @@ impl Fit {
             is_free,
             covariance: covariance.unwrap_or_else(|| DMatrix::from_element(count, count, f64::INFINITY)),
             degrees_of_freedom: (independent.iter().sum::<f64>() - count as f64).max(1.0),
-            residual_rms: std::array::from_fn(|k| rms(&of_groups[k], errors[k] * units[k])),
+            residual_rms: std::array::from_fn(|k| rms(&of_groups[k], errors[k] * rows.unit(Residual::ALL[k]))),
         })
     }
 
@@ -358,135 +268,5 @@ impl Fit {
             return CharacteristicEstimate::unknown(parameter);
         }
         CharacteristicEstimate { parameter, value: Some(raw), uncertainty, verdict }
-    }
-}
-
-/// Where the fit starts: rough values from the ends of the tables.
-fn start(rows: &Rows) -> Machine {
-    let of_open = rows.open.last().map(|row| row.voltage / (1.5_f64.sqrt() * row.speed.abs()));
-    let (Some(slowest), Some(fastest)) = (rows.shorted.first(), rows.shorted.last()) else {
-        return Machine { rs: 1.0, p_ld: 1.0, p_lq: 1.0, p_psi_f: of_open.unwrap_or(1.0) };
-    };
-    // Power of the shaft over the heat of a winding of one ohm, at the largest torque.
-    let strongest = rows.shorted.iter().max_by(|one, other| one.torque.unwrap_or(0.0).abs().total_cmp(&other.torque.unwrap_or(0.0).abs()));
-    let of_torque = strongest.and_then(|row| Some(row.torque?.abs() * row.speed.abs() / (3.0 * row.current.powi(2))));
-    let rs_of_flux = |p_psi_f: f64| p_psi_f * slowest.speed.abs() / (2.0_f64.sqrt() * slowest.current);
-    let rs = of_torque.or(of_open.map(rs_of_flux)).unwrap_or(1.0);
-    let p_psi_f = of_open.unwrap_or(rs * 2.0_f64.sqrt() * slowest.current / slowest.speed.abs());
-    let p_ld = p_psi_f / (2.0_f64.sqrt() * fastest.current);
-    Machine { rs, p_ld, p_lq: p_ld, p_psi_f }
-}
-
-/// Step of the differences of logarithms: the cube root of rounding.
-const STEP: f64 = 6e-6;
-
-/// The fit as the minimizer sees it. Unknowns are the logarithms of the free numbers over their start, then the drag over the largest
-/// torque, at standstill and more at the largest speed.
-struct Problem<'a> {
-    rows: &'a Rows,
-    is_free: [bool; PARAMETERS],
-    with_drag: bool,
-    errors: [f64; 3],
-    unknowns: DVector<f64>,
-    start: Machine,
-}
-
-impl Problem<'_> {
-    fn count(&self) -> usize {
-        self.is_free.iter().filter(|free| **free).count() + if self.with_drag { 2 } else { 0 }
-    }
-
-    fn machine(&self) -> Machine {
-        let Machine { rs, p_ld, p_lq, p_psi_f } = self.start;
-        let mut unknowns = self.unknowns.iter();
-        let mut values = [rs, p_ld, p_lq, p_psi_f];
-        for (value, _) in values.iter_mut().zip(self.is_free).filter(|(_, free)| *free) {
-            *value *= unknowns.next().map_or(1.0, |logarithm| logarithm.exp());
-        }
-        let [rs, p_ld, p_lq, p_psi_f] = values;
-        Machine { rs, p_ld, p_lq, p_psi_f }
-    }
-
-    /// N m.
-    fn drag(&self, speed: f64) -> f64 {
-        if !self.with_drag {
-            return 0.0;
-        }
-        let of_drag = self.unknowns.rows_range(self.count() - 2..);
-        self.rows.largest_torque() * (of_drag[0] + of_drag[1] * speed.abs() / self.rows.largest_speed())
-    }
-
-    /// What is left: of voltages and currents as fractions, of torques in N m.
-    fn groups(&self) -> [Vec<f64>; 3] {
-        let machine = self.machine();
-        let braking = |row: &ShortCircuitRow| row.torque.map(|torque| torque.abs() - row.torque_of(&machine) - self.drag(row.speed));
-        [
-            self.rows.open.iter().map(|row| 1.0 - row.voltage_of(&machine) / row.voltage).collect(),
-            self.rows.shorted.iter().map(|row| 1.0 - row.current_of(&machine) / row.current).collect(),
-            self.rows.shorted.iter().filter_map(braking).collect(),
-        ]
-    }
-
-    /// The error of each residual.
-    fn errors_of_rows(&self) -> [Vec<f64>; 3] {
-        let [voltage, current, torque] = self.errors;
-        let unit = self.rows.largest_torque();
-        [
-            vec![voltage; self.rows.open.len()],
-            self.rows.shorted.iter().map(|row| current.hypot(row.current_error / row.current)).collect(),
-            self.rows.shorted.iter().filter(|row| row.torque.is_some()).map(|_| torque * unit).collect(),
-        ]
-    }
-
-    /// The errors that what is left shows; each kind of residual has its part of the unknowns. Rows whose phases differ say little of it.
-    fn errors_left(&self) -> [f64; 3] {
-        let groups = self.groups();
-        let of_rows = self.errors_of_rows();
-        let all: usize = groups.iter().map(Vec::len).sum();
-        let used = 1.0 - (self.count() as f64 / all as f64).min(0.9);
-        let units = [1.0, 1.0, self.rows.largest_torque()];
-        std::array::from_fn(|k| {
-            let weight = |error: &f64| (self.errors[k] * units[k] / error).powi(2);
-            let weights: f64 = of_rows[k].iter().map(weight).sum();
-            let squares: f64 = groups[k].iter().zip(&of_rows[k]).map(|(left, error)| (left / units[k]).powi(2) * weight(error)).sum();
-            if weights > 0.0 { (squares / weights / used).sqrt().max(LEAST_ERROR) } else { self.errors[k] }
-        })
-    }
-
-    fn weighted(&self) -> DVector<f64> {
-        let pairs = self.groups().into_iter().flatten().zip(self.errors_of_rows().into_iter().flatten());
-        DVector::from_iterator(self.groups().iter().map(Vec::len).sum(), pairs.map(|(left, error)| left / error))
-    }
-
-    fn slopes(&self) -> DMatrix<f64> {
-        let moved = |k: usize, by: f64| {
-            let mut unknowns = self.unknowns.clone();
-            unknowns[k] += by;
-            Problem { unknowns, start: self.start, ..*self }.weighted()
-        };
-        let columns: Vec<DVector<f64>> = (0..self.count()).map(|k| (moved(k, STEP) - moved(k, -STEP)) / (2.0 * STEP)).collect();
-        DMatrix::from_columns(&columns)
-    }
-}
-
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
-    type ParameterStorage = Owned<f64, Dyn>;
-    type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, Dyn>;
-
-    fn set_params(&mut self, unknowns: &DVector<f64>) {
-        self.unknowns.copy_from(unknowns);
-    }
-
-    fn params(&self) -> DVector<f64> {
-        self.unknowns.clone()
-    }
-
-    fn residuals(&self) -> Option<DVector<f64>> {
-        Some(self.weighted())
-    }
-
-    fn jacobian(&self) -> Option<DMatrix<f64>> {
-        Some(self.slopes())
     }
 }

@@ -1,4 +1,5 @@
-//! Characteristics: tables of steady tests on a test bench, a row per speed, from which a motor is identified without a drive's log.
+//! Characteristics: tables of steady tests on a test bench, a row per speed or current, from which a motor is identified without a drive's
+//! log.
 //!
 //! Speeds are those of the shaft, so a table tells the inductances and the flux times the pole pairs. With `Omega` the speed of the
 //! shaft, rad/s, and `p` the pole pairs:
@@ -7,16 +8,28 @@
 //! |---|---|
 //! | voltage against speed, terminals open | [`open_circuit`](OpenCircuit): `p psi_f` |
 //! | current and torque against speed, terminals shorted | [`short_circuit`](ShortCircuit): all, with torque or an open-circuit table |
+//! | torque against the current of the q axis | [`torque_of_current`](TorqueOfCurrent): `p psi_f` |
+//! | voltage against direct current, rotor at rest | [`direct_current`](DirectCurrent): `R_s` |
+//! | duty cycle and input voltage against speed | [`duty_cycle`](DutyCycle): `p psi_f`, with current perhaps `R_s` and `p L_q` |
 //!
-//! Tables of one motor are fitted together.
+//! Tables of one motor are fitted together: `rows.rs` has them by kind, `problem.rs` is the least squares problem, `fit.rs` judges.
 
 mod characteristic;
+mod direct_current;
+mod duty_cycle;
 mod fit;
 mod machine;
 mod open_circuit;
+mod problem;
+mod rows;
 mod short_circuit;
+mod torque_of_current;
 
 pub use characteristic::Characteristic;
-pub use fit::{CharacteristicEstimate, CharacteristicsAnswer, Instrument, VoltageReading, identify_characteristics};
+pub use direct_current::{DirectCurrent, DirectCurrentRow};
+pub use duty_cycle::{DutyCycle, DutyCycleRow};
+pub use fit::{CharacteristicEstimate, CharacteristicsAnswer, VoltageReading, identify_characteristics};
 pub use open_circuit::{Across, OpenCircuit, OpenCircuitRow};
+pub use rows::{Instrument, Residual};
 pub use short_circuit::{ShortCircuit, ShortCircuitRow};
+pub use torque_of_current::{TorqueOfCurrent, TorqueOfCurrentRow};

@@ -2,7 +2,7 @@
 
 use super::by_parameter::ByParameter;
 use crate::{
-    characteristics::{Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, VoltageReading},
+    characteristics::{Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Residual, VoltageReading},
     motor::Parameter,
 };
 use serde::Serialize;
@@ -39,8 +39,14 @@ pub struct CharacteristicsDocument {
     pub residual_voltage: Option<f64>,
     /// What is left of the currents, as a fraction, root mean square.
     pub residual_current: Option<f64>,
-    /// What is left of the torques, N m, root mean square.
+    /// What is left of the torques of the short circuit, N m, root mean square.
     pub residual_torque: Option<f64>,
+    /// What is left of the torques of currents, N m, root mean square.
+    pub residual_torque_of_current: Option<f64>,
+    /// What is left of the voltages of direct currents, V of one phase, root mean square.
+    pub residual_direct_voltage: Option<f64>,
+    /// What is left of the voltages of duty cycles, V, amplitude of a phase, root mean square.
+    pub residual_duty_voltage: Option<f64>,
     /// Relative change of each parameter where an instrument reads 1 % too much, which the intervals do not count.
     pub unseen: Vec<InstrumentEntry>,
 }
@@ -50,9 +56,9 @@ pub struct CharacteristicsDocument {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct TableEntry {
-    /// Which test: `open-circuit` or `short-circuit`.
+    /// Which test: `open-circuit`, `short-circuit`, `torque-of-current`, `direct-current` or `duty-cycle`.
     pub kind: &'static str,
-    /// Number of speeds.
+    /// Number of rows.
     pub rows: usize,
 }
 
@@ -105,14 +111,8 @@ impl CharacteristicsDocument {
     /// The document of an answer; `notes` say how the tables' columns were read.
     pub fn of(tables: &[Characteristic], notes: Vec<String>, answer: &CharacteristicsAnswer) -> Self {
         let pairs = answer.pole_pairs.map_or(1.0, f64::from);
-        let [residual_voltage, residual_current, residual_torque] = answer.residual_rms;
-        let table = |table: &Characteristic| TableEntry {
-            kind: match table {
-                Characteristic::OpenCircuit(_) => "open-circuit",
-                Characteristic::ShortCircuit(_) => "short-circuit",
-            },
-            rows: table.rows(),
-        };
+        let left = |residual: Residual| answer.residual_rms[residual as usize];
+        let table = |table: &Characteristic| TableEntry { kind: table.key(), rows: table.rows() };
         let instrument = |(instrument, changes): &(Instrument, [f64; 4])| InstrumentEntry {
             instrument: match instrument {
                 Instrument::Voltage => "voltage",
@@ -147,9 +147,12 @@ impl CharacteristicsDocument {
                 answer.if_line_to_line[p].map(|value| if p == Parameter::Rs as usize { value } else { pairs * value })
             })
             .into(),
-            residual_voltage,
-            residual_current,
-            residual_torque,
+            residual_voltage: left(Residual::OpenVoltage),
+            residual_current: left(Residual::ShortCurrent),
+            residual_torque: left(Residual::ShortTorque),
+            residual_torque_of_current: left(Residual::Torque),
+            residual_direct_voltage: left(Residual::DirectVoltage),
+            residual_duty_voltage: left(Residual::DutyVoltage),
             unseen: answer.unseen.iter().map(instrument).collect(),
         }
     }

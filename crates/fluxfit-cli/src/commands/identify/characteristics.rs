@@ -10,7 +10,8 @@ use crate::{
 use fluxfit::{
     Verdict,
     characteristics::{
-        Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, VoltageReading, identify_characteristics,
+        Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Residual, VoltageReading,
+        identify_characteristics,
     },
     document::CharacteristicsDocument,
     motor::Parameter,
@@ -43,8 +44,7 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<
         read.iter().flat_map(|(name, one)| one.notes.iter().map(move |note| format!("{name}: {}", note.sentence))).collect();
     notes.iter().for_each(|note| terminal::note(note));
     let tables: Vec<Characteristic> = read.iter().map(|(_, read)| read.table.clone()).collect();
-    let names: Vec<String> =
-        read.iter().map(|(name, read)| format!("{name}: {} of {} speeds", read.table.label(), read.table.rows())).collect();
+    let names: Vec<String> = read.iter().map(|(name, read)| format!("{name}: {}", read.table.describe())).collect();
     let files = read.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
     let answer = identify_characteristics(&tables, pole_pairs).map_err(|error| CommandError::Log { log: files, error })?;
     if arguments.json {
@@ -80,7 +80,11 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     if answer.voltages == Some(VoltageReading::Ambiguous) {
         status = "0 of 4 identified: are the voltages line to line or of a phase?".to_owned();
     } else if of(Verdict::NotIdentifiable).count() > 0 {
-        let what = if answer.residual_rms[1].is_none() { "a short-circuit table of the same motor" } else { "speeds from slow to fast" };
+        let what = if answer.residual_rms[Residual::ShortCurrent as usize].is_none() {
+            "a short-circuit table of the same motor"
+        } else {
+            "speeds from slow to fast"
+        };
         status += &format!(" For {}: add {what}.", symbols(Verdict::NotIdentifiable));
     }
     if answer.pole_pairs.is_none() {
@@ -96,7 +100,11 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
                 Some(format!("{} {} {}", symbol(parameter, answer), scale.format(value, 1e-4 * value), scale.unit(parameter.unit())))
             };
             let values = |factor: f64| Parameter::ALL.iter().filter_map(|one| value(*one, factor)).collect::<Vec<_>>().join(", ");
-            let or = if answer.residual_rms[2].is_none() { ", or add a short-circuit table with torque" } else { "" };
+            let or = if answer.residual_rms[Residual::ShortTorque as usize].is_none() {
+                ", or add a short-circuit table with torque"
+            } else {
+                ""
+            };
             let sentence = format!(
                 "Line to line: {}. Of a phase: {}. The columns' names do not say which; put 'll' or 'phase' into them{or}.",
                 values(1.0),
@@ -112,11 +120,14 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     }
     let rows = answer.parameters.iter().map(|estimate| cells(estimate, answer));
     text += &format!("\n{}", table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows));
-    let left = [("voltages", 100.0, "%"), ("currents", 100.0, "%"), ("torques", 1.0, "N m")];
-    let left = left
-        .iter()
-        .zip(answer.residual_rms)
-        .filter_map(|((what, factor, unit), rms)| Some(format!("{what} by {} {unit}", significant(factor * rms?, 2))));
+    let left = Residual::ALL.iter().zip(answer.residual_rms).filter_map(|(residual, rms)| {
+        let (factor, unit) = match residual {
+            Residual::ShortTorque | Residual::Torque => (1.0, "N m"),
+            Residual::DirectVoltage | Residual::DutyVoltage => (1.0, "V"),
+            Residual::OpenVoltage | Residual::ShortCurrent => (100.0, "%"),
+        };
+        Some(format!("{} by {} {unit}", residual.label(), significant(factor * rms?, 2)))
+    });
     text += &format!("\n{}", wrapped("", &format!("Model: steady tests; misses {} rms.", left.collect::<Vec<_>>().join(", "))));
     let unseen = answer.unseen.iter().filter_map(|(instrument, changes)| {
         let what = match instrument {
@@ -131,7 +142,11 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     });
     let temperature = "the temperature: R_s +0.4 %, flux about -0.1 % for each K".to_owned();
     let unseen = unseen.chain([temperature]).collect::<Vec<_>>().join("; ");
-    let saturation = if answer.residual_rms[1].is_some() { " Inductances are those at the currents of the short circuit." } else { "" };
+    let saturation = if answer.residual_rms[Residual::ShortCurrent as usize].is_some() {
+        " Inductances are those at the currents of the short circuit."
+    } else {
+        ""
+    };
     let unseen = format!("Not in the intervals, because no table shows it: {unseen}.{saturation}");
     text += &format!("\n{DIM}{}{DIM:#}\n", wrapped("", &unseen).trim_end());
     terminal::print(&text)?;

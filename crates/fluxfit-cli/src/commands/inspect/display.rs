@@ -2,7 +2,7 @@
 
 use crate::terminal::{self, BAD, DIM, GOOD, HEADING, frequency, plot, table, told::Told};
 use fluxfit::log::Log;
-use fluxfit_log::Inspection;
+use fluxfit_log::{Inspection, ReadCharacteristic};
 use fluxfit_units::significant;
 
 /// Most columns that are listed.
@@ -13,6 +13,9 @@ const GAPS: usize = 3;
 
 /// Shows an inspection, what is wrong with it first; notes go to standard error.
 pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told]) -> std::io::Result<()> {
+    if let Some(read) = &inspection.table {
+        return show_table(name, inspection, read);
+    }
     let status = match (&inspection.log, findings.len()) {
         (Err(_), _) => format!("{BAD}Not a log yet: the reason is below.{BAD:#}\n"),
         (Ok(_), 0) => format!("{GOOD}Readable, and the columns agree with each other.{GOOD:#}\n"),
@@ -35,6 +38,22 @@ pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told]) -> st
     if let Ok(read) = &inspection.log {
         read.notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
     }
+    Ok(())
+}
+
+/// Shows a table of a test bench: its columns, and what each is taken for.
+fn show_table(name: &str, inspection: &Inspection, read: &ReadCharacteristic) -> std::io::Result<()> {
+    let status = format!("A table of a test bench: {}. Next: fluxfit identify {name}", read.table.describe());
+    let mut text = format!("{GOOD}{}{GOOD:#}\n", terminal::wrapped("", &status).trim_end());
+    text += &format!("{}\n", terminal::wrapped("", &format!("{HEADING}{name}{HEADING:#}: {}", inspection.kind)));
+    let rows = inspection.columns.iter().take(LISTED).map(|column| {
+        let taken = read.columns.iter().find(|(_, header)| *header == column.header.trim()).map_or("-", |(quantity, _)| quantity);
+        let of_range = column.range.map(range).unwrap_or_default();
+        vec![column.header.chars().take(40).collect(), taken.to_owned(), of_range]
+    });
+    text += &table(&["column", "taken for", "range in the file"], 2, rows);
+    terminal::print(&text)?;
+    read.notes.iter().for_each(|note| terminal::note(&note.sentence));
     Ok(())
 }
 

@@ -41,7 +41,7 @@ impl Lines {
             let key = parameter.key();
             header += &format!(",{key},{key}_low,{key}_high,{key}_verdict");
         }
-        terminal::print(&(header + ",winding_temperature,magnet_temperature\n"))
+        row(&(header + ",winding_temperature,magnet_temperature\n"))
     }
 
     /// Whether a line is due at this time.
@@ -58,9 +58,9 @@ impl Lines {
         match self.format {
             Format::Json => {
                 let document = TrackDocument::of(tracker, thermometer, last);
-                terminal::print(&(serde_json::to_string(&document)? + "\n"))
+                row(&(serde_json::to_string(&document)? + "\n"))
             }
-            Format::Csv => terminal::print(&csv(tracker, thermometer)),
+            Format::Csv => row(&csv(tracker, thermometer)),
             Format::Table if self.is_live => {
                 terminal::live(&live(tracker));
                 Ok(())
@@ -79,6 +79,11 @@ impl Lines {
             Format::Csv | Format::Json => self.show(tracker, thermometer, true),
         }
     }
+}
+
+/// Prints a row of a stream, which ends where nobody reads it any more.
+fn row(text: &str) -> std::io::Result<()> {
+    terminal::stream(|out| out.write_all(text.as_bytes()))
 }
 
 fn csv(tracker: &Tracker, thermometer: Option<&Thermometer>) -> String {

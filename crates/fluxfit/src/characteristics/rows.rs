@@ -1,0 +1,252 @@
+//! The rows of all tables, by kind, and what they can tell.
+
+use super::{
+    characteristic::Characteristic,
+    direct_current::DirectCurrentRow,
+    duty_cycle::DutyCycleRow,
+    open_circuit::{Across, OpenCircuitRow},
+    short_circuit::ShortCircuitRow,
+    torque_of_current::TorqueOfCurrentRow,
+};
+use crate::{
+    error::{Error, ErrorKind},
+    motor::PARAMETERS,
+};
+
+/// What measured a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Instrument {
+    /// Of voltages.
+    Voltage,
+    /// Of currents.
+    Current,
+    /// Of torque.
+    Torque,
+}
+
+impl Instrument {
+    pub(super) const ALL: [Self; 3] = [Self::Voltage, Self::Current, Self::Torque];
+}
+
+/// What is compared with the model; rows of one kind err alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Residual {
+    /// Voltages of open terminals, by their relative error.
+    OpenVoltage,
+    /// Currents of shorted terminals, by their relative error.
+    ShortCurrent,
+    /// Torques of shorted terminals, N m.
+    ShortTorque,
+    /// Torques of a current, N m.
+    Torque,
+    /// Voltages of a direct current, V of one phase.
+    DirectVoltage,
+    /// Voltages of duty cycles, V, amplitude of a phase.
+    DutyVoltage,
+}
+
+impl Residual {
+    /// All of them.
+    pub const ALL: [Self; RESIDUALS] =
+        [Self::OpenVoltage, Self::ShortCurrent, Self::ShortTorque, Self::Torque, Self::DirectVoltage, Self::DutyVoltage];
+
+    /// Whether it is a fraction of each value.
+    pub fn is_relative(self) -> bool {
+        matches!(self, Self::OpenVoltage | Self::ShortCurrent)
+    }
+
+    /// In prose.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::OpenVoltage => "voltages",
+            Self::ShortCurrent => "currents",
+            Self::ShortTorque | Self::Torque => "torques",
+            Self::DirectVoltage => "voltages at rest",
+            Self::DutyVoltage => "voltages of the duty cycles",
+        }
+    }
+}
+
+/// Number of kinds of residuals.
+pub(super) const RESIDUALS: usize = 6;
+
+/// What is fitted beside the motor, as part of the largest torque or voltage of its table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extra {
+    /// Drag of the short circuit at standstill.
+    Drag,
+    /// How much more it is at the largest speed.
+    DragOfSpeed,
+    /// What the bench takes of the torque of a current.
+    TorqueOffset,
+    /// The torque of `p L_d - p L_q` at the largest product of the currents.
+    Saliency,
+    /// What contacts drop of a direct current.
+    Drop,
+    /// What switches lose of the duty's voltage.
+    Lost,
+}
+
+/// Fewest rows of a short-circuit characteristic: the motor and the drag have six numbers, and a row gives one or two.
+const LEAST_SHORTED: usize = 6;
+
+/// Fewest rows of another table whose scatter means anything.
+const LEAST: usize = 3;
+
+/// Fewest rows of duty cycles: flux, resistance, inductance and what the switches lose, and one more.
+const LEAST_DUTY: usize = 5;
+
+/// The rows of all tables, by kind.
+#[derive(Clone, Default)]
+pub(super) struct Rows {
+    /// Voltages line to line.
+    pub(super) open: Vec<OpenCircuitRow>,
+    pub(super) shorted: Vec<ShortCircuitRow>,
+    pub(super) torque: Vec<TorqueOfCurrentRow>,
+    /// Voltages of one phase.
+    pub(super) direct: Vec<DirectCurrentRow>,
+    pub(super) duty: Vec<DutyCycleRow>,
+    /// Whether all tables state between which points their open-circuit voltages were measured.
+    pub(super) are_voltages_stated: bool,
+}
+
+impl Rows {
+    pub(super) fn of(tables: &[Characteristic]) -> Result<Self, Error> {
+        let mut rows = Self { are_voltages_stated: true, ..Self::default() };
+        for table in tables {
+            match table {
+                Characteristic::OpenCircuit(table) => {
+                    let factor = table.across.unwrap_or(Across::Lines).to_lines();
+                    rows.open.extend(table.rows.iter().map(|row| OpenCircuitRow { voltage: factor * row.voltage, ..*row }));
+                    rows.are_voltages_stated &= table.across.is_some();
+                }
+                Characteristic::ShortCircuit(table) => rows.shorted.extend(&table.rows),
+                Characteristic::TorqueOfCurrent(table) => rows.torque.extend(&table.rows),
+                Characteristic::DirectCurrent(table) => {
+                    let of_phase = |row: &DirectCurrentRow| DirectCurrentRow { voltage: row.voltage / table.across.phases(), ..*row };
+                    rows.direct.extend(table.rows.iter().map(of_phase));
+                }
+                Characteristic::DutyCycle(table) => rows.duty.extend(&table.rows),
+            }
+        }
+        // Neighbours in speed or current err alike, whatever their order in the file; those of duty cycles are neighbours in time.
+        rows.open.sort_by(|one, other| one.speed.abs().total_cmp(&other.speed.abs()));
+        rows.shorted.sort_by(|one, other| one.speed.abs().total_cmp(&other.speed.abs()));
+        rows.torque.sort_by(|one, other| one.current.q.total_cmp(&other.current.q));
+        rows.direct.sort_by(|one, other| one.current.total_cmp(&other.current));
+        let counts = [
+            (rows.open.len(), LEAST),
+            (rows.shorted.len(), LEAST_SHORTED),
+            (rows.torque.len(), LEAST),
+            (rows.direct.len(), LEAST),
+            (rows.duty.len(), LEAST_DUTY),
+        ];
+        for (count, least) in counts {
+            if (1..least).contains(&count) {
+                return Err(ErrorKind::ShortCharacteristic { rows: count, least }.into());
+            }
+        }
+        let has_scale =
+            rows.has_torque() || ![rows.open.len(), rows.torque.len(), rows.direct.len(), rows.duty.len()].iter().all(|n| *n == 0);
+        if has_scale { Ok(rows) } else { Err(ErrorKind::NoScale.into()) }
+    }
+
+    /// Open-circuit voltages times a factor.
+    pub(super) fn with_voltages(&self, factor: f64) -> Self {
+        let mut rows = self.clone();
+        rows.open.iter_mut().for_each(|row| row.voltage *= factor);
+        rows
+    }
+
+    /// Whether a short circuit has its torque.
+    pub(super) fn has_torque(&self) -> bool {
+        self.shorted.iter().any(|row| row.torque.is_some())
+    }
+
+    /// Whether a torque tells the flux, or the resistance that of a short circuit, whatever the open-circuit voltages are.
+    pub(super) fn tells_flux(&self) -> bool {
+        self.has_torque() || !self.torque.is_empty() || !(self.direct.is_empty() || self.shorted.is_empty())
+    }
+
+    fn has_current_of_duty(&self) -> bool {
+        self.duty.iter().any(|row| row.current.is_some_and(|current| current != 0.0))
+    }
+
+    pub(super) fn has(&self, instrument: Instrument) -> bool {
+        match instrument {
+            Instrument::Voltage => !(self.open.is_empty() && self.direct.is_empty() && self.duty.is_empty()),
+            Instrument::Current => {
+                !(self.shorted.is_empty() && self.torque.is_empty() && self.direct.is_empty()) || self.has_current_of_duty()
+            }
+            Instrument::Torque => self.has_torque() || !self.torque.is_empty(),
+        }
+    }
+
+    /// The same as an instrument would have read it that reads 1 % too much.
+    pub(super) fn read_too_large(&self, instrument: Instrument) -> Self {
+        const TOO_LARGE: f64 = 1.01;
+        let mut rows = self.clone();
+        match instrument {
+            Instrument::Voltage => {
+                rows.open.iter_mut().for_each(|row| row.voltage *= TOO_LARGE);
+                rows.direct.iter_mut().for_each(|row| row.voltage *= TOO_LARGE);
+                rows.duty.iter_mut().for_each(|row| row.input_voltage *= TOO_LARGE);
+            }
+            Instrument::Current => {
+                rows.shorted.iter_mut().for_each(|row| row.current *= TOO_LARGE);
+                rows.direct.iter_mut().for_each(|row| row.current *= TOO_LARGE);
+                rows.duty.iter_mut().for_each(|row| row.current = row.current.map(|current| TOO_LARGE * current));
+                for current in rows.torque.iter_mut().map(|row| &mut row.current) {
+                    (current.d, current.q) = (TOO_LARGE * current.d, TOO_LARGE * current.q);
+                }
+            }
+            Instrument::Torque => {
+                rows.shorted.iter_mut().for_each(|row| row.torque = row.torque.map(|torque| TOO_LARGE * torque));
+                rows.torque.iter_mut().for_each(|row| row.torque *= TOO_LARGE);
+            }
+        }
+        rows
+    }
+
+    /// Which numbers of the motor some table depends on.
+    pub(super) fn free(&self) -> [bool; PARAMETERS] {
+        let (shorted, duty) = (!self.shorted.is_empty(), self.has_current_of_duty());
+        let flux = shorted || !(self.open.is_empty() && self.torque.is_empty() && self.duty.is_empty());
+        [shorted || duty || !self.direct.is_empty(), shorted, shorted || duty, flux]
+    }
+
+    /// What is fitted beside the motor.
+    pub(super) fn extras(&self, with_drag: bool) -> Vec<Extra> {
+        let is_salient = self.torque.iter().any(|row| row.current.d != 0.0);
+        let extras = [
+            (with_drag && self.has_torque(), Extra::Drag),
+            (with_drag && self.has_torque(), Extra::DragOfSpeed),
+            (!self.torque.is_empty(), Extra::TorqueOffset),
+            (is_salient, Extra::Saliency),
+            (!self.direct.is_empty(), Extra::Drop),
+            (!self.duty.is_empty(), Extra::Lost),
+        ];
+        extras.into_iter().filter(|(is_fitted, _)| *is_fitted).map(|(_, extra)| extra).collect()
+    }
+
+    /// The unit in which a residual's error is counted: one, or the largest value of its table.
+    pub(super) fn unit(&self, residual: Residual) -> f64 {
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |largest: f64, value| value.abs().max(largest));
+        match residual {
+            Residual::OpenVoltage | Residual::ShortCurrent => 1.0,
+            Residual::ShortTorque => largest(&mut self.shorted.iter().filter_map(|row| row.torque)),
+            Residual::Torque => largest(&mut self.torque.iter().map(|row| row.torque)),
+            Residual::DirectVoltage => largest(&mut self.direct.iter().map(|row| row.voltage)),
+            Residual::DutyVoltage => largest(&mut self.duty.iter().map(DutyCycleRow::voltage)),
+        }
+    }
+
+    pub(super) fn largest_speed(&self) -> f64 {
+        self.shorted.iter().fold(0.0, |largest, row| row.speed.abs().max(largest))
+    }
+
+    /// The largest product of the currents of a torque, A².
+    pub(super) fn largest_product(&self) -> f64 {
+        self.torque.iter().fold(0.0, |largest, row| (row.current.d * row.current.q).abs().max(largest))
+    }
+}
