@@ -462,7 +462,7 @@ impl ScoreTest {
         for starts in starts.chunks(SIDE_BY_SIDE) {
             let drives: Vec<(Adjustable, Vec<Unknown>)> =
                 starts.iter().map(|(place, start)| (*start, Unknown::of_fault(faults[*place]).collect())).collect();
-            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.from_start(search, start));
+            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.beside(search, start));
             starts.iter().zip(expected).for_each(|((place, start), expected)| each[*place].push((expected, *start)));
         }
         let best_first = |mut each: Vec<(FromStart, Adjustable)>| {
@@ -474,8 +474,8 @@ impl ScoreTest {
         each.into_iter().map(best_first).collect()
     }
 
-    /// The same from one start.
-    fn from_start(&self, search: &FaultSearch, start: &Linearized) -> FromStart {
+    /// The same of one start.
+    fn beside(&self, search: &FaultSearch, start: &Linearized) -> FromStart {
         let cost = dot(&start.residuals, &start.residuals);
         if cost.is_nan() || cost > TOO_FAR * search.cost {
             return FromStart::NOTHING;

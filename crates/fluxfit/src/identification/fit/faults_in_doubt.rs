@@ -9,14 +9,18 @@
 //! doi:10.1214/ss/1009212519.
 
 use super::fault_search::{FaultOutcome, FaultTrial};
-use crate::motor::PARAMETERS;
+use crate::{faults::Fault, motor::PARAMETERS};
 use std::collections::BTreeMap;
 
 /// How far each parameter could be moved by them, SI, as a standard deviation.
 pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
     let mut families: BTreeMap<&str, [f64; PARAMETERS]> = BTreeMap::new();
-    // What fits without a physical meaning says nothing of where the parameters are.
-    for trial in trials.iter().filter(|trial| [FaultOutcome::NotNeeded, FaultOutcome::NoMatter].contains(&trial.outcome)) {
+    // What fits without a physical meaning says nothing of where the parameters are, and inductances beside saturation are those at no
+    // current: other numbers.
+    let counts = |trial: &&FaultTrial| {
+        [FaultOutcome::NotNeeded, FaultOutcome::NoMatter].contains(&trial.outcome) && trial.fault != Fault::Saturation
+    };
+    for trial in trials.iter().filter(counts) {
         let probability = 1.0 / (1.0 + (-0.5 * trial.gain).exp());
         let family = families.entry(trial.fault.family()).or_default();
         *family = std::array::from_fn(|p| family[p].max(probability * trial.moves[p].powi(2)));
@@ -27,7 +31,6 @@ pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::faults::Fault;
 
     /// Without evidence for or against it a fault is there with a probability of one half; 2 ln 3 more make it three to one.
     #[test]
@@ -41,6 +44,7 @@ mod tests {
             trial(Fault::ResistanceDrift, f64::NEG_INFINITY, FaultOutcome::NotNeeded, 1.0),
             trial(Fault::ResistanceDrift, 100.0, FaultOutcome::NotPhysical, 1.0),
             trial(Fault::ResistanceDrift, 100.0, FaultOutcome::Taken, 1.0),
+            trial(Fault::Saturation, 100.0, FaultOutcome::NotNeeded, 1.0),
         ];
         assert_eq!(doubt(&no_evidence), [0.0; PARAMETERS]);
         // Both filters say the same.

@@ -8,9 +8,10 @@
 //!
 //! Where the voltage between the rows is not in the log, as of means, it is as wrong as the residuals show, and what the currents answer to
 //! it comes out too small however many rows there are, as of any regressor with errors (W. A. Fuller, Measurement Error Models, 1987,
-//! section 1.1): there residuals do not average out.
+//! section 1.1): there residuals do not average out. An axis whose current was held at zero has only the controller's answers to noise and
+//! to steps of the other axis; where rows come slower than the drive controls, those are between the rows, and its inductance is open.
 
-use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit};
+use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, voltage_loss::is_control_rate};
 use crate::{
     error::Error,
     identification::{
@@ -44,9 +45,18 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let faults: Vec<Unknown> = fit.fault_estimates.iter().map(|estimate| estimate.unknown).collect();
     let unknowns: Vec<Unknown> = faults.iter().copied().chain(free.iter().map(|p| MOTOR[*p])).collect();
     let mut drive = fit.drive;
+    let logged = log.columns();
+    let slow_and_held = |current: &[f64]| !is_control_rate(log) && root_mean_square(current) < HELD * objective.peak_current();
+    let mut held = None;
     match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
-        [true, false] => drive.motor.ld = drive.motor.lq,
-        [false, true] => drive.motor.lq = drive.motor.ld,
+        [true, false] => {
+            drive.motor.ld = drive.motor.lq;
+            held = Some(Parameter::Ld).filter(|_| slow_and_held(&logged.id));
+        }
+        [false, true] => {
+            drive.motor.lq = drive.motor.ld;
+            held = Some(Parameter::Lq).filter(|_| slow_and_held(&logged.iq));
+        }
         _ => {}
     }
     let mut columns = without_first(jacobian(&objective, &drive, &unknowns), faults.len());
@@ -73,12 +83,19 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
             free.iter().zip(&direction).for_each(|(p, component)| part[*p] += component * component);
         }
     }
-    Ok(part.map(|part: f64| part.sqrt() > OPEN_PART))
+    Ok(Parameter::ALL.map(|parameter| held == Some(parameter) || part[parameter as usize].sqrt() > OPEN_PART))
 }
 
 /// How far a parameter reaches that is open: what the voltage allows, SI.
 pub(crate) fn reach(log: &Log, fit: &OutputFit, request: &Request) -> [f64; PARAMETERS] {
     Excitation::of(&stretches::as_points(log, &fit.stretches), &request.known).scale
+}
+
+/// A current is held at zero if its root mean square is below this part of the largest current: noise and short transients.
+const HELD: f64 = 0.05;
+
+fn root_mean_square(current: &[f64]) -> f64 {
+    (current.iter().map(|i| i * i).sum::<f64>() / current.len() as f64).sqrt()
 }
 
 /// A prior counts as so many times the least signal.

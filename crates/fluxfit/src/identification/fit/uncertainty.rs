@@ -117,6 +117,13 @@ impl ParameterUncertainty {
         Self { statistical, systematic, degrees_of_freedom, half_width: quantile(degrees_of_freedom) * standard_error }
     }
 
+    /// Half the width if no fault were [in doubt](super::faults_in_doubt).
+    pub(crate) fn half_width_without_doubt(&self) -> f64 {
+        let standard_error = |systematic: &Systematic| self.statistical.hypot(systematic.total());
+        let without = standard_error(&Systematic { faults_in_doubt: 0.0, ..self.systematic });
+        if without > 0.0 { self.half_width * without / standard_error(&self.systematic) } else { without }
+    }
+
     /// The same with so much misfit that the interval is at least as wide as this to either side, SI.
     pub(crate) fn with_min_half_width(self, half_width: f64) -> Self {
         let Self { statistical, mut systematic, degrees_of_freedom, .. } = self;

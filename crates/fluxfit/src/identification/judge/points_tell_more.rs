@@ -52,12 +52,12 @@ pub(crate) fn points_tell_more(
     !is_explained && can_contradict && width(&points.finding, request) < width(&currents.finding, request)
 }
 
-/// Sum of the logarithms of the intervals' half-widths as parts of the values. What is wider than its value, or not positive, is not told:
+/// Sum of the logarithms of the intervals' half-widths as parts of the values, faults in doubt not counted: the points know of none. What is wider than its value, or not positive, is not told:
 /// one.
 fn width(finding: &Finding, request: &Request) -> f64 {
     let judged = judge(finding, None, request, false);
     let told = judged.iter().filter(|one| !matches!(request.known[one.parameter as usize], Known::Fixed(_)));
-    let widths = told.map(|one| if one.raw > 0.0 { (one.uncertainty.half_width / one.raw).min(1.0) } else { 1.0 });
+    let widths = told.map(|one| if one.raw > 0.0 { (one.uncertainty.half_width_without_doubt() / one.raw).min(1.0) } else { 1.0 });
     // A width of zero would outweigh all others.
     widths.map(|width| width.max(f64::EPSILON).ln()).sum()
 }
