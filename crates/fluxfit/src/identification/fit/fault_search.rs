@@ -357,6 +357,10 @@ const KINDS: Rules = Rules { stepped: 6, fitted: 3, hopeless: HOPELESS };
 /// Of all kinds and readings where an observer would stay: what it hides may be one of them, and its numbers far from those found here.
 const WITHOUT_OBSERVER: Rules = Rules { stepped: 30, fitted: 12, hopeless: HOPELESS };
 
+/// A parameter that a fault moves by so many times its value has run away, as where columns are exchanged or turned over: no fault of a
+/// drive hides a parameter to that degree.
+const RUNS_AWAY: f64 = 100.0;
+
 /// Starts of faults whose derivatives are computed side by side: they fill the lanes of both cores, and their residuals the memory.
 const SIDE_BY_SIDE: usize = 8;
 
@@ -509,9 +513,12 @@ impl ScoreTest {
         });
         // An observer need not be physical yet: it makes residuals white while faults are looked for.
         let is_physical = fault == Fault::Disturbance || fault.is_physical(&drive.faults, &drive.motor, self.peak);
+        let runs_away = Parameter::ALL
+            .into_iter()
+            .any(|parameter| moves[parameter as usize].abs() > RUNS_AWAY * search.drive.motor.get(parameter).abs());
         let outcome = if gain <= VERY_STRONG {
             FaultOutcome::NotNeeded
-        } else if !is_physical {
+        } else if !is_physical || runs_away {
             FaultOutcome::NotPhysical
         } else if !is_moved && cost > (1.0 - NOTICEABLE) * search.cost {
             FaultOutcome::NoMatter

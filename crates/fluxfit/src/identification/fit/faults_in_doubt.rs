@@ -1,8 +1,8 @@
 //! What faults of the drive that may be there, but were not taken, could do to the parameters.
 //!
-//! The answer is that of the drive without them. Each of them has a probability by Schwarz's criterion, `1 / (1 + exp(-gain / 2))`, with
-//! which the parameters are those beside it, so that their mean square distance from the answer grows by that part of the square of the
-//! move. Of faults that explain the same, the one that matters most counts.
+//! The answer is that of the drive without them. One for which there is evidence has a probability by Schwarz's criterion,
+//! `1 / (1 + exp(-gain / 2))`, with which the parameters are those beside it, so that their mean square distance from the answer grows by
+//! that part of the square of the move. Of faults that explain the same, the one that matters most counts.
 //!
 //! R. E. Kass and A. E. Raftery, "Bayes factors", Journal of the American Statistical Association 90 (1995) 773,
 //! doi:10.1080/01621459.1995.10476572; J. A. Hoeting et al., "Bayesian model averaging: a tutorial", Statistical Science 14 (1999) 382,
@@ -12,13 +12,17 @@ use super::fault_search::{FaultOutcome, FaultTrial};
 use crate::{faults::Fault, motor::PARAMETERS};
 use std::collections::BTreeMap;
 
+/// The gain from which evidence is positive: below, it is not worth more than a bare mention (Kass and Raftery, section 3.2).
+const POSITIVE: f64 = 2.0;
+
 /// How far each parameter could be moved by them, SI, as a standard deviation.
 pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
     let mut families: BTreeMap<&str, [f64; PARAMETERS]> = BTreeMap::new();
     // What fits without a physical meaning says nothing of where the parameters are, and inductances beside saturation are those at no
     // current: other numbers.
     let counts = |trial: &&FaultTrial| {
-        [FaultOutcome::NotNeeded, FaultOutcome::NoMatter].contains(&trial.outcome) && trial.fault != Fault::Saturation
+        let may_be_there = [FaultOutcome::NotNeeded, FaultOutcome::NoMatter].contains(&trial.outcome);
+        may_be_there && trial.gain > POSITIVE && trial.fault != Fault::Saturation
     };
     for trial in trials.iter().filter(counts) {
         let probability = 1.0 / (1.0 + (-0.5 * trial.gain).exp());
@@ -32,23 +36,25 @@ pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
 mod tests {
     use super::*;
 
-    /// Without evidence for or against it a fault is there with a probability of one half; 2 ln 3 more make it three to one.
+    /// A gain of 2 ln 3 makes a fault three times as likely as not.
     #[test]
     fn a_fault_counts_by_its_probability() {
+        let gain = 2.0 * 3.0_f64.ln();
         let trial = |fault, gain, outcome, move_of_rs| FaultTrial { fault, gain, outcome, moves: [move_of_rs, 0.0, 0.0, 0.0] };
-        let even = trial(Fault::AngleDelay, 0.0, FaultOutcome::NotNeeded, 2.0);
-        assert_eq!(doubt(std::slice::from_ref(&even)), [2.0_f64.sqrt(), 0.0, 0.0, 0.0]);
-        let likely = trial(Fault::ResistanceDrift, 2.0 * 3.0_f64.ln(), FaultOutcome::NoMatter, -4.0);
-        assert!((doubt(&[even.clone(), likely])[0] - (2.0_f64 + 12.0).sqrt()).abs() < 1e-12);
-        let no_evidence = [
+        let angle = trial(Fault::AngleDelay, gain, FaultOutcome::NotNeeded, 2.0);
+        assert!((doubt(std::slice::from_ref(&angle))[0] - 3.0_f64.sqrt()).abs() < 1e-12);
+        let drift = trial(Fault::ResistanceDrift, gain, FaultOutcome::NoMatter, -4.0);
+        assert!((doubt(&[angle.clone(), drift])[0] - (3.0_f64 + 12.0).sqrt()).abs() < 1e-12);
+        let nothing = [
             trial(Fault::ResistanceDrift, f64::NEG_INFINITY, FaultOutcome::NotNeeded, 1.0),
+            trial(Fault::ResistanceDrift, 1.9, FaultOutcome::NotNeeded, 1.0),
             trial(Fault::ResistanceDrift, 100.0, FaultOutcome::NotPhysical, 1.0),
             trial(Fault::ResistanceDrift, 100.0, FaultOutcome::Taken, 1.0),
             trial(Fault::Saturation, 100.0, FaultOutcome::NotNeeded, 1.0),
         ];
-        assert_eq!(doubt(&no_evidence), [0.0; PARAMETERS]);
+        assert_eq!(doubt(&nothing), [0.0; PARAMETERS]);
         // Both filters say the same.
-        let filters = [Fault::CurrentFilter, Fault::DqCurrentFilter].map(|filter| trial(filter, 0.0, FaultOutcome::NotNeeded, 2.0));
-        assert_eq!(doubt(&filters), doubt(&[even]));
+        let filters = [Fault::CurrentFilter, Fault::DqCurrentFilter].map(|filter| trial(filter, gain, FaultOutcome::NotNeeded, 2.0));
+        assert_eq!(doubt(&filters), doubt(&[angle]));
     }
 }
