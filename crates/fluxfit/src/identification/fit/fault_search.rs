@@ -86,7 +86,7 @@ impl FaultOutcome {
     }
 }
 
-/// Least part of the residual's power that a fault must explain to be taken when no parameter moves.
+/// Least part of the residual's power that a fault must explain to be taken when no parameter moves, or beside rough saturation.
 const NOTICEABLE: f64 = 0.02;
 
 /// A fault is not fitted where the score test expects less than this part of what would matter: it is not more wrong than that.
@@ -192,6 +192,11 @@ impl FaultSearch<'_> {
             self.choose_reading();
         }
         Vec::new()
+    }
+
+    /// Whether saturation and an observer are there: saturation's terms are a few of a curve's, and what they leave passes for other faults.
+    fn is_rough(&self) -> bool {
+        self.is_disturbed() && self.unknowns.iter().any(|unknown| unknown.fault() == Some(Fault::Saturation))
     }
 
     /// Whether there is an observer.
@@ -494,7 +499,8 @@ impl ScoreTest {
         FromStart {
             gain: schwarz(search.cost, search.cost - explained.min(search.cost), start.slopes.len(), self.independent),
             moves: Parameter::ALL.map(|parameter| place(parameter).map_or(0.0, |k| shifts[k])),
-            matters: Parameter::ALL.into_iter().filter_map(place).any(is_moved) || explained > LEAST_EXPECTED * NOTICEABLE * search.cost,
+            matters: Parameter::ALL.into_iter().filter_map(place).any(is_moved) && !search.is_rough()
+                || explained > LEAST_EXPECTED * NOTICEABLE * search.cost,
         }
     }
 
@@ -520,7 +526,7 @@ impl ScoreTest {
             FaultOutcome::NotNeeded
         } else if !is_physical || runs_away {
             FaultOutcome::NotPhysical
-        } else if !is_moved && cost > (1.0 - NOTICEABLE) * search.cost {
+        } else if (!is_moved || search.is_rough()) && cost > (1.0 - NOTICEABLE) * search.cost {
             FaultOutcome::NoMatter
         } else {
             FaultOutcome::Taken

@@ -1,6 +1,6 @@
 //! What faults of the drive that may be there, but were not taken, could do to the parameters.
 //!
-//! The answer is that of the drive without them. One for which there is evidence has a probability by Schwarz's criterion,
+//! The answer is that of the drive without them. One for which there is strong evidence has a probability by Schwarz's criterion,
 //! `1 / (1 + exp(-gain / 2))`, with which the parameters are those beside it, so that their mean square distance from the answer grows by
 //! that part of the square of the move. Of faults that explain the same, the one that matters most counts.
 //!
@@ -12,8 +12,8 @@ use super::fault_search::{FaultOutcome, FaultTrial};
 use crate::{faults::Fault, motor::PARAMETERS};
 use std::collections::BTreeMap;
 
-/// The gain from which evidence is positive: below, it is not worth more than a bare mention (Kass and Raftery, section 3.2).
-const POSITIVE: f64 = 2.0;
+/// The gain from which evidence is strong (Kass and Raftery, section 3.2): what is very strong was taken.
+const STRONG: f64 = 6.0;
 
 /// How far each parameter could be moved by them, SI, as a standard deviation.
 pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
@@ -22,7 +22,7 @@ pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
     // current: other numbers.
     let counts = |trial: &&FaultTrial| {
         let may_be_there = [FaultOutcome::NotNeeded, FaultOutcome::NoMatter].contains(&trial.outcome);
-        may_be_there && trial.gain > POSITIVE && trial.fault != Fault::Saturation
+        may_be_there && trial.gain > STRONG && trial.fault != Fault::Saturation
     };
     for trial in trials.iter().filter(counts) {
         let probability = 1.0 / (1.0 + (-0.5 * trial.gain).exp());
@@ -36,18 +36,18 @@ pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
 mod tests {
     use super::*;
 
-    /// A gain of 2 ln 3 makes a fault three times as likely as not.
+    /// A gain of 2 ln 24 makes a fault 24 times as likely as not.
     #[test]
     fn a_fault_counts_by_its_probability() {
-        let gain = 2.0 * 3.0_f64.ln();
+        let gain = 2.0 * 24.0_f64.ln();
         let trial = |fault, gain, outcome, move_of_rs| FaultTrial { fault, gain, outcome, moves: [move_of_rs, 0.0, 0.0, 0.0] };
         let angle = trial(Fault::AngleDelay, gain, FaultOutcome::NotNeeded, 2.0);
-        assert!((doubt(std::slice::from_ref(&angle))[0] - 3.0_f64.sqrt()).abs() < 1e-12);
+        assert!((doubt(std::slice::from_ref(&angle))[0] - (0.96_f64 * 4.0).sqrt()).abs() < 1e-12);
         let drift = trial(Fault::ResistanceDrift, gain, FaultOutcome::NoMatter, -4.0);
-        assert!((doubt(&[angle.clone(), drift])[0] - (3.0_f64 + 12.0).sqrt()).abs() < 1e-12);
+        assert!((doubt(&[angle.clone(), drift])[0] - (0.96_f64 * 20.0).sqrt()).abs() < 1e-12);
         let nothing = [
             trial(Fault::ResistanceDrift, f64::NEG_INFINITY, FaultOutcome::NotNeeded, 1.0),
-            trial(Fault::ResistanceDrift, 1.9, FaultOutcome::NotNeeded, 1.0),
+            trial(Fault::ResistanceDrift, 5.9, FaultOutcome::NotNeeded, 1.0),
             trial(Fault::ResistanceDrift, 100.0, FaultOutcome::NotPhysical, 1.0),
             trial(Fault::ResistanceDrift, 100.0, FaultOutcome::Taken, 1.0),
             trial(Fault::Saturation, 100.0, FaultOutcome::NotNeeded, 1.0),
