@@ -194,7 +194,8 @@ impl FaultSearch<'_> {
         Vec::new()
     }
 
-    /// Whether saturation and an observer are there: saturation's terms are a few of a curve's, and what they leave passes for other faults.
+    /// Whether saturation and an observer are there: saturation's terms are a few of a curve's, and what they leave passes for other
+    /// faults.
     fn is_rough(&self) -> bool {
         self.is_disturbed() && self.unknowns.iter().any(|unknown| unknown.fault() == Some(Fault::Saturation))
     }

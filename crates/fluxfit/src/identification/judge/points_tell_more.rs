@@ -52,7 +52,8 @@ pub(crate) fn points_tell_more(
     !is_explained && can_contradict && width(&points.finding, request) < width(&currents.finding, request)
 }
 
-/// Sum of the logarithms of the intervals' half-widths as parts of the values, faults in doubt not counted: the points know of none. What is wider than its value, or not positive, is not told:
+/// Sum of the logarithms of the intervals' half-widths as parts of the values, faults in doubt not counted: the points know of none.
+/// What is wider than its value, or not positive, is not told:
 /// one.
 fn width(finding: &Finding, request: &Request) -> f64 {
     let judged = judge(finding, None, request, false);
