@@ -120,7 +120,8 @@ impl Drawn {
         simulate(&self.scenario, self.index, || ())
     }
 
-    fn found(self) -> Found {
+    /// What is found in it.
+    pub fn found(self) -> Found {
         let none = Parameter::ALL.map(Number::none);
         let (numbers, refusal) = self.numbers().map_or_else(|error| (none, Some(error)), |numbers| (numbers, None));
         Found { drawn: self, numbers, refusal }

@@ -472,7 +472,7 @@ impl ScoreTest {
         for starts in starts.chunks(SIDE_BY_SIDE) {
             let drives: Vec<(Adjustable, Vec<Unknown>)> =
                 starts.iter().map(|(place, start)| (*start, Unknown::of_fault(faults[*place]).collect())).collect();
-            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.beside(search, start));
+            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.expected_from(search, start));
             starts.iter().zip(expected).for_each(|((place, start), expected)| each[*place].push((expected, *start)));
         }
         let best_first = |mut each: Vec<(FromStart, Adjustable)>| {
@@ -485,7 +485,7 @@ impl ScoreTest {
     }
 
     /// The same of one start.
-    fn beside(&self, search: &FaultSearch, start: &Linearized) -> FromStart {
+    fn expected_from(&self, search: &FaultSearch, start: &Linearized) -> FromStart {
         let cost = dot(&start.residuals, &start.residuals);
         if cost.is_nan() || cost > TOO_FAR * search.cost {
             return FromStart::NOTHING;

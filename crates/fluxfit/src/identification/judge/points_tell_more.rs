@@ -53,8 +53,7 @@ pub(crate) fn points_tell_more(
 }
 
 /// Sum of the logarithms of the intervals' half-widths as parts of the values, faults in doubt not counted: the points know of none.
-/// What is wider than its value, or not positive, is not told:
-/// one.
+/// What is wider than its value, or not positive, is not told: one.
 fn width(finding: &Finding, request: &Request) -> f64 {
     let judged = judge(finding, None, request, false);
     let told = judged.iter().filter(|one| !matches!(request.known[one.parameter as usize], Known::Fixed(_)));
