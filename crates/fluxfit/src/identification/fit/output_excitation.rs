@@ -9,7 +9,8 @@
 //! Where the voltage between the rows is not in the log, as of means, it is as wrong as the residuals show, and what the currents answer to
 //! it comes out too small however many rows there are, as of any regressor with errors (W. A. Fuller, Measurement Error Models, 1987,
 //! section 1.1): there residuals do not average out. An axis whose current was held at zero has only the controller's answers to noise and
-//! to steps of the other axis; where rows come slower than the drive controls, those are between the rows, and its inductance is open.
+//! to steps of the other axis; where rows come slower than the drive controls, or are means, those are between the rows, and its
+//! inductance is open.
 
 use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, voltage_loss::is_control_rate};
 use crate::{
@@ -46,7 +47,9 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let unknowns: Vec<Unknown> = faults.iter().copied().chain(free.iter().map(|p| MOTOR[*p])).collect();
     let mut drive = fit.drive;
     let logged = log.columns();
-    let slow_and_held = |current: &[f64]| !is_control_rate(log) && root_mean_square(current) < HELD * objective.peak_current();
+    let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
+    let slow = averaged || !is_control_rate(log);
+    let slow_and_held = |current: &[f64]| slow && root_mean_square(current) < HELD * objective.peak_current();
     let mut held = None;
     match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
         [true, false] => {
@@ -63,11 +66,7 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     columns.iter_mut().zip(&free).for_each(|(column, p)| column.iter_mut().for_each(|slope| *slope *= scale[*p]));
 
     let count = fit.residuals.len() as f64;
-    let independent = if fit.voltage_timing.value == VoltageTiming::Averaged {
-        1.0
-    } else {
-        long_run::effective_sample_size(&fit.residuals).clamp(1.0, count)
-    };
+    let independent = if averaged { 1.0 } else { long_run::effective_sample_size(&fit.residuals).clamp(1.0, count) };
     let unexplained = (fit.cost / independent).sqrt().max(LEAST_RESIDUAL * objective.peak_current() * count.sqrt());
     let least = MIN_SIGNAL_TO_NOISE * unexplained;
     // A prior pins its parameter.
