@@ -32,6 +32,7 @@ use fluxfit_drive::{
 };
 use log_kind::LogKind;
 use rayon::prelude::*;
+use std::ops::Range;
 use tally::Number;
 
 /// Seed of everything that is drawn.
@@ -149,9 +150,9 @@ impl Drawn {
     }
 }
 
-/// Simulates and identifies logs number 0 to `count` on as many threads as there are, with the same result on any number.
-pub fn survey(count: u64, motors: &[Rated]) -> Vec<Found> {
-    let found: Vec<Option<Found>> = (0..count).into_par_iter().map(|index| Some(Drawn::new(index, motors)?.found())).collect();
+/// Simulates and identifies the logs with these numbers on as many threads as there are, with the same result on any number.
+pub fn survey(logs: Range<u64>, motors: &[Rated]) -> Vec<Found> {
+    let found: Vec<Option<Found>> = logs.into_par_iter().map(|index| Some(Drawn::new(index, motors)?.found())).collect();
     found.into_iter().flatten().collect()
 }
 

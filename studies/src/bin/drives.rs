@@ -1,7 +1,8 @@
 //! Logs as drives make them, identified, and how many of the numbers are wrong, as tables.
 //!
-//! `drives [LOGS] [--motors MOTORS.csv]` draws logs over motors, faults, courses and kinds of logs; 200 logs and a dozen motors of our
-//! own unless told otherwise. `drives --show N [--motors MOTORS.csv]` writes log number N as CSV, and its scenario to standard error.
+//! `drives [LOGS | FIRST..END] [--motors MOTORS.csv]` draws logs over motors, faults, courses and kinds of logs; the first 200 and a dozen
+//! motors of our own unless told otherwise. `drives --show N [--motors MOTORS.csv]` writes log number N as CSV, and its scenario to
+//! standard error.
 // Tables on standard output are what this program is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -10,7 +11,7 @@ use fluxfit_studies::{
     drives::{Drawn, survey, table::tables},
     rated::{Rated, read, typical},
 };
-use std::{error::Error, path::Path};
+use std::{error::Error, ops::Range, path::Path};
 
 /// Logs unless told otherwise: a few minutes.
 const LOGS: u64 = 200;
@@ -23,10 +24,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         all => (all, typical()),
     };
     match words {
-        [] => print(LOGS, &motors),
+        [] => print(0..LOGS, &motors),
         ["--show", index] => show(number(index)?, &motors)?,
-        [logs] => print(number(logs)?, &motors),
-        _ => return Err("give a number of logs: drives [LOGS] [--motors MOTORS.csv], or drives --show N [--motors MOTORS.csv]".into()),
+        [logs] => print(range(logs)?, &motors),
+        _ => {
+            return Err(
+                "give a number of logs: drives [LOGS | FIRST..END] [--motors MOTORS.csv], or drives --show N [--motors MOTORS.csv]".into(),
+            );
+        }
     }
     Ok(())
 }
@@ -35,8 +40,16 @@ fn number(word: &str) -> Result<u64, String> {
     word.parse().map_err(|_| format!("{word} is not a number of logs; give a whole number"))
 }
 
-fn print(logs: u64, motors: &[Rated]) {
-    println!("{logs} logs of {} motors", motors.len());
+/// So many logs from the first one on, or those from one number to before another.
+fn range(word: &str) -> Result<Range<u64>, String> {
+    match word.split_once("..") {
+        Some((first, end)) => Ok(number(first)?..number(end)?),
+        None => Ok(0..number(word)?),
+    }
+}
+
+fn print(logs: Range<u64>, motors: &[Rated]) {
+    println!("logs {} to before {} of {} motors", logs.start, logs.end, motors.len());
     print!("{}", tables(&survey(logs, motors)));
 }
 
