@@ -33,6 +33,8 @@ pub enum Problem {
     NotANumber { text: String },
     #[error("this is not {format}: {message}; correct it")]
     Syntax { format: &'static str, message: String },
+    #[error("this is not {document}; {remedy}")]
+    Document { document: &'static str, remedy: &'static str },
     #[error("this key is not known; {table} can hold {}{}", list(.known), did_you_mean(*.nearest))]
     Key { table: String, known: Vec<&'static str>, nearest: Option<&'static str> },
     #[error("this key is outside of its table; put it below a line [{table}]")]
@@ -55,9 +57,12 @@ impl Problem {
     fn kind(&self) -> FileErrorKind {
         match self {
             Self::Directory | Self::NotFound | Self::NotPermitted | Self::Io { .. } | Self::NoDirectory { .. } => FileErrorKind::Access,
-            Self::NotText { .. } | Self::Empty | Self::Syntax { .. } | Self::NoHeader | Self::NumbersForHeader { .. } => {
-                FileErrorKind::Format
-            }
+            Self::NotText { .. }
+            | Self::Empty
+            | Self::Syntax { .. }
+            | Self::Document { .. }
+            | Self::NoHeader
+            | Self::NumbersForHeader { .. } => FileErrorKind::Format,
             Self::OneColumn { .. } | Self::RowLength { .. } => FileErrorKind::Format,
             Self::NotANumber { .. } | Self::Value { .. } | Self::Word { .. } | Self::Range { .. } => FileErrorKind::Value,
             Self::Key { .. } | Self::OutsideTable { .. } | Self::OtherTable { .. } | Self::InsideTable | Self::MissingKey { .. } => {

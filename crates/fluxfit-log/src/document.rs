@@ -4,7 +4,7 @@
 //! `schema`). Fields are added, never renamed.
 
 use crate::reading::{InspectedColumn, Inspection};
-use fluxfit::{ColumnFinding, check_columns, log::Log};
+use fluxfit::{ColumnFinding, SampleFinding, check_columns, check_samples, log::Log};
 use serde::Serialize;
 
 /// The name of this document.
@@ -31,7 +31,7 @@ pub struct InspectionDocument {
     pub table: Option<&'static str>,
     /// What reading the log, or the table, inferred or repaired; one sentence each.
     pub notes: Vec<String>,
-    /// What the columns contradict each other in; empty if they agree, or if there is no log.
+    /// What the columns contradict each other in, and samples that are no measurements; empty if there is nothing of that, or no log.
     pub findings: Vec<FindingEntry>,
     /// Why the file cannot be read as a log, in one sentence; null if it can, or if it is a table of a test bench.
     pub error: Option<String>,
@@ -58,7 +58,7 @@ pub struct ColumnEntry {
     pub is_time: bool,
 }
 
-/// Something that the columns contradict each other in.
+/// Something that the columns contradict each other in, or samples that are no measurements.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -111,10 +111,15 @@ impl InspectionDocument {
             log: read.ok().map(|read| InspectedLogEntry::of(&read.log)),
             table: inspection.table.as_ref().map(|read| read.table.label()),
             notes: notes.iter().map(|note| note.sentence.clone()).collect(),
-            findings: read.map_or(Vec::new(), |read| check_columns(&read.log).iter().map(FindingEntry::of).collect()),
+            findings: read.map_or(Vec::new(), |read| findings(&read.log)),
             error: read.err().filter(|_| inspection.table.is_none()).map(ToString::to_string),
         }
     }
+}
+
+fn findings(log: &Log) -> Vec<FindingEntry> {
+    let (columns, samples) = (check_columns(log), check_samples(log));
+    columns.iter().map(FindingEntry::of).chain(samples.iter().map(FindingEntry::of_samples)).collect()
 }
 
 impl ColumnEntry {
@@ -133,6 +138,10 @@ impl ColumnEntry {
 
 impl FindingEntry {
     fn of(finding: &ColumnFinding) -> Self {
+        Self { code: finding.code(), message: finding.to_string() }
+    }
+
+    fn of_samples(finding: &SampleFinding) -> Self {
         Self { code: finding.code(), message: finding.to_string() }
     }
 }

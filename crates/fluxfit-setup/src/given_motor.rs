@@ -148,7 +148,7 @@ mod tests {
                 "m, key 'schema': the schema is \"fluxfit.study/1\", which contains no motor; give a motor file, the JSON of an identification or a truth file",
             ),
             ("{}".to_owned(), "m: the key rs is missing; write it in ohm"),
-            ("{".to_owned(), "m, line 1: this is not JSON: EOF while parsing an object; correct it"),
+            ("{".to_owned(), "m, line 1: this is not JSON: it ends before its last bracket or quotation mark; correct it"),
             (String::new(), "m: the file is empty; export it again"),
         ];
         for (text, sentence) in cases {

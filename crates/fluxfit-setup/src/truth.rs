@@ -10,7 +10,7 @@ use fluxfit::{
     document::{TRUTH, TruthDocument},
     motor::{Motor, PARAMETERS, Parameter},
 };
-use fluxfit_files::{FileError, Problem as FileProblem, input};
+use fluxfit_files::{FileError, Problem as FileProblem, input, json_fault};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -112,11 +112,9 @@ fn pole_pairs(holder: &Value) -> Result<Option<u32>, FileError> {
     found.map(Some).ok_or_else(refusal)
 }
 
-/// The message without its place, which the error states in front of it.
+/// What is wrong with a text that is no JSON, and where.
 pub(crate) fn syntax(error: &serde_json::Error) -> FileError {
-    let message = error.to_string();
-    let message = message.split_once(" at line ").map_or(message.as_str(), |(message, _)| message).to_owned();
-    FileError::from(FileProblem::Syntax { format: "JSON", message }).at_line(error.line() as u64)
+    FileError::from(FileProblem::Syntax { format: "JSON", message: json_fault(error) }).at_line(error.line() as u64)
 }
 
 #[cfg(test)]
@@ -142,7 +140,7 @@ mod tests {
     #[test]
     fn errors_are_one_sentence() {
         let cases = [
-            ("{\n\"rs\": }", "a.json, line 2: this is not JSON: expected value; correct it"),
+            ("{\n\"rs\": }", "a.json, line 2: this is not JSON: it breaks off at character 7 of this line; correct it"),
             ("[]", "a.json: this is not an object with the keys rs, ld, lq and psi_f; correct it"),
             ("{\"truth\": 3}", "a.json: this is not an object with the keys rs, ld, lq and psi_f; correct it"),
             (r#"{"rs": 1, "ld": 1, "psi_f": 1}"#, "a.json: the key lq is missing; write it in H"),

@@ -90,10 +90,13 @@ fn a_saved_state_goes_on_to_the_same_bits() {
     let second = fluxfit_with_input(&["track", "-", "--resume", &state, "--json"], part(&lines[4001..]).as_bytes());
     let whole = fluxfit(&["track", NOISY, "--json"]);
     assert_eq!(second.out.lines().last(), whole.out.lines().last());
-    fs::write(&state, "{}").unwrap();
-    let refused = fluxfit(&["track", NOISY, "--resume", &state]);
-    assert_eq!(refused.status, 2);
-    assert!(refused.err.contains("this is not a state that fluxfit track has saved"), "{}", refused.err);
+    for text in ["{}", "t,ud,uq\n", r#"{"schema": "fluxfit.track-state/0", "tracker": {}}"#] {
+        fs::write(&state, text).unwrap();
+        let refused = fluxfit(&["track", NOISY, "--resume", &state]);
+        let sentence =
+            "this is not a state that this version of fluxfit track has saved; save one with: fluxfit track LOG --save-state state.json";
+        assert!(refused.status == 2 && unwrapped(&refused.err).contains(sentence), "{}", refused.err);
+    }
 }
 
 #[test]
@@ -306,7 +309,10 @@ fn known_faults_are_undone_and_others_named() {
     assert!(unwrapped(&turned.err).contains("--faults: what a stream is not freed of: speed_lag"), "{}", turned.err);
     let phase = with(r#"{"dead_time_voltage": {"value": 3}, "dead_time_phase": {"value": 0.1}}"#);
     assert!(phase.status == 2 && unwrapped(&phase.err).contains("found without an electrical angle"), "{}", phase.err);
-    fs::write(&answer, r#"{"schema": "fluxfit.track/1"}"#).unwrap();
-    let other = fluxfit(&["track", NOISY, "--faults", answer.to_str().unwrap()]);
-    assert!(other.status == 2 && other.err.contains("its schema is"), "{}", other.err);
+    for text in [r#"{"schema": "fluxfit.track/1"}"#, "t,ud,uq\n", "{\"schema\": ", "[1]", ""] {
+        fs::write(&answer, text).unwrap();
+        let other = fluxfit(&["track", NOISY, "--faults", answer.to_str().unwrap()]);
+        let sentence = "this is not an answer of fluxfit identify; make one with: fluxfit identify LOG --json > answer.json";
+        assert!(other.status == 2 && unwrapped(&other.err).contains(sentence), "{text}: {}", other.err);
+    }
 }

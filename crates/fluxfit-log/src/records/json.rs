@@ -11,7 +11,7 @@ use crate::{
     instant::Instants,
     problem::Problem,
 };
-use fluxfit_files::{FileError, Problem as FileProblem, csv::record::number, input::io_problem};
+use fluxfit_files::{FileError, Problem as FileProblem, csv::record::number, input::io_problem, json_fault};
 use serde_json::{Map, Value};
 use std::{
     collections::HashMap,
@@ -186,8 +186,7 @@ fn flat(record: &Map<String, Value>) -> Vec<(String, &Value)> {
 }
 
 fn parse(bytes: &[u8]) -> Result<Map<String, Value>, FileError> {
-    let refuse =
-        |error: &serde_json::Error| Problem::Json { reason: error.to_string().split(" at line ").next().unwrap_or_default().to_owned() };
+    let refuse = |error: &serde_json::Error| Problem::Json { reason: json_fault(error) };
     serde_json::from_slice(bytes).or_else(|error| match without_nan(bytes) {
         Some(bytes) => serde_json::from_slice(&bytes).map_err(|error| refuse(&error).into()),
         None => Err(refuse(&error).into()),

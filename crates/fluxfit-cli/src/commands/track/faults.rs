@@ -7,15 +7,20 @@ use fluxfit_track::DriveFaults;
 use serde_json::Value;
 use std::path::Path;
 
+const ANSWER: &str = "an answer of fluxfit identify";
+const MAKE_ANSWER: &str = "make one with: fluxfit identify LOG --json > answer.json";
+
+const WITH_ANGLE: &str = "an answer whose dead time can be carried to another log: it was found without an electrical angle";
+const LOG_ANGLE: &str = "identify a log with theta_e";
+
 /// Reads them from the JSON of an identification. Those that a stream cannot be freed of are named.
 pub(super) fn read(path: &Path) -> Result<DriveFaults, CommandError> {
     let bytes = input::read(path)?;
-    let refuse =
-        |message: String| FileError::from(Problem::Syntax { format: "the JSON of fluxfit identify", message }).in_file(&input::name(path));
-    let document: Value = serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
-    if document["schema"] != IDENTIFICATION {
-        return Err(refuse(format!("its schema is {}", document["schema"])).into());
-    }
+    let refuse = |problem: Problem| FileError::from(problem).in_file(&input::name(path));
+    let document: Option<Value> = serde_json::from_slice(&bytes).ok();
+    let Some(document) = document.filter(|document| document["schema"] == IDENTIFICATION) else {
+        return Err(refuse(Problem::Document { document: ANSWER, remedy: MAKE_ANSWER }).into());
+    };
     let mut faults = DriveFaults::default();
     let mut left = Vec::new();
     for (key, entry) in document["nuisance"].as_object().into_iter().flatten().filter(|(key, _)| *key != "voltage_timing") {
@@ -25,8 +30,7 @@ pub(super) fn read(path: &Path) -> Result<DriveFaults, CommandError> {
         }
     }
     if left.contains(&"dead_time_phase") {
-        let message = "its dead time was found without an electrical angle, and cannot be carried to another log";
-        return Err(refuse(message.to_owned()).into());
+        return Err(refuse(Problem::Document { document: WITH_ANGLE, remedy: LOG_ANGLE }).into());
     }
     if !left.is_empty() {
         terminal::note(&format!("--faults: what a stream is not freed of: {}", left.join(", ")));

@@ -9,6 +9,9 @@ use std::path::Path;
 /// Name and version of the file.
 const STATE: &str = "fluxfit.track-state/1";
 
+const SAVED: &str = "a state that this version of fluxfit track has saved";
+const SAVE: &str = "save one with: fluxfit track LOG --save-state state.json";
+
 #[derive(Deserialize)]
 struct State {
     schema: String,
@@ -24,14 +27,9 @@ struct StateOf<'a> {
 /// Reads a state.
 pub(super) fn read(path: &Path) -> Result<Tracker, CommandError> {
     let bytes = input::read(path)?;
-    let refuse = |reason: String| {
-        FileError::from(Problem::Syntax { format: "a state that fluxfit track has saved", message: reason }).in_file(&input::name(path))
-    };
-    let state: State = serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
-    if state.schema != STATE {
-        return Err(refuse(format!("its schema is {:?}", state.schema)).into());
-    }
-    Ok(state.tracker)
+    let state: Option<State> = serde_json::from_slice(&bytes).ok();
+    let refusal = || FileError::from(Problem::Document { document: SAVED, remedy: SAVE }).in_file(&input::name(path));
+    Ok(state.filter(|state| state.schema == STATE).ok_or_else(refusal)?.tracker)
 }
 
 /// Writes a state, whole or not at all.
