@@ -203,18 +203,24 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
             }
             continue;
         };
-        let mut is_over = false;
+        let (mut is_over, mut is_empty) = (false, true);
         let read = read_groups(path, by, &mut |Group { key, rows }| {
+            is_empty = false;
             let rows = if key.is_some() { rows.map(Source::Group).map_err(CommandError::from) } else { Err(nameless(&source, by)) };
             let passed = pass(key.unwrap_or_default(), rows);
             is_over |= passed.is_break();
             passed
         });
-        // The motors before the place of the error are read; the rest of the file is a row of its own.
-        if let Err(error) = read
+        // The motors before the place of the error are read; the rest of the file is a row of its own. So is a file without rows: whoever
+        // counts the files of a fleet finds it.
+        let refusal = match read {
+            Err(error) => Some(error.into()),
+            Ok(()) => is_empty.then(|| rowless(&source)),
+        };
+        if let Some(refusal) = refusal
             && !is_over
         {
-            is_over = pass(source.clone(), Err(error.into())).is_break();
+            is_over = pass(source.clone(), Err(refusal)).is_break();
         }
         if is_over {
             return;
@@ -225,6 +231,11 @@ fn read(arguments: &Fleet, finished: &BTreeSet<String>, send: SyncSender<Waiting
 /// Why rows without a motor are not identified.
 pub(crate) fn nameless(source: &str, by: &str) -> CommandError {
     CommandError::Usage(format!("rows of {source} have no {by}; name their motor"))
+}
+
+/// Why a table without rows is no motor.
+fn rowless(source: &str) -> CommandError {
+    CommandError::Usage(format!("{source}: there is no row below the header; leave the file out, or export it with its rows"))
 }
 
 fn duplicate(motor: &str, by: Option<&str>) -> CommandError {

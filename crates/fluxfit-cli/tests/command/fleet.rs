@@ -89,11 +89,7 @@ fn what_fails_is_a_row_with_its_reason() {
     let run = fluxfit(&[&["fleet"], &files[..], &["--by", "motor_id", "-o", output.to_str().unwrap()]].concat());
     assert_eq!(run.status, 1, "{}", run.err);
     let text = fs::read_to_string(&output).unwrap();
-    let line = |motor: &str| {
-        let found: Vec<&str> = text.lines().filter(|line| line.starts_with(&format!("{motor},"))).collect();
-        assert_eq!(found.len(), 1, "{motor}: {text}");
-        found[0].to_owned()
-    };
+    let line = |motor: &str| row_of(&output, motor);
     for (motor, reason) in [
         ("standing", "omega_e is zero"),
         ("broken", "is not a number"),
@@ -109,6 +105,81 @@ fn what_fails_is_a_row_with_its_reason() {
         assert!(line(motor).contains(",identified,"), "{}", line(motor));
     }
     assert_eq!(text.lines().count(), 1 + 9);
+}
+
+/// The row of a motor in the results.
+fn row_of(output: &Path, motor: &str) -> String {
+    let text = fs::read_to_string(output).unwrap();
+    let found: Vec<&str> = text.lines().filter(|line| line.starts_with(&format!("{motor},"))).collect();
+    assert_eq!(found.len(), 1, "{motor}: {text}");
+    found[0].to_owned()
+}
+
+/// A log of one motor whose speed column is named `name` and has `speed` in every row, where the motor turns at 400 rad/s.
+fn log_with_speed(name: &str, speed: &str) -> String {
+    (HEADER.replace("omega_e", name) + &motor("m", 1.0)).replace(",400\n", &format!(",{speed}\n"))
+}
+
+/// 400 rad/s of a motor with four pole pairs: 400 / 4 * 60 / (2 pi) mechanical r/min.
+const RPM: &str = "954.9296585513721";
+
+#[test]
+fn files_in_different_units_are_read_each_in_its_own_and_an_unclear_unit_is_a_row() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = directory.path().join("results.csv");
+    let files = [
+        ("electrical.csv", log_with_speed("omega_e", "400")),
+        ("rpm.csv", log_with_speed("n [rpm]", RPM)),
+        ("unclear.csv", log_with_speed("speed", RPM)),
+        ("last.csv", log_with_speed("omega_e [rad/s]", "400")),
+    ];
+    let paths = files.each_ref().map(|(name, _)| directory.path().join(name).to_str().unwrap().to_owned());
+    for (path, (_, text)) in paths.iter().zip(&files) {
+        fs::write(path, text).unwrap();
+    }
+    let names = paths.each_ref().map(String::as_str);
+    let run = |more: &[&str]| fluxfit(&[&["fleet", "-o", output.to_str().unwrap()], more, &names].concat());
+    assert_eq!(run(&["--pole-pairs", "4"]).status, 1);
+    // The motor is the same in all files: psi_f is 0.1827 Wb, whatever its file's unit. Read as rad/s it would be 0.0765.
+    let psi_f = |name: &str| row_of(&output, name).split(',').nth(place(&output, "psi_f")).unwrap().parse::<f64>().unwrap();
+    for name in [names[0], names[1], names[3]] {
+        assert!((psi_f(name) / 0.1827 - 1.0).abs() < 1e-3, "{name}: {}", psi_f(name));
+    }
+    assert!(row_of(&output, names[2]).contains("nothing states the unit of this speed"), "{}", row_of(&output, names[2]));
+    // Without the pole pairs the unit of the shaft cannot be converted: that file's row says so, and the others stay.
+    assert_eq!(run(&[]).status, 1);
+    assert!(row_of(&output, names[1]).contains("takes the number of pole pairs"), "{}", row_of(&output, names[1]));
+    assert!((psi_f(names[0]) / 0.1827 - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_file_given_twice_is_one_row_that_says_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let (one, other) = (directory.path().join("one.csv"), directory.path().join("other.csv"));
+    for path in [&one, &other] {
+        fs::write(path, log_with_speed("omega_e", "400")).unwrap();
+    }
+    let output = directory.path().join("results.csv");
+    let [one, other] = [&one, &other].map(|path| path.to_str().unwrap());
+    assert_eq!(fluxfit(&["fleet", one, other, one, "-o", output.to_str().unwrap()]).status, 1);
+    assert!(row_of(&output, one).contains("is given twice"), "{}", row_of(&output, one));
+    assert!(row_of(&output, other).contains(",identified,"), "{}", row_of(&output, other));
+}
+
+#[test]
+fn a_table_without_rows_is_a_row_with_its_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+    let (empty, filled, output) = (at("empty.csv"), at("filled.csv"), at("results.csv"));
+    fs::write(&empty, HEADER).unwrap();
+    fs::write(&filled, table(2)).unwrap();
+    let run = |by: &[&str]| fluxfit(&[&["fleet", &empty, &filled, "-o", &output], by].concat());
+    for by in [&["--by", "motor_id"][..], &[]] {
+        assert_eq!(run(by).status, 1);
+        assert!(row_of(Path::new(&output), &empty).contains("there is no row below the header"), "{by:?}");
+    }
+    run(&["--by", "motor_id"]);
+    assert!(["m000", "m001"].iter().all(|motor| row_of(Path::new(&output), motor).contains(",identified,")));
 }
 
 #[test]
