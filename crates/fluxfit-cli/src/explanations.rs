@@ -50,12 +50,12 @@ fn paragraph(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::pages;
-    use fluxfit::{ColumnFinding, Warning};
+    use fluxfit::{ColumnFinding, SampleFinding, Warning};
 
     #[test]
     fn every_code_has_a_page_and_every_page_a_code() {
         let codes: Vec<&str> = pages().map(|(code, _)| code).collect();
-        assert_eq!(codes, [&ColumnFinding::CODES[..], &Warning::CODES].concat());
+        assert_eq!(codes, [&ColumnFinding::CODES[..], &SampleFinding::CODES, &Warning::CODES].concat());
         assert!(pages().all(|(_, text)| text.len() > 100 && text.contains("What to do:")));
     }
 }

@@ -38,6 +38,7 @@
 //! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is no error but a verdict |
 //! | [`characteristics`] | tables of tests on a bench instead of a log: open and shorted terminals |
 //! | [`check_columns`], [`ColumnFinding`] | what the columns contradict each other in, before anything is fitted |
+//! | [`check_samples`], [`SampleFinding`] | outliers and stale samples |
 //! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
@@ -69,6 +70,7 @@ pub mod objective;
 pub mod paper;
 mod parallel;
 mod quantization;
+pub mod sample_check;
 mod singular_values;
 pub mod steady;
 pub mod study;
@@ -98,6 +100,7 @@ pub use identification::{
 pub use log::{Columns, Log};
 pub use motor::{Motor, Parameter};
 pub use objective::acting_voltage::{VoltageFrame, VoltageTiming};
+pub use sample_check::{SampleFinding, check_samples};
 pub use steady::windows::TimeWindow;
 pub use validation::{
     given::Given,

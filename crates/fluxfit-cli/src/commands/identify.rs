@@ -110,7 +110,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         return Ok(status);
     }
     let input = input::read(&arguments.log)?;
-    accepted(arguments, &input)?.iter().for_each(terminal::warn_of_columns);
+    accepted(arguments, &input)?.iter().chain(&input.samples()).for_each(terminal::warn_of_columns);
     let request = request(arguments, &input)?;
     export::check_pole_pairs(&arguments.export, input.pole_pairs)?;
     let answer = identified(&input, &request, !arguments.log.json)?;

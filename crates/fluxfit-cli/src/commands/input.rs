@@ -5,7 +5,7 @@ use crate::{
     error::CommandError,
     terminal::{self, mending, told::Told},
 };
-use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, check_columns, log::Source, optimizer};
+use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, check_columns, check_samples, log::Source, optimizer};
 use fluxfit_files::FileError;
 use fluxfit_log::{LogOptions, MemoryTable, Note, ReadColumn, ReadLog, read_log, read_log_with_progress, read_mapping, read_table};
 use fluxfit_setup::{MotorFile, read_motor};
@@ -33,7 +33,7 @@ impl Input {
     /// What was read as what, and what was inferred: for a page that stands alone.
     pub(crate) fn said(&self) -> Vec<String> {
         let Source { columns, notes } = self.log.source();
-        columns.iter().chain(notes).cloned().collect()
+        columns.iter().chain(notes).cloned().chain(self.samples().into_iter().map(|finding| finding.sentence)).collect()
     }
 }
 
@@ -43,6 +43,13 @@ impl Input {
     pub(crate) fn findings(&self) -> Vec<Told> {
         let columns = self.columns.first().map_or(&[][..], Vec::as_slice);
         check_columns(&self.log).iter().map(|finding| mending::told(finding, columns, self.pole_pairs)).collect()
+    }
+}
+
+impl Input {
+    /// Outliers and stale samples.
+    pub(crate) fn samples(&self) -> Vec<Told> {
+        check_samples(&self.log).iter().map(Told::of_samples).collect()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::{
     terminal::{self, mending, told::Told},
 };
 use clap::Args;
-use fluxfit::check_columns;
+use fluxfit::{check_columns, check_samples};
 use fluxfit_files::{check_writable, write_atomically};
 use fluxfit_log::{Inspection, document::InspectionDocument, inspect};
 use std::{
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     if arguments.json {
         terminal::print(&json::text(&InspectionDocument::of(&inspection))?)?;
     } else if arguments.output.as_deref() != Some(Path::new("-")) {
-        display::show(&input::name(&arguments.log), &inspection, &findings(&inspection, options.pole_pairs))?;
+        display::show(&input::name(&arguments.log), &inspection, &findings(&inspection, options.pole_pairs), &samples(&inspection))?;
     }
     if let Some(path) = arguments.output.as_deref() {
         write_atomically(path, mapping_file(&inspection.mapping(&options)).as_bytes())?;
@@ -59,6 +59,12 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
 fn findings(inspection: &Inspection, pole_pairs: Option<u32>) -> Vec<Told> {
     let Ok(read) = &inspection.log else { return Vec::new() };
     check_columns(&read.log).iter().map(|finding| mending::told(finding, &read.columns, pole_pairs)).collect()
+}
+
+/// Outliers and stale samples.
+fn samples(inspection: &Inspection) -> Vec<Told> {
+    let Ok(read) = &inspection.log else { return Vec::new() };
+    check_samples(&read.log).iter().map(Told::of_samples).collect()
 }
 
 /// The proposed mapping file, with the command that takes it.

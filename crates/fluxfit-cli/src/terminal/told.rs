@@ -1,4 +1,6 @@
-//! A finding of the columns, ready to be shown.
+//! A finding of the columns or of their samples, ready to be shown.
+
+use fluxfit::SampleFinding;
 
 /// A finding with what mends it.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,4 +11,11 @@ pub(crate) struct Told {
     pub(crate) sentence: String,
     /// Lines to paste, below it.
     pub(crate) lines: String,
+}
+
+impl Told {
+    /// Samples that are no measurements: the sentence says what to do, and no option mends them.
+    pub(crate) fn of_samples(finding: &SampleFinding) -> Self {
+        Self { code: finding.code(), sentence: finding.to_string(), lines: String::new() }
+    }
 }

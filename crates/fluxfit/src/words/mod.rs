@@ -9,6 +9,7 @@ mod nameplate;
 mod names;
 mod reason;
 mod remedy;
+mod sample_check;
 mod spikes;
 mod summary;
 mod temperature;

@@ -12,18 +12,19 @@ const LISTED: usize = 60;
 const GAPS: usize = 3;
 
 /// Shows an inspection, what is wrong with it first; notes go to standard error.
-pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told]) -> std::io::Result<()> {
+pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told], samples: &[Told]) -> std::io::Result<()> {
     if let Some(read) = &inspection.table {
         return show_table(name, inspection, read);
     }
     let status = match (&inspection.log, findings.len()) {
         (Err(_), _) => format!("{BAD}Not a log yet: the reason is below.{BAD:#}\n"),
+        (Ok(_), 0) if !samples.is_empty() => format!("{BAD}Readable, but some samples are no measurements.{BAD:#}\n"),
         (Ok(_), 0) => format!("{GOOD}Readable, and the columns agree with each other.{GOOD:#}\n"),
         (Ok(_), 1) => format!("{BAD}Readable, but the columns contradict each other.{BAD:#}\n"),
         (Ok(_), many) => format!("{BAD}Readable, but the columns contradict each other in {many} ways.{BAD:#}\n"),
     };
     terminal::print(&status)?;
-    findings.iter().for_each(terminal::warn_of_columns);
+    findings.iter().chain(samples).for_each(terminal::warn_of_columns);
     let layout = inspection.layout.map_or("a layout that is not known".to_owned(), |layout| format!("layout: {}", layout.name));
     let mut text = terminal::wrapped("", &format!("{HEADING}{name}{HEADING:#}: {}; {layout}", inspection.kind)) + "\n";
     let log = inspection.log.as_ref().ok().map(|read| &read.log);
