@@ -2,14 +2,14 @@
 //!
 //! A drive that stands still repeats values too: a simulation without noise that has settled, a duty that is held, a locked rotor. There
 //! the column comes to rest in small steps, or is at rest in much of the log, or both voltages rest together. A stale sample interrupts
-//! a column that moves in nearly every row, and the next one is as far away as usual.
+//! a column that moves in nearly every row, and the next ones are as far away as usual.
 
 use super::{
     finding::{SampleFault, SampleFinding},
     rows::{live, median, runs, with_row_before},
 };
 use crate::log::Log;
-use std::ops::Range;
+use std::{collections::BTreeSet, ops::Range};
 
 /// A column moves if fewer than this share of its rows repeat the value before. Coarse digits repeat more.
 const SELDOM: f64 = 0.05;
@@ -62,9 +62,8 @@ fn of_column(log: &Log, name: &str) -> Vec<usize> {
         };
         moving.iter().any(moves)
     };
-    let is_stale =
-        |run: &Range<usize>| run.len() >= least && !is_limit(values[run.start]) && interrupts(values, run, step, log) && others_move(run);
-    runs(&repeated).filter(is_stale).flatten().collect()
+    let is_candidate = |run: &Range<usize>| run.len() >= least && !is_limit(values[run.start]) && others_move(run);
+    interruptions(values, runs(&repeated).filter(is_candidate), step, log).into_iter().flatten().collect()
 }
 
 /// A drive that is told a duty holds both its voltages whatever the currents do, so only the other voltage shows that one is stale.
@@ -91,23 +90,25 @@ fn whole_rows(log: &Log) -> Vec<usize> {
         return Vec::new();
     }
     let steps = currents.map(|values| median(fresh.iter().map(|row| (values[*row] - values[row - 1]).abs())));
-    let is_stale = |run: &Range<usize>| {
-        run.len() < LONGEST && currents.into_iter().zip(steps).any(|(values, step)| interrupts(values, run, step, log))
-    };
-    runs(&repeated).filter(is_stale).flatten().collect()
+    let short: Vec<Range<usize>> = runs(&repeated).filter(|run| run.len() < LONGEST).collect();
+    let of_current = |(values, step)| interruptions(values, short.iter().cloned(), step, log);
+    let stale: BTreeSet<usize> = currents.into_iter().zip(steps).flat_map(of_current).flatten().collect();
+    stale.into_iter().collect()
 }
 
-/// Whether repetitions interrupt a column that moves: it comes with a step, and goes with one that is as large as usual.
-fn interrupts(values: &[f64], run: &Range<usize>, step: f64, log: &Log) -> bool {
+/// The repetitions that interrupt a column that moves: each comes with a step, and they go with steps as large as usual. One step out may
+/// be small by chance, so their median counts.
+fn interruptions(values: &[f64], runs: impl Iterator<Item = Range<usize>>, step: f64, log: &Log) -> Vec<Range<usize>> {
     let segments = log.segments();
-    let Some(segment) = segments.get(segments.partition_point(|segment| segment.rows.end <= run.start)) else { return false };
+    let is_inside = |run: &Range<usize>| {
+        let segment = segments.get(segments.partition_point(|segment| segment.rows.end <= run.start));
+        segment.is_some_and(|segment| run.start >= segment.rows.start + 2 && run.end < segment.rows.end)
+    };
     // The first of the equal values is the row before the run.
-    let is_inside = run.start >= segment.rows.start + 2 && run.end < segment.rows.end;
-    is_inside && {
-        let (first, last) = (run.start - 1, run.end - 1);
-        let (come, go) = ((values[first] - values[first - 1]).abs(), (values[last + 1] - values[last]).abs());
-        step > 0.0 && come >= STEP_IN * step && go >= STEP_OUT * step
-    }
+    let comes = |run: &Range<usize>| step > 0.0 && (values[run.start - 1] - values[run.start - 2]).abs() >= STEP_IN * step;
+    let found: Vec<Range<usize>> = runs.filter(|run| is_inside(run) && comes(run)).collect();
+    let goes = median(found.iter().map(|run| (values[run.end] - values[run.end - 1]).abs()));
+    if goes >= STEP_OUT * step { found } else { Vec::new() }
 }
 
 fn median_step(values: &[f64], log: &Log) -> f64 {
