@@ -96,19 +96,19 @@ fn whole_rows(log: &Log) -> Vec<usize> {
     stale.into_iter().collect()
 }
 
-/// The repetitions that interrupt a column that moves: each comes with a step, and they go with steps as large as usual. One step out may
-/// be small by chance, so their median counts.
+/// The repetitions that interrupt a column that moves: they come with a step, and go with one that is as large as usual. A single step
+/// may be small by chance, so the median over all repetitions counts.
 fn interruptions(values: &[f64], runs: impl Iterator<Item = Range<usize>>, step: f64, log: &Log) -> Vec<Range<usize>> {
     let segments = log.segments();
     let is_inside = |run: &Range<usize>| {
         let segment = segments.get(segments.partition_point(|segment| segment.rows.end <= run.start));
         segment.is_some_and(|segment| run.start >= segment.rows.start + 2 && run.end < segment.rows.end)
     };
+    let found: Vec<Range<usize>> = runs.filter(is_inside).collect();
+    let median_step_at = |row: fn(&Range<usize>) -> usize| median(found.iter().map(|run| (values[row(run)] - values[row(run) - 1]).abs()));
     // The first of the equal values is the row before the run.
-    let comes = |run: &Range<usize>| step > 0.0 && (values[run.start - 1] - values[run.start - 2]).abs() >= STEP_IN * step;
-    let found: Vec<Range<usize>> = runs.filter(|run| is_inside(run) && comes(run)).collect();
-    let goes = median(found.iter().map(|run| (values[run.end] - values[run.end - 1]).abs()));
-    if goes >= STEP_OUT * step { found } else { Vec::new() }
+    let (come, go) = (median_step_at(|run| run.start - 1), median_step_at(|run| run.end));
+    if step > 0.0 && come >= STEP_IN * step && go >= STEP_OUT * step { found } else { Vec::new() }
 }
 
 fn median_step(values: &[f64], log: &Log) -> f64 {
