@@ -35,9 +35,6 @@ const NO_STEP_OF_CHOICE: f64 = 1e-7;
 /// The same for a fit that ends after its first step: any step is small beside it.
 const FIRST_STEP: f64 = 1.0;
 
-/// A fit whose cost falls by no more than this part has found its start to be the minimum, or was held back.
-const NO_GAIN: f64 = 1e-6;
-
 /// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
 const PATIENCE: usize = 4;
 
@@ -111,14 +108,11 @@ fn minimize(
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
     let mut problem = Problem { objective, start, unknowns, priors, scale, differences, simulations: 0, progress, here: None, best: None };
     problem.set_params(&units);
-    let before = problem.cost();
+    // Beside faults, steps are counted by usual sizes and not by the lengths of the columns: an unknown that does nothing here, as the
+    // width of a loss where another limit rules, could go as far as it likes, and when its steps fail, they would hold back all others.
+    let is_motor_alone = unknowns.iter().all(|unknown| matches!(unknown, Unknown::Motor(_)));
     let method = LevenbergMarquardt::new().with_ftol(no_step).with_xtol(no_step).with_patience(PATIENCE);
-    let (mut problem, mut report) = method.minimize(problem);
-    if problem.cost() >= (1.0 - NO_GAIN) * before {
-        // Steps are counted by the lengths of the columns: an unknown that does nothing here, as the width of a loss where another limit
-        // rules, may go as far as it likes, and when its steps fail, they hold back all others. By usual sizes it does not.
-        (problem, report) = method.with_scale_diag(false).minimize(problem);
-    }
+    let (problem, report) = method.with_scale_diag(is_motor_alone).minimize(problem);
     let (drive, cost) = problem.here.map_or((*start, f64::NAN), |here| (here.drive, here.cost));
     Polished { drive, cost, converged: report.termination.was_successful() }
 }
@@ -231,11 +225,6 @@ struct Point {
 }
 
 impl Problem<'_> {
-    /// Cost here, without priors, A².
-    fn cost(&self) -> f64 {
-        self.here.as_ref().map_or(f64::NAN, |here| here.cost)
-    }
-
     fn point(&self, units: &DVector<f64>) -> Point {
         let values = units.iter().zip(&self.scale).map(|(units, scale)| units * scale);
         let drive = self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value));
