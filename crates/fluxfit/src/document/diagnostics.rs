@@ -70,6 +70,8 @@ pub struct SystematicEntry {
     pub dead_time: Option<f64>,
     /// From a recorder's voltages that may turn with speed against its currents.
     pub frame_lag: Option<f64>,
+    /// From what goes on within rows that each span several of the drive's periods.
+    pub within_rows: Option<f64>,
     /// From unknown voltages that disturb the motor.
     pub process_noise: Option<f64>,
     /// From faults of the drive that the log neither proves nor rules out.
@@ -97,6 +99,7 @@ impl SystematicEntry {
             timing: finite(parts.timing),
             dead_time: finite(parts.dead_time),
             frame_lag: finite(parts.frame_lag),
+            within_rows: finite(parts.within_rows),
             process_noise: finite(parts.process_noise),
             faults_in_doubt: finite(parts.faults_in_doubt),
             sensors: finite(parts.sensors),

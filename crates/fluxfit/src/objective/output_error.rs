@@ -75,6 +75,22 @@ impl OutputError {
         Self { held: Box::new(held), ..self }
     }
 
+    /// The same rows, if what acts between two means is averaged twice: over a row's span, and from row to row.
+    pub(crate) fn averaging_twice(&self) -> Self {
+        self.altered(SimulatedSegment::spread)
+    }
+
+    /// The same rows, if the voltage of each period were so many times what it is, given how far the rotor turns in it, rad.
+    pub(crate) fn with_voltages_scaled(&self, factor: impl Fn(f64) -> f64) -> Self {
+        self.altered(|segment| segment.scale_voltages(&factor))
+    }
+
+    fn altered(&self, alter: impl Fn(&mut SimulatedSegment)) -> Self {
+        let mut segments = self.simulated.segments.clone();
+        segments.iter_mut().for_each(alter);
+        Self { simulated: Rows::of(segments, self.simulated.plan.held), ..self.clone() }
+    }
+
     /// Rows whose currents are compared.
     pub fn rows(&self) -> usize {
         self.rows

@@ -55,7 +55,13 @@ pub(super) struct SimulatedSegment {
     pub(super) alternates: bool,
     /// One over the DC voltage, 1/V.
     per_bus: f64,
+    /// The rotor at both ends of the [span](SPAN_OF_MEANS) around each period, where what acts is averaged over that; else empty.
+    spans: Vec<[Turn; 2]>,
 }
+
+/// Between rows that are means over their own spans, what acts is averaged twice: over a span, and from row to row. Its weight is a
+/// triangle over two periods, which has the second moment of a box that is so many periods long, the square root of two.
+const SPAN_OF_MEANS: f64 = std::f64::consts::SQRT_2;
 
 /// The part of the DC voltage that a drive takes at most, where that is not logged: some voltage is left for its current loop.
 const USED_PART: f64 = 0.8;
@@ -90,8 +96,22 @@ impl SimulatedSegment {
             per_bus: bus_voltage(log, &rows).recip(),
             alternates: timing == VoltageTiming::Centered,
             rows_of_periods: Vec::new(),
+            spans: Vec::new(),
             rows,
             periods,
+        }
+    }
+
+    /// Averages what acts in a period over a wider span.
+    pub(super) fn spread(&mut self) {
+        self.spans = self.periods.iter().map(span).collect();
+    }
+
+    /// Scales the voltage of each period by what becomes of its turn, rad.
+    pub(super) fn scale_voltages(&mut self, factor: impl Fn(f64) -> f64) {
+        for period in &mut self.periods {
+            let factor = factor(period.omega_e * period.length);
+            period.u = Dq { d: factor * period.u.d, q: factor * period.u.q };
         }
     }
 
@@ -125,4 +145,22 @@ impl SimulatedSegment {
             time,
         }
     }
+
+    /// The place of what acts in a period, and by which part of the period it reaches beyond it at either end.
+    #[inline(always)]
+    pub(super) fn acting(&self, row: usize, place: Place) -> (Place, f64) {
+        match self.spans.get(row) {
+            None => (place, 0.0),
+            Some([start, end]) => {
+                let length = SPAN_OF_MEANS * place.length;
+                (Place { start: *start, end: *end, length, ..place }, 0.5 * (SPAN_OF_MEANS - 1.0))
+            }
+        }
+    }
+}
+
+/// The rotor at both ends of the span around a period.
+fn span(period: &Period) -> [Turn; 2] {
+    let half = 0.5 * SPAN_OF_MEANS * period.omega_e * period.length;
+    [-half, half].map(|angle| Turn::by(period.theta_e + angle))
 }

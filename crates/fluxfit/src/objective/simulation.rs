@@ -345,9 +345,15 @@ impl<V: Number> FaultyBlock<'_, V> {
         let motors = self.motors;
         let linear_flux = [motors.ld.mul_add(start[0], motors.psi_f), motors.lq * start[1]];
         let commanded = self.faults.commanded_voltage(zero.constants(period.u), zero.constants(before), &place);
-        let mut u = self.faults.beside(commanded, start, linear_flux, &place);
+        let (acting, beyond) = segment.acting(row, place);
+        let mut u = self.faults.beside(commanded, start, linear_flux, &acting);
         if self.faults.kinds.loss.any() {
-            let lost = self.faults.lost(commanded, [start, transitions.after(start, u)], self.per_henry, &place);
+            let mut way = [start, transitions.after(start, u)];
+            if beyond > 0.0 {
+                let further = [0, 1].map(|axis| zero.constant(beyond) * (way[1][axis] - way[0][axis]));
+                way = [[way[0][0] - further[0], way[0][1] - further[1]], [way[1][0] + further[0], way[1][1] + further[1]]];
+            }
+            let lost = self.faults.lost(commanded, way, self.per_henry, &acting);
             u = [u[0] - lost[0], u[1] - lost[1]];
         }
         state.i = if self.faults.kinds.flux {

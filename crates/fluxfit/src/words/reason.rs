@@ -68,6 +68,9 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
             "between rows so far apart the angle, or the voltages' frame against that of the currents, may be off or late, which acts like \
              inductance and {leaves}"
         ),
+        Part::WithinRows => {
+            write!(f, "each row spans several of the drive's periods, and what the voltages do between them is not logged, which {leaves}")
+        }
         Part::ProcessNoise => {
             write!(f, "unknown voltages disturb the motor, and the answers with and without a model of them differ, which {leaves}")
         }

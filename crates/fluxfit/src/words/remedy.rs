@@ -39,6 +39,7 @@ impl Display for Remedy {
                 f,
                 "hold two clearly different loads at one high speed, or coast from there with a drive that measures its terminals"
             ),
+            Self::LogEachPeriod => write!(f, "log each control period of the drive, not every n-th one or means"),
             Self::RemoveDisturbances => write!(
                 f,
                 "log with the test bench at rest (no torque ripple, no supply ripple), or add stretches held still at two loads, two values \

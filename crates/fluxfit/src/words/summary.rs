@@ -71,6 +71,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),
         Remedy::CompensateDeadTime => "dead time compensated, or R_s given".to_owned(),
         Remedy::TellFrameLag => "two loads at one high speed".to_owned(),
+        Remedy::LogEachPeriod => "a log of each control period".to_owned(),
         Remedy::RemoveDisturbances => "a log without torque or supply ripple".to_owned(),
         Remedy::CalibrateSensors => "calibrated current sensors".to_owned(),
         Remedy::CalibrateBusVoltage => "a calibrated DC voltage".to_owned(),

@@ -53,6 +53,8 @@ pub enum Remedy {
     CompensateDeadTime,
     /// Log what tells a recorder's lag: different loads at one speed, or rows without current.
     TellFrameLag,
+    /// Log each of the drive's periods.
+    LogEachPeriod,
     /// Log without disturbances (torque ripple, supply ripple), or identify by the steady model from stretches of constant currents and
     /// speed that differ in load, i_d and speed.
     RemoveDisturbances,
@@ -133,6 +135,7 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, measure: impl F
         Part::Timing => Remedy::StateVoltageTiming,
         Part::DeadTime => measure().unwrap_or(Remedy::CompensateDeadTime),
         Part::FrameLag => Remedy::TellFrameLag,
+        Part::WithinRows => Remedy::LogEachPeriod,
         // What disturbs the motor would disturb it in a further stretch too.
         Part::ProcessNoise => Remedy::RemoveDisturbances,
         Part::Sensors | Part::CurrentGain => Remedy::CalibrateSensors,

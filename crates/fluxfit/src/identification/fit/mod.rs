@@ -29,3 +29,4 @@ pub(crate) mod uncertainty;
 mod undetected_loss;
 mod voltage_accuracy;
 pub(crate) mod voltage_loss;
+mod within_rows;

@@ -22,7 +22,7 @@ use super::{
     steady::SteadyFit,
     swarm::{self, Search},
     uncertainty::{Systematic, Uncertainty},
-    undetected_loss,
+    undetected_loss, within_rows,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -113,6 +113,7 @@ impl OutputFit {
         let is_noise = correlation_of_neighbours(&residuals, &objective.rows_per_segment()) <= CORRELATED;
         let shifts = OutputShifts {
             timing: readings::doubt(&readings, independent),
+            within_rows: within_rows::doubt(objective, reading, &drive, &unknowns, &priors),
             process_noise: other_kind_of_fit(objective, &drive, &unknowns, &priors, is_noise),
             faults_in_doubt: faults_in_doubt::doubt(&terms),
             sensors: sensors(&drive),

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     faults::{Fault, Faults, disturbance::Disturbance},
     frames::Dq,
-    levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_unknowns},
+    levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_to_choose},
     motor::{Motor, PARAMETERS},
     normal_matrix::NormalMatrix,
     objective::{
@@ -37,6 +37,7 @@ pub struct FaultEstimate {
 /// How far each parameter moves with what is not certain, SI.
 pub(super) struct OutputShifts {
     pub(super) timing: [f64; PARAMETERS],
+    pub(super) within_rows: [f64; PARAMETERS],
     pub(super) process_noise: [f64; PARAMETERS],
     pub(super) faults_in_doubt: [f64; PARAMETERS],
     pub(super) sensors: [f64; PARAMETERS],
@@ -62,7 +63,7 @@ pub(super) fn other_kind_of_fit(
         (false, true) => return [0.0; PARAMETERS],
     };
     let start = Adjustable { faults: Faults { disturbance: Disturbance { gain }, ..drive.faults }, ..*drive };
-    let other = polish_unknowns(objective, &start, &unknowns, priors).drive.motor.to_array();
+    let other = polish_to_choose(objective, &start, &unknowns, priors).drive.motor.to_array();
     std::array::from_fn(|p| (drive.motor.to_array()[p] - other[p]).abs())
 }
 
@@ -176,6 +177,7 @@ impl Errors {
                 accuracy: self.accuracy[(k, k)].max(0.0).sqrt(),
                 prior: self.priors.iter().map(|prior| prior[k].powi(2)).sum::<f64>().sqrt(),
                 timing: shifts.timing[p],
+                within_rows: shifts.within_rows[p],
                 process_noise: shifts.process_noise[p],
                 faults_in_doubt: shifts.faults_in_doubt[p],
                 sensors: shifts.sensors[p],

@@ -16,6 +16,8 @@ pub enum Part {
     DeadTime,
     /// A recorder's voltages that may turn with speed against its currents, or an angle that may be off and late where rows are far apart.
     FrameLag,
+    /// What goes on within rows that each span several of the drive's periods.
+    WithinRows,
     /// Unknown voltages that disturb the motor.
     ProcessNoise,
     /// Faults of the drive that the log neither proves nor rules out.
@@ -44,6 +46,7 @@ impl Part {
             Self::Timing => "timing",
             Self::DeadTime => "dead_time",
             Self::FrameLag => "frame_lag",
+            Self::WithinRows => "within_rows",
             Self::ProcessNoise => "process_noise",
             Self::FaultsInDoubt => "faults_in_doubt",
             Self::Sensors => "sensors",
@@ -64,6 +67,7 @@ impl Part {
             Self::Timing => "voltage timing",
             Self::DeadTime => "dead time",
             Self::FrameLag => "frame lag",
+            Self::WithinRows => "rows far apart",
             Self::ProcessNoise => "disturbances",
             Self::FaultsInDoubt => "faults in doubt",
             Self::Sensors => "current sensors",

@@ -41,6 +41,8 @@ pub struct Systematic {
     pub dead_time: f64,
     /// Of a recorder's voltages that may turn with speed against its currents.
     pub frame_lag: f64,
+    /// Of what goes on within rows that each span several of the drive's periods.
+    pub within_rows: f64,
     /// Of unknown voltages that disturb the motor.
     pub process_noise: f64,
     /// Of faults of the drive that the log neither proves nor rules out.
@@ -67,12 +69,13 @@ impl Systematic {
     }
 
     /// Every part, with its name.
-    pub fn parts(&self) -> [(f64, Part); 13] {
+    pub fn parts(&self) -> [(f64, Part); 14] {
         [
             (self.prior, Part::Prior),
             (self.timing, Part::Timing),
             (self.dead_time, Part::DeadTime),
             (self.frame_lag, Part::FrameLag),
+            (self.within_rows, Part::WithinRows),
             (self.process_noise, Part::ProcessNoise),
             (self.faults_in_doubt, Part::FaultsInDoubt),
             (self.sensors, Part::Sensors),
