@@ -2,7 +2,9 @@
 //! parsed and the logs read as the command does it, so that every face gives the same answers, to the bit, and the same sentences.
 
 use crate::{
-    commands::{compare, fleet, identify, identify::export, input, inspect, report, validate},
+    commands::{
+        compare, fleet, fleet::motors::Motors, fleet::work::Onlooker, identify, identify::export, input, inspect, report, validate,
+    },
     error::CommandError,
     explanations, json,
     terminal::{self, Detail, options},
@@ -15,7 +17,10 @@ use fluxfit_files::{FileErrorKind, write_atomically};
 use fluxfit_log::{MemoryTable, document::InspectionDocument, inspect as inspect_log, read_table};
 use fluxfit_report::{Report, html};
 use fluxfit_setup::{GivenMotor, ReadScenario, paper_scenario, read_given_motor, read_motor, read_scenario, truth_of};
+use serde_json::{Map, Value};
 use std::{ffi::OsString, ops::ControlFlow, path::Path, sync::Arc};
+
+pub use crate::commands::fleet::motors::HeldMotors;
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -245,20 +250,66 @@ pub fn comparison(words: &[OsString], table: Option<MemoryTable>, go_on: &(dyn F
     Ok(json::text(&StudyDocument::of(&comparison, &methods, !comparison.is_whole()))?)
 }
 
+/// The rows of a fleet, by motor and window.
+pub struct Fleet(Vec<Map<String, Value>>);
+
+impl Fleet {
+    /// The rows; each has a value for each of [`fleet_columns`].
+    pub fn rows(&self) -> &[Map<String, Value>] {
+        &self.0
+    }
+
+    /// How many motors have what, as the command says it.
+    pub fn count(&self) -> String {
+        fleet::Count::of(&self.0).to_string()
+    }
+
+    /// Writes the results as the command does: Parquet or CSV, by the ending of the name.
+    ///
+    /// # Errors
+    /// If the name has another ending, or the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Refusal> {
+        Ok(fleet::table::write(path, self.0.iter())?)
+    }
+}
+
+/// Identifies the motors that the words of `fluxfit fleet` name; those of a table in memory take their place. With `output`, the results
+/// are written as the command does it: killed and started again, it goes on. `go_on` is asked before each motor is read, and `told` after
+/// each how many are finished, and of how many if that is known. `None` if it was broken off.
+///
+/// # Errors
+/// As the command. What fails of a motor is a row with its reason.
+pub fn fleet(
+    words: &[OsString],
+    table: Option<&HeldMotors>,
+    output: Option<&Path>,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    told: &dyn Fn(usize, Option<usize>),
+) -> Result<Option<Fleet>, Refusal> {
+    if let Some(HeldMotors { table, runs, .. }) = table {
+        let (rows, named) = (table.rows()?, runs.iter().map(|(_, rows)| rows).sum::<usize>());
+        if rows != named {
+            return Err(misuse(format!(
+                "the table has {rows} rows, and the column that names their motors {named}; name the motor of each"
+            )));
+        }
+    }
+    Ok(fleet::rows(&parse(words)?, table, output, &Onlooker { go_on, told })?.map(Fleet))
+}
+
 /// The rows of a fleet for one motor, whose rows are a table in memory: a JSON list of objects with a value for each of [`fleet_columns`].
 /// What fails is a row with its reason; an error is what was asked.
 ///
 /// # Errors
-/// If the words are no verb `fleet`, or name what cannot be read.
+/// If the words are none of the verb `fleet`, or name what cannot be read.
 pub fn fleet_rows(words: &[OsString], motor: &str, source: &str, table: MemoryTable) -> Result<String, Refusal> {
-    let arguments: fleet::Fleet = parse(words)?;
+    let arguments: Motors = parse(words)?;
     let log = &arguments.identify.log;
-    let file = log.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
-    input::options(&log.columns, file.pole_pairs)?;
+    let file = arguments.check()?;
     let mut table = Some(table);
     let label = format!("motor {motor} of {source}");
     let read = match (&arguments.by, motor) {
-        (Some(by), "") => Err(fleet::nameless(source, by)),
+        (Some(by), "") => Err(fleet::work::nameless(source, by)),
         _ => input::read_each(log, file, |_, options| read_table(&label, table.take().unwrap_or_default(), options)),
     };
     Ok(json::text(&fleet::row::rows(motor, source, read, &arguments.identify, arguments.every))?)

@@ -58,6 +58,33 @@ pub struct MemoryTable<'a> {
     pub unreadable: Vec<String>,
 }
 
+impl MemoryTable<'_> {
+    /// The number of rows.
+    ///
+    /// # Errors
+    /// If the columns have different lengths.
+    pub fn rows(&self) -> Result<usize, FileError> {
+        let rows = self.columns.first().map_or(0, |column| column.rows);
+        if self.columns.iter().any(|column| column.rows != rows) {
+            let length = |column: &MemoryColumn| format!("'{}' has {} rows", shorten(&column.name), column.rows);
+            return Err(Problem::Lengths { lengths: self.columns.iter().map(length).collect() }.into());
+        }
+        Ok(rows)
+    }
+
+    /// Some consecutive rows as a table, whose values stay where they lie.
+    pub fn part(&self, rows: Range<usize>) -> MemoryTable<'_> {
+        let (start, rows) = (rows.start, rows.len());
+        let columns = self.columns.iter().map(|column| MemoryColumn {
+            name: column.name.clone(),
+            unit: column.unit,
+            rows,
+            read: Box::new(move |some, into| (column.read)(start + some.start..start + some.end, into)),
+        });
+        MemoryTable { columns: columns.collect(), unreadable: self.unreadable.clone() }
+    }
+}
+
 impl fmt::Debug for MemoryTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_list().entries(self.columns.iter().map(|column| (&column.name, column.rows))).finish()
@@ -73,11 +100,7 @@ pub(crate) struct Held<'a> {
 impl<'a> Held<'a> {
     /// Refuses columns of different lengths.
     pub(crate) fn of(table: MemoryTable<'a>) -> Result<Self, FileError> {
-        let rows = table.columns.first().map_or(0, |column| column.rows);
-        if table.columns.iter().any(|column| column.rows != rows) {
-            let length = |column: &MemoryColumn| format!("'{}' has {} rows", shorten(&column.name), column.rows);
-            return Err(Problem::Lengths { lengths: table.columns.iter().map(length).collect() }.into());
-        }
+        table.rows()?;
         let head = |column: &MemoryColumn| ColumnHead {
             name: column.name.clone(),
             unit: column.unit.map(str::to_owned),

@@ -6,6 +6,7 @@
 //! | `arrays` | numpy's arrays in and out |
 //! | `columns` | tables of Arrow and of arrays, as the reader takes them |
 //! | `error` | refusals as exceptions |
+//! | `fleet` | many motors |
 //! | `identification` | an identification and its answer |
 //! | `interruptible` | work beside Python, which Ctrl-C can leave |
 //! | `search` | optimizers: a function that is minimized, and ask and tell |
@@ -15,6 +16,7 @@
 mod arrays;
 mod columns;
 mod error;
+mod fleet;
 mod identification;
 mod interruptible;
 mod search;
@@ -26,8 +28,9 @@ mod wording;
 mod _fluxfit {
     #[pymodule_export]
     use crate::{
+        fleet::{FleetRows, fleet, fleet_columns, fleet_rows},
         identification::{Answer, identify, read_log},
         search::{AskTell, methods, minimize},
-        verbs::{command, compare, explain, fleet_columns, fleet_rows, inspect, simulate, validate, version},
+        verbs::{command, compare, explain, inspect, simulate, validate, version},
     };
 }

@@ -5,13 +5,14 @@
 >>> sorted(found.parameters)
 ['ld', 'lq', 'psi_f', 'rs']
 
-`identify` is the main function; `read_log`, `inspect`, `validate`, `compare`, `simulate` are the command's other verbs, `minimize` and
-`Search` its optimizers for any function. Every exception is an `Error`.
+`identify` is the main function, `fleet` the same for many motors; `read_log`, `inspect`, `validate`, `compare`, `simulate` are the
+command's other verbs, `minimize` and `Search` its optimizers for any function. Every exception is an `Error`.
 """
 
 from fluxfit import _fluxfit
 from fluxfit._api import Study, Validation, compare, explain, identify, inspect, read_log, simulate, validate
 from fluxfit._errors import DataError, Error, FileError, RequestError
+from fluxfit._fleet import Fleet, fleet
 from fluxfit._identification import Estimate, Identification
 from fluxfit._log import Log
 from fluxfit._optimize import Search, methods, minimize
@@ -23,6 +24,7 @@ __all__ = [
     "Error",
     "Estimate",
     "FileError",
+    "Fleet",
     "Identification",
     "Log",
     "RequestError",
@@ -31,6 +33,7 @@ __all__ = [
     "Validation",
     "compare",
     "explain",
+    "fleet",
     "identify",
     "inspect",
     "methods",
