@@ -3,14 +3,14 @@
 
 use crate::{
     commands::{
-        compare, fleet, fleet::motors::Motors, fleet::work::Onlooker, identify, identify::export, input, inspect, report, validate,
+        compare, fleet, fleet::motors::Motors, fleet::work::Onlooker, identify, identify::export, input, inspect, report, track, validate,
     },
     error::CommandError,
     explanations, json,
     terminal::{self, Detail, options},
 };
 use clap::{Args, Command, FromArgMatches};
-use fluxfit::{Answer, Log, Progress, Request, document::StudyDocument, document::ValidationDocument, identify_with_progress};
+use fluxfit::{Answer, Columns, Log, Progress, Request, document::StudyDocument, document::ValidationDocument, identify_with_progress};
 use fluxfit_answer::export::Target;
 use fluxfit_drive::{Recording, simulate};
 use fluxfit_files::{FileErrorKind, write_atomically};
@@ -323,6 +323,53 @@ pub fn fleet_columns() -> Vec<(&'static str, &'static str)> {
         fleet::row::Kind::Count => "count",
     };
     fleet::row::COLUMNS.iter().map(|(name, of)| (*name, kind(*of))).collect()
+}
+
+/// The parameters of a running motor, from rows as they arrive.
+pub struct Tracking(track::tracking::Tracking);
+
+impl Tracking {
+    /// A tracker as the words of `fluxfit track` ask for it. The log that they name is not read.
+    ///
+    /// # Errors
+    /// As the command.
+    pub fn begin(words: &[OsString]) -> Result<Self, Refusal> {
+        Ok(Self(track::begun(&parse(words)?)?.0))
+    }
+
+    /// Takes rows, and gives the documents that the command prints on the way, each of one line.
+    ///
+    /// # Errors
+    /// If the rows have no angle, and the faults of the drive need one.
+    pub fn take(&mut self, rows: &Columns) -> Result<Vec<String>, Refusal> {
+        let mut documents = Vec::new();
+        for row in (0..rows.t.len()).filter_map(|row| rows.row(row)) {
+            if self.0.take(&row)? {
+                documents.push(self.line(false)?);
+            }
+        }
+        Ok(documents)
+    }
+
+    /// The document of the state at the end.
+    ///
+    /// # Errors
+    /// None in practice: every state can be written.
+    pub fn end(&self) -> Result<String, Refusal> {
+        self.line(true)
+    }
+
+    /// Saves what is known, for `--resume`.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), Refusal> {
+        Ok(track::state::write(path, &self.0.tracker)?)
+    }
+
+    fn line(&self, last: bool) -> Result<String, Refusal> {
+        Ok(serde_json::to_string(&self.0.document(last)).map_err(std::io::Error::from)?)
+    }
 }
 
 /// The page of a code of a warning or finding.

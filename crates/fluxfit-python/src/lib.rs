@@ -10,6 +10,7 @@
 //! | `identification` | an identification and its answer |
 //! | `interruptible` | work beside Python, which Ctrl-C can leave |
 //! | `search` | optimizers: a function that is minimized, and ask and tell |
+//! | `track` | a running motor, followed by rows as they arrive |
 //! | `verbs` | the other verbs, and the whole command |
 //! | `wording` | the command's options in Python's words |
 
@@ -20,6 +21,7 @@ mod fleet;
 mod identification;
 mod interruptible;
 mod search;
+mod track;
 mod verbs;
 mod wording;
 
@@ -31,6 +33,7 @@ mod _fluxfit {
         fleet::{FleetRows, fleet, fleet_columns, fleet_rows},
         identification::{Answer, identify, read_log},
         search::{AskTell, methods, minimize},
+        track::Tracker,
         verbs::{command, compare, explain, inspect, simulate, validate, version},
     };
 }

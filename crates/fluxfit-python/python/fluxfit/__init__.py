@@ -5,8 +5,9 @@
 >>> sorted(found.parameters)
 ['ld', 'lq', 'psi_f', 'rs']
 
-`identify` is the main function, `fleet` the same for many motors; `read_log`, `inspect`, `validate`, `compare`, `simulate` are the
-command's other verbs, `minimize` and `Search` its optimizers for any function. Every exception is an `Error`.
+`identify` is the main function, `fleet` the same for many motors, `track` for a running one; `read_log`, `inspect`, `validate`,
+`compare`, `simulate` are the command's other verbs, `minimize` and `Search` its optimizers for any function. Every exception is an
+`Error`.
 """
 
 from fluxfit import _fluxfit
@@ -16,6 +17,7 @@ from fluxfit._fleet import Fleet, fleet
 from fluxfit._identification import Estimate, Identification
 from fluxfit._log import Log
 from fluxfit._optimize import Search, methods, minimize
+from fluxfit._track import Track, track
 
 __version__ = _fluxfit.version()
 
@@ -30,6 +32,7 @@ __all__ = [
     "RequestError",
     "Search",
     "Study",
+    "Track",
     "Validation",
     "compare",
     "explain",
@@ -40,5 +43,6 @@ __all__ = [
     "minimize",
     "read_log",
     "simulate",
+    "track",
     "validate",
 ]
