@@ -126,3 +126,27 @@ impl<'a> Held<'a> {
         if rows == 0 { Err(Problem::NoRows.into()) } else { Ok(()) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_has_its_rows_and_no_other() {
+        let values = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let column = |name: &str, values: &'static [f64]| MemoryColumn {
+            name: name.to_owned(),
+            unit: Some("s"),
+            rows: values.len(),
+            read: Box::new(|rows, into| into.extend_from_slice(&values[rows])),
+        };
+        let table = MemoryTable { columns: vec![column("t", &[0.0, 1.0, 2.0, 3.0, 4.0])], unreadable: vec!["motor".to_owned()] };
+        let part = table.part(1..4);
+        assert_eq!((part.rows().unwrap(), part.unreadable.as_slice()), (3, ["motor".to_owned()].as_slice()));
+        let mut read = Vec::new();
+        (part.part(1..3).columns[0].read)(0..2, &mut read);
+        assert_eq!(read, values[2..4]);
+        let uneven = MemoryTable { columns: vec![column("t", &[0.0]), column("iq", &[])], unreadable: Vec::new() };
+        assert!(uneven.rows().unwrap_err().to_string().contains("'t' has 1 rows and 'iq' has 0 rows"));
+    }
+}
