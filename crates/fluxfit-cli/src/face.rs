@@ -2,20 +2,25 @@
 //! parsed and the logs read as the command does it, so that every face gives the same answers, to the bit, and the same sentences.
 
 use crate::{
-    commands::{compare, fleet, identify, identify::export, input, inspect, report, validate},
+    commands::{
+        compare, fleet, fleet::motors::Motors, fleet::work::Onlooker, identify, identify::export, input, inspect, report, track, validate,
+    },
     error::CommandError,
     explanations, json,
     terminal::{self, Detail, options},
 };
 use clap::{Args, Command, FromArgMatches};
-use fluxfit::{Answer, Log, Progress, Request, document::StudyDocument, document::ValidationDocument, identify_with_progress};
+use fluxfit::{Answer, Columns, Log, Progress, Request, document::StudyDocument, document::ValidationDocument, identify_with_progress};
 use fluxfit_answer::export::Target;
 use fluxfit_drive::{Recording, simulate};
 use fluxfit_files::{FileErrorKind, write_atomically};
 use fluxfit_log::{MemoryTable, document::InspectionDocument, inspect as inspect_log, read_table};
 use fluxfit_report::{Report, html};
 use fluxfit_setup::{GivenMotor, ReadScenario, paper_scenario, read_given_motor, read_motor, read_scenario, truth_of};
+use serde_json::{Map, Value};
 use std::{ffi::OsString, ops::ControlFlow, path::Path, sync::Arc};
+
+pub use crate::commands::fleet::motors::HeldMotors;
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -245,20 +250,66 @@ pub fn comparison(words: &[OsString], table: Option<MemoryTable>, go_on: &(dyn F
     Ok(json::text(&StudyDocument::of(&comparison, &methods, !comparison.is_whole()))?)
 }
 
+/// The rows of a fleet, by motor and window.
+pub struct Fleet(Vec<Map<String, Value>>);
+
+impl Fleet {
+    /// The rows; each has a value for each of [`fleet_columns`].
+    pub fn rows(&self) -> &[Map<String, Value>] {
+        &self.0
+    }
+
+    /// How many motors have what, as the command says it.
+    pub fn count(&self) -> String {
+        fleet::Count::of(&self.0).to_string()
+    }
+
+    /// Writes the results as the command does: Parquet or CSV, by the ending of the name.
+    ///
+    /// # Errors
+    /// If the name has another ending, or the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Refusal> {
+        Ok(fleet::table::write(path, self.0.iter())?)
+    }
+}
+
+/// Identifies the motors that the words of `fluxfit fleet` name; those of a table in memory take their place. With `output`, the results
+/// are written as the command does it: killed and started again, it goes on. `go_on` is asked before each motor is read, and `told` after
+/// each how many are finished, and of how many if that is known. `None` if it was broken off.
+///
+/// # Errors
+/// As the command. What fails of a motor is a row with its reason.
+pub fn fleet(
+    words: &[OsString],
+    table: Option<&HeldMotors>,
+    output: Option<&Path>,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    told: &dyn Fn(usize, Option<usize>),
+) -> Result<Option<Fleet>, Refusal> {
+    if let Some(HeldMotors { table, runs, .. }) = table {
+        let (rows, named) = (table.rows()?, runs.iter().map(|(_, rows)| rows).sum::<usize>());
+        if rows != named {
+            return Err(misuse(format!(
+                "the table has {rows} rows, and the column that names their motors {named}; name the motor of each"
+            )));
+        }
+    }
+    Ok(fleet::rows(&parse(words)?, table, output, &Onlooker { go_on, told })?.map(Fleet))
+}
+
 /// The rows of a fleet for one motor, whose rows are a table in memory: a JSON list of objects with a value for each of [`fleet_columns`].
 /// What fails is a row with its reason; an error is what was asked.
 ///
 /// # Errors
-/// If the words are no verb `fleet`, or name what cannot be read.
+/// If the words are none of the verb `fleet`, or name what cannot be read.
 pub fn fleet_rows(words: &[OsString], motor: &str, source: &str, table: MemoryTable) -> Result<String, Refusal> {
-    let arguments: fleet::Fleet = parse(words)?;
+    let arguments: Motors = parse(words)?;
     let log = &arguments.identify.log;
-    let file = log.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
-    input::options(&log.columns, file.pole_pairs)?;
+    let file = arguments.check()?;
     let mut table = Some(table);
     let label = format!("motor {motor} of {source}");
     let read = match (&arguments.by, motor) {
-        (Some(by), "") => Err(fleet::nameless(source, by)),
+        (Some(by), "") => Err(fleet::work::nameless(source, by)),
         _ => input::read_each(log, file, |_, options| read_table(&label, table.take().unwrap_or_default(), options)),
     };
     Ok(json::text(&fleet::row::rows(motor, source, read, &arguments.identify, arguments.every))?)
@@ -272,6 +323,53 @@ pub fn fleet_columns() -> Vec<(&'static str, &'static str)> {
         fleet::row::Kind::Count => "count",
     };
     fleet::row::COLUMNS.iter().map(|(name, of)| (*name, kind(*of))).collect()
+}
+
+/// The parameters of a running motor, from rows as they arrive.
+pub struct Tracking(track::tracking::Tracking);
+
+impl Tracking {
+    /// A tracker as the words of `fluxfit track` ask for it. The log that they name is not read.
+    ///
+    /// # Errors
+    /// As the command.
+    pub fn begin(words: &[OsString]) -> Result<Self, Refusal> {
+        Ok(Self(track::begun(&parse(words)?)?.0))
+    }
+
+    /// Takes rows, and gives the documents that the command prints on the way, each of one line.
+    ///
+    /// # Errors
+    /// If the rows have no angle, and the faults of the drive need one.
+    pub fn take(&mut self, rows: &Columns) -> Result<Vec<String>, Refusal> {
+        let mut documents = Vec::new();
+        for row in (0..rows.t.len()).filter_map(|row| rows.row(row)) {
+            if self.0.take(&row)? {
+                documents.push(self.line(false)?);
+            }
+        }
+        Ok(documents)
+    }
+
+    /// The document of the state at the end.
+    ///
+    /// # Errors
+    /// None in practice: every state can be written.
+    pub fn end(&self) -> Result<String, Refusal> {
+        self.line(true)
+    }
+
+    /// Saves what is known, for `--resume`.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), Refusal> {
+        Ok(track::state::write(path, &self.0.tracker)?)
+    }
+
+    fn line(&self, last: bool) -> Result<String, Refusal> {
+        Ok(serde_json::to_string(&self.0.document(last)).map_err(std::io::Error::from)?)
+    }
 }
 
 /// The page of a code of a warning or finding.

@@ -4,12 +4,12 @@
 use crate::{
     container::{Binary, RandomAccess},
     memory_table::{MemoryColumn, MemoryTable},
+    problem::Problem,
 };
 use fluxfit_files::{
     FileError, FileErrorKind,
     input::{io_problem, name},
 };
-use fluxfit_units::wording::{list, shorten};
 use std::{
     fs::File,
     io::{BufRead, BufReader, Read, Seek},
@@ -83,10 +83,14 @@ pub fn read_groups(path: &Path, by: &str, take: &mut dyn FnMut(Group) -> Control
     read().map_err(|error: FileError| error.in_file(&name(path)))
 }
 
-fn no_column(by: &str, names: &[String]) -> FileError {
-    let shown: Vec<&str> = names.iter().map(String::as_str).take(20).collect();
-    let sentence = format!("there is no column '{}' that names the motors; the columns are {}", shorten(by), list(&shown));
-    FileError::new(FileErrorKind::Columns, sentence)
+/// The refusal of a table without a column `by` that names the motors.
+pub fn no_motors_column(by: &str, names: Vec<String>) -> FileError {
+    Problem::NoMotors { by: by.to_owned(), names }.into()
+}
+
+/// The refusal of a column `by` that names no motors.
+pub fn no_motor_names(by: &str) -> FileError {
+    FileError::from(Problem::MotorNames).in_column(by)
 }
 
 fn too_many(rows: u64) -> FileError {
@@ -95,9 +99,9 @@ fn too_many(rows: u64) -> FileError {
 }
 
 fn of_parquet(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>) -> Result<(), FileError> {
-    let Some(binary @ Binary::Parquet(_)) = Binary::open(RandomAccess::file(file)?)? else { return Err(no_column(by, &[])) };
-    let Binary::Parquet(parquet) = &binary else { return Err(no_column(by, &[])) };
-    let Some(runs) = parquet.runs(by)? else { return Err(no_column(by, &parquet.names())) };
+    let Some(binary @ Binary::Parquet(_)) = Binary::open(RandomAccess::file(file)?)? else { return Err(no_motors_column(by, Vec::new())) };
+    let Binary::Parquet(parquet) = &binary else { return Err(no_motors_column(by, Vec::new())) };
+    let Some(runs) = parquet.runs(by)? else { return Err(no_motors_column(by, parquet.names())) };
     let wanted: Vec<usize> = (0..binary.heads().len()).filter(|&index| binary.heads()[index].name != by).collect();
     let empty = || -> Vec<GroupColumn> {
         let heads = wanted.iter().map(|&index| &binary.heads()[index]);
@@ -142,13 +146,16 @@ fn of_text(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>)
     lines.read_until(b'\n', &mut header).map_err(failed)?;
     let text = String::from_utf8_lossy(&header);
     let text = text.trim_start_matches('\u{feff}').trim_end();
+    if text.is_empty() {
+        return Err(fluxfit_files::Problem::Empty.into());
+    }
     let found = SEPARATORS.iter().find_map(|separator| {
         let names: Vec<String> = cells(text, *separator).collect();
         names.iter().position(|name| name == by).map(|place| (*separator, place))
     });
     let Some((separator, place)) = found else {
         let separator = SEPARATORS.into_iter().max_by_key(|separator| text.matches(*separator).count()).unwrap_or(',');
-        return Err(no_column(by, &cells(text, separator).collect::<Vec<_>>()));
+        return Err(no_motors_column(by, cells(text, separator).collect()));
     };
     if !header.ends_with(b"\n") {
         header.push(b'\n');

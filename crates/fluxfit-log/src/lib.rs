@@ -51,7 +51,7 @@ mod records;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container};
-pub use groups::{Group, GroupColumn, GroupRows, read_groups};
+pub use groups::{Group, GroupColumn, GroupRows, no_motor_names, no_motors_column, read_groups};
 pub use memory_table::{MemoryColumn, MemoryTable, ReadRows};
 pub use note::Note;
 pub use reading::{

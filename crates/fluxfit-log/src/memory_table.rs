@@ -58,6 +58,33 @@ pub struct MemoryTable<'a> {
     pub unreadable: Vec<String>,
 }
 
+impl MemoryTable<'_> {
+    /// The number of rows.
+    ///
+    /// # Errors
+    /// If the columns have different lengths.
+    pub fn rows(&self) -> Result<usize, FileError> {
+        let rows = self.columns.first().map_or(0, |column| column.rows);
+        if self.columns.iter().any(|column| column.rows != rows) {
+            let length = |column: &MemoryColumn| format!("'{}' has {} rows", shorten(&column.name), column.rows);
+            return Err(Problem::Lengths { lengths: self.columns.iter().map(length).collect() }.into());
+        }
+        Ok(rows)
+    }
+
+    /// Some consecutive rows as a table, whose values stay where they lie.
+    pub fn part(&self, rows: Range<usize>) -> MemoryTable<'_> {
+        let (start, rows) = (rows.start, rows.len());
+        let columns = self.columns.iter().map(|column| MemoryColumn {
+            name: column.name.clone(),
+            unit: column.unit,
+            rows,
+            read: Box::new(move |some, into| (column.read)(start + some.start..start + some.end, into)),
+        });
+        MemoryTable { columns: columns.collect(), unreadable: self.unreadable.clone() }
+    }
+}
+
 impl fmt::Debug for MemoryTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_list().entries(self.columns.iter().map(|column| (&column.name, column.rows))).finish()
@@ -73,11 +100,7 @@ pub(crate) struct Held<'a> {
 impl<'a> Held<'a> {
     /// Refuses columns of different lengths.
     pub(crate) fn of(table: MemoryTable<'a>) -> Result<Self, FileError> {
-        let rows = table.columns.first().map_or(0, |column| column.rows);
-        if table.columns.iter().any(|column| column.rows != rows) {
-            let length = |column: &MemoryColumn| format!("'{}' has {} rows", shorten(&column.name), column.rows);
-            return Err(Problem::Lengths { lengths: table.columns.iter().map(length).collect() }.into());
-        }
+        table.rows()?;
         let head = |column: &MemoryColumn| ColumnHead {
             name: column.name.clone(),
             unit: column.unit.map(str::to_owned),
@@ -101,5 +124,29 @@ impl<'a> Held<'a> {
             take(&mut block)?;
         }
         if rows == 0 { Err(Problem::NoRows.into()) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_has_its_rows_and_no_other() {
+        let values = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let column = |name: &str, values: &'static [f64]| MemoryColumn {
+            name: name.to_owned(),
+            unit: Some("s"),
+            rows: values.len(),
+            read: Box::new(|rows, into| into.extend_from_slice(&values[rows])),
+        };
+        let table = MemoryTable { columns: vec![column("t", &[0.0, 1.0, 2.0, 3.0, 4.0])], unreadable: vec!["motor".to_owned()] };
+        let part = table.part(1..4);
+        assert_eq!((part.rows().unwrap(), part.unreadable.as_slice()), (3, ["motor".to_owned()].as_slice()));
+        let mut read = Vec::new();
+        (part.part(1..3).columns[0].read)(0..2, &mut read);
+        assert_eq!(read, values[2..4]);
+        let uneven = MemoryTable { columns: vec![column("t", &[0.0]), column("iq", &[])], unreadable: Vec::new() };
+        assert!(uneven.rows().unwrap_err().to_string().contains("'t' has 1 rows and 'iq' has 0 rows"));
     }
 }

@@ -3,6 +3,9 @@
 use fluxfit_files::{Advice, FileError, FileErrorKind};
 use fluxfit_units::wording::{choice, columns, did_you_mean, list, quote, shorten};
 
+/// Most columns that a sentence lists.
+const MOST_NAMES: usize = 20;
+
 /// The problems and their sentences. Texts taken from files are quoted and shortened here and nowhere else.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum Problem {
@@ -97,6 +100,10 @@ pub(crate) enum Problem {
     NoCommonInstants { base: &'static str },
     #[error("the columns have different lengths and no times to align them: {}; add a time to each of them, or log equal lengths", list(.lengths))]
     Lengths { lengths: Vec<String> },
+    #[error("there is no column '{}' that names the motors; the columns are {}", shorten(.by), list(&.names.iter().take(MOST_NAMES).collect::<Vec<_>>()))]
+    NoMotors { by: String, names: Vec<String> },
+    #[error("the column that names the motors holds neither texts nor whole numbers; name the motors by one of them")]
+    MotorNames,
     #[error("{0}")]
     Log(fluxfit::error::Error),
 
@@ -183,6 +190,7 @@ impl Problem {
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
+            Self::NoMotors { .. } | Self::MotorNames => FileErrorKind::Columns,
             Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) | Self::LongCharacteristic { .. } => FileErrorKind::Data,
             Self::ExternalHdf5 | Self::MatObject { .. } | Self::NewerHdf5 { .. } | Self::Hdf5Filter { .. } => FileErrorKind::Unsupported,
             Self::ParquetCodec { .. } | Self::LargeChunks { .. } | Self::OldMdf => FileErrorKind::Unsupported,

@@ -6,18 +6,22 @@
 //! | `arrays` | numpy's arrays in and out |
 //! | `columns` | tables of Arrow and of arrays, as the reader takes them |
 //! | `error` | refusals as exceptions |
+//! | `fleet` | many motors |
 //! | `identification` | an identification and its answer |
 //! | `interruptible` | work beside Python, which Ctrl-C can leave |
 //! | `search` | optimizers: a function that is minimized, and ask and tell |
+//! | `track` | a running motor, followed by rows as they arrive |
 //! | `verbs` | the other verbs, and the whole command |
 //! | `wording` | the command's options in Python's words |
 
 mod arrays;
 mod columns;
 mod error;
+mod fleet;
 mod identification;
 mod interruptible;
 mod search;
+mod track;
 mod verbs;
 mod wording;
 
@@ -26,8 +30,10 @@ mod wording;
 mod _fluxfit {
     #[pymodule_export]
     use crate::{
+        fleet::{FleetRows, fleet, fleet_columns, fleet_rows},
         identification::{Answer, identify, read_log},
         search::{AskTell, methods, minimize},
-        verbs::{command, compare, explain, fleet_columns, fleet_rows, inspect, simulate, validate, version},
+        track::Tracker,
+        verbs::{command, compare, explain, inspect, simulate, validate, version},
     };
 }

@@ -50,14 +50,7 @@ pub(crate) fn compare(py: Python<'_>, words: Vec<OsString>, data: Option<&Bound<
             let values = held.values()?;
             py.detach(|| face::comparison(&words, Some(values.table()), &|| std::ops::ControlFlow::Continue(())))
         }
-        None => interruptible(py, None, move |watcher| {
-            let left = crate::interruptible::left_flag(&watcher);
-            let go_on = move || match left.load(std::sync::atomic::Ordering::Relaxed) {
-                true => std::ops::ControlFlow::Break(()),
-                false => std::ops::ControlFlow::Continue(()),
-            };
-            face::comparison(&words, None, &go_on)
-        })?,
+        None => interruptible(py, None, move |watcher| face::comparison(&words, None, &watcher.asker()))?,
     };
     document.map_err(|refusal| raised(py, &refusal))
 }
@@ -83,20 +76,6 @@ pub(crate) fn simulate<'py>(
     let (recording, truth) = simulated.map_err(|refusal: Refusal| raised(py, &refusal))?;
     let others = [("ud_ref", recording.ud_ref.as_slice()), ("uq_ref", recording.uq_ref.as_slice())];
     Ok((arrays::columns(py, &recording.columns, &others)?, truth))
-}
-
-/// The rows of a fleet for one motor: a JSON list of objects.
-#[pyfunction]
-pub(crate) fn fleet_rows(py: Python<'_>, words: Vec<OsString>, motor: &str, source: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
-    let held = Held::of(data)?;
-    let values = held.values()?;
-    py.detach(|| face::fleet_rows(&words, motor, source, values.table())).map_err(|refusal| raised(py, &refusal))
-}
-
-/// The columns of these rows: each with `text`, `number` or `count`.
-#[pyfunction]
-pub(crate) fn fleet_columns() -> Vec<(&'static str, &'static str)> {
-    face::fleet_columns()
 }
 
 /// The page of a code of a warning or finding.

@@ -71,7 +71,7 @@ def test_refusals() -> None:
     with pytest.raises(fluxfit.RequestError, match="nothing was asked"):
         search.tell([1.0])
     search.ask()
-    with pytest.raises(fluxfit.RequestError, match="one for each row"):
+    with pytest.raises(fluxfit.RequestError, match="tell one for each"):
         search.tell([1.0])
     with pytest.raises(fluxfit.RequestError):
         fluxfit.Search(BOUNDS, population=1).ask()

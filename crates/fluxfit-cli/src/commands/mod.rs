@@ -11,7 +11,7 @@ mod manual;
 pub(crate) mod report;
 mod simulate;
 mod status;
-mod track;
+pub(crate) mod track;
 pub(crate) mod validate;
 
 pub(crate) use status::Status;

@@ -4,7 +4,8 @@ mod alarm;
 mod display;
 mod faults;
 mod source;
-mod state;
+pub(crate) mod state;
+pub(crate) mod tracking;
 
 use super::{Status, input};
 use crate::{
@@ -16,10 +17,12 @@ use alarm::{Alarm, Watch};
 use clap::Args;
 use display::{Format, Lines};
 use fluxfit::{Parameter, log::Row};
+use fluxfit_log::LogOptions;
 use fluxfit_setup::{MotorFile, read_motor};
 use fluxfit_track::{Method, Start, Thermometer, Timing, TrackSettings, Tracker};
 use fluxfit_units::{Dimension, parse_quantity};
 use std::path::{Path, PathBuf};
+use tracking::Tracking;
 
 #[derive(Debug, Args)]
 pub(crate) struct Track {
@@ -112,23 +115,11 @@ fn parse_temperature(text: &str) -> Result<f64, String> {
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Track) -> Result<Status, CommandError> {
-    let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
-    let options = input::options(&arguments.columns, motor.pole_pairs)?;
-    let start = start(arguments, &motor, options.pole_pairs)?;
+    let (tracking, start, options) = begun(arguments)?;
     if let Some(path) = &arguments.save_state {
         fluxfit_files::check_writable(path)?;
     }
-    let faults = arguments.faults.as_deref().map(faults::read).transpose()?.unwrap_or_default();
-    let tracker = match &arguments.resume {
-        Some(path) => state::read(path)?,
-        None => Tracker::new(TrackSettings { start, faults, ..TrackSettings::new(arguments.method, timing(arguments)?) }),
-    };
-    let mut run = Running {
-        watch: Watch::new(&arguments.alarm, &start.values),
-        thermometer: thermometer(arguments, &motor),
-        lines: Lines::new(format_of(arguments), arguments.every),
-        tracker,
-    };
+    let mut run = Running { watch: Watch::new(&arguments.alarm, &start.values), lines: Lines::new(format_of(arguments)), tracking };
     run.lines.begin()?;
     let name = match (&arguments.listen, &arguments.log) {
         (Some(place), _) => {
@@ -147,16 +138,28 @@ pub(crate) fn run(arguments: &Track) -> Result<Status, CommandError> {
     };
     run.end(&name)?;
     if let Some(path) = &arguments.save_state {
-        state::write(path, &run.tracker)?;
+        state::write(path, &run.tracking.tracker)?;
         terminal::wrote("state", path);
     }
     Ok(run.status())
 }
 
+/// A tracker as it is asked for, with what it begins with and how rows are read.
+pub(crate) fn begun(arguments: &Track) -> Result<(Tracking, Start, LogOptions), CommandError> {
+    let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
+    let options = input::options(&arguments.columns, motor.pole_pairs)?;
+    let start = start(arguments, &motor, options.pole_pairs)?;
+    let faults = arguments.faults.as_deref().map(faults::read).transpose()?.unwrap_or_default();
+    let tracker = match &arguments.resume {
+        Some(path) => state::read(path)?,
+        None => Tracker::new(TrackSettings { start, faults, ..TrackSettings::new(arguments.method, timing(arguments)?) }),
+    };
+    Ok((Tracking::new(tracker, thermometer(arguments, &motor), arguments.every), start, options))
+}
+
 /// A tracker, and who looks at it.
 struct Running {
-    tracker: Tracker,
-    thermometer: Option<Thermometer>,
+    tracking: Tracking,
     watch: Watch,
     lines: Lines,
 }
@@ -164,26 +167,21 @@ struct Running {
 impl Running {
     /// Takes a row. False if no more are wanted.
     fn take(&mut self, row: &Row) -> Result<bool, CommandError> {
-        if row.theta_e.is_none() && self.tracker.settings().faults.need_angle() {
-            let sentence = "--faults: dead time and sensor offsets stand still in the stator, so each row needs the electrical angle; add a column theta_e, or leave --faults out";
-            return Err(CommandError::Usage(sentence.to_owned()));
-        }
-        self.tracker.push(row);
-        if self.lines.is_due(self.tracker.time()) {
-            let parameters = self.tracker.parameters_or_nothing();
-            if let Some(thermometer) = &mut self.thermometer {
-                thermometer.note(self.tracker.time(), &parameters);
-            }
-            self.lines.show(&self.tracker, self.thermometer.as_ref(), false)?;
-            self.watch.look(self.tracker.time(), &parameters);
+        if self.tracking.take(row)? {
+            self.lines.show(&self.tracking, false)?;
+            self.look();
         }
         Ok(interrupt::go_on().is_continue())
     }
 
+    fn look(&mut self) {
+        self.watch.look(self.tracking.tracker.time(), &self.tracking.tracker.parameters_or_nothing());
+    }
+
     fn end(&mut self, name: &str) -> Result<(), CommandError> {
-        self.watch.look(self.tracker.time(), &self.tracker.parameters_or_nothing());
-        self.lines.end(name, &self.tracker, self.thermometer.as_ref())?;
-        let left_out = self.tracker.left_out();
+        self.look();
+        self.lines.end(name, &self.tracking)?;
+        let left_out = self.tracking.tracker.left_out();
         if left_out.not_numbers + left_out.spikes > 0 {
             terminal::note(&format!(
                 "rows left out: {} with a value that is no number or cut off, {} with a value that no drive had",
@@ -194,7 +192,7 @@ impl Running {
     }
 
     fn status(&self) -> Status {
-        let is_known = self.tracker.parameters_or_nothing().iter().all(|parameter| parameter.value.is_some());
+        let is_known = self.tracking.tracker.parameters_or_nothing().iter().all(|parameter| parameter.value.is_some());
         match (self.watch.has_rung(), is_known) {
             (true, _) => Status::Alarm,
             (false, true) => Status::Complete,

@@ -81,6 +81,11 @@ fn is_option(word: &str) -> bool {
     word.trim_start_matches(['(', '`']).starts_with("--") && !word.contains(' ') && !word.ends_with([',', ';', ':', '.', ')', '`'])
 }
 
+/// A count with its noun.
+pub(crate) fn count(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::{columns, wrapped_to};

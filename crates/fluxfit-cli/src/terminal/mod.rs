@@ -15,7 +15,7 @@ use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit::Warning;
 use fluxfit_units::{significant, wording::one_line};
-pub(crate) use lines::{columns, width, wrapped};
+pub(crate) use lines::{columns, count, width, wrapped};
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},

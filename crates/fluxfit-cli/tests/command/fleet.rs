@@ -96,7 +96,7 @@ fn what_fails_is_a_row_with_its_reason() {
         ("", "have no motor_id"),
         ("a", "stand in several places"),
         (files[1], "cannot be read"),
-        (files[2], "no column 'motor_id'"),
+        (files[2], "the file is empty"),
         (files[3], "there is no such file"),
     ] {
         assert!(line(motor).contains(reason), "{motor}: {}", line(motor));

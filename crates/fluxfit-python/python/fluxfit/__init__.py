@@ -5,16 +5,19 @@
 >>> sorted(found.parameters)
 ['ld', 'lq', 'psi_f', 'rs']
 
-`identify` is the main function; `read_log`, `inspect`, `validate`, `compare`, `simulate` are the command's other verbs, `minimize` and
-`Search` its optimizers for any function. Every exception is an `Error`.
+`identify` is the main function, `fleet` the same for many motors, `track` for a running one; `read_log`, `inspect`, `validate`,
+`compare`, `simulate` are the command's other verbs, `minimize` and `Search` its optimizers for any function. Every exception is an
+`Error`.
 """
 
 from fluxfit import _fluxfit
 from fluxfit._api import Study, Validation, compare, explain, identify, inspect, read_log, simulate, validate
 from fluxfit._errors import DataError, Error, FileError, RequestError
+from fluxfit._fleet import Fleet, fleet
 from fluxfit._identification import Estimate, Identification
 from fluxfit._log import Log
 from fluxfit._optimize import Search, methods, minimize
+from fluxfit._track import Track, track
 
 __version__ = _fluxfit.version()
 
@@ -23,19 +26,23 @@ __all__ = [
     "Error",
     "Estimate",
     "FileError",
+    "Fleet",
     "Identification",
     "Log",
     "RequestError",
     "Search",
     "Study",
+    "Track",
     "Validation",
     "compare",
     "explain",
+    "fleet",
     "identify",
     "inspect",
     "methods",
     "minimize",
     "read_log",
     "simulate",
+    "track",
     "validate",
 ]

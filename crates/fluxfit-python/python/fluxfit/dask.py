@@ -9,11 +9,7 @@ worker.
 
 from typing import Any
 
-from fluxfit._fleet import Request, columns
-
-# Types of pandas for the columns; counts may be missing.
-DTYPES = {"text": "object", "number": "float64", "count": "Int64"}
-
+from fluxfit._fleet import DTYPES, Request, columns
 
 def fleet(frame: Any, by: str, *, sort: "str | None" = None, **request: Any) -> Any:
     """Identifies every motor of a Dask DataFrame.

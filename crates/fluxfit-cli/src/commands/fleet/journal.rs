@@ -12,9 +12,10 @@ use std::{
 };
 
 /// The journal of a run.
+#[derive(Default)]
 pub(crate) struct Journal {
-    path: PathBuf,
-    file: File,
+    /// Its path and file; none of a run whose rows are kept in memory alone.
+    file: Option<(PathBuf, File)>,
     /// The rows of each motor; of a motor that is written again, the later ones.
     done: BTreeMap<String, Vec<Row>>,
 }
@@ -55,7 +56,7 @@ impl Journal {
             }
             Some(_) => return Err(refuse("it belongs to a run with other arguments or another version; remove it to start anew")),
         }
-        Ok(Self { path, file, done })
+        Ok(Self { file: Some((path, file)), done })
     }
 
     /// The motors that are finished.
@@ -73,7 +74,9 @@ impl Journal {
     /// # Errors
     /// If they cannot be written.
     pub(crate) fn add(&mut self, motor: &str, rows: Vec<Row>) -> Result<(), CommandError> {
-        self.file.write_all(format!("{}\n", json!({ "motor": motor, "rows": rows })).as_bytes())?;
+        if let Some((_, file)) = &mut self.file {
+            file.write_all(format!("{}\n", json!({ "motor": motor, "rows": rows })).as_bytes())?;
+        }
         self.done.insert(motor.to_owned(), rows);
         Ok(())
     }
@@ -83,12 +86,15 @@ impl Journal {
         self.done.values().flatten()
     }
 
-    /// Removes the journal: the results are written.
+    /// Removes the journal, because the results are written, and gives all rows, by motor and window.
     ///
     /// # Errors
     /// If it cannot be removed.
-    pub(crate) fn close(self) -> Result<(), CommandError> {
-        Ok(std::fs::remove_file(&self.path)?)
+    pub(crate) fn close(self) -> Result<Vec<Row>, CommandError> {
+        if let Some((path, _)) = self.file {
+            std::fs::remove_file(path)?;
+        }
+        Ok(self.done.into_values().flatten().collect())
     }
 }
 

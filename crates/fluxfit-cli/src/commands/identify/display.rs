@@ -93,12 +93,8 @@ fn read(log: &Log, found: &Identification) -> String {
         if periods.iter().any(|other| (other / period - 1.0).abs() > 0.01) { "mixed rates".to_owned() } else { frequency(1.0 / period) };
     let segments = log.segments().len();
     let parts = if segments > 1 { format!(" in {segments} segments") } else { String::new() };
-    let points = count(found.operating_points().len(), "operating point");
+    let points = terminal::count(found.operating_points().len(), "operating point");
     format!("{} rows at {rate}, {} s{parts}, {points}", log.rows(), significant(log.duration(), 3))
-}
-
-fn count(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// The four parameters. What their intervals mostly come from, where there is room for it.

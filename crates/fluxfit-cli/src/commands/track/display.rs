@@ -1,8 +1,9 @@
 //! What is told while a motor is followed, and at the end.
 
+use super::tracking::Tracking;
 use crate::terminal::{self, HEADING, table, wrapped};
 use fluxfit::Parameter;
-use fluxfit_track::{Thermometer, Tracked, Tracker, document::TrackDocument};
+use fluxfit_track::{Thermometer, Tracked, Tracker};
 use fluxfit_units::{Scale, significant};
 use std::io::IsTerminal;
 
@@ -15,20 +16,16 @@ pub(super) enum Format {
     Json,
 }
 
-/// Lines at a rate in the log's time.
+/// Lines while it runs, and at the end.
 #[derive(Debug)]
 pub(super) struct Lines {
     format: Format,
-    every: f64,
-    /// Number of the interval in which a line was told last.
-    told: Option<f64>,
     is_live: bool,
 }
 
 impl Lines {
-    pub(super) fn new(format: Format, every: f64) -> Self {
-        let is_live = format == Format::Table && std::io::stderr().is_terminal();
-        Self { format, every, told: None, is_live }
+    pub(super) fn new(format: Format) -> Self {
+        Self { format, is_live: format == Format::Table && std::io::stderr().is_terminal() }
     }
 
     /// The header.
@@ -44,25 +41,13 @@ impl Lines {
         row(&(header + ",winding_temperature,magnet_temperature\n"))
     }
 
-    /// Whether a line is due at this time.
-    pub(super) fn is_due(&mut self, t: f64) -> bool {
-        // A sample at a multiple of the interval belongs to it, whatever the rounding.
-        let interval = (t / self.every + 1e-9).floor();
-        let is_due = self.told.is_none_or(|told| told != interval);
-        self.told = Some(interval);
-        is_due
-    }
-
     /// Tells what is known now.
-    pub(super) fn show(&self, tracker: &Tracker, thermometer: Option<&Thermometer>, last: bool) -> std::io::Result<()> {
+    pub(super) fn show(&self, tracking: &Tracking, last: bool) -> std::io::Result<()> {
         match self.format {
-            Format::Json => {
-                let document = TrackDocument::of(tracker, thermometer, last);
-                row(&(serde_json::to_string(&document)? + "\n"))
-            }
-            Format::Csv => row(&csv(tracker, thermometer)),
+            Format::Json => row(&(serde_json::to_string(&tracking.document(last))? + "\n")),
+            Format::Csv => row(&csv(&tracking.tracker, tracking.thermometer.as_ref())),
             Format::Table if self.is_live => {
-                terminal::live(&live(tracker));
+                terminal::live(&live(&tracking.tracker));
                 Ok(())
             }
             Format::Table => Ok(()),
@@ -70,13 +55,13 @@ impl Lines {
     }
 
     /// Tells the state at the end.
-    pub(super) fn end(&self, name: &str, tracker: &Tracker, thermometer: Option<&Thermometer>) -> std::io::Result<()> {
+    pub(super) fn end(&self, name: &str, tracking: &Tracking) -> std::io::Result<()> {
         if self.is_live {
             terminal::live("");
         }
         match self.format {
-            Format::Table => terminal::print(&at_the_end(name, tracker, thermometer)),
-            Format::Csv | Format::Json => self.show(tracker, thermometer, true),
+            Format::Table => terminal::print(&at_the_end(name, &tracking.tracker, tracking.thermometer.as_ref())),
+            Format::Csv | Format::Json => self.show(tracking, true),
         }
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn read(path: &Path) -> Result<Tracker, CommandError> {
 }
 
 /// Writes a state, whole or not at all.
-pub(super) fn write(path: &Path, tracker: &Tracker) -> Result<(), CommandError> {
+pub(crate) fn write(path: &Path, tracker: &Tracker) -> Result<(), CommandError> {
     let text = serde_json::to_string(&StateOf { schema: STATE, tracker }).map_err(std::io::Error::from)?;
     Ok(fluxfit_files::write_atomically(path, text.as_bytes())?)
 }

@@ -1,7 +1,7 @@
 //! A column of names, as runs of equal ones: the motor of each row of a table.
 
 use super::{FORMAT, Parquet, fault};
-use crate::container::{fault::damaged, guard::guarded};
+use crate::{container::guard::guarded, problem::Problem};
 use fluxfit_files::FileError;
 use parquet::{
     column::reader::{ColumnReader, ColumnReaderImpl},
@@ -38,7 +38,7 @@ impl Parquet {
                 }
                 ColumnReader::Int32ColumnReader(reader) => read(reader, ToString::to_string, &mut runs)?,
                 ColumnReader::Int64ColumnReader(reader) => read(reader, ToString::to_string, &mut runs)?,
-                _ => return Err(damaged(FORMAT, "the column that names the motors holds neither texts nor whole numbers").in_column(name)),
+                _ => return Err(FileError::from(Problem::MotorNames).in_column(name)),
             }
         }
         Ok(Some(runs))
