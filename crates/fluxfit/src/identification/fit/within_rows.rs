@@ -1,9 +1,9 @@
 //! What goes on within rows that each span several of the drive's periods is not in the log. How far the parameters would move with what it
 //! could be is the doubt.
 //!
-//! - An inverter holds its voltage in the stator for one of its periods, in which the rotor turns by `x`. What of it acts in the rotor's frame
-//!   is less than a logged command by `x²/24`, and more than a logged mean of two periods by `x²/12`: which of them, and how long the drive's
-//!   periods are, is not known.
+//! - An inverter holds its voltage in the stator for one of its periods, in which the rotor turns by `x`. What of it acts in the rotor's
+//!   frame is less than a logged command by `x²/24`, and more than a logged mean of two periods by `x²/12`: which of them, and how long the
+//!   drive's periods are, is not known.
 //! - Of means, what dead time, devices and harmonics take is averaged twice, over a row's span and from row to row. The simulation has it
 //!   averaged once; with a wider span it comes nearer to that, and how much this matters tells what else is lost within a row.
 
