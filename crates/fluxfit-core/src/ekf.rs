@@ -31,7 +31,7 @@ const START_ERROR: f64 = 0.5;
 /// Random walk of rs, ld, lq and psi_f while they are followed, as a part per square root of a second: copper warms fastest, and the
 /// inductances drift only as far as the magnets' flux saturates the iron. What changes them with the current is found as steps. A larger
 /// walk of lq costs rs: its voltage is that of rs times twenty.
-const WALK: [f64; PARAMETERS] = [1e-2, 1e-3, 1e-3, 2e-3];
+const WALK: [f64; PARAMETERS] = [7e-3, 1e-3, 1e-3, 2e-3];
 
 /// Part of the rated current that the noise is thought to be at first.
 const START_NOISE: f64 = 5e-3;
@@ -127,6 +127,8 @@ pub struct Ekf<T> {
     in_a_row: u32,
     /// Whether there were so many that the motor has changed.
     is_waiting: bool,
+    /// Parameters of which steps are looked for.
+    may_step: [bool; PARAMETERS],
     #[cfg_attr(feature = "serde", serde(default))]
     left_out: u32,
     surprise: T,
@@ -153,6 +155,7 @@ impl<T: Real> Ekf<T> {
             outliers: 0,
             in_a_row: 0,
             is_waiting: false,
+            may_step: settings.start_error.map(|error| settings.steps && error > T::ZERO),
             left_out: 0,
             surprise: T::ZERO,
             last_surprise: T::ZERO,
@@ -180,6 +183,13 @@ impl<T: Real> Ekf<T> {
     /// not, what the operating point does not tell is held, and becomes less certain.
     pub fn note_excitation(&mut self, is_excited: bool) {
         self.walk.note(is_excited);
+    }
+
+    /// Notes which parameters the last samples determine: of the others, no steps are looked for, and while there are others, a motor that
+    /// behaves otherwise than expected is no sign of a step. At first all are thought to be determined.
+    pub fn note_determined(&mut self, is_determined: [bool; PARAMETERS]) {
+        let may_step = |j: usize| self.settings.steps && is_determined[j] && self.settings.start_error[j] > T::ZERO;
+        self.may_step = [may_step(0), may_step(1), may_step(2), may_step(3)];
     }
 
     /// Goes on by a period with the current, A, measured at its end. What is no number is left out, as a gap.
@@ -218,7 +228,8 @@ impl<T: Real> Ekf<T> {
         self.measure(0, measured[0]);
         self.measure(1, measured[1]);
         self.in_a_row = if self.outliers == outliers { 0 } else { self.in_a_row + 1 };
-        if self.settings.steps && self.in_a_row >= OUTLIERS_IN_A_ROW {
+        let all_may_step = (0..PARAMETERS).all(|j| self.may_step[j] || self.settings.start_error[j] <= T::ZERO);
+        if self.settings.steps && self.in_a_row >= OUTLIERS_IN_A_ROW && all_may_step {
             (self.in_a_row, self.is_waiting, self.i) = (0, true, measured);
             self.test = StepTest::new();
             return;
@@ -254,7 +265,7 @@ impl<T: Real> Ekf<T> {
     }
 
     fn end_period(&mut self) -> Option<Step<T>> {
-        self.test.end_period(self.settings.start_error.map(|error| error > T::ZERO))
+        self.test.end_period(self.may_step)
     }
 
     /// What was learned in the window of a step is wrong: the filter goes on with what it knew before, from the measured current, and

@@ -137,7 +137,11 @@ impl WatchedEkf {
         } else if is_excited {
             self.outdated = self.outdated.saturating_sub(1);
         }
-        self.bank.iter_mut().for_each(|filter| filter.note_excitation(is_excited));
+        let is_determined = self.watch.identifiable.unwrap_or_default();
+        for filter in &mut self.bank {
+            filter.note_excitation(is_excited);
+            filter.note_determined(is_determined);
+        }
     }
 
     /// The level with the greatest likelihood, and which levels go on.
@@ -210,9 +214,11 @@ impl WatchedEkf {
             }
         }
         self.bank.clear();
+        let is_determined = self.watch.identifiable.unwrap_or_default();
         for level in LEVELS {
             let mut filter = Ekf::new(EkfSettings { unknown_voltage: level * self.scale[1], ..settings }, [1.0; PARAMETERS]);
             filter.begin(self.last_i);
+            filter.note_determined(is_determined);
             self.bank.push(filter);
         }
         (self.active, self.best, self.periods) = ([true; LEVELS.len()], 0, 0);
