@@ -241,34 +241,72 @@ pub fn false_alarms(scenario: &Scenario, draws: u64) -> Result<u32, Box<dyn Erro
     Ok(steps)
 }
 
-/// Of drawn logs with i_d = 0 at one operating point: how many intervals were printed for each parameter, and how many hold the truth.
-pub fn rank_deficient(draws: u64) -> [(usize, usize); PARAMETERS] {
-    let truth = fluxfit::paper::MOTOR.to_array();
-    let [rs, ld, lq, psi_f] = truth;
-    let mut counts = [(0, 0); PARAMETERS];
-    for draw in 0..draws {
-        let mut random = Draws::seeded(23, draw);
-        // Half of them without noise.
-        let noise = if draw % 2 == 0 { 0.0 } else { 0.04 };
-        let start = random_start(&fluxfit::paper::MOTOR, 1.5, &mut random);
-        let timing = Timing::Delayed { delay: 0, at_row: false };
-        let mut tracker = Tracker::new(TrackSettings { start, ..TrackSettings::new(Method::EkfTracking, Some(timing)) });
-        let (iq, omega) = (2.0 + 10.0 * random.uniform(), 100.0 + 500.0 * random.uniform());
-        let wanted = Motor { rs, ld, lq, psi_f }.steady_voltage(Dq { d: 0.0, q: iq }, omega);
-        let mut i = [0.0, iq];
-        for k in 0..20_000 {
-            let measured = [0, 1].map(|c| i[c] + noise * random.normal());
-            let u = [wanted.d - 600.0 * ld * measured[0], wanted.q + 600.0 * lq * (iq - measured[1])];
-            let t = f64::from(k) * PERIOD;
-            tracker.push(&Row { t, ud: u[0], uq: u[1], id: measured[0], iq: measured[1], omega_e: omega, ..Row::default() });
-            i = fluxfit_core::period::current_after(&truth, i, &fluxfit_core::Period { u, omega_e: omega, length: PERIOD });
-        }
-        for (j, tracked) in tracker.parameters_or_nothing().iter().enumerate() {
-            if let Some([low, high]) = tracked.interval() {
-                counts[j].0 += 1;
-                counts[j].1 += usize::from((low..=high).contains(&truth[j]));
-            }
+/// Logs that do not determine all four parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Deficient {
+    /// i_d = 0 at one operating point: only lq, and the sum `rs i_q + omega psi_f`.
+    OnePoint,
+    /// One operating point with i_d below zero: two combinations of all four.
+    OnePointWithId,
+    /// i_d = 0 at a speed that goes up and down: all but ld.
+    ZeroId,
+    /// Steps of both currents at standstill: all but psi_f.
+    Standstill,
+}
+
+impl Deficient {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::OnePoint, Self::OnePointWithId, Self::ZeroId, Self::Standstill];
+
+    /// References of i_d, i_q, A, and the speed, electrical rad/s, at the k-th row of a log with this current and speed.
+    fn wanted(self, k: u32, iq: f64, omega: f64) -> [f64; 3] {
+        let is_second = k / 2500 % 2 == 1;
+        // Up and down by 20 % once a second.
+        let part = f64::from(k % 10_000) / 10_000.0;
+        match self {
+            Self::OnePoint => [0.0, iq, omega],
+            Self::OnePointWithId => [-0.3 * iq, iq, omega],
+            Self::ZeroId => [0.0, iq, omega * (0.8 + 0.8 * (part - 0.5).abs())],
+            Self::Standstill => [if is_second { -0.3 * iq } else { 0.0 }, if k / 5000 % 2 == 1 { iq } else { 0.5 * iq }, 0.0],
         }
     }
-    counts
+}
+
+/// How many intervals were printed for each parameter at the end of drawn logs of 2 s, and how many of them hold the truth.
+#[must_use]
+pub fn rank_deficient(kind: Deficient, draws: u64) -> [(usize, usize); PARAMETERS] {
+    let ends: Vec<[Option<bool>; PARAMETERS]> = (0..draws).into_par_iter().map(|draw| held_of_deficient(kind, draw)).collect();
+    std::array::from_fn(|j| {
+        let printed: Vec<bool> = ends.iter().filter_map(|held| held[j]).collect();
+        (printed.len(), printed.iter().filter(|held| **held).count())
+    })
+}
+
+/// Of one such log: whether the interval of each parameter holds the truth, where one is printed.
+fn held_of_deficient(kind: Deficient, draw: u64) -> [Option<bool>; PARAMETERS] {
+    let motor = fluxfit::paper::MOTOR;
+    let [_, ld, lq, _] = motor.to_array();
+    let mut random = Draws::seeded(23, draw);
+    // Half of them without noise.
+    let noise = if draw.is_multiple_of(2) { 0.0 } else { 0.04 };
+    let start = random_start(&motor, 1.5, &mut random);
+    let timing = Timing::Delayed { delay: 0, at_row: false };
+    let mut tracker = Tracker::new(TrackSettings { start, ..TrackSettings::new(Method::EkfTracking, Some(timing)) });
+    let (iq, omega) = (2.0 + 10.0 * random.uniform(), 100.0 + 500.0 * random.uniform());
+    let [id, first_iq, mut omega_e] = kind.wanted(0, iq, omega);
+    let mut i = [id, first_iq];
+    for k in 0..20_000 {
+        let [id, iq, _] = kind.wanted(k, iq, omega);
+        let steady = motor.steady_voltage(Dq { d: id, q: iq }, omega_e);
+        let measured = [0, 1].map(|c| i[c] + noise * random.normal());
+        let u = [steady.d + 600.0 * ld * (id - measured[0]), steady.q + 600.0 * lq * (iq - measured[1])];
+        tracker.push(&Row { t: f64::from(k) * PERIOD, ud: u[0], uq: u[1], id: measured[0], iq: measured[1], omega_e, ..Row::default() });
+        let [_, _, next] = kind.wanted(k + 1, iq, omega);
+        let period = fluxfit_core::Period { u, omega_e: 0.5 * (omega_e + next), length: PERIOD };
+        i = fluxfit_core::period::current_after(&motor.to_array(), i, &period);
+        omega_e = next;
+    }
+    let truth = motor.to_array();
+    let tracked = tracker.parameters_or_nothing();
+    std::array::from_fn(|j| tracked[j].interval().map(|[low, high]| (low..=high).contains(&truth[j])))
 }

@@ -43,12 +43,14 @@ int main(void)
         const float ud = (float)(628 * LD * (id - i[0]) - OMEGA * LQ * i[1]);
         const float uq = (float)(628 * LQ * (iq - i[1]) + OMEGA * (LD * i[0] + PSI_F));
         motor(i, ud, uq);
-        fluxfit_rls_advance(&rls, ud, uq, (float)OMEGA, (float)TS, (float)i[0], (float)i[1]);
+        const int32_t changed = fluxfit_rls_advance(&rls, ud, uq, (float)OMEGA, (float)TS, (float)i[0], (float)i[1]);
         if (k == 1500) {
             fluxfit_rls_estimate(&rls, &estimate);
             fluxfit_ekf_init(&ekf, estimate.value, 10, 0, 1);
             fluxfit_ekf_begin(&ekf, (float)i[0], (float)i[1]);
         } else if (k > 1500) {
+            if (changed)
+                fluxfit_ekf_note_excitation(&ekf, fluxfit_rls_is_excited(&rls));
             fluxfit_ekf_advance(&ekf, ud, uq, (float)OMEGA, (float)TS, (float)i[0], (float)i[1]);
         }
     }

@@ -11,7 +11,7 @@ extern "C" {
 
 /* Memory of an estimator. Its content is private. */
 typedef struct { uint64_t words[64]; } fluxfit_rls;
-typedef struct { uint64_t words[64]; } fluxfit_ekf;
+typedef struct { uint64_t words[96]; } fluxfit_ekf;
 
 /* rs in ohm, ld and lq in H, psi_f in Wb, and their standard errors. */
 typedef struct { float value[4]; float standard_error[4]; } fluxfit_estimate;
@@ -33,6 +33,8 @@ int32_t fluxfit_rls_is_excited(const fluxfit_rls *rls);
 void fluxfit_ekf_init(fluxfit_ekf *ekf, const float start[4], float rated_current, float unknown_voltage, int32_t tracks);
 void fluxfit_ekf_begin(fluxfit_ekf *ekf, float id, float iq);
 void fluxfit_ekf_advance(fluxfit_ekf *ekf, float ud, float uq, float omega_e, float length, float id, float iq);
+/* 0 while fluxfit_rls_is_excited says 0: what one operating point does not tell is then held, and becomes less certain. */
+void fluxfit_ekf_note_excitation(fluxfit_ekf *ekf, int32_t is_excited);
 void fluxfit_ekf_estimate(const fluxfit_ekf *ekf, fluxfit_estimate *estimate);
 
 #ifdef __cplusplus

@@ -12,7 +12,7 @@ use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, PARAMETERS, Per
 pub const RLS_BYTES: usize = 512;
 
 /// Bytes of the memory for a Kalman filter; the header has the same number.
-pub const EKF_BYTES: usize = 512;
+pub const EKF_BYTES: usize = 768;
 
 /// Memory for block least squares.
 #[repr(C, align(8))]
@@ -149,6 +149,19 @@ pub unsafe extern "C" fn fluxfit_ekf_advance(ekf: *mut FluxfitEkf, ud: f32, uq: 
     // SAFETY: by the contract above.
     if let Some(ekf) = unsafe { ekf.cast::<Ekf<f32>>().as_mut() } {
         ekf.advance(&Period { u: [ud, uq], omega_e, length }, [id, iq]);
+    }
+}
+
+/// Notes whether the last half second excited the parameters, as [`fluxfit_rls_is_excited`] tells: while it does not (0), what one
+/// operating point does not tell is held.
+///
+/// # Safety
+/// `ekf` was created by [`fluxfit_ekf_init`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fluxfit_ekf_note_excitation(ekf: *mut FluxfitEkf, is_excited: i32) {
+    // SAFETY: by the contract above.
+    if let Some(ekf) = unsafe { ekf.cast::<Ekf<f32>>().as_mut() } {
+        ekf.note_excitation(is_excited != 0);
     }
 }
 

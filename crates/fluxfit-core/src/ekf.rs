@@ -20,15 +20,18 @@ use crate::{
     PARAMETERS,
     period::{Period, arrival},
     real::Real,
-    step_test::StepTest,
+    step_test::{Step, StepTest},
     ud::{STATES, Ud},
+    walk::Walk,
 };
 
 /// Standard error of a start value, as a part of it.
 const START_ERROR: f64 = 0.5;
 
-/// Random walk of rs, ld, lq and psi_f while they are followed, as a part per square root of a second: copper warms fastest.
-const WALK: [f64; PARAMETERS] = [1e-2, 2e-3, 2e-3, 2e-3];
+/// Random walk of rs, ld, lq and psi_f while they are followed, as a part per square root of a second: copper warms fastest, and the
+/// inductances drift only as far as the magnets' flux saturates the iron. What changes them with the current is found as steps. A larger
+/// walk of lq costs rs: its voltage is that of rs times twenty.
+const WALK: [f64; PARAMETERS] = [7e-3, 1e-3, 1e-3, 2e-3];
 
 /// Part of the rated current that the noise is thought to be at first.
 const START_NOISE: f64 = 5e-3;
@@ -44,6 +47,9 @@ const LEAST_NOISE: f64 = 1e-4;
 
 /// Standard deviations beyond which an innovation is an outlier.
 const OUTLIER: f64 = 3.0;
+
+/// Periods with outliers in a row that are no outliers: the motor changed, and the current that the filter reckons with is wrong.
+const OUTLIERS_IN_A_ROW: u32 = 8;
 
 /// Least part of a nominal value that rs, ld and lq may fall to; ld and lq may grow to its inverse.
 const LEAST_PART: f64 = 0.05;
@@ -92,6 +98,15 @@ impl<T: Real> EkfSettings<T> {
     }
 }
 
+/// What was known when the window of the test for steps began.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Before<T> {
+    z: [T; PARAMETERS],
+    ud: Ud<T>,
+    noise: T,
+}
+
 /// The filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -104,10 +119,16 @@ pub struct Ekf<T> {
     ud: Ud<T>,
     noise: T,
     test: StepTest<T>,
-    /// Variance that the next period adds to each parameter, because a step was found.
-    stepped: [T; PARAMETERS],
+    before: Before<T>,
+    walk: Walk<T>,
     steps: u32,
     outliers: u32,
+    /// Periods with outliers in a row, until now.
+    in_a_row: u32,
+    /// Whether there were so many that the motor has changed.
+    is_waiting: bool,
+    /// Parameters of which steps are looked for.
+    may_step: [bool; PARAMETERS],
     #[cfg_attr(feature = "serde", serde(default))]
     left_out: u32,
     surprise: T,
@@ -119,17 +140,22 @@ impl<T: Real> Ekf<T> {
     pub fn new(settings: EkfSettings<T>, z: [T; PARAMETERS]) -> Self {
         let variance = |j: usize| settings.start_error[j] * settings.start_error[j];
         let of_current = T::of(4.0) * settings.noise;
+        let ud = Ud::new([of_current, of_current, variance(0), variance(1), variance(2), variance(3)]);
         Self {
             settings,
             is_begun: false,
             i: [T::ZERO; 2],
             z,
-            ud: Ud::new([of_current, of_current, variance(0), variance(1), variance(2), variance(3)]),
+            ud,
             noise: settings.noise,
             test: StepTest::new(),
-            stepped: [T::ZERO; PARAMETERS],
+            before: Before { z, ud, noise: settings.noise },
+            walk: Walk::new(),
             steps: 0,
             outliers: 0,
+            in_a_row: 0,
+            is_waiting: false,
+            may_step: settings.start_error.map(|error| settings.steps && error > T::ZERO),
             left_out: 0,
             surprise: T::ZERO,
             last_surprise: T::ZERO,
@@ -150,6 +176,20 @@ impl<T: Real> Ekf<T> {
         self.i = i;
         self.ud.forget_first(2, T::of(4.0) * self.noise);
         self.test = StepTest::new();
+        (self.in_a_row, self.is_waiting) = (0, false);
+    }
+
+    /// Notes whether the last samples excite the parameters, as [`BlockRls::is_excited`](crate::BlockRls::is_excited) tells: while they do
+    /// not, what the operating point does not tell is held, and becomes less certain.
+    pub fn note_excitation(&mut self, is_excited: bool) {
+        self.walk.note(is_excited);
+    }
+
+    /// Notes which parameters the last samples determine: of the others, no steps are looked for, and while there are others, a motor that
+    /// behaves otherwise than expected is no sign of a step. At first all are thought to be determined.
+    pub fn note_determined(&mut self, is_determined: [bool; PARAMETERS]) {
+        let may_step = |j: usize| self.settings.steps && is_determined[j] && self.settings.start_error[j] > T::ZERO;
+        self.may_step = [may_step(0), may_step(1), may_step(2), may_step(3)];
     }
 
     /// Goes on by a period with the current, A, measured at its end. What is no number is left out, as a gap.
@@ -172,28 +212,93 @@ impl<T: Real> Ekf<T> {
         }
         let [fd, fq] = arrived.by_current;
         let phi = [0, 1].map(|c| [fd[c], fq[c], by_scaled[0][c], by_scaled[1][c], by_scaled[2][c], by_scaled[3][c]]);
-        self.ud.propagate(&phi, &self.process_noise(&theta, period.length));
-        self.stepped = [T::ZERO; PARAMETERS];
-        self.i = arrived.i;
-        let innovation = [measured[0] - self.i[0], measured[1] - self.i[1]];
-        if self.settings.steps
-            && let Some((j, variance)) = self.test.note(&arrived.by_current, &by_scaled, innovation, self.noise)
-            && self.settings.start_error[j] > T::ZERO
-        {
-            self.stepped[j] = variance;
-            self.steps = self.steps.saturating_add(1);
+        if self.is_waiting {
+            self.wait(&phi, self.kick(&theta, period), arrived.i, measured);
+            return;
         }
+        if self.settings.steps && self.test.is_new() {
+            self.before = Before { z: self.z, ud: self.ud, noise: self.noise };
+        }
+        self.walk(&phi, &theta, period);
+        self.i = arrived.i;
+        if self.settings.steps {
+            self.test.propagate(&phi);
+        }
+        let outliers = self.outliers;
         self.measure(0, measured[0]);
         self.measure(1, measured[1]);
+        self.in_a_row = if self.outliers == outliers { 0 } else { self.in_a_row + 1 };
+        let all_may_step = (0..PARAMETERS).all(|j| self.may_step[j] || self.settings.start_error[j] <= T::ZERO);
+        if self.settings.steps && self.in_a_row >= OUTLIERS_IN_A_ROW && all_may_step {
+            (self.in_a_row, self.is_waiting, self.i) = (0, true, measured);
+            self.test = StepTest::new();
+            return;
+        }
+        if self.settings.steps
+            && let Some(step) = self.end_period()
+        {
+            self.take_step(step, measured);
+        }
     }
 
-    fn process_noise(&self, theta: &[T; PARAMETERS], length: T) -> [T; STATES] {
-        let of_current = |l: T| {
-            let kick = length * self.settings.unknown_voltage / l;
+    /// After a change of the motor it learns nothing for a window, and compares single periods, each from the measured current to the next
+    /// one: how long ago the motor changed is of no importance to them.
+    fn wait(&mut self, phi: &[[T; STATES]; 2], kick: [T; 2], arrived: [T; 2], measured: [T; 2]) {
+        self.test.forget_current();
+        self.test.propagate(phi);
+        for c in 0..2 {
+            // With the noise of both currents.
+            let variance = self.noise + self.noise + kick[c];
+            self.test.note(c, measured[c] - arrived[c], variance, &([T::ZERO; STATES], variance));
+        }
+        // As likely as usual, beside filters that do not wait.
+        self.last_surprise = T::of(2.0) * (self.noise.ln() + T::ONE);
+        self.surprise = self.surprise * T::of(1.0 - 1.0 / MEMORY) + self.last_surprise;
+        self.i = measured;
+        let step = self.end_period();
+        if self.test.is_new() {
+            self.begin(measured);
+        }
+        if let Some(step) = step {
+            self.take_step(step, measured);
+        }
+    }
+
+    fn end_period(&mut self) -> Option<Step<T>> {
+        self.test.end_period(self.may_step)
+    }
+
+    /// What was learned in the window of a step is wrong: the filter goes on with what it knew before, from the measured current, and
+    /// with an uncertainty of the parameter that is as large as the step.
+    fn take_step(&mut self, step: Step<T>, measured: [T; 2]) {
+        Before { z: self.z, ud: self.ud, noise: self.noise } = self.before;
+        let mut wrong = [T::ZERO; STATES];
+        wrong[STATES - PARAMETERS + step.parameter] = step.size;
+        self.ud.add(&wrong);
+        self.begin(measured);
+        self.steps = self.steps.saturating_add(1);
+    }
+
+    /// The covariance after a period, with the unknown voltage and the walk of the parameters.
+    fn walk(&mut self, phi: &[[T; STATES]; 2], theta: &[T; PARAMETERS], period: &Period<T>) {
+        let [kick_d, kick_q] = self.kick(theta, period);
+        let q = self.settings.walk.map(|walk| walk * walk * period.length);
+        let [rs, ld, lq, psi_f] = self.walk.of_all(q);
+        self.ud.propagate(phi, &[kick_d, kick_q, rs, ld, lq, psi_f]);
+        let (scale, [id, iq], omega) = (self.scale(), self.i, period.omega_e);
+        let of_ud = [id * scale[0], T::ZERO, -(omega * iq * scale[2]), T::ZERO];
+        let of_uq = [iq * scale[0], omega * id * scale[1], T::ZERO, omega * scale[3]];
+        for v in self.walk.of_told(q, [of_ud, of_uq]).into_iter().flatten() {
+            self.ud.add(&[T::ZERO, T::ZERO, v[0], v[1], v[2], v[3]]);
+        }
+    }
+
+    /// Variance of each current that the unknown voltage makes in a period, A².
+    fn kick(&self, theta: &[T; PARAMETERS], period: &Period<T>) -> [T; 2] {
+        [theta[1], theta[2]].map(|l| {
+            let kick = period.length * self.settings.unknown_voltage / l;
             kick * kick
-        };
-        let of_z = |j: usize| self.settings.walk[j] * self.settings.walk[j] * length + self.stepped[j];
-        [of_current(theta[1]), of_current(theta[2]), of_z(0), of_z(1), of_z(2), of_z(3)]
+        })
     }
 
     fn measure(&mut self, state: usize, measured: T) {
@@ -206,12 +311,28 @@ impl<T: Real> Ekf<T> {
             noise = size * deviation / T::of(OUTLIER) - explained;
             self.outliers = self.outliers.saturating_add(1);
         }
-        let (gain, innovation_variance) = self.ud.measure(state, noise);
+        let measured = self.ud.measure(state, noise);
+        if self.settings.steps {
+            self.test.note(state, innovation, variance, &measured);
+        }
+        let (gain, innovation_variance) = measured;
         let step = innovation / innovation_variance;
-        self.i[0] += gain[0] * step;
-        self.i[1] += gain[1] * step;
+        self.shift(&gain.map(|gain| gain * step));
+        let squared = innovation * innovation;
+        let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
+        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
+        self.last_surprise = if state == 0 { surprise } else { self.last_surprise + surprise };
+        let seen = (squared - explained).smaller(T::of(LARGEST_SEEN) * self.noise);
+        let adapted = self.noise + T::of(ADAPTION) * (seen - self.noise);
+        self.noise = adapted.larger(T::of(LEAST_NOISE) * self.settings.noise);
+    }
+
+    /// Changes the states.
+    fn shift(&mut self, change: &[T; STATES]) {
+        self.i[0] += change[0];
+        self.i[1] += change[1];
         for j in 0..PARAMETERS {
-            let change = gain[j + 2] * step;
+            let change = change[j + 2];
             if IS_LOGARITHM[j] {
                 // Not as a product with the exponential: in single precision that is rounded down more often than up.
                 self.z[j] += self.z[j] * change.exp_m1();
@@ -221,13 +342,6 @@ impl<T: Real> Ekf<T> {
             }
         }
         self.z[0] = self.z[0].larger(T::of(LEAST_PART));
-        let squared = innovation * innovation;
-        let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
-        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
-        self.last_surprise = if state == 0 { surprise } else { self.last_surprise + surprise };
-        let seen = (squared - explained).smaller(T::of(LARGEST_SEEN) * self.noise);
-        let adapted = self.noise + T::of(ADAPTION) * (seen - self.noise);
-        self.noise = adapted.larger(T::of(LEAST_NOISE) * self.settings.noise);
     }
 
     /// The parameters, SI.
@@ -245,7 +359,8 @@ impl<T: Real> Ekf<T> {
     /// Their standard errors, SI.
     pub fn standard_errors(&self) -> [T; PARAMETERS] {
         let scale = self.scale();
-        [0, 1, 2, 3].map(|j| self.ud.variance(j + 2).sqrt() * scale[j].abs())
+        let owed = self.walk.owed();
+        [0, 1, 2, 3].map(|j| (self.ud.variance(j + 2) + owed[j]).sqrt() * scale[j].abs())
     }
 
     /// A filter that knows the same and reckons with another unknown voltage, V.

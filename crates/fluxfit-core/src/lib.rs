@@ -43,6 +43,7 @@ pub mod real;
 pub mod square_root;
 pub mod step_test;
 pub mod ud;
+pub mod walk;
 
 pub use block_rls::{BlockRls, BlockRlsSettings, Estimate};
 pub use ekf::{Ekf, EkfSettings};

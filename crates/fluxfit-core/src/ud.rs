@@ -45,6 +45,25 @@ impl<T: Real> Ud<T> {
         }
     }
 
+    /// Adds `v v'` to the covariance (Agee and Turner 1972, as in Bierman 1977, section III.3).
+    pub fn add(&mut self, v: &[T; STATES]) {
+        let (mut v, mut weight) = (*v, T::ONE);
+        for j in (0..STATES).rev() {
+            let (own, before) = (v[j], self.d[j]);
+            let sum = before + weight * own * own;
+            self.d[j] = sum;
+            // A state that is exact before and after.
+            if sum <= T::ZERO {
+                continue;
+            }
+            for i in 0..j {
+                v[i] -= own * self.u[i][j];
+                self.u[i][j] += weight * own * v[i] / sum;
+            }
+            weight = weight * before / sum;
+        }
+    }
+
     /// Variance of one state.
     pub fn variance(&self, state: usize) -> T {
         (state..STATES).fold(T::ZERO, |sum, k| sum + self.u[state][k] * self.u[state][k] * self.d[k])
@@ -160,6 +179,12 @@ mod tests {
                 assert!(close(&covariance(&ud), &expected), "{round} {state}");
             }
         }
+        let v = [0.3, -0.2, 0.5, 0.0, 0.0, 0.7];
+        let before = covariance(&ud);
+        let mut wider = ud;
+        wider.add(&v);
+        let expected: Matrix = core::array::from_fn(|i| core::array::from_fn(|j| before[i][j] + v[i] * v[j]));
+        assert!(close(&covariance(&wider), &expected) && wider.variance(4) == 0.0);
         let mut set = ud;
         set.set_parameters(&[[1.0, 0.5, 0.25, 2.0], [0.0, 2.0, 0.0, 1.0], [0.0, 0.0, 3.0, 0.5], [0.0, 0.0, 0.0, 4.0]]);
         let p = covariance(&set);

@@ -44,6 +44,9 @@ const FAR: f64 = 0.2;
 /// Blocks of a contradiction after which the filter starts anew: half a second at 10 kHz.
 const PATIENCE: u32 = 100;
 
+/// Blocks after which least squares has forgotten what was before a step or a spell without excitation: 0.99 to this power is 0.05.
+const MEMORY: u32 = 300;
+
 /// The pair.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WatchedEkf {
@@ -64,6 +67,9 @@ pub struct WatchedEkf {
     /// Parameters that began with a guess, and have not become identifiable yet.
     is_guessed: [bool; PARAMETERS],
     contradictions: u32,
+    /// Blocks with excitation until least squares has forgotten what no longer holds: so long it does not contradict the filter.
+    #[serde(default)]
+    outdated: u32,
     /// Steps that were found before it was started anew.
     #[serde(default)]
     steps_before: u32,
@@ -89,6 +95,7 @@ impl WatchedEkf {
             was_trusted: [false; PARAMETERS],
             is_guessed,
             contradictions: 0,
+            outdated: 0,
             steps_before: 0,
         };
         pair.fill(values, [None; PARAMETERS]);
@@ -106,13 +113,34 @@ impl WatchedEkf {
     pub fn advance(&mut self, period: &Period<f64>, i: [f64; 2]) {
         self.scale = [self.scale[0].max(i[0].hypot(i[1])), self.scale[1].max(period.u[0].hypot(period.u[1])), self.scale[2]];
         self.last_i = i;
+        let steps = self.filter().steps();
         for (filter, _) in self.bank.iter_mut().zip(self.active).filter(|(_, active)| *active) {
             filter.advance(period, i);
         }
+        if self.filter().steps() != steps {
+            self.outdated = MEMORY;
+        }
         self.choose();
         if self.rls.advance(period, i) {
+            self.note_excitation();
             self.watch = self.rls.estimate();
             self.look();
+        }
+    }
+
+    /// After each block: whether it excites the parameters, and whether least squares remembers what no longer holds.
+    fn note_excitation(&mut self) {
+        let was_excited = self.watch.excited == Some(true);
+        let is_excited = self.rls.is_excited();
+        if was_excited && !is_excited {
+            self.outdated = MEMORY;
+        } else if is_excited {
+            self.outdated = self.outdated.saturating_sub(1);
+        }
+        let is_determined = self.watch.identifiable.unwrap_or_default();
+        for filter in &mut self.bank {
+            filter.note_excitation(is_excited);
+            filter.note_determined(is_determined);
         }
     }
 
@@ -149,7 +177,7 @@ impl WatchedEkf {
         let is_off = |j: usize| (own[j] - values[j]).abs() > FAR * values[j] && contradicts(j, errors[j]);
         let is_new = (0..PARAMETERS).any(|j| trusted[j] && (self.is_guessed[j] || !self.was_trusted[j] && is_off(j)));
         let contradicts = (0..PARAMETERS).any(|j| contradicts(j, errors[j].hypot(own_errors[j])));
-        self.contradictions = if contradicts { self.contradictions + 1 } else { 0 };
+        self.contradictions = if contradicts && self.outdated == 0 { self.contradictions + 1 } else { 0 };
         for j in 0..PARAMETERS {
             self.was_trusted[j] |= trusted[j];
             self.is_guessed[j] &= !trusted[j];
@@ -181,18 +209,16 @@ impl WatchedEkf {
             if let Some(error) = known.or(errors[j]) {
                 settings.start_error[j] = error;
             }
-            // The walk is a part of the value that was given, not of where the filter starts.
-            if let Some(given) = self.start.values[j] {
-                settings.walk[j] *= given / nominal[j];
-            }
             if known == Some(0.0) {
                 settings.walk[j] = 0.0;
             }
         }
         self.bank.clear();
+        let is_determined = self.watch.identifiable.unwrap_or_default();
         for level in LEVELS {
             let mut filter = Ekf::new(EkfSettings { unknown_voltage: level * self.scale[1], ..settings }, [1.0; PARAMETERS]);
             filter.begin(self.last_i);
+            filter.note_determined(is_determined);
             self.bank.push(filter);
         }
         (self.active, self.best, self.periods) = ([true; LEVELS.len()], 0, 0);

@@ -6,7 +6,7 @@
 
 use fluxfit_drive::scenario::reference_cases::two_modes;
 use fluxfit_setup::read_scenario;
-use fluxfit_studies::online::{Reached, false_alarms, followed, rank_deficient, reached};
+use fluxfit_studies::online::{Deficient, Reached, false_alarms, followed, rank_deficient, reached};
 use fluxfit_track::{DriveFaults, Method};
 use std::{error::Error, path::Path};
 
@@ -32,7 +32,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         against_the_bound(draws)?;
     }
     warming_motor()?;
-    println!("rank-deficient logs, (printed, of them right) by parameter: {:?}", rank_deficient(200));
+    for kind in Deficient::ALL {
+        println!("200 logs, {kind:?}: (printed, of them right) by parameter: {:?}", rank_deficient(kind, 200));
+    }
     Ok(())
 }
 

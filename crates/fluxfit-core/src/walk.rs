@@ -1,0 +1,80 @@
+//! The random walk of the parameters while they are followed, and where it waits.
+//!
+//! At one operating point the voltages
+//!
+//! ```text
+//! u_d = rs i_d - omega lq i_q      u_q = rs i_q + omega (ld i_d + psi_f)
+//! ```
+//!
+//! tell two combinations of the parameters, and nothing but the noise of the currents tells the others apart. A filter whose parameters
+//! walk in all directions makes the others out of noise: within 10 s it moved rs by 8 % that did not change. So while nothing excites the
+//! parameters, they walk only as far as the operating point tells: with the walk's variance `Q` and the sensitivities `H` of the voltages,
+//! by `Q H (H' Q H)^-1 H' Q`. The rest of `Q` is owed, and paid when the parameters are excited again. So nothing is forgotten that is not
+//! replaced, as in directional forgetting (Kulhavy 1987, doi 10.1016/0005-1098(87)90054-9).
+
+use crate::{PARAMETERS, real::Real};
+
+/// The walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Walk<T> {
+    is_excited: bool,
+    /// Variance that is owed to each parameter.
+    owed: [T; PARAMETERS],
+}
+
+impl<T: Real> Walk<T> {
+    /// One in all directions.
+    pub fn new() -> Self {
+        Self { is_excited: true, owed: [T::ZERO; PARAMETERS] }
+    }
+
+    /// Notes whether the last samples excite the parameters.
+    pub fn note(&mut self, is_excited: bool) {
+        self.is_excited = is_excited;
+    }
+
+    /// What a period adds to the variances of the parameters, of which `q` is the walk's over it.
+    pub fn of_all(&mut self, q: [T; PARAMETERS]) -> [T; PARAMETERS] {
+        if !self.is_excited {
+            return [T::ZERO; PARAMETERS];
+        }
+        let owed = core::mem::replace(&mut self.owed, [T::ZERO; PARAMETERS]);
+        [0, 1, 2, 3].map(|j| q[j] + owed[j])
+    }
+
+    /// What it adds in the directions `v` that the operating point tells, as `v v'`; nothing while the parameters are excited. `h` has the
+    /// derivatives of u_d and u_q to the parameters.
+    pub fn of_told(&mut self, q: [T; PARAMETERS], h: [[T; PARAMETERS]; 2]) -> Option<[[T; PARAMETERS]; 2]> {
+        if self.is_excited {
+            return None;
+        }
+        let product = |a: &[T; PARAMETERS], b: &[T; PARAMETERS]| (0..PARAMETERS).fold(T::ZERO, |sum, j| sum + a[j] * q[j] * b[j]);
+        // Orthogonal directions, by Gram and Schmidt.
+        let [mut of_d, of_q] = h;
+        let squared = product(&of_q, &of_q);
+        if squared > T::ZERO {
+            let part = product(&of_d, &of_q) / squared;
+            (0..PARAMETERS).for_each(|j| of_d[j] -= part * of_q[j]);
+        }
+        let v = [of_q, of_d].map(|h| {
+            let squared = product(&h, &h);
+            if squared > T::ZERO { [0, 1, 2, 3].map(|j| q[j] * h[j] / squared.sqrt()) } else { [T::ZERO; PARAMETERS] }
+        });
+        for j in 0..PARAMETERS {
+            self.owed[j] += (q[j] - v[0][j] * v[0][j] - v[1][j] * v[1][j]).larger(T::ZERO);
+        }
+        Some(v)
+    }
+
+    /// Variance that is owed to each parameter.
+    pub fn owed(&self) -> &[T; PARAMETERS] {
+        &self.owed
+    }
+}
+
+impl<T: Real> Default for Walk<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
