@@ -82,8 +82,10 @@ mod tests {
         for k in 0..2000 {
             let u = [0.5 * (k as f64 / 40.0).sin(), 12.0 + 0.5 * (k as f64 / 70.0).cos()];
             columns.t.push(k as f64 * period);
-            (columns.ud.push(u[0]), columns.uq.push(u[1]));
-            (columns.id.push(i[0]), columns.iq.push(i[1]));
+            columns.ud.push(u[0]);
+            columns.uq.push(u[1]);
+            columns.id.push(i[0]);
+            columns.iq.push(i[1]);
             columns.omega_e.push(omega_e);
             let Motor { rs, ld, lq, psi_f } = MOTOR_OF_LOG;
             let slope = [(u[0] - rs * i[0] + omega_e * lq * i[1]) / ld, (u[1] - rs * i[1] - omega_e * (ld * i[0] + psi_f)) / lq];
