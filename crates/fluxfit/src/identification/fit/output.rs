@@ -95,7 +95,11 @@ impl OutputFit {
         let start = output_start::start(log, &stretches, steady, request, &scale);
         let Advanced { log: advanced, lag, chosen } = match known {
             Some(known) => known.refitted(log, &stretches, request)?,
-            None => with_speed_in_time(log, |log, beside| choose(log, &stretches, &start, beside, request, progress))?,
+            None => with_speed_in_time(
+                log,
+                |log, beside| choose(log, &stretches, &start, beside, request, progress),
+                |chosen, log| chosen.again(log, &stretches, request),
+            )?,
         };
         let Chosen { reading, drive, unknowns, priors, readings, terms, independent } = chosen;
         let log = advanced.as_ref().unwrap_or(log);
@@ -120,6 +124,7 @@ impl OutputFit {
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };
         let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, request.voltage_accuracy, &scale);
+        let shifts = OutputShifts { process_noise: errors.by_contradiction(&unknowns, &shifts.process_noise), ..shifts };
         let uncertainty = errors.uncertainty(&unknowns, &shifts);
         let correlation = errors.correlation_of_neighbours;
         let points = steady.map_or(&whole[..], |fit| &fit.operating_points);
@@ -239,26 +244,27 @@ struct Advanced {
     chosen: Chosen,
 }
 
-/// Times that a lag is looked for: it is found to first order, and again where it was undone.
-const LAG_ROUNDS: usize = 2;
-
 /// A speed that lags spoils the angle, which comes from it or is made smooth by it: what was found of the lag is undone, and all is chosen
-/// again, with what is left of it unknown: faults that were found beside a wrong angle are bent by it.
-fn with_speed_in_time(log: &Log, choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>) -> Result<Advanced, Error> {
-    let mut found = Advanced { log: None, lag: 0.0, chosen: choose(log, &[])? };
-    let Some(lags) =
-        found.chosen.terms.iter().find(|trial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken).cloned()
-    else {
-        return Ok(found);
+/// again, with what is left of it unknown: faults that were found beside a wrong angle are bent by it. The lag is found to first order, so
+/// what is left is undone once more; this changes no choice.
+fn with_speed_in_time(
+    log: &Log,
+    choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>,
+    again: impl Fn(Chosen, &Log) -> Result<Chosen, Error>,
+) -> Result<Advanced, Error> {
+    let first = choose(log, &[])?;
+    let is_lag = |trial: &&FaultTrial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken;
+    let Some(lags) = first.terms.iter().find(is_lag).cloned() else {
+        return Ok(Advanced { log: None, lag: 0.0, chosen: first });
     };
     let unknown: Vec<Unknown> = Unknown::of_fault(Fault::SpeedLag).collect();
-    for _ in 0..LAG_ROUNDS {
-        let lag = found.lag + found.chosen.drive.faults.speed_lag.time;
-        let advanced = log.without_speed_lag(lag);
-        found = Advanced { chosen: choose(&advanced, &unknown)?, lag, log: Some(advanced) };
-    }
-    found.chosen.terms.insert(0, lags);
-    Ok(found)
+    let lag = first.drive.faults.speed_lag.time;
+    let chosen = choose(&log.without_speed_lag(lag), &unknown)?;
+    let lag = lag + chosen.drive.faults.speed_lag.time;
+    let advanced = log.without_speed_lag(lag);
+    let mut chosen = again(chosen, &advanced)?;
+    chosen.terms.insert(0, lags);
+    Ok(Advanced { log: Some(advanced), lag, chosen })
 }
 
 /// The lag as a whole, where a part of it was undone.

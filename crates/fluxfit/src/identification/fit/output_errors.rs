@@ -21,6 +21,7 @@ use crate::{
     },
 };
 use nalgebra::DMatrix;
+use std::iter::zip;
 
 /// A number of the drive beside the motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -156,6 +157,19 @@ impl Errors {
             open: open(&with_priors, &inverse, unknowns, scale),
             correlation_of_neighbours,
         }
+    }
+
+    /// How far each parameter could be moved by what puts two kinds of fit apart, given their distance, SI: by that distance, or by as many
+    /// standard errors as all parameters lie apart, in the root mean square. That one parameter of two fits that contradict each other
+    /// agrees is chance. R. T. Birge, Physical Review 40, 1932, p. 207, doi:10.1103/PhysRev.40.207, widens errors by such a ratio.
+    pub(super) fn by_contradiction(&self, unknowns: &[Unknown], distance: &[f64; PARAMETERS]) -> [f64; PARAMETERS] {
+        let standard_error = |parameter: &Unknown| {
+            unknowns.iter().position(|unknown| unknown == parameter).map_or(0.0, |k| self.covariance[(k, k)].max(0.0).sqrt())
+        };
+        let errors = MOTOR.each_ref().map(standard_error);
+        let squares: Vec<f64> = zip(distance, &errors).filter(|(_, error)| **error > 0.0).map(|(d, error)| (d / error).powi(2)).collect();
+        let apart = (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt();
+        std::array::from_fn(|p| distance[p].max(apart * errors[p]))
     }
 
     pub(super) fn nuisance(&self, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<FaultEstimate> {
