@@ -95,11 +95,11 @@ impl Identification {
 /// the verdicts say so.
 pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<Identification, Error> {
     request.check()?;
-    let Fitted { model, steady, output, saturation } = fitted(log, request, None, progress)?;
+    let Fitted { model, steady, output, outvoted, saturation } = fitted(log, request, None, progress)?;
     let finding = finding(steady.as_ref(), output.as_ref())?;
     let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
     let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
-    let half_widths = |log: &Log, request: &Request| half_widths(log, request, output.as_ref());
+    let half_widths = |log: &Log, request: &Request| half_widths(log, request, output.as_ref().or(outvoted.as_ref()));
     let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), &half_widths);
     let parameters = explained(judged, finding, Some(trials));
     let method = swarm::method(request, model.model);
@@ -141,6 +141,8 @@ struct Fitted {
     model: ModelChoice,
     steady: Option<SteadyFit>,
     output: Option<OutputFit>,
+    /// The simulated currents, where operating points tell more: what was found of the drive stands.
+    outvoted: Option<OutputFit>,
     saturation: Option<SaturationFinding>,
 }
 
@@ -149,7 +151,7 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
     let _ = progress(Step::OperatingPoints);
     let steady = SteadyFit::of(log, request);
     let model = model::choose(log, request.model);
-    let (steady, output) = match model.model {
+    let (steady, mut output) = match model.model {
         Model::Steady => (Some(steady?), None),
         Model::OutputError => {
             log.refuse_short_circuit()?;
@@ -158,12 +160,17 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
             (steady, Some(output))
         }
     };
-    let (model, mut output) = by_excitation(log, steady.as_ref(), output, model, request)?;
+    let points_answer = by_excitation(log, steady.as_ref(), output.as_mut(), request)?;
+    let (model, mut output, outvoted) = if points_answer {
+        (ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore }, None, output)
+    } else {
+        (model, output, None)
+    };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
     let mut steady = steady;
     // Only now: what all sensors share decides neither the model nor the value.
     common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
-    Ok(Fitted { model, steady, output, saturation })
+    Ok(Fitted { model, steady, output, outvoted, saturation })
 }
 
 /// Half-widths of a log's parameters as fractions of their values, infinite where there is no value; nothing if it has no answer. Of a
@@ -189,24 +196,19 @@ fn losses(steady: Option<&SteadyFit>, output: Option<&OutputFit>) -> Losses {
     }
 }
 
-/// The simulated currents' fit without what they leave open, or the operating points where those tell more and no model is stated.
-fn by_excitation(
-    log: &Log,
-    steady: Option<&SteadyFit>,
-    output: Option<OutputFit>,
-    model: ModelChoice,
-    request: &Request,
-) -> Result<(ModelChoice, Option<OutputFit>), Error> {
-    let Some(mut output) = output else { return Ok((model, None)) };
+/// Whether the operating points answer, because they tell more and no model is stated; else what the simulated currents leave open is left
+/// out of their fit.
+fn by_excitation(log: &Log, steady: Option<&SteadyFit>, output: Option<&mut OutputFit>, request: &Request) -> Result<bool, Error> {
+    let Some(output) = output else { return Ok(false) };
     let of_points = steady.map_or([false; PARAMETERS], |points| points.finding.open);
     // Operating points that tell all parameters excite the currents as well.
     let is_doubtful = steady.is_none() || of_points.contains(&true);
-    let open = if is_doubtful { output_excitation::open(log, &output, &of_points, request)? } else { [false; PARAMETERS] };
-    if request.model.is_none() && steady.is_some_and(|points| points_tell_more(points, &output, &open, !is_control_rate(log), request)) {
-        return Ok((ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore }, None));
+    let open = if is_doubtful { output_excitation::open(log, output, &of_points, request)? } else { [false; PARAMETERS] };
+    if request.model.is_none() && steady.is_some_and(|points| points_tell_more(points, output, &open, !is_control_rate(log), request)) {
+        return Ok(true);
     }
-    output.finding.leave_open(&open, &output_excitation::reach(log, &output, request));
-    Ok((model, Some(output)))
+    output.finding.leave_open(&open, &output_excitation::reach(log, output, request));
+    Ok(false)
 }
 
 /// The finding of the model that answers.
