@@ -230,3 +230,27 @@ fn open(columns: &[Vec<f64>], inverse: &DMatrix<f64>, unknowns: &[Unknown], scal
     };
     unknowns.iter().enumerate().map(range).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motor::Parameter;
+
+    /// Standard errors of 1 and 2; the first moves by three of its own, the second not at all: by sqrt(9 / 2) in the root mean square.
+    #[test]
+    fn parameters_that_agree_are_as_uncertain_as_those_that_contradict_each_other() {
+        let errors = Errors {
+            covariance: DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 4.0]),
+            degrees_of_freedom: 100.0,
+            accuracy: DMatrix::zeros(2, 2),
+            priors: Vec::new(),
+            open: vec![0.0; 2],
+            correlation_of_neighbours: 0.0,
+        };
+        let unknowns = [Parameter::Rs, Parameter::Lq].map(Unknown::Motor);
+        let moved = errors.by_contradiction(&unknowns, &[3.0, 0.0, 0.0, 0.0]);
+        let expected = [3.0, 0.0, 2.0 * 4.5_f64.sqrt(), 0.0];
+        assert!(moved.iter().zip(expected).all(|(moved, expected)| (moved - expected).abs() < 1e-12), "{moved:?}");
+        assert_eq!(errors.by_contradiction(&unknowns, &[0.0; PARAMETERS]), [0.0; PARAMETERS]);
+    }
+}
