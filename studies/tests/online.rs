@@ -2,9 +2,9 @@
 
 use fluxfit_studies::online::{Deficient, rank_deficient};
 
-/// At least 95 % of the printed intervals hold the truth, what is in no equation is never printed, and what the equations determine mostly
-/// is: at one operating point at i_d = 0 `u_d = -omega L_q i_q`, at several speeds also `u_q = R_s i_q + omega psi_f`, at standstill all but
-/// psi_f. R_s is a small part of `u_q` at high speeds.
+/// At least 95 % of the printed intervals hold the truth, and what is in no equation is never printed. What the equations determine is
+/// printed in two thirds of the logs: at one operating point at i_d = 0 `u_d = -omega L_q i_q`, at several speeds also psi_f from u_q (R_s
+/// is a small part of it at high speeds), at standstill all but psi_f.
 #[test]
 fn logs_that_do_not_determine_the_motor_get_no_wrong_intervals() {
     for kind in Deficient::ALL {
