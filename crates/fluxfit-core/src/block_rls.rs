@@ -300,7 +300,7 @@ fn solve_lower<T: Real>(root: &[[T; PARAMETERS]; PARAMETERS], y: &[T; PARAMETERS
     let mut x = *y;
     for row in 0..PARAMETERS {
         for column in 0..row {
-            x[row] = x[row] - root[row][column] * x[column];
+            x[row] -= root[row][column] * x[column];
         }
         x[row] = x[row] / root[row][row];
     }
