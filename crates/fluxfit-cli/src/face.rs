@@ -171,6 +171,7 @@ impl Task {
             identification: Some((&answer.identification, answer.identification.method)),
             held_out: answer.held_out.as_ref().map(|held_out| (&held_out.log, held_out.validation.as_ref())),
             study: None,
+            online: None,
             json: Some(&document),
             origin: &origin,
         });

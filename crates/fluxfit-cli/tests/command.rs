@@ -28,6 +28,9 @@ mod identify;
 #[cfg(unix)]
 #[path = "command/interrupt.rs"]
 mod interrupt;
+#[cfg(target_os = "linux")]
+#[path = "command/live.rs"]
+mod live;
 #[path = "command/pages.rs"]
 mod pages;
 #[path = "command/reading.rs"]

@@ -30,6 +30,13 @@ const UNKNOWN: f64 = 1e9;
 /// A current so many times the rated one is a spike, as in `fluxfit-track`: least squares would remember it.
 const SPIKE: f64 = 20.0;
 
+/// How many times the noise counts against the information of a direction: one that is known has at least as much of it from signals.
+const NOISE_COUNTS: f64 = 2.0;
+
+/// Standard error of a direction that nothing determines, in nominal values: a parameter is no further off than that, and what one
+/// operating point tells of L_q must not depend on an R_s of thousands of ohms.
+const UNDETERMINED: f64 = 10.0;
+
 /// Added to a variance, V², so that none is zero.
 const SMALLEST: f64 = 1e-20;
 
@@ -227,10 +234,10 @@ impl<T: Real> BlockRls<T> {
 
     /// Values and standard errors. An error of 1e9 times the nominal value means that nothing is known yet.
     ///
-    /// A standard error has two parts. The first is the residual's, `s² (R'R)^-1`; it is too large, because the errors of successive
-    /// blocks cancel each other. The second is the bias by the noise of the currents in the coefficients, `-(R'R)^-1 C z` with `C` the
-    /// part of the squared coefficients that noise explains. The noise is taken as large as it can be: as if all of the residual came from
-    /// it. So a parameter that is excited by nothing but noise has a standard error near one.
+    /// A standard error has two parts. The first is the residual's, `s² (R'R - N)^-1`; it is too large, because the errors of successive
+    /// blocks cancel each other. `N` is twice the part `C` of the squared coefficients that the noise of the currents explains: a direction
+    /// that is excited by no more than noise is known to ten nominal values only. The second is the bias by that noise, `-(R'R)^-1 C z`.
+    /// The noise is taken as large as it can be: as if all of the residual came from it.
     pub fn estimate(&self) -> Estimate<T> {
         let root = self.with_priors();
         let (z, inverse) = (self.with_fixed(root.solve()), root.inverse());
@@ -245,8 +252,10 @@ impl<T: Real> BlockRls<T> {
         }
         let nominal = &self.settings.nominal;
         let mut estimate = Estimate { value: [T::ZERO; PARAMETERS], standard_error: [T::ZERO; PARAMETERS] };
+        let signal = self.signal_part(&inverse, noise, variance);
         for j in 0..PARAMETERS {
-            let squares = (j..PARAMETERS).fold(T::ZERO, |sum, k| sum + inverse[j][k] * inverse[j][k]);
+            let along = solve_lower(&signal, &inverse[j]);
+            let squares = along.iter().fold(T::ZERO, |sum, part| sum + *part * *part);
             let bias = (j..PARAMETERS).fold(T::ZERO, |sum, k| sum + inverse[j][k] * through[k]);
             estimate.value[j] = z[j] * nominal[j];
             let error = if self.freedom < T::of(FEWEST) && self.settings.known[j].is_none() {
@@ -258,4 +267,42 @@ impl<T: Real> BlockRls<T> {
         }
         estimate
     }
+
+    /// The lower triangular root of the part of the equations' information that is no noise, in units of all of it: of `I - W' N W`, given
+    /// `W = R^-1`. A direction without such a part has the little that is known of every motor, and tells nothing of the others.
+    fn signal_part(&self, inverse: &[[T; PARAMETERS]; PARAMETERS], noise: T, variance: T) -> [[T; PARAMETERS]; PARAMETERS] {
+        let mut root = [[T::ZERO; PARAMETERS]; PARAMETERS];
+        let mut is_noise = [false; PARAMETERS];
+        let free = |j: &usize| !self.is_fixed(*j);
+        for row in 0..PARAMETERS {
+            for column in 0..=row {
+                let of_noise =
+                    (0..PARAMETERS).filter(free).fold(T::ZERO, |sum, j| sum + self.by_noise[j] * inverse[j][row] * inverse[j][column]);
+                let whole = if row == column { T::ONE } else { T::ZERO };
+                let before = (0..column).fold(T::ZERO, |sum, k| sum + root[row][k] * root[column][k]);
+                let left = whole - T::of(NOISE_COUNTS) * noise * of_noise - before;
+                if row == column {
+                    let squares = (0..PARAMETERS).filter(free).fold(T::ZERO, |sum, j| sum + inverse[j][row] * inverse[j][row]);
+                    let least = (variance * squares * T::of(1.0 / (UNDETERMINED * UNDETERMINED))).smaller(T::ONE);
+                    is_noise[row] = left <= least;
+                    root[row][row] = left.larger(least).sqrt();
+                } else if !is_noise[column] {
+                    root[row][column] = left / root[column][column];
+                }
+            }
+        }
+        root
+    }
+}
+
+/// `x` of `L x = y` with a lower triangular `L`.
+fn solve_lower<T: Real>(root: &[[T; PARAMETERS]; PARAMETERS], y: &[T; PARAMETERS]) -> [T; PARAMETERS] {
+    let mut x = *y;
+    for row in 0..PARAMETERS {
+        for column in 0..row {
+            x[row] -= root[row][column] * x[column];
+        }
+        x[row] = x[row] / root[row][row];
+    }
+    x
 }

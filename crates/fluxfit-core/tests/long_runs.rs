@@ -1,43 +1,29 @@
 //! Long runs in single precision, and the memory of an estimator.
 
+mod rig;
+
 use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, Period, period::current_after};
-
-const TRUTH: [f32; 4] = [0.958, 5.25e-3, 12e-3, 0.1827];
-
-/// Normal numbers, about: the sum of twelve uniform ones of a linear congruential generator (Numerical Recipes' constants).
-struct Noise(u32);
-
-impl Noise {
-    fn next(&mut self) -> f32 {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            sum += self.0 as f32 / u32::MAX as f32;
-        }
-        sum
-    }
-}
+use rig::{Noise, TRUTH};
 
 /// A motor under a controller whose references step; `steps` periods go to the estimators.
 fn run(steps: u32, mut estimators: impl FnMut(u32, &Period<f32>, [f32; 2])) {
-    let truth = TRUTH.map(f64::from);
     let (mut i, mut noise) = ([0.0_f64, 5.0], Noise(1));
     for k in 0..steps {
         let (id, iq) = (if k / 2500 % 2 == 1 { -2.0 } else { 0.0 }, 9.0);
         let omega = 419.0 + 40.0 * f64::from(k % 20_000) / 20_000.0;
-        let measured = [0, 1].map(|c| i[c] + 0.04 * f64::from(noise.next()));
+        let measured = [0, 1].map(|c| i[c] + noise.next());
         let u = [
-            600.0 * truth[1] * (id - measured[0]) - omega * truth[2] * iq + truth[0] * id,
-            600.0 * truth[2] * (iq - measured[1]) + omega * (truth[1] * id + truth[3]) + truth[0] * iq,
+            600.0 * TRUTH[1] * (id - measured[0]) - omega * TRUTH[2] * iq + TRUTH[0] * id,
+            600.0 * TRUTH[2] * (iq - measured[1]) + omega * (TRUTH[1] * id + TRUTH[3]) + TRUTH[0] * iq,
         ];
         let period = Period { u: u.map(|u| u as f32), omega_e: omega as f32, length: 1e-4 };
-        i = current_after(&truth, i, &Period { u: period.u.map(f64::from), omega_e: f64::from(period.omega_e), length: 1e-4 });
-        estimators(k, &period, [0, 1].map(|c| (i[c] + 0.04 * f64::from(noise.next())) as f32));
+        i = current_after(&TRUTH, i, &Period { u: period.u.map(f64::from), omega_e: f64::from(period.omega_e), length: 1e-4 });
+        estimators(k, &period, [0, 1].map(|c| (i[c] + noise.next()) as f32));
     }
 }
 
 fn worst(values: [f32; 4]) -> f32 {
-    values.iter().zip(TRUTH).map(|(value, truth)| (value / truth - 1.0).abs()).fold(0.0, f32::max)
+    values.iter().zip(TRUTH).map(|(value, truth)| (value / truth as f32 - 1.0).abs()).fold(0.0, f32::max)
 }
 
 /// Three million periods, five minutes at 10 kHz.
@@ -61,8 +47,9 @@ fn single_precision_neither_drifts_nor_loses_its_covariance() {
 /// Garbage is left out and counted: the next samples begin anew.
 #[test]
 fn what_is_no_number_is_left_out() {
-    let mut rls = BlockRls::<f32>::new(BlockRlsSettings { rating: Some([10.0, 419.0]), ..BlockRlsSettings::new(TRUTH) });
-    let mut ekf = Ekf::<f32>::new(EkfSettings::constant(TRUTH, 10.0), [1.0; 4]);
+    let nominal = TRUTH.map(|value| value as f32);
+    let mut rls = BlockRls::<f32>::new(BlockRlsSettings { rating: Some([10.0, 419.0]), ..BlockRlsSettings::new(nominal) });
+    let mut ekf = Ekf::<f32>::new(EkfSettings::constant(nominal, 10.0), [1.0; 4]);
     run(200_000, |k, period, i| {
         let garbage = match k % 1000 {
             500 => (Period { u: [f32::NAN, 0.0], ..*period }, i),

@@ -1,24 +1,9 @@
 //! A filter that begins with an uncertain inductance must not become certain of a wrong one.
 
+mod rig;
+
 use fluxfit_core::{Ekf, EkfSettings, Period, period::current_after};
-
-const TRUTH: [f64; 4] = [0.958, 5.25e-3, 12e-3, 0.1827];
-
-/// Standard deviation of the noise of each current, A.
-const NOISE: f64 = 0.04;
-
-/// Normal numbers, about: the sum of twelve uniform ones of a linear congruential generator (Numerical Recipes' constants).
-struct Noise(u32);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(self.0) / f64::from(u32::MAX)
-        };
-        NOISE * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0)
-    }
-}
+use rig::{NOISE, Noise, TRUTH};
 
 /// The error of L_d over its standard error after 0.1 s at standstill, where only the noise in the control loop excites it; it began 25 %
 /// too large.

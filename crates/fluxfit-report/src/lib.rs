@@ -27,6 +27,7 @@
 //!     identification: Some((&found, None)),
 //!     held_out: None,
 //!     study: None,
+//!     online: None,
 //!     json: None,
 //!     origin: &origin,
 //! });

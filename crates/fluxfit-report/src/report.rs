@@ -8,6 +8,7 @@ use fluxfit::{
     steady::OperatingPoint,
     study::{MethodStudy, comparison::Comparison},
 };
+use fluxfit_track::comparison::OnlineComparison;
 
 /// An identification, a study or both. What is `None` has no section.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +28,8 @@ pub struct Report<'a> {
     pub held_out: Option<(&'a Log, Option<&'a Validation>)>,
     /// The study's settings, and each method with the seconds per run.
     pub study: Option<(&'a Comparison, &'a [(MethodStudy, f64)])>,
+    /// The estimators of a stream on this log.
+    pub online: Option<&'a OnlineComparison>,
     /// The JSON document of the result, which a button of the page saves.
     pub json: Option<&'a str>,
     /// How to reproduce the page.

@@ -5,6 +5,7 @@ use crate::{
     start::Start,
     timing::Timing,
     tracker::{TrackSettings, Tracker},
+    verdict::Tracked,
 };
 use fluxfit::{
     Log, Parameter,
@@ -86,43 +87,101 @@ pub struct OnlineDocument {
     pub estimators: Vec<EstimatorEntry>,
 }
 
+impl OnlineDocument {
+    /// What the numbers are, in a sentence.
+    pub fn explanation(&self) -> String {
+        let reference = if self.truth.is_some() { "the true values" } else { "the batch values" };
+        format!(
+            "{} rows, voltages read as {}; difference to {reference} at the end, %; in brackets what the estimator itself does not call identifiable",
+            self.rows, self.voltage_timing
+        )
+    }
+}
+
+/// How many times of a course are kept: more than a figure of fourteen estimators has pixels for.
+const KEPT: usize = 240;
+
+/// What an estimator told in the course of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// The estimator.
+    pub method: Method,
+    /// What was told of rs, ld, lq and psi_f after each row that is kept.
+    pub told: Vec<[Tracked; PARAMETERS]>,
+}
+
+/// All estimators on one log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OnlineComparison {
+    /// What they end with.
+    pub document: OnlineDocument,
+    /// The rows after which the courses were kept, in ascending order.
+    pub rows: Vec<usize>,
+    /// How they came there.
+    pub courses: Vec<Course>,
+}
+
 /// Runs all estimators over a log.
-pub fn compare_online(log: &Log, timing: Timing, start: &Start, truth: Option<&Motor>, batch: [BatchEntry; PARAMETERS]) -> OnlineDocument {
+pub fn compare_online(
+    log: &Log,
+    timing: Timing,
+    start: &Start,
+    truth: Option<&Motor>,
+    batch: [BatchEntry; PARAMETERS],
+) -> OnlineComparison {
     let columns = log.columns();
+    let every = log.rows().div_ceil(KEPT).max(1);
+    // The last row is always kept.
+    let rows: Vec<usize> = (0..log.rows()).rev().step_by(every).collect::<Vec<_>>().into_iter().rev().collect();
     let run = |method: Method| {
         let mut tracker = Tracker::new(TrackSettings { start: *start, ..TrackSettings::new(method, Some(timing)) });
-        (0..log.rows()).filter_map(|k| columns.row(k)).for_each(|row| tracker.push(&row));
-        let estimate = tracker.estimator().map(crate::Estimator::estimate);
-        let end = |parameter: Parameter| {
-            let j = parameter as usize;
-            let value = estimate.map(|estimate| estimate.values[j]).filter(|value| value.is_finite());
-            let reference = truth.map(|truth| truth.get(parameter)).or(batch[j].value);
-            EndEntry {
-                value,
-                standard_error: estimate
-                    .and_then(|estimate| estimate.standard_errors)
-                    .map(|errors| errors[j])
-                    .filter(|error| error.is_finite()),
-                identifiable: estimate.and_then(|estimate| estimate.identifiable).map(|identifiable| identifiable[j]),
-                error_percent: value
-                    .zip(reference)
-                    .map(|(value, reference)| 100.0 * (value / reference - 1.0))
-                    .filter(|error| error.is_finite()),
+        let mut told = Vec::with_capacity(rows.len());
+        for k in 0..log.rows() {
+            if let Some(row) = columns.row(k) {
+                tracker.push(&row);
             }
-        };
-        EstimatorEntry {
-            method: method.key(),
-            label: method.label(),
-            has_covariance: method.has_covariance(),
-            parameters: ByParameter::each(end),
+            if rows.get(told.len()) == Some(&k) {
+                told.push(tracker.parameters_or_nothing());
+            }
         }
+        (end(&tracker, truth, &batch), Course { method, told })
     };
-    OnlineDocument {
+    let (estimators, courses) = Method::ALL.map(run).into_iter().unzip();
+    let document = OnlineDocument {
         schema: ONLINE,
         rows: log.rows(),
         voltage_timing: timing.key(),
         truth: truth.map(ByParameter::from),
         batch: batch.into(),
-        estimators: Method::ALL.map(run).to_vec(),
+        estimators,
+    };
+    OnlineComparison { document, rows, courses }
+}
+
+fn end(tracker: &Tracker, truth: Option<&Motor>, batch: &[BatchEntry; PARAMETERS]) -> EstimatorEntry {
+    let method = tracker.settings().method;
+    let estimate = tracker.estimator().map(crate::Estimator::estimate);
+    let end = |parameter: Parameter| {
+        let j = parameter as usize;
+        let value = estimate.map(|estimate| estimate.values[j]).filter(|value| value.is_finite());
+        let reference = truth.map(|truth| truth.get(parameter)).or(batch[j].value);
+        EndEntry {
+            value,
+            standard_error: estimate
+                .and_then(|estimate| estimate.standard_errors)
+                .map(|errors| errors[j])
+                .filter(|error| error.is_finite()),
+            identifiable: estimate.and_then(|estimate| estimate.identifiable).map(|identifiable| identifiable[j]),
+            error_percent: value
+                .zip(reference)
+                .map(|(value, reference)| 100.0 * (value / reference - 1.0))
+                .filter(|error| error.is_finite()),
+        }
+    };
+    EstimatorEntry {
+        method: method.key(),
+        label: method.label(),
+        has_covariance: method.has_covariance(),
+        parameters: ByParameter::each(end),
     }
 }

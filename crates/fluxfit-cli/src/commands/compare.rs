@@ -57,7 +57,7 @@ pub(crate) struct Compare {
     #[arg(long, help_heading = "Prior knowledge", value_name = "FILE")]
     truth: Option<PathBuf>,
     /// Compare the estimators of fluxfit track on this log instead, beside the batch answer
-    #[arg(long, help_heading = "Model", conflicts_with_all = ["model", "runs", "population", "iterations", "tolerance", "target_cost", "id_zero", "methods", "report", "figures"])]
+    #[arg(long, help_heading = "Model", conflicts_with_all = ["model", "runs", "population", "iterations", "tolerance", "target_cost", "id_zero", "methods"])]
     online: bool,
 }
 
@@ -130,6 +130,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
         identification: None,
         held_out: None,
         study: Some((&comparison, &methods)),
+        online: None,
         json: document.as_deref(),
         origin: &report::origin(arguments.log.seed),
     };

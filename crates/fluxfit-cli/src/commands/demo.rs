@@ -53,6 +53,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
         identification: Some((found, found.method)),
         held_out: None,
         study: Some((&comparison, &methods)),
+        online: None,
         json: None,
         origin: &report::origin(arguments.seed),
     };

@@ -132,6 +132,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
         identification: Some((&answer.identification, answer.identification.method)),
         held_out: answer.held_out.as_ref().map(|held_out| (&held_out.log, held_out.validation.as_ref())),
         study: None,
+        online: None,
         json: document.as_deref(),
         origin: &report::origin(arguments.log.seed),
     };

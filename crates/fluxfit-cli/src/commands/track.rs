@@ -3,9 +3,11 @@
 mod alarm;
 mod display;
 mod faults;
+mod live;
 mod source;
 pub(crate) mod state;
 pub(crate) mod tracking;
+mod value;
 
 use super::{Status, input};
 use crate::{

@@ -1,11 +1,14 @@
 //! Lines of words that fit the terminal, wrapped between words; what goes to a pipe or a file is as wide as the narrowest terminal in use.
 
 use std::io::IsTerminal;
-use terminal_size::{Width, terminal_size_of};
+use terminal_size::{Height, Width, terminal_size_of};
 use unicode_width::UnicodeWidthStr;
 
 /// Columns of the narrowest terminal in use, and of what does not go to a terminal.
 const USUAL: usize = 80;
+
+/// Lines of such a terminal.
+const USUAL_LINES: u16 = 24;
 
 /// Longer lines of words are hard to read.
 const WIDEST: usize = 100;
@@ -24,9 +27,15 @@ pub(super) fn width_of_messages() -> Option<usize> {
     if stderr.is_terminal() { of_terminal(terminal_size_of(stderr)) } else { None }
 }
 
-fn of_terminal(size: Option<(Width, terminal_size::Height)>) -> Option<usize> {
+fn of_terminal(size: Option<(Width, Height)>) -> Option<usize> {
     // A terminal that does not know its width says zero.
     size.map(|(Width(columns), _)| usize::from(columns)).filter(|columns| *columns > 0).map(|columns| columns.clamp(NARROWEST, WIDEST))
+}
+
+/// Columns and lines of the terminal on standard error; those of the narrowest in use, where it does not know them.
+pub(crate) fn screen() -> [u16; 2] {
+    let size = terminal_size_of(std::io::stderr()).map(|(Width(columns), Height(lines))| [columns, lines]);
+    size.filter(|size| !size.contains(&0)).unwrap_or([USUAL as u16, USUAL_LINES])
 }
 
 /// Columns that a text takes, without its escape codes.

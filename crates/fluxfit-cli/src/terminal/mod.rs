@@ -15,14 +15,14 @@ use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit::Warning;
 use fluxfit_units::{significant, wording::one_line};
-pub(crate) use lines::{columns, count, width, wrapped};
+pub(crate) use lines::{columns, count, screen, width, wrapped};
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},
     path::Path,
     sync::{
         LazyLock, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, AtomicU8, Ordering},
+        atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering},
     },
     time::Instant,
 };
@@ -40,6 +40,7 @@ static IS_UNREAD: AtomicBool = AtomicBool::new(false);
 
 /// Prints an answer. Whoever closes the pipe early, as `head` does, still gets the report and the other files.
 pub(crate) fn print(text: &str) -> std::io::Result<()> {
+    LIVE.store(0, Ordering::Relaxed);
     let mut out = anstream::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
@@ -194,12 +195,41 @@ pub(crate) fn release_notes() {
     held.into_iter().flatten().for_each(|message| say_note(&message));
 }
 
-/// Replaces the line of present values on a terminal; an empty one removes it.
-pub(crate) fn live(line: &str) {
-    if detail_level() > Detail::Quiet {
-        // Nobody listening on standard error is no reason to stop.
-        let _ = write!(anstream::stderr().lock(), "\r\x1b[2K{line}");
+/// How many lines above the cursor are redrawn in place.
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+
+/// Whether lines may be redrawn in place on standard error.
+pub(crate) fn can_redraw() -> bool {
+    let moves_its_cursor = std::env::var_os("TERM").is_none_or(|terminal| terminal != "dumb");
+    HAS_PROGRESS.load(Ordering::Relaxed) && std::io::stderr().is_terminal() && moves_its_cursor
+}
+
+/// Draws lines in place of those that were drawn last. What is said meanwhile stands above them; an answer leaves them where they are.
+pub(crate) fn live(lines: &str) {
+    let _whole = std::io::stderr().lock();
+    let drawn = LIVE.swap(lines.lines().count(), Ordering::Relaxed);
+    if drawn > 0 {
+        move_cursor(&format!("\x1b[{drawn}A"));
     }
+    for line in lines.lines() {
+        // Nobody listening on standard error is no reason to stop.
+        let _ = write!(anstream::stderr(), "{line}");
+        // The rest of the old line goes; the whole at once would flicker.
+        move_cursor("\x1b[K\n");
+    }
+    move_cursor("\x1b[J");
+}
+
+fn take_live_away() {
+    let drawn = LIVE.swap(0, Ordering::Relaxed);
+    if drawn > 0 {
+        move_cursor(&format!("\x1b[{drawn}A\x1b[J"));
+    }
+}
+
+/// Not through anstream: the cursor moves without colours too.
+fn move_cursor(codes: &str) {
+    let _ = write!(std::io::stderr(), "{codes}");
 }
 
 /// Says that a file was written, and what it is.
@@ -217,8 +247,10 @@ pub(crate) fn refuse_export(file: &Path, why: &str) {
 /// Prints a line on standard error; on a terminal in as many lines as it takes.
 fn say(line: &str) {
     let lines = lines::width_of_messages().map_or_else(|| format!("{line}\n"), |width| lines::wrapped_to(width, "", line));
+    let _whole = std::io::stderr().lock();
+    take_live_away();
     // Nobody listening on standard error is no reason to stop.
-    let _ = write!(anstream::stderr().lock(), "{lines}");
+    let _ = write!(anstream::stderr(), "{lines}");
 }
 
 /// A table without frame: a heading, and rows whose columns after the first `left` are aligned to the right.

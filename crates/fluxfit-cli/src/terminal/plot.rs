@@ -120,7 +120,7 @@ pub(crate) fn courses_of_columns(columns: &[(String, &[[f64; 2]])]) -> String {
 }
 
 /// Numbers with equal steps between them, from end to end.
-fn ticks(from: f64, to: f64, steps: usize) -> impl Iterator<Item = f64> {
+pub(crate) fn ticks(from: f64, to: f64, steps: usize) -> impl Iterator<Item = f64> {
     (0..=steps).map(move |k| from + (to - from) * k as f64 / steps as f64)
 }
 
@@ -171,7 +171,7 @@ fn curve(study: &MethodStudy) -> Vec<(f64, f64)> {
 }
 
 /// The buffer's cells, with their colours.
-fn text(buffer: &Buffer, pens: &[(Color, anstyle::Color)]) -> String {
+pub(crate) fn text(buffer: &Buffer, pens: &[(Color, anstyle::Color)]) -> String {
     let mut text = String::new();
     for y in 0..buffer.area.height {
         let mut line = String::new();

@@ -287,7 +287,14 @@ fn all_estimators_stand_beside_the_batch_answer() {
     let of = |key: &str| estimators.iter().find(|estimator| estimator["method"] == key).unwrap();
     assert!(of("ekf")["rs"]["error_percent"].as_f64().unwrap().abs() < 1.0);
     assert_eq!((&of("mras")["has_covariance"], &of("mras")["rs"]["standard_error"]), (&false.into(), &Value::Null));
-    let run = fluxfit(&["compare", NOISY, "--online"]);
+    let folder = tempfile::tempdir().unwrap();
+    let (report, figures) = (folder.path().join("online.html"), folder.path().join("figures"));
+    let run = fluxfit(&["compare", NOISY, "--online", "--report", report.to_str().unwrap(), "--figures", figures.to_str().unwrap()]);
+    assert!(
+        fs::read_to_string(report).unwrap().contains("Estimators on a stream") && figures.join("estimators.png").exists(),
+        "{}",
+        run.err
+    );
     assert!(run.out.lines().all(|line| line.chars().count() <= 80) && run.out.contains("adaline"), "{}", run.out);
 }
 

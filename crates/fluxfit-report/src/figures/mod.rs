@@ -6,6 +6,7 @@ mod currents;
 mod flux;
 mod intervals;
 mod joint_region;
+mod online;
 mod operating_points;
 mod parameters;
 mod prediction;
@@ -21,8 +22,9 @@ use crate::{
 type MakeFigure = for<'a> fn(&Report<'a>) -> Option<Figure<'a>>;
 
 /// All figures of a report, in the order of the page.
-const FIGURES: [MakeFigure; 11] = [
+const FIGURES: [MakeFigure; 12] = [
     flux::figure,
+    online::figure,
     recording::figure,
     intervals::figure,
     currents::figure,

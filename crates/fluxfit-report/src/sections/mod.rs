@@ -9,6 +9,7 @@ mod faults;
 mod flux;
 mod held_out;
 mod log;
+mod online;
 mod operating_points;
 mod recording;
 mod reproduction;
@@ -29,8 +30,9 @@ use crate::{
 type MakeSection = fn(&Report) -> Option<Section>;
 
 /// All sections of a report, in the order of the page.
-const SECTIONS: [MakeSection; 14] = [
+const SECTIONS: [MakeSection; 15] = [
     answer::section,
+    online::section,
     recording::section,
     explanation::section,
     currents::section,

@@ -200,6 +200,7 @@ fn held_out_data_have_a_section() {
         identification: Some((&found, None)),
         held_out: Some((&kept_out, Some(&validation))),
         study: None,
+        online: None,
         json: None,
         origin: &origin,
     };

@@ -45,6 +45,7 @@ pub(crate) fn report<'a>(log: &'a Log, found: &'a Identification, origin: &'a Or
         identification: Some((found, None)),
         held_out: None,
         study: None,
+        online: None,
         json: None,
         origin,
     }

@@ -7,5 +7,6 @@ mod identification;
 mod interactive;
 mod logs;
 mod markup;
+mod online;
 mod study;
 mod validation;

@@ -38,6 +38,7 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
         identification: None,
         held_out: None,
         study: Some((&comparison, &methods)),
+        online: None,
         json: None,
         origin: &origin,
     };

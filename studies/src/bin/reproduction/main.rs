@@ -57,6 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         identification: None,
         held_out: None,
         study: Some((&comparison, &timed)),
+        online: None,
         json: None,
         origin: &origin,
     };

@@ -1,6 +1,6 @@
 //! `fluxfit compare --online`: the estimators of `track` on a log, beside the batch answer.
 
-use super::super::{Status, input};
+use super::super::{Status, input, report};
 use crate::{
     arguments::LogArguments,
     error::CommandError,
@@ -8,6 +8,7 @@ use crate::{
     terminal::{self, HEADING, table, wrapped},
 };
 use fluxfit::{Parameter, VoltageTiming, identify};
+use fluxfit_report::{Report, figures, html};
 use fluxfit_setup::read_truth;
 use fluxfit_track::{
     Start, Timing,
@@ -18,6 +19,7 @@ use std::path::Path;
 
 /// Runs it.
 pub(super) fn run(arguments: &LogArguments, truth: Option<&Path>) -> Result<Status, CommandError> {
+    report::check(arguments, truth)?;
     let input = input::read(arguments)?;
     let truth = truth.map(read_truth).transpose()?.map(|truth| truth.motor);
     let answer = terminal::working("identifying".to_owned(), || {
@@ -35,21 +37,30 @@ pub(super) fn run(arguments: &LogArguments, truth: Option<&Path>) -> Result<Stat
     });
     let motor = &input.motor;
     let start = Start { values: [motor.rs, motor.ld, motor.lq, motor.psi_f], ..Start::default() };
-    let document = terminal::working("tracking".to_owned(), || compare_online(&input.log, timing, &start, truth.as_ref(), batch));
+    let comparison = terminal::working("tracking".to_owned(), || compare_online(&input.log, timing, &start, truth.as_ref(), batch));
+    let document = json::text(&comparison.document)?;
     if arguments.json {
-        terminal::print(&json::text(&document)?)?;
+        terminal::print(&document)?;
     } else {
-        terminal::print(&shown(&input.name, &document))?;
+        terminal::print(&shown(&input.name, &comparison.document))?;
     }
+    let shown = Report {
+        title: &input.title,
+        log: &answer.log,
+        notes: &input.said(),
+        operating_points: answer.identification.operating_points(),
+        identification: Some((&answer.identification, answer.identification.method)),
+        held_out: None,
+        study: None,
+        online: Some(&comparison),
+        json: Some(&document),
+        origin: &report::origin(arguments.seed),
+    };
+    report::write(arguments.report.as_deref(), || html(&shown), arguments.figures.as_deref(), || figures(&shown))?;
     Ok(Status::Complete)
 }
 
 fn shown(name: &str, document: &OnlineDocument) -> String {
-    let reference = if document.truth.is_some() { "the true values" } else { "the batch values" };
-    let about = format!(
-        "{} rows, voltages read as {}; difference to {reference} at the end, %; in brackets what the estimator itself does not call identifiable",
-        document.rows, document.voltage_timing
-    );
     let cell = |end: &EndEntry| {
         let error = end.error_percent.map_or_else(|| "-".to_owned(), |error| significant(error, 2));
         if end.identifiable == Some(false) { format!("[{error}]") } else { error }
@@ -67,5 +78,5 @@ fn shown(name: &str, document: &OnlineDocument) -> String {
     let last = vec!["batch, its noise".to_owned(), bound(&of.rs), bound(&of.ld), bound(&of.lq), bound(&of.psi_f), "yes".to_owned()];
     let symbols = Parameter::ALL.map(Parameter::symbol);
     let heading = ["", symbols[0], symbols[1], symbols[2], symbols[3], "covariance"];
-    format!("{HEADING}{name}{HEADING:#}\n{}\n{}", wrapped("", &about), table(&heading, 1, rows.chain([last])))
+    format!("{HEADING}{name}{HEADING:#}\n{}\n{}", wrapped("", &document.explanation()), table(&heading, 1, rows.chain([last])))
 }

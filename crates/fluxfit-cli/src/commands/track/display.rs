@@ -1,16 +1,19 @@
 //! What is told while a motor is followed, and at the end.
 
-use super::tracking::Tracking;
+use super::{
+    live::Courses,
+    tracking::Tracking,
+    value::{margin, shown},
+};
 use crate::terminal::{self, HEADING, table, wrapped};
 use fluxfit::Parameter;
-use fluxfit_track::{Thermometer, Tracked, Tracker};
-use fluxfit_units::{Scale, significant};
-use std::io::IsTerminal;
+use fluxfit_track::{Thermometer, Tracker};
+use fluxfit_units::significant;
 
 /// How it is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
-    /// A table at the end; on a terminal, the present values while it runs.
+    /// A table at the end; on a terminal, the courses while it runs.
     Table,
     Csv,
     Json,
@@ -20,12 +23,12 @@ pub(super) enum Format {
 #[derive(Debug)]
 pub(super) struct Lines {
     format: Format,
-    is_live: bool,
+    courses: Option<Courses>,
 }
 
 impl Lines {
     pub(super) fn new(format: Format) -> Self {
-        Self { format, is_live: format == Format::Table && std::io::stderr().is_terminal() }
+        Self { format, courses: (format == Format::Table && terminal::can_redraw()).then(Courses::new) }
     }
 
     /// The header.
@@ -42,26 +45,25 @@ impl Lines {
     }
 
     /// Tells what is known now.
-    pub(super) fn show(&self, tracking: &Tracking, last: bool) -> std::io::Result<()> {
+    pub(super) fn show(&mut self, tracking: &Tracking, last: bool) -> std::io::Result<()> {
         match self.format {
             Format::Json => row(&(serde_json::to_string(&tracking.document(last))? + "\n")),
             Format::Csv => row(&csv(&tracking.tracker, tracking.thermometer.as_ref())),
-            Format::Table if self.is_live => {
-                terminal::live(&live(&tracking.tracker));
+            Format::Table => {
+                if let Some(courses) = &mut self.courses {
+                    courses.show(&tracking.tracker, last);
+                }
                 Ok(())
             }
-            Format::Table => Ok(()),
         }
     }
 
     /// Tells the state at the end.
-    pub(super) fn end(&self, name: &str, tracking: &Tracking) -> std::io::Result<()> {
-        if self.is_live {
-            terminal::live("");
-        }
+    pub(super) fn end(&mut self, name: &str, tracking: &Tracking) -> std::io::Result<()> {
+        self.show(tracking, true)?;
         match self.format {
             Format::Table => terminal::print(&at_the_end(name, &tracking.tracker, tracking.thermometer.as_ref())),
-            Format::Csv | Format::Json => self.show(tracking, true),
+            Format::Csv | Format::Json => Ok(()),
         }
     }
 }
@@ -85,22 +87,6 @@ fn csv(tracker: &Tracker, thermometer: Option<&Thermometer>) -> String {
     line + &format!(",{},{}\n", number(winding), number(magnets))
 }
 
-fn shown(parameter: Parameter, tracked: &Tracked) -> (String, String) {
-    let Some(value) = tracked.value else { return ("-".to_owned(), String::new()) };
-    let scale = Scale::for_value(parameter, value);
-    let error = tracked.standard_error.unwrap_or(value.abs() * 1e-3);
-    (scale.format(value, error), scale.unit(parameter.unit()))
-}
-
-/// A line for a terminal.
-fn live(tracker: &Tracker) -> String {
-    let values = Parameter::ALL.into_iter().zip(tracker.parameters_or_nothing()).map(|(parameter, tracked)| {
-        let (value, unit) = shown(parameter, &tracked);
-        format!("{} {value} {unit}", parameter.symbol())
-    });
-    format!("{:.1} s  {}", tracker.time(), values.collect::<Vec<_>>().join("  "))
-}
-
 fn at_the_end(name: &str, tracker: &Tracker, thermometer: Option<&Thermometer>) -> String {
     let parameters = tracker.parameters_or_nothing();
     let (timing, is_settled) = tracker.timing();
@@ -114,11 +100,7 @@ fn at_the_end(name: &str, tracker: &Tracker, thermometer: Option<&Thermometer>) 
     );
     let rows = Parameter::ALL.into_iter().zip(&parameters).map(|(parameter, tracked)| {
         let (value, unit) = shown(parameter, tracked);
-        let margin = match (tracked.half_width(), tracked.value) {
-            (Some(half_width), Some(value)) => format!("±{} %", significant(100.0 * half_width / value.abs(), 2)),
-            _ => String::new(),
-        };
-        vec![parameter.symbol().to_owned(), value, unit, margin, tracked.verdict.to_string()]
+        vec![parameter.symbol().to_owned(), value, unit, margin(tracked), tracked.verdict.to_string()]
     });
     let mut text = format!("{HEADING}{name}{HEADING:#}\n{}\n{}", wrapped("", &about), table(&["", "value", "", "95 %", "now"], 1, rows));
     let told = thermometer.map(|thermometer| thermometer.read(&parameters));
