@@ -66,8 +66,8 @@ const FLEET_SECTIONS: [fn(&FleetReport) -> Option<Section>; 6] = [
     fleet::parameters::section,
     fleet::apart::section,
     fleet::drift::section,
-    fleet::motors::section,
     fleet::causes::section,
+    fleet::motors::section,
     reproduction::fleet_section,
 ];
 

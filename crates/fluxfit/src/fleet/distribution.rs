@@ -29,8 +29,9 @@ const LIMIT: f64 = 3.5;
 /// Probability that one motor or more of a fleet stands apart by chance.
 pub(super) const CHANCE: f64 = 0.05;
 
-/// Part of the motors within the middle range.
+/// Part of the motors within the middle range, and how many there must be for one to lie outside of it on either side.
 const MIDDLE: f64 = 0.95;
+const WITH_MIDDLE: usize = 40;
 
 /// A parameter over all motors.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,8 +53,8 @@ pub struct Distribution {
 pub struct Typical {
     /// Median of the values.
     pub median: f64,
-    /// The range of the middle 95 % of the motors.
-    pub middle: [f64; 2],
+    /// The range of the middle 95 % of the motors; of fewer than forty that of all.
+    pub range: [f64; 2],
     /// Median of the half-widths of the 95 % intervals.
     pub half_width: f64,
 }
@@ -91,9 +92,10 @@ impl Typical {
     fn of(values: &[(usize, FleetValue)]) -> Option<Self> {
         let sorted: Vec<f64> = values.iter().map(|(_, value)| value.value).collect();
         let part = |part: f64| quantile(&sorted, part);
+        let outside = if sorted.len() < WITH_MIDDLE { 0.0 } else { 0.5 * (1.0 - MIDDLE) };
         Some(Self {
             median: part(0.5)?,
-            middle: [part(0.5 * (1.0 - MIDDLE))?, part(0.5 * (1.0 + MIDDLE))?],
+            range: [part(outside)?, part(1.0 - outside)?],
             half_width: median_of(values.iter().map(|(_, value)| value.half_width))?,
         })
     }

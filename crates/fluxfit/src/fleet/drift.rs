@@ -70,11 +70,7 @@ mod tests {
 
     fn windows(values: &[f64], half_width: f64) -> Vec<FleetRow> {
         let row = |(k, value): (usize, &f64)| {
-            let found = FleetEstimate {
-                verdict: Verdict::Identified,
-                value: Some(FleetValue { value: *value, half_width }),
-                reason: None,
-            };
+            let found = FleetEstimate { verdict: Verdict::Identified, value: Some(FleetValue { value: *value, half_width }), reason: None };
             FleetRow {
                 motor: "m".to_owned(),
                 source: "s".to_owned(),

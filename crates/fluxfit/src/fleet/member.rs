@@ -50,9 +50,10 @@ impl Member {
 
     /// The order in which the worst stand first; equally bad ones by name.
     pub(super) fn worst_first(&self, other: &Self) -> Ordering {
-        Rank::of(&self.best)
-            .worst_first(&Rank::of(&other.best))
+        let (own, others) = (Rank::of(&self.best), Rank::of(&other.best));
+        (own.by_verdicts(&others))
             .then(other.failed.cmp(&self.failed))
+            .then_with(|| own.worst_first(&others))
             .then_with(|| self.best.motor.cmp(&other.best.motor))
     }
 }
@@ -80,10 +81,11 @@ impl Rank {
         Self { standing, refused, weak, widest: widths.fold(0.0, f64::max) }
     }
 
+    fn by_verdicts(&self, other: &Self) -> Ordering {
+        (self.standing.cmp(&other.standing)).then(other.refused.cmp(&self.refused)).then(other.weak.cmp(&self.weak))
+    }
+
     fn worst_first(&self, other: &Self) -> Ordering {
-        (self.standing.cmp(&other.standing))
-            .then(other.refused.cmp(&self.refused))
-            .then(other.weak.cmp(&self.weak))
-            .then(other.widest.total_cmp(&self.widest))
+        self.by_verdicts(other).then(other.widest.total_cmp(&self.widest))
     }
 }

@@ -18,7 +18,7 @@ impl Display for FleetOverview {
             (1, 1, ..) => write!(f, "1 motor, all {PARAMETERS} parameters identified.")?,
             (1, _, 1, _) => write!(f, "1 motor, fewer than {PARAMETERS} parameters identified.")?,
             (1, ..) => write!(f, "1 motor, without an answer.")?,
-            (_, all, ..) if all == motors => write!(f, "{motors} motors, all {PARAMETERS} parameters identified of each.")?,
+            (_, all, ..) if all == motors => write!(f, "{motors} motors, each with all {PARAMETERS} parameters identified.")?,
             (_, _, _, all) if all == motors => write!(f, "{motors} motors, none with an answer.")?,
             _ => write!(
                 f,
@@ -33,7 +33,7 @@ impl Display for FleetOverview {
         let drifting = self.drifting();
         if !drifting.is_empty() {
             let verb = if drifting.len() == 1 { "drifts" } else { "drift" };
-            write!(f, " {} {verb}, most of all {}.", drifting.len(), names(&drifting[..1]))?;
+            write!(f, " {} {verb}: {}.", drifting.len(), names(&drifting))?;
         }
         Ok(())
     }

@@ -56,10 +56,7 @@ impl Motors {
     /// The refusal.
     pub(crate) fn check(&self) -> Result<MotorFile, CommandError> {
         let log = &self.identify.log;
-        let stated = [
-            ("--json", log.json),
-            ("--window", !log.window.is_empty()),
-        ];
+        let stated = [("--json", log.json), ("--window", !log.window.is_empty())];
         let stated = stated.into_iter().filter(|(_, is_stated)| *is_stated).map(|(option, _)| option);
         if let Some(option) = stated.chain(self.identify.outputs_of_one()).next() {
             return Err(CommandError::Usage(format!("{option} is for one motor; leave it out, or identify that motor alone")));

@@ -46,7 +46,8 @@ fn needed() -> impl Iterator<Item = String> {
 /// Refuses a table that holds something else.
 fn check(names: &[String]) -> Result<(), FileError> {
     needed().find(|needed| !names.contains(needed)).map_or(Ok(()), |missing| {
-        let sentence = format!("these are no results of a fleet: there is no column {missing}; to identify motors, name the results with -o");
+        let sentence =
+            format!("these are no results of a fleet: there is no column {missing}; to identify motors, name the results with -o");
         Err(FileError::new(FileErrorKind::Columns, sentence))
     })
 }

@@ -38,6 +38,10 @@ const LEAST_BARS: usize = 8;
 /// How far outliers stretch an axis to either side, as a part of the range of the other motors.
 const STRETCH: f64 = 0.5;
 
+/// Heights of the outliers within the axis and of the arrows to those beyond, as parts of the panel's.
+const CIRCLES: f64 = 0.25;
+const ARROWS: f64 = 0.8;
+
 /// Outliers with a name.
 const NAMED: usize = 6;
 
@@ -73,7 +77,7 @@ fn draw(fleet: &FleetOverview, shown: &[(&Distribution, Typical)], size: Size) -
     let label = shown.iter().map(|(distribution, typical)| {
         let parameter = distribution.parameter;
         let scale = Scale::for_value(parameter, typical.median);
-        let error = typical.middle[1] - typical.middle[0];
+        let error = typical.range[1] - typical.range[0];
         let unit = unit(parameter, &scale);
         format!("{} of {} motors, median {} {unit}", parameter.symbol(), distribution.values.len(), scale.format(typical.median, error))
     });
@@ -141,7 +145,7 @@ fn paint(area: &Area, fleet: &FleetOverview, distribution: &Distribution, typica
         Some(bars) => {
             histogram(&mut chart, &plot, &bars)?;
             typical_interval(area, &mut chart, typical, 1.15 * most)?;
-            outliers(area, &mut chart, &plot, fleet, distribution)
+            outliers(area, &mut chart, &plot, fleet, distribution, size)
         }
         None => lines(area, &mut chart, fleet, distribution),
     }
@@ -189,24 +193,21 @@ fn interval(area: &Area, chart: &mut Chart, value: FleetValue, y: f64, ink: Ink)
 }
 
 /// The motors that stand apart, in the lower third of the panel; the farthest of them have names.
-fn outliers(area: &Area, chart: &mut Chart, plot: &Plot, fleet: &FleetOverview, distribution: &Distribution) -> Drawn {
-    let y = 0.35 * plot.y.high;
-    let (mut points, mut names) = (Vec::new(), Vec::new());
-    for (k, Outlier { motor, value, .. }) in distribution.outliers.iter().enumerate() {
-        let at = value.value.clamp(plot.x.low, plot.x.high);
-        let (x, height) = chart.place(at, y);
-        if at == value.value {
-            interval(area, chart, *value, y, Ink::Q)?;
-        } else {
-            let tip = if value.value < at { -7 * UNITS } else { 7 * UNITS };
-            let arrow = vec![(x - tip, height - 5 * UNITS), (x, height), (x - tip, height + 5 * UNITS)];
-            area.draw(&PathElement::new(arrow, line(Ink::Q, 2.0)))?;
-        }
-        if let Some(member) = fleet.motors.get(*motor).filter(|_| k < NAMED) {
-            points.push((x / UNITS, height / UNITS));
-            names.push(short(&member.best.motor));
-        }
+fn outliers(area: &Area, chart: &mut Chart, plot: &Plot, fleet: &FleetOverview, distribution: &Distribution, size: Size) -> Drawn {
+    let (x, y) = (&plot.x, CIRCLES * plot.y.high);
+    let name = |outlier: &Outlier| fleet.motors.get(outlier.motor).map(|member| short(&member.best.motor)).unwrap_or_default();
+    let (below, others): (Vec<&Outlier>, Vec<&Outlier>) = distribution.outliers.iter().partition(|outlier| outlier.value.value < x.low);
+    let (above, within): (Vec<&Outlier>, Vec<&Outlier>) = others.into_iter().partition(|outlier| outlier.value.value > x.high);
+    for outlier in &within {
+        interval(area, chart, outlier.value, y, Ink::Q)?;
     }
+    let place = |outlier: &&&Outlier| {
+        let (x, y) = chart.place(outlier.value.value, y);
+        (x / UNITS, y / UNITS)
+    };
+    let named: Vec<&&Outlier> = within.iter().take(NAMED).collect();
+    let points: Vec<(i32, i32)> = named.iter().map(place).collect();
+    let names: Vec<String> = named.iter().map(|outlier| name(outlier)).collect();
     let (width, height) = area.dim_in_pixel();
     let room = (width as i32 / UNITS, height as i32 / UNITS);
     for (place, name) in places(&points, &names, room).into_iter().zip(&names) {
@@ -214,12 +215,26 @@ fn outliers(area: &Area, chart: &mut Chart, plot: &Plot, fleet: &FleetOverview, 
             area.draw_text(name, &anchored(Ink::Q, HPos::Center, VPos::Center), (x * UNITS, y * UNITS))?;
         }
     }
+    for (beyond, edge, towards, anchor) in [(below, x.low, 1, HPos::Left), (above, x.high, -1, HPos::Right)] {
+        if beyond.is_empty() {
+            continue;
+        }
+        // An arrow to the edge, and the names inside.
+        let (tip, y) = chart.place(edge, ARROWS * plot.y.high);
+        let (tip, back) = (tip + 3 * towards * UNITS, tip + 10 * towards * UNITS);
+        area.draw(&PathElement::new(vec![(back, y - 5 * UNITS), (tip, y), (back, y + 5 * UNITS)], line(Ink::Q, 2.0)))?;
+        let mut names: Vec<String> = beyond.iter().take(size.pick(3, 1)).map(|outlier| name(outlier)).collect();
+        let more = beyond.len() - names.len();
+        names.extend((more > 0).then(|| format!("{more} more")));
+        area.draw_text(&names.join(", "), &anchored(Ink::Q, anchor, VPos::Center), (back + 6 * towards * UNITS, y))?;
+    }
     Ok(())
 }
 
 /// Each motor's value with its interval, in order of the motors' names.
 fn lines(area: &Area, chart: &mut Chart, fleet: &FleetOverview, distribution: &Distribution) -> Drawn {
-    let named = distribution.values.iter().filter_map(|(motor, value)| Some((fleet.motors.get(*motor)?.best.motor.as_str(), *motor, *value)));
+    let named =
+        distribution.values.iter().filter_map(|(motor, value)| Some((fleet.motors.get(*motor)?.best.motor.as_str(), *motor, *value)));
     let mut named: Vec<(&str, usize, FleetValue)> = named.collect();
     named.sort_by(|one, other| one.0.cmp(other.0));
     let motors = named.len() as f64;

@@ -27,8 +27,8 @@ use plotters::{
 /// Height of a panel, pixels.
 const PANEL: u32 = 190;
 
-/// Room for names at the right, pixels.
-const NAMES: i32 = 130;
+/// Room for names at the right, pixels: wide and narrow.
+const NAMES: (i32, i32) = (140, 104);
 
 /// Windows of a curve that are drawn: of more, every second, third, … one.
 const POINTS: usize = 300;
@@ -99,7 +99,7 @@ fn paint(area: &Area, fleet: &FleetOverview, parameter: Parameter, drifts: &[&Dr
         curve.iter().flat_map(move |(_, value, half)| [value - bars * half, value + bars * half])
     });
     let (x_name, y_name) = (format!("time since the first window, {unit}"), format!("{}, change in %", parameter.symbol()));
-    let y = Axis::around(ends.chain([0.0]), 4);
+    let y = Axis::around(ends.chain([0.0]), 6);
     let tick = |axis: &Axis, value: f64| axis.label(value);
     let x = Axis::between(0.0, end.max(f64::MIN_POSITIVE), size.pick(6, 3));
     let (of_x, of_y) = (x.clone(), y.clone());
@@ -109,7 +109,7 @@ fn paint(area: &Area, fleet: &FleetOverview, parameter: Parameter, drifts: &[&Dr
         x_name: &x_name,
         y_name: &y_name,
         left: 50,
-        right: NAMES,
+        right: size.pick(NAMES.0, NAMES.1),
         x_label: &|value| tick(&of_x, value),
         y_label: &|value| minus(tick(&of_y, value)),
     };

@@ -1,57 +1,57 @@
-//! The motors that stand apart from the others.
+//! The motors that stand apart from the others: one row for each, with the distances of all its parameters.
 
-use super::{measured, signed_percent};
+use super::{Shown, signed_percent};
 use crate::{
     report::FleetReport,
     section::Section,
     table,
-    typography::{grouped, minus, symbol},
+    typography::{DASH, grouped, symbol},
 };
 use fluxfit::{
-    fleet::{LEAST_MOTORS, Outlier},
+    fleet::{FleetOverview, LEAST_MOTORS, Member},
     motor::Parameter,
 };
-use maud::html;
+use maud::{Markup, html};
 
 /// Motors that are listed.
-const LISTED: usize = 20;
+const LISTED: usize = 15;
 
 /// The section; none of a fleet of which no motor stands apart.
 pub(crate) fn section(report: &FleetReport) -> Option<Section> {
     let fleet = report.fleet;
-    let of = |distribution: &fluxfit::fleet::Distribution| {
-        let parameter = distribution.parameter;
-        distribution.outliers.iter().map(move |outlier| (parameter, *outlier)).collect::<Vec<_>>()
-    };
-    let mut outliers: Vec<(Parameter, Outlier)> = fleet.distributions.iter().flat_map(of).collect();
-    outliers.sort_by(|(_, one), (_, other)| other.deviations.abs().total_cmp(&one.deviations.abs()));
-    let (listed, more) = (outliers.len().min(LISTED), outliers.len().saturating_sub(LISTED));
+    let motors = fleet.apart();
+    let (listed, more) = (motors.len().min(LISTED), motors.len().saturating_sub(LISTED));
     let content = html! {
         (table::scrolling("Motors that stand apart", &html! {
             table {
-                thead { tr {
-                    th scope="col" { "Motor" } th scope="col" { "Parameter" } th scope="col" { "Value" } th scope="col" { "From the median" }
-                    th scope="col" { "In standard deviations" }
-                } }
-                tbody { @for (parameter, outlier) in &outliers[..listed] {
-                    @if let Some(member) = fleet.motors.get(outlier.motor) {
-                        tr {
-                            th.name scope="row" { (member.best.motor) }
-                            td { (symbol(*parameter)) }
-                            td { (measured(*parameter, outlier.value)) }
-                            td { (signed_percent(outlier.distance)) }
-                            td { (minus(format!("{:+.1}", outlier.deviations))) }
-                        }
-                    }
+                thead { tr { th scope="col" { "Motor" } @for parameter in Parameter::ALL { th scope="col" { (symbol(parameter)) " from the median" } } } }
+                tbody { @for member in &motors[..listed] {
+                    tr { th.name scope="row" { (member.best.motor) } @for parameter in Parameter::ALL { (cell(fleet, member, parameter)) } }
                 } }
             }
         }))
-        @if more > 0 { p { "And " (grouped(more as u64)) " more, which are nearer to the others." } }
+        @if more > 0 { p { "And " (grouped(more as u64)) " more motors that are nearer to the others." } }
         p.small {
-            "A motor stands apart if it is farther from the median than its own interval and the spread of the motors explain together. Of "
-            "twenty fleets of equal motors one has a motor that does so by chance. Fewer than " (LEAST_MOTORS) " motors are not compared. "
-            "Where several parameters of a motor are off by one factor, look for a wrong unit, number of pole pairs or scale in its log."
+            "A motor stands apart, in red, if it is farther from the median than its own interval and the spread of the motors explain together. "
+            "Of twenty fleets of equal motors one has a motor that does so by chance. Fewer than " (LEAST_MOTORS) " motors are not compared. "
+            "If several parameters of a motor are off by one factor, look for a wrong unit, number of pole pairs or scale in its log."
         }
     };
-    (!outliers.is_empty()).then_some(Section { anchor: "apart", heading: "Motors that stand apart", content })
+    (!motors.is_empty()).then_some(Section { anchor: "apart", heading: "Motors that stand apart", content })
+}
+
+/// The distance from the median, and the value.
+fn cell(fleet: &FleetOverview, member: &Member, parameter: Parameter) -> Markup {
+    let distribution = fleet.distributions.iter().find(|one| one.parameter == parameter);
+    let value = member.best.estimates.get(parameter as usize).and_then(|estimate| estimate.found());
+    let (Some(distribution), Some(value)) = (distribution, value) else { return html! { td { (DASH) } } };
+    let Some(typical) = distribution.typical else { return html! { td { (DASH) } } };
+    let is_apart = |motor: usize| fleet.motors.get(motor).is_some_and(|other| other.best.motor == member.best.motor);
+    let is_apart = distribution.outliers.iter().any(|outlier| is_apart(outlier.motor));
+    html! {
+        td.apart[is_apart] {
+            (signed_percent((value.value - typical.median) / typical.median.abs()))
+            br; span.basis { (Shown::of(fleet, parameter).measured(value)) }
+        }
+    }
 }

@@ -4,7 +4,7 @@ use crate::{
     report::FleetReport,
     section::Section,
     table,
-    typography::{capitalized, grouped, prose},
+    typography::{grouped, prose},
 };
 use fluxfit::fleet::Cause;
 use maud::{Markup, html};
@@ -39,7 +39,7 @@ pub(crate) fn section(report: &FleetReport) -> Option<Section> {
             }
         }
     };
-    (listed > 0 || !warnings.is_empty()).then_some(Section { anchor: "causes", heading: "Why answers are missing", content })
+    (listed > 0 || !warnings.is_empty()).then_some(Section { anchor: "causes", heading: "Reasons and warnings", content })
 }
 
 fn row(cause: &Cause) -> Markup {
@@ -47,7 +47,7 @@ fn row(cause: &Cause) -> Markup {
     html! {
         tr {
             td { (grouped(cause.motors as u64)) }
-            td.words { (prose(&capitalized(&cause.missing.to_string()))) }
+            td.words { (prose(&cause.missing.to_string())) }
             td.words { (prose(&cause.example)) }
             td.words { (cause.names.join(", ")) @if more > 0 { " and " (grouped(more as u64)) " more" } }
         }

@@ -7,22 +7,41 @@ pub(super) mod motors;
 pub(super) mod parameters;
 
 use crate::typography::{number, unit};
-use fluxfit::{fleet::FleetValue, motor::Parameter};
+use fluxfit::{
+    fleet::{FleetOverview, FleetValue},
+    motor::Parameter,
+};
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
-/// A value with its unit and, in percent, half of its 95 % interval.
-fn measured(parameter: Parameter, value: FleetValue) -> Markup {
-    html! {
-        (alone(parameter, value))
-        @if value.is_found() { " ±" (percent(value.relative_half_width())) "\u{a0}%" }
-    }
+/// How values of a parameter are written on a page: all with the unit of the fleet's median, so that they can be compared.
+struct Shown {
+    scale: Scale,
+    unit: String,
 }
 
-/// A value with its unit, and the digits that it is known to.
-fn alone(parameter: Parameter, value: FleetValue) -> Markup {
-    let scale = Scale::for_value(parameter, value.value);
-    html! { (number(value.value, |value_| scale.format(value_, value.half_width))) "\u{a0}" (unit(parameter, &scale)) }
+impl Shown {
+    fn of(fleet: &FleetOverview, parameter: Parameter) -> Self {
+        let typical = fleet.distributions.iter().find(|one| one.parameter == parameter).and_then(|one| one.typical);
+        // Given values have no distribution; the motor with the first one stands for all.
+        let given = || fleet.motors.iter().find_map(|motor| motor.best.estimates.get(parameter as usize)?.value);
+        let usual = typical.map(|typical| typical.median).or_else(|| Some(given()?.value));
+        let scale = Scale::for_value(parameter, usual.unwrap_or_default());
+        Self { unit: unit(parameter, &scale), scale }
+    }
+
+    /// A value with its unit, and the digits that it is known to.
+    fn alone(&self, value: f64, half_width: f64) -> Markup {
+        html! { (number(value, |value| self.scale.format(value, half_width))) "\u{a0}" (self.unit) }
+    }
+
+    /// The same with half of its 95 % interval in percent.
+    fn measured(&self, value: FleetValue) -> Markup {
+        html! {
+            (self.alone(value.value, value.half_width))
+            @if value.is_found() { " ±" (percent(value.relative_half_width())) "\u{a0}%" } @else { " (given)" }
+        }
+    }
 }
 
 /// A fraction in percent, two digits.
@@ -32,6 +51,6 @@ fn percent(fraction: f64) -> String {
 
 /// A fraction in percent with its sign.
 fn signed_percent(fraction: f64) -> String {
-    let digits = number(100.0 * fraction.abs(), |percent| significant(percent, 3));
+    let digits = number(100.0 * fraction.abs(), |percent| if percent < 1.0 { format!("{percent:.2}") } else { format!("{percent:.1}") });
     format!("{}{digits}\u{a0}%", if fraction < 0.0 { "\u{2212}" } else { "+" })
 }
