@@ -15,7 +15,7 @@ use fluxfit_answer::export::Target;
 use fluxfit_drive::{Recording, simulate};
 use fluxfit_files::{FileErrorKind, write_atomically};
 use fluxfit_log::{MemoryTable, document::InspectionDocument, inspect as inspect_log, read_table};
-use fluxfit_report::{Origin, Report, html};
+use fluxfit_report::{Report, html};
 use fluxfit_setup::{GivenMotor, ReadScenario, paper_scenario, read_given_motor, read_motor, read_scenario, truth_of};
 use serde_json::{Map, Value};
 use std::{ffi::OsString, ops::ControlFlow, path::Path, sync::Arc};
@@ -270,17 +270,6 @@ impl Fleet {
     /// If the name has another ending, or the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Refusal> {
         Ok(fleet::table::write(path, self.0.iter())?)
-    }
-
-    /// Writes the page of the fleet; `call` says how it can be made again.
-    ///
-    /// # Errors
-    /// If the name is none of a page, or the file cannot be written.
-    pub fn report(&self, path: &Path, title: &str, call: &str) -> Result<(), Refusal> {
-        report::check_name(path)?;
-        let seed = self.0.first().and_then(|row| row.get("seed")?.as_u64()).unwrap_or_default();
-        let origin = Origin { command: call.to_owned(), ..report::origin(seed) };
-        Ok(write_atomically(path, fleet::page::html(title, &self.0, &origin).as_bytes())?)
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod journal;
 pub(crate) mod motors;
-pub(crate) mod page;
+mod page;
 mod results;
 pub(crate) mod row;
 pub(crate) mod table;

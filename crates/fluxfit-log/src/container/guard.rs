@@ -18,8 +18,8 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls `foreign`, and turns a panic in it into an error: for the containers, and for a reader of such files that are no logs. `foreign` must not
-/// call code of this project that could panic.
+/// Calls `foreign`, and turns a panic in it into an error: for the containers, and for readers of such files that are no logs.
+/// `foreign` must not call code of this project that could panic.
 ///
 /// # Errors
 /// That of `foreign`, or that the file is damaged.

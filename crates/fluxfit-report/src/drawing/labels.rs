@@ -46,6 +46,15 @@ pub(crate) fn spread(wanted: &[i32], apart: i32) -> Vec<i32> {
     groups.into_iter().flat_map(|group| (0..group.0).map(move |k| first(group) + k * apart)).collect()
 }
 
+/// Characters of a name beside a point.
+const NAME: usize = 14;
+
+/// A motor's name, of a long one the end: files of one directory differ there.
+pub(crate) fn short(name: &str) -> String {
+    let letters = name.chars().count();
+    if letters <= NAME { name.to_owned() } else { format!("…{}", name.chars().skip(letters + 1 - NAME).collect::<String>()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,6 +75,11 @@ mod tests {
         let points = [(50, 50); 20];
         let placed = places(&points, &vec!["10".to_owned(); 20], (100, 100));
         assert!(placed.iter().flatten().count() < 20 && placed[0].is_some());
+    }
+
+    #[test]
+    fn a_long_name_is_known_by_its_end() {
+        assert_eq!(["m7", "logs/2026/drive_0001.csv"].map(short), ["m7", "…rive_0001.csv"]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use fluxfit::{
     Parameter, Verdict,
     fleet::{FleetEstimate, FleetOverview, FleetRow, FleetValue},
 };
-use fluxfit_report::{FleetReport, Origin, fleet_figures, fleet_html};
+use fluxfit_report::{FleetReport, fleet_figures, fleet_html};
 use fluxfit_units::wording::one_line;
 use serde_json::Value;
 
@@ -24,11 +24,6 @@ pub(super) fn write(title: &str, rows: &[Row], log: &LogArguments) -> Result<(),
     let (overview, origin) = (overview(rows), report::origin(log.seed));
     let shown = FleetReport { title, fleet: &overview, origin: &origin };
     report::write(log.report.as_deref(), || fleet_html(&shown), log.figures.as_deref(), || fleet_figures(&shown))
-}
-
-/// The page of rows.
-pub(crate) fn html(title: &str, rows: &[Row], origin: &Origin) -> String {
-    fleet_html(&FleetReport { title, fleet: &overview(rows), origin })
 }
 
 fn overview(rows: &[Row]) -> FleetOverview {

@@ -1,11 +1,10 @@
 //! The parameters of a fleet: of few motors each value with its interval, of many a histogram with the typical interval; outliers by name.
 
-use super::short;
 use crate::{
     drawing::{
         axis::Axis,
         canvas::{Area, Drawing, Drawn, UNITS, anchored, line, shade, solid},
-        labels::places,
+        labels::{places, short},
         palette::Ink,
         plot::{Chart, Plot},
         size::Size,

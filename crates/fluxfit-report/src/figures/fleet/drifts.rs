@@ -1,11 +1,10 @@
 //! Parameters that drift: the largest movements of each parameter from window to window.
 
-use super::short;
 use crate::{
     drawing::{
         axis::Axis,
         canvas::{Area, Drawing, Drawn, UNITS, anchored, line, solid},
-        labels::{NAMES_APART, spread},
+        labels::{NAMES_APART, short, spread},
         palette::Ink,
         plot::Plot,
         size::Size,
