@@ -78,11 +78,10 @@ impl Causes {
 
 /// A sentence without the names of motor and file, and with one sign for each number.
 fn kind(sentence: &str, row: &FleetRow) -> String {
+    // Sentences name the motor in one of these ways; a short name is a usual word too, and is looked for last.
     let label = format!("motor {} of {}", row.motor, row.source);
-    let mut text = sentence.replace(&label, "*");
-    for name in [&row.source, &row.motor] {
-        text = without_word(&text, name);
-    }
+    let without = [&label, &row.source, &row.motor].map(|name| without_word(sentence, name));
+    let text = without.into_iter().find(|text| text != sentence).unwrap_or_else(|| sentence.to_owned());
     let mut kind = String::new();
     for character in text.chars() {
         if !(character.is_ascii_digit() || (character == '.' && kind.ends_with('#'))) {
