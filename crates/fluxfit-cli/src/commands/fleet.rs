@@ -27,6 +27,7 @@ use work::{Onlooker, work};
 #[derive(Debug, Clone, Args)]
 #[command(mut_arg("json", |arg| arg.hide(true)), mut_arg("export", |arg| arg.hide(true)), mut_arg("hold_out", |arg| arg.hide(true)))]
 #[command(mut_arg("bandwidth", |arg| arg.hide(true)), mut_arg("control_rate", |arg| arg.hide(true)), mut_arg("window", |arg| arg.hide(true)))]
+#[command(mut_arg("logs", |arg| arg.help(LOGS)))]
 pub(crate) struct Fleet {
     #[command(flatten)]
     motors: Motors,
@@ -36,6 +37,9 @@ pub(crate) struct Fleet {
     #[arg(short, long, help_heading = "Fleet", value_name = "RESULTS", required_unless_present_any = ["report", "figures"])]
     output: Option<PathBuf>,
 }
+
+/// The help of the logs.
+const LOGS: &str = "Logs of one motor each, or with --by tables of many; without -o, finished results";
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Fleet) -> Result<Status, CommandError> {

@@ -47,7 +47,7 @@ pub(crate) fn section(report: &FleetReport) -> Option<Section> {
         @if more > 0 { p { "And " (grouped(more as u64)) " more that move less." } }
         p.small {
             "Tested for each motor and parameter: whether one value suits all windows. Of twenty fleets that stay as they are one has a "
-            "movement by chance. R" sub { "s" } " and ψ" sub { "f" } " move with the temperature: copper 3.9 % and magnets −0.1 to −0.2 % for 10 K."
+            "movement by chance. R" sub { "s" } " and ψ" sub { "f" } " move with the temperature: copper by +3.9 % for 10 K, magnets by −1 to −2 %."
         }
     };
     (fleet.followed > 0).then_some(Section { anchor: "drift", heading: "Drift", content })
