@@ -50,7 +50,7 @@ mod reading;
 mod records;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
-pub use container::{CONTAINERS, Container};
+pub use container::{CONTAINERS, Container, guarded};
 pub use groups::{Group, GroupColumn, GroupRows, no_motor_names, no_motors_column, read_groups};
 pub use memory_table::{MemoryColumn, MemoryTable, ReadRows};
 pub use note::Note;

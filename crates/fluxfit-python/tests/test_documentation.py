@@ -11,7 +11,7 @@ import pytest
 
 from conftest import ROOT
 
-MODULES = ["fluxfit", "fluxfit._api", "fluxfit._fleet", "fluxfit.spark", "fluxfit._identification", "fluxfit._log", "fluxfit._optimize", "fluxfit._toml", "fluxfit._track"]
+MODULES = ["fluxfit", "fluxfit._api", "fluxfit._fleet", "fluxfit.spark", "fluxfit._identification", "fluxfit._log", "fluxfit._optimize", "fluxfit._toml", "fluxfit._track", "fluxfit._words"]
 PAGES = ["README.md", "crates/fluxfit-python/README.md", "docs/python.md"]
 
 

@@ -22,7 +22,7 @@ def test_the_items_are_the_lines_of_the_command(rig: Path, columns: "dict[str, A
     assert list(fluxfit.track(rig)) == by_command(str(rig))
     words = ["--every", "50ms", "--method", "mras", "--start", "rs=1", "--voltage-timing", "1"]
     expected = by_command(str(rig), *words)
-    assert list(fluxfit.track(columns, every=0.05, method="mras", start={"rs": 1.0}, voltage_timing=1)) == expected
+    assert list(fluxfit.track(columns, every=np.float64(0.05), method="mras", start={"rs": 1.0}, voltage_timing=1)) == expected
 
 
 def test_samples_and_blocks_of_any_length_give_the_same(rig: Path) -> None:

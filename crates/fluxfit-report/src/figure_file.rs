@@ -2,8 +2,9 @@
 
 use crate::{
     drawing::size::Size,
-    figures::{of_report, of_validation},
-    report::{Report, ValidationReport},
+    figure::Figure,
+    figures::{of_fleet, of_report, of_validation},
+    report::{FleetReport, Report, ValidationReport},
 };
 use resvg::{
     tiny_skia::{Pixmap, Transform},
@@ -51,7 +52,7 @@ fn rendered(svg: &str) -> Option<Vec<u8>> {
 
 /// The figures of a report, wide and for white paper, in the order of the page.
 pub fn figures(report: &Report) -> Vec<FigureFile> {
-    of_report(report).iter().map(|figure| FigureFile { name: figure.name, svg: (figure.draw)(Size::Wide).on_paper(FAMILY) }).collect()
+    on_paper(&of_report(report))
 }
 
 /// The figures of a report for a screen: their colours follow the reader's light or dark scheme.
@@ -61,6 +62,14 @@ pub fn screen_figures(report: &Report, size: Size) -> Vec<FigureFile> {
 
 /// The figures of a validation, wide and for white paper.
 pub fn validation_figures(report: &ValidationReport) -> Vec<FigureFile> {
-    let figures = of_validation(report);
+    on_paper(&of_validation(report))
+}
+
+/// The figures of a fleet, wide and for white paper.
+pub fn fleet_figures(report: &FleetReport) -> Vec<FigureFile> {
+    on_paper(&of_fleet(report))
+}
+
+fn on_paper(figures: &[Figure]) -> Vec<FigureFile> {
     figures.iter().map(|figure| FigureFile { name: figure.name, svg: (figure.draw)(Size::Wide).on_paper(FAMILY) }).collect()
 }

@@ -1,4 +1,4 @@
-//! Reports: one HTML file that opens offline, and its figures as SVG and PNG.
+//! Reports of a log, of a validation and of a fleet: one HTML file that opens offline, and its figures as SVG and PNG.
 //!
 //! The page loads nothing, and its one script makes no request; without scripts it has the same content. It is readable on a telephone, on
 //! a wide screen, in a dark scheme and on paper. A parameter that is not identifiable has no number on it. The same input gives the same
@@ -69,6 +69,6 @@ mod table;
 mod typography;
 
 pub use drawing::size::Size;
-pub use figure_file::{FigureFile, figures, screen_figures, validation_figures};
-pub use page::{html, validation_html};
-pub use report::{Origin, Report, ValidationReport};
+pub use figure_file::{FigureFile, figures, fleet_figures, screen_figures, validation_figures};
+pub use page::{fleet_html, html, validation_html};
+pub use report::{FleetReport, Origin, Report, ValidationReport};

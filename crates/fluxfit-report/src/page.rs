@@ -4,7 +4,7 @@ use crate::{
     drawing::palette,
     figure::Figure,
     figures, headline, interactive,
-    report::{Origin, Report, ValidationReport},
+    report::{FleetReport, Origin, Report, ValidationReport},
     section::Section,
     sections,
     typography::prose,
@@ -30,6 +30,12 @@ pub fn validation_html(report: &ValidationReport) -> String {
     let title = format!("{} on {}", report.motor, report.title);
     let summary = html! { (sections::badge(report.found.outcome)) " " (prose(&report.found.verdict())) };
     document(&title, &summary, &sections::of_validation(report), &figures::of_validation(report), (report.json, report.origin))
+}
+
+/// The results of a fleet as an HTML document.
+pub fn fleet_html(report: &FleetReport) -> String {
+    let summary = html! { strong { (prose(&report.fleet.to_string())) } };
+    document(report.title, &summary, &sections::of_fleet(report), &figures::of_fleet(report), (None, report.origin))
 }
 
 fn document(title: &str, summary: &Markup, sections: &[Section], figures: &[Figure], (json, origin): (Option<&str>, &Origin)) -> String {

@@ -3,6 +3,7 @@
 use fluxfit::{
     Validation,
     evidence::Identification,
+    fleet::FleetOverview,
     log::Log,
     optimizer::Method,
     steady::OperatingPoint,
@@ -62,6 +63,17 @@ pub struct ValidationReport<'a> {
     pub found: &'a Validation,
     /// The JSON document of the result, which a button of the page saves.
     pub json: Option<&'a str>,
+    /// How to reproduce the page.
+    pub origin: &'a Origin,
+}
+
+/// The results of a fleet.
+#[derive(Debug, Clone, Copy)]
+pub struct FleetReport<'a> {
+    /// Heading of the page, such as the name of the results.
+    pub title: &'a str,
+    /// What the results say.
+    pub fleet: &'a FleetOverview,
     /// How to reproduce the page.
     pub origin: &'a Origin,
 }

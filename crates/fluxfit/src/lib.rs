@@ -44,6 +44,7 @@
 //! | [`evidence`] | what an answer rests on: the fits, their uncertainty, what was tried |
 //! | [`steady`], [`objective`], [`least_squares`], [`levenberg_marquardt`] | the methods, for those who compare them |
 //! | [`faults`] | the drive's imperfections that are looked for: dead time, angle offset, current sensors, saturation |
+//! | [`fleet`] | what the results of many motors say together: distributions, outliers, drift, causes |
 //! | [`optimizer`], [`study`], [`paper`] | swarm optimizers, many runs of them, and what the paper states |
 //! | [`current_loop`] | the current controllers' gains for a wanted bandwidth |
 //!
@@ -58,6 +59,7 @@ pub mod document;
 pub mod error;
 pub mod evidence;
 pub mod faults;
+pub mod fleet;
 pub mod frames;
 mod identification;
 mod lanes;

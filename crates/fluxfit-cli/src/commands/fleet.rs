@@ -3,11 +3,13 @@
 
 mod journal;
 pub(crate) mod motors;
+mod page;
+mod results;
 pub(crate) mod row;
 pub(crate) mod table;
 pub(crate) mod work;
 
-use super::Status;
+use super::{Status, input, report};
 use crate::{error::CommandError, interrupt, terminal};
 use clap::Args;
 use fluxfit::Parameter;
@@ -23,20 +25,43 @@ use std::{
 use work::{Onlooker, work};
 
 #[derive(Debug, Clone, Args)]
-#[command(mut_arg("json", |arg| arg.hide(true)), mut_arg("report", |arg| arg.hide(true)), mut_arg("figures", |arg| arg.hide(true)))]
-#[command(mut_arg("export", |arg| arg.hide(true)), mut_arg("hold_out", |arg| arg.hide(true)), mut_arg("bandwidth", |arg| arg.hide(true)))]
-#[command(mut_arg("control_rate", |arg| arg.hide(true)), mut_arg("window", |arg| arg.hide(true)))]
+#[command(mut_arg("json", |arg| arg.hide(true)), mut_arg("export", |arg| arg.hide(true)), mut_arg("hold_out", |arg| arg.hide(true)))]
+#[command(mut_arg("bandwidth", |arg| arg.hide(true)), mut_arg("control_rate", |arg| arg.hide(true)), mut_arg("window", |arg| arg.hide(true)))]
+#[command(mut_arg("logs", |arg| arg.help(LOGS)))]
 pub(crate) struct Fleet {
     #[command(flatten)]
     motors: Motors,
     /// The results: one row for each motor and window, as .parquet or .csv
-    #[arg(short, long, help_heading = "Fleet", value_name = "RESULTS")]
-    output: PathBuf,
+    ///
+    /// Without it, the logs are finished results, of which --report or --figures shows the page.
+    #[arg(short, long, help_heading = "Fleet", value_name = "RESULTS", required_unless_present_any = ["report", "figures"])]
+    output: Option<PathBuf>,
 }
+
+/// The help of the logs.
+const LOGS: &str = "Logs of one motor each, or with --by tables of many; without -o, finished results";
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Fleet) -> Result<Status, CommandError> {
     let Fleet { motors, output } = arguments;
+    let log = &motors.identify.log;
+    report::check(log, output.as_deref())?;
+    let rows = match output {
+        Some(output) => identified(motors, output)?,
+        None => finished(motors).map(Some)?,
+    };
+    let Some(rows) = rows else { return Ok(Status::Incomplete) };
+    let count = Count::of(&rows);
+    terminal::print(&format!("{count}.\n"))?;
+    if let Some(output) = output {
+        terminal::wrote("results", output);
+    }
+    page::write(&title(motors, output.as_deref()), &rows, log)?;
+    Ok(if count.whole == count.rows { Status::Complete } else { Status::Incomplete })
+}
+
+/// The rows of all motors, which are written as results; `None` if the run was interrupted.
+fn identified(motors: &Motors, output: &Path) -> Result<Option<Vec<Row>>, CommandError> {
     let motor = motors.check()?;
     let mut journal = open(motors, &motor, output)?;
     if journal.motors() > 0 {
@@ -49,13 +74,27 @@ pub(crate) fn run(arguments: &Fleet) -> Result<Status, CommandError> {
     drop(progress);
     if interrupt::exit_status().is_some() {
         terminal::note(&format!("{} motors are finished; the same command goes on", journal.motors()));
-        return Ok(Status::Incomplete);
+        return Ok(None);
     }
     interrupt::doing("writing the results");
-    let count = Count::of(&finish(journal, Some(output))?);
-    terminal::print(&format!("{count}.\n"))?;
-    terminal::wrote("results", output);
-    Ok(if count.whole == count.rows { Status::Complete } else { Status::Incomplete })
+    finish(journal, Some(output)).map(Some)
+}
+
+/// The rows of finished results, which stand in place of the logs.
+fn finished(motors: &Motors) -> Result<Vec<Row>, CommandError> {
+    if motors.by.is_some() || motors.every.is_some() {
+        return Err(CommandError::Usage("--by and --every are for motors to be identified; name their results with -o".to_owned()));
+    }
+    results::read(&motors.identify.log.logs)
+}
+
+/// What the page is of.
+fn title(motors: &Motors, output: Option<&Path>) -> String {
+    match (output, motors.identify.log.logs.as_slice()) {
+        (Some(output), _) => input::file_name(output),
+        (None, [one]) => input::file_name(one),
+        (None, several) => format!("{} files of results", several.len()),
+    }
 }
 
 /// The rows of a fleet for another face: of the logs, or of a table in their place; as a file too, with a journal beside it. None if

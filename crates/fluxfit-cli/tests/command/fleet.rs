@@ -213,6 +213,73 @@ fn windows_show_what_changes() {
 }
 
 #[test]
+fn the_page_is_that_of_the_results_whether_they_are_new_or_finished() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let (log, csv, page) = (at("fleet.csv"), at("results.csv"), at("fleet.html"));
+    let one_point: String = motor("point", 1.0).lines().take(100).map(|line| format!("{line}\n")).collect();
+    fs::write(&log, table(12) + &motor("standing", 1.0).replace(",400\n", ",0\n") + &one_point).unwrap();
+    let run = fleet(&log, &csv, &["--report", page.to_str().unwrap(), "--figures", at("figures").to_str().unwrap()]);
+    assert_eq!(run.status, 1, "{}", run.err);
+    let shown = |path: &Path| {
+        let text = fs::read_to_string(path).unwrap();
+        // How it was made differs, and so does the heading.
+        let (_, body) = text.split_once("<p class=\"found\">").unwrap();
+        body.split_once("id=\"reproduce\"").unwrap().0.to_owned()
+    };
+    let first = shown(&page);
+    assert!(first.contains("14 motors: 12 with all 4 parameters identified, 1 with fewer, 1 without an answer."), "{first}");
+    assert!(first.contains("is zero in every row") && at("figures/distributions.png").exists());
+    // The same page from finished results of either format.
+    let parquet = at("results.parquet");
+    fleet(&log, &parquet, &[]);
+    for results in [&csv, &parquet] {
+        let again = at("again.html");
+        let run = fluxfit(&["fleet", results.to_str().unwrap(), "--report", again.to_str().unwrap()]);
+        assert_eq!((run.status, run.out.contains("14 motors, 14 rows")), (1, true), "{}{}", run.out, run.err);
+        assert!(shown(&again) == first, "{}", results.display());
+    }
+    // A run that is started again for its page goes on where it was: the page is no reason to begin anew.
+    let journal = |words: &[&str]| {
+        let output = at("other.csv");
+        let mut child = Command::new(env!("CARGO_BIN_EXE_fluxfit"));
+        child.args(["-q", "fleet", log.to_str().unwrap(), "--by", "motor_id", "-o", output.to_str().unwrap()]).args(words);
+        child.output().unwrap()
+    };
+    fs::write(at("other.csv.journal"), "").unwrap();
+    assert_eq!(journal(&["--report", at("other.html").to_str().unwrap()]).status.code(), Some(1));
+    assert!(shown(&at("other.html")) == first);
+}
+
+#[test]
+fn a_table_that_is_no_result_is_refused_as_one() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+    let (log, results, page) = (at("fleet.csv"), at("results.csv"), at("fleet.html"));
+    fs::write(&log, table(1)).unwrap();
+    fleet(Path::new(&log), Path::new(&results), &[]);
+    let text = fs::read_to_string(&results).unwrap();
+    fs::write(at("word.csv"), text.replacen(",identified,", ",splendid,", 1)).unwrap();
+    fs::write(at("short.csv"), text.trim_end().rsplit_once(',').unwrap().0).unwrap();
+    fs::write(at("damaged.parquet"), "PAR1 and then nothing").unwrap();
+    for (words, sentence) in [
+        (&[log.as_str()][..], "these are no results of a fleet: there is no column motor; to identify motors, name the results with -o"),
+        (&[&at("word.csv")], "\"splendid\" is not one of the values"),
+        (&[&at("short.csv")], "the row has"),
+        (&[&at("damaged.parquet")], "damaged.parquet: this is not Parquet"),
+        (&[&results, "--every", "1h"], "name their results with -o"),
+        (&[&results, "--report", "fleet.pdf"], "writes an HTML page"),
+    ] {
+        let report = if words.contains(&"--report") { vec![] } else { vec!["--report", &page] };
+        let run = fluxfit(&[&["fleet"], words, &report].concat());
+        assert!(run.status == 2 && run.err.contains(sentence), "{sentence}: {}", run.err);
+        assert!(!Path::new(&page).exists());
+    }
+    let run = fluxfit(&["fleet", &log]);
+    assert!(run.status == 2 && run.err.contains("--output"), "{}", run.err);
+}
+
+#[test]
 fn misuse_is_refused_before_the_work() {
     let directory = tempfile::tempdir().unwrap();
     let (log, output) = (directory.path().join("fleet.csv"), directory.path().join("results.csv"));

@@ -18,8 +18,12 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls `foreign`, and turns a panic in it into an error. `foreign` must not call code of this project that could panic.
-pub(super) fn guarded<T>(format: &'static str, foreign: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
+/// Calls `foreign`, and turns a panic in it into an error: for the containers, and for readers of such files that are no logs.
+/// `foreign` must not call code of this project that could panic.
+///
+/// # Errors
+/// That of `foreign`, or that the file is damaged.
+pub fn guarded<T>(format: &'static str, foreign: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
     static QUIET: Once = Once::new();
     // The panic hook belongs to the whole process: outside of guarded calls it works as before.
     QUIET.call_once(|| {

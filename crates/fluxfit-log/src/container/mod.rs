@@ -16,6 +16,7 @@ mod random_access;
 #[cfg(test)]
 mod tests;
 
+pub use guard::guarded;
 pub(crate) use limits::MOST_COLUMNS;
 pub(crate) use random_access::RandomAccess;
 

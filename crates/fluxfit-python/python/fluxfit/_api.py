@@ -84,7 +84,7 @@ def identify(
             bandwidth=bandwidth,
             control_rate=control_rate,
             hold_out=hold_out,
-            dbc=None if dbc is None else os.fspath(dbc),
+            dbc=dbc,
             seed=seed,
         ),
     ]
@@ -110,7 +110,7 @@ def read_log(
     Raises `FileError` or `DataError`: one sentence with file, line, column and remedy.
     """
     logs, table = logs_and_table(data)
-    words = [*_words.columns(mapping, unit), *_words.options(pole_pairs=pole_pairs, dbc=None if dbc is None else os.fspath(dbc))]
+    words = [*_words.columns(mapping, unit), *_words.options(pole_pairs=pole_pairs, dbc=dbc)]
     columns, notes = _fluxfit.read_log(["identify", *words, "--", *logs], table)
     return Log(columns, notes)
 
@@ -127,7 +127,7 @@ def inspect(
 
     Raises `FileError` or `DataError` if the file is no table; a table that is no log is inspected all the same.
     """
-    words = [*_words.columns(mapping, unit), *_words.options(pole_pairs=pole_pairs, dbc=None if dbc is None else os.fspath(dbc))]
+    words = [*_words.columns(mapping, unit), *_words.options(pole_pairs=pole_pairs, dbc=dbc)]
     document: dict[str, Any] = json.loads(_fluxfit.inspect(["inspect", *words, "--", os.fspath(path)]))
     return document
 
@@ -245,7 +245,7 @@ def compare(
             iterations=iterations,
             model=model,
             pole_pairs=pole_pairs,
-            truth=None if truth is None else os.fspath(truth),
+            truth=truth,
             seed=seed,
         ),
     ]

@@ -52,7 +52,7 @@ def asked(
         *_words.pairs("--fix", fix),
         *_words.options(
             by=by,
-            every=f"{every!r}s" if isinstance(every, (int, float)) else every,
+            every=_words.duration(every),
             jobs=jobs,
             pole_pairs=pole_pairs,
             model=model,
@@ -62,7 +62,7 @@ def asked(
             current_accuracy=current_accuracy,
             bus_accuracy=bus_accuracy,
             magnet_coefficient=magnet_coefficient,
-            dbc=None if dbc is None else os.fspath(dbc),
+            dbc=dbc,
             seed=seed,
         ),
     ]

@@ -121,15 +121,15 @@ def track(
         *_words.priors(prior),
         *_words.pairs("--fix", fix),
         *_words.options(
-            every=f"{every!r}s" if isinstance(every, (int, float)) else every,
+            every=_words.duration(every),
             method=method,
             voltage_timing=voltage_timing,
-            faults=None if faults is None else os.fspath(faults),
+            faults=faults,
             reference_temperature=reference_temperature,
             magnet_coefficient=magnet_coefficient,
-            resume=None if resume is None else os.fspath(resume),
+            resume=resume,
             pole_pairs=pole_pairs,
-            dbc=None if dbc is None else os.fspath(dbc),
+            dbc=dbc,
         ),
     ]
     with _words.motor_file(motor) as named:

@@ -11,12 +11,21 @@ from fluxfit._errors import RequestError
 
 
 def text(value: Any) -> str:
-    """A number with all its digits, or what is written already."""
-    if isinstance(value, str):
-        return value
+    """A number with all its digits, a path, or what is written already."""
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
     if isinstance(value, bool) or not hasattr(value, "__float__"):
         raise RequestError(f"{value!r} is no value; give a number in SI units, or a text with its unit such as '5.25 mH'")
     return repr(int(value)) if isinstance(value, int) else repr(float(value))
+
+
+def duration(value: Any) -> "str | None":
+    """A number of seconds, or what is written already with its unit.
+
+    >>> duration(3600), duration("1h"), duration(None)
+    ('3600s', '1h', None)
+    """
+    return value if value is None or isinstance(value, str) else f"{text(value)}s"
 
 
 def pairs(option: str, entries: "Mapping[str, Any] | None") -> list[str]:

@@ -5,6 +5,7 @@ use crate::{
     drawing::{
         axis::{Axis, power_of_ten},
         canvas::{Area, Drawing, Drawn, UNITS, anchored, line, shade},
+        labels::{NAMES_APART, spread},
         palette::Ink,
         plot::{Chart, Plot},
         size::Size,
@@ -19,9 +20,6 @@ use plotters::{
     element::{Circle, PathElement, Polygon},
     style::text_anchor::{HPos, VPos},
 };
-
-/// Smallest distance between two names, pixels.
-const NAMES_APART: i32 = 16;
 
 /// The figure.
 pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
@@ -208,37 +206,4 @@ fn names(area: &Area, mut ends: Vec<(&MethodStudy, (i32, i32))>) -> Drawn {
         area.draw_text(study.method.label(), &anchored(Ink::Text, HPos::Left, VPos::Center), (x + 34 * UNITS, y))?;
     }
     Ok(())
-}
-
-/// Ascending positions with a minimum distance, as close as possible to the wanted ones: positions that are too close form a group
-/// about their mean.
-fn spread(wanted: &[i32], apart: i32) -> Vec<i32> {
-    // Each group: number of members, and the sum of the positions that its members want for the first one.
-    let mut groups: Vec<(i32, i32)> = Vec::new();
-    let first = |(count, sum): (i32, i32)| sum / count;
-    for y in wanted {
-        groups.push((1, *y));
-        while let [.., (count, sum), (next_count, next_sum)] = groups[..]
-            && first((next_count, next_sum)) < first((count, sum)) + count * apart
-        {
-            groups.truncate(groups.len() - 2);
-            groups.push((count + next_count, sum + next_sum - next_count * count * apart));
-        }
-    }
-    groups.into_iter().flat_map(|group| (0..group.0).map(move |k| first(group) + k * apart)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::spread;
-
-    #[test]
-    fn names_keep_their_distance() {
-        assert_eq!(spread(&[10, 100, 200], 16), [10, 100, 200]);
-        assert_eq!(spread(&[100, 100], 16), [92, 108]);
-        assert_eq!(spread(&[100, 100, 100, 300], 16), [84, 100, 116, 300]);
-        // The second group is merged with the first.
-        assert_eq!(spread(&[100, 104, 110], 16), [88, 104, 120]);
-        assert!(spread(&[], 16).is_empty());
-    }
 }

@@ -3,6 +3,7 @@
 mod autocorrelation;
 mod convergence;
 mod currents;
+mod fleet;
 mod flux;
 mod intervals;
 mod joint_region;
@@ -15,7 +16,7 @@ mod voltage_residuals;
 
 use crate::{
     figure::Figure,
-    report::{Report, ValidationReport},
+    report::{FleetReport, Report, ValidationReport},
 };
 
 /// Makes a figure of a report; `None` if the report lacks its data.
@@ -45,4 +46,9 @@ pub(crate) fn of_report<'a>(report: &Report<'a>) -> Vec<Figure<'a>> {
 /// The figures of a validation.
 pub(crate) fn of_validation<'a>(report: &ValidationReport<'a>) -> Vec<Figure<'a>> {
     prediction::of_validation(report).into_iter().collect()
+}
+
+/// The figures of a fleet.
+pub(crate) fn of_fleet<'a>(report: &FleetReport<'a>) -> Vec<Figure<'a>> {
+    [fleet::distributions(report.fleet), fleet::drifts(report.fleet)].into_iter().flatten().collect()
 }

@@ -28,11 +28,12 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
 }
 
 /// A verdict on its background colour.
-fn badge(verdict: Verdict) -> Markup {
+pub(super) fn badge(verdict: Verdict) -> Markup {
     html! { span class={ "badge " (verdict.key()) } { (verdict.key().replace('-', " ")) } }
 }
 
-fn thresholds() -> Markup {
+/// What the verdicts mean.
+pub(super) fn thresholds() -> Markup {
     html! {
         "Half-width of the 95 % interval: " (badge(Verdict::Identified)) " at most " (percent(IDENTIFIED)) " of the value; "
         (badge(Verdict::Weak)) " at most " (percent(WEAK)) "; "

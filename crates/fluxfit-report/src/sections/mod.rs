@@ -6,6 +6,7 @@ mod currents;
 mod estimates;
 mod explanation;
 mod faults;
+mod fleet;
 mod flux;
 mod held_out;
 mod log;
@@ -22,7 +23,7 @@ pub(crate) use flux::saturated;
 pub(crate) use validation::badge;
 
 use crate::{
-    report::{Report, ValidationReport},
+    report::{FleetReport, Report, ValidationReport},
     section::Section,
 };
 
@@ -60,4 +61,19 @@ pub(crate) fn of_report(report: &Report) -> Vec<Section> {
 /// The sections of a validation.
 pub(crate) fn of_validation(report: &ValidationReport) -> Vec<Section> {
     VALIDATION_SECTIONS.iter().map(|make| make(report)).collect()
+}
+
+/// All sections of a fleet, in the order of the page.
+const FLEET_SECTIONS: [fn(&FleetReport) -> Option<Section>; 6] = [
+    fleet::parameters::section,
+    fleet::apart::section,
+    fleet::drift::section,
+    fleet::causes::section,
+    fleet::motors::section,
+    reproduction::fleet_section,
+];
+
+/// The sections of a fleet.
+pub(crate) fn of_fleet(report: &FleetReport) -> Vec<Section> {
+    FLEET_SECTIONS.iter().filter_map(|make| make(report)).collect()
 }

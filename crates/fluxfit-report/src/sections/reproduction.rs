@@ -1,7 +1,7 @@
 //! How to reproduce the page.
 
 use crate::{
-    report::{Origin, Report, ValidationReport},
+    report::{FleetReport, Origin, Report, ValidationReport},
     section::Section,
 };
 use maud::html;
@@ -14,6 +14,11 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
 /// The section of a validation.
 pub(crate) fn validation_section(report: &ValidationReport) -> Section {
     of(report.origin)
+}
+
+/// The section of a fleet.
+pub(crate) fn fleet_section(report: &FleetReport) -> Option<Section> {
+    Some(of(report.origin))
 }
 
 fn of(origin: &Origin) -> Section {

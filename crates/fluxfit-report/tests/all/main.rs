@@ -3,6 +3,7 @@
 //! All integration tests of this crate, linked once; a file per topic.
 
 mod figures;
+mod fleet;
 mod identification;
 mod interactive;
 mod logs;

@@ -3,6 +3,7 @@
 
 mod column_check;
 mod digits;
+mod fleet;
 mod left_out;
 mod model;
 mod nameplate;

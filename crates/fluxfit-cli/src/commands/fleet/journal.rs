@@ -1,7 +1,7 @@
 //! What is finished, beside the results: a line for each motor. Whoever is killed and started again reads it and goes on; a line that was
 //! being written is dropped. With the results it is removed.
 
-use super::row::Row;
+use super::row::{COLUMNS, Row};
 use crate::error::CommandError;
 use serde_json::{Value, json};
 use std::{
@@ -41,7 +41,7 @@ impl Journal {
         let whole = content.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         let text = String::from_utf8_lossy(&content[..whole]);
         let mut lines = text.lines();
-        let head = json!({ "fluxfit fleet": env!("CARGO_PKG_VERSION"), "words": words });
+        let head = json!({ "fluxfit fleet": env!("CARGO_PKG_VERSION"), "columns": COLUMNS.len(), "words": words });
         let mut done = BTreeMap::new();
         match lines.next() {
             None => {

@@ -56,12 +56,7 @@ impl Motors {
     /// The refusal.
     pub(crate) fn check(&self) -> Result<MotorFile, CommandError> {
         let log = &self.identify.log;
-        let stated = [
-            ("--json", log.json),
-            ("--report", log.report.is_some()),
-            ("--figures", log.figures.is_some()),
-            ("--window", !log.window.is_empty()),
-        ];
+        let stated = [("--json", log.json), ("--window", !log.window.is_empty())];
         let stated = stated.into_iter().filter(|(_, is_stated)| *is_stated).map(|(option, _)| option);
         if let Some(option) = stated.chain(self.identify.outputs_of_one()).next() {
             return Err(CommandError::Usage(format!("{option} is for one motor; leave it out, or identify that motor alone")));
@@ -77,11 +72,11 @@ impl Motors {
         self.jobs.map_or(cores, usize::from)
     }
 
-    /// What makes two runs the same: everything but the number of jobs, and what the motor file says in place of its name.
+    /// What makes two runs the same: everything but the number of jobs and the page, and what the motor file says in place of its name.
     pub(crate) fn words(&self, motor: &MotorFile) -> Vec<String> {
         let Self { identify, by, every, jobs: _ } = self;
         let mut identify = identify.clone();
-        identify.log.motor = None;
+        (identify.log.motor, identify.log.report, identify.log.figures) = (None, None, None);
         vec![format!("{identify:?}"), format!("{by:?}"), format!("{every:?}"), format!("{motor:?}")]
     }
 }

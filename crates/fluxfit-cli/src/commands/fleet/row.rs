@@ -22,7 +22,7 @@ pub(crate) enum Kind {
 }
 
 /// The columns of the results.
-pub(crate) const COLUMNS: [(&str, Kind); 31] = [
+pub(crate) const COLUMNS: [(&str, Kind); 35] = [
     ("motor", Kind::Text),
     ("window_start", Kind::Number),
     ("window_end", Kind::Number),
@@ -34,21 +34,25 @@ pub(crate) const COLUMNS: [(&str, Kind); 31] = [
     ("rs_high", Kind::Number),
     ("rs_standard_error", Kind::Number),
     ("rs_verdict", Kind::Text),
+    ("rs_reason", Kind::Text),
     ("ld", Kind::Number),
     ("ld_low", Kind::Number),
     ("ld_high", Kind::Number),
     ("ld_standard_error", Kind::Number),
     ("ld_verdict", Kind::Text),
+    ("ld_reason", Kind::Text),
     ("lq", Kind::Number),
     ("lq_low", Kind::Number),
     ("lq_high", Kind::Number),
     ("lq_standard_error", Kind::Number),
     ("lq_verdict", Kind::Text),
+    ("lq_reason", Kind::Text),
     ("psi_f", Kind::Number),
     ("psi_f_low", Kind::Number),
     ("psi_f_high", Kind::Number),
     ("psi_f_standard_error", Kind::Number),
     ("psi_f_verdict", Kind::Text),
+    ("psi_f_reason", Kind::Text),
     ("warnings", Kind::Text),
     ("error", Kind::Text),
     ("source", Kind::Text),
@@ -123,6 +127,7 @@ fn filled(mut row: Row, answer: &Answer) -> Row {
     for parameter in Parameter::ALL {
         let (judgement, key) = (answer.parameter(parameter), parameter.key());
         row[&format!("{key}_verdict")] = judgement.verdict.key().into();
+        row[&format!("{key}_reason")] = judgement.reason.as_ref().map(ToString::to_string).into();
         if let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) {
             row[key] = json!(value);
             row[&format!("{key}_low")] = json!(low);
@@ -184,7 +189,7 @@ mod tests {
     fn every_parameter_has_its_columns() {
         let names: Vec<&str> = COLUMNS.iter().map(|(name, _)| *name).collect();
         for parameter in Parameter::ALL {
-            for end in ["", "_low", "_high", "_standard_error", "_verdict"] {
+            for end in ["", "_low", "_high", "_standard_error", "_verdict", "_reason"] {
                 assert!(names.contains(&format!("{}{end}", parameter.key()).as_str()));
             }
         }

@@ -36,6 +36,11 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// The verdict of a name in files.
+    pub fn of_key(key: &str) -> Option<Self> {
+        [Self::Identified, Self::Weak, Self::NotIdentifiable].into_iter().find(|verdict| verdict.key() == key)
+    }
+
     /// By half of the 95 % interval, as a fraction of a value that is positive.
     pub(crate) fn of_half_width(fraction: f64) -> Self {
         if fraction <= IDENTIFIED {
