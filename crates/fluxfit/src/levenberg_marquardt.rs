@@ -32,6 +32,13 @@ const NO_STEP: f64 = 1e-9;
 /// The same for fits that are only compared with each other: of ten thousand residuals a thousandth of what noise changes in a cost.
 const NO_STEP_OF_CHOICE: f64 = 1e-7;
 
+/// What such a fit must gain to go on, by twice the logarithm of the odds: a tenth of very strong evidence.
+const WORTH_GOING_ON: f64 = 1.0;
+
+/// It ends after so many evaluations without that gain. Where a current's sign decides, residuals have kinks: derivatives promise what no
+/// step keeps, and steps would be halved twenty times in vain. The first few steps may fail, because they are too long.
+const EVALUATIONS_IN_VAIN: usize = 6;
+
 /// The same for a fit that ends after its first step: any step is small beside it.
 const FIRST_STEP: f64 = 1.0;
 
@@ -76,12 +83,12 @@ pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[
 
 /// [`polish_unknowns`] as far as a comparison of costs needs it.
 pub(crate) fn polish_to_choose(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
-    minimize(objective, start, unknowns, priors, NO_STEP_OF_CHOICE, Differences::Forward, &|_| ())
+    minimize(objective, start, unknowns, priors, Purpose::Choice, &|_| ())
 }
 
 /// The first step of a polish alone.
 pub(crate) fn step(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
-    minimize(objective, start, unknowns, priors, FIRST_STEP, Differences::Forward, &|_| ())
+    minimize(objective, start, unknowns, priors, Purpose::FirstStep, &|_| ())
 }
 
 /// [`polish_unknowns`], which calls `progress` after each step with the number of simulations so far.
@@ -92,7 +99,35 @@ pub fn polish_with_progress(
     priors: &[PriorResidual],
     progress: &dyn Fn(usize),
 ) -> Polished {
-    minimize(objective, start, unknowns, priors, NO_STEP, Differences::Central, progress)
+    minimize(objective, start, unknowns, priors, Purpose::Answer, progress)
+}
+
+/// What a fit is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Purpose {
+    /// An answer.
+    Answer,
+    /// A comparison with other fits.
+    Choice,
+    /// The same, after one step.
+    FirstStep,
+}
+
+impl Purpose {
+    const fn no_step(self) -> f64 {
+        match self {
+            Self::Answer => NO_STEP,
+            Self::Choice => NO_STEP_OF_CHOICE,
+            Self::FirstStep => FIRST_STEP,
+        }
+    }
+
+    const fn differences(self) -> Differences {
+        match self {
+            Self::Answer => Differences::Central,
+            Self::Choice | Self::FirstStep => Differences::Forward,
+        }
+    }
 }
 
 fn minimize(
@@ -100,21 +135,23 @@ fn minimize(
     start: &Adjustable,
     unknowns: &[Unknown],
     priors: &[PriorResidual],
-    no_step: f64,
-    differences: Differences,
+    purpose: Purpose,
     progress: &dyn Fn(usize),
 ) -> Polished {
     let scale: Vec<f64> = unknowns.iter().map(|unknown| start.step_unit(*unknown, objective.peak_current())).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
-    let mut problem = Problem { objective, start, unknowns, priors, scale, differences, simulations: 0, progress, here: None, best: None };
+    let in_vain = InVain { since: f64::INFINITY, evaluations: 0 };
+    let mut problem =
+        Problem { objective, start, unknowns, priors, scale, purpose, simulations: 0, progress, here: None, best: None, in_vain };
     problem.set_params(&units);
     // Beside faults, steps are counted by usual sizes and not by the lengths of the columns: an unknown that does nothing here, as the
     // width of a loss where another limit rules, could go as far as it likes, and when its steps fail, they would hold back all others.
     let is_motor_alone = unknowns.iter().all(|unknown| matches!(unknown, Unknown::Motor(_)));
-    let method = LevenbergMarquardt::new().with_ftol(no_step).with_xtol(no_step).with_patience(PATIENCE);
+    let method = LevenbergMarquardt::new().with_ftol(purpose.no_step()).with_xtol(purpose.no_step()).with_patience(PATIENCE);
     let (problem, report) = method.with_scale_diag(is_motor_alone).minimize(problem);
-    let (drive, cost) = problem.here.map_or((*start, f64::NAN), |here| (here.drive, here.cost));
-    Polished { drive, cost, converged: report.termination.was_successful() }
+    let converged = report.termination.was_successful() || problem.is_enough();
+    let (drive, cost) = problem.best.map_or((*start, f64::NAN), |best| (best.drive, best.cost));
+    Polished { drive, cost, converged }
 }
 
 /// How derivatives are found.
@@ -204,12 +241,20 @@ struct Problem<'a> {
     unknowns: &'a [Unknown],
     priors: &'a [PriorResidual],
     scale: Vec<f64>,
-    differences: Differences,
+    purpose: Purpose,
     simulations: usize,
     progress: &'a dyn Fn(usize),
     here: Option<Point>,
     /// Of all that were set, that of least cost: the one that a step in vain goes back to.
     best: Option<Point>,
+    in_vain: InVain,
+}
+
+/// What was tried without a gain worth going on for.
+struct InVain {
+    /// The cost since then with that of priors, A².
+    since: f64,
+    evaluations: usize,
 }
 
 /// What is known of a point.
@@ -225,10 +270,15 @@ struct Point {
 }
 
 impl Problem<'_> {
+    /// Whether the fit is good enough for what it is for.
+    fn is_enough(&self) -> bool {
+        self.purpose == Purpose::Choice && self.in_vain.evaluations >= EVALUATIONS_IN_VAIN
+    }
+
     fn point(&self, units: &DVector<f64>) -> Point {
         let values = units.iter().zip(&self.scale).map(|(units, scale)| units * scale);
         let drive = self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value));
-        let point = by_differences(self.objective, &[(drive, self.unknowns.to_vec())], self.differences).pop();
+        let point = by_differences(self.objective, &[(drive, self.unknowns.to_vec())], self.purpose.differences()).pop();
         let Linearized { mut residuals, mut slopes } = point.unwrap_or_default();
         let squares = dot(&residuals, &residuals);
         let cost = if squares.is_nan() { f64::INFINITY } else { squares };
@@ -265,8 +315,16 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
             return;
         }
         let point = self.point(units);
-        self.simulations += 1 + if self.differences == Differences::Central { 2 } else { 1 } * self.unknowns.len();
+        self.simulations += 1 + if self.purpose == Purpose::Answer { 2 } else { 1 } * self.unknowns.len();
         (self.progress)(self.simulations);
+        // Twice the logarithm of the odds is the number of residuals times that of the costs' ratio.
+        let residuals = (2 * self.objective.rows()) as f64;
+        let with_priors = point.residuals.norm_squared();
+        self.in_vain = if with_priors < self.in_vain.since * (-WORTH_GOING_ON / residuals).exp() {
+            InVain { since: with_priors, evaluations: 0 }
+        } else {
+            InVain { evaluations: self.in_vain.evaluations + 1, ..self.in_vain }
+        };
         if self.best.as_ref().is_none_or(|best| point.residuals.norm() < best.residuals.norm()) {
             self.best = Some(point.clone());
         }
@@ -278,7 +336,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        self.here.as_ref().map(|here| here.residuals.clone())
+        // Without residuals the minimizer ends.
+        self.here.as_ref().filter(|_| !self.is_enough()).map(|here| here.residuals.clone())
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {

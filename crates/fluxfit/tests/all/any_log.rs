@@ -26,3 +26,12 @@ fn any_bytes_make_a_log_that_is_identified_or_refused() {
         promise(&changed);
     }
 }
+
+/// The fuzzer limits their time, too.
+#[test]
+fn what_the_fuzzer_found_is_identified_or_refused() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/regressions/identification");
+    let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(!files.is_empty(), "{folder} is empty");
+    files.iter().for_each(|file| READERS[0].1(&std::fs::read(file).unwrap()));
+}
