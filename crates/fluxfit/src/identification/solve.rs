@@ -20,7 +20,7 @@ use super::{
         voltage_loss::is_control_rate,
     },
     judge::{
-        points_tell_more::points_tell_more,
+        points_tell_more::{Points, is_narrower, points_tell_more},
         verdict::{Verdict, judge},
     },
     prepare::{
@@ -160,14 +160,14 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
             (steady, Some(output))
         }
     };
-    let points_answer = by_excitation(log, steady.as_ref(), output.as_mut(), request)?;
+    let mut steady = steady;
+    let points_answer = by_excitation(log, &mut steady, output.as_mut(), request)?;
     let (model, mut output, outvoted) = if points_answer {
         (ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore }, None, output)
     } else {
         (model, output, None)
     };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
-    let mut steady = steady;
     // Only now: what all sensors share decides neither the model nor the value.
     common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
     Ok(Fitted { model, steady, output, outvoted, saturation })
@@ -197,15 +197,25 @@ fn losses(steady: Option<&SteadyFit>, output: Option<&OutputFit>) -> Losses {
 }
 
 /// Whether the operating points answer, because they tell more and no model is stated; else what the simulated currents leave open is left
-/// out of their fit.
-fn by_excitation(log: &Log, steady: Option<&SteadyFit>, output: Option<&mut OutputFit>, request: &Request) -> Result<bool, Error> {
+/// out of their fit. Points that answer beside currents of an unknown fault do so with an angle that may be off.
+fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut OutputFit>, request: &Request) -> Result<bool, Error> {
     let Some(output) = output else { return Ok(false) };
-    let of_points = steady.map_or([false; PARAMETERS], |points| points.finding.open);
+    let of_points = steady.as_ref().map_or([false; PARAMETERS], |points| points.finding.open);
     // Operating points that tell all parameters excite the currents as well.
     let is_doubtful = steady.is_none() || of_points.contains(&true);
     let open = if is_doubtful { output_excitation::open(log, output, &of_points, request)? } else { [false; PARAMETERS] };
-    if request.model.is_none() && steady.is_some_and(|points| points_tell_more(points, output, &open, !is_control_rate(log), request)) {
-        return Ok(true);
+    if let Some(points) = steady.as_mut().filter(|_| request.model.is_none()) {
+        match points_tell_more(points, output, &open, !is_control_rate(log), request) {
+            Points::TellMore => return Ok(true),
+            Points::AreNarrower => {
+                let in_doubt = SteadyFit::with_angle_in_doubt(log, request)?;
+                if is_narrower(&in_doubt, output, request) {
+                    *points = in_doubt;
+                    return Ok(true);
+                }
+            }
+            Points::TellLess => {}
+        }
     }
     output.finding.leave_open(&open, &output_excitation::reach(log, output, request));
     Ok(false)

@@ -1,6 +1,6 @@
-//! The angle of a drive whose log has only every n-th of its periods: it may be off, and late.
+//! The angle of a drive where operating points answer: it may be off, and late.
 //!
-//! With the drive's own periods the output error tells both by how the currents move. In steady points an angle that is read too large by
+//! Where simulated currents explain a log, they tell both by how they move. In steady points an angle that is read too large by
 //! `a + omega_e T` is like other inductances, unless loads or speeds differ: so the offset `a` and the delay `T` are unknowns beside the
 //! motor, with priors of the sizes that drives have. With all points turned back by what is known of the two, a further `da` adds
 //!
@@ -11,12 +11,7 @@
 //!
 //! and of an angle that stays unknown the cosine takes a part of the flux.
 
-use super::{
-    super::request::Request,
-    estimate::Estimate,
-    part::Part,
-    voltage_loss::{Loss, is_control_rate},
-};
+use super::{super::request::Request, estimate::Estimate, part::Part, voltage_loss::Loss};
 use crate::{frames::Dq, log::Log, motor::Motor, steady::OperatingPoint};
 
 /// Standard error of the angle, rad: 95 % of the drives within 6 degrees, as an alignment by current leaves it against friction and
@@ -41,15 +36,11 @@ pub(super) struct FrameAngle {
 }
 
 impl FrameAngle {
-    /// Where it may be unknown; not where voltages are exact, not where every period of the drive is there, and not for whoever states the
-    /// steady model: that states its equations, the angle with them.
+    /// Where it may be unknown; not where voltages are exact, and not for whoever states the steady model: that states its equations, the
+    /// angle with them.
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
-        (!is_control_rate(log) && !are_exact && request.model.is_none()).then_some(Self {
-            offset: 0.0,
-            delay: 0.0,
-            errors: [USUAL_OFFSET, USUAL_DELAY],
-        })
+        (!are_exact && request.model.is_none()).then_some(Self { offset: 0.0, delay: 0.0, errors: [USUAL_OFFSET, USUAL_DELAY] })
     }
 
     pub(super) fn turned_back(&self, points: &[OperatingPoint]) -> Vec<OperatingPoint> {

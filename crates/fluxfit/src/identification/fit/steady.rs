@@ -65,11 +65,24 @@ pub struct SteadyFit {
 }
 
 impl SteadyFit {
-    /// Finds the operating points and solves them.
+    /// Finds the operating points and solves them, at the angle as it is where every period of the drive is in the log: simulated currents
+    /// see there what is wrong with it.
     ///
     /// # Errors
     /// If there is none.
     pub fn of(log: &Log, request: &Request) -> Result<Self, Error> {
+        Self::solved(log, request, !is_control_rate(log))
+    }
+
+    /// The same of points that answer because simulated currents do not explain the log: its angle may be off at any rate of the rows.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub(crate) fn with_angle_in_doubt(log: &Log, request: &Request) -> Result<Self, Error> {
+        Self::solved(log, request, true)
+    }
+
+    fn solved(log: &Log, request: &Request, angle_in_doubt: bool) -> Result<Self, Error> {
         let (as_measured, frames) = frames(log, operating_points(log, request)?, request);
         let (mut unturned, mut other_timing) = measure(log, &as_measured, request);
         if recorder::is_recorders(log) {
@@ -77,7 +90,11 @@ impl SteadyFit {
                 recorder::pool_noise(points, windows::least_current(log));
             }
         }
-        let solved = solve(log, (&unturned, other_timing.as_deref()), frames.as_ref(), request);
+        let angle = FrameAngle::possible(log, request).filter(|_| angle_in_doubt);
+        let solved = match &frames {
+            Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
+            None => solve_at_angle(log, &unturned, angle, request),
+        };
         let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solved;
         let timing_doubt = match &other_timing {
             // Of a recorder's log it is one of the unknowns.
@@ -198,14 +215,13 @@ struct Solved {
     lag: Option<FrameLag>,
 }
 
-/// Solves the points beside the losses; where there may be a lag, again with the voltages turned back by what was found of it.
-fn solve(
+/// Solves the points beside the losses and a lag; again with the voltages turned back by what was found of it.
+fn solve_at_lag(
     log: &Log,
     (unturned, other): (&[OperatingPoint], Option<&[OperatingPoint]>),
-    frames: Option<&Frames>,
+    frames: &Frames,
     request: &Request,
 ) -> Solved {
-    let Some(frames) = frames else { return solve_at_angle(log, unturned, request) };
     let (mut lag, mut psi_f) = (frames.lag, frame_lag::rough_flux(unturned));
     let mut round = |lag: &mut FrameLag| {
         let points = lag.turned_back(unturned);
@@ -224,9 +240,9 @@ fn solve(
 
 /// Solves points of a drive whose angle may be unknown; again with the points turned back by what was found of it. Points that contradict
 /// each other are left so: an angle bends to anything, and what makes them contradict each other may be something else.
-fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], request: &Request) -> Solved {
+fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAngle>, request: &Request) -> Solved {
     let at_the_angle = solve_beside(log, unturned.to_vec(), &[], request);
-    let Some(mut angle) = FrameAngle::possible(log, request).filter(|_| at_the_angle.misfit.is_none()) else { return at_the_angle };
+    let Some(mut angle) = angle.filter(|_| at_the_angle.misfit.is_none()) else { return at_the_angle };
     let mut motor = Motor { rs: 0.0, ld: 0.0, lq: 0.0, psi_f: frame_lag::rough_flux(unturned) };
     let mut round = |angle: &mut FrameAngle| {
         let points = angle.turned_back(unturned);

@@ -21,7 +21,18 @@ use crate::{faults::Fault, motor::PARAMETERS, objective::acting_voltage::Voltage
 /// Filters of what is logged.
 const FILTERS: [Fault; 4] = [Fault::CurrentFilter, Fault::DqCurrentFilter, Fault::DqVoltageFilter, Fault::DqFilter];
 
-/// Whether they do; `open`: what the simulated currents leave open; `may_be_decimated`: whether rows come slower than drives control
+/// What operating points have over the simulated currents.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Points {
+    /// Nothing.
+    TellLess,
+    /// They leave open what they do not excite, or rows come so slowly that the currents between them are unknown.
+    TellMore,
+    /// Narrower intervals, where the currents' residuals have a cause that nothing describes.
+    AreNarrower,
+}
+
+/// What they have; `open`: what the simulated currents leave open; `may_be_decimated`: whether rows come slower than drives control
 /// currents.
 pub(crate) fn points_tell_more(
     points: &SteadyFit,
@@ -29,16 +40,17 @@ pub(crate) fn points_tell_more(
     open: &[bool; PARAMETERS],
     may_be_decimated: bool,
     request: &Request,
-) -> bool {
+) -> Points {
+    let if_so = |tells_more| if tells_more { Points::TellMore } else { Points::TellLess };
     if points.misfit.is_some() {
-        return false;
+        return Points::TellLess;
     }
     let judged = judge(&currents.finding, None, request, false);
     let told: [bool; PARAMETERS] = std::array::from_fn(|p| !open[p] && judged[p].verdict != Verdict::NotIdentifiable);
     let combined = open.iter().filter(|open| **open).count() > 1;
     let is_rounding = currents.finding.trust.misses <= LEAST_RESIDUAL;
     if (combined || is_rounding) && told.contains(&false) {
-        return points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told));
+        return if_so(points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told)));
     }
     let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
     if may_be_decimated {
@@ -46,10 +58,15 @@ pub(crate) fn points_tell_more(
         let is_filtered =
             FILTERS.into_iter().any(|filter| currents.has(filter)) || currents.voltage_timing.value == VoltageTiming::Averaged;
         let of_points = judge(&points.finding, None, request, false).map(|one| one.verdict != Verdict::NotIdentifiable);
-        return (!is_explained || is_filtered) && of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told);
+        return if_so((!is_explained || is_filtered) && of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told));
     }
     let can_contradict = points.estimate.redundancy > 0;
-    !is_explained && can_contradict && width(&points.finding, request) < width(&currents.finding, request)
+    if !is_explained && can_contradict && is_narrower(points, currents, request) { Points::AreNarrower } else { Points::TellLess }
+}
+
+/// Whether the points' intervals are narrower than the currents'.
+pub(crate) fn is_narrower(points: &SteadyFit, currents: &OutputFit, request: &Request) -> bool {
+    width(&points.finding, request) < width(&currents.finding, request)
 }
 
 /// Sum of the logarithms of the intervals' half-widths as parts of the values, faults in doubt not counted: the points know of none.
