@@ -101,7 +101,7 @@ impl OutputFit {
                 |chosen, log| chosen.again(log, &stretches, request),
             )?,
         };
-        let Chosen { reading, drive, unknowns, priors, readings, terms, independent } = chosen;
+        let Chosen { reading, drive, unknowns, priors, readings, terms, independent, .. } = chosen;
         let log = advanced.as_ref().unwrap_or(log);
         let objective = &OutputError::of_rows(log, &stretches, reading)?;
         let usual = USUAL_STEPS * (1 + 2 * unknowns.len());
@@ -172,6 +172,8 @@ impl OutputFit {
             readings: self.timings.clone(),
             terms: self.fault_trials.clone(),
             independent: long_run::effective_sample_size(&self.residuals),
+            // Nothing else is chosen from.
+            criterion: 0.0,
         };
         let chosen = chosen.again(advanced.as_ref().unwrap_or(log), stretches, request)?;
         Ok(Advanced { log: advanced, lag: self.undone_lag, chosen })
@@ -246,25 +248,35 @@ struct Advanced {
 
 /// A speed that lags spoils the angle, which comes from it or is made smooth by it: what was found of the lag is undone, and all is chosen
 /// again, with what is left of it unknown: faults that were found beside a wrong angle are bent by it. The lag is found to first order, so
-/// what is left is undone once more; this changes no choice.
+/// what is left is undone once more; this changes no choice. What was chosen second, with a lag, may fit best once that is undone.
 fn with_speed_in_time(
     log: &Log,
-    choose: impl Fn(&Log, &[Unknown]) -> Result<Chosen, Error>,
+    choose: impl Fn(&Log, &[Unknown]) -> Result<Vec<Chosen>, Error>,
     again: impl Fn(Chosen, &Log) -> Result<Chosen, Error>,
 ) -> Result<Advanced, Error> {
-    let first = choose(log, &[])?;
-    let is_lag = |trial: &&FaultTrial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken;
-    let Some(lags) = first.terms.iter().find(is_lag).cloned() else {
-        return Ok(Advanced { log: None, lag: 0.0, chosen: first });
+    let mut found = choose(log, &[])?.into_iter();
+    let first = found.next().ok_or_else(Error::no_rows)?;
+    let lags = |chosen: &Chosen| {
+        let is_lag = |trial: &&FaultTrial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken;
+        chosen.terms.iter().find(is_lag).cloned()
     };
-    let unknown: Vec<Unknown> = Unknown::of_fault(Fault::SpeedLag).collect();
-    let lag = first.drive.faults.speed_lag.time;
-    let chosen = choose(&log.without_speed_lag(lag), &unknown)?;
-    let lag = lag + chosen.drive.faults.speed_lag.time;
-    let advanced = log.without_speed_lag(lag);
-    let mut chosen = again(chosen, &advanced)?;
-    chosen.terms.insert(0, lags);
-    Ok(Advanced { log: Some(advanced), lag, chosen })
+    let in_time = |chosen: &Chosen, lags: FaultTrial| {
+        let unknown: Vec<Unknown> = Unknown::of_fault(Fault::SpeedLag).collect();
+        let lag = chosen.drive.faults.speed_lag.time;
+        let chosen = choose(&log.without_speed_lag(lag), &unknown)?.into_iter().next().ok_or_else(Error::no_rows)?;
+        let lag = lag + chosen.drive.faults.speed_lag.time;
+        let advanced = log.without_speed_lag(lag);
+        let mut chosen = again(chosen, &advanced)?;
+        chosen.terms.insert(0, lags);
+        Ok(Advanced { log: Some(advanced), lag, chosen })
+    };
+    if let Some(lag) = lags(&first) {
+        return in_time(&first, lag);
+    }
+    let as_logged = Advanced { log: None, lag: 0.0, chosen: first };
+    let Some((second, lag)) = found.find_map(|chosen| lags(&chosen).map(|lag| (chosen, lag))) else { return Ok(as_logged) };
+    let second = in_time(&second, lag)?;
+    Ok(if second.chosen.criterion < as_logged.chosen.criterion { second } else { as_logged })
 }
 
 /// The lag as a whole, where a part of it was undone.

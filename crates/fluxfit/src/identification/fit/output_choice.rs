@@ -35,13 +35,13 @@ pub(super) struct Chosen {
     pub(super) terms: Vec<FaultTrial>,
     /// Independent residuals of the rows by which it was chosen.
     pub(super) independent: f64,
+    /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
+    pub(super) criterion: f64,
 }
 
 /// What a search came to.
 struct Searched {
     chosen: Chosen,
-    /// Logarithm of the mean square that is left, and what the unknowns cost: Schwarz's criterion per residual.
-    criterion: f64,
     /// Whether what is left is noise, and next to no observer was needed to make it so.
     explained: bool,
 }
@@ -59,7 +59,8 @@ const SMALL_GAIN: f64 = 0.2;
 /// Faults that are ruled out because their values run away beside others: each costs a search.
 const MOST_RULED_OUT: usize = 2;
 
-/// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there.
+/// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there. The best
+/// first, then what searches from other readings came to.
 pub(super) fn choose(
     log: &Log,
     stretches: &[Range<usize>],
@@ -67,26 +68,22 @@ pub(super) fn choose(
     beside: &[Unknown],
     request: &Request,
     progress: Progress,
-) -> Result<Chosen, Error> {
+) -> Result<Vec<Chosen>, Error> {
     let _ = progress(Step::VoltageTiming);
     let free = [free(request), beside.to_vec()].concat();
     let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
     let rough = readings::readings(&objectives, start, &free, &[], HOPELESS);
     let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
-    let mut best: Option<Searched> = None;
+    let mut found: Vec<Searched> = Vec::new();
     let mut begun: Vec<FaultSearch> = Vec::new();
     let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };
     let _ = progress(Step::Faults);
     let every_period = is_control_rate(log);
     let most = if every_period { TRIED_READINGS } else { 1 };
-    for (place, tried) in tried.iter().copied().take(most) {
-        // The search from the reading before has compared all of them, and ended with this one.
-        if best.as_ref().is_some_and(|best| best.chosen.reading == tried.timing) {
-            break;
-        }
+    let search_from = |(place, tried): (usize, TimingTrial), objectives, begun: &mut Vec<_>| {
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
         let mut search = FaultSearch {
-            objectives: &objectives,
+            objectives,
             reading: place,
             priors: &priors,
             drive,
@@ -99,27 +96,39 @@ pub(super) fn choose(
             contested: None,
         };
         let observer = search.observe();
-        if begun.iter().any(|other| search.is_like(other)) {
-            continue;
+        let is_new = !begun.iter().any(|other| search.is_like(other));
+        is_new.then(|| {
+            let found = with_faults(&search, observer.as_ref());
+            begun.push(search);
+            found
+        })
+    };
+    for tried in tried.iter().copied().take(most) {
+        // The search from the reading before has compared all of them, and ended with this one.
+        if found.iter().any(|found| found.chosen.reading == tried.1.timing) {
+            break;
         }
-        let one = with_faults(&search, observer.as_ref());
-        begun.push(search);
-        let explained = one.explained;
-        if best.as_ref().is_none_or(|best| one.criterion < best.criterion) {
-            best = Some(one);
-        }
-        if explained {
+        found.extend(search_from(tried, &objectives, &mut begun));
+        if found.last().is_some_and(|found| found.explained) {
             break;
         }
     }
-    let Searched { chosen: mut best, .. } = best.ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
+    found.sort_by(|one, other| one.chosen.criterion.total_cmp(&other.chosen.criterion));
+    // A reading that is no inverter's may hide what a speed that lags does: it is looked for without them, too.
+    if every_period && found.first().is_some_and(|best| best.chosen.reading.is_unusual() && !best.explained) {
+        let usual = &objectives[..objectives.iter().take_while(|(reading, _)| !reading.is_unusual()).count()];
+        let first = tried.iter().copied().find(|(place, _)| *place < usual.len());
+        found.extend(first.and_then(|first| search_from(first, usual, &mut begun)));
+    }
+    let mut found: Vec<Chosen> = found.into_iter().map(|found| found.chosen).collect();
+    let best = found.first_mut().ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
     if best.readings.is_empty() {
         // Without a fault they were tried with these unknowns already.
         let again = || readings::readings(&objectives, &best.drive, &best.unknowns, &priors, HOPELESS_AFTER_A_FIT);
         let readings = if best.unknowns == free { tried } else { again() };
         best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
     }
-    Ok(best)
+    Ok(found)
 }
 
 impl Chosen {
@@ -130,9 +139,17 @@ impl Chosen {
         let readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
         let Some((place, best)) = tried.first() else { return Ok(self) };
         let drive = best.polished.drive;
-        let independent = long_run::effective_sample_size(&objectives[*place].1.residuals(&drive));
-        Ok(Self { reading: best.timing, drive, readings, independent, ..self })
+        let residuals = objectives[*place].1.residuals(&drive);
+        let independent = long_run::effective_sample_size(&residuals);
+        let criterion = criterion(best.polished.cost, self.unknowns.len(), residuals.len());
+        Ok(Self { reading: best.timing, drive, readings, independent, criterion, ..self })
     }
+}
+
+/// Schwarz's criterion per residual.
+fn criterion(cost: f64, unknowns: usize, residuals: usize) -> f64 {
+    let count = residuals as f64;
+    (cost / count).ln() + unknowns as f64 * count.ln() / count
 }
 
 /// The faults that a log carries under a reading, and the reading that suits them. A fault whose value has no physical meaning, or would
@@ -146,7 +163,7 @@ fn with_faults(start: &FaultSearch, observer: Option<&FaultTrial>) -> Searched {
         ruled_out.push(fault);
         let attempt = Attempt::of(start, &ruled_out, observer);
         in_doubt = attempt.in_doubt;
-        if (attempt.is_unphysical, attempt.searched.criterion) < (best.is_unphysical, best.searched.criterion) {
+        if (attempt.is_unphysical, attempt.searched.chosen.criterion) < (best.is_unphysical, best.searched.chosen.criterion) {
             best = attempt;
         }
     }
@@ -183,13 +200,13 @@ impl Searched {
         let count = residuals.len() as f64;
         let independent = long_run::effective_sample_size(&residuals);
         Self {
-            criterion: (cost / count).ln() + unknowns.len() as f64 * count.ln() / count,
             explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
                 || drive.faults.disturbance.gain.magnitude() < SMALL_GAIN && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
             chosen: Chosen {
                 reading: *reading,
                 readings: compared.into_iter().map(|(_, tried)| tried).collect(),
                 independent,
+                criterion: criterion(cost, unknowns.len(), residuals.len()),
                 drive,
                 unknowns,
                 priors: search.priors.to_vec(),
