@@ -270,7 +270,7 @@ impl Fleet {
     /// # Errors
     /// If the name has another ending, or the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Refusal> {
-        Ok(fleet::table::write(path, self.0.iter())?)
+        Ok(fleet::table::write(path, &self.0)?)
     }
 }
 
