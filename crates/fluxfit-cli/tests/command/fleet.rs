@@ -221,12 +221,6 @@ fn the_page_is_that_of_the_results_whether_they_are_new_or_finished() {
     fs::write(&log, table(12) + &motor("standing", 1.0).replace(",400\n", ",0\n") + &one_point).unwrap();
     let run = fleet(&log, &csv, &["--report", page.to_str().unwrap(), "--figures", at("figures").to_str().unwrap()]);
     assert_eq!(run.status, 1, "{}", run.err);
-    let shown = |path: &Path| {
-        let text = fs::read_to_string(path).unwrap();
-        // How it was made differs, and so does the heading.
-        let (_, body) = text.split_once("<p class=\"found\">").unwrap();
-        body.split_once("id=\"reproduce\"").unwrap().0.to_owned()
-    };
     let first = shown(&page);
     assert!(first.contains("14 motors: 12 with all 4 parameters identified, 1 with fewer, 1 without an answer."), "{first}");
     assert!(first.contains("is zero in every row") && at("figures/distributions.png").exists());
@@ -299,6 +293,54 @@ fn misuse_is_refused_before_the_work() {
     assert!(run.status == 2 && run.err.contains("name them .csv or .parquet"), "{}", run.err);
 }
 
+/// What a page says of its fleet: how it was made differs, and so does the heading.
+fn shown(page: &Path) -> String {
+    let text = fs::read_to_string(page).unwrap();
+    let (_, body) = text.split_once("<p class=\"found\">").unwrap();
+    body.split_once("id=\"reproduce\"").unwrap().0.to_owned()
+}
+
+#[test]
+fn finished_results_that_are_longer_than_a_block_have_the_page_of_their_rows() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let (log, few, many) = (at("fleet.csv"), at("few.csv"), at("many.csv"));
+    fs::write(&log, table(2)).unwrap();
+    fleet(&log, &few, &[]);
+    let text = fs::read_to_string(&few).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    // 10 000 motors, some 5 MB; the names have the comma, the quote and the end of a line that cells are quoted for.
+    let name = |motor: usize| format!("\"m{motor:05}, \"\"a\"\"\nb\"");
+    let first = rows.lines().next().unwrap().strip_prefix("m000").unwrap();
+    let content = (0..10_000).fold(header.to_owned() + "\n", |text, motor| text + &name(motor) + first + "\n");
+    assert!(content.len() > 3 << 20);
+    fs::write(&many, &content).unwrap();
+    let page = at("fleet.html");
+    let run = |results: &Path| fluxfit(&["fleet", results.to_str().unwrap(), "--report", page.to_str().unwrap()]);
+    let found = run(&many);
+    assert_eq!(
+        (found.status, found.out.as_str()),
+        (0, "10000 motors, 10000 rows: 10000 with all 4 parameters identified, 0 with fewer, 0 without an answer.\n"),
+        "{}",
+        found.err
+    );
+    assert!(shown(&page).contains("10000 motors, each with all 4 parameters identified."));
+    // An error far below says its line: each motor takes two, and the header one.
+    let at_motor = |motor: usize, from: &str, to: &str| {
+        let (above, below) = content.split_at(content.find(&name(motor)).unwrap());
+        above.to_owned() + &below.replacen(from, to, 1)
+    };
+    for (wrong, sentence) in [
+        (at_motor(9000, ",identified,", ",splendid,"), "line 18002, column 'rs_verdict': \"splendid\" is not one of the values"),
+        (at_motor(9000, ",identified,", ",identified,,"), "line 18002: the row has"),
+        (at_motor(9000, ",identified,", "\0"), "line 18003: this is not"),
+    ] {
+        fs::write(at("wrong.csv"), wrong).unwrap();
+        let found = run(&at("wrong.csv"));
+        assert!(found.status == 2 && found.err.contains(sentence), "{sentence}: {}", found.err);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn killed_at_any_instant_and_started_again_every_motor_is_there_once() {
@@ -331,4 +373,63 @@ fn killed_at_any_instant_and_started_again_every_motor_is_there_once() {
     assert_eq!(rows(&output).len(), motors);
     let left: Vec<_> = fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left.len(), 3, "{left:?}");
+}
+
+/// A run of these words, which says nothing.
+#[cfg(unix)]
+fn child(words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fluxfit"));
+    command.arg("-q").args(words).stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
+/// Lines of a journal that are whole, without the first one, which says what the run does.
+#[cfg(unix)]
+fn finished(journal: &Path) -> usize {
+    let bytes = fs::read(journal).unwrap_or_default();
+    bytes.iter().filter(|byte| **byte == b'\n').count().saturating_sub(1)
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_was_killed_in_the_middle_has_the_page_of_one_that_was_not() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let log = at("fleet.csv");
+    let motors = 150;
+    // Some fail and one has one operating point, so that the page has reasons.
+    let standing = motor("standing", 1.0).replace(",400\n", ",0\n");
+    let one_point: String = motor("point", 1.0).lines().take(100).map(|line| format!("{line}\n")).collect();
+    fs::write(&log, table(motors - 2) + &standing + &one_point).unwrap();
+    let words = |output: &Path, page: &Path| {
+        let [log, output, page] = [&log, output, page].map(|path| path.to_str().unwrap().to_owned());
+        ["fleet", &log, "--by", "motor_id", "-o", &output, "--jobs", "1", "--report", &page].map(str::to_owned)
+    };
+    let run = |words: &[String]| child(&words.iter().map(String::as_str).collect::<Vec<_>>());
+    let (whole, expected) = (at("whole.csv"), at("whole.html"));
+    assert_eq!(run(&words(&whole, &expected)).status().unwrap().code(), Some(1));
+    let (output, page) = (at("killed.csv"), at("killed.html"));
+    let journal = at("killed.csv.journal");
+    // Twice: after a third of the motors and after two thirds. The journal says when, and that the second run goes on where the first was.
+    let mut before = 0;
+    for part in [motors / 3, 2 * motors / 3] {
+        let mut running = run(&words(&output, &page)).spawn().unwrap();
+        while finished(&journal) < part {
+            assert!(running.try_wait().unwrap().is_none(), "the run ended at {} motors", finished(&journal));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        running.kill().unwrap();
+        assert_eq!(std::os::unix::process::ExitStatusExt::signal(&running.wait().unwrap()), Some(9));
+        let now = finished(&journal);
+        assert!(before < now && now < motors && !output.exists() && !page.exists(), "{now} motors");
+        before = now;
+    }
+    assert_eq!(run(&words(&output, &page)).status().unwrap().code(), Some(1));
+    let names: Vec<String> = rows(&output).iter().map(|row| row[0].clone()).collect();
+    let mut once = names.clone();
+    once.dedup();
+    assert_eq!((names.len(), once.len()), (motors, motors));
+    assert_eq!(fs::read(&output).unwrap(), fs::read(&whole).unwrap());
+    assert!(shown(&page).contains("150 motors: 148 with all 4 parameters identified, 1 with fewer, 1 without an answer."));
+    assert!(shown(&page) == shown(&expected) && !journal.exists());
 }
