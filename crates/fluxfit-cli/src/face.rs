@@ -3,7 +3,8 @@
 
 use crate::{
     commands::{
-        compare, fleet, fleet::motors::Motors, fleet::work::Onlooker, identify, identify::export, input, inspect, report, track, validate,
+        compare, fleet, fleet::motors::Motors, fleet::page::Page, fleet::work::Onlooker, identify, identify::export, input, inspect,
+        report, track, validate,
     },
     error::CommandError,
     explanations, json,
@@ -252,17 +253,22 @@ pub fn comparison(words: &[OsString], table: Option<MemoryTable>, go_on: &(dyn F
 }
 
 /// The rows of a fleet, by motor and window.
-pub struct Fleet(Vec<Map<String, Value>>);
+pub struct Fleet {
+    rows: Vec<Map<String, Value>>,
+    /// What its page is of.
+    title: String,
+    seed: u64,
+}
 
 impl Fleet {
     /// The rows; each has a value for each of [`fleet_columns`].
     pub fn rows(&self) -> &[Map<String, Value>] {
-        &self.0
+        &self.rows
     }
 
     /// How many motors have what, as the command says it.
     pub fn count(&self) -> String {
-        fleet::Count::of(&self.0).to_string()
+        fleet::Count::of(&self.rows).to_string()
     }
 
     /// Writes the results as the command does: Parquet or CSV, by the ending of the name.
@@ -270,7 +276,18 @@ impl Fleet {
     /// # Errors
     /// If the name has another ending, or the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Refusal> {
-        Ok(fleet::table::write(path, &self.0)?)
+        Ok(fleet::table::write(path, &self.rows)?)
+    }
+
+    /// Writes the page of the fleet, as `--report` does; `call` says how it can be made again.
+    ///
+    /// # Errors
+    /// If the name is none of a page, or the file cannot be written.
+    pub fn report(&self, path: &Path, call: &str) -> Result<(), Refusal> {
+        report::check_name(path)?;
+        let mut origin = report::origin(self.seed);
+        call.clone_into(&mut origin.command);
+        Ok(write_atomically(path, Page::of(&self.rows).html(&self.title, &origin).as_bytes())?)
     }
 }
 
@@ -295,7 +312,11 @@ pub fn fleet(
             )));
         }
     }
-    Ok(fleet::rows(&parse(words)?, table, output, &Onlooker { go_on, told })?.map(Fleet))
+    let motors: Motors = parse(words)?;
+    let log = &motors.identify.log;
+    let title = table.map_or_else(|| fleet::title(&log.logs, output, "logs"), |table| table.source.to_owned());
+    let rows = fleet::rows(&motors, table, output, &Onlooker { go_on, told })?;
+    Ok(rows.map(|rows| Fleet { rows, title, seed: log.seed }))
 }
 
 /// The rows of a fleet for one motor, whose rows are a table in memory: a JSON list of objects with a value for each of [`fleet_columns`].

@@ -1,5 +1,7 @@
 """fluxfit.fleet: the rows of the command, byte for byte, from files and from tables in memory."""
 
+import html
+import re
 import signal
 import subprocess
 import sys
@@ -90,6 +92,33 @@ def test_the_rows_as_arrays_as_a_frame_and_as_arrow(table: Any) -> None:
     assert list(frame.columns) == list(found) and frame["rows"].dtype == "Int64" and len(frame) == 12
     arrow = pa.table(found)
     assert arrow.column_names == list(found) and arrow["rs"].to_pylist()[:11] == list(found["rs"][:11]) and arrow["rs"][11].as_py() is None
+
+
+def shown(page: Path) -> str:
+    """What a page says of its fleet, without its heading, and without how it was made."""
+    body = page.read_text(encoding="utf-8").split('<p class="found">', 1)[1]
+    return body.split('id="reproduce"')[0]
+
+
+def test_the_page_is_that_of_the_command(table: Any, file: Path, tmp_path: Path) -> None:
+    expected, page = tmp_path / "expected.html", tmp_path / "page.html"
+    asked: list[tuple[dict[str, Any], list[str]]] = [({}, []), ({"every": "0.1s"}, ["--every", "0.1s"])]
+    for keywords, words in asked:
+        by_command(tmp_path / "c.csv", str(file), "--by", "motor_id", "--report", str(expected), *words)
+        assert "the worst first" in shown(expected) and "m011" in shown(expected)
+        given_as: list[tuple[Any, dict[str, Any]]] = [(file, {"output": tmp_path / "c.csv"}), (table, {"source": str(file)})]
+        for given, more in given_as:
+            fluxfit.fleet(given, "motor_id", **keywords, **more).report(page)
+            assert shown(page) == shown(expected)
+        # How it is made again is the call, and its parts are words.
+        call = "fluxfit.fleet(data, 'motor_id', every='0.1s')" if keywords else "fluxfit.fleet(data, 'motor_id')"
+        made = page.read_text(encoding="utf-8").split('id="reproduce"')[1].split("<code>")[1].split("</code>")[0]
+        assert html.unescape(re.sub("<[^>]*>", "", made)) == call
+    found = fluxfit.fleet(table, "motor_id")
+    with pytest.raises(fluxfit.RequestError, match="writes an HTML page, not pdf"):
+        found.report(tmp_path / "page.pdf")
+    with pytest.raises(fluxfit.FileError):
+        found.report(tmp_path / "missing" / "page.html")
 
 
 def test_what_fails_is_a_row(table: Any) -> None:

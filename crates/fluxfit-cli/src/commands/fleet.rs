@@ -3,7 +3,7 @@
 
 mod journal;
 pub(crate) mod motors;
-mod page;
+pub(crate) mod page;
 mod results;
 pub(crate) mod row;
 pub(crate) mod table;
@@ -100,7 +100,7 @@ fn finished(motors: &Motors, take: &mut dyn FnMut(&Row)) -> Result<(), CommandEr
 }
 
 /// What the page is of: the results, or what takes their place; `files` says what several of these are.
-fn title(logs: &[PathBuf], output: Option<&Path>, files: &str) -> String {
+pub(crate) fn title(logs: &[PathBuf], output: Option<&Path>, files: &str) -> String {
     match (output, logs) {
         (Some(output), _) => input::file_name(output),
         (None, [one]) => input::file_name(one),

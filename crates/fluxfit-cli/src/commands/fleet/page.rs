@@ -6,7 +6,7 @@ use fluxfit::{
     Parameter, Verdict,
     fleet::{FleetEstimate, FleetOverview, FleetRow, FleetValue},
 };
-use fluxfit_report::{FleetReport, fleet_figures, fleet_html};
+use fluxfit_report::{FleetReport, Origin, fleet_figures, fleet_html};
 use fluxfit_units::wording::one_line;
 use serde_json::Value;
 use std::{collections::BTreeSet, sync::Arc};
@@ -16,17 +16,29 @@ const NAMELESS: &str = "(no name)";
 
 /// The rows of the results as the library takes them, which is a small part of what they take beside the names of their columns.
 #[derive(Default)]
-pub(super) struct Page {
+pub(crate) struct Page {
     rows: Vec<FleetRow>,
     /// Names and codes that rows have in common.
     texts: BTreeSet<Arc<str>>,
 }
 
 impl Page {
+    /// Of rows that are in memory.
+    pub(crate) fn of(rows: &[Row]) -> Self {
+        let mut page = Self::default();
+        rows.iter().for_each(|row| page.add(row));
+        page
+    }
+
     /// Takes a row.
     pub(super) fn add(&mut self, row: &Row) {
         let row = fleet_row(row, |text| shared(&mut self.texts, text));
         self.rows.push(row);
+    }
+
+    /// The page as an HTML document.
+    pub(crate) fn html(self, title: &str, origin: &Origin) -> String {
+        fleet_html(&FleetReport { title, fleet: &self.overview(), origin })
     }
 
     /// What the rows say together.
