@@ -21,7 +21,7 @@ use fluxfit_setup::{GivenMotor, ReadScenario, paper_scenario, read_given_motor, 
 use serde_json::{Map, Value};
 use std::{ffi::OsString, ops::ControlFlow, path::Path, sync::Arc};
 
-pub use crate::commands::fleet::motors::HeldMotors;
+pub use crate::commands::{fleet::motors::HeldMotors, track::alarm::Left};
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -348,7 +348,11 @@ pub fn fleet_columns() -> Vec<(&'static str, &'static str)> {
 }
 
 /// The parameters of a running motor, from rows as they arrive.
-pub struct Tracking(track::tracking::Tracking);
+pub struct Tracking {
+    tracking: track::tracking::Tracking,
+    watch: track::alarm::Watch,
+    alarms: Vec<Left>,
+}
 
 impl Tracking {
     /// A tracker as the words of `fluxfit track` ask for it. The log that they name is not read.
@@ -356,7 +360,8 @@ impl Tracking {
     /// # Errors
     /// As the command.
     pub fn begin(words: &[OsString]) -> Result<Self, Refusal> {
-        Ok(Self(track::begun(&parse(words)?)?.0))
+        let (tracking, watch, _) = track::begun(&parse(words)?)?;
+        Ok(Self { tracking, watch, alarms: Vec::new() })
     }
 
     /// Takes rows, and gives the documents that the command prints on the way, each of one line.
@@ -366,8 +371,9 @@ impl Tracking {
     pub fn take(&mut self, rows: &Columns) -> Result<Vec<String>, Refusal> {
         let mut documents = Vec::new();
         for row in (0..rows.t.len()).filter_map(|row| rows.row(row)) {
-            if self.0.take(&row)? {
+            if self.tracking.take(&row)? {
                 documents.push(self.line(false)?);
+                self.look();
             }
         }
         Ok(documents)
@@ -377,8 +383,19 @@ impl Tracking {
     ///
     /// # Errors
     /// None in practice: every state can be written.
-    pub fn end(&self) -> Result<String, Refusal> {
+    pub fn end(&mut self) -> Result<String, Refusal> {
+        self.look();
         self.line(true)
+    }
+
+    /// The parameters that have left their band so far (`--alarm`), each with the sentence of the command as its `Display`.
+    pub fn alarms(&self) -> &[Left] {
+        &self.alarms
+    }
+
+    fn look(&mut self) {
+        let tracker = &self.tracking.tracker;
+        self.alarms.extend(self.watch.look(tracker.time(), &tracker.parameters_or_nothing()));
     }
 
     /// Saves what is known, for `--resume`.
@@ -386,11 +403,11 @@ impl Tracking {
     /// # Errors
     /// If the file cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), Refusal> {
-        Ok(track::state::write(path, &self.0.tracker)?)
+        Ok(track::state::write(path, &self.tracking.tracker)?)
     }
 
     fn line(&self, last: bool) -> Result<String, Refusal> {
-        Ok(serde_json::to_string(&self.0.document(last)).map_err(std::io::Error::from)?)
+        Ok(serde_json::to_string(&self.tracking.document(last)).map_err(std::io::Error::from)?)
     }
 }
 
