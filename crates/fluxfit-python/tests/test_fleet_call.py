@@ -194,3 +194,22 @@ except KeyboardInterrupt:
         words = ["fleet", str(tmp_path / "fleet.parquet"), "--by", "motor_id", "-o", str(tmp_path / "results.csv")]
         run = subprocess.run([sys.executable, "-m", "fluxfit", *words], capture_output=True, text=True, check=False)
         assert f"{finished} motors are finished already" in run.stderr and "2200 motors, 2200 rows" in run.stdout
+
+
+def test_a_motor_of_many_rows_in_a_file_has_the_rows_of_the_table_in_memory(table: Any, tmp_path: Path) -> None:
+    rows = np.arange(540_000)
+    i_d, i_q = np.array([0.0, -2.0, 0.0])[rows // 3000 % 3], np.array([9.0, 8.5, 4.0])[rows // 3000 % 3]
+    noise = np.random.default_rng(1).normal(scale=0.01, size=(2, len(rows)))
+    long = {"motor_id": "long", "t": pd.Timestamp("2026-01-01T08:00") + pd.to_timedelta(rows * 100, unit="us")}
+    long |= {"ud": 0.7 * i_d - 400.0 * 12e-3 * i_q, "uq": 0.7 * i_q + 400.0 * (5.25e-3 * i_d + 0.1827)}
+    long |= {"id": i_d + noise[0], "iq": i_q + noise[1], "omega_e": np.full(len(rows), 400.0)}
+    few = table[:600].assign(t=pd.Timestamp("2026-01-01T07:00") + pd.to_timedelta(table["t"][:600], unit="s"))
+    several = pd.concat([few[:300], pd.DataFrame(long), few[300:]], ignore_index=True)
+    several.to_parquet(tmp_path / "fleet.parquet", row_group_size=100_000)
+    # Windows show that times count from the first row of the file in both.
+    keywords: dict[str, Any] = {"every": "10s", "model": "steady"}
+    expected = fluxfit.fleet(several, "motor_id", **keywords).to_pandas().drop(columns="source")
+    found = fluxfit.fleet(tmp_path / "fleet.parquet", "motor_id", **keywords).to_pandas().drop(columns="source")
+    pd.testing.assert_frame_equal(found, expected, check_exact=True)
+    ours = found[found["motor"] == "long"]
+    assert ours["error"].isna().all() and np.allclose(ours["rs"], 0.7, rtol=0.02) and ours["rows"].sum() < 540_000

@@ -375,6 +375,36 @@ fn killed_at_any_instant_and_started_again_every_motor_is_there_once() {
     assert_eq!(left.len(), 3, "{left:?}");
 }
 
+#[test]
+fn a_motor_of_many_rows_among_others_is_that_of_a_file_of_its_own() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    // More than half a million rows, of which the reader selects some: a third operating point comes at the end alone.
+    let count = 560_000;
+    let (rs, ld, lq, psi_f, omega) = (0.7, 5.25e-3, 12e-3, 0.1827, 400.0);
+    let noise = |row: usize| ((row * 7919 + row * row * 31) % 201) as f64 * 1e-4 - 0.01;
+    let log = (0..count).fold(String::new(), |mut text, row| {
+        let (d, q) = [(0.0, 9.0), (-2.0, 8.5), (0.0, 4.0)][if row > count - 6000 { 2 } else { row / 3000 % 2 }];
+        let (ud, uq) = (rs * d - omega * lq * q, rs * q + omega * (ld * d + psi_f));
+        let _ = writeln!(text, "{},{ud},{uq},{},{},{omega}", row as f64 * 1e-4, d + noise(row), q + noise(row + 77));
+        text
+    });
+    fs::write(at("huge"), HEADER.replace("motor_id,", "") + &log).unwrap();
+    let named = log.lines().fold(String::new(), |text, line| text + "huge," + line + "\n");
+    fs::write(at("fleet.csv"), HEADER.to_owned() + &motor("a", 1.0) + &named + &motor("z", 2.0)).unwrap();
+    let (among, alone) = (at("among.csv"), at("alone.csv"));
+    assert_eq!(fleet(&at("fleet.csv"), &among, &[]).status, 0);
+    assert_eq!(fluxfit(&["fleet", at("huge").to_str().unwrap(), "-o", alone.to_str().unwrap()]).status, 0);
+    let source = place(&among, "source");
+    let values = |row: &[String]| (row[1..source].to_vec(), row[source + 1..].to_vec());
+    let (found, expected) = (rows(&among), rows(&alone));
+    assert_eq!(found.iter().map(|row| row[0].as_str()).collect::<Vec<_>>(), ["a", "huge", "z"]);
+    assert_eq!(values(&found[1]), values(&expected[0]));
+    let selected: usize = found[1][place(&among, "rows")].parse().unwrap();
+    let resistance: f64 = found[1][place(&among, "rs")].parse().unwrap();
+    assert!((400_000..count).contains(&selected) && (resistance / rs - 1.0).abs() < 0.01, "{selected} {resistance}");
+}
+
 /// A run of these words, which says nothing.
 #[cfg(unix)]
 fn child(words: &[&str]) -> Command {
