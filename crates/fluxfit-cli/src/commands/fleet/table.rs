@@ -96,13 +96,14 @@ impl ResultsFile {
         if !self.rows.is_empty() {
             self.flush()?;
         }
-        Ok(match self.file {
+        match self.file {
             Growing::Csv(output) => output.commit()?,
             Growing::Parquet(file) => {
                 let bytes = file.into_inner().map_err(|error| refusal(&self.path, &error))?;
                 write_atomically(&self.path, &bytes)?;
             }
-        })
+        }
+        Ok(())
     }
 }
 
