@@ -3,7 +3,8 @@
 
 use crate::{
     commands::{
-        compare, fleet, fleet::motors::Motors, fleet::work::Onlooker, identify, identify::export, input, inspect, report, track, validate,
+        compare, fleet, fleet::motors::Motors, fleet::page::Page, fleet::work::Onlooker, identify, identify::export, input, inspect,
+        report, track, validate,
     },
     error::CommandError,
     explanations, json,
@@ -20,7 +21,7 @@ use fluxfit_setup::{GivenMotor, ReadScenario, paper_scenario, read_given_motor, 
 use serde_json::{Map, Value};
 use std::{ffi::OsString, ops::ControlFlow, path::Path, sync::Arc};
 
-pub use crate::commands::fleet::motors::HeldMotors;
+pub use crate::commands::{fleet::motors::HeldMotors, track::alarm::Left};
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -252,17 +253,22 @@ pub fn comparison(words: &[OsString], table: Option<MemoryTable>, go_on: &(dyn F
 }
 
 /// The rows of a fleet, by motor and window.
-pub struct Fleet(Vec<Map<String, Value>>);
+pub struct Fleet {
+    rows: Vec<Map<String, Value>>,
+    /// What its page is of.
+    title: String,
+    seed: u64,
+}
 
 impl Fleet {
     /// The rows; each has a value for each of [`fleet_columns`].
     pub fn rows(&self) -> &[Map<String, Value>] {
-        &self.0
+        &self.rows
     }
 
     /// How many motors have what, as the command says it.
     pub fn count(&self) -> String {
-        fleet::Count::of(&self.0).to_string()
+        fleet::Count::of(&self.rows).to_string()
     }
 
     /// Writes the results as the command does: Parquet or CSV, by the ending of the name.
@@ -270,7 +276,18 @@ impl Fleet {
     /// # Errors
     /// If the name has another ending, or the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Refusal> {
-        Ok(fleet::table::write(path, self.0.iter())?)
+        Ok(fleet::table::write(path, &self.rows)?)
+    }
+
+    /// Writes the page of the fleet, as `--report` does; `call` says how it can be made again.
+    ///
+    /// # Errors
+    /// If the name is none of a page, or the file cannot be written.
+    pub fn report(&self, path: &Path, call: &str) -> Result<(), Refusal> {
+        report::check_name(path)?;
+        let mut origin = report::origin(self.seed);
+        call.clone_into(&mut origin.command);
+        Ok(write_atomically(path, Page::of(&self.rows).html(&self.title, &origin).as_bytes())?)
     }
 }
 
@@ -295,7 +312,11 @@ pub fn fleet(
             )));
         }
     }
-    Ok(fleet::rows(&parse(words)?, table, output, &Onlooker { go_on, told })?.map(Fleet))
+    let motors: Motors = parse(words)?;
+    let log = &motors.identify.log;
+    let title = table.map_or_else(|| fleet::title(&log.logs, output, "logs"), |table| table.source.to_owned());
+    let rows = fleet::rows(&motors, table, output, &Onlooker { go_on, told })?;
+    Ok(rows.map(|rows| Fleet { rows, title, seed: log.seed }))
 }
 
 /// The rows of a fleet for one motor, whose rows are a table in memory: a JSON list of objects with a value for each of [`fleet_columns`].
@@ -327,7 +348,11 @@ pub fn fleet_columns() -> Vec<(&'static str, &'static str)> {
 }
 
 /// The parameters of a running motor, from rows as they arrive.
-pub struct Tracking(track::tracking::Tracking);
+pub struct Tracking {
+    tracking: track::tracking::Tracking,
+    watch: track::alarm::Watch,
+    alarms: Vec<Left>,
+}
 
 impl Tracking {
     /// A tracker as the words of `fluxfit track` ask for it. The log that they name is not read.
@@ -335,7 +360,8 @@ impl Tracking {
     /// # Errors
     /// As the command.
     pub fn begin(words: &[OsString]) -> Result<Self, Refusal> {
-        Ok(Self(track::begun(&parse(words)?)?.0))
+        let (tracking, watch, _) = track::begun(&parse(words)?)?;
+        Ok(Self { tracking, watch, alarms: Vec::new() })
     }
 
     /// Takes rows, and gives the documents that the command prints on the way, each of one line.
@@ -345,8 +371,9 @@ impl Tracking {
     pub fn take(&mut self, rows: &Columns) -> Result<Vec<String>, Refusal> {
         let mut documents = Vec::new();
         for row in (0..rows.t.len()).filter_map(|row| rows.row(row)) {
-            if self.0.take(&row)? {
+            if self.tracking.take(&row)? {
                 documents.push(self.line(false)?);
+                self.look();
             }
         }
         Ok(documents)
@@ -356,8 +383,19 @@ impl Tracking {
     ///
     /// # Errors
     /// None in practice: every state can be written.
-    pub fn end(&self) -> Result<String, Refusal> {
+    pub fn end(&mut self) -> Result<String, Refusal> {
+        self.look();
         self.line(true)
+    }
+
+    /// The parameters that have left their band so far (`--alarm`), each with the sentence of the command as its `Display`.
+    pub fn alarms(&self) -> &[Left] {
+        &self.alarms
+    }
+
+    fn look(&mut self) {
+        let tracker = &self.tracking.tracker;
+        self.alarms.extend(self.watch.look(tracker.time(), &tracker.parameters_or_nothing()));
     }
 
     /// Saves what is known, for `--resume`.
@@ -365,11 +403,11 @@ impl Tracking {
     /// # Errors
     /// If the file cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), Refusal> {
-        Ok(track::state::write(path, &self.0.tracker)?)
+        Ok(track::state::write(path, &self.tracking.tracker)?)
     }
 
     fn line(&self, last: bool) -> Result<String, Refusal> {
-        Ok(serde_json::to_string(&self.0.document(last)).map_err(std::io::Error::from)?)
+        Ok(serde_json::to_string(&self.tracking.document(last)).map_err(std::io::Error::from)?)
     }
 }
 

@@ -1,8 +1,10 @@
 //! A table of many motors, cut where the value of a column changes: each motor's rows are passed on as soon as they are read, so that the
-//! memory is that of one motor. The rows of a motor must stand together.
+//! memory is that of one motor. Of a motor with many rows it is passed on where they are in the file, so that the memory does not grow with
+//! them. The rows of a motor must stand together.
 
 use crate::{
     container::{Binary, RandomAccess},
+    file_part::{FilePart, PartRows},
     memory_table::{MemoryColumn, MemoryTable},
     problem::Problem,
 };
@@ -17,9 +19,9 @@ use std::{
     path::Path,
 };
 
-/// Most rows of a motor: with ten columns they take 330 MB. Whoever has more gives them a file of their own, of which the reader selects
-/// rows.
-const MOST_ROWS: u64 = 1 << 22;
+/// Most rows of a motor that are passed on in memory: with ten columns they take 42 MB. Of more the reader selects rows, for which it needs
+/// to see each of them once.
+const MOST_HELD: u64 = 1 << 19;
 
 /// Separators of the columns of a text.
 const SEPARATORS: [char; 4] = [',', ';', '\t', '|'];
@@ -29,8 +31,8 @@ const SEPARATORS: [char; 4] = [',', ';', '\t', '|'];
 pub struct Group {
     /// The value of the column; `None` of rows that have none.
     pub key: Option<String>,
-    /// The rows, or why they are not here.
-    pub rows: Result<GroupRows, FileError>,
+    /// The rows.
+    pub rows: GroupRows,
 }
 
 /// The rows of a motor.
@@ -40,6 +42,8 @@ pub enum GroupRows {
     Text(Vec<u8>),
     /// Columns of numbers.
     Numbers(Vec<GroupColumn>),
+    /// Many rows, which are still in the file.
+    Part(FilePart),
 }
 
 /// A column of the rows of a motor.
@@ -93,13 +97,9 @@ pub fn no_motor_names(by: &str) -> FileError {
     FileError::from(Problem::MotorNames).in_column(by)
 }
 
-fn too_many(rows: u64) -> FileError {
-    let sentence = format!("a motor has {rows} rows, more than {MOST_ROWS}; write it into a file of its own");
-    FileError::new(FileErrorKind::Data, sentence)
-}
-
 fn of_parquet(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>) -> Result<(), FileError> {
-    let Some(binary @ Binary::Parquet(_)) = Binary::open(RandomAccess::file(file)?)? else { return Err(no_motors_column(by, Vec::new())) };
+    let file = RandomAccess::file(file)?;
+    let Some(binary @ Binary::Parquet(_)) = Binary::open(file.clone())? else { return Err(no_motors_column(by, Vec::new())) };
     let Binary::Parquet(parquet) = &binary else { return Err(no_motors_column(by, Vec::new())) };
     let Some(runs) = parquet.runs(by)? else { return Err(no_motors_column(by, parquet.names())) };
     let wanted: Vec<usize> = (0..binary.heads().len()).filter(|&index| binary.heads()[index].name != by).collect();
@@ -109,7 +109,7 @@ fn of_parquet(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<(
     };
     let mut runs = runs.into_iter();
     let mut open = runs.next();
-    let (mut columns, mut held) = (empty(), 0);
+    let (mut columns, mut held, mut row) = (empty(), 0, 0);
     let mut is_over = false;
     let broken = || FileError::new(FileErrorKind::Data, "broken off");
     let outcome = binary.read(&wanted, &mut |block| {
@@ -117,15 +117,17 @@ fn of_parquet(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<(
         let mut from = 0;
         while from < rows {
             let Some((_, whole)) = &open else { return Ok(()) };
-            let is_kept = *whole <= MOST_ROWS;
+            let is_kept = *whole <= MOST_HELD;
             let to = rows.min(from + usize::try_from(whole - held).unwrap_or(usize::MAX));
             if is_kept {
                 columns.iter_mut().zip(&block).for_each(|(column, block)| column.values.extend_from_slice(&block[from..to]));
             }
             held += (to - from) as u64;
+            row += (to - from) as u64;
             from = to;
             if held == *whole {
-                let rows = if is_kept { Ok(GroupRows::Numbers(std::mem::replace(&mut columns, empty()))) } else { Err(too_many(held)) };
+                let part = || FilePart { file: file.clone(), rows: PartRows::Parquet { rows: row - held..row, without: by.to_owned() } };
+                let rows = if is_kept { GroupRows::Numbers(std::mem::replace(&mut columns, empty())) } else { GroupRows::Part(part()) };
                 let key = open.take().and_then(|(key, _)| key);
                 (open, held) = (runs.next(), 0);
                 if take(Group { key, rows }).is_break() {
@@ -139,11 +141,14 @@ fn of_parquet(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<(
     if is_over { Ok(()) } else { outcome }
 }
 
-fn of_text(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>) -> Result<(), FileError> {
+fn of_text(mut file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>) -> Result<(), FileError> {
     let failed = |error: std::io::Error| FileError::from(io_problem("reading", &error));
+    let source = RandomAccess::file(file.try_clone().map_err(failed)?)?;
+    file.rewind().map_err(failed)?;
     let mut lines = BufReader::with_capacity(1 << 18, file);
     let mut header = Vec::new();
-    lines.read_until(b'\n', &mut header).map_err(failed)?;
+    // Where the line ends that was read last.
+    let mut at = lines.read_until(b'\n', &mut header).map_err(failed)? as u64;
     let text = String::from_utf8_lossy(&header);
     let text = text.trim_start_matches('\u{feff}').trim_end();
     if text.is_empty() {
@@ -161,17 +166,24 @@ fn of_text(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>)
         header.push(b'\n');
     }
     let (mut key, mut content, mut rows): (Option<Vec<u8>>, Vec<u8>, u64) = (None, header.clone(), 0);
+    // Where the first line of the motor begins.
+    let mut start = at;
     let mut line = Vec::new();
     loop {
         line.clear();
-        let is_end = lines.read_until(b'\n', &mut line).map_err(failed)? == 0;
+        let length = lines.read_until(b'\n', &mut line).map_err(failed)? as u64;
+        let (is_end, above) = (length == 0, at);
+        at += length;
         if !is_end && line.trim_ascii().is_empty() {
             continue;
         }
         let cell = cell(&line, separator, place);
         if rows > 0 && (is_end || key.as_deref() != Some(cell.as_ref())) {
-            let rows =
-                if rows > MOST_ROWS { Err(too_many(rows)) } else { Ok(GroupRows::Text(std::mem::replace(&mut content, header.clone()))) };
+            let rows = if rows > MOST_HELD {
+                GroupRows::Part(FilePart { file: source.clone(), rows: PartRows::Text { header: header.clone(), bytes: start..above } })
+            } else {
+                GroupRows::Text(std::mem::replace(&mut content, header.clone()))
+            };
             let key = key.as_deref().map(|key| String::from_utf8_lossy(key).trim().to_owned()).filter(|key| !key.is_empty());
             if take(Group { key, rows }).is_break() {
                 return Ok(());
@@ -181,12 +193,13 @@ fn of_text(file: File, by: &str, take: &mut dyn FnMut(Group) -> ControlFlow<()>)
             return Ok(());
         }
         if key.as_deref() != Some(cell.as_ref()) {
-            (key, rows) = (Some(cell.into_owned()), 0);
-            content.truncate(header.len());
+            (key, rows, start) = (Some(cell.into_owned()), 0, above);
         }
         rows += 1;
-        if rows <= MOST_ROWS {
+        if rows <= MOST_HELD {
             content.extend_from_slice(&line);
+        } else if content.len() > header.len() {
+            content = header.clone();
         }
     }
 }
@@ -221,7 +234,7 @@ mod tests {
         std::fs::write(&path, text).unwrap();
         let mut found = Vec::new();
         let read = read_groups(&path, by, &mut |group| {
-            let Ok(GroupRows::Text(text)) = group.rows else { panic!("no text") };
+            let GroupRows::Text(text) = group.rows else { panic!("no text") };
             found.push((group.key, String::from_utf8(text).unwrap()));
             ControlFlow::Continue(())
         });

@@ -24,6 +24,7 @@
 //! | `container` | tables in other formats |
 //! | `block` | columns of a table, and blocks of their values |
 //! | `groups` | a table of many motors, cut into theirs |
+//! | `file_part` | some rows of a table in a file |
 //! | `memory_table` | a table that a program holds in memory |
 //! | [`document`] | the JSON document of an inspection |
 //! | `in_order` | work on all cores, with results in order |
@@ -39,6 +40,7 @@ mod channel;
 mod container;
 mod csv;
 pub mod document;
+mod file_part;
 mod groups;
 mod header_unit;
 mod in_order;
@@ -51,10 +53,11 @@ mod records;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container, guarded};
+pub use file_part::FilePart;
 pub use groups::{Group, GroupColumn, GroupRows, no_motor_names, no_motors_column, read_groups};
 pub use memory_table::{MemoryColumn, MemoryTable, ReadRows};
 pub use note::Note;
 pub use reading::{
     InspectedColumn, Inspection, LAYOUTS, Layout, LiveLog, LogOptions, Mapping, Park, ReadCharacteristic, ReadColumn, ReadLog, inspect,
-    parse_log, read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping, read_table,
+    parse_log, read_characteristic, read_log, read_log_from, read_log_with_progress, read_mapping, read_part, read_table,
 };

@@ -64,6 +64,11 @@ impl FleetRows {
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.fleet.write(&path)).map_err(|refusal| raised(py, &refusal))
     }
+
+    /// Writes the page.
+    fn report(&self, py: Python<'_>, path: PathBuf, call: &str) -> PyResult<()> {
+        py.detach(|| self.fleet.report(&path, call)).map_err(|refusal| raised(py, &refusal))
+    }
 }
 
 /// The rows as columns of Arrow.

@@ -2,7 +2,7 @@
 
 use crate::error::{misuse, raised};
 use fluxfit::Columns;
-use fluxfit_cli::face::Tracking;
+use fluxfit_cli::face::{Left, Tracking};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use std::{collections::BTreeMap, ffi::OsString, path::PathBuf};
@@ -44,8 +44,15 @@ impl Tracker {
     }
 
     /// The document of what is known now.
-    fn document(&self, py: Python<'_>) -> PyResult<String> {
+    fn document(&mut self, py: Python<'_>) -> PyResult<String> {
         self.0.end().map_err(|refusal| raised(py, &refusal))
+    }
+
+    /// The parameters that have left their band so far: each with its time, its value, the value around which the band lies, and the
+    /// sentence.
+    fn alarms(&self) -> Vec<(&'static str, f64, f64, f64, String)> {
+        let alarm = |left: &Left| (left.parameter.key(), left.t, left.value, left.start, left.to_string());
+        self.0.alarms().iter().map(alarm).collect()
     }
 
     /// Saves what is known.

@@ -1,5 +1,7 @@
 """fluxfit.fleet: the rows of the command, byte for byte, from files and from tables in memory."""
 
+import html
+import re
 import signal
 import subprocess
 import sys
@@ -92,6 +94,33 @@ def test_the_rows_as_arrays_as_a_frame_and_as_arrow(table: Any) -> None:
     assert arrow.column_names == list(found) and arrow["rs"].to_pylist()[:11] == list(found["rs"][:11]) and arrow["rs"][11].as_py() is None
 
 
+def shown(page: Path) -> str:
+    """What a page says of its fleet, without its heading, and without how it was made."""
+    body = page.read_text(encoding="utf-8").split('<p class="found">', 1)[1]
+    return body.split('id="reproduce"')[0]
+
+
+def test_the_page_is_that_of_the_command(table: Any, file: Path, tmp_path: Path) -> None:
+    expected, page = tmp_path / "expected.html", tmp_path / "page.html"
+    asked: list[tuple[dict[str, Any], list[str]]] = [({}, []), ({"every": "0.1s"}, ["--every", "0.1s"])]
+    for keywords, words in asked:
+        by_command(tmp_path / "c.csv", str(file), "--by", "motor_id", "--report", str(expected), *words)
+        assert "the worst first" in shown(expected) and "m011" in shown(expected)
+        given_as: list[tuple[Any, dict[str, Any]]] = [(file, {"output": tmp_path / "c.csv"}), (table, {"source": str(file)})]
+        for given, more in given_as:
+            fluxfit.fleet(given, "motor_id", **keywords, **more).report(page)
+            assert shown(page) == shown(expected)
+        # How it is made again is the call, and its parts are words.
+        call = "fluxfit.fleet(data, 'motor_id', every='0.1s')" if keywords else "fluxfit.fleet(data, 'motor_id')"
+        made = page.read_text(encoding="utf-8").split('id="reproduce"')[1].split("<code>")[1].split("</code>")[0]
+        assert html.unescape(re.sub("<[^>]*>", "", made)) == call
+    found = fluxfit.fleet(table, "motor_id")
+    with pytest.raises(fluxfit.RequestError, match="writes an HTML page, not pdf"):
+        found.report(tmp_path / "page.pdf")
+    with pytest.raises(fluxfit.FileError):
+        found.report(tmp_path / "missing" / "page.html")
+
+
 def test_what_fails_is_a_row(table: Any) -> None:
     apart = pd.concat([table, table[:300]])
     apart.loc[apart["motor_id"] == "m004", "motor_id"] = None
@@ -165,3 +194,22 @@ except KeyboardInterrupt:
         words = ["fleet", str(tmp_path / "fleet.parquet"), "--by", "motor_id", "-o", str(tmp_path / "results.csv")]
         run = subprocess.run([sys.executable, "-m", "fluxfit", *words], capture_output=True, text=True, check=False)
         assert f"{finished} motors are finished already" in run.stderr and "2200 motors, 2200 rows" in run.stdout
+
+
+def test_a_motor_of_many_rows_in_a_file_has_the_rows_of_the_table_in_memory(table: Any, tmp_path: Path) -> None:
+    rows = np.arange(540_000)
+    i_d, i_q = np.array([0.0, -2.0, 0.0])[rows // 3000 % 3], np.array([9.0, 8.5, 4.0])[rows // 3000 % 3]
+    noise = np.random.default_rng(1).normal(scale=0.01, size=(2, len(rows)))
+    long = {"motor_id": "long", "t": pd.Timestamp("2026-01-01T08:00") + pd.to_timedelta(rows * 100, unit="us")}
+    long |= {"ud": 0.7 * i_d - 400.0 * 12e-3 * i_q, "uq": 0.7 * i_q + 400.0 * (5.25e-3 * i_d + 0.1827)}
+    long |= {"id": i_d + noise[0], "iq": i_q + noise[1], "omega_e": np.full(len(rows), 400.0)}
+    few = table[:600].assign(t=pd.Timestamp("2026-01-01T07:00") + pd.to_timedelta(table["t"][:600], unit="s"))
+    several = pd.concat([few[:300], pd.DataFrame(long), few[300:]], ignore_index=True)
+    several.to_parquet(tmp_path / "fleet.parquet", row_group_size=100_000)
+    # Windows show that times count from the first row of the file in both.
+    keywords: dict[str, Any] = {"every": "10s", "model": "steady"}
+    expected = fluxfit.fleet(several, "motor_id", **keywords).to_pandas().drop(columns="source")
+    found = fluxfit.fleet(tmp_path / "fleet.parquet", "motor_id", **keywords).to_pandas().drop(columns="source")
+    pd.testing.assert_frame_equal(found, expected, check_exact=True)
+    ours = found[found["motor"] == "long"]
+    assert ours["error"].isna().all() and np.allclose(ours["rs"], 0.7, rtol=0.02) and ours["rows"].sum() < 540_000

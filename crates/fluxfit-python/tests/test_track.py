@@ -56,7 +56,7 @@ def test_arrays_hold_the_true_values_of_a_simulated_drive() -> None:
     for name in ("lq", "psi_f"):
         assert now[name].shape == now["t"].shape and now[name][-1] == pytest.approx(log.truth[name], rel=0.05)
         assert now[f"{name}_low"][-1] < now[name][-1] < now[f"{name}_high"][-1] and now[f"{name}_verdict"][-1] == "identified"
-    assert np.isnan(now["ld_low"][0])
+    assert np.isnan(now["ld_low"][0]) and now["steps"].tolist() == [item["steps"] for item in fluxfit.track(log)]
 
 
 def test_a_saved_state_goes_on_to_the_same_bits(rig: Path, tmp_path: Path) -> None:
@@ -68,6 +68,33 @@ def test_a_saved_state_goes_on_to_the_same_bits(rig: Path, tmp_path: Path) -> No
     *_, last = fluxfit.track(iter(half[1:]), resume=tmp_path / "state.json")
     *_, whole = fluxfit.track(log)
     assert last == whole
+
+
+def test_an_alarm_is_that_of_the_command(rig: Path) -> None:
+    # Of the true 0.958 ohm, 0.8 ohm plus 10 % is exceeded; psi_f stays.
+    words = ["track", str(rig), "--voltage-timing", "centered", "--start", "rs=0.8,ld=5mH,lq=12mH,psi_f=0.18", "--json"]
+    words += ["--alarm", "rs=+10%,psi_f=20%"]
+    run = subprocess.run([sys.executable, "-m", "fluxfit", *words], capture_output=True, text=True, check=False)
+    assert run.returncode == 3, run.stderr
+    keywords: dict[str, Any] = {
+        "voltage_timing": "centered",
+        "start": {"rs": 0.8, "ld": "5mH", "lq": "12mH", "psi_f": 0.18},
+        "alarm": {"rs": "+10%", "psi_f": "20%"},
+    }
+    found = fluxfit.track(rig, **keywords)
+    assert found.alarms == []
+    items = list(found)
+    assert items == [json.loads(line) for line in run.stdout.splitlines()]
+    (alarm,) = found.alarms
+    assert (alarm.parameter, alarm.start) == ("rs", 0.8) and alarm.value == pytest.approx(0.958, rel=0.03)
+    assert f"[alarm]: {alarm}" in " ".join(run.stderr.split()) and alarm.sentence.startswith("R_s is 0.9")
+    assert next(item for item in items if item["t"] == alarm.t)["rs"]["value"] == alarm.value
+    # Of samples, it is told with the item in which it is.
+    log = fluxfit.read_log(rig)
+    samples = fluxfit.track(({name: log[name][row] for name in log} for row in range(log.rows)), **keywords)
+    assert next(item for item in samples if samples.alarms)["t"] == alarm.t
+    with pytest.raises(fluxfit.RequestError, match="not a parameter"):
+        fluxfit.track(log, alarm={"x": "1%"})
 
 
 def test_refusals(rig: Path, columns: "dict[str, Any]") -> None:

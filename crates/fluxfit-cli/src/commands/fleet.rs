@@ -3,7 +3,7 @@
 
 mod journal;
 pub(crate) mod motors;
-mod page;
+pub(crate) mod page;
 mod results;
 pub(crate) mod row;
 pub(crate) mod table;
@@ -17,11 +17,15 @@ use fluxfit_files::check_writable;
 use fluxfit_setup::MotorFile;
 use journal::Journal;
 use motors::{HeldMotors, Motors};
+use page::Page;
 use row::Row;
+use serde_json::Value;
 use std::{
     fmt,
+    ops::ControlFlow,
     path::{Path, PathBuf},
 };
+use table::ResultsFile;
 use work::{Onlooker, work};
 
 #[derive(Debug, Clone, Args)]
@@ -46,22 +50,29 @@ pub(crate) fn run(arguments: &Fleet) -> Result<Status, CommandError> {
     let Fleet { motors, output } = arguments;
     let log = &motors.identify.log;
     report::check(log, output.as_deref())?;
-    let rows = match output {
-        Some(output) => identified(motors, output)?,
-        None => finished(motors).map(Some)?,
+    let is_shown = log.report.is_some() || log.figures.is_some();
+    let (mut count, mut page) = (Count::default(), is_shown.then(Page::default));
+    let mut take = |row: &Row| {
+        count.add(row);
+        page.iter_mut().for_each(|page| page.add(row));
     };
-    let Some(rows) = rows else { return Ok(Status::Incomplete) };
-    let count = Count::of(&rows);
+    match output {
+        Some(output) if identified(motors, output, &mut take)?.is_break() => return Ok(Status::Incomplete),
+        Some(_) => (),
+        None => finished(motors, &mut take)?,
+    }
     terminal::print(&format!("{count}.\n"))?;
     if let Some(output) = output {
         terminal::wrote("results", output);
     }
-    page::write(&title(motors, output.as_deref()), &rows, log)?;
+    if let Some(page) = page {
+        page.write(&title(&log.logs, output.as_deref(), "files of results"), log)?;
+    }
     Ok(if count.whole == count.rows { Status::Complete } else { Status::Incomplete })
 }
 
-/// The rows of all motors, which are written as results; `None` if the run was interrupted.
-fn identified(motors: &Motors, output: &Path) -> Result<Option<Vec<Row>>, CommandError> {
+/// Writes the rows of all motors as results, and passes them on; a break if the run was interrupted.
+fn identified(motors: &Motors, output: &Path, take: &mut dyn FnMut(&Row)) -> Result<ControlFlow<()>, CommandError> {
     let motor = motors.check()?;
     let mut journal = open(motors, &motor, output)?;
     if journal.motors() > 0 {
@@ -74,26 +85,26 @@ fn identified(motors: &Motors, output: &Path) -> Result<Option<Vec<Row>>, Comman
     drop(progress);
     if interrupt::exit_status().is_some() {
         terminal::note(&format!("{} motors are finished; the same command goes on", journal.motors()));
-        return Ok(None);
+        return Ok(ControlFlow::Break(()));
     }
     interrupt::doing("writing the results");
-    finish(journal, Some(output)).map(Some)
+    finish(journal, Some(output), take).map(ControlFlow::Continue)
 }
 
-/// The rows of finished results, which stand in place of the logs.
-fn finished(motors: &Motors) -> Result<Vec<Row>, CommandError> {
+/// Passes on the rows of finished results, which stand in place of the logs.
+fn finished(motors: &Motors, take: &mut dyn FnMut(&Row)) -> Result<(), CommandError> {
     if motors.by.is_some() || motors.every.is_some() {
         return Err(CommandError::Usage("--by and --every are for motors to be identified; name their results with -o".to_owned()));
     }
-    results::read(&motors.identify.log.logs)
+    results::read(&motors.identify.log.logs, take)
 }
 
-/// What the page is of.
-fn title(motors: &Motors, output: Option<&Path>) -> String {
-    match (output, motors.identify.log.logs.as_slice()) {
+/// What the page is of: the results, or what takes their place; `files` says what several of these are.
+pub(crate) fn title(logs: &[PathBuf], output: Option<&Path>, files: &str) -> String {
+    match (output, logs) {
         (Some(output), _) => input::file_name(output),
         (None, [one]) => input::file_name(one),
-        (None, several) => format!("{} files of results", several.len()),
+        (None, several) => format!("{} {files}", several.len()),
     }
 }
 
@@ -111,7 +122,9 @@ pub(crate) fn rows(
     if (onlooker.go_on)().is_break() {
         return Ok(None);
     }
-    finish(journal, output).map(Some)
+    let mut rows = Vec::new();
+    finish(journal, output, &mut |row| rows.push(row.clone()))?;
+    Ok(Some(rows))
 }
 
 /// The journal of results that can be written.
@@ -121,16 +134,24 @@ fn open(motors: &Motors, motor: &MotorFile, output: &Path) -> Result<Journal, Co
     Journal::open(output, &motors.words(motor))
 }
 
-/// Writes the results, where they are to be written; the journal is of no use any more.
-fn finish(journal: Journal, output: Option<&Path>) -> Result<Vec<Row>, CommandError> {
-    if let Some(output) = output {
-        table::write(output, journal.rows())?;
+/// Writes the results, where they are to be written, and passes on their rows; the journal is of no use any more.
+fn finish(mut journal: Journal, output: Option<&Path>, take: &mut dyn FnMut(&Row)) -> Result<(), CommandError> {
+    let mut file = output.map(ResultsFile::begin).transpose()?;
+    journal.rows(&mut |row| {
+        take(row);
+        file.as_mut().map_or(Ok(()), |file| file.add(row))
+    })?;
+    if let Some(file) = file {
+        file.end()?;
     }
     journal.close()
 }
 
 /// How many motors have what.
+#[derive(Default)]
 pub(crate) struct Count {
+    /// The motor of the last row.
+    last: Option<Value>,
     motors: usize,
     rows: usize,
     /// Rows with all parameters identified.
@@ -142,19 +163,26 @@ pub(crate) struct Count {
 impl Count {
     /// Of rows by motor.
     pub(crate) fn of(rows: &[Row]) -> Self {
-        let is_whole = |row: &&Row| Parameter::ALL.iter().all(|p| row[&format!("{}_verdict", p.key())] == "identified");
-        Self {
-            motors: rows.chunk_by(|one, next| one["motor"] == next["motor"]).count(),
-            rows: rows.len(),
-            whole: rows.iter().filter(is_whole).count(),
-            failed: rows.iter().filter(|row| !row["error"].is_null()).count(),
+        let mut count = Self::default();
+        rows.iter().for_each(|row| count.add(row));
+        count
+    }
+
+    /// Counts a row; those of a motor come one after the other.
+    fn add(&mut self, row: &Row) {
+        if self.last.as_ref() != Some(&row["motor"]) {
+            self.motors += 1;
+            self.last = Some(row["motor"].clone());
         }
+        self.rows += 1;
+        self.whole += usize::from(Parameter::ALL.iter().all(|p| row[&format!("{}_verdict", p.key())] == "identified"));
+        self.failed += usize::from(!row["error"].is_null());
     }
 }
 
 impl fmt::Display for Count {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { motors, rows, whole, failed } = self;
+        let Self { motors, rows, whole, failed, last: _ } = self;
         let fewer = rows - whole - failed;
         let (motors, rows) = (terminal::count(*motors, "motor"), terminal::count(*rows, "row"));
         write!(f, "{motors}, {rows}: {whole} with all 4 parameters identified, {fewer} with fewer, {failed} without an answer")

@@ -1,6 +1,6 @@
 //! `fluxfit track`: the parameters of a running motor over time, from a log or from rows as they arrive.
 
-mod alarm;
+pub(crate) mod alarm;
 mod display;
 mod faults;
 mod live;
@@ -117,11 +117,11 @@ fn parse_temperature(text: &str) -> Result<f64, String> {
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Track) -> Result<Status, CommandError> {
-    let (tracking, start, options) = begun(arguments)?;
+    let (tracking, watch, options) = begun(arguments)?;
     if let Some(path) = &arguments.save_state {
         fluxfit_files::check_writable(path)?;
     }
-    let mut run = Running { watch: Watch::new(&arguments.alarm, &start.values), lines: Lines::new(format_of(arguments)), tracking };
+    let mut run = Running { watch, lines: Lines::new(format_of(arguments)), tracking };
     run.lines.begin()?;
     let name = match (&arguments.listen, &arguments.log) {
         (Some(place), _) => {
@@ -146,17 +146,18 @@ pub(crate) fn run(arguments: &Track) -> Result<Status, CommandError> {
     Ok(run.status())
 }
 
-/// A tracker as it is asked for, with what it begins with and how rows are read.
-pub(crate) fn begun(arguments: &Track) -> Result<(Tracking, Start, LogOptions), CommandError> {
+/// A tracker as it is asked for, the bands around what it begins with, and how rows are read.
+pub(crate) fn begun(arguments: &Track) -> Result<(Tracking, Watch, LogOptions), CommandError> {
     let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
     let options = input::options(&arguments.columns, motor.pole_pairs)?;
     let start = start(arguments, &motor, options.pole_pairs)?;
+    let watch = Watch::new(&arguments.alarm, &start.values);
     let faults = arguments.faults.as_deref().map(faults::read).transpose()?.unwrap_or_default();
     let tracker = match &arguments.resume {
         Some(path) => state::read(path)?,
         None => Tracker::new(TrackSettings { start, faults, ..TrackSettings::new(arguments.method, timing(arguments)?) }),
     };
-    Ok((Tracking::new(tracker, thermometer(arguments, &motor), arguments.every), start, options))
+    Ok((Tracking::new(tracker, thermometer(arguments, &motor), arguments.every), watch, options))
 }
 
 /// A tracker, and who looks at it.
@@ -177,7 +178,9 @@ impl Running {
     }
 
     fn look(&mut self) {
-        self.watch.look(self.tracking.tracker.time(), &self.tracking.tracker.parameters_or_nothing());
+        for left in self.watch.look(self.tracking.tracker.time(), &self.tracking.tracker.parameters_or_nothing()) {
+            terminal::warn_of("alarm", &left.to_string());
+        }
     }
 
     fn end(&mut self, name: &str) -> Result<(), CommandError> {

@@ -221,12 +221,6 @@ fn the_page_is_that_of_the_results_whether_they_are_new_or_finished() {
     fs::write(&log, table(12) + &motor("standing", 1.0).replace(",400\n", ",0\n") + &one_point).unwrap();
     let run = fleet(&log, &csv, &["--report", page.to_str().unwrap(), "--figures", at("figures").to_str().unwrap()]);
     assert_eq!(run.status, 1, "{}", run.err);
-    let shown = |path: &Path| {
-        let text = fs::read_to_string(path).unwrap();
-        // How it was made differs, and so does the heading.
-        let (_, body) = text.split_once("<p class=\"found\">").unwrap();
-        body.split_once("id=\"reproduce\"").unwrap().0.to_owned()
-    };
     let first = shown(&page);
     assert!(first.contains("14 motors: 12 with all 4 parameters identified, 1 with fewer, 1 without an answer."), "{first}");
     assert!(first.contains("is zero in every row") && at("figures/distributions.png").exists());
@@ -299,6 +293,54 @@ fn misuse_is_refused_before_the_work() {
     assert!(run.status == 2 && run.err.contains("name them .csv or .parquet"), "{}", run.err);
 }
 
+/// What a page says of its fleet: how it was made differs, and so does the heading.
+fn shown(page: &Path) -> String {
+    let text = fs::read_to_string(page).unwrap();
+    let (_, body) = text.split_once("<p class=\"found\">").unwrap();
+    body.split_once("id=\"reproduce\"").unwrap().0.to_owned()
+}
+
+#[test]
+fn finished_results_that_are_longer_than_a_block_have_the_page_of_their_rows() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let (log, few, many) = (at("fleet.csv"), at("few.csv"), at("many.csv"));
+    fs::write(&log, table(2)).unwrap();
+    fleet(&log, &few, &[]);
+    let text = fs::read_to_string(&few).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    // 10 000 motors, some 5 MB; the names have the comma, the quote and the end of a line that cells are quoted for.
+    let name = |motor: usize| format!("\"m{motor:05}, \"\"a\"\"\nb\"");
+    let first = rows.lines().next().unwrap().strip_prefix("m000").unwrap();
+    let content = (0..10_000).fold(header.to_owned() + "\n", |text, motor| text + &name(motor) + first + "\n");
+    assert!(content.len() > 3 << 20);
+    fs::write(&many, &content).unwrap();
+    let page = at("fleet.html");
+    let run = |results: &Path| fluxfit(&["fleet", results.to_str().unwrap(), "--report", page.to_str().unwrap()]);
+    let found = run(&many);
+    assert_eq!(
+        (found.status, found.out.as_str()),
+        (0, "10000 motors, 10000 rows: 10000 with all 4 parameters identified, 0 with fewer, 0 without an answer.\n"),
+        "{}",
+        found.err
+    );
+    assert!(shown(&page).contains("10000 motors, each with all 4 parameters identified."));
+    // An error far below says its line: each motor takes two, and the header one.
+    let at_motor = |motor: usize, from: &str, to: &str| {
+        let (above, below) = content.split_at(content.find(&name(motor)).unwrap());
+        above.to_owned() + &below.replacen(from, to, 1)
+    };
+    for (wrong, sentence) in [
+        (at_motor(9000, ",identified,", ",splendid,"), "line 18002, column 'rs_verdict': \"splendid\" is not one of the values"),
+        (at_motor(9000, ",identified,", ",identified,,"), "line 18002: the row has"),
+        (at_motor(9000, ",identified,", "\0"), "line 18003: this is not"),
+    ] {
+        fs::write(at("wrong.csv"), wrong).unwrap();
+        let found = run(&at("wrong.csv"));
+        assert!(found.status == 2 && found.err.contains(sentence), "{sentence}: {}", found.err);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn killed_at_any_instant_and_started_again_every_motor_is_there_once() {
@@ -331,4 +373,94 @@ fn killed_at_any_instant_and_started_again_every_motor_is_there_once() {
     assert_eq!(rows(&output).len(), motors);
     let left: Vec<_> = fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left.len(), 3, "{left:?}");
+}
+
+#[test]
+fn a_motor_of_many_rows_among_others_is_that_of_a_file_of_its_own() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    // More than half a million rows, of which the reader selects some: a third operating point comes at the end alone.
+    let count = 560_000;
+    let (rs, ld, lq, psi_f, omega) = (0.7, 5.25e-3, 12e-3, 0.1827, 400.0);
+    let noise = |row: usize| ((row * 7919 + row * row * 31) % 201) as f64 * 1e-4 - 0.01;
+    let log = (0..count).fold(String::new(), |mut text, row| {
+        let (d, q) = [(0.0, 9.0), (-2.0, 8.5), (0.0, 4.0)][if row > count - 6000 { 2 } else { row / 3000 % 2 }];
+        let (ud, uq) = (rs * d - omega * lq * q, rs * q + omega * (ld * d + psi_f));
+        let _ = writeln!(text, "{},{ud},{uq},{},{},{omega}", row as f64 * 1e-4, d + noise(row), q + noise(row + 77));
+        text
+    });
+    fs::write(at("huge"), HEADER.replace("motor_id,", "") + &log).unwrap();
+    let named = log.lines().fold(String::new(), |text, line| text + "huge," + line + "\n");
+    fs::write(at("fleet.csv"), HEADER.to_owned() + &motor("a", 1.0) + &named + &motor("z", 2.0)).unwrap();
+    let (among, alone) = (at("among.csv"), at("alone.csv"));
+    assert_eq!(fleet(&at("fleet.csv"), &among, &[]).status, 0);
+    assert_eq!(fluxfit(&["fleet", at("huge").to_str().unwrap(), "-o", alone.to_str().unwrap()]).status, 0);
+    let source = place(&among, "source");
+    let values = |row: &[String]| (row[1..source].to_vec(), row[source + 1..].to_vec());
+    let (found, expected) = (rows(&among), rows(&alone));
+    assert_eq!(found.iter().map(|row| row[0].as_str()).collect::<Vec<_>>(), ["a", "huge", "z"]);
+    assert_eq!(values(&found[1]), values(&expected[0]));
+    let selected: usize = found[1][place(&among, "rows")].parse().unwrap();
+    let resistance: f64 = found[1][place(&among, "rs")].parse().unwrap();
+    assert!((400_000..count).contains(&selected) && (resistance / rs - 1.0).abs() < 0.01, "{selected} {resistance}");
+}
+
+/// A run of these words, which says nothing.
+#[cfg(unix)]
+fn child(words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fluxfit"));
+    command.arg("-q").args(words).stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
+/// Lines of a journal that are whole, without the first one, which says what the run does.
+#[cfg(unix)]
+fn finished(journal: &Path) -> usize {
+    let bytes = fs::read(journal).unwrap_or_default();
+    bytes.iter().filter(|byte| **byte == b'\n').count().saturating_sub(1)
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_was_killed_in_the_middle_has_the_page_of_one_that_was_not() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let log = at("fleet.csv");
+    let motors = 150;
+    // Some fail and one has one operating point, so that the page has reasons.
+    let standing = motor("standing", 1.0).replace(",400\n", ",0\n");
+    let one_point: String = motor("point", 1.0).lines().take(100).map(|line| format!("{line}\n")).collect();
+    fs::write(&log, table(motors - 2) + &standing + &one_point).unwrap();
+    let words = |output: &Path, page: &Path| {
+        let [log, output, page] = [&log, output, page].map(|path| path.to_str().unwrap().to_owned());
+        ["fleet", &log, "--by", "motor_id", "-o", &output, "--jobs", "1", "--report", &page].map(str::to_owned)
+    };
+    let run = |words: &[String]| child(&words.iter().map(String::as_str).collect::<Vec<_>>());
+    let (whole, expected) = (at("whole.csv"), at("whole.html"));
+    assert_eq!(run(&words(&whole, &expected)).status().unwrap().code(), Some(1));
+    let (output, page) = (at("killed.csv"), at("killed.html"));
+    let journal = at("killed.csv.journal");
+    // Twice: after a third of the motors and after two thirds. The journal says when, and the last run that it goes on from there.
+    let mut before = 0;
+    for part in [motors / 3, 2 * motors / 3] {
+        let mut running = run(&words(&output, &page)).spawn().unwrap();
+        while finished(&journal) < part {
+            assert!(running.try_wait().unwrap().is_none(), "the run ended at {} motors", finished(&journal));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        running.kill().unwrap();
+        assert_eq!(std::os::unix::process::ExitStatusExt::signal(&running.wait().unwrap()), Some(9));
+        let now = finished(&journal);
+        assert!(before < now && now < motors && !output.exists() && !page.exists(), "{now} motors");
+        before = now;
+    }
+    let last = fluxfit(&words(&output, &page).each_ref().map(String::as_str));
+    assert!(last.status == 1 && last.err.contains(&format!("{before} motors are finished already")), "{before}: {}", last.err);
+    let names: Vec<String> = rows(&output).iter().map(|row| row[0].clone()).collect();
+    let mut once = names.clone();
+    once.dedup();
+    assert_eq!((names.len(), once.len()), (motors, motors));
+    assert_eq!(fs::read(&output).unwrap(), fs::read(&whole).unwrap());
+    assert!(shown(&page).contains("150 motors: 148 with all 4 parameters identified, 1 with fewer, 1 without an answer."));
+    assert!(shown(&page) == shown(&expected) && !journal.exists());
 }

@@ -22,6 +22,7 @@ pub(crate) use random_access::RandomAccess;
 
 use crate::{block::ColumnHead, problem::Problem};
 use fluxfit_files::{FileError, input::io_problem};
+use std::ops::Range;
 
 /// A container format.
 #[derive(Debug)]
@@ -77,6 +78,14 @@ impl Binary {
         let start = &start[..count];
         let container = CONTAINERS.iter().find(|container| container.has_signature(start)).unwrap_or(&MAT);
         (container.open)(start, file)
+    }
+
+    /// Some rows of a Parquet file, without one of its columns.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub(crate) fn part_of_parquet(file: RandomAccess, rows: Range<u64>, without: &str) -> Result<Self, FileError> {
+        Ok(Self::Parquet(Box::new(parquet::Parquet::open(file)?.part(rows, without))))
     }
 
     /// The name of the format.

@@ -27,6 +27,7 @@ use parquet::{
     file::{reader::FileReader, serialized_reader::SerializedFileReader},
     schema::types::ColumnDescriptor,
 };
+use std::ops::Range;
 
 /// Rows that a file of any size may have,
 const FEW_ROWS: u64 = 10_000_000;
@@ -46,6 +47,8 @@ pub(crate) struct Parquet {
     heads: Vec<ColumnHead>,
     columns: Vec<Column>,
     unreadable: Vec<String>,
+    /// The rows that are read.
+    rows: Range<u64>,
     /// Rows of a stretch.
     stretch: usize,
     /// Minimum number of values in a stretch that several threads decode.
@@ -105,7 +108,20 @@ impl Parquet {
         if heads.is_empty() {
             return Err(Problem::NoNumbers { format: FORMAT }.into());
         }
-        Ok(Self { file, source, heads, columns, unreadable, stretch: STRETCH, fewest: FEWEST_VALUES })
+        Ok(Self { file, source, heads, columns, unreadable, rows: 0..rows, stretch: STRETCH, fewest: FEWEST_VALUES })
+    }
+
+    /// The same file as if it had these rows alone, and not the column `without`, nor any that cannot be read.
+    pub(super) fn part(mut self, rows: Range<u64>, without: &str) -> Self {
+        let rows = rows.start.min(self.rows.end)..rows.end.min(self.rows.end);
+        let kept: Vec<bool> = self.heads.iter().map(|head| head.name != without).collect();
+        let mut is_kept = kept.iter();
+        self.columns.retain(|_| *is_kept.next().unwrap_or(&true));
+        self.heads.retain(|head| head.name != without);
+        self.heads.iter_mut().for_each(|head| head.rows = rows.end.saturating_sub(rows.start));
+        self.unreadable.clear();
+        self.rows = rows;
+        self
     }
 
     pub(super) fn heads(&self) -> &[ColumnHead] {
@@ -117,13 +133,20 @@ impl Parquet {
     }
 
     pub(super) fn read(&self, wanted: &[usize], take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>) -> Result<(), FileError> {
-        let mut starts = vec![None; wanted.len()];
+        let mut starts = self.starts(wanted)?;
         let mut stretch = Stretch::default();
-        for group in 0..self.file.num_row_groups() {
+        let groups = self.groups();
+        let mut row = groups.first().map_or(0, |(_, first)| *first);
+        let take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError> = &mut |block| {
+            let block = within(block, &mut row, &self.rows);
+            if block.first().is_some_and(Vec::is_empty) { Ok(()) } else { take(block) }
+        };
+        for (group, first) in groups {
             let (mut chunks, rows) = match self.group(group, wanted, &mut starts) {
                 Ok(group) => group,
                 Err(error) => return stretch.pass(take).and(Err(error)),
             };
+            let rows = rows.min(usize::try_from(self.rows.end - first).unwrap_or(usize::MAX));
             for start in (0..rows).step_by(self.stretch) {
                 let rows = self.stretch.min(rows - start);
                 let is_split = rayon::current_num_threads() > 1 && rows * wanted.len() >= self.fewest;
@@ -131,6 +154,35 @@ impl Parquet {
             }
         }
         stretch.pass(take)
+    }
+
+    /// The row groups that have some of the rows, each with the number of its first row.
+    fn groups(&self) -> Vec<(usize, u64)> {
+        let mut next = 0;
+        let mut groups = Vec::new();
+        for (group, metadata) in self.file.metadata().row_groups().iter().enumerate() {
+            let first = next;
+            next += u64::try_from(metadata.num_rows()).unwrap_or(0);
+            if next > self.rows.start && first < self.rows.end {
+                groups.push((group, first));
+            }
+        }
+        groups
+    }
+
+    /// The first timestamps of the wanted columns in the file, where the rows begin further below: they count from it all the same.
+    fn starts(&self, wanted: &[usize]) -> Result<Vec<Option<i64>>, FileError> {
+        let mut starts = vec![None; wanted.len()];
+        let is_instant = |at: &usize| matches!(self.columns[*at].meaning, Meaning::Instant(_));
+        if self.rows.start > 0 && wanted.iter().any(is_instant) {
+            let (mut chunks, rows) = self.group(0, wanted, &mut starts)?;
+            for (chunk, _) in chunks.iter_mut().zip(wanted).filter(|(_, at)| is_instant(at)) {
+                if let (_, Some(error)) = chunk.blocks(rows.min(BLOCK)) {
+                    return Err(error);
+                }
+            }
+        }
+        Ok(starts)
     }
 
     /// The wanted columns in a row group, and its number of rows.
@@ -147,6 +199,21 @@ impl Parquet {
         }
         Ok((chunks, rows))
     }
+}
+
+/// What of a block is within the rows; it begins at `row`, which moves on to its end.
+fn within(mut block: Vec<Vec<f64>>, row: &mut u64, rows: &Range<u64>) -> Vec<Vec<f64>> {
+    let count = block.first().map_or(0, Vec::len);
+    let place = |of: u64| usize::try_from(of.saturating_sub(*row)).unwrap_or(usize::MAX).min(count);
+    let (from, to) = (place(rows.start), place(rows.end));
+    if (from, to) != (0, count) {
+        for column in &mut block {
+            column.truncate(to);
+            column.drain(..from.min(to));
+        }
+    }
+    *row += count as u64;
+    block
 }
 
 /// Consecutive rows of a row group.

@@ -85,7 +85,7 @@ impl RandomAccess {
     }
 
     /// The bytes from `at` up to `end`, as a reader.
-    pub(super) fn range(&self, at: u64, end: u64) -> Range {
+    pub(crate) fn range(&self, at: u64, end: u64) -> Range {
         Range { source: self.clone(), at, end: end.min(self.length) }
     }
 }

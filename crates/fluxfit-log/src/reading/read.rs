@@ -20,6 +20,7 @@ use super::{
 use crate::{
     block::ColumnHead,
     channel::Channel,
+    file_part::FilePart,
     memory_table::{Held, MemoryTable},
     note::Note,
     problem::Problem,
@@ -130,6 +131,16 @@ pub fn parse_log(name: &str, bytes: &[u8], options: &LogOptions) -> Result<ReadL
 pub fn read_table(name: &str, table: MemoryTable, options: &LogOptions) -> Result<ReadLog, FileError> {
     let options = ResolvedOptions::resolve(options)?;
     Held::of(table).and_then(|held| read(Table::Held(held), &options)).map_err(|error| error.in_file(name))
+}
+
+/// Reads a log from some rows of a file; `name` stands for the file in messages, and rows count from the first of them.
+///
+/// # Errors
+/// As [`parse_log`].
+pub fn read_part(name: &str, part: &FilePart, options: &LogOptions) -> Result<ReadLog, FileError> {
+    let options = ResolvedOptions::resolve(options)?;
+    let read = Table::of_part(part, options.dbc.as_deref()).and_then(|table| read(table, &options));
+    read.map_err(|error| error.in_file(name))
 }
 
 /// Reads a log from a table.

@@ -4,6 +4,7 @@ use crate::{
     block::{Block, ColumnHead, WantedColumn},
     container::{self, Binary, RandomAccess},
     csv::{Text, TextTable},
+    file_part::{FilePart, PartRows},
     memory_table::Held,
     records::Records,
 };
@@ -51,6 +52,20 @@ impl Table<'_> {
                     Some(binary) => Ok(Table::Binary(binary)),
                     None => Self::of_text(Box::new(Cursor::new(content)), dbc),
                 }
+            }
+        }
+    }
+
+    /// Some rows of a file.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub(super) fn of_part(part: &FilePart, dbc: Option<&str>) -> Result<Table<'static>, FileError> {
+        match &part.rows {
+            PartRows::Parquet { rows, without } => Binary::part_of_parquet(part.file.clone(), rows.clone(), without).map(Table::Binary),
+            PartRows::Text { header, bytes } => {
+                let lines = part.file.range(bytes.start, bytes.end);
+                Self::open(Bytes::Stream(Box::new(Cursor::new(header.clone()).chain(lines))), dbc)
             }
         }
     }

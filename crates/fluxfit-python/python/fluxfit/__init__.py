@@ -17,11 +17,12 @@ from fluxfit._fleet import Fleet, fleet
 from fluxfit._identification import Estimate, Identification
 from fluxfit._log import Log
 from fluxfit._optimize import Search, methods, minimize
-from fluxfit._track import Track, track
+from fluxfit._track import Alarm, Track, track
 
 __version__ = _fluxfit.version()
 
 __all__ = [
+    "Alarm",
     "DataError",
     "Error",
     "Estimate",

@@ -72,11 +72,13 @@ class Fleet(Mapping[str, "np.ndarray[Any, Any]"]):
     """The rows of a fleet, by motor and window: a mapping of the columns of `fluxfit fleet` to arrays of the shape (rows,).
 
     Numbers are float64, NaN where there is none; texts are objects, `None` where there is none; counts are int64, or float64 where one is
-    missing. `write(path)` writes the file of the command, byte for byte; anything that takes Arrow's C stream takes this object.
+    missing. `write(path)` writes the file of the command, byte for byte, `report(path)` the page; anything that takes Arrow's C stream
+    takes this object.
     """
 
-    def __init__(self, rows: "_fluxfit.FleetRows") -> None:
+    def __init__(self, rows: "_fluxfit.FleetRows", call: str) -> None:
         self._rows = rows
+        self._call = call
 
     @cached_property
     def _columns(self) -> "dict[str, np.ndarray[Any, Any]]":
@@ -113,6 +115,14 @@ class Fleet(Mapping[str, "np.ndarray[Any, Any]"]):
         Raises `FileError` if it cannot be written, `RequestError` if the name has another ending.
         """
         self._rows.write(path)
+
+    def report(self, path: "str | os.PathLike[str]") -> None:
+        """Writes the page of the fleet, one HTML page that opens offline: that of `fluxfit fleet --report`, with distributions, motors that
+        stand apart, drift from window to window, reasons, and the worst motors first.
+
+        Raises `FileError` if it cannot be written, `RequestError` if the name is none of a page.
+        """
+        self._rows.report(path, self._call)
 
     def __repr__(self) -> str:
         return f"<Fleet: {self._rows.count()}>"
@@ -205,7 +215,12 @@ def fleet(
             table, runs = {name: values for name, values in table.items() if name != by}, _runs(data, by)
     with _words.motor_file(motor) as named:
         rows = _fluxfit.fleet(["fleet", *words, *named, "--", *logs], table, by, runs, source, output, progress)
-    return Fleet(rows)
+    given = {"every": every, "output": output, "motor": motor, "pole_pairs": pole_pairs, "mapping": mapping, "prior": prior, "fix": fix}
+    shown = [repr(logs[0]) if table is None and len(logs) == 1 else "data" if table is not None else repr(logs)]
+    shown += [repr(by)] if by is not None else []
+    shown += [f"{name}={value!r}" for name, value in given.items() if value is not None]
+    shown += [f"{name}={value!r}" for name, value in (("model", model), ("method", method)) if value != "auto"]
+    return Fleet(rows, f"fluxfit.fleet({', '.join(shown)})")
 
 
 def _runs(data: Any, by: str) -> "list[tuple[str | None, int]] | None":

@@ -3,7 +3,7 @@
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,19 @@ from fluxfit._log import Array, Log
 
 # Rows of a log that are taken at a time.
 ROWS = 4096
+
+
+class Alarm(NamedTuple):
+    """A parameter that has left its band (`track(..., alarm=...)`)."""
+
+    parameter: str  #: `rs`, `ld`, `lq` or `psi_f`
+    t: float  #: when, s
+    value: float  #: its value then, SI
+    start: float  #: the value around which the band lies, SI
+    sentence: str  #: the command's
+
+    def __str__(self) -> str:
+        return self.sentence
 
 
 class Track(Iterator["dict[str, Any]"]):
@@ -40,11 +53,18 @@ class Track(Iterator["dict[str, Any]"]):
         document: dict[str, Any] = json.loads(self._due.pop())
         return document
 
+    @property
+    def alarms(self) -> "list[Alarm]":
+        """The parameters that have left their band in the rows that were taken so far, once for each band; of a log, rows are taken some
+        thousand at a time."""
+        return [Alarm(*alarm) for alarm in self._tracker.alarms()]
+
     def to_arrays(self) -> "dict[str, np.ndarray[Any, Any]]":
-        """What is left, as arrays of the shape (times,): `t` (s), and of `rs`, `ld`, `lq`, `psi_f` the value, `_low`, `_high` (SI, NaN
-        where there is none) and `_verdict`."""
+        """What is left, as arrays of the shape (times,): `t` (s), `steps` (how many steps of parameters were found so far), and of `rs`,
+        `ld`, `lq`, `psi_f` the value, `_low`, `_high` (SI, NaN where there is none) and `_verdict`."""
         documents = list(self)
         arrays: dict[str, np.ndarray[Any, Any]] = {"t": np.array([document["t"] for document in documents], dtype=np.float64)}
+        arrays["steps"] = np.array([document["steps"] for document in documents], dtype=np.int64)
         for name in PARAMETERS:
             entries = [document[name] for document in documents]
             ends = np.array([entry["ci95"] or (None, None) for entry in entries], dtype=np.float64).reshape(-1, 2)
@@ -84,6 +104,7 @@ def track(
     reference_temperature: "float | None" = None,
     magnet_coefficient: "float | str | None" = None,
     resume: "str | os.PathLike[str] | None" = None,
+    alarm: "Mapping[str, Any] | None" = None,
     mapping: Any = None,
     unit: "Mapping[str, str] | None" = None,
     pole_pairs: "int | None" = None,
@@ -96,7 +117,8 @@ def track(
     item is told every `every` seconds of the log's time; of an iterator that waits for samples, as soon as it is due.
 
     `method` is the estimator, `start` the values to begin with; all other keywords are the options of `fluxfit track`, and the items are
-    the lines of its `--json`, to the bit.
+    the lines of its `--json`, to the bit. `alarm={"rs": "+20%"}` is a band around the start of a parameter; which one was left, and when,
+    is in `Track.alarms`. `steps` of an item counts the steps of parameters that were found.
 
     Raises `FileError`, `DataError` or `RequestError`.
 
@@ -120,6 +142,7 @@ def track(
         *_words.pairs("--start", start),
         *_words.priors(prior),
         *_words.pairs("--fix", fix),
+        *_words.pairs("--alarm", alarm),
         *_words.options(
             every=_words.duration(every),
             method=method,

@@ -20,11 +20,11 @@ fn row(motor: &str, factors: [f64; 4]) -> FleetRow {
         reason: None,
     };
     FleetRow {
-        motor: motor.to_owned(),
-        source: "fleet.csv".to_owned(),
+        motor: motor.into(),
+        source: "fleet.csv".into(),
         window_start: None,
         estimates: std::array::from_fn(estimate),
-        warnings: vec!["coarse-sampling".to_owned()],
+        warnings: vec!["coarse-sampling".into()],
         error: None,
     }
 }
@@ -32,7 +32,7 @@ fn row(motor: &str, factors: [f64; 4]) -> FleetRow {
 fn failed(motor: &str, error: &str) -> FleetRow {
     let nothing = FleetEstimate { verdict: Verdict::NotIdentifiable, value: None, reason: None };
     let estimates = std::array::from_fn(|_| nothing.clone());
-    FleetRow { estimates, warnings: Vec::new(), error: Some(error.to_owned()), ..row(motor, [1.0; 4]) }
+    FleetRow { estimates, warnings: Vec::new(), error: Some(error.into()), ..row(motor, [1.0; 4]) }
 }
 
 /// A fleet whose motors differ by up to two percent.
@@ -106,7 +106,7 @@ fn a_parameter_that_drifts_is_named_with_its_movement() {
 #[test]
 fn names_and_reasons_are_text_and_no_markup() {
     let mut odd = row("<b>&\"x\"", [1.0; 4]);
-    odd.estimates[1] = FleetEstimate { verdict: Verdict::NotIdentifiable, value: None, reason: Some("i_d stays < 1".to_owned()) };
+    odd.estimates[1] = FleetEstimate { verdict: Verdict::NotIdentifiable, value: None, reason: Some("i_d stays < 1".into()) };
     let (text, page) = page(vec![odd, failed("</script>", "<i>no</i>")]);
     assert!(text.contains("<b>&\"x\"") && text.contains("<i>no</i>") && text.contains("stays < 1"), "{text}");
     assert!(!page.contains("<b>&") && !page.contains("<i>no"));

@@ -62,7 +62,7 @@ impl Causes {
             let cause = self.found.entry(key.clone()).or_insert_with(new);
             cause.motors += 1;
             if cause.names.len() < NAMED {
-                cause.names.push(best.motor.clone());
+                cause.names.push(best.motor.to_string());
             }
             seen.push(key);
         }
@@ -80,7 +80,7 @@ impl Causes {
 fn kind(sentence: &str, row: &FleetRow) -> String {
     // Sentences name the motor in one of these ways; a short name is a usual word too, and is looked for last.
     let label = format!("motor {} of {}", row.motor, row.source);
-    let without = [&label, &row.source, &row.motor].map(|name| without_word(sentence, name));
+    let without = [&*label, &*row.source, &*row.motor].map(|name| without_word(sentence, name));
     let text = without.into_iter().find(|text| text != sentence).unwrap_or_else(|| sentence.to_owned());
     let mut kind = String::new();
     for character in text.chars() {
@@ -116,12 +116,12 @@ mod tests {
     fn row(motor: &str, error: &str) -> FleetRow {
         let nothing = FleetEstimate { verdict: Verdict::NotIdentifiable, value: None, reason: None };
         FleetRow {
-            motor: motor.to_owned(),
-            source: "fleet.csv".to_owned(),
+            motor: motor.into(),
+            source: "fleet.csv".into(),
             window_start: None,
             estimates: std::array::from_fn(|_| nothing.clone()),
             warnings: Vec::new(),
-            error: Some(error.to_owned()),
+            error: Some(error.into()),
         }
     }
 

@@ -72,8 +72,8 @@ mod tests {
         let row = |(k, value): (usize, &f64)| {
             let found = FleetEstimate { verdict: Verdict::Identified, value: Some(FleetValue { value: *value, half_width }), reason: None };
             FleetRow {
-                motor: "m".to_owned(),
-                source: "s".to_owned(),
+                motor: "m".into(),
+                source: "s".into(),
                 window_start: Some(60.0 * k as f64),
                 estimates: std::array::from_fn(|_| found.clone()),
                 warnings: Vec::new(),

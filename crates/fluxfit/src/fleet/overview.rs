@@ -8,7 +8,10 @@ use super::{
     row::FleetRow,
 };
 use crate::motor::Parameter;
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 /// What the results of a fleet say together.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +39,7 @@ impl FleetOverview {
         let time = |row: &FleetRow| row.window_start.unwrap_or(f64::NEG_INFINITY);
         rows.sort_by(|one, other| one.motor.cmp(&other.motor).then(time(one).total_cmp(&time(other))));
         let mut causes = Causes::default();
-        let mut warnings: BTreeMap<String, usize> = BTreeMap::new();
+        let mut warnings: BTreeMap<Arc<str>, usize> = BTreeMap::new();
         let mut motors: Vec<(Member, Vec<Drift>)> = Vec::new();
         let (mut tests, mut followed) = (0, 0);
         for of_motor in rows.chunk_by(|one, next| one.motor == next.motor) {
@@ -51,6 +54,9 @@ impl FleetOverview {
             drifts.retain(|drift| drift.probability < CHANCE);
             motors.push((member, drifts));
         }
+        let read = rows.len();
+        // The memory is wanted for what follows.
+        drop(rows);
         motors.sort_by(|(one, _), (other, _)| one.worst_first(other));
         let mut drifts: Vec<Drift> = Vec::new();
         for (place, (_, of_motor)) in motors.iter_mut().enumerate() {
@@ -60,10 +66,10 @@ impl FleetOverview {
         }
         drifts.sort_by(|one, other| other.range.total_cmp(&one.range).then(one.motor.cmp(&other.motor)));
         let motors: Vec<Member> = motors.into_iter().map(|(member, _)| member).collect();
-        let mut warnings: Vec<(String, usize)> = warnings.into_iter().collect();
+        let mut warnings: Vec<(String, usize)> = warnings.into_iter().map(|(code, motors)| (code.to_string(), motors)).collect();
         warnings.sort_by_key(|(_, motors)| std::cmp::Reverse(*motors));
         let distributions = Parameter::ALL.into_iter().map(|parameter| Distribution::of(parameter, &motors)).collect();
-        Self { rows: rows.len(), distributions, drifts, followed, causes: causes.most_first(), warnings, motors }
+        Self { rows: read, distributions, drifts, followed, causes: causes.most_first(), warnings, motors }
     }
 
     /// How many motors stand so.
@@ -105,8 +111,8 @@ mod tests {
     fn row(motor: &str, start: f64, value: f64, half_width: f64) -> FleetRow {
         let found = FleetEstimate { verdict: Verdict::Identified, value: Some(FleetValue { value, half_width }), reason: None };
         FleetRow {
-            motor: motor.to_owned(),
-            source: "s".to_owned(),
+            motor: motor.into(),
+            source: "s".into(),
             window_start: Some(start),
             estimates: std::array::from_fn(|_| found.clone()),
             warnings: Vec::new(),
@@ -124,7 +130,7 @@ mod tests {
         // 0.4 from the median of 1.0: five times 1.4826 x 0.05. An interval of ±0.3 has a standard error of 0.15, which makes it 2.4.
         let sharp = FleetOverview::of([evenly(), vec![row("far", 0.0, 1.4, 0.02)]].concat());
         let vague = FleetOverview::of([evenly(), vec![row("far", 0.0, 1.4, 0.3)]].concat());
-        assert_eq!(sharp.apart().iter().map(|motor| motor.best.motor.as_str()).collect::<Vec<_>>(), ["far"]);
+        assert_eq!(sharp.apart().iter().map(|motor| &*motor.best.motor).collect::<Vec<_>>(), ["far"]);
         assert!(vague.apart().is_empty());
         // Of three motors nobody can say which one is wrong.
         let few = [row("a", 0.0, 1.0, 0.01), row("b", 0.0, 1.01, 0.01), row("c", 0.0, 3.0, 0.01)];
@@ -143,17 +149,17 @@ mod tests {
         assert!(FleetOverview::of(rows.clone()).drifts.is_empty());
         rows.extend(windows("far", 2.0 * step));
         let found = FleetOverview::of(rows);
-        assert_eq!((found.drifting()[0].best.motor.as_str(), found.drifts.len(), found.followed), ("far", 4, 1002));
+        assert_eq!((&*found.drifting()[0].best.motor, found.drifts.len(), found.followed), ("far", 4, 1002));
     }
 
     #[test]
     fn the_worst_stand_first_and_a_motor_is_known_from_its_best_window() {
-        let error = |motor: &str, start: f64| FleetRow { error: Some("no".to_owned()), ..row(motor, start, 1.0, 0.01) };
+        let error = |motor: &str, start: f64| FleetRow { error: Some("no".into()), ..row(motor, start, 1.0, 0.01) };
         let mut refused = row("refused", 0.0, 1.0, 0.01);
         refused.estimates[1] = FleetEstimate { verdict: Verdict::NotIdentifiable, value: None, reason: None };
         let rows = vec![row("good", 0.0, 1.0, 0.01), error("part", 0.0), row("part", 60.0, 1.0, 0.01), refused, error("none", 0.0)];
         let found = FleetOverview::of(rows);
-        let order: Vec<(&str, usize)> = found.motors.iter().map(|motor| (motor.best.motor.as_str(), motor.failed)).collect();
+        let order: Vec<(&str, usize)> = found.motors.iter().map(|motor| (&*motor.best.motor, motor.failed)).collect();
         assert_eq!(order, [("none", 1), ("refused", 0), ("part", 1), ("good", 0)]);
         assert_eq!(Standing::ALL.map(|standing| found.count(standing)), [1, 1, 0, 2]);
         assert_eq!(found.distributions[1].verdicts, [2, 0, 1]);

@@ -1,22 +1,24 @@
-//! A row of the results: one motor, and one window of time where windows were asked for.
+//! A row of the results: one motor, and one window of time where windows were asked for. The rows of a fleet are in memory together, so a
+//! text that several of them have is held once.
 
 use crate::{Verdict, motor::PARAMETERS};
+use std::sync::Arc;
 
 /// A row of the results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FleetRow {
     /// The motor's name.
-    pub motor: String,
+    pub motor: Arc<str>,
     /// The file or table.
-    pub source: String,
+    pub source: Arc<str>,
     /// Start of the window, s; `None` where all of the motor's rows were taken.
     pub window_start: Option<f64>,
     /// The parameters in their order.
     pub estimates: [FleetEstimate; PARAMETERS],
     /// Codes of the warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Arc<str>>,
     /// Why there is no answer.
-    pub error: Option<String>,
+    pub error: Option<Arc<str>>,
 }
 
 /// A parameter of a row.
@@ -27,7 +29,7 @@ pub struct FleetEstimate {
     /// The value; `None` where it is not identifiable.
     pub value: Option<FleetValue>,
     /// Why the verdict is not better.
-    pub reason: Option<String>,
+    pub reason: Option<Arc<str>>,
 }
 
 /// A value with half of its 95 % interval, SI.

@@ -41,7 +41,7 @@ impl Display for FleetOverview {
 
 /// The names of the first motors, and how many more there are.
 fn names(motors: &[&Member]) -> String {
-    let mut named: Vec<String> = motors.iter().take(NAMED).map(|motor| motor.best.motor.clone()).collect();
+    let mut named: Vec<String> = motors.iter().take(NAMED).map(|motor| motor.best.motor.to_string()).collect();
     let more = motors.len() - named.len();
     if more > 0 {
         named.push(format!("{more} more"));

@@ -1,5 +1,6 @@
 //! What is finished, beside the results: a line for each motor. Whoever is killed and started again reads it and goes on; a line that was
-//! being written is dropped. With the results it is removed.
+//! being written is dropped. With the results it is removed. Rows are read again from their lines, so that the memory does not grow with
+//! them.
 
 use super::row::{COLUMNS, Row};
 use crate::error::CommandError;
@@ -7,17 +8,31 @@ use serde_json::{Value, json};
 use std::{
     collections::BTreeMap,
     fs::{File, OpenOptions},
-    io::{Read, Seek, SeekFrom, Write},
+    io::{BufRead, BufReader, Read, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
 };
 
 /// The journal of a run.
 #[derive(Default)]
 pub(crate) struct Journal {
-    /// Its path and file; none of a run whose rows are kept in memory alone.
-    file: Option<(PathBuf, File)>,
+    /// None of a run whose rows are kept in memory alone.
+    lines: Option<Lines>,
     /// The rows of each motor; of a motor that is written again, the later ones.
-    done: BTreeMap<String, Vec<Row>>,
+    done: BTreeMap<String, Place>,
+}
+
+/// The file, and its length in bytes.
+struct Lines {
+    path: PathBuf,
+    file: File,
+    length: u64,
+}
+
+/// Where the rows of a motor are.
+enum Place {
+    Memory(Vec<Row>),
+    /// Where a line of the file begins, and how long it is.
+    Line(u64, usize),
 }
 
 impl Journal {
@@ -36,27 +51,27 @@ impl Journal {
         if let Err(std::fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(refuse("another run writes these results; wait for it, or name others"));
         }
-        let mut content = Vec::new();
-        file.read_to_end(&mut content)?;
-        let whole = content.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-        let text = String::from_utf8_lossy(&content[..whole]);
-        let mut lines = text.lines();
         let head = json!({ "fluxfit fleet": env!("CARGO_PKG_VERSION"), "columns": COLUMNS.len(), "words": words });
-        let mut done = BTreeMap::new();
-        match lines.next() {
-            None => {
-                file.set_len(0)?;
-                file.rewind()?;
-                file.write_all(format!("{head}\n").as_bytes())?;
+        let (mut length, mut done) = (0, BTreeMap::new());
+        let (mut reader, mut line) = (BufReader::new(&file), Vec::new());
+        while reader.read_until(b'\n', &mut line)? > 0 && line.ends_with(b"\n") {
+            if length == 0 && !serde_json::from_slice::<Value>(&line).is_ok_and(|first| first == head) {
+                return Err(refuse("it belongs to a run with other arguments or another version; remove it to start anew"));
             }
-            Some(first) if serde_json::from_str::<Value>(first).is_ok_and(|first| first == head) => {
-                done.extend(lines.filter_map(entry));
-                file.set_len(whole as u64)?;
-                file.seek(SeekFrom::End(0))?;
+            if let Some((motor, _)) = entry(&line) {
+                done.insert(motor, Place::Line(length, line.len()));
             }
-            Some(_) => return Err(refuse("it belongs to a run with other arguments or another version; remove it to start anew")),
+            length += line.len() as u64;
+            line.clear();
         }
-        Ok(Self { file: Some((path, file)), done })
+        file.set_len(length)?;
+        if length == 0 {
+            file.rewind()?;
+            let head = format!("{head}\n");
+            file.write_all(head.as_bytes())?;
+            length = head.len() as u64;
+        }
+        Ok(Self { lines: Some(Lines { path, file, length }), done })
     }
 
     /// The motors that are finished.
@@ -74,33 +89,59 @@ impl Journal {
     /// # Errors
     /// If they cannot be written.
     pub(crate) fn add(&mut self, motor: &str, rows: Vec<Row>) -> Result<(), CommandError> {
-        if let Some((_, file)) = &mut self.file {
-            file.write_all(format!("{}\n", json!({ "motor": motor, "rows": rows })).as_bytes())?;
-        }
-        self.done.insert(motor.to_owned(), rows);
+        let place = match &mut self.lines {
+            None => Place::Memory(rows),
+            Some(lines) => {
+                let line = format!("{}\n", json!({ "motor": motor, "rows": rows }));
+                lines.file.seek(SeekFrom::Start(lines.length))?;
+                lines.file.write_all(line.as_bytes())?;
+                let start = lines.length;
+                lines.length += line.len() as u64;
+                Place::Line(start, line.len())
+            }
+        };
+        self.done.insert(motor.to_owned(), place);
         Ok(())
     }
 
-    /// All rows, by motor and window.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = &Row> {
-        self.done.values().flatten()
+    /// Passes on all rows, by motor and window.
+    ///
+    /// # Errors
+    /// If a line cannot be read again, and those of `take`.
+    pub(crate) fn rows(&mut self, take: &mut dyn FnMut(&Row) -> Result<(), CommandError>) -> Result<(), CommandError> {
+        for place in self.done.values() {
+            match (place, &mut self.lines) {
+                (Place::Memory(rows), _) => rows.iter().try_for_each(&mut *take)?,
+                (Place::Line(start, length), Some(lines)) => lines.read(*start, *length)?.iter().try_for_each(&mut *take)?,
+                (Place::Line(..), None) => (),
+            }
+        }
+        Ok(())
     }
 
-    /// Removes the journal, because the results are written, and gives all rows, by motor and window.
+    /// Removes the journal, because the results are written.
     ///
     /// # Errors
     /// If it cannot be removed.
-    pub(crate) fn close(self) -> Result<Vec<Row>, CommandError> {
-        if let Some((path, _)) = self.file {
-            std::fs::remove_file(path)?;
-        }
-        Ok(self.done.into_values().flatten().collect())
+    pub(crate) fn close(self) -> Result<(), CommandError> {
+        Ok(self.lines.map_or(Ok(()), |lines| std::fs::remove_file(lines.path))?)
+    }
+}
+
+impl Lines {
+    /// The rows of a line.
+    fn read(&mut self, start: u64, length: usize) -> Result<Vec<Row>, CommandError> {
+        let mut line = vec![0; length];
+        self.file.seek(SeekFrom::Start(start))?;
+        self.file.read_exact(&mut line)?;
+        let changed = || CommandError::Usage(format!("{}: another program changed it; remove it to start anew", self.path.display()));
+        entry(&line).map(|(_, rows)| rows).ok_or_else(changed)
     }
 }
 
 /// The motor and its rows of a line; `None` of a damaged one, whose motor is identified again.
-fn entry(line: &str) -> Option<(String, Vec<Row>)> {
-    let Value::Object(mut entry) = serde_json::from_str(line).ok()? else { return None };
+fn entry(line: &[u8]) -> Option<(String, Vec<Row>)> {
+    let Value::Object(mut entry) = serde_json::from_slice(line).ok()? else { return None };
     let rows = match entry.remove("rows")? {
         Value::Array(rows) => rows,
         _ => return None,
@@ -112,6 +153,16 @@ fn entry(line: &str) -> Option<(String, Vec<Row>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn rows(journal: &mut Journal) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let mut take = |row: &Row| {
+            rows.push(row.clone());
+            Ok(())
+        };
+        journal.rows(&mut take).unwrap();
+        rows
+    }
 
     #[test]
     fn a_torn_line_is_dropped_and_the_rest_is_kept() {
@@ -127,11 +178,18 @@ mod tests {
         let path = directory.path().join("results.csv.journal");
         let whole = std::fs::read(&path).unwrap();
         std::fs::write(&path, [&whole[..], b"{\"motor\": \"c\", \"ro"].concat()).unwrap();
-        let journal = Journal::open(&output, &words).unwrap();
+        let mut journal = Journal::open(&output, &words).unwrap();
         assert_eq!((journal.motors(), journal.finished().collect::<Vec<_>>()), (2, vec!["a", "b"]));
-        assert_eq!(journal.rows().cloned().collect::<Vec<_>>(), [row(1.0), row(2.0), row(0.1)]);
-        drop(journal);
+        assert_eq!(rows(&mut journal), [row(1.0), row(2.0), row(0.1)]);
         assert_eq!(std::fs::read(&path).unwrap(), whole);
+        // What is added after rows were read again stands behind them, and takes the place of what the motor had.
+        journal.add("c", vec![row(3.0)]).unwrap();
+        journal.add("b", vec![row(4.0)]).unwrap();
+        let expected = [row(1.0), row(2.0), row(4.0), row(3.0)];
+        assert_eq!(rows(&mut journal), expected);
+        drop(journal);
+        assert!(std::fs::read(&path).unwrap().starts_with(&whole));
+        assert_eq!(rows(&mut Journal::open(&output, &words).unwrap()), expected);
         assert!(Journal::open(&output, &["b.csv".to_owned()]).err().unwrap().to_string().contains("other arguments"));
         Journal::open(&output, &words).unwrap().close().unwrap();
         assert!(!path.exists());

@@ -1,4 +1,5 @@
-//! Finished results, read again for their page: Parquet or CSV, as one machine, Dask or Spark wrote them.
+//! Finished results, read again for their page: Parquet or CSV, as one machine, Dask or Spark wrote them. One row is in memory at a time,
+//! and of a CSV file one block.
 
 use super::row::{COLUMNS, Kind, Row};
 use crate::error::CommandError;
@@ -6,7 +7,7 @@ use fluxfit::{Parameter, Verdict};
 use fluxfit_files::{
     FileError, FileErrorKind, Problem,
     csv::record,
-    input::{name, read as read_bytes, text},
+    input::{Bytes, io_problem, line_at, name, open, text},
 };
 use fluxfit_log::guarded;
 use parquet::{
@@ -17,24 +18,35 @@ use parquet::{
 use serde_json::{Map, Value, json};
 use std::{
     fs::File,
+    io::{BufRead, BufReader, Read},
     path::{Path, PathBuf},
 };
 
 /// What a Parquet file begins with.
 const SIGNATURE: &[u8] = b"PAR1";
 
-/// The rows of finished results, one file after the other.
+/// Bytes of text in memory at a time: some thousand rows.
+const BLOCK: usize = 1 << 20;
+
+/// Passes on the rows of finished results, one file after the other.
 ///
 /// # Errors
 /// If a file cannot be read, or holds no results.
-pub(super) fn read(paths: &[PathBuf]) -> Result<Vec<Row>, CommandError> {
-    let mut rows = Vec::new();
+pub(super) fn read(paths: &[PathBuf], take: &mut dyn FnMut(&Row)) -> Result<(), CommandError> {
     for path in paths {
-        let bytes = read_bytes(path)?;
-        let read = if bytes.starts_with(SIGNATURE) { of_parquet(path, &mut rows) } else { of_csv(&bytes, &mut rows) };
-        read.map_err(|error| error.in_file(&name(path)))?;
+        read_one(path, take).map_err(|error| error.in_file(&name(path)))?;
     }
-    Ok(rows)
+    Ok(())
+}
+
+fn read_one(path: &Path, take: &mut dyn FnMut(&Row)) -> Result<(), FileError> {
+    let mut bytes: Box<dyn Read> = match open(path)? {
+        Bytes::File(file, _) => Box::new(file),
+        Bytes::Stream(stream) => stream,
+    };
+    let mut start = Vec::new();
+    bytes.by_ref().take(SIGNATURE.len() as u64).read_to_end(&mut start).map_err(|error| io_problem("reading", &error))?;
+    if start == SIGNATURE { of_parquet(path, take) } else { of_csv(start.chain(bytes), take) }
 }
 
 /// The columns without which a table holds no results of a fleet.
@@ -52,26 +64,72 @@ fn check(names: &[String]) -> Result<(), FileError> {
     })
 }
 
-fn of_csv(bytes: &[u8], rows: &mut Vec<Row>) -> Result<(), FileError> {
-    let text = text(bytes, "CSV")?;
-    let (names, body) = record::first_record(text, b',');
-    check(&names)?;
-    let rest = &text.as_bytes()[body..];
-    let mut reader = record::reader(rest, b',');
+fn of_csv(bytes: impl Read, take: &mut dyn FnMut(&Row)) -> Result<(), FileError> {
+    let mut lines = BufReader::new(bytes);
+    let (mut names, mut block, mut above) = (None, Vec::new(), 0);
+    while next_block(&mut lines, &mut block).map_err(|error| io_problem("reading", &error))? {
+        // Blank lines at the end of a file may be a block.
+        if names.is_none() || !block.trim_ascii().is_empty() {
+            rows_of(&block, &mut names, above, take)?;
+        }
+        above += line_at(&block, block.len()) - 1;
+    }
+    // Of a file without a byte, the refusal.
+    if names.is_none() { text(b"", "CSV").map(drop) } else { Ok(()) }
+}
+
+/// The next records of a text that are whole, some [`BLOCK`] of them; false at the end. A record does not end inside of quotes, where a
+/// line may.
+fn next_block(lines: &mut impl BufRead, block: &mut Vec<u8>) -> std::io::Result<bool> {
+    block.clear();
+    let (mut from, mut is_quoted) = (0, false);
+    while (block.len() < BLOCK || is_quoted) && lines.read_until(b'\n', block)? > 0 {
+        is_quoted ^= block[from..].iter().filter(|byte| **byte == b'"').count() % 2 == 1;
+        from = block.len();
+    }
+    Ok(!block.is_empty())
+}
+
+/// The text of a block above which are so many lines.
+fn text_below(block: &[u8], above: u64) -> Result<&str, FileError> {
+    let zero = block.iter().position(|byte| *byte == 0);
+    match (str::from_utf8(block), zero) {
+        _ if above == 0 => text(block, "CSV"),
+        (Ok(text), None) => Ok(text),
+        (found, zero) => {
+            let at = found.err().map(|error| error.valid_up_to()).or(zero).unwrap_or(0);
+            Err(FileError::from(Problem::NotText { wanted: "CSV" }).at_line(above + line_at(block, at)))
+        }
+    }
+}
+
+/// Passes on the rows of a block, above which are so many lines. The first record of the file has the names.
+fn rows_of(block: &[u8], names: &mut Option<Vec<String>>, above: u64, take: &mut dyn FnMut(&Row)) -> Result<(), FileError> {
+    let below = |error: FileError, line: u64| error.at_line(above + line);
+    let text = text_below(block, above)?;
+    let (names, body) = match names {
+        Some(names) => (names, 0),
+        None => {
+            let (found, body) = record::first_record(text, b',');
+            check(&found)?;
+            (names.insert(found), body)
+        }
+    };
+    let mut reader = record::reader(&text.as_bytes()[body..], b',');
     let mut cells = Default::default();
     while record::next(&mut reader, &mut cells)? {
         let line = || record::line_of(text, body + record::offset(&cells));
         if cells.len() != names.len() {
             let problem = Problem::RowLength { found: cells.len(), expected: names.len(), multiline: false };
-            return Err(FileError::from(problem).at_line(line()));
+            return Err(below(problem.into(), line()));
         }
         let cells_by_name = names.iter().zip(&cells).map(|(name, cell)| (name.as_str(), Value::String(record::text_of(cell))));
-        rows.push(row(cells_by_name).map_err(|error| error.at_line(line()))?);
+        take(&row(cells_by_name).map_err(|error| below(error, line()))?);
     }
     Ok(())
 }
 
-fn of_parquet(path: &Path, rows: &mut Vec<Row>) -> Result<(), FileError> {
+fn of_parquet(path: &Path, take: &mut dyn FnMut(&Row)) -> Result<(), FileError> {
     const FORMAT: &str = "Parquet";
     let fault = |error: ParquetError| FileError::from(Problem::Syntax { format: FORMAT, message: error.to_string() });
     let io = |error: std::io::Error| FileError::from(Problem::Io { action: "reading", reason: error.to_string() });
@@ -80,10 +138,11 @@ fn of_parquet(path: &Path, rows: &mut Vec<Row>) -> Result<(), FileError> {
     let columns = file.metadata().file_metadata().schema_descr().columns();
     check(&columns.iter().map(|column| column.name().to_owned()).collect::<Vec<_>>())?;
     let mut records = guarded(FORMAT, || file.get_row_iter(None).map_err(fault))?;
+    let mut at_row = 0;
     while let Some(record) = guarded(FORMAT, || records.next().transpose().map_err(fault))? {
-        let at_row = rows.len() as u64 + 1;
+        at_row += 1;
         let cells = record.get_column_iter().map(|(name, field)| (name.as_str(), value_of(field)));
-        rows.push(row(cells).map_err(|error| error.at_row(at_row))?);
+        take(&row(cells).map_err(|error| error.at_row(at_row))?);
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use super::{
     row::{self, Row},
 };
 use crate::{commands::input, error::CommandError};
-use fluxfit_log::{Group, GroupRows, LogOptions, MemoryTable, parse_log, read_groups, read_table};
+use fluxfit_log::{Group, GroupRows, LogOptions, MemoryTable, parse_log, read_groups, read_part, read_table};
 use fluxfit_setup::MotorFile;
 use std::{
     collections::BTreeSet,
@@ -152,7 +152,7 @@ fn read_logs(logs: &[PathBuf], mut queue: Queue) {
         let (mut is_over, mut is_empty) = (false, true);
         let read = read_groups(path, by, &mut |Group { key, rows }| {
             is_empty = false;
-            let passed = queue.pass_group(key, &source, rows.map(Source::Group).map_err(CommandError::from));
+            let passed = queue.pass_group(key, &source, Ok(Source::Group(rows)));
             is_over |= passed.is_break();
             passed
         });
@@ -227,6 +227,10 @@ fn rows_of(waiting: Waiting, arguments: &Motors, motor: &MotorFile) -> Vec<Row> 
         }
         Ok(Source::Group(GroupRows::Text(text))) => {
             let parse = |_: &Path, options: &LogOptions| parse_log(&label, &text, options);
+            input::read_each(&one(Path::new(&label)).log, *motor, parse)
+        }
+        Ok(Source::Group(GroupRows::Part(part))) => {
+            let parse = |_: &Path, options: &LogOptions| read_part(&label, &part, options);
             input::read_each(&one(Path::new(&label)).log, *motor, parse)
         }
         Ok(Source::Group(GroupRows::Numbers(columns))) => of_table(GroupRows::table(&columns)),

@@ -1,9 +1,9 @@
 //! `--alarm rs=+20%`: a parameter that leaves a band around its start.
 
-use crate::terminal;
 use fluxfit::{Parameter, motor::PARAMETERS};
 use fluxfit_track::{Tracked, Verdict};
 use fluxfit_units::{key_value, significant};
+use std::fmt;
 
 /// A band.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +33,29 @@ pub(crate) fn parse(text: &str) -> Result<Alarm, String> {
     Ok(Alarm { parameter, fall: (!is_signed('+')).then_some(part), rise: (!is_signed('-')).then_some(part) })
 }
 
+/// A parameter that has left its band.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Left {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// When, s.
+    pub t: f64,
+    /// Its value then, SI.
+    pub value: f64,
+    /// The value around which the band lies.
+    pub start: f64,
+}
+
+impl fmt::Display for Left {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { parameter, t, value, start } = self;
+        let change = 100.0 * (value / start - 1.0);
+        let (symbol, unit) = (parameter.symbol(), parameter.unit());
+        let [value, start] = [value, start].map(|value| significant(*value, 4));
+        write!(f, "{symbol} is {value} {unit}, {change:+.1} % from {start}, at t = {t:.3} s")
+    }
+}
+
 /// All bands, and whether one was left.
 #[derive(Debug)]
 pub(crate) struct Watch {
@@ -46,8 +69,9 @@ impl Watch {
         Self { alarms: alarms.iter().map(|alarm| (*alarm, false)).collect(), starts: *starts }
     }
 
-    /// Rings, once for each band, if a parameter has left it. One whose interval reaches into the band has not.
-    pub(crate) fn look(&mut self, t: f64, parameters: &[Tracked; PARAMETERS]) {
+    /// The parameters that have left their band since the last look, once for each band. One whose interval reaches into it has not.
+    pub(crate) fn look(&mut self, t: f64, parameters: &[Tracked; PARAMETERS]) -> Vec<Left> {
+        let mut left = Vec::new();
         for (alarm, has_rung) in self.alarms.iter_mut().filter(|(_, has_rung)| !has_rung) {
             let now = &parameters[alarm.parameter as usize];
             let Some(value) = now.value else { continue };
@@ -61,13 +85,10 @@ impl Watch {
             let is_below = alarm.fall.is_some_and(|fall| value + margin < start * (1.0 - fall));
             if is_above || is_below {
                 *has_rung = true;
-                let change = 100.0 * (value / start - 1.0);
-                let (symbol, unit) = (alarm.parameter.symbol(), alarm.parameter.unit());
-                let values = [value, start].map(|value| significant(value, 4));
-                let sentence = format!("{symbol} is {} {unit}, {change:+.1} % from {}, at t = {t:.3} s", values[0], values[1]);
-                terminal::warn_of("alarm", &sentence);
+                left.push(Left { parameter: alarm.parameter, t, value, start });
             }
         }
+        left
     }
 
     pub(crate) fn has_rung(&self) -> bool {

@@ -53,6 +53,36 @@ fn columns_are_the_same_on_any_number_of_threads() {
 }
 
 #[test]
+fn a_part_has_its_rows_whatever_row_groups_they_lie_in() {
+    for name in ["long.parquet", "every.parquet", "int96.parquet", "pandas.parquet", "nulls.parquet"] {
+        let open = || Parquet::open(RandomAccess::memory(bytes(name))).unwrap();
+        let read = |mut parquet: Parquet, stretch: usize| {
+            parquet.stretch = stretch;
+            let wanted: Vec<usize> = (0..parquet.heads().len()).collect();
+            let mut columns = vec![Vec::new(); wanted.len()];
+            let read = parquet.read(&wanted, &mut |block| {
+                columns.iter_mut().zip(&block).for_each(|(column, values)| column.extend(values.iter().map(|value| value.to_bits())));
+                Ok(())
+            });
+            read.unwrap();
+            columns
+        };
+        let whole = read(open(), STRETCH);
+        let rows = whole[0].len() as u64;
+        for part in [0..rows, 0..1, 1..rows, rows / 3..rows / 2 + 1, rows - 1..rows, rows..rows, 1..rows + 9] {
+            for stretch in STRETCHES {
+                let parquet = open().part(part.clone(), "no such column");
+                let kept = |column: &Vec<u64>| column[part.start as usize..part.end.min(rows) as usize].to_vec();
+                assert!(parquet.heads().iter().all(|head| head.rows == part.end.min(rows) - part.start));
+                assert_eq!(read(parquet, stretch), whole.iter().map(kept).collect::<Vec<_>>(), "{name} {part:?} {stretch}");
+            }
+        }
+        let first = open().heads()[0].name.clone();
+        assert_eq!(read(open().part(0..rows, &first), STRETCH), whole[1..], "{name}");
+    }
+}
+
+#[test]
 fn a_damaged_file_gives_the_same_rows_and_the_same_error_on_any_number_of_threads() {
     let whole = bytes("long.parquet");
     let mut errors = 0;

@@ -232,8 +232,7 @@ fn outliers(area: &Area, chart: &mut Chart, plot: &Plot, fleet: &FleetOverview, 
 
 /// Each motor's value with its interval, in order of the motors' names.
 fn lines(area: &Area, chart: &mut Chart, fleet: &FleetOverview, distribution: &Distribution) -> Drawn {
-    let named =
-        distribution.values.iter().filter_map(|(motor, value)| Some((fleet.motors.get(*motor)?.best.motor.as_str(), *motor, *value)));
+    let named = distribution.values.iter().filter_map(|(motor, value)| Some((&*fleet.motors.get(*motor)?.best.motor, *motor, *value)));
     let mut named: Vec<(&str, usize, FleetValue)> = named.collect();
     named.sort_by(|one, other| one.0.cmp(other.0));
     let motors = named.len() as f64;

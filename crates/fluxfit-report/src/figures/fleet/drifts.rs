@@ -58,7 +58,7 @@ fn panels(fleet: &FleetOverview) -> Vec<(Parameter, Vec<&Drift>)> {
 fn draw(fleet: &FleetOverview, size: Size) -> Drawing {
     let panels = panels(fleet);
     let said = panels.iter().map(|(parameter, drifts)| {
-        let names: Vec<&str> = drifts.iter().filter_map(|drift| Some(fleet.motors.get(drift.motor)?.best.motor.as_str())).collect();
+        let names: Vec<&str> = drifts.iter().filter_map(|drift| Some(&*fleet.motors.get(drift.motor)?.best.motor)).collect();
         format!("{} of {}", parameter.symbol(), names.join(", "))
     });
     let label = format!("Curves over time: {}", said.collect::<Vec<_>>().join("; "));

@@ -26,7 +26,7 @@ const ALIKE: usize = 2;
 pub(crate) fn section(report: &FleetReport) -> Option<Section> {
     let motors = &report.fleet.motors;
     let examples = examples(report.fleet);
-    let is_wanted = |member: &&Member| member.standing != Standing::NoAnswer || examples.contains(member.best.motor.as_str());
+    let is_wanted = |member: &&Member| member.standing != Standing::NoAnswer || examples.contains(&*member.best.motor);
     let (wanted, alike): (Vec<&Member>, Vec<&Member>) = motors.iter().partition(is_wanted);
     let listed = wanted.len().min(LISTED);
     let left: Vec<&Member> = alike.into_iter().chain(wanted[listed..].iter().copied()).collect();
