@@ -13,8 +13,11 @@ const BLOCK: usize = 16;
 /// Fewest rows that tell a ratio.
 const LEAST_ROWS: usize = 64;
 
-/// A ratio as near to one as this is that of a speed that lags, or of a coarse angle.
+/// A ratio as near to one as this is that of a speed that lags a little, or of a coarse angle.
 const TOLERANCE: f64 = 0.03;
+
+/// A speed lags if its own slope explains what the angle turns beyond it, and a ratio leaves so many times as much.
+const TIMES_WORSE: f64 = 2.0;
 
 /// Powers of 1000 are recognized this well: both columns were converted from the same numbers.
 const OF_POWER: f64 = 0.05;
@@ -62,32 +65,43 @@ fn is_in_degrees(log: &Log, theta: &[f64]) -> bool {
     as_degrees && !as_radians
 }
 
-/// The rate of an angle with this period over the speed; `None` where the log does not tell it.
+/// The rate of an angle with this period over the speed; one where the speed is that of a filter of first order, or of a delay, which
+/// `identify` finds and undoes; `None` where the log does not tell it.
 fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
     let columns = log.columns();
-    // Sums of squares and of products, over blocks of rows.
-    let (mut of_angle, mut of_speed, mut of_both, mut turned) = (0.0, 0.0, 0.0, 0.0);
+    // Over blocks of rows: by how much the angle turns, by how much it should by the speed, and by how much that changes.
+    let mut blocks: Vec<[f64; 3]> = Vec::new();
     let (mut rows, mut far) = (0, 0);
     for segment in log.segments() {
-        let mut block = (0.0, 0.0);
+        let mut block = [0.0; 3];
         for (count, row) in (segment.rows.start + 1..segment.rows.end).enumerate() {
             let step = theta[row] - theta[row - 1];
             let step = step - period * (step / period).round();
             let by_speed = 0.5 * (columns.omega_e[row] + columns.omega_e[row - 1]) * (columns.t[row] - columns.t[row - 1]);
             rows += 1;
             far += usize::from(step.abs() > MOST_TURN / TAU * period);
-            block = (block.0 + step, block.1 + by_speed);
+            block = [block[0] + step, block[1] + by_speed, block[2] + columns.omega_e[row] - columns.omega_e[row - 1]];
             if (count + 1) % BLOCK == 0 {
-                let (angle, speed) = std::mem::take(&mut block);
-                of_angle += angle * angle;
-                of_speed += speed * speed;
-                of_both += angle * speed;
-                turned += angle.abs() * TAU / period;
+                blocks.push(std::mem::take(&mut block));
             }
         }
     }
+    let turned: f64 = blocks.iter().map(|[angle, ..]| angle.abs()).sum::<f64>() * TAU / period;
+    let of = |one: &dyn Fn(&[f64; 3]) -> f64, other: &dyn Fn(&[f64; 3]) -> f64| -> f64 { blocks.iter().map(|k| one(k) * other(k)).sum() };
+    let (angle, speed, change) = (|k: &[f64; 3]| k[0], |k: &[f64; 3]| k[1], |k: &[f64; 3]| k[2]);
+    let beyond = |k: &[f64; 3]| k[0] - k[1];
+    let (of_angle, of_speed, of_both) = (of(&angle, &angle), of(&speed, &speed), of(&angle, &speed));
     let is_told = rows >= LEAST_ROWS && far as f64 <= FEW * rows as f64 && turned >= LEAST_TURN && of_speed > 0.0;
-    (is_told && of_both * of_both >= CORRELATION * of_angle * of_speed).then(|| of_both / of_speed)
+    if !is_told || of_both * of_both < CORRELATION * of_angle * of_speed {
+        return None;
+    }
+    // Behind a filter of first order the angle turns by the speed and by the lag times its slope; a lag lets it turn further as the speed
+    // grows.
+    let (of_change, lagging) = (of(&change, &change), of(&beyond, &change));
+    let left_by_lag = of(&beyond, &beyond) - if of_change > 0.0 { lagging * lagging / of_change } else { 0.0 };
+    let left_by_ratio = of_angle - of_both * of_both / of_speed;
+    let is_lag = lagging > 0.0 && TIMES_WORSE * left_by_lag < left_by_ratio;
+    Some(if is_lag { 1.0 } else { of_both / of_speed })
 }
 
 /// Rows with less current than this share of the largest are not counted.
