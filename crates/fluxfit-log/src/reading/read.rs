@@ -24,7 +24,7 @@ use crate::{
     note::Note,
     problem::Problem,
 };
-use fluxfit::log::{Columns, Log, Segment, Source, check_values};
+use fluxfit::log::{Columns, Log, Source, check_values, without_gaps};
 use fluxfit_files::{
     FileError,
     input::{self, Bytes},
@@ -46,6 +46,9 @@ pub struct ReadLog {
     pub notes: Vec<Note>,
     /// The columns of the file that were read.
     pub columns: Vec<ReadColumn>,
+    /// The gaps in time that the file has: time of the last row before each and of the first one behind it, s. Rows that were left out
+    /// are none, though nothing is computed across them either.
+    pub gaps: Vec<(f64, f64)>,
 }
 
 /// A column of a file, as it was read.
@@ -59,6 +62,16 @@ pub struct ReadColumn {
     pub unit: Unit,
     /// The factor besides the unit: scale and sign.
     pub scale: f64,
+}
+
+impl ReadLog {
+    /// Times between which nothing is computed: those with a gap of the file, or those where only rows were left out.
+    pub fn breaks(&self, of_file: bool) -> Vec<(f64, f64)> {
+        let (t, segments) = (&self.log.columns().t, self.log.segments());
+        let times = segments.windows(2).map(|pair| (t[pair[0].rows.end - 1], t[pair[1].rows.start]));
+        let has_gap = |(from, to): &(f64, f64)| self.gaps.iter().any(|(t0, t1)| t0 >= from && t1 <= to);
+        times.filter(|times| has_gap(times) == of_file).collect()
+    }
 }
 
 impl ReadColumn {
@@ -143,10 +156,15 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let layout = recognize(table.heads(), &mut notes).map_err(at_header)?;
     let named = layout.filter(|layout| !layout.is_canonical());
     let chosen = columns::choose(&table, named, options, &mut notes)?;
-    let Gathered { mut channels, lines, is_interpolated } = gather(&mut table, &chosen, layout, options, &mut notes)?;
+    let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     let aligned = align::align(&mut channels, &lines)?;
-    channels.times_bus(&options.shares_of_bus)?;
+    let gaps = gaps_of_file(&channels, &dropped_before);
+    plausibility::refuse_duties(&chosen, &channels)?;
+    plausibility::refuse_digits(&chosen, &channels)?;
+    channels.times_bus(&chosen)?;
     plausibility::refuse_standardized(&chosen, &channels)?;
+    plausibility::refuse_per_unit(&chosen, &channels)?;
+    plausibility::refuse_high_voltage(&chosen, &channels)?;
     let is_interpolated = is_interpolated || aligned.is_some();
     let mut more: Vec<String> = aligned.into_iter().collect();
     phases::of_stator_frame(&mut channels);
@@ -159,13 +177,13 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     if !log.spikes().is_empty() {
         notes.push(log.spikes().to_string().into());
     }
-    notes.extend(gaps(&log).map(Note::from));
+    notes.extend(note_gaps(&gaps).map(Note::from));
     let source = Source { columns: vec![chosen::describe(&chosen)], notes: notes.iter().map(|note| note.sentence.clone()).collect() };
     let log = log.with_source(source);
     // Columns that were found without a mapping and without another layout have the canonical names.
     let layout = layout.or_else(|| (!options.has_headers()).then(Layout::canonical));
     let columns = chosen.iter().map(ReadColumn::of).collect();
-    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes, columns })
+    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes, columns, gaps })
 }
 
 /// The layout with these names, if it is one of the table and that of a log.
@@ -200,11 +218,16 @@ fn log(mut channels: Channels, chosen: &[ChosenColumn], lines: &Lines, notes: &m
     Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e, u_dc, temperature }).map_err(|error| locator.locate(error))
 }
 
-/// A note on gaps in time; those of rows that were left out have theirs.
-fn gaps(log: &Log) -> Option<String> {
-    let t = &log.columns().t;
-    let gap = |pair: &[Segment]| (t[pair[0].rows.end - 1], t[pair[1].rows.start]);
-    let gaps: Vec<(f64, f64)> = log.segments().windows(2).map(gap).collect();
+/// Gaps in time between the rows of the file; not those where rows were dropped because there were too many.
+fn gaps_of_file(channels: &Channels, dropped_before: &[usize]) -> Vec<(f64, f64)> {
+    let Some(t) = channels.get(Channel::T) else { return Vec::new() };
+    let stretches = without_gaps(t);
+    let starts = stretches.iter().skip(1).map(|rows| rows.start).filter(|row| !dropped_before.contains(row));
+    starts.map(|row| (t[row - 1], t[row])).collect()
+}
+
+/// A note on gaps in time.
+fn note_gaps(gaps: &[(f64, f64)]) -> Option<String> {
     let (from, to) = *gaps.iter().max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))?;
     let longest = format!("{} s at t = {} s", significant(to - from, 3), significant(from, 6));
     Some(match gaps.len() {
