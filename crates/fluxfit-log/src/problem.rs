@@ -100,9 +100,9 @@ pub(crate) enum Problem {
     )]
     PerUnit { most: f64 },
     #[error(
-        "ud and uq come to {:.0} kV, which no drive has: their unit is another one; state it, or that they are in V", .most / 1000.0
+        "{channel} comes to {:.0} kV, which no drive has: its unit is another one; state it, or that it is in V", .most / 1000.0
     )]
-    HighVoltage { most: f64 },
+    HighVoltage { channel: &'static str, most: f64 },
     #[error("by its values, {low} to {high}, this column is no duty cycle from 0 to 1; write into a mapping file {} = {{ column = {header:?}, scale = .., times = \"u_dc\" }}", .channel)]
     Duty { channel: &'static str, header: String, low: String, high: String },
     #[error(
@@ -245,9 +245,7 @@ impl Problem {
             Self::NoBus { .. } => map(&["u_dc"]),
             Self::SpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: None }],
             Self::Digits { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
-            Self::HighVoltage { .. } => {
-                vec![Advice::StateUnit { channel: "ud", unit: Some("mV") }, Advice::StateUnit { channel: "uq", unit: Some("mV") }]
-            }
+            Self::HighVoltage { channel, .. } => vec![Advice::StateUnit { channel, unit: Some("mV") }],
             Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
             Self::NoAngle => map(&["theta_e"]),
             Self::ZeroPolePairs => vec![Advice::StatePolePairs],

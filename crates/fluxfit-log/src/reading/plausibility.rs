@@ -84,15 +84,20 @@ pub(super) fn refuse_per_unit(chosen: &[ChosenColumn], channels: &Channels) -> R
 /// No drive of a PMSM has more, V: those of ships and wind turbines have up to 15 kV.
 const MOST_VOLTAGE: f64 = 30e3;
 
-/// Refuses voltages that no drive has, where nothing states their unit.
+/// Refuses voltages that no drive has, where nothing states their unit. With the DC voltage, the columns are compared later.
 pub(super) fn refuse_high_voltage(chosen: &[ChosenColumn], channels: &Channels) -> Result<(), FileError> {
-    let voltages = chosen.iter().filter(|column| [Channel::Ud, Channel::Uq].contains(&column.channel) && !column.is_unit_written);
-    let values = voltages.filter_map(|column| channels.get(column.channel)).flatten();
-    let mut sizes: Vec<f64> = values.map(|value| value.abs()).filter(|size| size.is_finite()).collect();
-    // Not the largest: a spike is left out later.
-    let upper = sizes.len() * 3 / 4;
-    let size = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 };
-    if size > MOST_VOLTAGE { Err(Problem::HighVoltage { most: size }.into()) } else { Ok(()) }
+    let is_voltage = |column: &&ChosenColumn| [Channel::Ud, Channel::Uq].contains(&column.channel) && !column.is_unit_written;
+    for column in chosen.iter().filter(is_voltage).filter(|_| channels.get(Channel::UDc).is_none()) {
+        let values = channels.get(column.channel).unwrap_or_default().iter();
+        let mut sizes: Vec<f64> = values.map(|value| value.abs()).filter(|size| size.is_finite()).collect();
+        // Not the largest: a spike is left out later.
+        let upper = sizes.len() * 3 / 4;
+        let size = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 };
+        if size > MOST_VOLTAGE {
+            return Err(FileError::from(Problem::HighVoltage { channel: column.channel.name(), most: size }).in_column(&column.header));
+        }
+    }
+    Ok(())
 }
 
 /// What rounding adds to a duty cycle.
@@ -185,6 +190,16 @@ mod tests {
             refuse_per_unit(&chosen, &channels).is_err()
         };
         assert!(refused(0.42) && !refused(0.02) && !refused(419.0));
+    }
+
+    /// 100 V in mV; and the spike of a sensor.
+    #[test]
+    fn no_drive_has_100_kilovolts() {
+        let (chosen, high) = channels(&[(Channel::Ud, &|row| -6e4 - row), (Channel::Uq, &|row| 1e5 + row)]);
+        let refused = refuse_high_voltage(&chosen, &high).unwrap_err().to_string();
+        assert!(refused.contains("ud comes to 60 kV"), "{refused}");
+        let (chosen, spike) = channels(&[(Channel::Ud, &|row| if row == 50.0 { 1e9 } else { 100.0 })]);
+        assert_eq!(refuse_high_voltage(&chosen, &spike), Ok(()));
     }
 
     #[test]

@@ -266,6 +266,27 @@ mod tests {
         assert!(read.log.source().notes.iter().any(|note| note == sentence), "{:?}", read.notes);
     }
 
+    /// Ten seconds at 5 kHz, quiet from 2 to 8 s, and one lost second near the end; room for half of the rows.
+    #[test]
+    fn rows_that_are_dropped_are_no_gap_of_the_file() {
+        let row = |k: usize| {
+            let t = k as f64 * 2e-4 + if k >= 49_500 { 1.0 } else { 0.0 };
+            let wave = if (10_000..40_000).contains(&k) { 0.0 } else { (k as f64 * 1e-3).sin() };
+            format!("{t:.4},{},20,{wave},3,{}\n", 1.0 + wave, 400.0 + (k % 3) as f64)
+        };
+        let text = format!("t,ud,uq,id,iq,omega_e\n{}", (0..50_000).map(row).collect::<String>());
+        let mut options = ResolvedOptions::resolve(&LogOptions::default()).unwrap();
+        options.most_rows = 25_000;
+        let table = Table::open(Bytes::Stream(Box::new(Cursor::new(text.into_bytes()))), None).unwrap();
+        let read = read(table, &options).unwrap();
+        assert_eq!(read.gaps.len(), 1, "{:?}", read.gaps);
+        let (from, to) = read.gaps[0];
+        assert!((from - 9.8998).abs() < 1e-9 && (to - 10.9).abs() < 1e-9, "{from} {to}");
+        assert!(read.breaks(true).len() == 1 && !read.breaks(false).is_empty(), "{:?}", read.log.segments());
+        let notes = &read.log.source().notes;
+        assert!(notes.iter().any(|note| note.starts_with("a gap of 1.00 s at t = 9.89980 s")), "{notes:?}");
+    }
+
     #[test]
     fn a_log_carries_its_columns_and_notes() {
         let read = parse_log("a.csv", b"t_ms,ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n1,1,2,3,4,5\n", &LogOptions::default()).unwrap();
