@@ -382,6 +382,8 @@ impl Finder<'_> {
             (None, Some(column), _) if head.unit.is_none() => column.unit,
             (None, _, HeaderUnit::Known(unit)) if !is_canonical || head.unit.is_some() => unit,
             _ if is_canonical && head.unit.is_none() => si,
+            // The scale in a mapping file leads from there to SI.
+            (None, _, HeaderUnit::Unknown(_)) if self.options.factor(channel).abs() != 1.0 => si,
             (None, _, HeaderUnit::Unknown(text)) => {
                 let units = Unit::of(dimension).map(Unit::name).collect();
                 return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), units }.into());

@@ -42,6 +42,9 @@ fn is_standard(values: &[f64], factor: f64) -> bool {
 /// Whole numbers up to here may be V or A that were rounded; those of a converter, and thousandths, go further.
 const MOST_WHOLE: f64 = 1000.0;
 
+/// Digits have up to 32 bits; what is larger is refused elsewhere.
+const MOST_DIGITS: f64 = 4_294_967_296.0;
+
 /// Refuses voltages or currents that are digits of a converter, or whole numbers of mV or mA, where nothing states their unit. The numbers
 /// are those in the file.
 pub(super) fn refuse_digits(chosen: &[ChosenColumn], channels: &Channels) -> Result<(), FileError> {
@@ -50,7 +53,9 @@ pub(super) fn refuse_digits(chosen: &[ChosenColumn], channels: &Channels) -> Res
         let columns: Vec<&ChosenColumn> = chosen.iter().filter(|column| set.contains(&column.channel) && !column.is_unit_written).collect();
         let values = || columns.iter().filter_map(|column| channels.get(column.channel)).flatten().filter(|value| value.is_finite());
         let most = values().fold(0.0, |most: f64, value| most.max(value.abs()));
-        if let Some(first) = columns.first().filter(|_| most > MOST_WHOLE && values().all(|value| value.fract() == 0.0)) {
+        if let Some(first) =
+            columns.first().filter(|_| (MOST_WHOLE..MOST_DIGITS).contains(&most) && values().all(|value| value.fract() == 0.0))
+        {
             let headers = columns.iter().map(|column| column.header.clone()).collect();
             return Err(Problem::Digits { channel: first.channel.name(), headers, most }.into());
         }
@@ -93,7 +98,7 @@ pub(super) fn refuse_high_voltage(chosen: &[ChosenColumn], channels: &Channels) 
         // Not the largest: a spike is left out later.
         let upper = sizes.len() * 3 / 4;
         let size = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 };
-        if size > MOST_VOLTAGE {
+        if sizes.len() >= NORMALIZED_ROWS && size > MOST_VOLTAGE {
             return Err(FileError::from(Problem::HighVoltage { channel: column.channel.name(), most: size }).in_column(&column.header));
         }
     }

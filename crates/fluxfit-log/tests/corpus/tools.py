@@ -420,6 +420,10 @@ def owners(make):
     rms = with_names(fast["omega_e"], "t", "ud", "uq", "id_rms", "iq_rms", "omega_e")
     refuse("rms_mapped.csv", "root mean squares, mapped as if they were peak values", rms, "rms", "unit",
            told={"map": ["id=id_rms", "iq=iq_rms"]})
+    scaled = rms | {name: rms[name] / np.sqrt(2.0) for name in ("id_rms", "iq_rms")}
+    mapping = make.put_mapping("rms_scaled.toml", {name: {"column": f"{name}_rms", "scale": float(np.sqrt(2.0))} for name in ("id", "iq")})
+    read("rms_scaled.csv", "root mean squares, with their scale in a mapping file", scaled, layout=make.MAPPED, tolerances={"id": 1e-14, "iq": 1e-14},
+         told={"mapping": mapping})
     turning = make.motor_log(1e-3, [60, 60, 60], 10, 3)
     theta = np.mod(turning["theta_e"], 2 * np.pi)
     needed = make.part(turning)

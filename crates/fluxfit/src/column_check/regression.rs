@@ -267,17 +267,27 @@ pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
         return None;
     }
     let normal = normal(&means, &Frame::AS_IT_IS, true);
-    let left = |scale: f64| solved(&tied(&normal, scale)).map_or(f64::INFINITY, |fit| fit.left);
+    let with = |scale: f64| solved(&tied(&normal, scale));
+    let left = |scale: f64| with(scale).map_or(f64::INFINITY, |fit| fit.left);
     let steps = (MOST_SCALE.ln() / SCALE_STEP.ln()) as i32;
     let tried: Vec<(f64, f64)> = (-steps..=steps).map(|step| SCALE_STEP.powi(step)).map(|scale| (scale, left(scale))).collect();
     let best = tried.iter().fold(f64::INFINITY, |best, (_, left)| best.min(*left));
     let mut possible = tried.iter().filter(|(_, left)| *left <= POSSIBLE * best).map(|(scale, _)| *scale);
     let low = possible.next()?;
     let high = possible.last().unwrap_or(low);
+    // At the end of the range the slopes tell nothing: they are those of a log without transients.
+    if low <= tried[0].0 || high >= tried[tried.len() - 1].0 {
+        return None;
+    }
+    // The currents have to be seen while they change, in less than the time constant of the winding.
+    let [resistance, ld, lq, ..] = with((low * high).sqrt())?.unknowns;
+    let inductance = ld.min(lq) * (low * high).sqrt();
+    let block = BLOCK.min(log.rows() / ENOUGH).max(1) as f64;
+    let is_seen = log.segments().iter().all(|segment| block * segment.sample_period * resistance < inductance);
     let now = left(1.0);
     let is_too_high = low > LEAST_SCALE && now > TOO_HIGH * best;
     let is_too_low = high < 1.0 / LEAST_SCALE && now > TOO_LOW * best;
-    (best < WELL_EXPLAINED && (is_too_high || is_too_low)).then_some(ColumnFinding::SpeedScale { low, high })
+    (is_seen && best < WELL_EXPLAINED && (is_too_high || is_too_low)).then_some(ColumnFinding::SpeedScale { low, high })
 }
 
 /// The equations in which the inductances of the slopes are those of the speed, times a factor.
