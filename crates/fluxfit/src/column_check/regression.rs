@@ -274,7 +274,7 @@ pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
     let best = tried.iter().fold(f64::INFINITY, |best, (_, left)| best.min(*left));
     let mut possible = tried.iter().filter(|(_, left)| *left <= POSSIBLE * best).map(|(scale, _)| *scale);
     let low = possible.next()?;
-    let high = possible.last().unwrap_or(low);
+    let high = possible.next_back().unwrap_or(low);
     // At the end of the range the slopes tell nothing: they are those of a log without transients.
     if low <= tried[0].0 || high >= tried[tried.len() - 1].0 {
         return None;
