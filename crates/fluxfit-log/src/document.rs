@@ -3,7 +3,7 @@
 //! Its fields are the document's keys, in this order, and their comments are the descriptions of its JSON Schema (`docs/schema`, feature
 //! `schema`). Fields are added, never renamed.
 
-use crate::reading::{InspectedColumn, Inspection};
+use crate::reading::{InspectedColumn, Inspection, ReadLog};
 use fluxfit::{ColumnFinding, SampleFinding, check_columns, check_samples, log::Log};
 use serde::Serialize;
 
@@ -82,6 +82,8 @@ pub struct InspectedLogEntry {
     pub sample_period_s: Option<f64>,
     /// Gaps in time, in order. Nothing is computed across them.
     pub gaps: Vec<GapEntry>,
+    /// Times across which nothing is computed because rows were left out, which the notes tell; the file has no gap there.
+    pub left_out: Vec<GapEntry>,
     /// Whether channels were sampled at different instants and are interpolated; only steady operating points can be used then.
     pub interpolated: bool,
 }
@@ -108,7 +110,7 @@ impl InspectionDocument {
             format: inspection.kind.clone(),
             layout: inspection.layout.map(|layout| layout.name),
             columns: inspection.columns.iter().map(ColumnEntry::of).collect(),
-            log: read.ok().map(|read| InspectedLogEntry::of(&read.log)),
+            log: read.ok().map(InspectedLogEntry::of),
             table: inspection.table.as_ref().map(|read| read.table.label()),
             notes: notes.iter().map(|note| note.sentence.clone()).collect(),
             findings: read.map_or(Vec::new(), |read| findings(&read.log)),
@@ -147,14 +149,15 @@ impl FindingEntry {
 }
 
 impl InspectedLogEntry {
-    fn of(log: &Log) -> Self {
-        let (t, segments) = (&log.columns().t, log.segments());
-        let gap = |pair: &[fluxfit::log::Segment]| GapEntry { t0: t[pair[0].rows.end - 1], t1: t[pair[1].rows.start] };
+    fn of(read: &ReadLog) -> Self {
+        let (log, segments) = (&read.log, read.log.segments());
+        let entries = |breaks: Vec<(f64, f64)>| breaks.into_iter().map(|(t0, t1)| GapEntry { t0, t1 }).collect();
         Self {
             rows: log.rows(),
             duration_s: log.duration(),
             sample_period_s: segments.first().map(|segment| segment.sample_period),
-            gaps: segments.windows(2).map(gap).collect(),
+            gaps: entries(read.breaks(true)),
+            left_out: entries(read.breaks(false)),
             interpolated: log.is_interpolated(),
         }
     }

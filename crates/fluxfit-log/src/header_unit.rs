@@ -41,7 +41,7 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         "ma" => Unit::Milliampere,
         "erpm" => Unit::RpmElectrical,
         // Where neither is stated, revolutions are those of the shaft: electrical ones are usually marked as such.
-        "rpm" | "r/min" | "1/min" | "min-1" | "min^-1" | "u/min" | "upm" | "rev/min" => {
+        "rpm" | "r/min" | "1/min" | "min-1" | "min^-1" | "u/min" | "upm" | "rev/min" | "tr/min" | "giri/min" => {
             by_rotation(Unit::RpmElectrical, Unit::RpmMechanical, Unit::RpmMechanical)
         }
         "rad/s" | "rad_s" | "rad.s" | "rads" | "rad_per_s" | "radps" => {
@@ -66,9 +66,9 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
     // Simulink writes signals in angle brackets.
     let header = header.trim().trim_start_matches('<').trim_end_matches('>');
     let rotation = rotation(header);
-    let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
+    let brackets = [('[', ']'), ('(', ')'), ('（', '）')].into_iter().find_map(|(open, close)| {
         let at = header.strip_suffix(close)?.rfind(open)?;
-        Some((&header[..at], &header[at + 1..header.len() - 1]))
+        Some((&header[..at], &header[at + open.len_utf8()..header.len() - close.len_utf8()]))
     });
     if let Some((name, text)) = brackets.or_else(|| header.rsplit_once('@')) {
         let unit = spelled(text, dimension, rotation);
@@ -96,8 +96,10 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
     }
 }
 
-/// Units without brackets that would be read as SI if they were not known: thousands, shares of a base value, digits of a converter.
-const NO_SI: [&str; 13] = ["krpm", "kv", "ka", "pu", "mrad/s", "krad/s", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
+/// Units without brackets that would be read as SI if they were not known: thousands, shares of a base value, digits of a converter, root
+/// mean squares where a dq value is a peak.
+const NO_SI: [&str; 16] =
+    ["rms", "arms", "vrms", "krpm", "kv", "ka", "pu", "mrad/s", "krad/s", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
 
 /// Units and counts that a unit of speed begins with.
 const NUMERATORS: [&str; 10] = ["rad", "r", "rev", "revs", "turn", "turns", "u", "1", "m", "km"];
@@ -160,6 +162,9 @@ mod tests {
             ("speed_krpm", Speed, ("speed", HeaderUnit::Unknown("krpm"))),
             ("Vd_pu", Voltage, ("Vd", HeaderUnit::Unknown("pu"))),
             ("pu", Voltage, ("pu", HeaderUnit::None)),
+            ("id_rms", Current, ("id", HeaderUnit::Unknown("rms"))),
+            ("Vitesse (tr/min)", Speed, ("Vitesse", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("Iq（mA）", Current, ("Iq", HeaderUnit::Known(Unit::Milliampere))),
             ("uq_s", Voltage, ("uq_s", HeaderUnit::None)),
             ("A", Current, ("A", HeaderUnit::None)),
             ("id [A]", Current, ("id", HeaderUnit::Known(Unit::Ampere))),

@@ -91,6 +91,25 @@ pub(crate) enum Problem {
     )]
     Standardized,
     #[error(
+        "{} are whole numbers up to {most:.0}, and nothing states their unit: digits of a converter, or thousandths; state the unit, or in a mapping file the scale to it",
+        columns(.headers)
+    )]
+    Digits { channel: &'static str, headers: Vec<String>, most: f64 },
+    #[error(
+        "no voltage, no current and no speed of this log is above {most}, as of values per unit; state in a mapping file their scale to V, A and rad/s, or state that they are in these units"
+    )]
+    PerUnit { most: f64 },
+    #[error(
+        "{channel} comes to {:.0} kV, which no drive has: its unit is another one; state it, or that it is in V", .most / 1000.0
+    )]
+    HighVoltage { channel: &'static str, most: f64 },
+    #[error("by its values, {low} to {high}, this column is no duty cycle from 0 to 1; write into a mapping file {} = {{ column = {header:?}, scale = .., times = \"u_dc\" }}", .channel)]
+    Duty { channel: &'static str, header: String, low: String, high: String },
+    #[error(
+        "the angle winds around at {turn}, not at 2 pi; write into a mapping file theta_e = {{ column = {header:?}, scale = {scale} }}"
+    )]
+    AngleTurn { header: String, turn: String, scale: String },
+    #[error(
         "phase quantities or the angle were sampled at different instants, and turn too far in between to be interpolated; log them at the same instants, or log dq quantities"
     )]
     ChannelsNotSimultaneous,
@@ -189,6 +208,9 @@ impl Problem {
             Self::AmbiguousQuantity { .. } | Self::LoadCurve | Self::DirectVoltage { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
+            Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Duty { .. } | Self::AngleTurn { .. } => {
+                FileErrorKind::Unit
+            }
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
             Self::NoMotors { .. } | Self::MotorNames => FileErrorKind::Columns,
             Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) | Self::LongCharacteristic { .. } => FileErrorKind::Data,
@@ -222,6 +244,8 @@ impl Problem {
             Self::NoDbc => vec![Advice::StateDbc],
             Self::NoBus { .. } => map(&["u_dc"]),
             Self::SpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: None }],
+            Self::Digits { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
+            Self::HighVoltage { channel, .. } => vec![Advice::StateUnit { channel, unit: Some("mV") }],
             Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
             Self::NoAngle => map(&["theta_e"]),
             Self::ZeroPolePairs => vec![Advice::StatePolePairs],

@@ -8,6 +8,7 @@ use fluxfit::{
 use fluxfit_files::Advice;
 use fluxfit_log::ReadColumn;
 use fluxfit_units::{Dimension, Unit, significant};
+use std::ops::RangeInclusive;
 
 /// How well a ratio must agree with that of two units.
 const AGREES: f64 = 0.005;
@@ -31,6 +32,7 @@ impl Mending {
     fn of(finding: &ColumnFinding, read: &[ReadColumn], pole_pairs: Option<u32>) -> Self {
         match finding {
             ColumnFinding::SpeedUnit { ratio } => speed_unit(*ratio, read, pole_pairs.unwrap_or(1)).unwrap_or_default(),
+            ColumnFinding::SpeedScale { low, high } => speed_scale(*low..=*high, read, pole_pairs).unwrap_or_default(),
             ColumnFinding::AngleInDegrees => Self::option("--unit theta_e=deg".to_owned()),
             ColumnFinding::SpeedSign { wrong } => {
                 let channel = if *wrong == Some(Turning::Angle) { "theta_e" } else { "omega_e" };
@@ -84,7 +86,9 @@ fn speed_unit(ratio: f64, read: &[ReadColumn], pole_pairs: u32) -> Option<Mendin
         fits.then_some(whole as u32)
     };
     let is_right = |unit: &Unit| !unit.is_mechanical() && (now / size(*unit, 1) - 1.0).abs() < AGREES;
-    if let Some(pole_pairs) = pole_pairs_of(column.unit).filter(|_| column.unit.is_mechanical()) {
+    // A unit that was taken for one of the shaft turns as fast as the angle: it is the electrical one, however many pole pairs there are.
+    let is_electrical = |needed: &u32| *needed == 1 && pole_pairs > 1;
+    if let Some(pole_pairs) = pole_pairs_of(column.unit).filter(|needed| column.unit.is_mechanical() && !is_electrical(needed)) {
         return Some(Mending { cause: Some(named_pairs(pole_pairs)), ..Mending::option(format!("--pole-pairs {pole_pairs}")) });
     }
     if let Some(unit) = Unit::of(Dimension::Speed).find(is_right) {
@@ -105,6 +109,29 @@ fn speed_unit(ratio: f64, read: &[ReadColumn], pole_pairs: u32) -> Option<Mendin
     is_mechanical_angle.then(|| Mending {
         cause: Some(format!("mechanical angle, {}", named_pairs(pairs as u32))),
         ..Mending::option(format!("--unit theta_e=rad-mech --pole-pairs {pairs:.0}"))
+    })
+}
+
+/// The unit with which the speed is within a range of factors of what it is now, where the voltages know it no better.
+fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: Option<u32>) -> Option<Mending> {
+    let column = column(read, "omega_e")?;
+    let now = size(column.unit, pole_pairs.unwrap_or(1));
+    if *too_high.end() < 1.0 {
+        // Which of the two it is the voltages do not tell.
+        return Some(Mending {
+            cause: Some("it may be that of the shaft (rad/s-mech), or in Hz; state its unit".to_owned()),
+            ..Mending::default()
+        });
+    }
+    let fits = |unit: &Unit| *unit != column.unit && !unit.is_mechanical() && too_high.contains(&(now / size(*unit, 1)));
+    if let Some(unit) = Unit::of(Dimension::Speed).find(fits) {
+        let cause = format!("the speed may be in {}", unit.prose());
+        return Some(Mending { cause: Some(cause), ..Mending::option(format!("--unit omega_e={}", unit.name())) });
+    }
+    // r/min of a shaft are 9.5 times too high, less the number of pole pairs.
+    (column.unit == Unit::RadianPerSecond).then(|| Mending {
+        cause: Some("it may be in r/min of the shaft".to_owned()),
+        ..Mending::option("--unit omega_e=rpm-mech --pole-pairs N".to_owned())
     })
 }
 
@@ -246,8 +273,23 @@ mod tests {
         assert_eq!(option(400.0 / 15.9155, Unit::RadianPerSecond, None), "--unit omega_e=Hz-mech --pole-pairs 4");
         assert_eq!(option(4.0, Unit::RpmElectrical, None), "--unit omega_e=rpm-mech --pole-pairs 4");
         assert_eq!(option(2.0, Unit::RpmMechanical, Some(2)), "--pole-pairs 4");
+        // Electrical r/min that were read as mechanical ones with 4 pole pairs.
+        assert_eq!(option(0.25, Unit::RpmMechanical, Some(4)), "--unit omega_e=rpm-elec");
         assert_eq!(option(0.25, Unit::RadianPerSecond, None), "--unit theta_e=rad-mech --pole-pairs 4");
         assert_eq!(option(1.37, Unit::RadianPerSecond, None), "");
+    }
+
+    #[test]
+    fn a_range_of_factors_names_the_unit() {
+        let option = |low: f64, high: f64, unit: Unit, pole_pairs: Option<u32>| {
+            let finding = ColumnFinding::SpeedScale { low, high };
+            Mending::of(&finding, &[read("omega_e", "n", unit)], pole_pairs).option.unwrap_or_default()
+        };
+        assert_eq!(option(3.0, 4.6, Unit::RpmMechanical, Some(4)), "--unit omega_e=rpm-elec");
+        assert_eq!(option(7.7, 10.9, Unit::RadianPerSecond, None), "--unit omega_e=rpm-elec");
+        assert_eq!(option(2.0, 2.6, Unit::RadianPerSecond, None), "--unit omega_e=rpm-mech --pole-pairs N");
+        // That of the shaft with 4 pole pairs, or Hz with any.
+        assert_eq!(option(0.15, 0.26, Unit::RadianPerSecond, None), "");
     }
 
     #[test]

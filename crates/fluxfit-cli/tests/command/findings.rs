@@ -63,11 +63,12 @@ fn proposed(told: &str, directory: &Path) -> Vec<String> {
 /// What people do to a row, its name, and how it is found.
 type Damage = (&'static str, fn(&Row) -> Row, usize, &'static str);
 
-const DAMAGES: [Damage; 20] = [
+const DAMAGES: [Damage; 21] = [
     ("mechanical speed", |r| with(r, 5, r[5] / 4.0), 7, "speed-unit"),
     ("speed in r/min", |r| with(r, 5, r[5] * 60.0 / std::f64::consts::TAU), 7, "speed-unit"),
     ("mechanical r/min", |r| with(r, 5, r[5] * 15.0 / std::f64::consts::TAU), 7, "speed-unit"),
     ("speed in Hz", |r| with(r, 5, r[5] / std::f64::consts::TAU), 7, "speed-unit"),
+    ("speed in r/min, no angle", |r| with(r, 5, r[5] * 60.0 / std::f64::consts::TAU), 6, "speed-unit"),
     ("angle in degrees", |r| with(r, 6, r[6].to_degrees()), 7, "speed-unit"),
     ("speed reversed", |r| with(r, 5, -r[5]), 7, "speed-sign"),
     ("angle reversed", |r| with(r, 6, -r[6]), 7, "speed-sign"),

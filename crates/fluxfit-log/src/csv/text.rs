@@ -21,7 +21,7 @@ const LONGEST_CHARACTER: usize = 4;
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// The first bytes of documents that users mistake for tables of text.
-const DOCUMENTS: [(&[u8], &str); 8] = [
+const DOCUMENTS: [(&[u8], &str); 15] = [
     (b"PK\x03\x04", "an Excel workbook, or another zip archive"),
     (b"\xd0\xcf\x11\xe0", "an old Excel workbook"),
     (b"%PDF", "a PDF"),
@@ -30,6 +30,13 @@ const DOCUMENTS: [(&[u8], &str); 8] = [
     (b"LOGG", "a BLF log of Vector's tools"),
     (b"SQLite format 3", "a database of SQLite"),
     (b"#ROSBAG", "a bag of ROS"),
+    (b"\x93NUMPY", "an array of numpy"),
+    (b"ARROW1", "an Arrow file (Feather)"),
+    (b"\x80\x04\x95", "a pickle of Python"),
+    (b"\x80\x05\x95", "a pickle of Python"),
+    (b"BZh", "compressed by bzip2"),
+    (b"\xfd7zXZ", "compressed by xz"),
+    (b"\x28\xb5\x2f\xfd", "compressed by zstd"),
 ];
 
 /// Decompressed, decoded text.

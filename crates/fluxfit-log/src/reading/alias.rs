@@ -10,7 +10,7 @@ use crate::{
 use fluxfit_units::Dimension;
 
 /// Words that say only that a value was measured, and where.
-const BESIDE: [&str; 23] = [
+const BESIDE: [&str; 26] = [
     "meas",
     "measured",
     "measurement",
@@ -27,6 +27,9 @@ const BESIDE: [&str; 23] = [
     "foc",
     "drive",
     "inverter",
+    "inv",
+    "pmsm",
+    "mcu",
     // Of several motors or axes, where one alone is logged.
     "m1",
     "m2",
@@ -61,9 +64,9 @@ const ROTATION: [&str; 20] = [
     "resolver",
 ];
 
-const CURRENT: [&str; 8] = ["i", "is", "current", "strom", "courant", "corrente", "corriente", "stroem"];
-const VOLTAGE: [&str; 10] = ["u", "v", "us", "vs", "voltage", "volt", "spannung", "tension", "tensione", "voltaje"];
-const TIME: [&str; 18] = [
+const CURRENT: [&str; 10] = ["i", "is", "current", "strom", "courant", "corrente", "corriente", "stroem", "电流", "電流"];
+const VOLTAGE: [&str; 12] = ["u", "v", "us", "vs", "voltage", "volt", "spannung", "tension", "tensione", "voltaje", "电压", "電圧"];
+const TIME: [&str; 22] = [
     "t",
     "time",
     "timestamp",
@@ -82,8 +85,13 @@ const TIME: [&str; 18] = [
     "tempo",
     "tiempo",
     "xvalue",
+    // Of Simulink, and of loggers.
+    "tout",
+    "ts",
+    "时间",
+    "時間",
 ];
-const SPEED: [&str; 24] = [
+const SPEED: [&str; 26] = [
     "omega",
     "w",
     "speed",
@@ -108,6 +116,8 @@ const SPEED: [&str; 24] = [
     "velocita",
     "velocidad",
     "winkelgeschwindigkeit",
+    "转速",
+    "回転数",
 ];
 /// Names of the axis of a plot: the time, where no other unit is stated.
 const X: [&str; 2] = ["xaxis", "xachse"];
@@ -147,6 +157,46 @@ pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
         named(channels[k], stem, unit).map(|(_, beside)| beside)
     };
     beside(0) == beside(1)
+}
+
+/// Words for the share of a period during which a leg of the inverter is switched to the upper rail.
+const DUTY: [&str; 4] = ["duty", "dutycycle", "tastgrad", "pwmduty"];
+
+/// The duty cycles of the phases a, b, c, if exactly one column has the name of each: `duty_a`, `Duty U [%]`, `dutyCycle1`.
+pub(super) fn duties(heads: &[ColumnHead]) -> Option<[usize; 3]> {
+    let phase = |head: &ColumnHead| {
+        let name = words(field(head.name.split(['[', '(', '%']).next().unwrap_or(&head.name))).concat();
+        let phases = [["a", "u", "1"], ["b", "v", "2"], ["c", "w", "3"]];
+        phases.iter().position(|letters| {
+            let is = |duty: &&str| letters.iter().any(|letter| name == format!("{duty}{letter}") || name == format!("{letter}{duty}"));
+            !is_reference(&head.name) && DUTY.iter().any(is)
+        })
+    };
+    let of: Vec<Option<usize>> = heads.iter().map(phase).collect();
+    let only = |phase: usize| {
+        let mut columns = (0..of.len()).filter(|index| of[*index] == Some(phase));
+        columns.next().filter(|_| columns.next().is_none())
+    };
+    Some([only(0)?, only(1)?, only(2)?])
+}
+
+/// Whether a column is in percent.
+pub(super) fn is_percent(head: &ColumnHead) -> bool {
+    head.name.contains('%')
+        || head.unit.as_deref().is_some_and(|unit| unit.contains('%'))
+        || words(&head.name).iter().any(|word| word == "pct")
+}
+
+/// Whether two names, without their units, are the same but for d in one where q is in the other: `I_d` and `I_q`, not `ID` and `I_q`.
+pub(super) fn differ_in_axis(dimension: Dimension, names: [&str; 2]) -> bool {
+    let [of_d, of_q] = names.map(|name| split_header(name, dimension).0.to_lowercase());
+    let mut axes = 0;
+    let fits = |(d, q): (char, char)| {
+        let is_axis = (d, q) == ('d', 'q');
+        axes += usize::from(is_axis);
+        is_axis || d == q
+    };
+    of_d.chars().count() == of_q.chars().count() && of_d.chars().zip(of_q.chars()).all(fits) && axes > 0
 }
 
 /// Whether a name is one of a channel's usual ones.
@@ -238,9 +288,14 @@ fn named(channel: Channel, stem: &str, unit: HeaderUnit) -> Option<(String, Vec<
     (!names.is_empty() || may_be_unit).then(|| (names.iter().map(plain).collect(), beside))
 }
 
-/// Whether a name is one of a quantity's, or one of them behind the word for it: `Rotor speed wm`.
+/// Shortest name of a quantity that is a word.
+const WORD: usize = 4;
+
+/// Whether a name is one of a quantity's, or one of them behind a word for it: `Rotor speed wm`, `Drehzahl n`.
 fn is_one_of(name: &str, quantity: &str, names: &[&str]) -> bool {
-    names.contains(&name) || name.strip_prefix(quantity).is_some_and(|rest| names.contains(&rest))
+    let words = names.iter().copied().filter(|word| word.len() >= WORD).chain([quantity]);
+    let mut rests = words.filter_map(|word| name.strip_prefix(word));
+    names.contains(&name) || rests.any(|rest| names.contains(&rest))
 }
 
 /// Whether a name is a quantity with the letter of its axis, or the word of the quantity beside that: `Stator current is_q`.
@@ -253,6 +308,8 @@ fn is_of_axis(name: &str, axis: &str, quantities: &[&str]) -> bool {
                 format!("{axis}axis{quantity}"),
                 format!("{axis}achse{quantity}"),
                 format!("{axis}achsen{quantity}"),
+                format!("{axis}轴{quantity}"),
+                format!("{axis}軸{quantity}"),
             ];
             // `i_qs`: q of the stator.
             let of_stator = quantity.len() == 1 && name == format!("{quantity}{axis}s");
@@ -285,15 +342,32 @@ mod tests {
     #[test]
     fn usual_names_are_read() {
         for (channel, names) in [
-            (Channel::T, &["Time [ms]", "Zeit", "timestamp", "Zeit (s)", "micros", "Time Stamp", "temps_s", "log.time"][..]),
+            (
+                Channel::T,
+                &["Time [ms]", "Zeit", "timestamp", "Zeit (s)", "micros", "Time Stamp", "temps_s", "log.time", "tout", "时间(s)"][..],
+            ),
             (Channel::Ud, &["u_d", "Vd", "vd_meas", "Spannung d [V]", "motor_vd", "d_axis_voltage", "usd", "drive.foc.Vd", "d_V", "v_ds"]),
-            (Channel::Id, &["Model Root/FOC/id/Out1", "Machine: i_d", "<Stator current is_d (A)>", "M1_Id [A]", "Id/A", "group\\id"]),
+            (
+                Channel::Id,
+                &[
+                    "Model Root/FOC/id/Out1",
+                    "Machine: i_d",
+                    "<Stator current is_d (A)>",
+                    "M1_Id [A]",
+                    "Id/A",
+                    "group\\id",
+                    "Inv_Id",
+                    "d轴电流（A）",
+                ],
+            ),
             (Channel::UAlpha, &["u_alpha", "Valpha [V]", "uα", "foc.v_alpha"]),
             (Channel::Iq, &["i_q", "iq_meas", "Iq_measured (A)", "Strom_q [A]", "q-Achsen-Strom", "MotorIq", "iq_mA", "Courant q"]),
             (
                 Channel::OmegaE,
                 &[
                     "Encoder/n",
+                    "Drehzahl n in 1/min",
+                    "转速(rpm)",
                     "<Rotor speed wm (rad/s)>",
                     "Machine: Rotational speed",
                     "freq [Hz]",
@@ -323,7 +397,23 @@ mod tests {
                 Channel::T,
                 &["LEW_SO_T_P1 [°C]", "T [°C]", "timestep", "time_step", "t_motor", "Time [Nm]", "timestep (8Hz)", "x", "x [mm]"][..],
             ),
-            (Channel::Iq, &["iq_ref", "iq_setpoint", "iq_step", "iq_target", "Iq [V]", "iq_error", "absorber_iq", "q", "i_q_limit"]),
+            (
+                Channel::Iq,
+                &[
+                    "iq_ref",
+                    "iq_setpoint",
+                    "iq_step",
+                    "iq_target",
+                    "Iq [V]",
+                    "iq_error",
+                    "absorber_iq",
+                    "q",
+                    "i_q_limit",
+                    "iq*",
+                    "iq_rms",
+                    "Iq [Arms]",
+                ],
+            ),
             (Channel::Id, &["vesc_id", "id_set", "run_id", "DC current", "direct current", "target.id", "d", "motor 3/id_ref"]),
             (Channel::IA, &["I [A]", "I (A)"]),
             (Channel::OmegaE, &["speed_step", "speed setpoint", "speed_meters_per_sec", "Velocity (m/s)", "wind speed", "SO_N_SOLL"]),
@@ -334,9 +424,29 @@ mod tests {
     }
 
     #[test]
+    fn duty_cycles_of_three_phases_are_found_together_or_not_at_all() {
+        let of = |names: &[&str]| {
+            duties(&names.iter().map(|name| ColumnHead { name: (*name).to_owned(), ..ColumnHead::default() }).collect::<Vec<_>>())
+        };
+        assert_eq!(of(&["t", "duty_a", "duty_b", "duty_c"]), Some([1, 2, 3]));
+        assert_eq!(of(&["Duty W [%]", "Duty U [%]", "Duty V [%]"]), Some([1, 2, 0]));
+        assert_eq!(of(&["foc.dutyCycle1", "foc.dutyCycle2", "foc.dutyCycle3", "duty"]), Some([0, 1, 2]));
+        assert_eq!(of(&["duty_a", "duty_b"]), None);
+        assert_eq!(of(&["duty_a", "duty_a", "duty_b", "duty_c"]), None);
+        assert_eq!(of(&["duty_cycle", "duty_d", "duty_q"]), None);
+    }
+
+    #[test]
     fn both_axes_are_named_alike() {
         let pair = [Channel::Id, Channel::Iq];
         assert!(are_pair(pair, ["motor_id", "motor_iq"]) && are_pair(pair, ["i_d", "iq"]));
         assert!(!are_pair(pair, ["motor_id", "iq_meas"]));
+    }
+
+    #[test]
+    fn names_of_two_axes_differ_in_the_axis_alone() {
+        let differ = |names| differ_in_axis(Dimension::Current, names);
+        assert!(differ(["id", "iq"]) && differ(["I_d [A]", "I_q [mA]"]) && differ(["d-axis current", "q-axis current"]));
+        assert!(!differ(["ID", "I_q"]) && !differ(["id", "q_current"]) && !differ(["current", "current"]));
     }
 }

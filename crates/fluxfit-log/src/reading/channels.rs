@@ -1,6 +1,6 @@
 //! The channels of a log while it is read: values in SI units, before they are checked and become a [`Log`](fluxfit::log::Log).
 
-use super::lines::Lines;
+use super::{chosen::ChosenColumn, lines::Lines};
 use crate::{channel::Channel, problem::Problem};
 use fluxfit_files::FileError;
 
@@ -69,8 +69,8 @@ impl Channels {
     }
 
     /// Multiplies channels that are shares of the DC voltage by that of their row.
-    pub(super) fn times_bus(&mut self, shares: &[Channel]) -> Result<(), FileError> {
-        for channel in shares {
+    pub(super) fn times_bus(&mut self, chosen: &[ChosenColumn]) -> Result<(), FileError> {
+        for channel in chosen.iter().filter(|column| column.is_share).map(|column| &column.channel) {
             let Some(bus) = self.get(Channel::UDc).map(<[f64]>::to_vec) else {
                 return Err(Problem::NoBus { channel: channel.name() }.into());
             };

@@ -19,6 +19,10 @@ pub(super) struct ChosenColumn {
     pub(super) is_optional: bool,
     /// The file or the user states the unit.
     pub(super) is_unit_stated: bool,
+    /// The file or the user writes the unit or a scale: SI does not only follow from the name of the column.
+    pub(super) is_unit_written: bool,
+    /// Its values are shares of the DC voltage of their row.
+    pub(super) is_share: bool,
     /// It was found by one of the usual names of its channel, not by the channel's own.
     pub(super) is_alias: bool,
     /// Its cells are instants, which the table reads in s.

@@ -14,12 +14,22 @@ const END: f64 = 0.01;
 /// Rows of a log that are this many seconds apart or more are unlikely: whole numbers with such steps are a count of something shorter.
 const LONG_STEP: f64 = 5.0;
 
+/// Days since 1900 of a spreadsheet and since the year 0 of MATLAB, over the years 1954 to 2119.
+const DAYS: [(std::ops::Range<f64>, &str); 2] =
+    [(20_000.0..80_000.0, "days, as spreadsheets count them"), (714_000.0..774_000.0, "days, as MATLAB counts them")];
+
+/// Rows of a log that are this many seconds apart or less are unlikely: with such steps, times of that size are days.
+const SHORT_STEP: f64 = 5e-6;
+
+/// Days in a second.
+const SECOND: f64 = 1.0 / 86_400.0;
+
 /// Settles times block by block.
 #[derive(Debug, Default)]
 pub(super) struct Clock {
     /// Whether the unit of the times may have to be found.
     is_open: bool,
-    /// The first time and the divisor, if the times count from 1970; and what they are.
+    /// The first time and the divisor, if the times count from 1970, or are days; and what they are.
     since_1970: Option<(f64, f64, &'static str)>,
     /// The times have a name that states no unit, so that s is an assumption.
     is_assumed: bool,
@@ -44,7 +54,8 @@ impl Clock {
         if self.is_open && !t.is_empty() {
             self.is_open = false;
             self.step = whole_step(t);
-            self.since_1970 = epoch_digits(t).map(|(digits, what)| (t[0], 10_f64.powi(digits as i32), what));
+            let of_days = || days(t).map(|what| (t[0], SECOND, what));
+            self.since_1970 = epoch_digits(t).map(|(digits, what)| (t[0], 10_f64.powi(digits as i32), what)).or_else(of_days);
         }
         if let Some((first, divisor, _)) = self.since_1970 {
             t.iter_mut().for_each(|time| *time = (*time - first) / divisor);
@@ -88,6 +99,15 @@ impl Clock {
     }
 }
 
+/// What days these times are, if their steps are too short for seconds.
+fn days(t: &[f64]) -> Option<&'static str> {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let (_, what) = DAYS.iter().find(|(range, _)| t.first().is_some_and(|first| range.contains(first)))?;
+    let middle = steps.len() / 2;
+    let is_short = !steps.is_empty() && (0.0..SHORT_STEP).contains(steps.select_nth_unstable_by(middle, f64::total_cmp).1);
+    is_short.then_some(*what)
+}
+
 /// The median step of whole numbers; none if they are not whole, or too few.
 fn whole_step(t: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -108,6 +128,20 @@ mod tests {
         clock.settle(&mut after);
         assert_eq!((before, after), (vec![86_399.8, 86_399.9], vec![86_400.0, 86_400.1]));
         assert_eq!(clock.notes(), ["the time of day wrapped around once; it is continued from there"]);
+    }
+
+    /// 2023-03-15 is day 45000 of spreadsheets; 10 rows a second.
+    #[test]
+    fn days_of_a_spreadsheet_become_seconds() {
+        let mut clock = Clock::of(false, true);
+        let mut t: Vec<f64> = (0..50).map(|row| 45_000.25 + f64::from(row) * 0.1 / 86_400.0).collect();
+        clock.settle(&mut t);
+        assert!(t.iter().enumerate().all(|(row, t)| (t - row as f64 * 0.1).abs() < 1e-6), "{t:?}");
+        assert_eq!(clock.notes(), ["t: by their size the times are days, as spreadsheets count them; t counts from the first one"]);
+        let mut seconds: Vec<f64> = (0..50).map(|row| 45_000.0 + f64::from(row) * 1e-4).collect();
+        let same = seconds.clone();
+        Clock::of(false, true).settle(&mut seconds);
+        assert_eq!(seconds, same);
     }
 
     #[test]

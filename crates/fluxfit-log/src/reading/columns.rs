@@ -1,6 +1,6 @@
 //! The choice of columns: which column of the file is which channel.
 
-use super::{chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, resemblance, table::Table};
+use super::{alias, chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, resemblance, table::Table};
 use crate::{
     block::ColumnHead,
     channel::Channel,
@@ -8,7 +8,7 @@ use crate::{
     note::Note,
     problem::Problem,
 };
-use Channel::{Ud, Uq};
+use Channel::{Id, Iq, UA, UB, UC, Ud, Uq};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_units::{
     Dimension, Unit,
@@ -53,6 +53,11 @@ pub(super) fn choose(
     if !by_name.is_empty() {
         notes.push(format!("read by their usual names: {}; map those that are something else", list(&by_name)).into());
     }
+    let shares: Vec<String> =
+        chosen.iter().filter(|column| column.is_share).map(|column| format!("'{}'", shorten(&column.header))).collect();
+    if !shares.is_empty() && options.shares_of_bus.is_empty() {
+        notes.push(format!("phase voltages are the duty cycles {} times u_dc, without what is common to the three", list(&shares)).into());
+    }
     if let Some((channel, _)) = unstated.first() {
         let columns: Vec<&str> = unstated.iter().map(|(_, column)| column.as_str()).collect();
         let sentence = format!("no header states these units, so SI is assumed: {}", list(&columns));
@@ -70,6 +75,8 @@ pub(super) struct Survey {
     pub(super) taken: Vec<(Channel, usize, Option<Unit>)>,
     /// Columns that resemble a needed channel, with the unit that the header states.
     pub(super) resembling: Vec<(Channel, usize, Option<Unit>)>,
+    /// Columns that are shares of the DC voltage, and what the value 1 of the file is of it.
+    pub(super) shares: Vec<(usize, f64)>,
 }
 
 /// Looks for every channel, and for columns that resemble a needed channel that was not found.
@@ -78,19 +85,33 @@ pub(super) fn survey(heads: &[ColumnHead], layout: Option<&'static Layout>, opti
     let mut with_pole_pairs = options.clone();
     with_pole_pairs.pole_pairs.get_or_insert(1);
     let finder = Finder { heads, unreadable: &[], layout, options: &with_pole_pairs };
-    let mut survey = Survey { taken: Vec::new(), resembling: Vec::new() };
-    let voltages = finder.pair([Ud, Uq]).unwrap_or_default();
+    let mut survey = Survey { taken: Vec::new(), resembling: Vec::new(), shares: Vec::new() };
+    let [voltages, currents] = [[Ud, Uq], [Id, Iq]].map(|pair| finder.pair(pair).unwrap_or_default());
+    let duties = if voltages.iter().all(Option::is_some) { None } else { finder.duties() };
+    let share = |channel: Channel| {
+        let place = [UA, UB, UC].iter().position(|phase| *phase == channel)?;
+        duties.map(|duties| duties[place])
+    };
     for channel in Channel::all() {
         let index = match channel {
             Ud => Ok(voltages[0]),
             Uq => Ok(voltages[1]),
+            Id => Ok(currents[0]),
+            Iq => Ok(currents[1]),
             _ => finder.index(channel),
         };
+        let index = index.map(|index| index.or_else(|| share(channel)));
         if let Ok(Some(index)) = index
             && survey.taken.iter().all(|(_, taken, _)| *taken != index)
         {
             let unit = finder.unit(channel, &heads[index], &mut Vec::new(), &mut Vec::new());
-            let assumed = (channel.dimension() != Dimension::Speed).then_some(channel.unit());
+            let is_share = share(channel) == Some(index) || options.shares_of_bus.contains(&channel);
+            let assumed = (channel.dimension() != Dimension::Speed && !is_share).then_some(channel.unit());
+            let unit = if is_share { Err(()) } else { unit.map_err(drop) };
+            if is_share {
+                let percent = if share(channel) == Some(index) && alias::is_percent(&heads[index]) { 0.01 } else { 1.0 };
+                survey.shares.push((index, percent * options.factor(channel)));
+            }
             survey.taken.push((channel, index, unit.ok().or(assumed)));
         }
     }

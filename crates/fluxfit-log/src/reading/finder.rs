@@ -16,7 +16,7 @@ use crate::{
     note::Note,
     problem::Problem,
 };
-use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, OmegaE, T, ThetaE, UA, UAlpha, UB, UBeta, UC, Ud, Uq};
+use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, OmegaE, T, ThetaE, UA, UAlpha, UB, UBeta, UC, UDc, Ud, Uq};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_units::{Dimension, Unit, wording::shorten};
 
@@ -64,6 +64,13 @@ impl Finder<'_> {
             } else if !is_complete && let (Some(alpha), Some(beta)) = (self.index(stator[0])?, self.index(stator[1])?) {
                 has_phases = true;
                 stator.into_iter().zip([alpha, beta]).for_each(|(channel, index)| take(channel, Some(index)));
+            } else if dq[0] == Ud
+                && !is_complete
+                && let Some(duties) = self.duties()
+            {
+                has_phases = true;
+                phases.into_iter().zip(duties).for_each(|(channel, index)| take(channel, Some(index)));
+                take(UDc, self.index(UDc)?);
             } else {
                 dq.into_iter().zip(indices).for_each(|(channel, index)| take(channel, index));
             }
@@ -115,16 +122,22 @@ impl Finder<'_> {
     /// together with a voltage of another kind.
     pub(super) fn pair(&self, [d, q]: [Channel; 2]) -> Result<[Option<usize>; 2], FileError> {
         let mut indices = [self.index(d)?, self.index(q)?];
-        if let [Some(of_d), Some(of_q)] = indices {
-            let names = [&self.heads[of_d].name, &self.heads[of_q].name].map(String::as_str);
-            if !alias::are_pair([d, q], names) {
-                let is_alias = [self.is_alias(d, names[0]), self.is_alias(q, names[1])];
-                indices = [(!is_alias[0]).then_some(of_d), (!is_alias[1]).then_some(of_q)];
-            }
+        if let [Some(of_d), Some(of_q)] = indices
+            && let names = [&self.heads[of_d].name, &self.heads[of_q].name].map(String::as_str)
+            && !alias::differ_in_axis(d.dimension(), names)
+        {
+            let is_alias = [self.is_alias(d, names[0]), self.is_alias(q, names[1])];
+            indices = match self.pairs([d, q])[..] {
+                // `id`, a number of the device, beside `d_current` and `q_current`.
+                [pair] if !self.is_given(d) && !self.is_given(q) => pair.map(Some),
+                [] if alias::are_pair([d, q], names) => indices,
+                _ => [(!is_alias[0]).then_some(of_d), (!is_alias[1]).then_some(of_q)],
+            };
         }
         let reference = |channel: Channel| {
-            let wanted = format!("{}_ref", channel.name());
-            self.heads.iter().position(|head| split_header(&head.name, channel.dimension()).0.eq_ignore_ascii_case(&wanted))
+            let wanted = ["_ref", "*"].map(|mark| format!("{}{mark}", channel.name()));
+            let is_wanted = |name: &str| wanted.iter().any(|wanted| name.eq_ignore_ascii_case(wanted));
+            self.heads.iter().position(|head| is_wanted(split_header(&head.name, channel.dimension()).0))
         };
         match indices {
             [None, None] if d == Ud => Ok(match [reference(d), reference(q)] {
@@ -133,6 +146,31 @@ impl Finder<'_> {
             }),
             _ => Ok(indices),
         }
+    }
+
+    /// Whether the user or the layout names the column of a channel.
+    fn is_given(&self, channel: Channel) -> bool {
+        self.options.header(channel).is_some() || self.layout.and_then(|layout| layout.column(channel)).is_some()
+    }
+
+    /// All pairs of columns that have names of the two axes which differ in nothing but the axis.
+    fn pairs(&self, [d, q]: [Channel; 2]) -> Vec<[usize; 2]> {
+        let candidates = |channel: Channel| {
+            let is_named = move |head: &&ColumnHead| {
+                alias::is_alias(channel, head) || matches!(automatic(channel, std::slice::from_ref(*head)), Ok(Some(_)))
+            };
+            (0..self.heads.len()).filter(move |index| is_named(&&self.heads[*index]))
+        };
+        let is_pair = |[d_index, q_index]: &[usize; 2]| {
+            alias::differ_in_axis(d.dimension(), [&self.heads[*d_index].name, &self.heads[*q_index].name])
+        };
+        candidates(d).flat_map(|of_d| candidates(q).map(move |of_q| [of_d, of_q])).filter(is_pair).collect()
+    }
+
+    /// The duty cycles of the three phases, if the log has them and no voltages.
+    pub(super) fn duties(&self) -> Option<[usize; 3]> {
+        let is_free = [UA, UB, UC].iter().all(|channel| !self.is_given(*channel));
+        alias::duties(self.heads).filter(|_| is_free && self.layout.is_none())
     }
 
     /// The time between rows, s, of a log without a time column, from the options or the layout.
@@ -165,8 +203,7 @@ impl Finder<'_> {
 
     /// Whether a column has not the channel's own name, nor one that the user or the layout gives it.
     fn is_alias(&self, channel: Channel, name: &str) -> bool {
-        let is_layouts = self.layout.and_then(|layout| layout.column(channel)).is_some();
-        self.options.header(channel).is_none() && !is_layouts && {
+        !self.is_given(channel) && {
             let head = ColumnHead { name: name.to_owned(), ..ColumnHead::default() };
             !matches!(automatic(channel, &[head]), Ok(Some(_)))
         }
@@ -185,6 +222,25 @@ impl Finder<'_> {
         let (pole_pairs, scale) = (self.options.pole_pairs.unwrap_or(1), self.options.factor(channel));
         let is_alias = self.is_alias(channel, &head.name);
         let header = head.name.clone();
+        let is_given_share = self.options.shares_of_bus.contains(&channel);
+        if let Some(percent) = self.duties().filter(|duties| duties.contains(&index)).map(|_| alias::is_percent(head)) {
+            let (unit, instants, scale) = (channel.unit(), None, if percent { scale / 100.0 } else { scale });
+            let (is_unit_stated, is_unit_written, is_share) = (true, true, true);
+            return Ok(ChosenColumn {
+                channel,
+                index,
+                header,
+                unit,
+                pole_pairs,
+                scale,
+                is_optional,
+                is_unit_stated,
+                is_unit_written,
+                is_share,
+                is_alias,
+                instants,
+            });
+        }
         if let Some(instants) = self.instants(channel, head) {
             let column = format!("{}: column '{}'", channel.name(), shorten(&head.name));
             notes.push(format!("{column} read as {}", instants.describe()).into());
@@ -198,6 +254,8 @@ impl Finder<'_> {
                 scale,
                 is_optional,
                 is_unit_stated: true,
+                is_unit_written: true,
+                is_share: false,
                 is_alias,
                 instants,
             });
@@ -205,7 +263,23 @@ impl Finder<'_> {
         let assumed = unstated.len();
         let unit = self.unit(channel, head, unstated, notes)?;
         let is_unit_stated = unstated.len() == assumed && !(channel == T && unit == Unit::Second);
-        Ok(ChosenColumn { channel, index, header, unit, pole_pairs, scale, is_optional, is_unit_stated, is_alias, instants: None })
+        let is_in_header = matches!(split_header(&head.name, channel.dimension()).1, HeaderUnit::Known(_)) || head.unit.is_some();
+        let is_unit_written = is_in_header || self.options.unit(channel).is_some() || scale != 1.0 || unit != channel.unit();
+        let (is_share, instants) = (is_given_share, None);
+        Ok(ChosenColumn {
+            channel,
+            index,
+            header,
+            unit,
+            pole_pairs,
+            scale,
+            is_optional,
+            is_unit_stated,
+            is_unit_written,
+            is_share,
+            is_alias,
+            instants,
+        })
     }
 
     /// An optional column that the user did not map, if the file has it and it is not read as another channel.
@@ -287,7 +361,8 @@ impl Finder<'_> {
         notes: &mut Vec<Note>,
     ) -> Result<Unit, FileError> {
         let (dimension, canonical, si, name) = (channel.dimension(), channel.name(), channel.unit(), head.name.as_str());
-        if dimension == Dimension::Ratio {
+        // Of a share of the DC voltage the header has no unit of a voltage.
+        if dimension == Dimension::Ratio || self.options.shares_of_bus.contains(&channel) {
             return Ok(si);
         }
         let (stem, in_name) = split_header(name, dimension);
@@ -307,6 +382,8 @@ impl Finder<'_> {
             (None, Some(column), _) if head.unit.is_none() => column.unit,
             (None, _, HeaderUnit::Known(unit)) if !is_canonical || head.unit.is_some() => unit,
             _ if is_canonical && head.unit.is_none() => si,
+            // The scale in a mapping file leads from there to SI.
+            (None, _, HeaderUnit::Unknown(_)) if self.options.factor(channel).abs() != 1.0 => si,
             (None, _, HeaderUnit::Unknown(text)) => {
                 let units = Unit::of(dimension).map(Unit::name).collect();
                 return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), units }.into());

@@ -8,7 +8,7 @@ use super::{
     layout::Layout,
     lines::Lines,
     options::ResolvedOptions,
-    selection::{Features, Selection, mean_and_deviation},
+    selection::{Features, Selected, Selection, mean_and_deviation},
     table::Table,
 };
 use crate::{
@@ -32,6 +32,8 @@ pub(super) struct Gathered {
     pub(super) lines: Lines,
     /// Some channel was interpolated to the instants of the currents.
     pub(super) is_interpolated: bool,
+    /// The rows before which others were dropped, of a log with too many.
+    pub(super) dropped_before: Vec<usize>,
 }
 
 /// Reads the columns. Columns of several groups, each with its own times, are interpolated to the instants of the currents.
@@ -86,6 +88,8 @@ fn of_group(chosen: &[ChosenColumn], heads: &[ColumnHead], group: usize) -> Opti
             scale: 1.0,
             is_optional,
             is_unit_stated,
+            is_unit_written: false,
+            is_share: false,
             is_alias: false,
             instants,
         });
@@ -141,7 +145,7 @@ fn one_group(
     if let Some(step) = clock.unstated_step() {
         return Err(Problem::TimeUnit { step }.into());
     }
-    let (values, lines, note) = selection.finish();
+    let Selected { values, lines, dropped_before, note } = selection.finish();
     notes.extend(note.map(Note::from));
     let lines = lines.of_container(table.line().is_none());
     let mut channels = Channels::default();
@@ -153,7 +157,7 @@ fn one_group(
     }
     hold_slow(&mut channels);
     drop_unreadable(&mut channels, columns, refused, &lines, notes);
-    Ok(Gathered { channels, lines, is_interpolated: false })
+    Ok(Gathered { channels, lines, is_interpolated: false, dropped_before })
 }
 
 /// The features of a stretch: means and standard deviations of the dq currents and of the speed; of phase quantities, those of the dq

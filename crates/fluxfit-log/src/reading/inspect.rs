@@ -52,6 +52,8 @@ pub struct InspectedColumn {
     pub is_time: bool,
     /// Its cells are dates and times, or count from 1970.
     pub is_instant: bool,
+    /// It is a share of the DC voltage of its row, and what the value 1 of the file is of it.
+    pub share: Option<f64>,
 }
 
 /// Inspects a file; the path `-` is standard input.
@@ -81,6 +83,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         course: courses.get(index).map(|course| course.spans.clone()).unwrap_or_default(),
         is_time: head.is_time,
         is_instant: head.instants.is_some(),
+        share: survey.shares.iter().find(|(place, _)| *place == index).map(|(_, scale)| *scale),
     });
     let (kind, columns) = (table.kind(), inspected.collect());
     let log = read(table, &resolved).map_err(|error| error.in_file(&name));

@@ -39,7 +39,7 @@ impl Inspection {
                 continue;
             }
             let (column, remark) = match (taken, resembling) {
-                (Some(column), _) if column.read_as.is_none() && !column.is_instant => {
+                (Some(column), _) if column.read_as.is_none() && !column.is_instant && column.share.is_none() => {
                     (column.header.as_str(), "  # nothing states its unit: rad/s, rpm-elec, rpm-mech, ..")
                 }
                 (Some(column), _) => (column.header.as_str(), ""),
@@ -51,16 +51,20 @@ impl Inspection {
             };
             // Of a column that only resembles the channel, the unit only if its header states it.
             let read_as = taken.or(resembling).and_then(|column| column.read_as);
-            let unit = if taken.is_some() { Some(read_as.map_or("?", |(unit, _)| unit)) } else { read_as.map(|(unit, _)| unit) };
+            let unit = if taken.is_some_and(|column| column.share.is_none()) {
+                Some(read_as.map_or("?", |(unit, _)| unit))
+            } else {
+                read_as.map(|(unit, _)| unit)
+            };
             let is_instant = channel == Channel::T && taken.is_some_and(|column| column.is_instant);
-            let unit =
-                unit.filter(|_| !is_instant).map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default() + &factor(channel, options);
+            let unit = unit.filter(|_| !is_instant).map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default()
+                + &factor(taken, channel, options);
             let _ = writeln!(text, "{} = {{ column = {}{unit} }}{remark}", channel.name(), quoted(column));
         }
         for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
             if let Some(column) = self.columns.iter().find(|column| column.channel == Some(channel.name())) {
                 let unit = column.read_as.filter(|(unit, _)| *unit != "1").map(|(unit, _)| format!(", unit = \"{unit}\""));
-                let unit = unit.unwrap_or_default() + &factor(channel, options);
+                let unit = unit.unwrap_or_default() + &factor(Some(column), channel, options);
                 let _ = writeln!(text, "{} = {{ column = {}{unit} }}", channel.name(), quoted(&column.header));
             }
         }
@@ -79,11 +83,14 @@ impl Inspection {
     }
 }
 
-/// Scale and sign from the mapping file that was given.
-fn factor(channel: Channel, options: &LogOptions) -> String {
-    let factor = options.mapping.columns.iter().find(|column| column.channel == channel).map_or(1.0, |column| column.factor);
+/// Scale and sign, from the mapping file that was given or of a share of the DC voltage.
+fn factor(column: Option<&InspectedColumn>, channel: Channel, options: &LogOptions) -> String {
+    let share = column.and_then(|column| column.share);
+    let given = options.mapping.columns.iter().find(|column| column.channel == channel).map_or(1.0, |column| column.factor);
+    let factor = share.unwrap_or(given);
     let scale = if factor.abs() == 1.0 { String::new() } else { format!(", scale = {:?}", factor.abs()) };
-    scale + if factor < 0.0 { ", sign = -1" } else { "" }
+    let times = if share.is_some() { ", times = \"u_dc\"" } else { "" };
+    scale + if factor < 0.0 { ", sign = -1" } else { "" } + times
 }
 
 /// A text in TOML's quotes.
@@ -125,6 +132,17 @@ mod tests {
         let mapping = first.mapping(&options);
         let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
         assert_eq!(inspected(&format!("t,a,b,id,iq,omega_e\n{rows}"), &again).log.unwrap().log, first.log.unwrap().log, "{mapping}");
+    }
+
+    #[test]
+    fn a_written_mapping_keeps_shares_of_the_dc_voltage() {
+        let rows: String = (0..30).map(|row| format!("{row},{},52,48,40,1,2,{},0.{}\n", 50 + row % 3, 500 + row, 100 + row)).collect();
+        let text = format!("t,duty_a [%],duty_b [%],duty_c [%],u_dc,id,iq,omega_e,theta_e\n{rows}");
+        let first = inspected(&text, &LogOptions::default());
+        let mapping = first.mapping(&LogOptions::default());
+        assert!(mapping.contains("\nua = { column = \"duty_a [%]\", scale = 0.01, times = \"u_dc\" }\n"), "{mapping}");
+        let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
+        assert_eq!(inspected(&text, &again).log.unwrap().log.columns(), first.log.unwrap().log.columns(), "{mapping}");
     }
 
     /// A column that only resembles a channel keeps the unit of its header.

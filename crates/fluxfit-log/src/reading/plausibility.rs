@@ -3,6 +3,7 @@
 use super::{channels::Channels, chosen::ChosenColumn};
 use crate::{channel::Channel, problem::Problem};
 use fluxfit_files::FileError;
+use fluxfit_units::significant;
 
 /// A column looks standardized if its mean is less than this many standard deviations,
 const NORMALIZED_MEAN: f64 = 0.2;
@@ -38,6 +39,89 @@ fn is_standard(values: &[f64], factor: f64) -> bool {
     values.len() >= NORMALIZED_ROWS && NORMALIZED_DEVIATION.contains(&deviation) && mean.abs() < NORMALIZED_MEAN * deviation
 }
 
+/// Whole numbers up to here may be V or A that were rounded; those of a converter, and thousandths, go further.
+const MOST_WHOLE: f64 = 1000.0;
+
+/// Digits have up to 32 bits; what is larger is refused elsewhere.
+const MOST_DIGITS: f64 = 4_294_967_296.0;
+
+/// Refuses voltages or currents that are digits of a converter, or whole numbers of mV or mA, where nothing states their unit. The numbers
+/// are those in the file.
+pub(super) fn refuse_digits(chosen: &[ChosenColumn], channels: &Channels) -> Result<(), FileError> {
+    use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, UA, UAlpha, UB, UBeta, UC, Ud, Uq};
+    for set in [&[Ud, Uq][..], &[Id, Iq], &[UA, UB, UC], &[IA, IB, IC], &[UAlpha, UBeta], &[IAlpha, IBeta]] {
+        let columns: Vec<&ChosenColumn> = chosen.iter().filter(|column| set.contains(&column.channel) && !column.is_unit_written).collect();
+        let values = || columns.iter().filter_map(|column| channels.get(column.channel)).flatten().filter(|value| value.is_finite());
+        let most = values().fold(0.0, |most: f64, value| most.max(value.abs()));
+        if let Some(first) =
+            columns.first().filter(|_| (MOST_WHOLE..MOST_DIGITS).contains(&most) && values().all(|value| value.fract() == 0.0))
+        {
+            let headers = columns.iter().map(|column| column.header.clone()).collect();
+            return Err(Problem::Digits { channel: first.channel.name(), headers, most }.into());
+        }
+    }
+    Ok(())
+}
+
+/// Values per unit stay below this: the base values are the rated ones, or the largest.
+const MOST_PER_UNIT: f64 = 2.0;
+
+/// The fastest speed per unit is above this; that of a rotor which is held still, in rad/s, is not.
+const LEAST_PER_UNIT: f64 = 0.2;
+
+/// Refuses a log per unit: at its highest speed the voltage is of the order of one, as the speed is. A drive with a voltage of 1 V at
+/// 1 rad/s, by which it would be mistaken, has a flux of 1 Wb and then a current of a fraction of its ripple.
+pub(super) fn refuse_per_unit(chosen: &[ChosenColumn], channels: &Channels) -> Result<(), FileError> {
+    let five = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::OmegaE];
+    let is_unwritten = |channel: &Channel| chosen.iter().any(|column| column.channel == *channel && !column.is_unit_written);
+    let most = |channel: &Channel| {
+        channels.get(*channel).map_or(f64::INFINITY, |values| values.iter().fold(0.0, |most: f64, value| most.max(value.abs())))
+    };
+    let largest = five.map(|channel| most(&channel));
+    let [ud, uq, _, _, speed] = largest;
+    let is_small = channels.rows() >= NORMALIZED_ROWS
+        && largest.iter().all(|most| *most <= MOST_PER_UNIT)
+        && ud.max(uq) > LEAST_PER_UNIT
+        && speed > LEAST_PER_UNIT;
+    if is_small && five.iter().all(is_unwritten) { Err(Problem::PerUnit { most: MOST_PER_UNIT }.into()) } else { Ok(()) }
+}
+
+/// No drive of a PMSM has more, V: those of ships and wind turbines have up to 15 kV.
+const MOST_VOLTAGE: f64 = 30e3;
+
+/// Refuses voltages that no drive has, where nothing states their unit. With the DC voltage, the columns are compared later.
+pub(super) fn refuse_high_voltage(chosen: &[ChosenColumn], channels: &Channels) -> Result<(), FileError> {
+    let is_voltage = |column: &&ChosenColumn| [Channel::Ud, Channel::Uq].contains(&column.channel) && !column.is_unit_written;
+    for column in chosen.iter().filter(is_voltage).filter(|_| channels.get(Channel::UDc).is_none()) {
+        let values = channels.get(column.channel).unwrap_or_default().iter();
+        let mut sizes: Vec<f64> = values.map(|value| value.abs()).filter(|size| size.is_finite()).collect();
+        // Not the largest: a spike is left out later.
+        let upper = sizes.len() * 3 / 4;
+        let size = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 };
+        if sizes.len() >= NORMALIZED_ROWS && size > MOST_VOLTAGE {
+            return Err(FileError::from(Problem::HighVoltage { channel: column.channel.name(), most: size }).in_column(&column.header));
+        }
+    }
+    Ok(())
+}
+
+/// What rounding adds to a duty cycle.
+const ROUNDING: f64 = 0.01;
+
+/// Refuses duty cycles that are counts of a timer, or from -1 to 1.
+pub(super) fn refuse_duties(chosen: &[ChosenColumn], channels: &Channels) -> Result<(), FileError> {
+    let phases = [Channel::UA, Channel::UB, Channel::UC];
+    for column in chosen.iter().filter(|column| column.is_share && column.is_alias && phases.contains(&column.channel)) {
+        let values = channels.get(column.channel).unwrap_or_default().iter().filter(|value| value.is_finite());
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+        if low < -ROUNDING || high > 1.0 + ROUNDING {
+            let [low, high] = [low, high].map(|value| significant(value / column.scale, 4));
+            return Err(Problem::Duty { channel: column.channel.name(), header: column.header.clone(), low, high }.into());
+        }
+    }
+    Ok(())
+}
+
 /// A note on currents that look like references: they rarely change while the voltages change all the time.
 pub(super) fn note_references(channels: &Channels) -> Option<String> {
     let changing = |channels: &Channels, channel: Channel| {
@@ -58,6 +142,70 @@ pub(super) fn note_references(channels: &Channels) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn channels(columns: &[(Channel, &dyn Fn(f64) -> f64)]) -> (Vec<ChosenColumn>, Channels) {
+        let mut channels = Channels::default();
+        let chosen = |(channel, value): &(Channel, &dyn Fn(f64) -> f64)| {
+            channels.set(*channel, (0..100).map(|row| value(f64::from(row))).collect());
+            let (unit, header) = (channel.unit(), channel.name().to_owned());
+            let (is_unit_stated, is_unit_written, is_optional, is_share, is_alias) = (true, false, false, false, false);
+            let (index, pole_pairs, scale, instants) = (0, 1, 1.0, None);
+            ChosenColumn {
+                channel: *channel,
+                index,
+                header,
+                unit,
+                pole_pairs,
+                scale,
+                is_optional,
+                is_unit_stated,
+                is_unit_written,
+                is_share,
+                is_alias,
+                instants,
+            }
+        };
+        let chosen = columns.iter().map(chosen).collect();
+        (chosen, channels)
+    }
+
+    /// A current of 20 A peak in a converter of 16 bits, and one of 300 A that a bus message rounds to whole A.
+    #[test]
+    fn digits_of_a_converter_are_no_amperes() {
+        let wave = |size: f64| move |row: f64| (size * (0.2 * row).sin()).round();
+        let (mut chosen, digits) = channels(&[(Channel::Id, &wave(32767.0)), (Channel::Iq, &wave(300.0))]);
+        let refused = refuse_digits(&chosen, &digits).unwrap_err().to_string();
+        assert!(refused.starts_with("'id' and 'iq' are whole numbers up to 32") && refused.contains("digits of a converter"), "{refused}");
+        chosen.iter_mut().for_each(|column| column.is_unit_written = true);
+        assert_eq!(refuse_digits(&chosen, &digits), Ok(()));
+        let (chosen, amperes) = channels(&[(Channel::Id, &wave(300.0)), (Channel::Iq, &wave(200.0))]);
+        assert_eq!(refuse_digits(&chosen, &amperes), Ok(()));
+    }
+
+    /// The paper's motor on bases of 179 V, 10 A and 1000 rad/s; and a locked rotor, whose speed is that of a vibration.
+    #[test]
+    fn values_per_unit_are_no_volts() {
+        let log = |speed: f64| {
+            let wave = |size: f64| move |row: f64| size * (1.0 + 0.1 * (0.3 * row).sin());
+            let (ud, uq, id, iq, omega) = (wave(-0.33), wave(0.5), wave(-0.2), wave(1.1), wave(speed));
+            channels(&[(Channel::Ud, &ud), (Channel::Uq, &uq), (Channel::Id, &id), (Channel::Iq, &iq), (Channel::OmegaE, &omega)])
+        };
+        let refused = |speed: f64| {
+            let (chosen, channels) = log(speed);
+            refuse_per_unit(&chosen, &channels).is_err()
+        };
+        assert!(refused(0.42) && !refused(0.02) && !refused(419.0));
+    }
+
+    /// 100 V in mV; and the spike of a sensor.
+    #[test]
+    fn no_drive_has_100_kilovolts() {
+        let (chosen, high) = channels(&[(Channel::Ud, &|row| -6e4 - row), (Channel::Uq, &|row| 1e5 + row)]);
+        let refused = refuse_high_voltage(&chosen, &high).unwrap_err().to_string();
+        assert!(refused.contains("ud comes to 60 kV"), "{refused}");
+        let (chosen, spike) = channels(&[(Channel::Ud, &|row| if row == 50.0 { 1e9 } else { 100.0 })]);
+        assert_eq!(refuse_high_voltage(&chosen, &spike), Ok(()));
+    }
 
     #[test]
     fn a_standardized_column_is_distinguished_from_one_of_a_drive() {

@@ -25,7 +25,7 @@ use crate::{
     note::Note,
     problem::Problem,
 };
-use fluxfit::log::{Columns, Log, Segment, Source, check_values};
+use fluxfit::log::{Columns, Log, Source, check_values, without_gaps};
 use fluxfit_files::{
     FileError,
     input::{self, Bytes},
@@ -47,6 +47,9 @@ pub struct ReadLog {
     pub notes: Vec<Note>,
     /// The columns of the file that were read.
     pub columns: Vec<ReadColumn>,
+    /// The gaps in time that the file has: time of the last row before each and of the first one behind it, s. Rows that were left out
+    /// are none, though nothing is computed across them either.
+    pub gaps: Vec<(f64, f64)>,
 }
 
 /// A column of a file, as it was read.
@@ -60,6 +63,16 @@ pub struct ReadColumn {
     pub unit: Unit,
     /// The factor besides the unit: scale and sign.
     pub scale: f64,
+}
+
+impl ReadLog {
+    /// Times between which nothing is computed: those with a gap of the file, or those where only rows were left out.
+    pub fn breaks(&self, of_file: bool) -> Vec<(f64, f64)> {
+        let (t, segments) = (&self.log.columns().t, self.log.segments());
+        let times = segments.windows(2).map(|pair| (t[pair[0].rows.end - 1], t[pair[1].rows.start]));
+        let has_gap = |(from, to): &(f64, f64)| self.gaps.iter().any(|(t0, t1)| t0 >= from && t1 <= to);
+        times.filter(|times| has_gap(times) == of_file).collect()
+    }
 }
 
 impl ReadColumn {
@@ -154,10 +167,15 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let layout = recognize(table.heads(), &mut notes).map_err(at_header)?;
     let named = layout.filter(|layout| !layout.is_canonical());
     let chosen = columns::choose(&table, named, options, &mut notes)?;
-    let Gathered { mut channels, lines, is_interpolated } = gather(&mut table, &chosen, layout, options, &mut notes)?;
+    let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     let aligned = align::align(&mut channels, &lines)?;
-    channels.times_bus(&options.shares_of_bus)?;
+    let gaps = gaps_of_file(&channels, &dropped_before);
+    plausibility::refuse_duties(&chosen, &channels)?;
+    plausibility::refuse_digits(&chosen, &channels)?;
+    channels.times_bus(&chosen)?;
     plausibility::refuse_standardized(&chosen, &channels)?;
+    plausibility::refuse_per_unit(&chosen, &channels)?;
+    plausibility::refuse_high_voltage(&chosen, &channels)?;
     let is_interpolated = is_interpolated || aligned.is_some();
     let mut more: Vec<String> = aligned.into_iter().collect();
     phases::of_stator_frame(&mut channels);
@@ -170,13 +188,13 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     if !log.spikes().is_empty() {
         notes.push(log.spikes().to_string().into());
     }
-    notes.extend(gaps(&log).map(Note::from));
+    notes.extend(note_gaps(&gaps).map(Note::from));
     let source = Source { columns: vec![chosen::describe(&chosen)], notes: notes.iter().map(|note| note.sentence.clone()).collect() };
     let log = log.with_source(source);
     // Columns that were found without a mapping and without another layout have the canonical names.
     let layout = layout.or_else(|| (!options.has_headers()).then(Layout::canonical));
     let columns = chosen.iter().map(ReadColumn::of).collect();
-    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes, columns })
+    Ok(ReadLog { log: if is_interpolated { log.of_different_instants() } else { log }, layout, notes, columns, gaps })
 }
 
 /// The layout with these names, if it is one of the table and that of a log.
@@ -211,11 +229,16 @@ fn log(mut channels: Channels, chosen: &[ChosenColumn], lines: &Lines, notes: &m
     Log::new(Columns { t, ud, uq, id, iq, omega_e, theta_e, u_dc, temperature }).map_err(|error| locator.locate(error))
 }
 
-/// A note on gaps in time; those of rows that were left out have theirs.
-fn gaps(log: &Log) -> Option<String> {
-    let t = &log.columns().t;
-    let gap = |pair: &[Segment]| (t[pair[0].rows.end - 1], t[pair[1].rows.start]);
-    let gaps: Vec<(f64, f64)> = log.segments().windows(2).map(gap).collect();
+/// Gaps in time between the rows of the file; not those where rows were dropped because there were too many.
+fn gaps_of_file(channels: &Channels, dropped_before: &[usize]) -> Vec<(f64, f64)> {
+    let Some(t) = channels.get(Channel::T) else { return Vec::new() };
+    let stretches = without_gaps(t);
+    let starts = stretches.iter().skip(1).map(|rows| rows.start).filter(|row| !dropped_before.contains(row));
+    starts.map(|row| (t[row - 1], t[row])).collect()
+}
+
+/// A note on gaps in time.
+fn note_gaps(gaps: &[(f64, f64)]) -> Option<String> {
     let (from, to) = *gaps.iter().max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))?;
     let longest = format!("{} s at t = {} s", significant(to - from, 3), significant(from, 6));
     Some(match gaps.len() {
@@ -252,6 +275,27 @@ mod tests {
         assert_eq!((read.log.rows(), read.log.segments().len()), (159, 2));
         let sentence = "1 row with a value that no drive had is left out, as a gap: omega_e is 1e6 rad/s at t = 0.0800 s";
         assert!(read.log.source().notes.iter().any(|note| note == sentence), "{:?}", read.notes);
+    }
+
+    /// Ten seconds at 5 kHz, quiet from 2 to 8 s, and one lost second near the end; room for half of the rows.
+    #[test]
+    fn rows_that_are_dropped_are_no_gap_of_the_file() {
+        let row = |k: usize| {
+            let t = k as f64 * 2e-4 + if k >= 49_500 { 1.0 } else { 0.0 };
+            let wave = if (10_000..40_000).contains(&k) { 0.0 } else { (k as f64 * 1e-3).sin() };
+            format!("{t:.4},{},20,{wave},3,{}\n", 1.0 + wave, 400.0 + (k % 3) as f64)
+        };
+        let text = format!("t,ud,uq,id,iq,omega_e\n{}", (0..50_000).map(row).collect::<String>());
+        let mut options = ResolvedOptions::resolve(&LogOptions::default()).unwrap();
+        options.most_rows = 25_000;
+        let table = Table::open(Bytes::Stream(Box::new(Cursor::new(text.into_bytes()))), None).unwrap();
+        let read = read(table, &options).unwrap();
+        assert_eq!(read.gaps.len(), 1, "{:?}", read.gaps);
+        let (from, to) = read.gaps[0];
+        assert!((from - 9.8998).abs() < 1e-9 && (to - 10.9).abs() < 1e-9, "{from} {to}");
+        assert!(read.breaks(true).len() == 1 && !read.breaks(false).is_empty(), "{:?}", read.log.segments());
+        let notes = &read.log.source().notes;
+        assert!(notes.iter().any(|note| note.starts_with("a gap of 1.00 s at t = 9.89980 s")), "{notes:?}");
     }
 
     #[test]

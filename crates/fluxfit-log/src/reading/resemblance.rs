@@ -91,7 +91,9 @@ pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
 
 /// Whether the name of a column says that it is a reference, or another number that was not measured.
 pub(super) fn is_reference(header: &str) -> bool {
-    without_unit(header).iter().any(|word| REFERENCE.contains(&word.as_str()))
+    // `id*`: the mark of a reference in a formula.
+    let has_star = header.split(['[', '(']).next().unwrap_or(header).trim_end().ends_with('*');
+    has_star || without_unit(header).iter().any(|word| REFERENCE.contains(&word.as_str()))
 }
 
 /// The words of a header before brackets: 1/min is no minimum.
@@ -177,7 +179,7 @@ mod tests {
 
     #[test]
     fn references_are_recognized_by_name() {
-        for header in ["IqReq", "id_ref", "i_d_ref (A)", "iq setpoint", "ID_CMD"] {
+        for header in ["IqReq", "id_ref", "i_d_ref (A)", "iq setpoint", "ID_CMD", "id*", "iq* [A]"] {
             assert!(is_reference(header), "{header}");
         }
         for header in ["id", "motor_id_a", "Id preferred", "i_q", "outset_id"] {

@@ -28,9 +28,22 @@ pub(super) struct Selection {
     rows: u64,
 }
 
+/// The rows that were selected.
+pub(super) struct Selected {
+    /// Their columns.
+    pub(super) values: Vec<Vec<f64>>,
+    pub(super) lines: Lines,
+    /// Those before which others were dropped.
+    pub(super) dropped_before: Vec<usize>,
+    /// On what was dropped.
+    pub(super) note: Option<String>,
+}
+
 /// Consecutive rows.
 #[derive(Debug)]
 struct Stretch {
+    /// Rows before it, dropped ones too.
+    first: u64,
     values: Vec<Vec<f64>>,
     lines: Lines,
     /// Its features, once it is full.
@@ -40,8 +53,8 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn new(columns: usize) -> Self {
-        Self { values: vec![Vec::new(); columns], lines: Lines::default(), features: Vec::new(), most_similar: None }
+    fn new(columns: usize, first: u64) -> Self {
+        Self { first, values: vec![Vec::new(); columns], lines: Lines::default(), features: Vec::new(), most_similar: None }
     }
 }
 
@@ -56,7 +69,7 @@ impl Selection {
         while from < block.lines.len() {
             if self.stretches.last().is_none_or(|stretch| stretch.lines.rows() == STRETCH) {
                 self.make_room();
-                self.stretches.push(Stretch::new(self.columns));
+                self.stretches.push(Stretch::new(self.columns, self.rows));
             }
             let Some(stretch) = self.stretches.last_mut() else { return };
             let to = block.lines.len().min(from + STRETCH - stretch.lines.rows());
@@ -124,12 +137,17 @@ impl Selection {
         (0..features).map(range).map(|range| if range > 0.0 { range } else { 1.0 }).collect()
     }
 
-    /// The columns, the lines of their rows, and a note if rows were dropped.
-    pub(super) fn finish(mut self) -> (Vec<Vec<f64>>, Lines, Option<String>) {
+    /// The rows that were kept, and a note if others were dropped.
+    pub(super) fn finish(mut self) -> Selected {
         let (mut values, mut lines) = (vec![Vec::new(); self.columns], Lines::default());
         let stretches = self.stretches.len();
+        let (mut dropped_before, mut next) = (Vec::new(), 0);
         // Column by column, so that little is in memory twice.
         for stretch in &self.stretches {
+            if stretch.first != next {
+                dropped_before.push(lines.rows());
+            }
+            next = stretch.first + stretch.lines.rows() as u64;
             lines.extend(&stretch.lines);
         }
         for (place, column) in values.iter_mut().enumerate() {
@@ -147,7 +165,7 @@ impl Selection {
                 lines.rows()
             )
         });
-        (values, lines, note)
+        Selected { values, lines, dropped_before, note }
     }
 }
 
@@ -183,8 +201,8 @@ mod tests {
     fn all_rows_are_selected_up_to_the_limit() {
         let mut selection = Selection::new(1, Box::new(|values| mean_and_deviation(&values[0]).to_vec()), 4 * STRETCH);
         (0..10).for_each(|k| selection.push(&block(1000 * k, 1000 * (k + 1), 3)));
-        let (values, lines, note) = selection.finish();
-        assert_eq!((values, note), (block(0, 10_000, 3).values, None));
+        let Selected { values, lines, dropped_before, note } = selection.finish();
+        assert_eq!((values, dropped_before, note), (block(0, 10_000, 3).values, vec![], None));
         let numbered = |row| lines.locate(FileError::new(FileErrorKind::Value, ""), row).line();
         assert_eq!((numbered(0), numbered(9_999)), (Some(2), Some(10_001)));
     }
@@ -223,7 +241,11 @@ mod tests {
         // Three kinds of stretches among twenty, room for four.
         let mut selection = Selection::new(1, Box::new(|values| mean_and_deviation(&values[0]).to_vec()), 4 * STRETCH);
         selection.push(&block(0, 20 * STRETCH, 3));
-        let (values, lines, note) = selection.finish();
+        let Selected { values, lines, dropped_before, note } = selection.finish();
+        assert!(
+            !dropped_before.is_empty() && dropped_before.iter().all(|row| row % STRETCH == 0 && *row < 4 * STRETCH),
+            "{dropped_before:?}"
+        );
         let kinds = |kind: f64| values[0].iter().filter(|value| **value == kind).count() / STRETCH;
         assert_eq!(values[0].len(), 4 * STRETCH);
         assert!(kinds(0.0) > 0 && kinds(1.0) > 0 && kinds(2.0) > 0);

@@ -43,7 +43,12 @@ pub(super) fn read(table: &mut Table, columns: &[Found], pole_pairs: Option<u32>
     let heads = table.heads().to_vec();
     let has = |channel: Channel| heads.iter().any(|head| is(channel, head));
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
-    if NotALog::by_names(&names).is_some() || has(Channel::Ud) || has(Channel::Uq) || Channel::PHASES.into_iter().any(has) {
+    if NotALog::by_names(&names).is_some()
+        || has(Channel::Ud)
+        || has(Channel::Uq)
+        || Channel::PHASES.into_iter().any(has)
+        || alias::duties(&heads).is_some()
+    {
         return Ok(None);
     }
     let one = |quantity: Quantity| {

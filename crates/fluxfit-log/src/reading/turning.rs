@@ -1,11 +1,14 @@
 //! A column with a usual name of an angle is the angle if it turns as fast as the speed says: `theta` may also be that of a controller, a
 //! temperature or a position.
 
-use super::{channels::Channels, chosen::ChosenColumn};
+use super::{
+    channels::Channels,
+    chosen::{ChosenColumn, left_out},
+};
 use crate::{channel::Channel, note::Note, problem::Problem};
 use Channel::{OmegaE, T, ThetaE};
 use fluxfit_files::{Advice, FileError};
-use fluxfit_units::{Unit, wording::shorten};
+use fluxfit_units::{Unit, significant, wording::shorten};
 use std::f64::consts::{PI, TAU};
 
 /// Between two rows an angle that is compared turns at least this, rad, or noise decides; and at most this, or it is not known how often
@@ -21,9 +24,22 @@ const DIFFERENCE: f64 = 0.1;
 /// Keeps such an angle if it turns with the speed, in rad or in degrees where no unit is stated. Another one is left out, or refused if the
 /// log cannot be read without it.
 pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &mut Vec<Note>) -> Result<(), FileError> {
-    let Some(column) = chosen.iter().find(|column| column.channel == ThetaE && column.is_alias) else { return Ok(()) };
+    let Some(column) = chosen.iter().find(|column| column.channel == ThetaE) else { return Ok(()) };
     let Some(theta) = channels.get(ThetaE) else { return Ok(()) };
     let header = shorten(&column.header);
+    if !column.is_alias {
+        return match turn(theta).filter(|turn| !column.is_unit_written && !is_in_rad(*turn)) {
+            // With a speed, degrees are found where the columns are compared.
+            Some(turn) if DEGREES.contains(&turn) && channels.get(OmegaE).is_none() => {
+                notes.push(format!("theta_e: column '{header}' read as {}, as it turns", Unit::Degree.prose()).into());
+                let scaled = theta.iter().map(|angle| angle * Unit::Degree.in_si()).collect();
+                channels.set(ThetaE, scaled);
+                Ok(())
+            }
+            Some(turn) if !DEGREES.contains(&turn) => leave_out(channels, column, turn, notes),
+            _ => Ok(()),
+        };
+    }
     let units: &[Unit] = if column.is_unit_stated { &[column.unit] } else { &[Unit::Radian, Unit::Degree] };
     // Values were converted already where the unit is stated.
     let size = |unit: &Unit| if column.is_unit_stated { 1.0 } else { unit.in_si() };
@@ -49,6 +65,70 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
     channels.take(ThetaE);
     Ok(())
 }
+
+/// Turns of an angle in rad and in degrees, as they are found: within a row's turn.
+const TURNS: std::ops::Range<f64> = 0.8 * TAU..1.01 * TAU;
+const DEGREES: std::ops::Range<f64> = 288.0..363.0;
+
+/// Leaves out an angle that winds around at neither, or refuses it if the log cannot be read without it.
+fn leave_out(channels: &mut Channels, column: &ChosenColumn, turn: f64, notes: &mut Vec<Note>) -> Result<(), FileError> {
+    let round = round_turn(turn);
+    let scale = round.map_or("6.28319 / TURN".to_owned(), |turn| significant(TAU / turn, 6));
+    let turn = round.map_or_else(|| format!("about {}", significant(turn, 3)), |turn| turn.to_string());
+    let problem = FileError::from(Problem::AngleTurn { header: column.header.clone(), turn, scale });
+    let is_needed = [OmegaE, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].iter().any(|channel| channels.get(*channel).is_none());
+    if is_needed || !column.is_optional {
+        return Err(problem.in_column(&column.header));
+    }
+    notes.push(left_out(ThetaE, &problem.in_column(&column.header)).into());
+    channels.take(ThetaE);
+    Ok(())
+}
+
+/// Digits of a turn that encoders have besides powers of two, and the turn itself.
+const TURN_DIGITS: [f64; 12] = [1.0, 100.0, 360.0, 400.0, 1000.0, 2000.0, 3600.0, 4000.0, 5000.0, 8000.0, 10_000.0, 36_000.0];
+
+/// By this share a turn may be larger than what the rows span: they miss its end.
+const MISSED: f64 = 0.03;
+
+/// The one round number at which an angle that spans this winds around.
+fn round_turn(span: f64) -> Option<f64> {
+    let powers = (4..=24).map(|power| f64::from(1_u32 << power));
+    let mut near = TURN_DIGITS
+        .into_iter()
+        .chain(powers)
+        .filter(|turn| (span..span * (1.0 + MISSED) + 1.0).contains(turn) && (*turn > 1.0 || span < 1.0));
+    near.next().filter(|_| near.next().is_none())
+}
+
+/// Whether an angle that winds around there is in rad: after one electrical turn, or after one of the shaft.
+fn is_in_rad(turn: f64) -> bool {
+    let turns = turn / TAU;
+    TURNS.contains(&turn) || turns < MOST_TURNS && (turns.round() - SHORT..turns.round() + 0.01).contains(&turns)
+}
+
+/// More pole pairs than motors have; 360 would be 57.3 turns in rad.
+const MOST_TURNS: f64 = 40.5;
+
+/// By this share of an electrical turn the rows may miss its end.
+const SHORT: f64 = 0.1;
+
+/// The value at which an angle winds around, several times, in the units of the file; none of one that does not.
+fn turn(theta: &[f64]) -> Option<f64> {
+    let low = theta.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = theta.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let steps = || theta.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let jumps = steps().filter(|step| *step > 0.5 * (high - low)).count();
+    // Every jump is one of nearly the whole turn, and between two of them the angle passes through all of it.
+    let is_whole = steps().filter(|step| *step > 0.5 * (high - low)).all(|step| step > NEARLY * (high - low));
+    (jumps > 1 && is_whole && FEW_JUMPS * jumps < theta.len()).then_some(high - low)
+}
+
+/// A jump at the end of a turn is at least this share of what the angle spans,
+const NEARLY: f64 = 0.75;
+
+/// and there are at least so many rows to a turn.
+const FEW_JUMPS: usize = 8;
 
 /// Whether an angle of this unit, in rad, turns from row to row as the speed says.
 fn turns_with(theta: &[f64], omega: &[f64], t: &[f64], unit: f64) -> bool {
@@ -95,6 +175,8 @@ mod tests {
             scale: 1.0,
             is_optional: with_speed,
             is_unit_stated: false,
+            is_unit_written: false,
+            is_share: false,
             is_alias: true,
             instants: None,
         };
@@ -116,6 +198,18 @@ mod tests {
         for other in [(|t: f64| 75.0 * t) as fn(f64) -> f64, |t| -300.0 * t, |t| 20.0 + t, |_| 0.0] {
             assert_eq!(settled(other, true), (None, 1));
         }
+    }
+
+    /// An encoder of 4096 steps, turns, degrees; and radians over the turn of a shaft with four pole pairs, and over many turns.
+    #[test]
+    fn an_angle_in_digits_is_not_in_rad() {
+        let angle = |full: f64| (0..1000).map(|row| (f64::from(row) * 0.0123 * full).rem_euclid(full)).collect::<Vec<_>>();
+        for (full, is_known) in [(4096.0, false), (1.0, false), (360.0, false), (TAU, true), (4.0 * TAU, true)] {
+            let found = turn(&angle(full)).unwrap();
+            assert!((found / full - 1.0).abs() < 0.02 && is_in_rad(found) == is_known, "{full} {found}");
+        }
+        assert_eq!([4074.0, 0.993, 65_535.0, 777.0].map(round_turn), [Some(4096.0), Some(1.0), Some(65_536.0), None]);
+        assert_eq!(turn(&(0..1000).map(f64::from).collect::<Vec<_>>()), None);
     }
 
     #[test]

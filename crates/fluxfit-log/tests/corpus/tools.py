@@ -14,7 +14,7 @@ import pandas as pd
 
 
 def write(make):
-    for part in (dates, epochs, names, headers, records, lvm, frames, hdf5):
+    for part in (dates, epochs, names, headers, records, lvm, frames, hdf5, owners, duties):
         part(make)
 
 
@@ -373,3 +373,99 @@ def hdf5(make):
         layout[:] = h5py.VirtualSource(file["measured"])
         file.create_virtual_dataset("iq", layout)
     make.refuse("virtual.h5", "HDF5 with a virtual dataset", "virtual|iq")
+
+
+# What owners of logs have, and a reader may mistake for something else
+
+
+def owners(make):
+    fast = make.part(make.FAST)
+    poles = {"pole_pairs": make.POLE_PAIRS}
+    rpm = {"omega_e": 1e-15 * 4.0 * float(np.max(fast["omega_e"])) + 1e-12}
+    mechanical = fast["omega_e"] * make.RPM / make.POLE_PAIRS
+    rows = len(fast["t"])
+
+    def read(file, says, columns, log=fast, form=None, **more):
+        make.put(file, make.table(columns, form={name: make.plain for name in columns} | (form or {})))
+        make.read(file, says, log, **more)
+
+    def refuse(file, says, columns, *words, **more):
+        make.put(file, make.table(columns))
+        make.refuse(file, says, *words, **more)
+
+    def with_names(speed, *names):
+        return dict(zip(names, [fast["t"], fast["ud"], fast["uq"], fast["id"], fast["iq"], speed]))
+
+    axes = {"d_current": fast["id"], "q_current": fast["iq"], "d_voltage": fast["ud"], "q_voltage": fast["uq"]}
+    read("id_of_the_device.csv", "id is the number of a device on the bus, and the currents have names of their own",
+         {"timestamp": fast["t"], "id": np.ones(rows), "mode": np.full(rows, 10.0)} | axes | {"velocity [turns/s]": mechanical / 60.0}, told=poles, tolerances=rpm,
+         notes=["d_current"])
+    read("id_of_the_row.csv", "ID is the number of the row",
+         {"ID": np.arange(rows) + 1.0} | with_names(fast["omega_e"] * make.RPM, "Time", "U_d", "U_q", "I_d", "I_q", "erpm"), tolerances=rpm, notes=["I_d"])
+    starred = {"t": fast["t"], "ud": fast["ud"], "uq": fast["uq"], "id*": np.full(rows, -1.0), "iq*": np.full(rows, 2.0), "omega_e": fast["omega_e"]}
+    refuse("starred_references.csv", "references with a star, and no measured currents", starred, "id and iq are missing", "reference", line=1)
+    read("starred_beside.csv", "references with a star beside the measurements", {"id*": np.full(rows, -1.0), "iq*": np.full(rows, 2.0)} | fast)
+    read("names_inverter.csv", "an abbreviation of the inverter before the names",
+         with_names(mechanical, "tout", "Inv_Ud", "Inv_Uq", "Inv_Id", "Inv_Iq", "Inv_Speed [rpm]"), told=poles, tolerances=rpm, notes=["usual names"])
+    read("names_chinese.csv", "Chinese names, and a bracket of full width",
+         with_names(mechanical, "时间(s)", "d轴电压(V)", "q轴电压(V)", "d轴电流(A)", "q轴电流(A)", "转速（rpm）"), told=poles, tolerances=rpm, notes=["usual names"])
+    read("names_turns_a_minute.csv", "French turns a minute, and a letter behind the word",
+         with_names(mechanical, "Temps (s)", "Tension Vd (V)", "Tension Vq (V)", "Courant Id (A)", "Courant Iq (A)", "Vitesse n (tr/min)"), told=poles, tolerances=rpm,
+         notes=["usual names"])
+    digits = {"t": fast["t"], "Vd": np.round(fast["ud"] / 179.0 * 32768), "Vq": np.round(fast["uq"] / 179.0 * 32768),
+              "Id": np.round(fast["id"] / 20.0 * 32768), "Iq": np.round(fast["iq"] / 20.0 * 32768), "omega_e": fast["omega_e"]}
+    refuse("digits_of_a_controller.csv", "voltages and currents as the 16-bit numbers of a controller", digits, "Vd", "whole numbers", "digits", "state the unit")
+    per_unit = with_names(fast["omega_e"] / 800.0, *make.NAMES) | {"ud": fast["ud"] / 179.0, "uq": fast["uq"] / 179.0, "id": fast["id"] / 10.0, "iq": fast["iq"] / 10.0}
+    refuse("per_unit_unmarked.csv", "per unit, under the names of V, A and rad/s", per_unit, "per unit", "scale")
+    rms = with_names(fast["omega_e"], "t", "ud", "uq", "id_rms", "iq_rms", "omega_e")
+    refuse("rms_mapped.csv", "root mean squares, mapped as if they were peak values", rms, "rms", "unit",
+           told={"map": ["id=id_rms", "iq=iq_rms"]})
+    scaled = rms | {name: rms[name] / np.sqrt(2.0) for name in ("id_rms", "iq_rms")}
+    mapping = make.put_mapping("rms_scaled.toml", {name: {"column": f"{name}_rms", "scale": float(np.sqrt(2.0))} for name in ("id", "iq")})
+    read("rms_scaled.csv", "root mean squares, with their scale in a mapping file", scaled, layout=make.MAPPED, tolerances={"id": 1e-14, "iq": 1e-14},
+         told={"mapping": mapping})
+    turning = make.motor_log(1e-3, [60, 60, 60], 10, 3)
+    theta = np.mod(turning["theta_e"], 2 * np.pi)
+    needed = make.part(turning)
+    read("angle_in_digits.csv", "an angle in steps of an encoder, which is not needed", needed | {"theta_e": np.floor(theta / (2 * np.pi) * 4096)}, needed,
+         notes=["theta_e is left out", "winds around at 4096"])
+    refuse("angle_in_turns_alone.csv", "an angle in turns, which is needed", {name: needed[name] for name in make.NAMES[:5]} | {"theta_e": theta / (2 * np.pi)},
+           "winds around at 1", "scale = 6.28319")
+    for quantity, d, q in [("u", "ud", "uq"), ("i", "id", "iq")]:
+        turning |= dict(zip([f"{quantity}{letter}" for letter in "abc"], make.phases(turning[d], turning[q], turning["theta_e"])))
+    of_phases = {name: turning[name] for name in ["t", "ua", "ub", "uc", "ia", "ib", "ic", "omega_e"]}
+    degrees = {"t": of_phases["t"]} | {name: of_phases[name] for name in ["ua", "ub", "uc", "ia", "ib", "ic"]} | {"theta_e": np.degrees(theta)}
+    read("angle_in_degrees_alone.csv", "an angle in degrees that nothing says, with phase quantities and no speed", degrees, needed, names=make.NAMES[:5],
+         notes=["degrees"], tolerances={name: 1e-9 for name in ("ud", "uq", "id", "iq")})
+
+
+def duties(make):
+    """Space vectors: each duty cycle is a half and the phase voltage, shifted so that the largest and the smallest are as far from the rails."""
+    fast, angle, bus = make.part(make.FAST), make.FAST["theta_e"], make.FAST["u_dc"]
+    phases = make.phases(fast["ud"], fast["uq"], angle)
+    middle = (np.maximum.reduce(phases) + np.minimum.reduce(phases)) / 2.0
+    shares = [0.5 + (phase - middle) / bus for phase in phases]
+    rest = {"id": fast["id"], "iq": fast["iq"], "omega_e": fast["omega_e"], "theta_e": angle, "u_dc": bus}
+    tolerances = {"ud": 1e-9, "uq": 1e-9}
+
+    def columns(names, scale, **more):
+        return {"t": fast["t"]} | dict(zip(names, [scale * share for share in shares])) | rest | more
+
+    def put(file, columns):
+        make.put(file, make.table(columns))
+
+    put("duties.csv", columns(["duty_a", "duty_b", "duty_c"], 1.0))
+    make.read("duties.csv", "duty cycles of the three phases in place of voltages", fast, tolerances=tolerances, notes=["duty cycles", "from the phase quantities"])
+    put("duties_percent.csv", columns(["Duty U [%]", "Duty V [%]", "Duty W [%]"], 100.0))
+    make.read("duties_percent.csv", "duty cycles in percent", fast, tolerances=tolerances, notes=["duty cycles"])
+    put("duties_of_a_timer.csv", columns(["duty_a", "duty_b", "duty_c"], 4200.0))
+    make.refuse("duties_of_a_timer.csv", "duty cycles in counts of a timer", "no duty cycle from 0 to 1", 'times = "u_dc"')
+    mapping = {f"u{phase}": {"column": f"duty_{phase}", "scale": 1.0 / 4200.0, "times": "u_dc"} for phase in "abc"}
+    put("duties_of_a_timer_mapped.csv", columns(["duty_a", "duty_b", "duty_c"], 4200.0))
+    make.read("duties_of_a_timer_mapped.csv", "the same, with the counts in a mapping file", fast, layout=make.MAPPED, tolerances=tolerances,
+              told={"mapping": make.put_mapping("duties_of_a_timer.toml", mapping)})
+    without = columns(["duty_a", "duty_b", "duty_c"], 1.0)
+    put("duties_without_bus.csv", {name: values for name, values in without.items() if name != "u_dc"})
+    make.refuse("duties_without_bus.csv", "duty cycles without the DC voltage", "u_dc is missing", line=1)
+    put("duties_without_angle.csv", {name: values for name, values in without.items() if name != "theta_e"})
+    make.refuse("duties_without_angle.csv", "duty cycles without the angle", "theta_e is missing", line=1)

@@ -9,6 +9,13 @@ pub enum ColumnFinding {
         /// How many times as fast.
         ratio: f64,
     },
+    /// In a log without an angle: the inductances by which the currents change are not those that the speed shows.
+    SpeedScale {
+        /// How many times too high the speed is, at least.
+        low: f64,
+        /// And at most.
+        high: f64,
+    },
     /// The angle is in degrees, not in radians.
     AngleInDegrees,
     /// The angle turns against the speed.
@@ -80,7 +87,7 @@ impl ColumnFinding {
     /// Name in files.
     pub fn code(&self) -> &'static str {
         match self {
-            Self::SpeedUnit { .. } | Self::AngleInDegrees => "speed-unit",
+            Self::SpeedUnit { .. } | Self::SpeedScale { .. } | Self::AngleInDegrees => "speed-unit",
             Self::SpeedSign { .. } => "speed-sign",
             Self::TimeUnit { .. } => "time-unit",
             Self::Axes { .. } => "column-signs",

@@ -22,6 +22,7 @@ pub fn check_columns(log: &Log) -> Vec<ColumnFinding> {
         })
         .or_else(|| turning::phase_order(log))
         .or_else(|| regression::time_unit(log))
+        .or_else(|| regression::speed_scale(log))
         .or_else(|| regression::axes(log));
     of_frame.into_iter().chain(voltages::scale(log)).collect()
 }

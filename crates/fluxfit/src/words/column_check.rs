@@ -11,6 +11,11 @@ impl Display for ColumnFinding {
                 let (way, ratio) = if *ratio < 0.0 { (" and against it", -ratio) } else { ("", *ratio) };
                 write!(f, "theta_e turns {} times as fast as omega_e{way}", four_digits(ratio))
             }
+            Self::SpeedScale { low, high } => {
+                // The larger number first where the speed is too low.
+                let (least, most, way) = if *low > 1.0 { (*low, *high, "high") } else { (1.0 / high, 1.0 / low, "low") };
+                write!(f, "the speed is about {} to {} times too {way} for the slopes of the currents", two_digits(least), two_digits(most))
+            }
             Self::AngleInDegrees => write!(f, "theta_e turns with omega_e only if it is in degrees"),
             Self::SpeedSign { wrong: None } => write!(f, "theta_e turns against omega_e: one of them has the wrong sign"),
             Self::SpeedSign { wrong: Some(Turning::Angle) } => {
@@ -45,6 +50,10 @@ impl Display for ColumnFinding {
 
 /// Ways that are named; more would only say that the log tells little.
 const NAMED: usize = 3;
+
+fn two_digits(ratio: f64) -> String {
+    if ratio < 10.0 { format!("{ratio:.1}") } else { format!("{ratio:.0}") }
+}
 
 fn four_digits(ratio: f64) -> String {
     let decimals = (3.0 - ratio.log10().floor()).clamp(0.0, 9.0) as usize;

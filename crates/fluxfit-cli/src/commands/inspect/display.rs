@@ -2,7 +2,7 @@
 
 use crate::terminal::{self, BAD, DIM, GOOD, HEADING, frequency, plot, table, told::Told};
 use fluxfit::log::Log;
-use fluxfit_log::{Inspection, ReadCharacteristic};
+use fluxfit_log::{Inspection, ReadCharacteristic, ReadLog};
 use fluxfit_units::significant;
 
 /// Most columns that are listed.
@@ -27,10 +27,11 @@ pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told], sampl
     findings.iter().chain(samples).for_each(terminal::warn_of_columns);
     let layout = inspection.layout.map_or("a layout that is not known".to_owned(), |layout| format!("layout: {}", layout.name));
     let mut text = terminal::wrapped("", &format!("{HEADING}{name}{HEADING:#}: {}; {layout}", inspection.kind)) + "\n";
-    let log = inspection.log.as_ref().ok().map(|read| &read.log);
+    let read = inspection.log.as_ref().ok();
+    let log = read.map(|read| &read.log);
     text += &columns(inspection, log);
-    if let Some(log) = log {
-        text += &format!("\n{}\n", rows(log));
+    if let Some((log, read)) = log.zip(read) {
+        text += &format!("\n{}\n", rows(log, read));
         text += &format!("\n{}", plot::courses(log));
     } else {
         text += &format!("\n{}", plot::courses_of_columns(&candidates(inspection)));
@@ -105,23 +106,22 @@ fn range([low, high]: [f64; 2]) -> String {
 }
 
 /// Rows, rates and gaps, in a few lines.
-fn rows(log: &Log) -> String {
+fn rows(log: &Log, read: &ReadLog) -> String {
     let segments = log.segments();
     let rate = segments.first().map_or(String::new(), |segment| frequency(1.0 / segment.sample_period));
     let mut text = format!("{} rows at {rate}, {} s", log.rows(), significant(log.duration(), 4));
-    let t = &log.columns().t;
-    let gaps: Vec<String> = segments
-        .windows(2)
-        .map(|pair| {
-            let (end, start) = (t[pair[0].rows.end - 1], t[pair[1].rows.start]);
-            format!("{} s behind t = {} s", significant(start - end, 3), significant(end, 6))
-        })
-        .collect();
+    let behind = |(end, start): (f64, f64)| format!("{} s behind t = {} s", significant(start - end, 3), significant(end, 6));
+    let gaps: Vec<String> = read.breaks(true).into_iter().map(behind).collect();
     text += &match gaps.as_slice() {
         [] => ", without a gap".to_owned(),
         [one] => format!(", with a gap of {one}"),
         many if many.len() <= GAPS => format!(", with {} gaps: {}", many.len(), many.join("; ")),
         many => format!(", with {} gaps: {}; ..", many.len(), many[..GAPS].join("; ")),
+    };
+    text += &match read.breaks(false).len() {
+        0 => String::new(),
+        1 => "; rows left out in one place: see the notes".to_owned(),
+        places => format!("; rows left out in {places} places: see the notes"),
     };
     if log.is_interpolated() {
         text += &format!("\n{BAD}channels at different instants{BAD:#}: for steady operating points only");
