@@ -16,7 +16,7 @@ use fluxfit::{
 };
 use fluxfit_drive::{
     Recording, Scenario,
-    scenario::{Control, CurrentSensors, Inverter, Mechanics, Schedule, Sensors, SimulatedMotor},
+    scenario::{Control, CurrentSensors, Inverter, Logging, Mechanics, Schedule, Sensors, SimulatedMotor},
     schedule::{Profile, Ramp},
     simulate,
 };
@@ -191,6 +191,35 @@ fn without_dead_time_none_is_found() {
     assert!(!without.output.as_ref().unwrap().has(Fault::DeadTime));
     holds("no dead time", &without, &TRACTION, [2.0, 1.0, 1.0, 1.0]);
     assert!(Parameter::ALL.iter().all(|parameter| without.parameter(*parameter).verdict == Verdict::Identified));
+}
+
+/// A small traction motor that accelerates from 500 to 2500 r/min in 0.16 s, and whose logged speed is filtered at 20 Hz: it lags by 80 rad/s,
+/// which costs 0.6 V, as much as 20 A in R_s.
+#[test]
+fn a_speed_that_lags_in_an_acceleration() {
+    const SCOOTER: Motor = Motor { rs: 30e-3, ld: 60e-6, lq: 90e-6, psi_f: 8e-3 };
+    let step = |at, to| Ramp { at, to, over: 0.0 };
+    let scenario = Scenario {
+        motor: SimulatedMotor::new(SCOOTER.rs, SCOOTER.into(), 7),
+        inverter: Inverter { dead_time: 0.3e-6, ..Inverter::ideal(48.0, 8e3) },
+        mechanics: Mechanics::Dyno,
+        control: Control::new(600.0, 0.0, 60.0),
+        schedule: Schedule {
+            id: Profile::new(vec![step(0.06, -15.0), step(0.12, 0.0), step(0.16, -10.0)]),
+            iq: Profile::new(vec![step(0.01, 10.0), step(0.05, 25.0), step(0.09, 5.0), step(0.14, 30.0)]),
+            speed: Profile::new(vec![step(0.0, 52.4), Ramp { at: 0.02, to: 261.8, over: 0.16 }]),
+            ..Schedule::default()
+        },
+        duration: 0.2,
+        sensors: Sensors { current_noise: 0.1, ..Sensors::IDEAL },
+        logging: Logging { speed_filter: Some(20.0), ..Logging::COMPLETE },
+        ..Scenario::paper()
+    };
+    let recording = simulate(&scenario, 1, || ()).unwrap();
+    assert_eq!(fluxfit::check_columns(&recording.log().unwrap()), [], "a lag is no other unit");
+    let found = found(&recording);
+    assert!(found.output.as_ref().unwrap().has(Fault::SpeedLag));
+    holds("lagging speed", &found, &SCOOTER, [1.0, 0.5, 0.3, 0.1]);
 }
 
 /// Device drops in a log without the angle: their harmonics tell them, and R_s, which they would make 30 % too large, is right.

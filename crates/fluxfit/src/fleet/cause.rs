@@ -44,7 +44,7 @@ impl Causes {
     pub(super) fn add(&mut self, rows: &[FleetRow], best: &FleetRow) {
         let errors = rows.iter().filter_map(|row| Some((Missing::Answer, row.error.as_deref()?, row)));
         let reasons = Parameter::ALL.into_iter().filter_map(|parameter| {
-            let estimate = &best.estimates[parameter as usize % PARAMETERS];
+            let estimate = &best.estimates[parameter as usize];
             let is_missing = estimate.verdict != Verdict::Identified && best.error.is_none();
             is_missing.then_some((Missing::Parameter(parameter, estimate.verdict), estimate.reason.as_deref()?, best))
         });

@@ -74,7 +74,7 @@ pub struct Outlier {
 
 impl Distribution {
     pub(super) fn of(parameter: Parameter, motors: &[Member]) -> Self {
-        let estimates = motors.iter().map(|motor| (&motor.best, &motor.best.estimates[parameter as usize % PARAMETERS]));
+        let estimates = motors.iter().map(|motor| (&motor.best, &motor.best.estimates[parameter as usize]));
         let answered = || estimates.clone().filter(|(row, _)| row.error.is_none());
         let verdicts = [Verdict::Identified, Verdict::Weak, Verdict::NotIdentifiable]
             .map(|verdict| answered().filter(|(_, estimate)| estimate.verdict == verdict).count());

@@ -44,7 +44,7 @@ impl Drift {
     /// The parameter of a motor over its rows, which are in order of time; `None` with fewer than two windows that tell it.
     pub(super) fn of(parameter: Parameter, rows: &[FleetRow]) -> Option<Self> {
         let point = |row: &FleetRow| {
-            let value = row.estimates[parameter as usize % PARAMETERS].found()?;
+            let value = row.estimates[parameter as usize].found()?;
             Some(DriftPoint { start: row.window_start?, value })
         };
         let points: Vec<DriftPoint> = rows.iter().filter_map(point).collect();

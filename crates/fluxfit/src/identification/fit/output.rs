@@ -31,11 +31,7 @@ use crate::{
     levenberg_marquardt::{Polished, polish_with_progress},
     log::Log,
     motor::Motor,
-    objective::{
-        acting_voltage::VoltageTiming,
-        adjustable::{Adjustable, Unknown},
-        output_error::OutputError,
-    },
+    objective::{acting_voltage::VoltageTiming, adjustable::Adjustable, output_error::OutputError},
     optimizer::{Bounds, Method},
     steady::OperatingPoint,
 };
@@ -97,7 +93,7 @@ impl OutputFit {
             Some(known) => known.refitted(log, &stretches, request)?,
             None => with_speed_in_time(
                 log,
-                |log, beside| choose(log, &stretches, &start, beside, request, progress),
+                |log, undone_lag| choose(log, &stretches, &start, undone_lag, request, progress),
                 |chosen, log| chosen.again(log, &stretches, request),
             )?,
         };
@@ -168,7 +164,7 @@ impl OutputFit {
             reading: self.voltage_timing.value,
             drive: self.drive,
             unknowns: output_start::free(request).into_iter().chain(of_faults).collect(),
-            priors: output_start::priors(request, self.cost / self.residuals.len() as f64),
+            priors: output_start::priors(request, self.undone_lag, self.cost / self.residuals.len() as f64),
             readings: self.timings.clone(),
             terms: self.fault_trials.clone(),
             independent: long_run::effective_sample_size(&self.residuals),
@@ -251,19 +247,18 @@ struct Advanced {
 /// what is left is undone once more; this changes no choice. What was chosen second, with a lag, may fit best once that is undone.
 fn with_speed_in_time(
     log: &Log,
-    choose: impl Fn(&Log, &[Unknown]) -> Result<Vec<Chosen>, Error>,
+    choose: impl Fn(&Log, f64) -> Result<Vec<Chosen>, Error>,
     again: impl Fn(Chosen, &Log) -> Result<Chosen, Error>,
 ) -> Result<Advanced, Error> {
-    let mut found = choose(log, &[])?.into_iter();
+    let mut found = choose(log, 0.0)?.into_iter();
     let first = found.next().ok_or_else(Error::no_rows)?;
     let lags = |chosen: &Chosen| {
         let is_lag = |trial: &&FaultTrial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken;
         chosen.terms.iter().find(is_lag).cloned()
     };
     let in_time = |chosen: &Chosen, lags: FaultTrial| {
-        let unknown: Vec<Unknown> = Unknown::of_fault(Fault::SpeedLag).collect();
         let lag = chosen.drive.faults.speed_lag.time;
-        let chosen = choose(&log.without_speed_lag(lag), &unknown)?.into_iter().next().ok_or_else(Error::no_rows)?;
+        let chosen = choose(&log.without_speed_lag(lag), lag)?.into_iter().next().ok_or_else(Error::no_rows)?;
         let lag = lag + chosen.drive.faults.speed_lag.time;
         let advanced = log.without_speed_lag(lag);
         let mut chosen = again(chosen, &advanced)?;

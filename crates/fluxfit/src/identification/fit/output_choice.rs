@@ -59,21 +59,21 @@ const SMALL_GAIN: f64 = 0.2;
 /// Faults that are ruled out because their values run away beside others: each costs a search.
 const MOST_RULED_OUT: usize = 2;
 
-/// Chooses the reading of the voltages and the faults of the drive; the unknowns `beside` the motor's are known to be there. The best
-/// first, then what searches from other readings came to.
+/// Chooses the reading of the voltages and the faults of the drive; of a log whose speed was advanced by a
+/// lag, s, or by zero. The best first, then what searches from other readings came to.
 pub(super) fn choose(
     log: &Log,
     stretches: &[Range<usize>],
     start: &Adjustable,
-    beside: &[Unknown],
+    undone_lag: f64,
     request: &Request,
     progress: Progress,
 ) -> Result<Vec<Chosen>, Error> {
     let _ = progress(Step::VoltageTiming);
-    let free = [free(request), beside.to_vec()].concat();
+    let free: Vec<Unknown> = free(request).into_iter().chain(output_start::rest_of_lag(undone_lag)).collect();
     let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
     let rough = readings::readings(&objectives, start, &free, &[], HOPELESS);
-    let priors = output_start::priors(request, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
+    let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut found: Vec<Searched> = Vec::new();
     let mut begun: Vec<FaultSearch> = Vec::new();
     let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };

@@ -5,6 +5,7 @@ use super::{
     steady::SteadyFit,
 };
 use crate::{
+    faults::Fault,
     least_squares::{Equation, TriangularFactor},
     levenberg_marquardt::{MOTOR, PriorResidual},
     log::Log,
@@ -19,13 +20,24 @@ pub(super) fn free(request: &Request) -> Vec<Unknown> {
     MOTOR.into_iter().zip(&request.known).filter(is_free).map(|(unknown, _)| unknown).collect()
 }
 
-/// Priors as residuals, given the mean square of a current's.
-pub(super) fn priors(request: &Request, mean_square: f64) -> Vec<PriorResidual> {
+/// Standard error of a lag of the speed as a part of it: it is found to first order, beside faults that it bends.
+const OF_LAG: f64 = 0.5;
+
+/// What is left of a lag of the speed that was undone: an unknown, unless there was none.
+pub(super) fn rest_of_lag(undone: f64) -> impl Iterator<Item = Unknown> {
+    Unknown::of_fault(Fault::SpeedLag).filter(move |_| undone != 0.0)
+}
+
+/// Priors as residuals, given the mean square of a current's: those of the request, and that of what is left of an undone lag. Once the
+/// angle agrees with the speed again it does nothing, and without a prior it could go anywhere.
+pub(super) fn priors(request: &Request, undone_lag: f64, mean_square: f64) -> Vec<PriorResidual> {
+    let rest = rest_of_lag(undone_lag);
+    let rest = rest.map(|unknown| PriorResidual { unknown, value: 0.0, weight: mean_square.sqrt() / (OF_LAG * undone_lag.abs()) });
     let priors = MOTOR.into_iter().zip(request.known).filter_map(|(unknown, known)| match known {
         Known::Prior { value, standard_error } => Some(PriorResidual { unknown, value, weight: mean_square.sqrt() / standard_error }),
         Known::Nothing | Known::Fixed(_) => None,
     });
-    priors.collect()
+    priors.chain(rest).collect()
 }
 
 /// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations.
