@@ -2,10 +2,7 @@
 //! motor and file and in numbers.
 
 use super::row::FleetRow;
-use crate::{
-    Verdict,
-    motor::{PARAMETERS, Parameter},
-};
+use crate::{Verdict, motor::Parameter};
 use std::collections::BTreeMap;
 
 /// How many motors of a cause are named.

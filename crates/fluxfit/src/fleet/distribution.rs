@@ -11,10 +11,7 @@
 //! chance: the limit then is that which one of twenty fleets of normal motors exceeds.
 
 use super::{member::Member, row::FleetValue};
-use crate::{
-    Verdict,
-    motor::{PARAMETERS, Parameter},
-};
+use crate::{Verdict, motor::Parameter};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Fewer motors than these have no spread from which one could stand apart: that of ten is uncertain by a quarter.

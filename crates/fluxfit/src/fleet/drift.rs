@@ -11,7 +11,7 @@
 //! in common, such as the accuracy of the voltages, do not move a parameter: the probability is too large rather than too small.
 
 use super::row::{FleetRow, FleetValue};
-use crate::motor::{PARAMETERS, Parameter};
+use crate::motor::Parameter;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// A parameter of a motor over its windows.
