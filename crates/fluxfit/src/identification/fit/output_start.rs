@@ -20,8 +20,9 @@ pub(super) fn free(request: &Request) -> Vec<Unknown> {
     MOTOR.into_iter().zip(&request.known).filter(is_free).map(|(unknown, _)| unknown).collect()
 }
 
-/// Standard error of a lag of the speed as a part of it: it is found to first order, beside faults that it bends.
-const OF_LAG: f64 = 0.5;
+/// Standard error of what is left of a lag of the speed, s: as long as the lag of a filter at 16 Hz, so that whatever the currents tell
+/// outweighs it.
+const REST_OF_LAG: f64 = 0.01;
 
 /// What is left of a lag of the speed that was undone: an unknown, unless there was none.
 pub(super) fn rest_of_lag(undone: f64) -> impl Iterator<Item = Unknown> {
@@ -32,7 +33,7 @@ pub(super) fn rest_of_lag(undone: f64) -> impl Iterator<Item = Unknown> {
 /// angle agrees with the speed again it does nothing, and without a prior it could go anywhere.
 pub(super) fn priors(request: &Request, undone_lag: f64, mean_square: f64) -> Vec<PriorResidual> {
     let rest = rest_of_lag(undone_lag);
-    let rest = rest.map(|unknown| PriorResidual { unknown, value: 0.0, weight: mean_square.sqrt() / (OF_LAG * undone_lag.abs()) });
+    let rest = rest.map(|unknown| PriorResidual { unknown, value: 0.0, weight: mean_square.sqrt() / REST_OF_LAG });
     let priors = MOTOR.into_iter().zip(request.known).filter_map(|(unknown, known)| match known {
         Known::Prior { value, standard_error } => Some(PriorResidual { unknown, value, weight: mean_square.sqrt() / standard_error }),
         Known::Nothing | Known::Fixed(_) => None,
