@@ -169,8 +169,8 @@ impl Finder<'_> {
 
     /// The duty cycles of the three phases, if the log has them and no voltages.
     pub(super) fn duties(&self) -> Option<[usize; 3]> {
-        let is_free = [UA, UB, UC].iter().all(|channel| !self.is_given(*channel));
-        alias::duties(self.heads).filter(|_| is_free && self.layout.is_none())
+        let is_free = self.layout.is_none() && [UA, UB, UC].iter().all(|channel| !self.is_given(*channel));
+        is_free.then(|| alias::duties(self.heads)).flatten()
     }
 
     /// The time between rows, s, of a log without a time column, from the options or the layout.
@@ -223,7 +223,9 @@ impl Finder<'_> {
         let is_alias = self.is_alias(channel, &head.name);
         let header = head.name.clone();
         let is_given_share = self.options.shares_of_bus.contains(&channel);
-        if let Some(percent) = self.duties().filter(|duties| duties.contains(&index)).map(|_| alias::is_percent(head)) {
+        let is_duty = || [UA, UB, UC].contains(&channel) && self.duties().is_some_and(|duties| duties.contains(&index));
+        if is_duty() {
+            let percent = alias::is_percent(head);
             let (unit, instants, scale) = (channel.unit(), None, if percent { scale / 100.0 } else { scale });
             let (is_unit_stated, is_unit_written, is_share) = (true, true, true);
             return Ok(ChosenColumn {
