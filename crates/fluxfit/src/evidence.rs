@@ -21,6 +21,7 @@ pub use crate::identification::{
         steady::{SteadyFit, operating_points},
         swarm::Search,
         uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
+        warming::Warming,
     },
     judge::verdict::{IDENTIFIED, WEAK},
     prepare::model::{ModelChoice, ModelReason, SLOWEST_CONTROL, choose as choose_model},

@@ -2,7 +2,7 @@
 
 use super::{by_key::ByKey, finite::finite};
 use crate::{
-    evidence::{FaultEstimate, Identification, Provenance},
+    evidence::{FaultEstimate, Identification, Provenance, Warming},
     steady::zero_order_hold::SteadyVoltageTiming,
 };
 use serde::Serialize;
@@ -29,7 +29,11 @@ impl NuisanceEntries {
                 let standard_error = finite(lag.standard_error);
                 ("frame_lag", NuisanceEntry::Number { value: lag.seconds, unit: "s", standard_error })
             });
-            [loss].into_iter().chain(lag).collect()
+            let warming = fit.warming.filter(Warming::is_found).map(|warming| {
+                let standard_error = finite(warming.standard_error);
+                ("resistance_change", NuisanceEntry::Number { value: warming.change, unit: "ohm", standard_error })
+            });
+            [loss].into_iter().chain(lag).chain(warming).collect()
         } else {
             Vec::new()
         };
@@ -43,7 +47,7 @@ impl NuisanceEntries {
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum NuisanceEntry {
-    /// One number, found by the output error; or the lag of a recorder's voltages, found by the steady model.
+    /// One number, found by the output error; or the lag of a recorder's voltages and the change of R_s, found by the steady model.
     Number {
         /// SI units.
         value: f64,

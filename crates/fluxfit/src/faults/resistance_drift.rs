@@ -13,8 +13,10 @@ pub struct ResistanceDrift {
     pub change: f64,
 }
 
-/// Largest change, as a fraction of R_s: copper that warms by more than 250 K has burnt.
-const LARGEST: f64 = 1.0;
+impl ResistanceDrift {
+    /// Largest change, as a fraction of R_s: copper that warms by more than 250 K has burnt.
+    pub(crate) const LARGEST: f64 = 1.0;
+}
 
 pub(super) static FAULT: Description<ResistanceDrift> = Description {
     key: "resistance_drift",
@@ -30,7 +32,7 @@ pub(super) static FAULT: Description<ResistanceDrift> = Description {
     }],
     starts: present_state,
     kinds: no_kinds,
-    is_physical: |state, motor, _| state.change.abs() < LARGEST * motor.rs.abs(),
+    is_physical: |state, motor, _| state.change.abs() < ResistanceDrift::LARGEST * motor.rs.abs(),
 };
 
 /// The voltage, V, that the change takes at current `i`, A.

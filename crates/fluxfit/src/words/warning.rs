@@ -82,6 +82,17 @@ impl Display for Warning {
                     named.join(", ")
                 )
             }
+            Self::Warming { change, standard_error, rs } => {
+                let (part, error) = ((change / rs).abs(), HALF_WIDTH * (standard_error / rs).abs());
+                let verb = if *change > 0.0 { "grows" } else { "falls" };
+                write!(
+                    f,
+                    "R_s {verb} by {} ± {} while the log is taken: the voltages of the operating points follow it (a winding that warms or \
+                     cools); the R_s given is that in the middle of the log",
+                    percent(part),
+                    percent(error)
+                )
+            }
             Self::ProcessNoise => write!(
                 f,
                 "voltages that the log does not hold disturb the motor: the residuals of the simulated currents depend on those before; \

@@ -1,7 +1,7 @@
 //! Warnings in a few words, for a line of their own above an answer. The whole sentence is the warning's
 //! [`Display`](std::fmt::Display).
 
-use super::digits::{list, three_digits};
+use super::digits::{list, percent, three_digits};
 use crate::{identification::explain::warning::Warning, motor::Parameter};
 
 impl Warning {
@@ -25,6 +25,9 @@ impl Warning {
             }
             Self::OpenLoop { times } => {
                 format!("open loop in {} stretch{}: only R_s is taken from there", times.len(), if times.len() == 1 { "" } else { "es" })
+            }
+            Self::Warming { change, rs, .. } => {
+                format!("R_s {} by {} while the log is taken", if *change > 0.0 { "grows" } else { "falls" }, percent((change / rs).abs()))
             }
             Self::ProcessNoise => "voltages that are not logged disturb the motor".to_owned(),
             Self::Angle => "theta_e does not turn with omega_e: not used".to_owned(),

@@ -9,6 +9,7 @@ use super::{
             saturation::{Apparent, SaturationFinding},
             steady::SteadyFit,
             swarm::Search,
+            warming::Warming,
         },
         request::{Known, Request},
     },
@@ -75,6 +76,15 @@ pub enum Warning {
         /// Start and end, s, in order.
         times: Vec<(f64, f64)>,
     },
+    /// R_s changes while the log is taken; the answer is that in the middle of the log.
+    Warming {
+        /// R_s at the log's end less that at its start, ohm.
+        change: f64,
+        /// Its standard error, ohm.
+        standard_error: f64,
+        /// R_s in the middle, ohm.
+        rs: f64,
+    },
     /// Voltages that the log does not hold disturb the motor; an observer follows them in the fit.
     ProcessNoise,
     /// The logged angle does not turn with the speed, so it was not used.
@@ -140,7 +150,7 @@ pub enum Warning {
 
 impl Warning {
     /// The codes of all warnings.
-    pub const CODES: [&'static str; 18] = [
+    pub const CODES: [&'static str; 19] = [
         "no-redundancy",
         "misfit",
         "dead-time",
@@ -149,6 +159,7 @@ impl Warning {
         "coarse-sampling",
         "frame-lag",
         "open-loop",
+        "warming",
         "process-noise",
         "angle",
         "saturation",
@@ -172,6 +183,7 @@ impl Warning {
             Self::CoarseSampling => "coarse-sampling",
             Self::FrameLag { .. } => "frame-lag",
             Self::OpenLoop { .. } => "open-loop",
+            Self::Warming { .. } => "warming",
             Self::ProcessNoise => "process-noise",
             Self::Angle => "angle",
             Self::Saturation { .. } => "saturation",
@@ -210,6 +222,7 @@ pub(crate) fn all(evidence: &Evidence) -> Vec<Warning> {
             dead_time(fit).filter(|_| answered),
             frame_lag(fit).filter(|_| answered),
             open_loop(log, fit).filter(|_| answered),
+            warming(fit).filter(|_| answered),
             no_current(log, fit, request).filter(|_| answered),
             short_stretches(log, request).filter(|_| answered),
             coarse_sampling(log, fit),
@@ -360,6 +373,11 @@ fn open_loop(log: &Log, found: &SteadyFit) -> Option<Warning> {
     let t = &log.columns().t;
     let times: Vec<(f64, f64)> = found.open_loop.iter().map(|rows| (t[rows.start], t[rows.end - 1])).collect();
     (!times.is_empty()).then_some(Warning::OpenLoop { times })
+}
+
+fn warming(found: &SteadyFit) -> Option<Warning> {
+    let Warming { change, standard_error } = found.warming.filter(Warming::is_found)?;
+    Some(Warning::Warming { change, standard_error, rs: found.estimate.motor.rs })
 }
 
 /// Share of rows that is worth a warning.

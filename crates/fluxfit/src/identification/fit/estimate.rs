@@ -15,7 +15,7 @@ use super::{
     super::request::{Known, Request},
     excitation::Excitation,
     part::Part,
-    voltage_loss::Loss,
+    voltage_loss::{self, Loss},
 };
 use crate::{
     least_squares::Equation,
@@ -80,7 +80,7 @@ impl Estimate {
         losses: &[Loss],
         voltage_accuracy: f64,
     ) -> Self {
-        let accuracy = voltage_uncertainty(points, voltage_accuracy);
+        let accuracy = voltage_uncertainty(points, voltage_accuracy, voltage_loss::misshapen(losses));
         let mut motor = Motor::from(request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
         let mut system = System::of(points, &motor, &accuracy, request, losses);
         let mut solved = system.solve(excitation, request);
@@ -303,11 +303,12 @@ fn kinds(points: &[OperatingPoint]) -> Vec<usize> {
     kinds
 }
 
-/// Uncertainty of each point's voltages, V. It is the same error in every repetition of a point, so that no repetition may shrink it.
-fn voltage_uncertainty(points: &[OperatingPoint], fraction: f64) -> Vec<f64> {
+/// Uncertainty of each point's voltages, V: a fraction of the voltage, and so many volts at any. It is the same error in every repetition of a point, so that no repetition may shrink it.
+fn voltage_uncertainty(points: &[OperatingPoint], fraction: f64, volts: f64) -> Vec<f64> {
     // At least a fraction of the largest voltage: a window without any has no exact one either.
     let least = LEAST_ACCURACY * points.iter().map(|point| point.voltage().magnitude()).fold(NO_VOLTAGE, f64::max);
     let kinds = kinds(points);
     let repetitions = |kind: usize| kinds.iter().filter(|other| **other == kind).count() as f64;
-    points.iter().zip(&kinds).map(|(point, kind)| (fraction * point.voltage().magnitude()).max(least) * repetitions(*kind).sqrt()).collect()
+    let of_one = |point: &OperatingPoint| (fraction * point.voltage().magnitude()).max(least).hypot(volts);
+    points.iter().zip(&kinds).map(|(point, kind)| of_one(point) * repetitions(*kind).sqrt()).collect()
 }

@@ -15,7 +15,7 @@
 use super::{
     long_run::effective_sample_size,
     readings::{HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest, readings},
-    voltage_accuracy,
+    voltage_accuracy::{self, VoltageAccuracy},
 };
 use crate::{
     faults::{AngleNeed, Fault, Faults},
@@ -455,7 +455,8 @@ impl ScoreTest {
         let independent = if faults.contains(&Fault::Disturbance) { residuals.len() as f64 } else { effective_sample_size(&residuals) };
         let normal = NormalMatrix::of(&jacobian);
         let inverse = normal.inverse();
-        let accuracy = voltage_accuracy::covariance(objective, drive, &inverse, &jacobian, search.voltage_accuracy);
+        let accuracy = VoltageAccuracy { fraction: search.voltage_accuracy, volts: 0.0 };
+        let accuracy = voltage_accuracy::covariance(objective, drive, &inverse, &jacobian, accuracy);
         let noise = inverse.diagonal() * (cost / independent);
         let standard_errors = (noise + accuracy.diagonal()).iter().map(|variance| variance.max(0.0).sqrt()).collect();
         Self { residuals, jacobian, normal, standard_errors, independent, peak: objective.peak_current() }

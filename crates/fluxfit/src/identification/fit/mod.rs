@@ -29,4 +29,5 @@ pub(crate) mod uncertainty;
 mod undetected_loss;
 mod voltage_accuracy;
 pub(crate) mod voltage_loss;
+pub(crate) mod warming;
 mod within_rows;

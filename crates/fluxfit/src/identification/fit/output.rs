@@ -22,7 +22,9 @@ use super::{
     steady::SteadyFit,
     swarm::{self, Search},
     uncertainty::{Systematic, Uncertainty},
-    undetected_loss, within_rows,
+    undetected_loss,
+    voltage_accuracy::VoltageAccuracy,
+    voltage_loss, within_rows,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -119,7 +121,9 @@ impl OutputFit {
             sensors: sensors(&drive),
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };
-        let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, request.voltage_accuracy, &scale);
+        let misshapen = voltage_loss::misshapen_in_rows(log, reading, drive.faults.dead_time.voltage);
+        let accuracy = VoltageAccuracy { fraction: request.voltage_accuracy, volts: misshapen };
+        let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, accuracy, &scale);
         let shifts = OutputShifts { process_noise: errors.by_contradiction(&unknowns, &shifts.process_noise), ..shifts };
         let uncertainty = errors.uncertainty(&unknowns, &shifts);
         let correlation = errors.correlation_of_neighbours;

@@ -7,7 +7,7 @@
 use super::{
     long_run,
     uncertainty::{ParameterUncertainty, Systematic, Uncertainty},
-    voltage_accuracy,
+    voltage_accuracy::{self, VoltageAccuracy},
 };
 use crate::{
     faults::{Fault, Faults, disturbance::Disturbance},
@@ -113,7 +113,7 @@ impl Errors {
         unknowns: &[Unknown],
         priors: &[PriorResidual],
         residuals: &[f64],
-        voltage_accuracy: f64,
+        voltage_accuracy: VoltageAccuracy,
         scale: &[f64; PARAMETERS],
     ) -> Self {
         let slopes = jacobian(objective, drive, unknowns);

@@ -18,6 +18,7 @@ use super::{
     swarm::{self, Search},
     uncertainty::Uncertainty,
     voltage_loss::{Loss, LossPrior, is_control_rate, slowest_period},
+    warming::Warming,
 };
 use crate::{
     error::Error,
@@ -56,6 +57,8 @@ pub struct SteadyFit {
     pub frame_lag: Option<FrameLag>,
     /// Rows of the operating points in open-loop operation, which tell the resistance only.
     pub open_loop: Vec<Range<usize>>,
+    /// The change of R_s while the log was taken, which is that in its middle; none where it was not asked for.
+    pub warming: Option<Warming>,
     /// What it comes to.
     pub finding: Finding,
     /// What dead time and devices may take, as it was fitted beside the motor.
@@ -95,7 +98,7 @@ impl SteadyFit {
             Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
             None => solve_at_angle(log, &unturned, angle, request),
         };
-        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag } = solved;
+        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag, warming } = solved;
         let timing_doubt = match &other_timing {
             // Of a recorder's log it is one of the unknowns.
             Some(other) if lag.is_none() => timing_doubt(&unturned, other, request),
@@ -126,6 +129,7 @@ impl SteadyFit {
             losses,
             frame_lag: lag,
             open_loop: frames.map_or_else(Vec::new, |frames| frames.open_loop),
+            warming,
             finding,
             as_measured,
         })
@@ -213,6 +217,7 @@ struct Solved {
     estimate: Estimate,
     misfit: Option<Misfit>,
     lag: Option<FrameLag>,
+    warming: Option<Warming>,
 }
 
 /// Solves the points beside the losses and a lag; again with the voltages turned back by what was found of it.
@@ -272,7 +277,13 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], requ
         losses.clear();
         (estimate, misfit) = admit(&all(&losses));
     }
-    Solved { losses: all(&losses), excitation, harmonics, estimate, misfit, lag: None, points }
+    let mut warming = Warming::expected(log, &points, &estimate.motor, request);
+    if let Some(warming) = &mut warming {
+        losses.push(warming.unknown(log, &points));
+        (estimate, misfit) = admit(&all(&losses));
+        (warming.change, warming.standard_error) = estimate.found[losses.len() - 1];
+    }
+    Solved { losses: all(&losses), excitation, harmonics, estimate, misfit, lag: None, warming, points }
 }
 
 /// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.

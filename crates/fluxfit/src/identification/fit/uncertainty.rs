@@ -239,6 +239,8 @@ fn of_parameter(p: usize, points: &[OperatingPoint], estimate: &Estimate, misfit
         variance_of_variance += part * part / point.degrees_of_freedom as f64;
         accuracy += (gain[0] * gain[0] + gain[1] * gain[1]) * estimate.accuracy[w].powi(2);
     }
+    // What the rows' noise leaves of an unknown beside the motor.
+    variance += estimate.loss_gains.iter().filter(|(of, _)| *of == Part::Noise).map(|(_, gain)| gain[p].powi(2)).sum::<f64>();
     let of_losses =
         |part: Part| estimate.loss_gains.iter().filter(|(of, _)| *of == part).map(|(_, gain)| gain[p].powi(2)).sum::<f64>().sqrt();
     let systematic = Systematic {

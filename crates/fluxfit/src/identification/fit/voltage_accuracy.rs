@@ -17,17 +17,26 @@ const SMOOTH: f64 = 0.1;
 /// Periods are gathered into cells of this size in the space of operating points, likewise: a few to that scale.
 const CELL: f64 = 0.04;
 
-/// Covariance of the unknowns from the voltages' accuracy, `fraction` of the voltage. `slopes` are the derivatives of the residuals by each
+/// How far the voltages are trusted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct VoltageAccuracy {
+    /// Standard uncertainty as a fraction of the voltage.
+    pub(crate) fraction: f64,
+    /// The same at any voltage, V.
+    pub(crate) volts: f64,
+}
+
+/// Covariance of the unknowns from the voltages' accuracy. `slopes` are the derivatives of the residuals by each
 /// unknown, `inverse` is the inverse of their normal matrix.
 pub(crate) fn covariance(
     objective: &OutputError,
     drive: &Adjustable,
     inverse: &DMatrix<f64>,
     slopes: &[Vec<f64>],
-    fraction: f64,
+    accuracy: VoltageAccuracy,
 ) -> DMatrix<f64> {
     let size = slopes.len();
-    if fraction == 0.0 {
+    if accuracy.fraction == 0.0 && accuracy.volts == 0.0 {
         return DMatrix::zeros(size, size);
     }
     let (mut most_current, mut most_speed) = (f64::MIN_POSITIVE, f64::MIN_POSITIVE);
@@ -49,7 +58,7 @@ pub(crate) fn covariance(
     for (p, effects) in objective.by_voltage(drive, &weights.collect::<Vec<_>>()).into_iter().enumerate() {
         for ((u, i, omega_e), effect) in objective.periods().zip(effects) {
             let sums = cells.entry(cell(i, omega_e)).or_insert_with(|| vec![Dq::default(); size]);
-            let volts = fraction * u.magnitude();
+            let volts = (accuracy.fraction * u.magnitude()).hypot(accuracy.volts);
             sums[p].d += volts * effect.d;
             sums[p].q += volts * effect.q;
         }
