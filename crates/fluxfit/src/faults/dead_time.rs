@@ -129,7 +129,7 @@ pub(super) static FAULT: Description<DeadTime> = Description {
     numbers: &[VOLTAGE, WIDTH],
     starts,
     kinds,
-    is_physical: |state, _, _| state.takes_voltage(),
+    is_physical: |state, _, peak| state.takes_voltage() && state.is_no_resistance(peak),
 };
 
 /// The same where the angle is not known.
@@ -142,7 +142,7 @@ pub(super) static WITHOUT_ANGLE: Description<DeadTime> = Description {
     numbers: &[VOLTAGE, WIDTH, PHASE],
     starts: |state, peak| PHASES.iter().flat_map(|phase| starts(&DeadTime { phase: SIXTH * phase, ..*state }, peak)).collect(),
     kinds,
-    is_physical: |state, _, _| state.takes_voltage(),
+    is_physical: |state, _, peak| state.takes_voltage() && state.is_no_resistance(peak),
 };
 
 /// Both dead time and device drops, where dead time was found first.
@@ -162,5 +162,10 @@ impl DeadTime {
     /// An inverter takes voltage, it never adds any.
     fn takes_voltage(&self) -> bool {
         self.voltage > 0.0
+    }
+
+    /// A loss that grows with the current up to the largest, A, is a resistance.
+    fn is_no_resistance(&self, peak: f64) -> bool {
+        self.width.abs() < peak
     }
 }

@@ -14,8 +14,8 @@ pub struct ResistanceDrift {
 }
 
 impl ResistanceDrift {
-    /// Largest change, as a fraction of R_s: copper that warms by more than 250 K has burnt.
-    pub(crate) const LARGEST: f64 = 1.0;
+    /// Largest change, as a fraction of R_s: 125 K of copper, from cold to the limit of most windings.
+    pub(crate) const LARGEST: f64 = 0.5;
 }
 
 pub(super) static FAULT: Description<ResistanceDrift> = Description {

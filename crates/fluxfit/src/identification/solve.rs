@@ -208,7 +208,7 @@ fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut 
         match points_tell_more(points, output, &open, !is_control_rate(log), request) {
             Points::TellMore => return Ok(true),
             Points::AreNarrower => {
-                let in_doubt = SteadyFit::with_angle_in_doubt(log, request)?;
+                let in_doubt = SteadyFit::with_drive_in_doubt(log, request)?;
                 if is_narrower(&in_doubt, output, request) {
                     *points = in_doubt;
                     return Ok(true);

@@ -1,6 +1,6 @@
 //! Why a parameter is not identified.
 
-use super::digits::{one_digit, percent};
+use super::digits::{one_digit, percent, three_digits};
 use crate::{
     identification::{fit::part::Part, judge::reason::Reason},
     motor::Parameter,
@@ -27,10 +27,21 @@ impl Display for Reason {
                 write!(f, "the voltages are zero in every row, and the currents of a short circuit show only ratios of the parameters")
             }
             Self::Negative => write!(f, "the value came out negative, which no motor has, and not by noise"),
-            Self::OtherNegative { parameter } => {
-                write!(f, "{} came out negative, so nothing else of this fit is to be trusted", parameter.symbol())
+            Self::OtherImpossible { parameter } => {
+                write!(f, "{} came out as no motor has it, so nothing else of this fit is to be trusted", parameter.symbol())
             }
             Self::Wide { part, half_width } => wide(*part, *half_width, f),
+            Self::BelowRows { least } => write!(
+                f,
+                "it came out below {} uH, with which the current would settle within half a row: something else, such as a filter or \
+                 the angle, has taken its place in the fit",
+                three_digits(1e6 * least)
+            ),
+            Self::SharperThanNoise => write!(
+                f,
+                "the simulated currents jump at the least change of what was fitted, as those of a phase that switches around zero do, so the \
+                 fit looks sharper than its noise allows"
+            ),
             Self::DisturbedWithoutAngle => write!(
                 f,
                 "unknown voltages disturb the motor, and without the electrical angle they cannot be told from dead time or unequal \

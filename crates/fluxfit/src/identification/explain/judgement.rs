@@ -49,7 +49,7 @@ pub(crate) fn explained(judged: [Judged; PARAMETERS], finding: &Finding, mut tri
     let mut remedy = |one: &Judged| {
         // What is wrong with one parameter of a fit is to be mended for all of them.
         let source = match one.reason {
-            Some(Reason::OtherNegative { parameter }) => &judged[parameter as usize],
+            Some(Reason::OtherImpossible { parameter }) => &judged[parameter as usize],
             _ => one,
         };
         let parameter = source.parameter;

@@ -111,11 +111,14 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measu
         Reason::OnePoint => measure().unwrap_or_else(|| or_stretch(Some(Also::OrSecondPoint))),
         Reason::TooSimilar { .. } => measure().unwrap_or_else(|| or_stretch(Some(Also::AndSecondPoint))),
         Reason::ShortCircuit => Remedy::FixOne,
-        Reason::Negative | Reason::OtherNegative { .. } => match lag_instead_of_sign(finding) {
+        Reason::OtherImpossible { .. } if !is_any_negative(finding) => measure().unwrap_or_else(|| or_stretch(None)),
+        Reason::Negative | Reason::OtherImpossible { .. } => match lag_instead_of_sign(finding) {
             Some(lag) => Remedy::CheckFrame { lag },
             None => Remedy::CheckSigns { units: false },
         },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
+        Reason::BelowRows { .. } => measure().unwrap_or_else(|| or_stretch(None)),
+        Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Reason::DisturbedWithoutAngle => Remedy::LogAngle,
         Reason::Wide { part, .. } => narrower(*part, parameter, finding, measure),
     })
@@ -158,6 +161,10 @@ fn longer(parameter: Parameter, finding: &Finding) -> Option<(f64, f64)> {
     }
     let times = (noise * noise / (allowed * allowed - rest * rest)).ceil();
     (times < MUCH_LONGER).then(|| (times, HALF_WIDTH * (noise / times.sqrt()).hypot(rest) / value))
+}
+
+fn is_any_negative(finding: &Finding) -> bool {
+    finding.motor.to_array().iter().zip(finding.open).any(|(value, open)| !open && *value <= 0.0)
 }
 
 /// Longest lag, s, of voltages behind currents that is ordinary: two periods of a drive that controls at 10 kHz.

@@ -44,8 +44,12 @@ pub struct Trust {
     pub correlation_of_neighbours: f64,
     /// Whether an observer follows disturbances which, without the electrical angle, cannot be told from faults of the drive.
     pub disturbed_without_angle: bool,
+    /// Whether the intervals are [sharper](super::output_errors) than noise allows.
+    pub too_sharp: bool,
     /// Root mean square of what a simulation without any correction misses, as a fraction of the largest current.
     pub misses: f64,
+    /// An inductance below this, H, does nothing from row to row that a simulation could follow.
+    pub least_inductance: f64,
 }
 
 /// What is known from noise, accuracy and excitation, and where the motor was held: what a further measurement would add to.

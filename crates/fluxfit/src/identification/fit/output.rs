@@ -24,7 +24,8 @@ use super::{
     uncertainty::{Systematic, Uncertainty},
     undetected_loss,
     voltage_accuracy::VoltageAccuracy,
-    voltage_loss, within_rows,
+    voltage_loss::{self, is_control_rate, slowest_period},
+    within_rows,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -38,6 +39,10 @@ use crate::{
     steady::OperatingPoint,
 };
 use std::ops::Range;
+
+/// A drive controls its currents many times within the time constant of the winding, `L / R_s`: less than this part of a period is no
+/// motor's. What comes out smaller took the place of something else that bends to the steps of the currents, a filter above all.
+const LEAST_PERIODS: f64 = 0.5;
 
 /// The simulated currents, and the motor that they ask for.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +140,9 @@ impl OutputFit {
             trust: Trust {
                 correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
                 disturbed_without_angle: is_taken(&terms, Fault::Disturbance) && !objective.angle_traced(),
+                too_sharp: errors.are_too_small(objective, &drive, &unknowns, &residuals),
                 misses: missed(objective, &drive) / objective.peak_current(),
+                least_inductance: if is_control_rate(log) { LEAST_PERIODS * slowest_period(log) * drive.motor.rs } else { 0.0 },
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),
             uncertainty,

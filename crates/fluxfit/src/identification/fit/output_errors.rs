@@ -159,6 +159,17 @@ impl Errors {
         }
     }
 
+    /// Whether the motor comes out sharper than the same noise would allow if nothing but the motor were unknown, and nothing stood between
+    /// it and the log: then the simulated currents depend on the unknowns as chaos does, and their slopes mean nothing.
+    pub(super) fn are_too_small(&self, objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], residuals: &[f64]) -> bool {
+        let of_motor: Vec<usize> = (0..unknowns.len()).filter(|k| matches!(unknowns[*k], Unknown::Motor(_))).collect();
+        let motor: Vec<Unknown> = of_motor.iter().map(|k| unknowns[*k]).collect();
+        let alone = Adjustable { faults: Faults::default(), ..*drive };
+        let inverse = NormalMatrix::of(&jacobian(objective, &alone, &motor)).inverse();
+        let noise = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64;
+        zip(&of_motor, 0..).any(|(k, p)| self.covariance[(*k, *k)] < TOO_SHARP * TOO_SHARP * noise * inverse[(p, p)])
+    }
+
     /// How far each parameter could be moved by what puts two kinds of fit apart, given their distance, SI: by that distance, or by as many
     /// standard errors as all parameters lie apart, in the root mean square. That one parameter of two fits that contradict each other
     /// agrees is chance. R. T. Birge, Physical Review 40, 1932, p. 207, doi:10.1103/PhysRev.40.207, widens errors by such a ratio.
@@ -216,6 +227,10 @@ impl Errors {
         Uncertainty { parameters, correlation }
     }
 }
+
+/// Standard errors below this part of what the motor alone would have are no standard errors: residuals that change their sign from row to
+/// row leave about half.
+const TOO_SHARP: f64 = 0.25;
 
 /// A parameter is open if the rows tell less than all but this part of it.
 const OPEN_PART: f64 = 0.01;

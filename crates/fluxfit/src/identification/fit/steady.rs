@@ -68,8 +68,8 @@ pub struct SteadyFit {
 }
 
 impl SteadyFit {
-    /// Finds the operating points and solves them, at the angle as it is where every period of the drive is in the log: simulated currents
-    /// see there what is wrong with it.
+    /// Finds the operating points and solves them, at the angle as it is and a resistance that stays where every period of the drive is in
+    /// the log: simulated currents see there what is wrong with that.
     ///
     /// # Errors
     /// If there is none.
@@ -77,15 +77,16 @@ impl SteadyFit {
         Self::solved(log, request, !is_control_rate(log))
     }
 
-    /// The same of points that answer because simulated currents do not explain the log: its angle may be off at any rate of the rows.
+    /// The same of points that answer because simulated currents do not explain the log: its angle may be off, and its winding may warm, at
+    /// any rate of the rows.
     ///
     /// # Errors
     /// If there is none.
-    pub(crate) fn with_angle_in_doubt(log: &Log, request: &Request) -> Result<Self, Error> {
+    pub(crate) fn with_drive_in_doubt(log: &Log, request: &Request) -> Result<Self, Error> {
         Self::solved(log, request, true)
     }
 
-    fn solved(log: &Log, request: &Request, angle_in_doubt: bool) -> Result<Self, Error> {
+    fn solved(log: &Log, request: &Request, in_doubt: bool) -> Result<Self, Error> {
         let (as_measured, frames) = frames(log, operating_points(log, request)?, request);
         let (mut unturned, mut other_timing) = measure(log, &as_measured, request);
         if recorder::is_recorders(log) {
@@ -93,10 +94,10 @@ impl SteadyFit {
                 recorder::pool_noise(points, windows::least_current(log));
             }
         }
-        let angle = FrameAngle::possible(log, request).filter(|_| angle_in_doubt);
+        let angle = FrameAngle::possible(log, request).filter(|_| in_doubt);
         let solved = match &frames {
             Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
-            None => solve_at_angle(log, &unturned, angle, request),
+            None => solve_at_angle(log, &unturned, angle, in_doubt, request),
         };
         let Solved { points, excitation, harmonics, losses, estimate, misfit, lag, warming } = solved;
         let timing_doubt = match &other_timing {
@@ -232,7 +233,7 @@ fn solve_at_lag(
         let points = lag.turned_back(unturned);
         let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other)));
         let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, lag, psi_f, log)).collect();
-        let solved = solve_beside(log, points, &unknowns, request);
+        let solved = solve_beside(log, points, &unknowns, true, request);
         (*lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
         solved
     };
@@ -245,14 +246,14 @@ fn solve_at_lag(
 
 /// Solves points of a drive whose angle may be unknown; again with the points turned back by what was found of it. Points that contradict
 /// each other are left so: an angle bends to anything, and what makes them contradict each other may be something else.
-fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAngle>, request: &Request) -> Solved {
-    let at_the_angle = solve_beside(log, unturned.to_vec(), &[], request);
+fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAngle>, in_doubt: bool, request: &Request) -> Solved {
+    let at_the_angle = solve_beside(log, unturned.to_vec(), &[], in_doubt, request);
     let Some(mut angle) = angle.filter(|_| at_the_angle.misfit.is_none()) else { return at_the_angle };
     let mut motor = Motor { rs: 0.0, ld: 0.0, lq: 0.0, psi_f: frame_lag::rough_flux(unturned) };
     let mut round = |angle: &mut FrameAngle| {
         let points = angle.turned_back(unturned);
         let unknowns = angle.unknowns(&points, &motor);
-        let solved = solve_beside(log, points, &unknowns, request);
+        let solved = solve_beside(log, points, &unknowns, in_doubt, request);
         (*angle, motor) = (angle.with(&solved.estimate), solved.estimate.motor);
         solved
     };
@@ -262,8 +263,8 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
     round(&mut angle)
 }
 
-/// Solves points beside the losses and these unknowns of their frames.
-fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], request: &Request) -> Solved {
+/// Solves points beside the losses, these unknowns of their frames, and a resistance that changes: `in_doubt`, if nothing shows it.
+fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_doubt: bool, request: &Request) -> Solved {
     let excitation = Excitation::of(&points, &request.known);
     let possible = LossPrior::possible(log, request);
     let harmonics = harmonics(log, &points, &excitation, &possible, request);
@@ -277,7 +278,7 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], requ
         losses.clear();
         (estimate, misfit) = admit(&all(&losses));
     }
-    let mut warming = Warming::expected(log, &points, &estimate.motor, request);
+    let mut warming = Warming::expected(log, &points, &estimate.motor, in_doubt, request);
     if let Some(warming) = &mut warming {
         losses.push(warming.unknown(log, &points));
         (estimate, misfit) = admit(&all(&losses));

@@ -58,9 +58,9 @@ struct Slope {
 }
 
 impl Warming {
-    /// What the rows of these points show, by a motor that is about right; nothing for whoever states the steady model, which states its
-    /// equations, unless the rows prove it.
-    pub(super) fn expected(log: &Log, points: &[OperatingPoint], motor: &Motor, request: &Request) -> Option<Self> {
+    /// What the rows of these points show, by a motor that is about right. What they do not prove is none unless the resistance is
+    /// `in_doubt`, nor for whoever states the steady model: that states its equations.
+    pub(super) fn expected(log: &Log, points: &[OperatingPoint], motor: &Motor, in_doubt: bool, request: &Request) -> Option<Self> {
         let slopes: Vec<Slope> = points.iter().filter_map(|point| Slope::of(log, point, motor)).collect();
         let proven = mean(&slopes).filter(|shown| shown.is_proven(&slopes) && shown.is_physical(motor));
         if proven.is_some() {
@@ -68,7 +68,8 @@ impl Warming {
         }
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
         let usual = Self { change: 0.0, standard_error: USUAL * motor.rs };
-        (!are_exact && request.model.is_none() && motor.rs > 0.0).then(|| mean(&slopes).map_or(usual, |shown| shown.and(&usual)))
+        (in_doubt && !are_exact && request.model.is_none() && motor.rs > 0.0)
+            .then(|| mean(&slopes).map_or(usual, |shown| shown.and(&usual)))
     }
 
     /// The unknown beside the motor.
@@ -185,7 +186,7 @@ mod tests {
     fn shown(growth: f64, motor: &Motor, seed: u64) -> Option<Warming> {
         let log = log(growth, seed);
         let points: Vec<OperatingPoint> = (0..3).map(|w| OperatingPoint::measure(&log, 1000 * w..1000 * (w + 1), None)).collect();
-        Warming::expected(&log, &points, motor, &Request::default())
+        Warming::expected(&log, &points, motor, true, &Request::default())
     }
 
     /// A tenth of an ohm, seen beside a motor whose flux and resistance are 3 % wrong: nothing of that has a slope.
@@ -211,6 +212,6 @@ mod tests {
         }
         let stated = Request { model: Some(crate::Model::Steady), ..Request::default() };
         let log = log(0.0, 0);
-        assert_eq!(Warming::expected(&log, &[OperatingPoint::measure(&log, 0..1000, None)], &MOTOR, &stated), None);
+        assert_eq!(Warming::expected(&log, &[OperatingPoint::measure(&log, 0..1000, None)], &MOTOR, true, &stated), None);
     }
 }

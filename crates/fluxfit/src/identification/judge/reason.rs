@@ -36,8 +36,8 @@ pub enum Reason {
     ShortCircuit,
     /// The value came out negative, by more than its uncertainty: signs or order of the columns are probably wrong.
     Negative,
-    /// Another parameter of the same fit came out negative, by more than its uncertainty.
-    OtherNegative {
+    /// Another parameter of the same fit came out as no motor has it: negative by more than its uncertainty, or below what rows can tell.
+    OtherImpossible {
         /// Which.
         parameter: Parameter,
     },
@@ -48,6 +48,13 @@ pub enum Reason {
         /// Half the interval as a fraction of the value: 0.2 is ±20 %; it may exceed 1 or be infinite.
         half_width: f64,
     },
+    /// An inductance came out so small that nothing of it could be seen from row to row.
+    BelowRows {
+        /// The least that rows so far apart could tell, H.
+        least: f64,
+    },
+    /// The fit looks sharper than the noise of the currents allows.
+    SharperThanNoise,
     /// Unknown voltages disturb the motor, and without the electrical angle they cannot be told from faults of the drive.
     DisturbedWithoutAngle,
     /// The simulated currents differ from the measured ones by far more than noise: voltages and currents do not belong together.

@@ -108,7 +108,7 @@ pub(crate) fn judge(
     if correlation > CORRELATED && fraction > least {
         distrust_all(&mut judged, request, &Reason::CurrentsMissed { fraction });
     }
-    distrust_if_negative(&mut judged, request);
+    distrust_if_impossible(&mut judged, finding.trust.least_inductance, request);
     // Zero times any motor fits as well, and a prior does not hold against equations without any voltage error.
     if is_short_circuit && !request.known.iter().any(|known| matches!(known, Known::Fixed(_))) {
         distrust_all(&mut judged, request, &Reason::ShortCircuit);
@@ -131,12 +131,13 @@ fn by_interval(parameter: Parameter, finding: &Finding, uncertainty: ParameterUn
     Judged { parameter, raw, uncertainty, verdict, reason }
 }
 
-/// Where the residuals are not noise, an interval that comes from noise would be as sharp as it is wrong.
+/// Where the residuals are not noise, or the slopes are chaos, an interval that comes from them would be as sharp as it is wrong.
 fn distrust_sharp_intervals(judged: &mut [Judged], trust: &Trust) {
-    if !trust.disturbed_without_angle {
-        return;
-    }
-    let why = Reason::DisturbedWithoutAngle;
+    let why = match trust {
+        Trust { too_sharp: true, .. } => Reason::SharperThanNoise,
+        Trust { disturbed_without_angle: true, .. } => Reason::DisturbedWithoutAngle,
+        _ => return,
+    };
     for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
         one.verdict = Verdict::Weak;
         one.uncertainty = one.uncertainty.with_min_half_width(IDENTIFIED * one.raw.abs());
@@ -144,11 +145,19 @@ fn distrust_sharp_intervals(judged: &mut [Judged], trust: &Trust) {
     }
 }
 
-/// If one parameter came out negative, and not by noise, the others come from the same wrong fit.
-fn distrust_if_negative(judged: &mut [Judged; PARAMETERS], request: &Request) {
-    let negative = judged.iter().find(|one| one.raw <= 0.0 && one.uncertainty.half_width < WEAK * one.raw.abs());
-    if let Some(Judged { parameter, reason, .. }) = negative.cloned() {
-        distrust_all(judged, request, &Reason::OtherNegative { parameter });
+/// If one parameter came out negative, and not by noise, or as an inductance with which the current would settle within a part of a row,
+/// the others come from the same wrong fit.
+fn distrust_if_impossible(judged: &mut [Judged; PARAMETERS], least_inductance: f64, request: &Request) {
+    let is_negative = |one: &Judged| one.raw <= 0.0 && one.uncertainty.half_width < WEAK * one.raw.abs();
+    let is_below_rows = |one: &Judged| {
+        let is_told = one.verdict != Verdict::NotIdentifiable && !matches!(request.known[one.parameter as usize], Known::Fixed(_));
+        is_told && matches!(one.parameter, Parameter::Ld | Parameter::Lq) && one.raw < least_inductance
+    };
+    let negative = judged.iter().find(|one| is_negative(one)).cloned();
+    let below_rows = || judged.iter().find(|one| is_below_rows(one)).cloned();
+    let of_rows = |one: Judged| Judged { reason: Some(Reason::BelowRows { least: least_inductance }), ..one };
+    if let Some(Judged { parameter, reason, .. }) = negative.or_else(|| below_rows().map(of_rows)) {
+        distrust_all(judged, request, &Reason::OtherImpossible { parameter });
         judged[parameter as usize].reason = reason;
     }
 }
