@@ -303,7 +303,8 @@ fn kinds(points: &[OperatingPoint]) -> Vec<usize> {
     kinds
 }
 
-/// Uncertainty of each point's voltages, V: a fraction of the voltage, and so many volts at any. It is the same error in every repetition of a point, so that no repetition may shrink it.
+/// Uncertainty of each point's voltages, V: a fraction of the voltage, and so many volts at any. It is the same error in every repetition
+/// of a point, so that no repetition may shrink it.
 fn voltage_uncertainty(points: &[OperatingPoint], fraction: f64, volts: f64) -> Vec<f64> {
     // At least a fraction of the largest voltage: a window without any has no exact one either.
     let least = LEAST_ACCURACY * points.iter().map(|point| point.voltage().magnitude()).fold(NO_VOLTAGE, f64::max);

@@ -44,9 +44,9 @@ const RIPPLE: f64 = 1.0 / 8.0;
 /// the harmonic is not known well, the harmonic says more than there is. Of simulated drives: 0.4 to 1.1.
 const OF_HARMONIC: (f64, f64) = (0.75, 0.35);
 
-/// What the three unknowns do not describe of the loss at a point, as a part of it: ripple, resistance and capacitance of the devices, where
-/// in the row the current turns. Of simulated drives, a hundredth makes the intervals of operating points beside a loss hold; without it,
-/// those of L_q held in 82 of 100.
+/// What the three unknowns do not describe of the loss at a point, as a part of it: ripple, resistance and capacitance of the devices,
+/// where in the row the current turns. Of simulated drives, a hundredth makes the intervals of operating points beside a loss hold; without
+/// it, those of L_q held in 82 of 100.
 const MISSHAPEN: f64 = 0.01;
 
 /// Currents below this part of the largest are none.

@@ -4,8 +4,8 @@
 //! Two points cannot tell that from a flux or an inductance. Their rows can: while current and speed are constant, the voltage along the
 //! current grows by `c |i| dx`. So `c` is an unknown beside the motor, with a prior: what is left of the voltage by the motor found is
 //! followed through each window, and where all windows show one and the same `c`, that is what is expected, beyond any usual size. Else it
-//! is that as far as the rows tell it, and zero as far as windings usually stay as they are. Constant errors of the motor or of the inverter
-//! have no slope.
+//! is that as far as the rows tell it, and zero as far as windings usually stay as they are. Constant errors of the motor or of the
+//! inverter have no slope.
 
 use super::{super::request::Request, part::Part, voltage_loss::Loss};
 use crate::{
