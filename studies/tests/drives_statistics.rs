@@ -38,14 +38,14 @@ fn most_numbers_hold_on_drawn_drives() {
 
 /// Each of these printed a wrong number once: a late angle (125) or a drift of R_s (915, 995) beside dead time that an observer hid; a fit
 /// that stopped where it began (168); at i_d = 0 and slow rows an L_d of noise (955, 1076); what dead time, devices and the turn of the
-/// rotor do within rows that are means (160, 1215, 1247).
+/// rotor do within rows that are means (160, 1215, 1247); a winding that warms from one operating point to the next (1733, 1763).
 #[test]
 fn logs_that_were_wrong_are_right() {
-    for index in [125, 160, 168, 915, 955, 995, 1076, 1215, 1247] {
+    for index in [125, 160, 168, 915, 955, 995, 1076, 1215, 1247, 1733, 1763] {
         let found = Drawn::new(index, &typical()).unwrap().found();
         println!("log {index}: {:?}", found.numbers);
         assert!(found.numbers.iter().all(|number| !number.is_wrong()), "log {index}: {:?}", found.numbers);
         let has_ld = found.numbers[Parameter::Ld as usize].is_printed();
-        assert_eq!(has_ld, ![955, 1076].contains(&index), "log {index}");
+        assert_eq!(has_ld, ![955, 1076, 1733].contains(&index), "log {index}");
     }
 }

@@ -170,3 +170,61 @@ fn distrust_all(judged: &mut [Judged], request: &Request, reason: &Reason) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        identification::fit::{
+            finding::Bench,
+            uncertainty::{Systematic, Uncertainty},
+        },
+        motor::Motor,
+    };
+
+    const MOTOR: Motor = Motor { rs: 0.5, ld: 2e-3, lq: 3e-3, psi_f: 0.05 };
+
+    /// A motor whose numbers have half-widths of 1 %.
+    fn judged(motor: Motor, trust: Trust, request: &Request) -> [Judged; PARAMETERS] {
+        let parameters = motor.to_array().map(|value| ParameterUncertainty::of(0.01 * value / 1.96, 1e6, Systematic::default()));
+        let bench = Bench {
+            motor,
+            covariance: nalgebra::Matrix4::zeros(),
+            held: Vec::new(),
+            row_variance: 0.0,
+            sample_period: 1e-4,
+            voltage: 20.0,
+            voltage_accuracy: 1e-4,
+        };
+        let uncertainty = Uncertainty { parameters, correlation: [[0.0; PARAMETERS]; PARAMETERS] };
+        let finding = Finding { motor, uncertainty, open: [false; PARAMETERS], trust, bench };
+        judge(&finding, None, request, false)
+    }
+
+    /// 25 uH with 0.5 ohm settle within half of 100 us: an L_q of 10 uH is none, and the rest of that fit no answer; but whoever states it
+    /// knows it, and the same number of operating points, which rows do not limit, stands.
+    #[test]
+    fn an_inductance_that_no_row_could_show_takes_its_fit_with_it() {
+        let trust = Trust { least_inductance: 25e-6, ..Trust::default() };
+        let small = Motor { lq: 10e-6, ..MOTOR };
+        let verdicts = |found: &[Judged; PARAMETERS]| found.each_ref().map(|one| one.verdict);
+        assert_eq!(verdicts(&judged(MOTOR, trust, &Request::default())), [Verdict::Identified; PARAMETERS]);
+        assert_eq!(verdicts(&judged(small, Trust::default(), &Request::default())), [Verdict::Identified; PARAMETERS]);
+        let found = judged(small, trust, &Request::default());
+        assert_eq!(verdicts(&found), [Verdict::NotIdentifiable; PARAMETERS]);
+        assert_eq!(found[Parameter::Lq as usize].reason, Some(Reason::BelowRows { least: 25e-6 }));
+        assert_eq!(found[Parameter::Rs as usize].reason, Some(Reason::OtherImpossible { parameter: Parameter::Lq }));
+        let mut stated = Request::default();
+        stated.known[Parameter::Lq as usize] = Known::Fixed(10e-6);
+        assert_eq!(verdicts(&judged(small, trust, &stated)), [Verdict::Identified; PARAMETERS]);
+    }
+
+    /// Not below ±5 %, and weak.
+    #[test]
+    fn a_fit_sharper_than_its_noise_is_weak() {
+        for one in judged(MOTOR, Trust { too_sharp: true, ..Trust::default() }, &Request::default()) {
+            assert_eq!((one.verdict, one.reason.as_ref()), (Verdict::Weak, Some(&Reason::SharperThanNoise)));
+            assert!(one.relative_half_width() >= IDENTIFIED);
+        }
+    }
+}
