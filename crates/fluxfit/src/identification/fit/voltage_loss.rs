@@ -150,10 +150,12 @@ pub(super) fn misshapen_in_rows(log: &Log, reading: VoltageTiming, voltage: f64)
     if reading.is_unusual() || !is_control_rate(log) { MISSHAPEN * 4.0 / PI * voltage.abs() } else { 0.0 }
 }
 
-/// By how many volts each point's loss may differ from these unknowns. All but the first of them are priors of its size.
+/// By how many volts each point's loss may differ from these unknowns. All but the first of them are priors of its size, which comes out
+/// larger than any loss where something else bends it.
 pub(super) fn misshapen(losses: &[Loss]) -> f64 {
-    let of_shape = losses.iter().filter(|loss| loss.part == Part::DeadTime).skip(1);
-    MISSHAPEN * of_shape.map(|loss| loss.standard_error).last().unwrap_or(0.0)
+    let mut of_loss = losses.iter().filter(|loss| loss.part == Part::DeadTime);
+    let largest = of_loss.next().map_or(0.0, |loss| loss.expected.abs() + 2.0 * loss.standard_error);
+    MISSHAPEN * of_loss.map(|loss| loss.standard_error.min(largest)).last().unwrap_or(0.0)
 }
 
 /// Whether the rows of a log come as fast as most drives control.
