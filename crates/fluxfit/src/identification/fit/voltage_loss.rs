@@ -155,7 +155,7 @@ pub(super) fn misshapen_in_rows(log: &Log, reading: VoltageTiming, voltage: f64)
 pub(super) fn misshapen(losses: &[Loss]) -> f64 {
     let mut of_loss = losses.iter().filter(|loss| loss.part == Part::DeadTime);
     let largest = of_loss.next().map_or(0.0, |loss| loss.expected.abs() + 2.0 * loss.standard_error);
-    MISSHAPEN * of_loss.map(|loss| loss.standard_error.min(largest)).last().unwrap_or(0.0)
+    MISSHAPEN * of_loss.next_back().map_or(0.0, |loss| loss.standard_error.min(largest))
 }
 
 /// Whether the rows of a log come as fast as most drives control.
