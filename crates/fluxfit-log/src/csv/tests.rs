@@ -139,7 +139,8 @@ fn table() -> impl Strategy<Value = String> {
     let end = prop_oneof![6 => Just("\n"), 1 => Just("\r\n"), 1 => Just("\n\n"), 1 => Just(" \n")];
     let rows = prop::collection::vec((row, end), 1..40);
     (rows, prop_oneof![Just(","), Just(";")], any::<bool>()).prop_map(|(rows, separator, is_cut)| {
-        let header = ["a", "b", "c", "d"].join(separator) + "\n";
+        // Names above rows of another length alone are no names of theirs.
+        let header = [["a", "b", "c", "d"], ["0.5", "1", "2.5", "1"]].map(|row| row.join(separator) + "\n").concat();
         let mut text = rows.into_iter().fold(header, |text, (cells, end)| text + &cells.join(separator) + end);
         if is_cut {
             text.pop();
