@@ -81,7 +81,7 @@ impl Estimate {
         voltage_accuracy: f64,
     ) -> Self {
         // Whoever states the steady model states its equations.
-        let misshapen = if request.model.is_none() { voltage_loss::misshapen(losses) } else { 0.0 };
+        let misshapen = if request.model.is_none() { voltage_loss::misshapen(points, losses) } else { 0.0 };
         let accuracy = voltage_uncertainty(points, voltage_accuracy, misshapen);
         let mut motor = Motor::from(request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
         let mut system = System::of(points, &motor, &accuracy, request, losses);

@@ -150,9 +150,14 @@ pub(super) fn misshapen_in_rows(log: &Log, reading: VoltageTiming, voltage: f64)
     if reading.is_unusual() || !is_control_rate(log) { MISSHAPEN * 4.0 / PI * voltage.abs() } else { 0.0 }
 }
 
-/// By how many volts each point's loss may differ from these unknowns. All but the first of them are priors of its size, which comes out
-/// larger than any loss where something else bends it.
-pub(super) fn misshapen(losses: &[Loss]) -> f64 {
+/// By how many volts each point's loss may differ from these unknowns, where rows come slower than drives control; where they do not,
+/// simulated currents tell its shape. All but the first of the unknowns are priors of its size, which comes out larger than any loss where
+/// something else bends it.
+pub(super) fn misshapen(points: &[OperatingPoint], losses: &[Loss]) -> f64 {
+    let periods = points.iter().map(|point| (point.time.1 - point.time.0) / point.rows.len().saturating_sub(1).max(1) as f64);
+    if periods.fold(0.0, f64::max) * SLOWEST_CONTROL <= 1.0 {
+        return 0.0;
+    }
     let mut of_loss = losses.iter().filter(|loss| loss.part == Part::DeadTime);
     let largest = of_loss.next().map_or(0.0, |loss| loss.expected.abs() + 2.0 * loss.standard_error);
     MISSHAPEN * of_loss.next_back().map_or(0.0, |loss| loss.standard_error.min(largest))
