@@ -23,6 +23,12 @@ pub(crate) trait Number:
     /// Where this is less than `other`: `then`, else `otherwise`. What is no number is not less.
     fn if_less(self, other: Self, then: Self, otherwise: Self) -> Self;
 
+    /// The lower of two numbers; the other's if one is no number.
+    fn lower(self, other: Self) -> Self;
+
+    /// The higher of two numbers; the other's if one is no number.
+    fn higher(self, other: Self) -> Self;
+
     /// Whether any number is less than the other's.
     fn any_less(self, other: Self) -> bool;
 
@@ -61,6 +67,16 @@ impl Number for f64 {
     #[inline(always)]
     fn if_less(self, other: Self, then: Self, otherwise: Self) -> Self {
         if self < other { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn lower(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn higher(self, other: Self) -> Self {
+        if self > other { self } else { other }
     }
 
     #[inline(always)]
@@ -138,8 +154,13 @@ impl<S: Simd, const K: usize> Number for Lanes<S, K> {
     }
 
     #[inline(always)]
-    fn abs(self) -> Self {
-        self.if_less(self.constant(0.0), -self, self)
+    fn abs(mut self) -> Self {
+        let sign = self.set.splat_f64s(-0.0);
+        for k in 0..K {
+            let own = self.set.and_f64s(self.vectors[k], sign);
+            self.vectors[k] = self.set.xor_f64s(self.vectors[k], own);
+        }
+        self
     }
 
     #[inline(always)]
@@ -147,6 +168,22 @@ impl<S: Simd, const K: usize> Number for Lanes<S, K> {
         for k in 0..K {
             let less = self.set.less_than_f64s(self.vectors[k], other.vectors[k]);
             self.vectors[k] = self.set.select_f64s(less, then.vectors[k], otherwise.vectors[k]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn lower(mut self, other: Self) -> Self {
+        for k in 0..K {
+            self.vectors[k] = self.set.min_f64s(self.vectors[k], other.vectors[k]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn higher(mut self, other: Self) -> Self {
+        for k in 0..K {
+            self.vectors[k] = self.set.max_f64s(self.vectors[k], other.vectors[k]);
         }
         self
     }
@@ -186,8 +223,12 @@ impl<S: Simd, const K: usize> Neg for Lanes<S, K> {
     type Output = Self;
 
     #[inline(always)]
-    fn neg(self) -> Self {
-        self.constant(0.0) - self
+    fn neg(mut self) -> Self {
+        let sign = self.set.splat_f64s(-0.0);
+        for k in 0..K {
+            self.vectors[k] = self.set.xor_f64s(self.vectors[k], sign);
+        }
+        self
     }
 }
 

@@ -36,8 +36,12 @@ const NO_STEP_OF_CHOICE: f64 = 1e-7;
 const WORTH_GOING_ON: f64 = 1.0;
 
 /// It ends after so many evaluations without that gain. Where a current's sign decides, residuals have kinks: derivatives promise what no
-/// step keeps, and steps would be halved twenty times in vain. The first few steps may fail, because they are too long.
-const EVALUATIONS_IN_VAIN: usize = 6;
+/// step keeps, and steps would be halved twenty times in vain. A step that is too long is shortened to a tenth or more at once, so that
+/// two may fail.
+const EVALUATIONS_IN_VAIN: usize = 3;
+
+/// The same before anything was gained: the first steps may be much too long.
+const FIRST_EVALUATIONS_IN_VAIN: usize = 6;
 
 /// The same for a fit that ends after its first step: any step is small beside it.
 const FIRST_STEP: f64 = 1.0;
@@ -140,7 +144,7 @@ fn minimize(
 ) -> Polished {
     let scale: Vec<f64> = unknowns.iter().map(|unknown| start.step_unit(*unknown, objective.peak_current())).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
-    let in_vain = InVain { since: f64::INFINITY, evaluations: 0 };
+    let in_vain = InVain { since: f64::INFINITY, evaluations: 0, gains: 0 };
     let mut problem =
         Problem { objective, start, unknowns, priors, scale, purpose, simulations: 0, progress, here: None, best: None, in_vain };
     problem.set_params(&units);
@@ -180,13 +184,23 @@ impl Differences {
         unknowns.iter().zip(steps).flat_map(moved).collect()
     }
 
-    /// The derivatives, given the residuals of those drives and those of the drive itself, which central differences do not need.
-    fn slopes(self, moved: &[Vec<f64>], here: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
-        let difference = |one: &[f64], other: &[f64], step: f64| one.iter().zip(other).map(|(one, other)| (one - other) / step).collect();
-        match self {
-            Self::Central => moved.chunks_exact(2).zip(steps).map(|(both, step)| difference(&both[0], &both[1], 2.0 * step)).collect(),
-            Self::Forward => moved.iter().zip(steps).map(|(moved, step)| difference(moved, here, *step)).collect(),
-        }
+    /// The derivatives, given the residuals of those drives and those of the drive itself, which central differences do not need. They
+    /// take the place of residuals.
+    fn slopes(self, moved: Vec<Vec<f64>>, here: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+        let difference = |mut one: Vec<f64>, other: &[f64], step: f64| {
+            one.iter_mut().zip(other).for_each(|(one, other)| *one = (*one - other) / step);
+            one
+        };
+        let mut moved = moved.into_iter();
+        let mut next = || moved.next().unwrap_or_default();
+        let slope = |step: &f64| match self {
+            Self::Central => {
+                let (ahead, behind) = (next(), next());
+                difference(ahead, &behind, 2.0 * step)
+            }
+            Self::Forward => difference(next(), here, *step),
+        };
+        steps.iter().map(slope).collect()
     }
 }
 
@@ -194,7 +208,7 @@ impl Differences {
 pub fn jacobian(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown]) -> Vec<Vec<f64>> {
     let steps = Differences::Central.steps(drive, unknowns, objective.peak_current());
     let moved = objective.residuals_of_all(&Differences::Central.moved(drive, unknowns, &steps));
-    Differences::Central.slopes(&moved, &[], &steps)
+    Differences::Central.slopes(moved, &[], &steps)
 }
 
 /// The residuals of a drive, A, and their derivatives, A per SI unit.
@@ -228,7 +242,7 @@ fn by_differences(objective: &OutputError, drives: &[(Adjustable, Vec<Unknown>)]
         let here = residuals.next().unwrap_or_default();
         let count = if differences == Differences::Central { 2 * steps.len() } else { steps.len() };
         let moved: Vec<Vec<f64>> = residuals.by_ref().take(count).collect();
-        Linearized { slopes: differences.slopes(&moved, &here, steps), residuals: here }
+        Linearized { slopes: differences.slopes(moved, &here, steps), residuals: here }
     };
     steps.iter().map(one).collect()
 }
@@ -255,6 +269,8 @@ struct InVain {
     /// The cost since then with that of priors, A².
     since: f64,
     evaluations: usize,
+    /// Evaluations that gained something, the first one among them.
+    gains: usize,
 }
 
 /// What is known of a point.
@@ -265,20 +281,28 @@ struct Point {
     /// Without priors; infinite where a residual is no number, so that it loses every comparison.
     cost: f64,
     residuals: DVector<f64>,
-    /// None if a derivative is no number.
+    /// None if a derivative is no number, or nobody asks for it.
     jacobian: Option<DMatrix<f64>>,
 }
 
 impl Problem<'_> {
     /// Whether the fit is good enough for what it is for.
     fn is_enough(&self) -> bool {
-        self.purpose == Purpose::Choice && self.in_vain.evaluations >= EVALUATIONS_IN_VAIN
+        let limit = if self.in_vain.gains > 1 { EVALUATIONS_IN_VAIN } else { FIRST_EVALUATIONS_IN_VAIN };
+        self.purpose == Purpose::Choice && self.in_vain.evaluations >= limit
+    }
+
+    /// Whether the next point is the last one.
+    fn is_at_the_end(&self) -> bool {
+        self.purpose == Purpose::FirstStep && self.here.is_some()
     }
 
     fn point(&self, units: &DVector<f64>) -> Point {
         let values = units.iter().zip(&self.scale).map(|(units, scale)| units * scale);
         let drive = self.unknowns.iter().zip(values).fold(*self.start, |drive, (unknown, value)| drive.with(*unknown, value));
-        let point = by_differences(self.objective, &[(drive, self.unknowns.to_vec())], self.purpose.differences()).pop();
+        // Where a first step ends, nobody asks for derivatives.
+        let moved = if self.is_at_the_end() { Vec::new() } else { self.unknowns.to_vec() };
+        let point = by_differences(self.objective, &[(drive, moved)], self.purpose.differences()).pop();
         let Linearized { mut residuals, mut slopes } = point.unwrap_or_default();
         let squares = dot(&residuals, &residuals);
         let cost = if squares.is_nan() { f64::INFINITY } else { squares };
@@ -289,11 +313,12 @@ impl Problem<'_> {
             column.iter_mut().for_each(|slope| *slope *= scale);
             column.extend(self.priors.iter().map(|prior| if prior.unknown == *unknown { -prior.weight * scale } else { 0.0 }));
         }
-        let count = slopes.len();
-        let right = DVector::from_iterator(count, slopes.iter().map(|column| dot(column, &residuals)));
+        let count = self.unknowns.len();
+        let right = DVector::from_iterator(slopes.len(), slopes.iter().map(|column| dot(column, &residuals)));
         let squares = dot(&residuals, &residuals);
         let normal = NormalMatrix::of(&slopes);
-        let (jacobian, explained) = if normal.is_finite() && right.iter().all(|number| number.is_finite()) {
+        let is_known = slopes.len() == count && normal.is_finite() && right.iter().all(|number| number.is_finite());
+        let (jacobian, explained) = if is_known {
             let FewRows { matrix, right } = normal.few_rows(&right);
             (Some(matrix.insert_row(count, 0.0)), right)
         } else {
@@ -321,7 +346,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let residuals = (2 * self.objective.rows()) as f64;
         let with_priors = point.residuals.norm_squared();
         self.in_vain = if with_priors < self.in_vain.since * (-WORTH_GOING_ON / residuals).exp() {
-            InVain { since: with_priors, evaluations: 0 }
+            InVain { since: with_priors, evaluations: 0, gains: self.in_vain.gains + 1 }
         } else {
             InVain { evaluations: self.in_vain.evaluations + 1, ..self.in_vain }
         };

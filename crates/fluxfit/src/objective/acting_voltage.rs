@@ -8,11 +8,12 @@
 //! rotor's frame. Rows that are means over their own span hold the means of the voltage as of the current: the moving mean of the current
 //! obeys the motor's equation with the moving mean of the voltage, which goes about straight from row to row.
 
+use super::angles::{Angles, SMOOTHED};
 use crate::{
     frames::{AlphaBeta, Dq},
     log::Log,
 };
-use std::{f64::consts::TAU, ops::Range};
+use std::ops::Range;
 
 /// What `ud, uq` of row `k` mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -142,18 +143,6 @@ pub(super) struct Period {
     pub(super) time: f64,
 }
 
-/// The electrical angle at the rows of one stretch, rad, without jumps.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Angles {
-    /// As the drive had it when it turned currents and voltages into its frame.
-    pub(super) logged: Vec<f64>,
-    /// As the rotor most likely was: without the steps of an encoder.
-    pub(super) rotor: Vec<f64>,
-    /// Whether the log has it. Without, both are the speed, integrated from the segment's first row on: still a frame that is fixed to the
-    /// rotor, but at an unknown angle to the stator.
-    pub(super) known: bool,
-}
-
 /// The periods between these rows of one segment, from row [`lost_rows`](VoltageTiming::lost_rows) on: one less than there are
 /// rows left.
 pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: VoltageTiming) -> Vec<Period> {
@@ -161,10 +150,11 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
     let first = rows.start + reading.lost_rows();
     let frame = |row: usize| angles.logged[row - rows.start];
     let logged = |row: usize| Dq { d: columns.ud[row], q: columns.uq[row] };
+    let in_stator = |row: usize| angles.logged_turns[row - rows.start].forward([columns.ud[row], columns.uq[row]]);
     let in_rotor_frame = |row: usize| logged(row).turned(frame(row) - angles.rotor[row - rows.start]);
     // For centred columns: the voltage that acted over the period before, in the stator's frame. The first one is not in the log; the
     // mean at the first row stands in for it.
-    let mut before = logged(rows.start).to_alpha_beta(frame(rows.start));
+    let mut before = in_stator(rows.start);
     let (first_time, last_time) = (columns.t[0], columns.t[columns.t.len() - 1]);
     let acceleration = |row: usize| {
         let (before, after) = (row.saturating_sub(SMOOTHED).max(rows.start), (row + SMOOTHED).min(rows.end - 1));
@@ -173,21 +163,24 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
     (first..rows.end.saturating_sub(1))
         .map(|row| {
             let middle = 0.5 * (angles.rotor[row - rows.start] + angles.rotor[row + 1 - rows.start]);
+            let at_middle = |vector: [f64; 2]| {
+                let [d, q] = angles.middle_turns[row - rows.start].backward(vector);
+                Dq { d, q }
+            };
             let length = columns.t[row + 1] - columns.t[row];
             let u = match reading {
                 VoltageTiming::Centered => {
-                    let mean = logged(row).to_alpha_beta(frame(row));
-                    before = AlphaBeta { alpha: 2.0 * mean.alpha - before.alpha, beta: 2.0 * mean.beta - before.beta };
-                    before.to_dq(middle)
+                    let mean = in_stator(row);
+                    before = [2.0 * mean[0] - before[0], 2.0 * mean[1] - before[1]];
+                    at_middle(before)
                 }
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => {
                     // The drive advanced the angle by its speed times the delay.
                     let ahead = columns.omega_e[row - delay] * (delay as f64 + 0.5) * length;
-                    logged(row - delay).to_alpha_beta(frame(row - delay) + ahead).to_dq(middle)
+                    let AlphaBeta { alpha, beta } = logged(row - delay).to_alpha_beta(frame(row - delay) + ahead);
+                    at_middle([alpha, beta])
                 }
-                VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => {
-                    logged(row - delay).to_alpha_beta(frame(row - delay)).to_dq(middle)
-                }
+                VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => at_middle(in_stator(row - delay)),
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Rotor } => in_rotor_frame(row - delay),
                 VoltageTiming::Averaged => {
                     let (start, end) = (in_rotor_frame(row), in_rotor_frame(row + 1));
@@ -209,72 +202,4 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
             }
         })
         .collect()
-}
-
-/// Largest difference per row, rad, between the logged angle and the one expected from the logged speed: the steps of an encoder and the
-/// filter of a speed stay below; a mechanical angle, or one of the other sense, differs by more within a turn.
-const ANGLE_MISFIT: f64 = 0.1;
-
-/// Share of the rows that may differ by more, as where an index pulse corrects the angle.
-const MISFITS: f64 = 0.01;
-
-/// Fraction of the whole turn by which the integrated speed may differ from it: a filtered speed lags at both ends.
-const WHOLE_MISFIT: f64 = 0.02;
-
-/// Rows to either side over which the steps of an encoder are averaged: a tenth or less of uniform steps remains, and the speed, which
-/// interpolates between them, need be right over so many rows only.
-const SMOOTHED: usize = 25;
-
-/// The angles at these rows of one segment. A logged angle that does not turn with the speed is not used.
-pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
-    let columns = log.columns();
-    let turn = |row: usize| 0.5 * (columns.omega_e[row - 1] + columns.omega_e[row]) * (columns.t[row] - columns.t[row - 1]);
-    let later = rows.start + 1..rows.end;
-    let turns = later.clone().scan(0.0, |theta, row| {
-        *theta += turn(row);
-        Some(*theta)
-    });
-    // From the first row of the log's segment on, so that all its stretches have one stator.
-    let segment = log.segment_of(rows.start).map_or(rows.start, |segment| segment.rows.start);
-    let before: f64 = (segment + 1..=rows.start).map(turn).sum();
-    let summed: Vec<f64> = std::iter::once(before).chain(turns.map(|later| before + later)).collect();
-    if let Some(logged) = &columns.theta_e {
-        let mut angles = vec![logged[rows.start]];
-        let mut misfits = 0;
-        for row in later {
-            let expected = angles[angles.len() - 1] + turn(row);
-            let angle = logged[row] + TAU * ((expected - logged[row]) / TAU).round();
-            misfits += usize::from((angle - expected).abs() > ANGLE_MISFIT);
-            angles.push(angle);
-        }
-        // A mechanical angle turns too little on the whole, and one of the other sense turns backward.
-        let (whole, expected) = (angles[angles.len() - 1] - angles[0], summed[summed.len() - 1]);
-        let turns = (whole - expected).abs() <= WHOLE_MISFIT * expected.abs() + TAU;
-        if turns && misfits as f64 <= MISFITS * rows.len() as f64 {
-            return Angles { rotor: smoothed(&angles, &summed), logged: angles, known: true };
-        }
-    }
-    Angles { rotor: summed.clone(), logged: summed, known: false }
-}
-
-/// The integrated speed, corrected by the mean difference of the logged angle around each row; averaged twice, so that the slope is
-/// smooth too.
-fn smoothed(logged: &[f64], summed: &[f64]) -> Vec<f64> {
-    let differences: Vec<f64> = logged.iter().zip(summed).map(|(one, other)| one - other).collect();
-    let smooth = moving_mean(&moving_mean(&differences));
-    summed.iter().zip(smooth).map(|(summed, difference)| summed + difference).collect()
-}
-
-/// Mean of as many rows on one side as on the other, so that a trend is not shifted: fewer near the ends.
-fn moving_mean(series: &[f64]) -> Vec<f64> {
-    let mut sums = vec![0.0];
-    sums.extend(series.iter().scan(0.0, |sum, value| {
-        *sum += value;
-        Some(*sum)
-    }));
-    let mean = |row: usize| {
-        let reach = SMOOTHED.min(row).min(series.len() - 1 - row);
-        (sums[row + reach + 1] - sums[row - reach]) / (2 * reach + 1) as f64
-    };
-    (0..series.len()).map(mean).collect()
 }

@@ -19,6 +19,7 @@ use crate::{
 };
 use nalgebra::{SMatrix, SVector};
 use pulp::{NullaryFnOnce, Scalar, Simd};
+use std::cell::RefCell;
 
 /// If less than this part of the cost is left by the linear unknowns, too few digits are left too, and residuals are squared one by one:
 /// an unstable motor's currents, wrong by far, are much like the response to a wrong start, and their cost must not come out negative.
@@ -166,6 +167,11 @@ fn adjoints<S: Simd, const K: usize>(set: S, rows: &Rows, drive: &Adjustable, we
     effects.into_iter().flatten().collect()
 }
 
+std::thread_local! {
+    /// Memory of the simulation before, for the next one.
+    static TRACE: RefCell<Trace> = RefCell::default();
+}
+
 /// The drives of one group, at most one per lane; their transitions have `C` coefficients.
 struct Group<'a, S, const K: usize, const C: usize> {
     set: S,
@@ -187,7 +193,7 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
         let mut first = 0;
         for segment in &rows.segments {
             let lanes = Lanes::<S, K>::COUNT;
-            let mut trace = residuals.then(|| Trace::of(segment, lanes));
+            let mut trace = residuals.then(|| TRACE.take().again(segment, lanes));
             let sums = group.sums(segment, trace.as_mut());
             let (totals, solved) =
                 (sums.total, drives.iter().enumerate().map(|(lane, _)| linear_unknowns(&sums, lane, segment.alternates)));
@@ -207,21 +213,22 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
             let mut trace = match trace {
                 Some(trace) => trace,
                 None => {
-                    let mut trace = Trace::of(segment, lanes);
+                    let mut trace = TRACE.take().again(segment, lanes);
                     group.sums(segment, Some(&mut trace));
                     trace
                 }
             };
             group.errors(segment, &linear, &mut trace);
-            let errors = trace.errors;
+            let errors = &trace.errors;
             for (lane, result) in results.iter_mut().enumerate() {
                 if cancelled(lane) {
-                    result.cost += squares_of_lane(&errors, lane, lanes);
+                    result.cost += squares_of_lane(errors, lane, lanes);
                 }
                 if residuals {
-                    copy_lane(&errors, lane, lanes, &mut result.residuals[first..]);
+                    copy_lane(errors, lane, lanes, &mut result.residuals[first..]);
                 }
             }
+            TRACE.set(trace.kept());
             first += 2 * segment.measured.len();
         }
         results
@@ -319,6 +326,7 @@ mod tests {
         motor::Motor,
         objective::{
             acting_voltage::{VoltageFrame, VoltageTiming},
+            angles::Angles,
             output_error::OutputError,
             transition::Transition,
         },
@@ -349,7 +357,8 @@ mod tests {
     }
 
     fn rows(log: &Log, timing: VoltageTiming) -> Rows {
-        Rows::of(vec![SimulatedSegment::of(log, &(0..log.rows()), timing)], timing.held())
+        let rows = 0..log.rows();
+        Rows::of(vec![SimulatedSegment::of(log, &rows, &Angles::of(log, &rows), timing)], timing.held())
     }
 
     fn motors(count: usize) -> Vec<Adjustable> {

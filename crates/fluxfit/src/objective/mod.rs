@@ -4,6 +4,7 @@
 
 pub mod acting_voltage;
 pub mod adjustable;
+mod angles;
 mod batch;
 pub mod output_error;
 mod simulated_segment;

@@ -16,7 +16,7 @@
 //! A segment's first current and, of centred voltages, its first vector are not in the log; they are solved for inside, so that the cost
 //! is the smallest over them.
 
-use super::{acting_voltage::VoltageTiming, adjustable::Adjustable, batch::Rows, simulated_segment::SimulatedSegment};
+use super::{acting_voltage::VoltageTiming, adjustable::Adjustable, angles::Angles, batch::Rows, simulated_segment::SimulatedSegment};
 use crate::{
     error::{Error, ErrorKind},
     faults::{Acting, Faults},
@@ -24,6 +24,7 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
+    parallel,
 };
 use std::ops::Range;
 
@@ -56,17 +57,38 @@ impl OutputError {
     /// # Errors
     /// If none is, or if the log's channels were sampled at different instants.
     pub fn of_rows(log: &Log, stretches: &[Range<usize>], timing: VoltageTiming) -> Result<Self, Error> {
+        let mut objectives = Self::under_readings(log, stretches, &[timing])?;
+        Ok(objectives.remove(0).1)
+    }
+
+    /// The same under each of several readings of the voltages.
+    ///
+    /// # Errors
+    /// As [`of_rows`](Self::of_rows).
+    pub(crate) fn under_readings(
+        log: &Log,
+        stretches: &[Range<usize>],
+        readings: &[VoltageTiming],
+    ) -> Result<Vec<(VoltageTiming, Self)>, Error> {
         if log.is_interpolated() {
             return Err(ErrorKind::Interpolated.into());
         }
+        let long_enough: Vec<Range<usize>> = stretches.iter().filter(|rows| rows.len() >= MIN_ROWS).cloned().collect();
+        let angles = parallel::map(&long_enough, |rows| Angles::of(log, rows));
+        let stretches: Vec<(Range<usize>, Angles)> = long_enough.into_iter().zip(angles).collect();
+        let under = |reading: &VoltageTiming| Ok((*reading, Self::under_reading(log, &stretches, *reading)?));
+        parallel::map(readings, under).into_iter().collect()
+    }
+
+    fn under_reading(log: &Log, stretches: &[(Range<usize>, Angles)], timing: VoltageTiming) -> Result<Self, Error> {
         let least = MIN_ROWS + timing.lost_rows();
-        let long_enough = stretches.iter().filter(|rows| rows.len() >= least);
-        let segments: Vec<SimulatedSegment> = long_enough.map(|rows| SimulatedSegment::of(log, rows, timing)).collect();
+        let long_enough = stretches.iter().filter(|(rows, _)| rows.len() >= least);
+        let segments: Vec<SimulatedSegment> = long_enough.map(|(rows, angles)| SimulatedSegment::of(log, rows, angles, timing)).collect();
         let rows = segments.iter().map(|segment| segment.measured.len()).sum();
         if rows == 0 {
             return Err(ErrorKind::TooShort { rows: log.rows(), least }.into());
         }
-        let peak_current = segments.iter().flat_map(|segment| &segment.measured).map(|i| i.magnitude()).fold(0.0, f64::max);
+        let peak_current = segments.iter().flat_map(|segment| &segment.measured).map(|i| i.d * i.d + i.q * i.q).fold(0.0, f64::max).sqrt();
         Ok(Self { simulated: Rows::of(segments, timing.held()), rows, peak_current, held: Box::default() })
     }
 

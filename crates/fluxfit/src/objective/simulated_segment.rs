@@ -1,7 +1,8 @@
 //! A segment of the log, ready to be simulated: each period with the voltage that acted over it, each row with its measured current.
 
 use super::{
-    acting_voltage::{Period, VoltageTiming, angles, periods},
+    acting_voltage::{Period, VoltageTiming, periods},
+    angles::Angles,
     transition_polynomials::TransitionPlan,
 };
 use crate::{
@@ -70,27 +71,21 @@ const USED_PART: f64 = 0.8;
 /// order depends on it.
 fn bus_voltage(log: &Log, rows: &Range<usize>) -> f64 {
     let columns = log.columns();
-    let largest = || rows.clone().map(|row| columns.ud[row].hypot(columns.uq[row])).fold(0.0, f64::max);
+    let largest = || rows.clone().map(|row| columns.ud[row].powi(2) + columns.uq[row].powi(2)).fold(0.0, f64::max).sqrt();
     let mean = |u_dc: &Vec<f64>| u_dc[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
     let bus = columns.u_dc.as_ref().map_or_else(|| 3.0_f64.sqrt() * largest() / USED_PART, mean);
     if bus > 0.0 { bus } else { f64::INFINITY }
 }
 
 impl SimulatedSegment {
-    pub(super) fn of(log: &Log, rows: &Range<usize>, timing: VoltageTiming) -> Self {
-        let angles = angles(log, rows);
-        let periods = periods(log, rows, &angles, timing);
-        let (lost, columns) = (timing.lost_rows(), log.columns());
+    pub(super) fn of(log: &Log, rows: &Range<usize>, angles: &Angles, timing: VoltageTiming) -> Self {
+        let periods = periods(log, rows, angles, timing);
+        let lost = timing.lost_rows();
         let rows = rows.start + lost..rows.end;
-        // Out of the drive's frame, into the rotor's.
-        let frames = angles.logged[lost..].iter().zip(&angles.rotor[lost..]);
-        let in_rotor_frame =
-            |(row, (logged, rotor)): (usize, (&f64, &f64))| Dq { d: columns.id[row], q: columns.iq[row] }.turned(logged - rotor);
-        let measured = rows.clone().zip(frames).map(in_rotor_frame).collect();
         Self {
-            measured,
-            turns: angles.rotor[lost..].iter().map(|theta_e| Turn::by(*theta_e)).collect(),
-            middles: periods.iter().map(|period| Turn::by(period.theta_e)).collect(),
+            measured: angles.measured[lost..].to_vec(),
+            turns: angles.rotor_turns[lost..].to_vec(),
+            middles: angles.middle_turns[lost..].to_vec(),
             angle_known: angles.known,
             log_segment: log.segments().iter().position(|segment| segment.rows.contains(&rows.start)),
             per_bus: bus_voltage(log, &rows).recip(),

@@ -140,7 +140,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
             perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, [i[0] + linear[0], i[1] + linear[1]], errors);
             return;
         }
-        for (errors, responses) in errors.zip(trace.responses.chunks_exact(2 * lanes * LINEAR_UNKNOWNS)) {
+        for (errors, responses) in errors.zip(trace.responses[..trace.alive].chunks_exact(2 * lanes * LINEAR_UNKNOWNS)) {
             let zero = linear[0].constant(0.0);
             let mut left = load(zero, errors);
             for (value, response) in linear.iter().zip(responses.chunks_exact(2 * lanes)) {
@@ -274,17 +274,43 @@ fn perfect_errors<'a, V: Number, const C: usize>(
 }
 
 /// Rows of drives with faults as they were simulated, before the linear unknowns are known: of each row the lanes of d, then those of q.
+#[derive(Default)]
 pub(super) struct Trace {
     lanes: usize,
     /// Measured less simulated current, A.
     pub(super) errors: Vec<f64>,
-    /// Responses to each linear unknown, from the second row on, as long as any is left.
+    /// Responses to each linear unknown, from the second row on, as long as any is left: so many numbers of them. What lies behind is of
+    /// another simulation.
     responses: Vec<f64>,
+    alive: usize,
 }
 
+/// Numbers that a trace keeps for the next simulation: 8 MB a thread. Fresh memory costs a simulation as much time as its arithmetic.
+const KEPT: usize = 1 << 20;
+
 impl Trace {
-    pub(super) fn of(segment: &SimulatedSegment, lanes: usize) -> Self {
-        Self { lanes, errors: vec![0.0; 2 * lanes * segment.measured.len()], responses: Vec::new() }
+    /// The same memory for another segment. What it held is still there, to be written over: every row is.
+    pub(super) fn again(mut self, segment: &SimulatedSegment, lanes: usize) -> Self {
+        self.errors.resize(2 * lanes * segment.measured.len(), 0.0);
+        Self { lanes, alive: 0, ..self }
+    }
+
+    /// Less what would be too much to keep.
+    pub(super) fn kept(mut self) -> Self {
+        for numbers in [&mut self.errors, &mut self.responses] {
+            if numbers.capacity() > KEPT {
+                *numbers = Vec::new();
+            }
+        }
+        self
+    }
+
+    /// Makes room for the responses of so many periods.
+    fn reach(&mut self, periods: usize) {
+        self.alive = 2 * self.lanes * LINEAR_UNKNOWNS * periods;
+        if self.responses.len() < self.alive {
+            self.responses.resize(self.alive, 0.0);
+        }
     }
 }
 
@@ -313,7 +339,7 @@ impl<V: Number> NullaryFnOnce for FaultyBlock<'_, V> {
         if let Some(trace) = trace.as_deref_mut()
             && (first || alternates)
         {
-            trace.responses.resize(2 * trace.lanes * LINEAR_UNKNOWNS * (self.first + self.transitions.len()), 0.0);
+            trace.reach(self.first + self.transitions.len());
         }
         for (k, transitions) in self.transitions.iter().enumerate() {
             self.row(self.first + k, transitions, alive.clone(), &mut state);

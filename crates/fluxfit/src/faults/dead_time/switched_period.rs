@@ -87,8 +87,8 @@ impl<V: Number> SwitchedLoss<V> {
         // By how much each phase is later than each other one, V: by that over the DC voltage, and half a period, it switches after it.
         let mut later = [[zero; 3]; 3];
         for x in 0..3 {
-            for y in 0..3 {
-                later[x][y] = higher(zero, v[y] - v[x]);
+            for y in [(x + 1) % 3, (x + 2) % 3] {
+                later[x][y] = zero.higher(v[y] - v[x]);
             }
         }
         // The currents at the edges, but for what the others lose before.
@@ -110,8 +110,9 @@ impl<V: Number> SwitchedLoss<V> {
         let lost = self.voltage * (one - self.lasting);
         let (mut before_up, mut before_down) = ([[zero; 3]; 3], [[zero; 3]; 3]);
         for x in 0..3 {
-            for y in 0..3 {
-                let until = lower(half * later[x][y], lost);
+            // A phase does not wait for itself.
+            for y in [(x + 1) % 3, (x + 2) % 3] {
+                let until = (half * later[x][y]).lower(lost);
                 before_up[x][y] = amperes[x][y] * until;
                 before_down[y][x] = amperes[y][x] * until;
             }
@@ -158,7 +159,7 @@ fn after_others<V: Number>(alone: [V; 3], missed: [[V; 3]; 3], ramp: Ramp<V>) ->
         let out = ramp.out(i);
         i = alone;
         for x in 0..3 {
-            for y in 0..3 {
+            for y in [(x + 1) % 3, (x + 2) % 3] {
                 i[x] = i[x] - missed[x][y] * out[y];
             }
         }
@@ -169,20 +170,8 @@ fn after_others<V: Number>(alone: [V; 3], missed: [[V; 3]; 3], ramp: Ramp<V>) ->
 /// Phase voltages as space vector modulation makes them: all shifted alike, so that the highest is as far from its limit as the lowest.
 #[inline(always)]
 fn modulated<V: Number>(u: [V; 3]) -> [V; 3] {
-    let middle = u[0].constant(0.5) * (lower(u[0], lower(u[1], u[2])) - lower(-u[0], lower(-u[1], -u[2])));
+    let middle = u[0].constant(0.5) * (u[0].lower(u[1].lower(u[2])) + u[0].higher(u[1].higher(u[2])));
     [u[0] - middle, u[1] - middle, u[2] - middle]
-}
-
-/// The lower of two numbers.
-#[inline(always)]
-fn lower<V: Number>(a: V, b: V) -> V {
-    a.if_less(b, a, b)
-}
-
-/// The higher of two numbers.
-#[inline(always)]
-fn higher<V: Number>(a: V, b: V) -> V {
-    a.if_less(b, b, a)
 }
 
 /// Phase currents, A, that a volt over so many seconds on each phase makes: those of phase `x` by phase `y` at `[x][y]`.
@@ -210,27 +199,35 @@ struct Ramp<V> {
     per_width: V,
 }
 
+/// Width, A, of a ramp that has none: one over it is a number, and so is zero times that.
+const NARROWEST: f64 = 1e-100;
+
 /// A way this short, as a fraction of its ends, leaves no digits in a difference of integrals.
 const SHORT: f64 = 1e-6;
 
 impl<V: Number> Ramp<V> {
     #[inline(always)]
     fn of(width: V) -> Self {
+        let width = width.higher(width.constant(NARROWEST));
         Self { width, per_width: width.constant(1.0) / width }
     }
 
     #[inline(always)]
     fn at(self, i: V) -> V {
-        let (zero, one) = (i.constant(0.0), i.constant(1.0));
-        let sign = zero.if_less(i, one, i.if_less(zero, -one, zero));
-        i.abs().if_less(self.width, i * self.per_width, sign)
+        let one = i.constant(1.0);
+        (i * self.per_width).lower(one).higher(-one)
     }
 
     /// One where a current flows out of its leg, zero where it flows in.
     #[inline(always)]
-    fn out(self, [a, b, c]: [V; 3]) -> [V; 3] {
-        let (half, one) = (a.constant(0.5), a.constant(1.0));
-        [half * (one + self.at(a)), half * (one + self.at(b)), half * (one + self.at(c))]
+    fn out(self, i: [V; 3]) -> [V; 3] {
+        let (zero, half, one) = (self.width.constant(0.0), self.width.constant(0.5), self.width.constant(1.0));
+        let slope = half * self.per_width;
+        let mut out = i;
+        for one_out in &mut out {
+            *one_out = slope.mul_add(*one_out, half).lower(one).higher(zero);
+        }
+        out
     }
 
     /// Its mean while its argument goes from one value to another.
@@ -246,9 +243,10 @@ impl<V: Number> Ramp<V> {
     /// Its integral: a parabola up to the width, straight from there on.
     #[inline(always)]
     fn integral(self, i: V) -> V {
-        let (zero, half) = (i.constant(0.0), i.constant(0.5));
-        let beyond = zero.if_less(self.width, half * self.width, zero);
-        i.abs().if_less(self.width, half * i * i * self.per_width, i.abs() - beyond)
+        // With `x` the part of the way that lies within the width: half its square, and all that lies beyond.
+        let (half, way) = (i.constant(0.5), i.abs());
+        let within = way.lower(self.width);
+        half * within * within * self.per_width + (way - within)
     }
 }
 

@@ -64,7 +64,7 @@ const AVERAGED: f64 = 0.1;
 /// If no stretch is long enough.
 pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Vec<(VoltageTiming, OutputError)>, Error> {
     let readings = request.voltage_timing.map_or(VoltageTiming::ALL.to_vec(), |stated| vec![stated]);
-    readings.into_iter().map(|reading| Ok((reading, OutputError::of_rows(log, stretches, reading)?))).collect()
+    OutputError::under_readings(log, stretches, &readings)
 }
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
