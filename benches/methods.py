@@ -1,10 +1,10 @@
-"""One evaluation of fluxfit's methods beside those of mealpy, pygmo and pycma: same log, fitness, population and iterations, one run. Markdown.
+"""One evaluation of fluxfit's methods beside those of mealpy, pygmo, pycma, scipy and pymoo: same log, fitness, population and iterations, one run. Markdown.
 
     methods.py [directory of fluxfit-benches]      default target/release
 
 The time of a run divided by its evaluations, the method's own work and the fitness together, in CPU time. Each peer calls fitness (11) as its
-interface does, candidate by candidate, in the short form of a 4 x 4 product, which fluxfit evaluates too. fluxfit is measured before and
-after each peer. Exit status 1 if a limit is missed.
+interface does, candidate by candidate, pymoo by whole generations, in the short form of a 4 x 4 product, which fluxfit evaluates too. fluxfit is
+measured before and after each peer. Exit status 1 if a limit is missed.
 """
 
 import os
@@ -24,13 +24,20 @@ import cma
 import mealpy
 import numpy as np
 import pygmo
+import pymoo
+import scipy
 from mealpy import CSA, DE, FPA, GWO, HBA, PSO, SHADE, SSO, WOA, FloatVar
+from pymoo.algorithms.soo.nonconvex.de import DE as PymooDE
+from pymoo.core.problem import Problem as PymooProblem
+from pymoo.optimize import minimize as pymoo_minimize
+from scipy.optimize import differential_evolution
+
 from problem import LOWER, UPPER, Problem, write_log
 
 POPULATION, ITERATIONS = 50, 300
 EVALUATIONS = POPULATION * (ITERATIONS + 1)
 RUNS = 3  # of another program, after a warm-up run
-# How many times as long an evaluation takes in each peer, at least: of the method where the ratio is least.
+# How many times as long an evaluation takes in a peer, at least: of the method where the ratio is least. None is asked of the others.
 LIMITS = {"mealpy": 200, "pygmo": 10, "pycma": 50}
 
 
@@ -73,6 +80,28 @@ def of_pycma(problem, seed):
         strategy.tell(samples, [problem.by_factor(LOWER + sample * (UPPER - LOWER)) for sample in samples])
 
 
+def of_scipy(problem, seed):
+    start = LOWER + (UPPER - LOWER) * np.random.default_rng(seed).random((POPULATION, len(LOWER)))
+    settings = {"strategy": "rand1bin", "mutation": 0.5, "recombination": 0.9, "updating": "deferred", "tol": 0, "polish": False}
+    differential_evolution(problem.by_factor, list(zip(LOWER, UPPER)), init=start, maxiter=ITERATIONS, rng=seed, **settings)
+
+
+class OfPymoo(PymooProblem):
+    """Fitness (11) as pymoo asks for it: of a whole generation."""
+
+    def __init__(self, problem):
+        super().__init__(n_var=len(LOWER), n_obj=1, xl=LOWER, xu=UPPER)
+        self.problem = problem
+
+    def _evaluate(self, x, out, *args, **kwargs):
+        out["F"] = self.problem.by_factor_of_many(x.T)
+
+
+def of_pymoo(problem, seed):
+    """Its first generation is the start."""
+    pymoo_minimize(OfPymoo(problem), PymooDE(pop_size=POPULATION, variant="DE/rand/1/bin", CR=0.9, F=0.5), ("n_gen", ITERATIONS + 1), seed=seed)
+
+
 # fluxfit's method, the peer, the peer's name of it, and how it is run.
 PEERS = [
     ("fpa", "mealpy", "OriginalFPA", of_mealpy(FPA.OriginalFPA)),
@@ -89,6 +118,8 @@ PEERS = [
     ("gwo", "pygmo", "gwo", of_pygmo(pygmo.gwo)),
     ("cma-es", "pygmo", "cmaes", of_pygmo(pygmo.cmaes, ftol=0, xtol=0, force_bounds=True)),
     ("cma-es", "pycma", "CMAEvolutionStrategy", of_pycma),
+    ("de", "scipy", "differential_evolution", of_scipy),
+    ("de", "pymoo", "DE, generations at once", of_pymoo),
 ]
 
 
@@ -112,7 +143,7 @@ def nanoseconds_of_fluxfit(program, log, key):
 
 def main():
     program = Path(sys.argv[1] if len(sys.argv) > 1 else "target/release") / "fluxfit-benches"
-    ratios = {peer: [] for peer in LIMITS}
+    ratios = {}
     print("| method | ns per evaluation in fluxfit | peer | ns per evaluation | times slower |\n|---|--:|---|--:|--:|")
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "two_modes.csv"
@@ -122,9 +153,10 @@ def main():
             before = nanoseconds_of_fluxfit(program, log, key)
             theirs = nanoseconds(problem, run)
             ours = (before + nanoseconds_of_fluxfit(program, log, key)) / 2
-            ratios[peer].append(theirs / ours)
+            ratios.setdefault(peer, []).append(theirs / ours)
             print(f"| `{key}` | {ours:.0f} | {peer} {name} | {theirs:.0f} | {theirs / ours:.0f} |", flush=True)
-    print(f"\nmealpy {mealpy.__version__}, pygmo {pygmo.__version__}, pycma {cma.__version__}, numpy {np.__version__}, one thread each.\n")
+    peers = {"mealpy": mealpy, "pygmo": pygmo, "pycma": cma, "scipy": scipy, "pymoo": pymoo, "numpy": np}
+    print(f"\n{', '.join(f'{peer} {module.__version__}' for peer, module in peers.items())}, one thread each.\n")
     print("| limit on | limit | measured | |\n|---|--:|--:|---|")
     for peer, limit in LIMITS.items():
         least = min(ratios[peer])

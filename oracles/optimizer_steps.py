@@ -199,9 +199,9 @@ def course(name, method, settings, box, seed):
 
 
 def courses(module):
-    """The cases of a method that has a file of its own."""
-    for name, settings, box, population, iterations, seed, branches in module.CASES:
-        search = module.Method(settings, box, seed, population, iterations)
+    """The cases of a method that has a file of its own; those of its rare branches say with what floor or normal numbers."""
+    for name, settings, box, population, iterations, seed, branches, *rare in module.CASES:
+        search = module.Method(settings, box, seed, population, iterations, **dict(*rare))
         states = search.course()
         missing = branches - {branch for branch, times in search.seen.items() if times}
         assert not missing, f"{module.KEY} {name}: never {sorted(missing)}; take another seed"
@@ -218,6 +218,7 @@ def noted(name, method, settings, box, population, iterations, search, states):
         "upper": box[:, 1].tolist(),
         "population": population,
         "iterations": iterations,
+        "floor": search.floor,
         "draws": search.draws.record,
         "states": states,
     }

@@ -22,10 +22,14 @@ OBJECTIVE = {
 
 
 class Draws:
-    """Draws random numbers and writes each of them down."""
+    """Draws random numbers and writes each of them down.
 
-    def __init__(self, seed):
+    `normals` is what a case makes of the normal numbers, to take a branch that they hardly ever take: replayed, they are only numbers.
+    """
+
+    def __init__(self, seed, normals=None):
         self.generator = np.random.default_rng(seed)
+        self.normals = normals or (lambda numbers: numbers)
         self.record = []
 
     def _noted(self, numbers):
@@ -36,7 +40,7 @@ class Draws:
         return self._noted(self.generator.random(shape))
 
     def normal(self, *shape):
-        return self._noted(self.generator.standard_normal(shape))
+        return self._noted(self.normals(self.generator.standard_normal(shape)))
 
     def student_t(self, degrees):
         return self._noted(self.generator.standard_t(degrees))
@@ -57,6 +61,8 @@ class Draws:
 class Search:
     """What all methods share: the box, the objective, the best seen, and which branches were taken."""
 
+    floor = 0.0  # no cost is lower: the objective has none below 0, a case may have it flat below more
+
     def __init__(self, settings, box, seed):
         self.settings, self.draws, self.seen = settings, Draws(seed), Counter()
         self.lower, self.upper = box.T
@@ -66,6 +72,9 @@ class Search:
         self.g, self.f_g = self.x[np.argmin(self.f)].copy(), self.f.min()
 
     def cost(self, x):
+        return np.maximum(self.height(x), self.floor)
+
+    def height(self, x):
         z = (x - self.lower) / self.width - np.array(OBJECTIVE["centre"])
         quadratic = (z[:, :, None] * np.array(OBJECTIVE["coupling"]) * z[:, None, :]).sum(axis=(1, 2))
         return quadratic + ((z * np.array(OBJECTIVE["quartic"])).sum(axis=1)) ** 4
@@ -81,8 +90,16 @@ class Search:
     def less(self, x, f, x_held, f_held):
         """Which costs are lower. A comparison that rounding could turn around would make a bad oracle: refused."""
         same_place = (x == x_held).all(axis=-1)
-        assert (same_place | (abs(f - f_held) > 1e-9)).all(), "two costs are too close to compare; take another seed"
+        on_floor = (f == self.floor) & (f_held == self.floor)
+        assert (same_place | on_floor | (abs(f - f_held) > 1e-9)).all(), "two costs are too close to compare; take another seed"
         return ~same_place & (f < f_held)
+
+    def ranking(self, costs):
+        """From the lowest to the highest; of two on the floor, the first one first."""
+        order = np.argsort(costs, kind="stable")
+        ranked = costs[order]
+        assert ((np.diff(ranked) > 1e-9) | (ranked[1:] == self.floor)).all(), "two costs are too close to compare; take another seed"
+        return order
 
     def keep_best(self):
         best = np.argmin(self.f)
@@ -100,8 +117,8 @@ class Generations(Search):
     `generations` yields trials and is sent their costs; when it has accepted, it yields nothing (`None`).
     """
 
-    def __init__(self, settings, box, seed, population, iterations):
-        self.settings, self.draws, self.seen = settings, Draws(seed), Counter()
+    def __init__(self, settings, box, seed, population, iterations, floor=0.0, normals=None):
+        self.settings, self.draws, self.seen, self.floor = settings, Draws(seed, normals), Counter(), floor
         self.lower, self.upper = box.T
         self.width = self.upper - self.lower
         self.d = len(self.width)

@@ -11,6 +11,7 @@ CASES = [
     ("defaults", {"tolerance": 1e-13}, MOTOR_BOX, 6, 12, 28, CLIMB),
     ("altered", {"tolerance": 0.2}, SHIFTED_BOX, 12, 40, 1, CLIMB | {"restarted: small"}),
     ("flat", {"tolerance": 0.25}, SHIFTED_BOX, 20, 30, 92, CLIMB | {"restarted: flat"}),
+    ("plateau", {"tolerance": 1e-13}, SHIFTED_BOX, 20, 30, 1, {"restarted: flat"}, {"floor": 1.0}),
 ]
 
 

@@ -11,7 +11,11 @@ ALL = {
     "CR cut", "r2 from the archive", "r2 from the population", "archive full", "archive cut", "shrunk",
     "a generation goes on in the next iteration",
 }  # fmt: skip
-CASES = [("defaults", {}, MOTOR_BOX, 40, 9, 27, ALL), ("altered", {}, SHIFTED_BOX, 50, 9, 42, ALL)]
+CASES = [
+    ("defaults", {}, MOTOR_BOX, 40, 9, 27, ALL),
+    ("altered", {}, SHIFTED_BOX, 50, 9, 42, ALL),
+    ("few crossed", {}, MOTOR_BOX, 40, 20, 17, {"CR 0 from now on", "CR 0 for ever", "CR stays 0"}, {"normals": lambda numbers: numbers - 3.5}),
+]
 
 
 class Method(Generations):
@@ -76,6 +80,8 @@ class Method(Generations):
                 w = w / w.sum()
                 s_f, s_cr = np.array(tried)[better].T
                 m_f[slot] = (w * s_f**2).sum() / (w * s_f).sum()
+                self.seen["CR stays 0"] += bool(np.isnan(m_cr[slot]) and s_cr.max() > 0)
+                self.seen["CR 0 from now on"] += bool(not np.isnan(m_cr[slot]) and s_cr.max() == 0)
                 m_cr[slot] = np.nan if np.isnan(m_cr[slot]) or s_cr.max() == 0 else (w * s_cr**2).sum() / (w * s_cr).sum()
                 slot = (slot + 1) % 6
             wanted = max(4, round((4 - first) / total * self.evaluations + first))

@@ -100,8 +100,9 @@ impl Population {
         trials.resize(count * self.dimension, 0.0);
         for (k, trial) in trials.chunks_exact_mut(self.dimension).enumerate() {
             propose(k, self, trial);
-            bounds.clamp(trial);
         }
+        // All of them in a second pass: a component that is read as soon as it is written waits until it is.
+        trials.chunks_exact_mut(self.dimension).for_each(|trial| bounds.clamp(trial));
         self.trials = trials;
         self.trial_costs.clear();
         self.trial_costs.resize(count, WORST_COST);

@@ -98,13 +98,14 @@ impl Distribution {
         let d = self.mean.len();
         self.steps.clear();
         let mut samples = Vec::with_capacity(count * d);
+        let (mut step, mut normals) = (vec![0.0; d], vec![0.0; d]);
         for _ in 0..count {
-            let mut step = self.step(draws);
+            self.draw_step(&mut step, &mut normals, draws);
             for _ in 0..REDRAWS {
                 if self.is_inside(&step) {
                     break;
                 }
-                step = self.step(draws);
+                self.draw_step(&mut step, &mut normals, draws);
             }
             let is_inside = self.is_inside(&step);
             for (y, mean) in step.iter_mut().zip(&self.mean) {
@@ -116,14 +117,16 @@ impl Distribution {
                     *y = (x.clamp(0.0, 1.0) - mean) / self.sigma;
                 }
             }
-            self.steps.extend(step);
+            self.steps.extend(&step);
         }
         samples
     }
 
-    fn step(&self, draws: &mut Draws) -> Vec<f64> {
-        let z: Vec<f64> = self.mean.iter().map(|_| draws.normal()).collect();
-        times(&self.root, &z)
+    fn draw_step(&self, step: &mut [f64], normals: &mut [f64], draws: &mut Draws) {
+        normals.fill_with(|| draws.normal());
+        for (y, row) in step.iter_mut().zip(self.root.chunks_exact(self.mean.len())) {
+            *y = dot(row, normals);
+        }
     }
 
     fn is_inside(&self, step: &[f64]) -> bool {
@@ -148,10 +151,9 @@ impl Distribution {
         let length = n.sqrt() * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
 
         let mean_step: Vec<f64> = (0..self.mean.len()).map(|d| weights.iter().zip(&steps).map(|(weight, y)| weight * y[d]).sum()).collect();
-        let whitened = times(&self.inverse_root, &mean_step);
         self.generations = self.generations.saturating_add(1);
-        for (path, step) in self.path_size.iter_mut().zip(&whitened) {
-            *path = (1.0 - c_s) * *path + (c_s * (2.0 - c_s) * mu).sqrt() * step;
+        for (path, row) in self.path_size.iter_mut().zip(self.inverse_root.chunks_exact(mean_step.len())) {
+            *path = (1.0 - c_s) * *path + (c_s * (2.0 - c_s) * mu).sqrt() * dot(row, &mean_step);
         }
         let norm = self.path_size.iter().map(|p| p * p).sum::<f64>().sqrt();
         let settled = (1.0 - (1.0 - c_s).powf(2.0 * f64::from(self.generations))).sqrt();
@@ -162,10 +164,11 @@ impl Distribution {
         }
         let kept = 1.0 - c_1 - c_mu + (1.0 - h) * c_1 * c_c * (2.0 - c_c);
         let d = self.mean.len();
-        for (row, column) in (0..d * d).map(|index| (index / d, index % d)) {
+        for (row, column) in (0..d).flat_map(|row| (0..=row).map(move |column| (row, column))) {
             let spread: f64 = weights.iter().zip(&steps).map(|(weight, y)| weight * (y[row] * y[column])).sum();
             let shape = self.path_shape[row] * self.path_shape[column];
-            self.covariance[row * d + column] = kept * self.covariance[row * d + column] + c_1 * shape + c_mu * spread;
+            let learnt = kept * self.covariance[row * d + column] + c_1 * shape + c_mu * spread;
+            (self.covariance[row * d + column], self.covariance[column * d + row]) = (learnt, learnt);
         }
         for (mean, step) in self.mean.iter_mut().zip(&mean_step) {
             *mean += self.sigma * step;
@@ -185,12 +188,18 @@ impl Distribution {
             return;
         };
         let floor = SMALLEST_EIGENVALUE * eigen.eigenvalues.max();
-        let power = |exponent: f64| {
-            let values = eigen.eigenvalues.map(|value| value.max(floor).powf(exponent));
-            let matrix = &eigen.eigenvectors * DMatrix::from_diagonal(&values) * eigen.eigenvectors.transpose();
-            matrix.as_slice().to_vec()
-        };
-        (self.root, self.inverse_root) = (power(0.5), power(-0.5));
+        let roots: Vec<f64> = eigen.eigenvalues.iter().map(|value| value.max(floor).sqrt()).collect();
+        for (row, column) in (0..d).flat_map(|row| (0..=row).map(move |column| (row, column))) {
+            let (mut root, mut inverse) = (0.0, 0.0);
+            for (k, value) in roots.iter().enumerate() {
+                let share = eigen.eigenvectors[(row, k)] * eigen.eigenvectors[(column, k)];
+                root += share * value;
+                inverse += share / value;
+            }
+            for index in [row * d + column, column * d + row] {
+                (self.root[index], self.inverse_root[index]) = (root, inverse);
+            }
+        }
     }
 
     /// Whether it is that of this population's box, with a step for each trial, or new.
@@ -204,9 +213,8 @@ impl Distribution {
     }
 }
 
-/// A square matrix, row after row, times a vector.
-fn times(matrix: &[f64], vector: &[f64]) -> Vec<f64> {
-    matrix.chunks_exact(vector.len()).map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum()).collect()
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Positions in the box of samples in the unit box.

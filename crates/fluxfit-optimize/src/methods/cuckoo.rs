@@ -53,11 +53,11 @@ impl Cuckoo {
         let (to, from) = (generation.draws.permutation(count), generation.draws.permutation(count));
         let r = generation.draws.uniform();
         generation.try_each(|i, nests, trial, draws| {
-            nests.copy_position(i, trial);
-            for ((x, to), from) in trial.iter_mut().zip(nests.position(to[i])).zip(nests.position(from[i])) {
-                if draws.uniform() > self.abandoned {
-                    *x += r * (to - from);
-                }
+            let partners = nests.position(to[i]).iter().zip(nests.position(from[i]));
+            for ((x, own), (to, from)) in trial.iter_mut().zip(nests.position(i)).zip(partners) {
+                // Both are computed, then one is chosen: a branch on a random number is guessed wrongly too often.
+                let (stays, moved) = (draws.uniform() <= self.abandoned, own + r * (to - from));
+                *x = if stays { *own } else { moved };
             }
         });
     }

@@ -97,10 +97,9 @@ impl Moves for Gwo {
         generation.try_each(|i, wolves, trial, draws| {
             wolves.copy_position(i, trial);
             for (d, x) in trial.iter_mut().enumerate() {
-                let places = leaders.map(|leader| {
-                    let near = 2.0 * a * draws.uniform() - a;
-                    leader[d] - near * (2.0 * draws.uniform() * leader[d] - *x).abs()
-                });
+                let [r0, s0, r1, s1, r2, s2] = draws.uniforms();
+                let near = |leader: &[f64], r: f64, s: f64| leader[d] - (2.0 * a * r - a) * (2.0 * s * leader[d] - *x).abs();
+                let places = [near(leaders[0], r0, s0), near(leaders[1], r1, s1), near(leaders[2], r2, s2)];
                 *x = (places[0] + places[1] + places[2]) / 3.0;
             }
         });

@@ -17,7 +17,10 @@
 //! **Drawn to the origin**: `beta I g` grows with the distance of the best place from zero. And not invariant to a scale of one
 //! coordinate, which weighs it in the two distances.
 //!
-//! When to use it: to compare with what others report of it. A fifth of its runs on the paper's fitness (11) ends far from the minimum.
+//! **Held by faces at zero**: once all badgers have the coordinate 0, every term of the move has the factor 0 there, and none leaves it. A
+//! fifth of the runs on the paper's fitness (11) ends so, far from the minimum.
+//!
+//! When to use it: to compare with what others report of it.
 
 use crate::{
     draws::Draws,
@@ -87,5 +90,29 @@ impl Moves for Hba {
     fn propose(&self, (): &mut (), generation: &mut Generation) {
         let alpha = self.c * (-generation.progress()).exp();
         generation.try_each(|i, badgers, trial, draws| self.forage(alpha, i, badgers, trial, draws));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the best place and all differences are zero, so is every term of the move.
+    #[test]
+    fn badgers_that_are_all_on_a_face_at_zero_stay_on_it() {
+        let mut draws = Draws::seeded(1, 0);
+        let mut leaves = |face: f64| {
+            let positions = (0..6).flat_map(|_| [face, draws.uniform()]).collect();
+            let mut badgers = Population::laid_out(positions, 2);
+            badgers.tell(&[5.0, 4.0, 3.0, 2.0, 1.0, 6.0]);
+            badgers.accept_all();
+            let mut trial = [0.0; 2];
+            (0..600).any(|k| {
+                Hba::DEFAULT.forage(1.0, k % 6, &badgers, &mut trial, &mut draws);
+                trial[0] != face
+            })
+        };
+        assert!(!leaves(0.0));
+        assert!(leaves(0.5));
     }
 }

@@ -37,6 +37,8 @@ struct Case {
     upper: Vec<f64>,
     population: usize,
     iterations: usize,
+    /// No cost is lower.
+    floor: f64,
     draws: Vec<f64>,
     states: Vec<State>,
 }
@@ -50,11 +52,12 @@ struct State {
 }
 
 impl Quartic {
-    /// `z' A z + (c . z)^4` with `z` the position in the unit box, from the centre.
+    /// `z' A z + (c . z)^4` with `z` the position in the unit box, from the centre; flat below the floor.
     fn cost(&self, case: &Case, x: &[f64]) -> f64 {
         let z: Vec<f64> = (0..case.dimension).map(|d| (x[d] - case.lower[d]) / (case.upper[d] - case.lower[d]) - self.centre[d]).collect();
         let dot = |row: &[f64]| row.iter().zip(&z).map(|(factor, z)| factor * z).sum::<f64>();
-        self.coupling.iter().zip(&z).map(|(row, z)| z * dot(row)).sum::<f64>() + dot(&self.quartic).powi(4)
+        let height = self.coupling.iter().zip(&z).map(|(row, z)| z * dot(row)).sum::<f64>() + dot(&self.quartic).powi(4);
+        height.max(case.floor)
     }
 }
 
@@ -128,5 +131,7 @@ fn every_method_has_its_cases_and_the_oracles_default_settings() {
         assert_eq!(defaults.unwrap().method, method);
         assert_eq!(altered.unwrap().method.key(), method.key());
     }
-    assert!(case("tgfpa from the last trial").is_some());
+    for which in ["tgfpa from the last trial", "cma-es wide", "ipop-cma-es plateau", "l-shade few crossed"] {
+        assert!(case(which).is_some(), "{which}");
+    }
 }
