@@ -22,7 +22,7 @@ STEPS = 400
 
 # The filter's settings and constants, as its documentation has them.
 RATED_CURRENT, START_NOISE, START_ERROR, ADAPTION, OUTLIER, LARGEST_SEEN = 10.0, 5e-3, 0.5, 1e-3, 3.0, 25.0
-WALK = np.array([7e-3, 1e-3, 1e-3, 2e-3])  # per square root of a second
+WALK = np.array([6e-3, 1e-3, 5e-4, 2e-3])  # per square root of a second
 UNKNOWN_VOLTAGE = 0.3  # V
 
 # Block least squares.

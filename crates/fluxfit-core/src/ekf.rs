@@ -30,8 +30,8 @@ const START_ERROR: f64 = 0.5;
 
 /// Random walk of rs, ld, lq and psi_f while they are followed, as a part per square root of a second: copper warms fastest, and the
 /// inductances drift only as far as the magnets' flux saturates the iron. What changes them with the current is found as steps. A larger
-/// walk of lq costs rs: its voltage is that of rs times twenty.
-const WALK: [f64; PARAMETERS] = [7e-3, 1e-3, 1e-3, 2e-3];
+/// walk of lq costs rs: its voltage is that of rs times twenty, and a drift of rs is then taken for one of lq.
+const WALK: [f64; PARAMETERS] = [6e-3, 1e-3, 5e-4, 2e-3];
 
 /// Part of the rated current that the noise is thought to be at first.
 const START_NOISE: f64 = 5e-3;
@@ -105,6 +105,9 @@ struct Before<T> {
     z: [T; PARAMETERS],
     ud: Ud<T>,
     noise: T,
+    /// Parameters of which steps were looked for.
+    #[cfg_attr(feature = "serde", serde(default))]
+    may_step: [bool; PARAMETERS],
 }
 
 /// The filter.
@@ -141,6 +144,7 @@ impl<T: Real> Ekf<T> {
         let variance = |j: usize| settings.start_error[j] * settings.start_error[j];
         let of_current = T::of(4.0) * settings.noise;
         let ud = Ud::new([of_current, of_current, variance(0), variance(1), variance(2), variance(3)]);
+        let may_step = settings.start_error.map(|error| settings.steps && error > T::ZERO);
         Self {
             settings,
             is_begun: false,
@@ -149,13 +153,13 @@ impl<T: Real> Ekf<T> {
             ud,
             noise: settings.noise,
             test: StepTest::new(),
-            before: Before { z, ud, noise: settings.noise },
+            before: Before { z, ud, noise: settings.noise, may_step },
             walk: Walk::new(),
             steps: 0,
             outliers: 0,
             in_a_row: 0,
             is_waiting: false,
-            may_step: settings.start_error.map(|error| settings.steps && error > T::ZERO),
+            may_step,
             left_out: 0,
             surprise: T::ZERO,
             last_surprise: T::ZERO,
@@ -217,7 +221,7 @@ impl<T: Real> Ekf<T> {
             return;
         }
         if self.settings.steps && self.test.is_new() {
-            self.before = Before { z: self.z, ud: self.ud, noise: self.noise };
+            self.before = Before { z: self.z, ud: self.ud, noise: self.noise, may_step: self.may_step };
         }
         self.walk(&phi, &theta, period);
         self.i = arrived.i;
@@ -264,14 +268,16 @@ impl<T: Real> Ekf<T> {
         }
     }
 
+    /// A parameter that the samples began to determine in this window did not step: it was not known, and what was learned of it is right.
     fn end_period(&mut self) -> Option<Step<T>> {
-        self.test.end_period(self.may_step)
+        let is_new = (0..PARAMETERS).any(|j| self.may_step[j] && !self.before.may_step[j]);
+        self.test.end_period(if is_new { [false; PARAMETERS] } else { self.may_step })
     }
 
     /// What was learned in the window of a step is wrong: the filter goes on with what it knew before, from the measured current, and
     /// with an uncertainty of the parameter that is as large as the step.
     fn take_step(&mut self, step: Step<T>, measured: [T; 2]) {
-        Before { z: self.z, ud: self.ud, noise: self.noise } = self.before;
+        Before { z: self.z, ud: self.ud, noise: self.noise, .. } = self.before;
         let mut wrong = [T::ZERO; STATES];
         wrong[STATES - PARAMETERS + step.parameter] = step.size;
         self.ud.add(&wrong);
@@ -288,7 +294,7 @@ impl<T: Real> Ekf<T> {
         let (scale, [id, iq], omega) = (self.scale(), self.i, period.omega_e);
         let of_ud = [id * scale[0], T::ZERO, -(omega * iq * scale[2]), T::ZERO];
         let of_uq = [iq * scale[0], omega * id * scale[1], T::ZERO, omega * scale[3]];
-        for v in self.walk.of_told(q, [of_ud, of_uq]).into_iter().flatten() {
+        for v in self.walk.of_told(period.length, q, [of_ud, of_uq]).into_iter().flatten() {
             self.ud.add(&[T::ZERO, T::ZERO, v[0], v[1], v[2], v[3]]);
         }
     }
