@@ -70,6 +70,14 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
         let at = header.strip_suffix(close)?.rfind(open)?;
         Some((&header[..at], &header[at + open.len_utf8()..header.len() - close.len_utf8()]))
     });
+    // The index of an element, `Idq_in_A.value[0]`, is no unit.
+    if let Some((name, index)) = brackets
+        && !index.is_empty()
+        && index.bytes().all(|byte| byte.is_ascii_digit())
+        && !name.ends_with([' ', ']', ')'])
+    {
+        return split_header(name.trim_end_matches(".value"), dimension);
+    }
     if let Some((name, text)) = brackets.or_else(|| header.rsplit_once('@')) {
         let unit = spelled(text, dimension, rotation);
         return (without_preposition(name), unit.map_or(HeaderUnit::Unknown(text), HeaderUnit::Known));

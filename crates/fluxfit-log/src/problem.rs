@@ -1,6 +1,7 @@
 //! What can be wrong with a log, or with what is stated about it.
 
 use fluxfit_files::{Advice, FileError, FileErrorKind};
+use fluxfit_units::significant;
 use fluxfit_units::wording::{choice, columns, did_you_mean, list, quote, shorten};
 
 /// Most columns that a sentence lists.
@@ -103,6 +104,10 @@ pub(crate) enum Problem {
         "{channel} comes to {:.0} kV, which no drive has: its unit is another one; state it, or that it is in V", .most / 1000.0
     )]
     HighVoltage { channel: &'static str, most: f64 },
+    #[error(
+        "the currents come to {} A beside voltages of {} V, as if {} and {} were in m{unit}; state their unit, also if it is {unit}", significant(*.amperes, 3), significant(*.volts, 3), .channels[0], .channels[1]
+    )]
+    Thousandths { channels: [&'static str; 2], amperes: f64, volts: f64, unit: &'static str },
     #[error("by its values, {low} to {high}, this column is no duty cycle from 0 to 1; write into a mapping file {} = {{ column = {header:?}, scale = .., times = \"u_dc\" }}", .channel)]
     Duty { channel: &'static str, header: String, low: String, high: String },
     #[error(
@@ -208,9 +213,8 @@ impl Problem {
             Self::AmbiguousQuantity { .. } | Self::LoadCurve | Self::DirectVoltage { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
-            Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Duty { .. } | Self::AngleTurn { .. } => {
-                FileErrorKind::Unit
-            }
+            Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
+            Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
             Self::NoMotors { .. } | Self::MotorNames => FileErrorKind::Columns,
             Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) | Self::LongCharacteristic { .. } => FileErrorKind::Data,
@@ -246,6 +250,10 @@ impl Problem {
             Self::SpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: None }],
             Self::Digits { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
             Self::HighVoltage { channel, .. } => vec![Advice::StateUnit { channel, unit: Some("mV") }],
+            Self::Thousandths { channels, unit, .. } => {
+                let unit = Some(if *unit == "A" { "mA" } else { "mV" });
+                channels.iter().map(|channel| Advice::StateUnit { channel, unit }).collect()
+            }
             Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
             Self::NoAngle => map(&["theta_e"]),
             Self::ZeroPolePairs => vec![Advice::StatePolePairs],

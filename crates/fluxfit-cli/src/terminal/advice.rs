@@ -6,8 +6,21 @@ use fluxfit_units::wording::one_line;
 
 /// A sentence with the options that do what it advises: `.. (--map uq=COLUMN)`.
 pub(crate) fn with_options(sentence: &str, advice: &[Advice]) -> String {
-    let options: Vec<String> = advice.iter().filter_map(option).collect();
+    let options: Vec<String> = match units(advice) {
+        Some(units) => vec![units],
+        None => advice.iter().filter_map(option).collect(),
+    };
     if options.is_empty() { sentence.to_owned() } else { format!("{sentence} ({})", options.join(", or ")) }
+}
+
+/// One option for the units of several channels.
+fn units(advice: &[Advice]) -> Option<String> {
+    let unit = |advice: &Advice| match advice {
+        Advice::StateUnit { channel, unit: Some(unit) } => Some(format!("{channel}={unit}")),
+        _ => None,
+    };
+    let pairs: Option<Vec<String>> = advice.iter().map(unit).collect();
+    pairs.filter(|pairs| pairs.len() > 1).map(|pairs| format!("--unit {}", pairs.join(",")))
 }
 
 pub(super) fn option(advice: &Advice) -> Option<String> {
@@ -53,6 +66,8 @@ mod tests {
         assert_eq!(with_options("a", &map(&[("uq", Some("a\u{202e}b"))])), "a (--map uq=COLUMN)");
         let pole_pairs = [Advice::StatePolePairs, Advice::StateUnit { channel: "omega_e", unit: Some("rpm-elec") }];
         assert_eq!(with_options("a", &pole_pairs), "a (--pole-pairs N, or --unit omega_e=rpm-elec)");
+        let currents = ["id", "iq"].map(|channel| Advice::StateUnit { channel, unit: Some("mA") });
+        assert_eq!(with_options("a", &currents), "a (--unit id=mA,iq=mA)");
         assert_eq!(with_options("a", &[Advice::FixParameters(vec!["ld", "rs"])]), "a (--fix ld=VALUE,rs=VALUE)");
     }
 }

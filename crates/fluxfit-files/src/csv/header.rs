@@ -1,6 +1,10 @@
 //! The header of a table of text: where it is, and what separates its names.
 
-use super::{record, tidy::RowStyle};
+use super::{
+    record::{self, lines},
+    scope::{self, Export},
+    tidy::RowStyle,
+};
 use crate::{error::FileError, input, problem::Problem};
 use fluxfit_units::wording::{list, quote};
 
@@ -34,7 +38,10 @@ const LONGEST_UNIT: usize = 16;
 /// # Errors
 /// If there is no header, or it has only one name.
 pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
-    let mut header = names(text, notes)?;
+    let mut header = match scope::find(text) {
+        Some(export) => of_scope(text, export, notes),
+        None => names(text, notes)?,
+    };
     if header.rows == RowStyle::Plain && header.separator != b';' && first_row(text, header.body).is_some_and(|row| row.ends_with(';')) {
         header.rows = RowStyle::Terminated;
         if let Some(last) = header.names.last_mut() {
@@ -48,8 +55,27 @@ pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         header.units = units;
         header.body = end;
     }
+    if header.names.first().is_some_and(|name| name == "Label") && header.units.len() == header.names.len() {
+        label(&mut header);
+    }
     header.body_line = input::line_at(text.as_bytes(), header.body);
     Ok(header)
+}
+
+/// The header of an export of TwinCAT Scope.
+fn of_scope(text: &str, export: Export, notes: &mut Vec<String>) -> Header {
+    let Export { names, units, start, separator, body } = export;
+    notes.push("read as an export of TwinCAT Scope, whose times are milliseconds".to_owned());
+    Header { names, units, line: record::line_of(text, start), separator, rows: RowStyle::Plain, body, body_line: 0 }
+}
+
+/// Tektronix writes the labels of the channels above their names, `TIME,CH1`: what has a label has that name.
+fn label(header: &mut Header) {
+    let names = std::mem::take(&mut header.units);
+    let labels = std::mem::replace(&mut header.names, names);
+    for (name, label) in header.names.iter_mut().zip(labels).skip(1).filter(|(_, label)| !label.is_empty()) {
+        *name = label;
+    }
 }
 
 /// The first line below that is not blank, without spaces at its ends.
@@ -225,8 +251,17 @@ fn is_preamble(line: &Header, text: &str) -> bool {
     let Some((above, width)) = body.map(|at| (&cells[..at], cells[at].len())) else { return false };
     let has_names = above.iter().any(|cells| cells.len() == width && filled(cells) == width && numbers(cells) == 0);
     let are_units = line.names.iter().filter(|name| UNITS.contains(&name.to_lowercase().as_str())).count() * 2 > line.names.len();
-    has_names && (line.names.len() != width || are_units)
+    // Of an oscilloscope: settings, some of which happen to have the width of the rows. The names are in the last two lines.
+    let settings = above.iter().filter(|cells| cells.len() != width).count();
+    let is_setting = above.len() >= NAMES_AND_UNITS && (settings >= SETTINGS || numbers(&line.names) > 0);
+    has_names && (line.names.len() != width || are_units || is_setting)
 }
+
+/// Lines at the end of a preamble that may be names, and labels above or units below them.
+const NAMES_AND_UNITS: usize = 2;
+
+/// Lines of settings that make a preamble.
+const SETTINGS: usize = 3;
 
 /// What a row above the names that holds their units has in most of its cells.
 const UNITS: [&str; 16] = ["s", "ms", "us", "v", "mv", "a", "ma", "rpm", "1/min", "min^-1", "rad/s", "rad", "deg", "°", "nm", "hz"];
@@ -276,18 +311,6 @@ fn most_frequent_separator(line: &str) -> u8 {
 /// Whether a cell holds a number.
 pub fn is_number(cell: &str, separator: u8) -> bool {
     record::number(cell.as_bytes(), separator, &mut String::new()).is_some()
-}
-
-/// Lines with their offsets; they end with `\n`, `\r\n` or `\r`.
-fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut offset = 0;
-    std::iter::from_fn(move || {
-        let rest = text.get(offset..).filter(|rest| !rest.is_empty())?;
-        let length = rest.find(['\n', '\r']).map_or(rest.len(), |at| if rest[at..].starts_with("\r\n") { at + 2 } else { at + 1 });
-        let line = (offset, &rest[..length]);
-        offset += length;
-        Some(line)
-    })
 }
 
 #[cfg(test)]

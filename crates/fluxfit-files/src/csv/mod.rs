@@ -2,4 +2,5 @@
 
 pub mod header;
 pub mod record;
+mod scope;
 pub mod tidy;

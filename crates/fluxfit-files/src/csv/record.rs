@@ -55,6 +55,18 @@ fn first_of_any(text: &str, separator: u8) -> (Vec<String>, usize) {
     (record.iter().map(|cell| text_of(trimmed(cell))).collect(), in_memory(reader.position().byte()))
 }
 
+/// Lines with their offsets; they end with `\n`, `\r\n` or `\r`.
+pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut offset = 0;
+    std::iter::from_fn(move || {
+        let rest = text.get(offset..).filter(|rest| !rest.is_empty())?;
+        let length = rest.find(['\n', '\r']).map_or(rest.len(), |at| if rest[at..].starts_with("\r\n") { at + 2 } else { at + 1 });
+        let line = (offset, &rest[..length]);
+        offset += length;
+        Some(line)
+    })
+}
+
 /// The line, from 1, of the record that begins at or after `start`.
 pub fn line_of(text: &str, start: usize) -> u64 {
     line_at(text.as_bytes(), begin(text.as_bytes(), start))

@@ -7,6 +7,8 @@
 //! - Columns of the same length were sampled at the same instants, unless a structure around one of them has its own time: a field
 //!   `time` or `Time` of that length.
 //! - Simulink's structures with time have their values in `signals(k).values` and their names in `signals(k).label`.
+//! - Matrices of two columns with the same increasing first column, as Simulink's To Workspace blocks save a signal as an array with time,
+//!   are a signal each, and that column is their time.
 //! - Scalars, texts, booleans, complex and sparse arrays, cells and arrays of three dimensions are not columns.
 
 mod array;
@@ -55,7 +57,8 @@ impl Mat {
         if let Some(at) = hdf5::signature(start) {
             let format = if at == 0 { "HDF5" } else { "MAT" };
             let (file, contents) = hdf5::File::open(source, at, format)?;
-            return Self::new(contents, format, |places| Version::Hdf5(file.with(places))).map(Some);
+            let mat = Self::new(contents, format, |places| Version::Hdf5(file.with(places)))?;
+            return Ok(Some(mat.with_times_beside()?));
         }
         let contents = if let Some(big_endian) = v5::signature(start) {
             v5::open(&source, big_endian)?
@@ -64,7 +67,53 @@ impl Mat {
         } else {
             return Ok(None);
         };
-        Self::new(contents, "MAT", |places| Version::Flat(numbers::File::new(source, places))).map(Some)
+        let mat = Self::new(contents, "MAT", |places| Version::Flat(numbers::File::new(source, places)))?;
+        Ok(Some(mat.with_times_beside()?))
+    }
+
+    /// Takes the first columns of matrices with two for the time, if they are the same.
+    fn with_times_beside(mut self) -> Result<Self, FileError> {
+        let is_first = |at: &usize| {
+            let of_both = self.columns.get(*at..*at + 2);
+            of_both.is_some_and(|both| both[0].array == both[1].array && (both[0].line, both[1].line) == (Line::Column(0), Line::Column(1)))
+                && self.columns.get(at + 2).is_none_or(|next| next.array != self.columns[*at].array)
+        };
+        let firsts: Vec<usize> = (0..self.columns.len()).filter(is_first).collect();
+        let Some((&time, others)) = firsts.split_first().filter(|(_, others)| !others.is_empty()) else { return Ok(self) };
+        let (group, rows) = (self.heads[time].group, self.heads[time].rows);
+        let values = self.first_values(time)?;
+        let increases = values.len() > 1 && values.windows(2).all(|pair| pair[0] < pair[1]);
+        if !increases || self.heads.iter().any(|head| head.group == group && head.is_time) {
+            return Ok(self);
+        }
+        for &other in others {
+            if (self.heads[other].group, self.heads[other].rows) != (group, rows) || self.first_values(other)? != values {
+                return Ok(self);
+            }
+        }
+        for &first in &firsts {
+            let name = self.heads[first].name.trim_end_matches("(:,1)").to_owned();
+            self.heads[first + 1].name = name;
+        }
+        self.heads[time] = ColumnHead { name: "time".to_owned(), is_time: true, ..self.heads[time].clone() };
+        let (heads, columns) = std::mem::take(&mut self.heads)
+            .into_iter()
+            .zip(std::mem::take(&mut self.columns))
+            .enumerate()
+            .filter(|(at, _)| !others.contains(at))
+            .map(|(_, column)| column)
+            .unzip();
+        Ok(Self { heads, columns, ..self })
+    }
+
+    /// The first values of a column.
+    fn first_values(&self, at: usize) -> Result<Vec<f64>, FileError> {
+        let count = self.heads[at].rows.min(BLOCK as u64) as usize;
+        let column = &self.columns[at];
+        match &self.file {
+            Version::Flat(file) => file.line(column.array, column.line)?.next(count),
+            Version::Hdf5(file) => file.line(column.array, column.line)?.next(count),
+        }
     }
 
     fn new<Place>(contents: Contents<Place>, format: &'static str, version: impl FnOnce(Vec<Place>) -> Version) -> Result<Self, FileError> {
@@ -78,6 +127,7 @@ impl Mat {
                 continue;
             }
             let owner = ancestors(&array.path).find(|owner| times.contains_key(&(*owner, rows))).unwrap_or("");
+            let unit = array.unit.clone().or_else(|| unit(&array.path, &contents.labels));
             let next = groups.len();
             let group = *groups.entry((owner, rows)).or_insert(next);
             let is_time = times.get(&(owner, rows)) == Some(&at);
@@ -89,7 +139,7 @@ impl Mat {
                     Line::Column(_) => format!("{name}(:,{})", k + 1),
                     Line::Row(_) => format!("{name}({},:)", k + 1),
                 };
-                heads.push(ColumnHead { name, unit: array.unit.clone(), rows, group, is_time, instants: None });
+                heads.push(ColumnHead { name, unit: unit.clone(), rows, group, is_time, instants: None });
                 columns.push(Column { array: at, line });
             }
             if heads.len() > MOST_COLUMNS {
@@ -157,7 +207,7 @@ impl Mat {
 fn times<Place>(arrays: &[Array<Place>]) -> HashMap<(&str, u64), usize> {
     let mut times = HashMap::new();
     for (at, array) in arrays.iter().enumerate() {
-        if let Some((owner, "time" | "Time")) = array.path.rsplit_once('.')
+        if let Some(owner) = timed(&array.path)
             && array.rows.min(array.columns) == 1
         {
             times.entry((owner, array.rows.max(array.columns))).or_insert(at);
@@ -166,18 +216,44 @@ fn times<Place>(arrays: &[Array<Place>]) -> HashMap<(&str, u64), usize> {
     times
 }
 
+/// The structure whose time a path is: of a field `time` or `Time`, or `X.Data` of a recording by ControlDesk.
+fn timed(path: &str) -> Option<&str> {
+    let of_recording = || path.strip_suffix(".X.Data").or_else(|| path.strip_suffix(".X(1).Data"));
+    of_recording().or_else(|| match path.rsplit_once('.') {
+        Some((owner, "time" | "Time")) => Some(owner),
+        _ => None,
+    })
+}
+
+/// The structure of a signal in a recording by ControlDesk, `rec.Y(3)` of `rec.Y(3).Data`.
+fn signal(path: &str) -> Option<&str> {
+    let signal = path.strip_suffix(".Data")?;
+    signal.rsplit_once('.').is_some_and(|(_, field)| field == "Y" || field.starts_with("Y(")).then_some(signal)
+}
+
+/// The unit of a signal in a recording by ControlDesk.
+fn unit(path: &str, labels: &HashMap<String, String>) -> Option<String> {
+    let unit = labels.get(&format!("{}.Unit", signal(path)?))?.trim();
+    (!unit.is_empty()).then(|| unit.to_owned())
+}
+
 /// The structures that contain a path: `a.b` and `a` of `a.b.c`.
 fn ancestors(path: &str) -> impl Iterator<Item = &str> {
     std::iter::successors(path.rsplit_once('.'), |(owner, _)| owner.rsplit_once('.')).map(|(owner, _)| owner)
 }
 
-/// The name of a Simulink signal: `log.signals(2).values` with the label `i_q` is `log.i_q`.
+/// The name of a Simulink signal: `log.signals(2).values` with the label `i_q` is `log.i_q`. That of ControlDesk's `rec.Y(2).Data` is its
+/// `rec.Y(2).Name`, a path of a model in which each part may have quotation marks.
 fn labelled(path: &str, labels: &HashMap<String, String>) -> String {
+    let recorded = || {
+        let name = labels.get(&format!("{}.Name", signal(path)?))?.replace('"', "");
+        (!name.trim().is_empty()).then(|| name.trim().to_owned())
+    };
     let named = || {
         let signal = path.strip_suffix(".values")?;
-        let label = labels.get(signal).map(|label| label.trim()).filter(|label| !label.is_empty())?;
+        let label = labels.get(&format!("{signal}.label")).map(|label| label.trim()).filter(|label| !label.is_empty())?;
         let (owner, _) = signal.rsplit_once('.')?;
         Some(format!("{owner}.{label}"))
     };
-    named().unwrap_or_else(|| path.to_owned())
+    recorded().or_else(named).unwrap_or_else(|| path.to_owned())
 }

@@ -1,7 +1,7 @@
 //! Text: decompressed, decoded to UTF-8.
 
 use crate::problem::Problem;
-use encoding_rs::WINDOWS_1252;
+use encoding_rs::{BIG5, EUC_JP, EUC_KR, Encoding, GBK, SHIFT_JIS, WINDOWS_1252};
 use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 use fluxfit_files::{
@@ -21,7 +21,7 @@ const LONGEST_CHARACTER: usize = 4;
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// The first bytes of documents that users mistake for tables of text.
-const DOCUMENTS: [(&[u8], &str); 15] = [
+const DOCUMENTS: [(&[u8], &str); 19] = [
     (b"PK\x03\x04", "an Excel workbook, or another zip archive"),
     (b"\xd0\xcf\x11\xe0", "an old Excel workbook"),
     (b"%PDF", "a PDF"),
@@ -37,6 +37,20 @@ const DOCUMENTS: [(&[u8], &str); 15] = [
     (b"BZh", "compressed by bzip2"),
     (b"\xfd7zXZ", "compressed by xz"),
     (b"\x28\xb5\x2f\xfd", "compressed by zstd"),
+    (b"7z\xbc\xaf\x27\x1c", "an archive of 7-Zip"),
+    (b"ULog\x01\x12\x35", "a ULog of PX4"),
+    (b"\xa3\x95\x80\x80", "a flash log of ArduPilot"),
+    (b"\x89MCAP0\r\n", "an MCAP recording"),
+];
+
+/// Encodings of East Asian systems, each with words that stand in the header of a log: time, voltage, current, speed, angle. The bytes of
+/// one are often valid in another, so that only such a word decides. The first two as WHATWG Encoding calls them: GBK, Shift_JIS.
+static EAST_ASIAN: [(&Encoding, &[&str]); 5] = [
+    (GBK, &["时间", "电压", "电流", "转速", "速度", "角度"]),
+    (SHIFT_JIS, &["時間", "時刻", "電圧", "電流", "回転", "速度", "角度"]),
+    (EUC_JP, &["時間", "時刻", "電圧", "電流", "回転", "速度", "角度"]),
+    (BIG5, &["時間", "電壓", "電流", "轉速", "速度", "角度"]),
+    (EUC_KR, &["시간", "전압", "전류", "속도", "회전"]),
 ];
 
 /// Decompressed, decoded text.
@@ -85,15 +99,35 @@ impl Text {
                 String::from_utf8_lossy(&bytes).into_owned()
             }
             Err(error) => {
-                notes.push("the file is not UTF-8 and was read as Windows-1252".to_owned());
-                let (head, _, _) = WINDOWS_1252.decode(error.as_bytes());
-                text.rest = Box::new(DecodeReaderBytesBuilder::new().encoding(Some(WINDOWS_1252)).bom_sniffing(false).build(text.rest));
+                let mut bytes = error.into_bytes();
+                // A character of two bytes may be cut at the end of the head, but no second byte is the end of a line.
+                let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(bytes.len(), |at| at + 1);
+                let cut = bytes.split_off(whole);
+                let encoding = encoding(&bytes);
+                notes.push(format!("the file is not UTF-8 and was read as {}", name_of(encoding)));
+                let (head, _) = encoding.decode_without_bom_handling(&bytes);
+                let rest = Cursor::new(cut).chain(text.rest);
+                text.rest = Box::new(DecodeReaderBytesBuilder::new().encoding(Some(encoding)).bom_sniffing(false).build(rest));
                 head.into_owned()
             }
         };
         text.notes = notes;
         Ok(text)
     }
+}
+
+/// The encoding of a text that is not UTF-8: one of East Asia if a word of a log's header says so, else Windows-1252.
+fn encoding(bytes: &[u8]) -> &'static Encoding {
+    let fits = |(encoding, words): &&(&'static Encoding, &[&str])| {
+        let (text, is_wrong) = encoding.decode_without_bom_handling(bytes);
+        !is_wrong && words.iter().any(|word| text.contains(word))
+    };
+    EAST_ASIAN.iter().find(fits).map_or(WINDOWS_1252, |(encoding, _)| encoding)
+}
+
+/// The name of an encoding as it is usually written.
+fn name_of(encoding: &'static Encoding) -> &'static str {
+    if encoding == WINDOWS_1252 { "Windows-1252" } else { encoding.name() }
 }
 
 impl Text {

@@ -41,8 +41,10 @@ const BESIDE: [&str; 26] = [
 ];
 
 /// Further ones beside a speed or an angle.
-const ROTATION: [&str; 20] = [
+const ROTATION: [&str; 22] = [
     "rotor",
+    "revolution",
+    "rotation",
     "shaft",
     "angular",
     "rotational",
@@ -145,6 +147,10 @@ const ANGLE: [&str; 12] =
 
 /// The column of a channel, if exactly one has one of its usual names, and no other unit.
 pub(super) fn find(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
+    named_by_vector(channel, heads).or_else(|| named_alone(channel, heads))
+}
+
+fn named_alone(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
     let mut found = heads.iter().enumerate().filter(|(_, head)| is_alias(channel, head)).map(|(index, _)| index);
     let first = found.next();
     first.filter(|_| found.next().is_none())
@@ -157,6 +163,46 @@ pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
         named(channels[k], stem, unit).map(|(_, beside)| beside)
     };
     beside(0) == beside(1)
+}
+
+/// What the two elements of a vector of d and q are called: indices from 0 as in C, from 1 as in MATLAB, and the parts of a complex number.
+const ELEMENTS: [[&str; 2]; 4] = [["0", "1"], ["1", "2"], ["re", "im"], ["real", "imag"]];
+
+/// The column of a channel, if the log has one vector of its two axes, `v_dq[0]` and `v_dq[1]`, `Idq_in_A.value[0]`, `Vdq:1`, `i_dq_re`.
+fn named_by_vector(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
+    let (axis, names) = match channel {
+        Channel::Ud => (0, ["v", "u"]),
+        Channel::Uq => (1, ["v", "u"]),
+        Channel::Id => (0, ["i", "i"]),
+        Channel::Iq => (1, ["i", "i"]),
+        _ => return None,
+    };
+    let mut found = (0..heads.len()).filter_map(|of_d| vector(&heads[of_d].name, heads, &names).map(|of_q| [of_d, of_q]));
+    let first = found.next().filter(|_| found.next().is_none())?;
+    Some(first[axis])
+}
+
+/// The column with the second element of a vector, if a name is that of the first one.
+fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize> {
+    let parts = words(name);
+    let (last, stem) = parts.split_last()?;
+    let is_quantity =
+        |word: &str| quantities.iter().any(|quantity| [format!("{quantity}dq"), format!("{quantity}sdq")].iter().any(|name| name == word));
+    let is_named = stem.iter().any(|word| is_quantity(word)) || stem.windows(2).any(|pair| is_quantity(&pair.concat()));
+    // A unit is read from the end of a name, or before brackets.
+    let has_hidden_unit =
+        || name.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| ["mv", "ma", "kv", "ka", "pu"].contains(&word));
+    let is_plain = name.ends_with([']', ')']) || !has_hidden_unit();
+    let [_, second] = *ELEMENTS.iter().find(|[first, _]| last == first)?;
+    let is_second = |head: &ColumnHead| words(&head.name).split_last().is_some_and(|(end, other)| end == second && other == stem);
+    let is_measured = is_named && is_plain && !is_reference(name);
+    is_measured.then(|| heads.iter().position(is_second)).flatten()
+}
+
+/// Whether two names are those of the elements of one vector.
+pub(super) fn are_elements(names: [&str; 2]) -> bool {
+    let heads = [ColumnHead { name: names[1].to_owned(), ..ColumnHead::default() }];
+    vector(names[0], &heads, &["v", "u", "i"]).is_some()
 }
 
 /// Words for the share of a period during which a leg of the inverter is switched to the upper rail.
@@ -221,7 +267,8 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
         Channel::T => {
             beside.is_empty() && (TIME.contains(&name.as_str()) || name.is_empty() || X.contains(&name.as_str()) || has_unit && name == "x")
         }
-        Channel::OmegaE => is_one_of(&name, "speed", &SPEED) || name.is_empty(),
+        // `f [Hz]`.
+        Channel::OmegaE => is_one_of(&name, "speed", &SPEED) || name.is_empty() || has_unit && name == "f",
         Channel::ThetaE => is_one_of(&name, "angle", &ANGLE),
         // `d_V`: the unit says the quantity.
         Channel::Ud => is_of_axis(&name, "d", &VOLTAGE) || has_unit && name == "d",
@@ -365,6 +412,8 @@ mod tests {
             (
                 Channel::OmegaE,
                 &[
+                    "f_el [Hz]",
+                    "Revolution speed[rpm]",
                     "Encoder/n",
                     "Drehzahl n in 1/min",
                     "转速(rpm)",
@@ -388,6 +437,24 @@ mod tests {
         ] {
             names.iter().for_each(|name| assert!(is(channel, name), "{name} is {}", channel.name()));
         }
+    }
+
+    /// As TI's MotorControl SDK, PLECS, numpy and MATLAB name them; and what is no pair.
+    #[test]
+    fn elements_of_a_vector_are_d_and_q() {
+        let found = |names: &[&str]| {
+            let heads: Vec<ColumnHead> =
+                names.iter().map(|name| ColumnHead { name: (*name).to_owned(), ..ColumnHead::default() }).collect();
+            [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(|channel| find(channel, &heads))
+        };
+        let all = [Some(0), Some(1), Some(2), Some(3)];
+        assert_eq!(found(&["Vdq_out_V.value[0]", "Vdq_out_V.value[1]", "m.Idq_in_A.value[0]", "m.Idq_in_A.value[1]"]), all);
+        assert_eq!(found(&["Vdq:1", "Vdq:2", "Idq:1", "Idq:2"]), all);
+        assert_eq!(found(&["v_dq[0]", "v_dq[1]", "i_dq[0]", "i_dq[1]"]), all);
+        assert_eq!(found(&["udq(:,1)", "udq(:,2)", "i_sdq_re", "i_sdq_im"]), all);
+        assert_eq!(found(&["v_dq_mV[0]", "v_dq_mV[1]", "i_dq_mA_re", "i_dq_mA_im"]), [Some(0), Some(1), None, None]);
+        assert_eq!(found(&["v_dq[0]", "v_dq[2]", "i_dq_ref[0]", "i_dq_ref[1]"]), [None; 4]);
+        assert_eq!(found(&["a.idq[0]", "a.idq[1]", "b.idq[0]", "b.idq[1]"]), [None; 4]);
     }
 
     #[test]

@@ -125,6 +125,7 @@ impl Finder<'_> {
         if let [Some(of_d), Some(of_q)] = indices
             && let names = [&self.heads[of_d].name, &self.heads[of_q].name].map(String::as_str)
             && !alias::differ_in_axis(d.dimension(), names)
+            && !alias::are_elements(names)
         {
             let is_alias = [self.is_alias(d, names[0]), self.is_alias(q, names[1])];
             indices = match self.pairs([d, q])[..] {

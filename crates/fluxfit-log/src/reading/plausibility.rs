@@ -105,6 +105,49 @@ pub(super) fn refuse_high_voltage(chosen: &[ChosenColumn], channels: &Channels) 
     Ok(())
 }
 
+/// Voltage over current, ohm, of a log with more than [`LARGE_CURRENT`]; only a large traction motor at standstill is below. In mA, a motor
+/// of up to 10 ohm is.
+const LEAST_IMPEDANCE: f64 = 0.01;
+
+/// Currents of fewer A are not doubted.
+const LARGE_CURRENT: f64 = 1000.0;
+
+/// No drive of a PMSM has more, A: 690 V and 10 MW.
+const MOST_CURRENT: f64 = 12e3;
+
+/// Voltages of fewer V are not doubted.
+const LARGE_VOLTAGE: f64 = 2000.0;
+
+/// A for each V of a log with more than [`LARGE_VOLTAGE`]: a drive of 3.3 kV has 27 A or more with any load.
+const LEAST_ADMITTANCE: f64 = 0.01;
+
+/// Refuses currents that are mA, or voltages that are mV, by the size of both, where nothing states their unit.
+pub(super) fn refuse_thousandths(chosen: &[ChosenColumn], channels: &Channels) -> Result<(), FileError> {
+    let size = |channel: Channel| {
+        let values = channels.get(channel).unwrap_or_default().iter();
+        let mut sizes: Vec<f64> = values.map(|value| value.abs()).filter(|size| size.is_finite()).collect();
+        // Not the largest: a spike is left out later.
+        let upper = sizes.len() * 9 / 10;
+        if sizes.len() < NORMALIZED_ROWS { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 }
+    };
+    let (volts, amperes) = (size(Channel::Ud).max(size(Channel::Uq)), size(Channel::Id).max(size(Channel::Iq)));
+    let is_unwritten = |pair: [Channel; 2]| {
+        let of_pair = |column: &&ChosenColumn| pair.contains(&column.channel);
+        chosen.iter().filter(of_pair).filter(|column| !column.is_unit_written && !column.is_share).count() == pair.len()
+    };
+    let milliamperes = amperes > MOST_CURRENT || amperes > LARGE_CURRENT && volts < LEAST_IMPEDANCE * amperes;
+    if milliamperes && volts > 0.0 && is_unwritten([Channel::Id, Channel::Iq]) {
+        return Err(Problem::Thousandths { channels: ["id", "iq"], amperes, volts, unit: "A" }.into());
+    }
+    // With the DC voltage, the columns are compared later.
+    let is_alone = channels.get(Channel::UDc).is_none();
+    if is_alone && volts > LARGE_VOLTAGE && amperes < LEAST_ADMITTANCE * volts && amperes > 0.0 && is_unwritten([Channel::Ud, Channel::Uq])
+    {
+        return Err(Problem::Thousandths { channels: ["ud", "uq"], amperes, volts, unit: "V" }.into());
+    }
+    Ok(())
+}
+
 /// What rounding adds to a duty cycle.
 const ROUNDING: f64 = 0.01;
 
@@ -205,6 +248,23 @@ mod tests {
         assert!(refused.contains("ud comes to 60 kV"), "{refused}");
         let (chosen, spike) = channels(&[(Channel::Ud, &|row| if row == 50.0 { 1e9 } else { 100.0 })]);
         assert_eq!(refuse_high_voltage(&chosen, &spike), Ok(()));
+    }
+
+    /// The paper's motor at 12 A and 100 V, in mA and in mV; an electric kart's 1100 A at 25 V; a wind turbine's 1400 A at 2700 V.
+    #[test]
+    fn thousandths_are_told_by_both_sizes() {
+        let refused = |volts: f64, amperes: f64| {
+            let (ud, iq) = (move |row: f64| volts - 0.01 * row, move |row: f64| amperes - 0.01 * row);
+            let (zero, id) = (|_: f64| 0.0, |_: f64| 0.1);
+            let (mut chosen, channels) = channels(&[(Channel::Ud, &ud), (Channel::Uq, &zero), (Channel::Id, &id), (Channel::Iq, &iq)]);
+            let sentence = refuse_thousandths(&chosen, &channels).err().map(|error| error.to_string());
+            chosen.iter_mut().for_each(|column| column.is_unit_written = true);
+            assert_eq!(refuse_thousandths(&chosen, &channels), Ok(()));
+            sentence.unwrap_or_default()
+        };
+        assert!(refused(100.0, 12e3).contains("id and iq were in mA"));
+        assert!(refused(1e5, 12.0).contains("ud and uq were in mV"));
+        assert_eq!([refused(100.0, 12.0), refused(25.0, 1100.0), refused(2700.0, 1400.0), refused(400.0, 0.5)], [""; 4]);
     }
 
     #[test]

@@ -176,6 +176,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     plausibility::refuse_standardized(&chosen, &channels)?;
     plausibility::refuse_per_unit(&chosen, &channels)?;
     plausibility::refuse_high_voltage(&chosen, &channels)?;
+    plausibility::refuse_thousandths(&chosen, &channels)?;
     let is_interpolated = is_interpolated || aligned.is_some();
     let mut more: Vec<String> = aligned.into_iter().collect();
     phases::of_stator_frame(&mut channels);

@@ -110,6 +110,10 @@ fn score(channel: Channel, name: &str) -> Option<f64> {
     {
         return None;
     }
+    // The time of a structure: `uq.Time`.
+    if channel.dimension() != Dimension::Time && name.to_lowercase().ends_with(".time") {
+        return None;
+    }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();
     let runs = (0..words.len()).flat_map(|start| (start + 1..=(start + WORDS).min(words.len())).map(move |end| start..end));
     let scores = runs.filter_map(|run| {
@@ -175,6 +179,7 @@ mod tests {
         assert_eq!(proposed(dyno), ["-", "-", "-", "Test motor d-axis current", "Test motor q-axis current", "Output Speed"]);
         assert_eq!(proposed("tmie;omga;uds"), ["tmie", "-", "-", "-", "-", "omga"]);
         assert_eq!(proposed("timestep;speed_step"), ["-"; 6]);
+        assert_eq!(proposed("uq.Time;id.time"), ["uq.Time", "-", "-", "-", "-", "-"]);
     }
 
     #[test]

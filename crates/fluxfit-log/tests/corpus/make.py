@@ -30,6 +30,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import scipy.io
 
+import instruments
 import tools
 
 HERE = Path(__file__).parent
@@ -737,6 +738,7 @@ def main():
     for write in (dialects, drives, traps, parquet, mat, mdf, mappings):
         write()
     tools.write(sys.modules[__name__])
+    instruments.write(sys.modules[__name__])
     lines = ["# Written by make.py, which says what the keys mean.\n"]
     for case in cases:
         lines.append("\n[[case]]\n")

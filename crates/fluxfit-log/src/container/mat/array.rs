@@ -5,7 +5,7 @@ use std::collections::HashMap;
 /// What a file contains.
 pub(super) struct Contents<Place> {
     pub(super) arrays: Vec<Array<Place>>,
-    /// Values of fields called `label`, by the path of their structure.
+    /// Values of fields called `label`, `Name` and `Unit`, by the path of the field.
     pub(super) labels: HashMap<String, String>,
     /// Objects that only MATLAB can read.
     pub(super) objects: Vec<Object>,
@@ -40,6 +40,11 @@ pub(crate) enum Line {
     Column(u64),
     /// `(k,:)`, from 0.
     Row(u64),
+}
+
+/// Fields with texts that name the numbers of their structure, or state their unit.
+pub(super) fn is_label(path: &str) -> bool {
+    [".label", ".Name", ".Unit"].iter().any(|field| path.ends_with(field))
 }
 
 /// The path of a field.

@@ -13,7 +13,7 @@ mod values;
 
 pub(crate) use values::{Place, Values};
 
-use super::array::{Array, Contents, Line, Object as Opaque, is_column, join};
+use super::array::{Array, Contents, Line, Object as Opaque, is_column, is_label, join};
 use crate::{
     container::{limits::MOST_COLUMNS, random_access::RandomAccess},
     problem::Problem,
@@ -152,11 +152,11 @@ impl Walk<'_> {
             // netCDF stores scaled numbers here, which are not the values.
             (Type::Number(_), _) if object.has_attribute("scale_factor") || object.has_attribute("add_offset") => self.no_numbers(path),
             (Type::Number(number), Some("char")) => {
-                if let Some(owner) = path.strip_suffix(".label") {
+                if is_label(path) {
                     let letters = Values::open(self.reader, &place(number)?, longest(first, second, reversed))?
                         .next(LONGEST_TEXT.min(first.max(second) as usize))?;
                     let text = letters.iter().map(|&letter| char::from_u32(letter as u32).unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
-                    self.contents.labels.insert(owner.to_owned(), text);
+                    self.contents.labels.insert(path.to_owned(), text);
                 }
                 Ok(())
             }

@@ -4,7 +4,7 @@
 //! chapter 1.
 
 use super::{
-    array::{Array, Contents, Object, is_column, join},
+    array::{Array, Contents, Object, is_column, is_label, join},
     numbers::{Place, Stream},
 };
 use crate::{
@@ -24,6 +24,9 @@ const HEADER: u64 = 128;
 
 /// Maximum nesting of structures.
 const DEEPEST: usize = 16;
+
+/// Dimensions that are looked at; arrays of more than three are no columns.
+const MOST_DIMENSIONS: u64 = 4;
 
 /// Maximum length of a name, label or class, bytes; longer ones are cut.
 const LONGEST_TEXT: u64 = 256;
@@ -154,12 +157,14 @@ impl Walk<'_> {
             self.opaque(end)?;
             return self.skip_to(end);
         }
-        // Arrays have two dimensions here.
-        let element = self.tag()?;
-        let dimensions = self.data(&element, 8)?;
-        let dimension = |at: usize| dimensions.get(at..).and_then(|rest| rest.first_chunk()).map(|bytes| integer(*bytes, self.big_endian));
-        let (rows, columns) = (dimension(0).unwrap_or(0).into(), dimension(4).unwrap_or(0).into());
-        let flat = element.length == 8;
+        let dimensions = self.bytes(MOST_DIMENSIONS * 4)?;
+        let dimensions: Vec<u64> = dimensions.as_chunks().0.iter().map(|bytes| integer(*bytes, self.big_endian).into()).collect();
+        let (rows, columns, flat) = match dimensions[..] {
+            [rows, columns] => (rows, columns, true),
+            // `1 x 1 x N`, as Simulink stores the samples of a matrix of one element.
+            [1, 1, samples] => (samples, 1, true),
+            _ => (0, 0, false),
+        };
         let name = self.bytes(LONGEST_TEXT)?;
         let name = String::from_utf8_lossy(&name).into_owned();
         let at_top = path.is_empty();
@@ -170,7 +175,7 @@ impl Walk<'_> {
         }
         match class {
             class::STRUCT if flat => self.structure(path, rows, columns, depth)?,
-            class::TEXT if path.ends_with(".label") => self.label(path)?,
+            class::TEXT if is_label(path) => self.label(path)?,
             class::DOUBLE..=class::UINT64 if flat && !complex && !logical => self.numbers(path, rows, columns)?,
             _ => self.contents.unreadable.extend(at_top.then(|| path.to_owned())),
         }
@@ -238,8 +243,7 @@ impl Walk<'_> {
             }
             _ => String::from_utf8_lossy(&bytes).into_owned(),
         };
-        let owner = path.strip_suffix(".label").unwrap_or(path);
-        self.contents.labels.insert(owner.to_owned(), text);
+        self.contents.labels.insert(path.to_owned(), text);
         Ok(())
     }
 
