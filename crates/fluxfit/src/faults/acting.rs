@@ -97,7 +97,8 @@ impl FaultKinds {
             voltages: turns || faults.speed_lag != none.speed_lag || faults.filter.voltages != 0.0,
             loss: LossKinds::of(&faults.dead_time),
             phase: faults.dead_time.phase != 0.0,
-            beside: faults.speed_lag != none.speed_lag
+            beside: delay
+                || faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
                 || faults.resistance_drift != none.resistance_drift,
             flux: faults.saturation != none.saturation,
@@ -175,33 +176,34 @@ impl Acting<f64> {
         Self::of(FaultKinds::of(faults), period, |number| number(faults))
     }
 
-    /// The current, A, that a perfect sensor would have logged for `logged`, measured with the rotor there at this speed.
-    pub(crate) fn current(&self, logged: Dq, rotor: Turn, omega_e: f64) -> Dq {
-        let [d, q] = self.motor_current([logged.d, logged.q], rotor, omega_e);
+    /// The current, A, that a perfect sensor would have logged for `logged`, measured with the rotor there, at the speed by
+    /// which a late angle is too small.
+    pub(crate) fn current(&self, logged: Dq, rotor: Turn, late_by: f64) -> Dq {
+        let [d, q] = self.motor_current([logged.d, logged.q], rotor, late_by);
         Dq { d, q }
     }
 }
 
 impl<V: Number> Acting<V> {
-    /// The current, A, in the frame of the magnet, where `logged` was measured with the rotor there at this speed: the faults of the
-    /// sensors are undone, but for their filter.
+    /// The current, A, in the frame of the magnet, where `logged` was measured with the rotor there, at the speed by which a late
+    /// angle is too small: the faults of the sensors are undone, but for their filter.
     #[inline(always)]
-    pub(crate) fn motor_current(&self, logged: [V; 2], rotor: Turn, omega_e: f64) -> [V; 2] {
+    pub(crate) fn motor_current(&self, logged: [V; 2], rotor: Turn, late_by: f64) -> [V; 2] {
         if !self.kinds.sensors {
             return logged;
         }
         let balanced = balanced(self.imbalance, removed(self.current_offset, logged, rotor), rotor);
         let [cos, sin] = self.current_turn;
-        self.undelayed(turned(balanced, cos, sin), omega_e, false)
+        self.undelayed(turned(balanced, cos, sin), late_by, false)
     }
 
     /// Turned by what the angle is late: into the magnet's frame, or `out` of it.
     #[inline(always)]
-    fn undelayed(&self, vector: [V; 2], omega_e: f64, out: bool) -> [V; 2] {
+    fn undelayed(&self, vector: [V; 2], late_by: f64, out: bool) -> [V; 2] {
         if !self.kinds.delay {
             return vector;
         }
-        let [cos, sin] = angle_delay::turn(self.angle_delay, if out { -omega_e } else { omega_e });
+        let [cos, sin] = angle_delay::turn(self.angle_delay, if out { -late_by } else { late_by });
         turned(vector, cos, sin)
     }
 
@@ -243,14 +245,14 @@ impl<V: Number> Acting<V> {
     #[inline(always)]
     fn in_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, sin), place.omega_e, false)
+        self.undelayed(turned(vector, cos, sin), place.late_by, false)
     }
 
     /// A vector of the magnet's frame, in that of the logged angle.
     #[inline(always)]
     fn in_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, -sin), place.omega_e, true)
+        self.undelayed(turned(vector, cos, -sin), place.late_by, true)
     }
 
     /// The voltage `u`, V, less what a motor at current `i`, A, takes or induces beside its equation; `linear_flux` is `L i + psi_f`, Wb.
@@ -261,8 +263,9 @@ impl<V: Number> Acting<V> {
         }
         let harmonics = flux_harmonics::induced(self.flux_harmonics, place);
         let warmer = resistance_drift::taken(self.resistance_change, i, place);
-        let faster = speed_lag::induced(self.speed_lag, linear_flux, place);
-        [u[0] - harmonics[0] - warmer[0] - faster[0], u[1] - harmonics[1] - warmer[1] - faster[1]]
+        let lagging = speed_lag::induced(self.speed_lag, linear_flux, place);
+        let late = angle_delay::induced(self.angle_delay, linear_flux, place);
+        [0, 1].map(|axis| u[axis] - harmonics[axis] - warmer[axis] - lagging[axis] - late[axis])
     }
 
     /// Flux, Wb, beyond `L i + psi_f` at current `i`, A.

@@ -346,6 +346,8 @@ mod tests {
             length: 1e-4,
             omega_e: 2000.0,
             acceleration: 100.0,
+            late_by: 2000.0,
+            angle_acceleration: 100.0,
             advance_per_lag: 0.1,
             per_bus: 0.01,
             time: 0.25,
@@ -354,7 +356,7 @@ mod tests {
         let kinds = FaultKinds::ALL;
         for kinds in [FaultKinds::of(&faults), kinds] {
             let acting = Acting::of(kinds, 1e-4, |number| number(&faults));
-            assert_eq!(acting.motor_current(i, place.start, place.omega_e), i);
+            assert_eq!(acting.motor_current(i, place.start, place.late_by), i);
             assert_eq!(acting.commanded_voltage(i, i, &place), i);
             assert_eq!(acting.lost(i, [i, i], i, &place), [0.0; 2]);
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);

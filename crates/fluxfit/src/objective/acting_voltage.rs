@@ -136,6 +136,11 @@ pub(super) struct Period {
     pub(super) theta_e: f64,
     /// What the speed gains in a second, electrical rad/s²; zero where it is from the angle.
     pub(super) acceleration: f64,
+    /// Mean speed, electrical rad/s, by which an angle that is read late is too small: smoothed as the rotor's angle is, if that is logged.
+    pub(super) late_by: f64,
+    /// What the speed, smoothed so, gains in a second where it is from the angle, electrical rad/s²; else zero. By so much times its delay
+    /// the rotor turns faster than an angle that is late.
+    pub(super) angle_acceleration: f64,
     /// By which the voltage would be turned further if the speed that advanced its angle lagged by a second, rad.
     pub(super) advance_per_lag: f64,
     /// The time of its middle within the log: from minus one half to plus one half.
@@ -149,6 +154,8 @@ pub(super) struct Angles {
     pub(super) logged: Vec<f64>,
     /// As the rotor most likely was: without the steps of an encoder.
     pub(super) rotor: Vec<f64>,
+    /// The logged speed, electrical rad/s, smoothed as that angle is.
+    pub(super) speed: Vec<f64>,
     /// Whether the log has it. Without, both are the speed, integrated from the segment's first row on: still a frame that is fixed to the
     /// rotor, but at an unknown angle to the stator.
     pub(super) known: bool,
@@ -195,12 +202,15 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 }
             };
             let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
+            let (slower, faster) = (angles.speed[row - rows.start], angles.speed[row + 1 - rows.start]);
             Period {
                 length,
                 omega_e: turn / length,
                 u,
                 theta_e: middle,
                 acceleration: if angles.known { 0.0 } else { acceleration(row) },
+                late_by: 0.5 * (slower + faster),
+                angle_acceleration: if angles.known { (faster - slower) / length } else { 0.0 },
                 advance_per_lag: match reading {
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
                     VoltageTiming::Centered | VoltageTiming::Delayed { .. } | VoltageTiming::Averaged => 0.0,
@@ -251,10 +261,11 @@ pub(super) fn angles(log: &Log, rows: &Range<usize>) -> Angles {
         let (whole, expected) = (angles[angles.len() - 1] - angles[0], summed[summed.len() - 1]);
         let turns = (whole - expected).abs() <= WHOLE_MISFIT * expected.abs() + TAU;
         if turns && misfits as f64 <= MISFITS * rows.len() as f64 {
-            return Angles { rotor: smoothed(&angles, &summed), logged: angles, known: true };
+            let speed = moving_mean(&moving_mean(&columns.omega_e[rows.clone()]));
+            return Angles { rotor: smoothed(&angles, &summed), logged: angles, speed, known: true };
         }
     }
-    Angles { rotor: summed.clone(), logged: summed, known: false }
+    Angles { rotor: summed.clone(), logged: summed, speed: columns.omega_e[rows.clone()].to_vec(), known: false }
 }
 
 /// The integrated speed, corrected by the mean difference of the logged angle around each row; averaged twice, so that the slope is
