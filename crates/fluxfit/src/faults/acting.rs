@@ -221,15 +221,15 @@ impl<V: Number> Acting<V> {
             return logged;
         }
         let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_filter, logged, before), place);
-        self.in_magnets_frame(logged, place)
+        self.in_magnets_frame(logged, place.late_by)
     }
 
     /// What the inverter loses of a commanded voltage, V, given the currents in the motor at the start of the period, and at its end if
     /// nothing were lost, A; all in the frame of its magnet. `per_henry` are its inverse inductances.
     #[inline(always)]
     pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
-        let [u, start, end] =
-            [self.in_logged_frame(commanded, place), self.in_logged_frame(start, place), self.in_logged_frame(end, place)];
+        let late_by = place.rotor_late_by;
+        let [u, start, end] = [commanded, start, end].map(|vector| self.in_rotors_frame(vector, late_by));
         let lost = if self.kinds.phase {
             // In a stator that is turned by the phase's angle.
             let [cos, sin] = self.phase;
@@ -238,21 +238,21 @@ impl<V: Number> Acting<V> {
         } else {
             self.dead_time.over(self.kinds.loss, u, [start, end], per_henry, place)
         };
-        self.in_magnets_frame(lost, place)
+        self.in_magnets_frame(lost, late_by)
     }
 
-    /// A vector of the logged angle's frame, in the magnet's.
+    /// A vector of the frame of an angle that is late by the speed times the delay, in the magnet's.
     #[inline(always)]
-    fn in_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+    fn in_magnets_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, sin), place.late_by, false)
+        self.undelayed(turned(vector, cos, sin), late_by, false)
     }
 
-    /// A vector of the magnet's frame, in that of the logged angle.
+    /// A vector of the magnet's frame, in that of an angle that is late.
     #[inline(always)]
-    fn in_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+    fn in_rotors_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, -sin), place.late_by, true)
+        self.undelayed(turned(vector, cos, -sin), late_by, true)
     }
 
     /// The voltage `u`, V, less what a motor at current `i`, A, takes or induces beside its equation; `linear_flux` is `L i + psi_f`, Wb.
@@ -261,11 +261,24 @@ impl<V: Number> Acting<V> {
         if !self.kinds.beside {
             return u;
         }
-        let harmonics = flux_harmonics::induced(self.flux_harmonics, place);
+        let harmonics = flux_harmonics::induced(self.harmonics_of_rotor(place.rotor_late_by), place);
         let warmer = resistance_drift::taken(self.resistance_change, i, place);
         let lagging = speed_lag::induced(self.speed_lag, linear_flux, place);
         let late = angle_delay::induced(self.angle_delay, linear_flux, place);
         [0, 1].map(|axis| u[axis] - harmonics[axis] - warmer[axis] - lagging[axis] - late[axis])
+    }
+
+    /// The amplitudes of the flux harmonics, which turn with the magnet, against an angle that is late: the sixth is so by six times the
+    /// angle.
+    #[inline(always)]
+    fn harmonics_of_rotor(&self, late_by: f64) -> [V; 4] {
+        if !self.kinds.delay {
+            return self.flux_harmonics;
+        }
+        let [d_cos, d_sin, q_cos, q_sin] = self.flux_harmonics;
+        let [cos, sin] = angle_delay::turn(self.angle_delay.constant(6.0) * self.angle_delay, late_by);
+        let ([d_cos, d_sin], [q_cos, q_sin]) = (turned([d_cos, d_sin], cos, sin), turned([q_cos, q_sin], cos, sin));
+        [d_cos, d_sin, q_cos, q_sin]
     }
 
     /// Flux, Wb, beyond `L i + psi_f` at current `i`, A.

@@ -141,6 +141,7 @@ impl SimulatedSegment {
             omega_e,
             acceleration,
             late_by,
+            rotor_late_by: if self.angle_known { late_by } else { 0.0 },
             angle_acceleration,
             advance_per_lag,
             per_bus: self.per_bus,
