@@ -4,10 +4,12 @@
 
 use fluxfit::{
     Columns, Log,
+    faults::{Faults, angle_delay::AngleDelay, dead_time::DeadTime},
     levenberg_marquardt::{MOTOR, Polished, jacobian, polish},
     motor::{Motor, PARAMETERS},
     objective::{
         acting_voltage::{VoltageFrame, VoltageTiming},
+        adjustable::Adjustable,
         output_error::OutputError,
     },
     optimizer::{Bounds, Method, Optimizer, SearchSettings},
@@ -15,7 +17,7 @@ use fluxfit::{
 };
 use fluxfit_drive::{
     scenario::{
-        Adc,
+        Adc, Inverter, Update,
         reference_cases::{acceleration, small_motor},
     },
     simulate,
@@ -162,4 +164,53 @@ fn the_adjoint_tells_what_a_volt_does() {
         let found = 0.5 * (above.motor.to_array()[parameter] - below.motor.to_array()[parameter]);
         assert!((found / expected - 1.0).abs() < 0.02, "{parameter} at {row}: {found:e} instead of {expected:e}");
     }
+}
+
+/// While the speed grows, the rotor turns faster than an angle that is late by a fixed time: simulated with the true motor and the true
+/// delay, nothing is left of the currents. Of the voltage that the missing speed induces, `psi_f` times delay times acceleration,
+/// some hundredths of an ampere would be left.
+#[test]
+fn a_late_angle_leaves_nothing_while_the_speed_grows() {
+    const DELAY: f64 = 100e-6;
+    let mut scenario = acceleration();
+    scenario.sensors.current_noise = 0.0;
+    scenario.sensors.angle_delay = DELAY;
+    let recording = simulate(&scenario, 0, || ()).unwrap();
+    let mut columns = recording.columns.clone();
+    (columns.ud, columns.uq) = (recording.ud_ref.clone(), recording.uq_ref.clone());
+    assert!(columns.theta_e.is_some());
+    let growth = (columns.omega_e[columns.t.len() - 1] - columns.omega_e[0]) / columns.t[columns.t.len() - 1];
+    let missing = paper::MOTOR.psi_f * DELAY * growth.abs() / paper::MOTOR.rs;
+    let objective = OutputError::of(&Log::new(columns).unwrap(), NEXT_PERIOD).unwrap();
+    let drive =
+        Adjustable { faults: Faults { angle_delay: AngleDelay { time: DELAY }, ..Faults::default() }, ..Adjustable::from(paper::MOTOR) };
+    let left = (objective.cost_of(&drive) / (2 * objective.rows()) as f64).sqrt();
+    println!("left {left:e} A of {missing:e} A");
+    assert!(left < 0.02 * missing, "{left:e} A of {missing:e} A");
+}
+
+/// Without the angle, the phases lie by the integral of the speed, which is not late as the frame of the currents is: simulated with the
+/// true drive, dead time and all, no more is left than with the angle.
+#[test]
+fn a_late_angle_that_is_not_logged_moves_no_phase() {
+    const DELAY: f64 = 200e-6;
+    let mut scenario = acceleration();
+    (scenario.sensors.current_noise, scenario.sensors.angle_delay) = (0.0, DELAY);
+    scenario.inverter = Inverter { dead_time: 3e-6, update: Update::Single, ..Inverter::ideal(310.0, 10e3) };
+    let recording = simulate(&scenario, 0, || ()).unwrap();
+    let mut columns = recording.columns.clone();
+    (columns.ud, columns.uq) = (recording.ud_ref.clone(), recording.uq_ref.clone());
+    let start = columns.theta_e.as_ref().unwrap()[0] + DELAY * columns.omega_e[0];
+    let left = |phase: f64, columns: Columns| {
+        let objective = OutputError::of(&Log::new(columns).unwrap(), NEXT_PERIOD).unwrap();
+        // 310 V for 3 us of each 100 us.
+        let dead_time = DeadTime { voltage: 9.3, width: 1e-3, ripple: 1.0, phase, ..DeadTime::default() };
+        let faults = Faults { angle_delay: AngleDelay { time: DELAY }, dead_time, ..Faults::default() };
+        (objective.cost_of(&Adjustable { faults, ..Adjustable::from(paper::MOTOR) }) / (2 * objective.rows()) as f64).sqrt()
+    };
+    let with_angle = left(0.0, columns.clone());
+    columns.theta_e = None;
+    let without = left(start, columns.clone());
+    println!("left {with_angle} A with the angle, {without} A without");
+    assert!(without < 1.1 * with_angle, "{without} A, with the angle {with_angle} A");
 }

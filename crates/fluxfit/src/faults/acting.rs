@@ -97,7 +97,8 @@ impl FaultKinds {
             voltages: turns || faults.speed_lag != none.speed_lag || faults.filter.voltages != 0.0,
             loss: LossKinds::of(&faults.dead_time),
             phase: faults.dead_time.phase != 0.0,
-            beside: faults.speed_lag != none.speed_lag
+            beside: delay
+                || faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
                 || faults.resistance_drift != none.resistance_drift,
             flux: faults.saturation != none.saturation,
@@ -175,33 +176,34 @@ impl Acting<f64> {
         Self::of(FaultKinds::of(faults), period, |number| number(faults))
     }
 
-    /// The current, A, that a perfect sensor would have logged for `logged`, measured with the rotor there at this speed.
-    pub(crate) fn current(&self, logged: Dq, rotor: Turn, omega_e: f64) -> Dq {
-        let [d, q] = self.motor_current([logged.d, logged.q], rotor, omega_e);
+    /// The current, A, that a perfect sensor would have logged for `logged`, measured with the rotor there, at the speed by
+    /// which a late angle is too small.
+    pub(crate) fn current(&self, logged: Dq, rotor: Turn, late_by: f64) -> Dq {
+        let [d, q] = self.motor_current([logged.d, logged.q], rotor, late_by);
         Dq { d, q }
     }
 }
 
 impl<V: Number> Acting<V> {
-    /// The current, A, in the frame of the magnet, where `logged` was measured with the rotor there at this speed: the faults of the
-    /// sensors are undone, but for their filter.
+    /// The current, A, in the frame of the magnet, where `logged` was measured with the rotor there, at the speed by which a late
+    /// angle is too small: the faults of the sensors are undone, but for their filter.
     #[inline(always)]
-    pub(crate) fn motor_current(&self, logged: [V; 2], rotor: Turn, omega_e: f64) -> [V; 2] {
+    pub(crate) fn motor_current(&self, logged: [V; 2], rotor: Turn, late_by: f64) -> [V; 2] {
         if !self.kinds.sensors {
             return logged;
         }
         let balanced = balanced(self.imbalance, removed(self.current_offset, logged, rotor), rotor);
         let [cos, sin] = self.current_turn;
-        self.undelayed(turned(balanced, cos, sin), omega_e, false)
+        self.undelayed(turned(balanced, cos, sin), late_by, false)
     }
 
     /// Turned by what the angle is late: into the magnet's frame, or `out` of it.
     #[inline(always)]
-    fn undelayed(&self, vector: [V; 2], omega_e: f64, out: bool) -> [V; 2] {
+    fn undelayed(&self, vector: [V; 2], late_by: f64, out: bool) -> [V; 2] {
         if !self.kinds.delay {
             return vector;
         }
-        let [cos, sin] = angle_delay::turn(self.angle_delay, if out { -omega_e } else { omega_e });
+        let [cos, sin] = angle_delay::turn(self.angle_delay, if out { -late_by } else { late_by });
         turned(vector, cos, sin)
     }
 
@@ -219,15 +221,15 @@ impl<V: Number> Acting<V> {
             return logged;
         }
         let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_filter, logged, before), place);
-        self.in_magnets_frame(logged, place)
+        self.in_magnets_frame(logged, place.late_by)
     }
 
     /// What the inverter loses of a commanded voltage, V, given the currents in the motor at the start of the period, and at its end if
     /// nothing were lost, A; all in the frame of its magnet. `per_henry` are its inverse inductances.
     #[inline(always)]
     pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
-        let [u, start, end] =
-            [self.in_logged_frame(commanded, place), self.in_logged_frame(start, place), self.in_logged_frame(end, place)];
+        let late_by = place.rotor_late_by;
+        let [u, start, end] = [commanded, start, end].map(|vector| self.in_rotors_frame(vector, late_by));
         let lost = if self.kinds.phase {
             // In a stator that is turned by the phase's angle.
             let [cos, sin] = self.phase;
@@ -236,21 +238,21 @@ impl<V: Number> Acting<V> {
         } else {
             self.dead_time.over(self.kinds.loss, u, [start, end], per_henry, place)
         };
-        self.in_magnets_frame(lost, place)
+        self.in_magnets_frame(lost, late_by)
     }
 
-    /// A vector of the logged angle's frame, in the magnet's.
+    /// A vector of the frame of an angle that is late by the speed times the delay, in the magnet's.
     #[inline(always)]
-    fn in_magnets_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+    fn in_magnets_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, sin), place.omega_e, false)
+        self.undelayed(turned(vector, cos, sin), late_by, false)
     }
 
-    /// A vector of the magnet's frame, in that of the logged angle.
+    /// A vector of the magnet's frame, in that of an angle that is late.
     #[inline(always)]
-    fn in_logged_frame(&self, vector: [V; 2], place: &Place) -> [V; 2] {
+    fn in_rotors_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, -sin), place.omega_e, true)
+        self.undelayed(turned(vector, cos, -sin), late_by, true)
     }
 
     /// The voltage `u`, V, less what a motor at current `i`, A, takes or induces beside its equation; `linear_flux` is `L i + psi_f`, Wb.
@@ -259,10 +261,24 @@ impl<V: Number> Acting<V> {
         if !self.kinds.beside {
             return u;
         }
-        let harmonics = flux_harmonics::induced(self.flux_harmonics, place);
+        let harmonics = flux_harmonics::induced(self.harmonics_of_rotor(place.rotor_late_by), place);
         let warmer = resistance_drift::taken(self.resistance_change, i, place);
-        let faster = speed_lag::induced(self.speed_lag, linear_flux, place);
-        [u[0] - harmonics[0] - warmer[0] - faster[0], u[1] - harmonics[1] - warmer[1] - faster[1]]
+        let lagging = speed_lag::induced(self.speed_lag, linear_flux, place);
+        let late = angle_delay::induced(self.angle_delay, linear_flux, place);
+        [0, 1].map(|axis| u[axis] - harmonics[axis] - warmer[axis] - lagging[axis] - late[axis])
+    }
+
+    /// The amplitudes of the flux harmonics, which turn with the magnet, against an angle that is late: the sixth is so by six times the
+    /// angle.
+    #[inline(always)]
+    fn harmonics_of_rotor(&self, late_by: f64) -> [V; 4] {
+        if !self.kinds.delay {
+            return self.flux_harmonics;
+        }
+        let [d_cos, d_sin, q_cos, q_sin] = self.flux_harmonics;
+        let [cos, sin] = angle_delay::turn(self.angle_delay.constant(6.0) * self.angle_delay, late_by);
+        let ([d_cos, d_sin], [q_cos, q_sin]) = (turned([d_cos, d_sin], cos, sin), turned([q_cos, q_sin], cos, sin));
+        [d_cos, d_sin, q_cos, q_sin]
     }
 
     /// Flux, Wb, beyond `L i + psi_f` at current `i`, A.

@@ -333,6 +333,23 @@ mod tests {
         }
     }
 
+    /// An angle that is 100 us late at 2000 rad/s lies 0.2 rad behind; what the flux's harmonics induce is that of the magnet's angle.
+    #[test]
+    fn harmonics_lie_by_the_magnet_where_the_angle_is_late() {
+        let place = |behind: f64| {
+            let [start, middle, end] = [0.1, 0.2, 0.3].map(|angle| Turn::by(angle - behind));
+            Place { start, middle, end, length: 1e-4, omega_e: 2000.0, rotor_late_by: 2000.0, ..Place::still(middle) }
+        };
+        let induced = |time: f64, behind: f64| {
+            let flux_harmonics = FluxHarmonics { d: [0.01, 0.002], q: [-0.003, 0.008] };
+            let acting = Acting::of_one(&Faults { flux_harmonics, angle_delay: AngleDelay { time }, ..Faults::default() }, 1e-4);
+            acting.beside([0.0; 2], [1.0, 2.0], [0.1, 0.2], &place(behind))
+        };
+        let (found, expected) = (induced(1e-4, 0.2), induced(0.0, 0.0));
+        assert!((found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-6, "{found:?} {expected:?}");
+        assert!((found[0] - induced(0.0, 0.2)[0]).abs() > 1.0);
+    }
+
     /// A fit of each begins with finite steps, and a drive without a fault is changed by no fault.
     #[test]
     fn a_perfect_drive_is_left_alone() {
@@ -346,6 +363,9 @@ mod tests {
             length: 1e-4,
             omega_e: 2000.0,
             acceleration: 100.0,
+            late_by: 2000.0,
+            rotor_late_by: 2000.0,
+            angle_acceleration: 100.0,
             advance_per_lag: 0.1,
             per_bus: 0.01,
             time: 0.25,
@@ -354,7 +374,7 @@ mod tests {
         let kinds = FaultKinds::ALL;
         for kinds in [FaultKinds::of(&faults), kinds] {
             let acting = Acting::of(kinds, 1e-4, |number| number(&faults));
-            assert_eq!(acting.motor_current(i, place.start, place.omega_e), i);
+            assert_eq!(acting.motor_current(i, place.start, place.late_by), i);
             assert_eq!(acting.commanded_voltage(i, i, &place), i);
             assert_eq!(acting.lost(i, [i, i], i, &place), [0.0; 2]);
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);

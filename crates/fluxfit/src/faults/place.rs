@@ -17,6 +17,12 @@ pub(crate) struct Place {
     pub(crate) omega_e: f64,
     /// What the speed gains in a second, electrical rad/s²; zero where it is from the angle.
     pub(crate) acceleration: f64,
+    /// Speed by which an angle that is read late is too small, electrical rad/s.
+    pub(crate) late_by: f64,
+    /// The same of the angle by which the rotor lies here: zero where that is the integral of the speed, which is not late.
+    pub(crate) rotor_late_by: f64,
+    /// What that speed gains in a second where the rotor's speed is from the angle, electrical rad/s²; else zero.
+    pub(crate) angle_acceleration: f64,
     /// By which the voltage would be turned further if the speed that advanced its angle lagged by a second, rad.
     pub(crate) advance_per_lag: f64,
     /// One over the DC voltage, 1/V.
@@ -37,6 +43,9 @@ impl Place {
             length: 1.0,
             omega_e: 0.0,
             acceleration: 0.0,
+            late_by: 0.0,
+            rotor_late_by: 0.0,
+            angle_acceleration: 0.0,
             advance_per_lag: 0.0,
             per_bus: 0.0,
             time: 0.0,

@@ -137,6 +137,11 @@ pub(super) struct Period {
     pub(super) theta_e: f64,
     /// What the speed gains in a second, electrical rad/s²; zero where it is from the angle.
     pub(super) acceleration: f64,
+    /// Mean speed, electrical rad/s, by which an angle that is read late is too small: smoothed as the rotor's angle is, if that is logged.
+    pub(super) late_by: f64,
+    /// What the speed, smoothed so, gains in a second where it is from the angle, electrical rad/s²; else zero. By so much times its delay
+    /// the rotor turns faster than an angle that is late.
+    pub(super) angle_acceleration: f64,
     /// By which the voltage would be turned further if the speed that advanced its angle lagged by a second, rad.
     pub(super) advance_per_lag: f64,
     /// The time of its middle within the log: from minus one half to plus one half.
@@ -188,12 +193,15 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 }
             };
             let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
+            let (slower, faster) = (angles.speed[row - rows.start], angles.speed[row + 1 - rows.start]);
             Period {
                 length,
                 omega_e: turn / length,
                 u,
                 theta_e: middle,
                 acceleration: if angles.known { 0.0 } else { acceleration(row) },
+                late_by: 0.5 * (slower + faster),
+                angle_acceleration: if angles.known { (faster - slower) / length } else { 0.0 },
                 advance_per_lag: match reading {
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
                     VoltageTiming::Centered | VoltageTiming::Delayed { .. } | VoltageTiming::Averaged => 0.0,

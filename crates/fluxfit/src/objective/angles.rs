@@ -13,6 +13,8 @@ pub(super) struct Angles {
     pub(super) logged: Vec<f64>,
     /// As the rotor most likely was: without the steps of an encoder.
     pub(super) rotor: Vec<f64>,
+    /// The logged speed, electrical rad/s, smoothed as that angle is.
+    pub(super) speed: Vec<f64>,
     /// Whether the log has it. Without, both are the speed, integrated from the segment's first row on: still a frame that is fixed to the
     /// rotor, but at an unknown angle to the stator.
     pub(super) known: bool,
@@ -42,6 +44,7 @@ impl Angles {
     /// The angles at these rows of one segment. A logged angle that does not turn with the speed is not used.
     pub(super) fn of(log: &Log, rows: &Range<usize>) -> Self {
         let (logged, rotor, known) = logged_and_rotor(log, rows);
+        let logged_speed = &log.columns().omega_e[rows.clone()];
         let turns = |angles: &[f64]| angles.iter().map(|angle| Turn::by(*angle)).collect::<Vec<Turn>>();
         let rotor_turns = turns(&rotor);
         let columns = log.columns();
@@ -53,6 +56,7 @@ impl Angles {
             logged_turns: if known { turns(&logged) } else { rotor_turns.clone() },
             middle_turns: rotor.windows(2).map(|pair| Turn::by(0.5 * (pair[0] + pair[1]))).collect(),
             rotor_turns,
+            speed: if known { moving_mean(&moving_mean(logged_speed)) } else { logged_speed.to_vec() },
             logged,
             rotor,
             known,

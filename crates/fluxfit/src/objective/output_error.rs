@@ -176,13 +176,13 @@ impl OutputError {
         let (residuals, _) = residuals.as_chunks::<2>();
         let acting = Acting::of_one(&drive.faults, self.simulated.period);
         let speed =
-            |segment: &SimulatedSegment, row: usize| segment.periods.get(row.saturating_sub(1)).map_or(0.0, |period| period.omega_e);
+            |segment: &SimulatedSegment, row: usize| segment.periods.get(row.saturating_sub(1)).map_or(0.0, |period| period.late_by);
         let rows = self.simulated.segments.iter().flat_map(|segment| {
             let rows = segment.measured.iter().zip(&segment.turns).enumerate();
             rows.map(move |(row, (measured, turn))| (*measured, *turn, speed(segment, row)))
         });
-        let simulated = rows.zip(residuals).map(|((measured, turn, omega_e), [d, q])| {
-            let measured = acting.current(measured, turn, omega_e);
+        let simulated = rows.zip(residuals).map(|((measured, turn, late_by), [d, q])| {
+            let measured = acting.current(measured, turn, late_by);
             Dq { d: measured.d - d, q: measured.q - q }
         });
         simulated.collect()

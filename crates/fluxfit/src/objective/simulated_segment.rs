@@ -126,7 +126,7 @@ impl SimulatedSegment {
     /// Where a period lies.
     #[inline(always)]
     pub(super) fn place(&self, row: usize) -> Place {
-        let Period { length, omega_e, acceleration, advance_per_lag, time, .. } = self.periods[row];
+        let Period { length, omega_e, acceleration, late_by, angle_acceleration, advance_per_lag, time, .. } = self.periods[row];
         Place {
             half: carrier_half(self.rows.start + row),
             start: self.turns[row],
@@ -135,6 +135,9 @@ impl SimulatedSegment {
             length,
             omega_e,
             acceleration,
+            late_by,
+            rotor_late_by: if self.angle_known { late_by } else { 0.0 },
+            angle_acceleration,
             advance_per_lag,
             per_bus: self.per_bus,
             time,

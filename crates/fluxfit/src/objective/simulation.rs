@@ -161,8 +161,8 @@ impl<V: Number, const C: usize> Drives<V, C> {
     fn start(&self, segment: &SimulatedSegment) -> State<V> {
         let (zero, one) = (self.motors.rs.constant(0.0), self.motors.rs.constant(1.0));
         let measured = segment.measured[0];
-        let omega_e = segment.periods.first().map_or(0.0, |period| period.omega_e);
-        let i = self.faults.motor_current([zero.constant(measured.d), zero.constant(measured.q)], segment.turns[0], omega_e);
+        let late_by = segment.periods.first().map_or(0.0, |period| period.late_by);
+        let i = self.faults.motor_current([zero.constant(measured.d), zero.constant(measured.q)], segment.turns[0], late_by);
         let response = [[one, zero], [zero, one], [zero; 2], [zero; 2]];
         // A filter is taken to have settled.
         let motor_response = if self.faults.kinds.filter { response } else { [[zero; 2]; LINEAR_UNKNOWNS] };
@@ -403,7 +403,7 @@ impl<V: Number> FaultyBlock<'_, V> {
             }
         }
         state.filtered = self.faults.filtered(filtered, [start, state.i], &place);
-        let measured = self.faults.motor_current(zero.constants(period.measured), place.end, place.omega_e);
+        let measured = self.faults.motor_current(zero.constants(period.measured), place.end, place.late_by);
         state.error = [measured[0] - state.filtered[0], measured[1] - state.filtered[1]];
     }
 
