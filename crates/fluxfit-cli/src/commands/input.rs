@@ -136,6 +136,7 @@ pub(crate) fn options(arguments: &ColumnArguments, of_motor: Option<u32>) -> Res
         pole_pairs,
         dbc: arguments.dbc.as_deref().map(read_dbc).transpose()?,
         mapping,
+        all_rows: false,
     })
 }
 

@@ -19,6 +19,8 @@ pub struct LogOptions {
     pub dbc: Option<String>,
     /// A mapping file; the three fields above override it.
     pub mapping: Mapping,
+    /// Whether all rows of a long log are used, as where a motor is followed through them; else the half a million that differ most.
+    pub all_rows: bool,
 }
 
 /// The options with their names resolved to channels, and mapping file and arguments merged.
@@ -89,7 +91,7 @@ impl ResolvedOptions {
             pole_pairs,
             sample_period: *sample_period,
             dbc: options.dbc.clone(),
-            most_rows: MOST_ROWS,
+            most_rows: if options.all_rows { usize::MAX } else { MOST_ROWS },
         })
     }
 

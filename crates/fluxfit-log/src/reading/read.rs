@@ -299,6 +299,18 @@ mod tests {
         assert!(notes.iter().any(|note| note.starts_with("a gap of 1.00 s at t = 9.89980 s")), "{notes:?}");
     }
 
+    /// One row more than are selected of a long log, all of the same operating point.
+    #[test]
+    fn all_rows_of_a_long_log_are_used_where_they_are_asked_for() {
+        let rows = crate::reading::selection::MOST_ROWS + 1;
+        let row = |k: usize| format!("{:.4},1,20,0,3,400\n", k as f64 * 1e-4);
+        let text = format!("t,ud,uq,id,iq,omega_e\n{}", (0..rows).map(row).collect::<String>());
+        let read = parse_log("a.csv", text.as_bytes(), &LogOptions { all_rows: true, ..LogOptions::default() }).unwrap();
+        assert_eq!((read.log.rows(), read.log.segments().len()), (rows, 1));
+        let read = parse_log("a.csv", text.as_bytes(), &LogOptions::default()).unwrap();
+        assert!(read.log.rows() < rows);
+    }
+
     #[test]
     fn a_log_carries_its_columns_and_notes() {
         let read = parse_log("a.csv", b"t_ms,ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n1,1,2,3,4,5\n", &LogOptions::default()).unwrap();

@@ -55,6 +55,7 @@ fn options(case: &Table) -> LogOptions {
         pole_pairs: case.get("pole_pairs").map(|number| u32::try_from(number.as_integer().unwrap()).unwrap()),
         dbc: case.get("dbc").map(|path| fs::read_to_string(home().join(path.as_str().unwrap())).unwrap()),
         mapping: case.get("mapping").map(|path| read_mapping(&home().join(path.as_str().unwrap())).unwrap()).unwrap_or_default(),
+        ..LogOptions::default()
     }
 }
 

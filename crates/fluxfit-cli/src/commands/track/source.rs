@@ -44,7 +44,7 @@ enum Message {
 /// Reads a finished log of any format.
 pub(super) fn file(path: &Path, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
     let progress = terminal::reading(&format!("reading {}", input::name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
-    let read = read_log_with_progress(path, options, progress.teller())?;
+    let read = read_log_with_progress(path, &LogOptions { all_rows: true, ..options.clone() }, progress.teller())?;
     drop(progress);
     read.notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
     if read.log.is_interpolated() {
