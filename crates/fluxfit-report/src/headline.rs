@@ -47,13 +47,27 @@ fn basis(found: &Identification) -> Markup {
     }
 }
 
+/// Methods that are named where there are too many for a sentence.
+const NAMED: usize = 3;
+
 fn study(facts: &Comparison, methods: &[(MethodStudy, f64)]) -> Markup {
     html! {
         @if let [(only, _)] = methods { (only.method.label()) " ran " } @else { (capitalized(&count(methods.len(), "method"))) " ran " }
-        @if facts.runs == 1 { "once" } @else { (facts.runs) " times" } @if methods.len() != 1 { " each" } "; median cost above the " (facts.problem.fitness.minimum_label()) ": "
-        @for (k, (study, _)) in methods.iter().enumerate() {
-            @if k > 0 { ", " }
-            (study.method.label()) "\u{a0}" (power(study.median()))
+        @if facts.runs == 1 { "once" } @else { (facts.runs) " times" } @if methods.len() != 1 { " each" } "; "
+        @if facts.is_crowded() {
+            @let noise = facts.problem.noise();
+            @let within = methods.iter().filter(|(study, _)| study.share_within(noise) >= 1.0).count();
+            @if within == 0 { "none" } @else { (within) } " of them ended within the noise of the data in every run. Of least cost: "
+            @for (k, (study, _)) in facts.ranking().into_iter().take(NAMED).filter_map(|place| methods.get(place)).enumerate() {
+                @if k > 0 { "; " }
+                (study.method.label())
+            }
+        } @else {
+            "median cost above the " (facts.problem.fitness.minimum_label()) ": "
+            @for (k, (study, _)) in methods.iter().enumerate() {
+                @if k > 0 { ", " }
+                (study.method.label()) "\u{a0}" (power(study.median()))
+            }
         }
         "."
     }

@@ -28,7 +28,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     let unexcited = facts.problem.unexcited.as_slice();
     let with_paper = facts.truth.as_ref().is_some_and(is_papers_motor);
     let content = html! {
-        (means(facts, methods, unexcited, with_paper))
+        @if facts.is_crowded() { (means_by_method(facts, methods, unexcited)) } @else { (means(facts, methods, unexcited, with_paper)) }
         (interpretation(facts, methods, unexcited, with_paper))
     };
     Some(Section { anchor: "estimates", heading: "Means of the estimates", content })
@@ -77,6 +77,41 @@ fn means(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited: &[Parame
                     (estimates(facts, methods, parameter, known, &papers))
                     @if let Some(truth) = &facts.truth { (errors(facts, methods, parameter, truth, known, &papers)) }
                 } }
+            }
+        }))
+    }
+}
+
+/// The table where there are too many methods for a column each: a row each, the best first, below the true motor and the minimum.
+fn means_by_method(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited: &[Parameter]) -> Markup {
+    let (exact, _) = facts.problem.fitness.minimum();
+    let scale = |parameter: Parameter| Scale::for_value(parameter, facts.truth.as_ref().unwrap_or(&exact).get(parameter));
+    let show = |motor: &Motor, parameter: Parameter| {
+        number(motor.get(parameter), |value| scale(parameter).format(value, value.abs() * RESOLUTION))
+    };
+    let ours = |motor: &Motor, parameter: Parameter| if unexcited.contains(&parameter) { DASH.to_owned() } else { show(motor, parameter) };
+    html! {
+        (table::scrolling("Means of the estimates", &html! {
+            table {
+                thead { tr {
+                    th scope="col" { "Method" }
+                    @for parameter in Parameter::ALL { th scope="col" { (symbol(parameter)) ", " (unit(parameter, &scale(parameter))) } }
+                } }
+                tbody {
+                    @if let Some(truth) = &facts.truth {
+                        tr { th scope="row" { "True" } @for parameter in Parameter::ALL { td { (show(truth, parameter)) } } }
+                    }
+                    tr {
+                        th scope="row" { (capitalized(minimum_name(facts))) }
+                        @for parameter in Parameter::ALL { td { (ours(&exact, parameter)) } }
+                    }
+                    @for (study, _) in facts.ranking().into_iter().filter_map(|place| methods.get(place)) {
+                        tr {
+                            th scope="row" { (study.method.label()) }
+                            @for parameter in Parameter::ALL { td { (ours(&study.mean(), parameter)) } }
+                        }
+                    }
+                }
             }
         }))
     }
@@ -151,13 +186,13 @@ fn interpretation(facts: &Comparison, methods: &[(MethodStudy, f64)], unexcited:
             } @else {
                 "Not all searches have converged: the means differ by up to " (distance_text) " % from " (minimum) ". "
             }
-            @if facts.truth.is_some() {
+            @if facts.truth.is_some() && !facts.is_crowded() {
                 "The error is the mean over the runs of the distance from the true value. The last column is the error of the "
                 (facts.problem.fitness.minimum_label()) ", which is caused by the log and its noise. A method with a smaller error than this has "
                 "it by chance, so this error cannot rank the methods."
             }
         }
-        @if with_paper {
+        @if with_paper && !facts.is_crowded() {
             p {
                 "The columns “paper” are from Table 2 of Gao, Wang, Jiang and Hu, 2023, whose log is not published. "
                 @if distance < CONVERGED {

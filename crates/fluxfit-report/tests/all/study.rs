@@ -57,6 +57,17 @@ fn a_study_of_the_papers_motor_shows_the_papers_table() {
     assert!(!checked(&study_page(&paper::METHODS, Some(other), &TWO, |_| ())).contains("0.9639"));
 }
 
+/// Twenty-two names in a sentence, or columns beside each other, are read by nobody.
+#[test]
+fn many_methods_have_a_row_each_and_three_are_named() {
+    let methods = Method::all();
+    let text = checked(&study_page(&methods, Some(paper::MOTOR), &TWO, |_| ()));
+    let headline = text.split("each;").nth(1).unwrap().split('.').take(2).collect::<Vec<_>>().join(".");
+    assert!(headline.contains("within the noise of the data in every run. Of least cost:"), "{headline}");
+    assert_eq!(headline.matches(';').count(), 2, "{headline}");
+    assert!(text.contains("True") && text.contains("Exact least squares") && !text.contains("The last column"), "{text}");
+}
+
 #[test]
 fn one_method_no_truth_and_what_is_not_excited() {
     let text = checked(&study_page(&paper::METHODS[3..], None, &[(0.0, 9.0), (0.0, 5.0)], |_| ()));
