@@ -243,7 +243,7 @@ impl<V: Number> Ramp<V> {
     /// Its integral: a parabola up to the width, straight from there on.
     #[inline(always)]
     fn integral(self, i: V) -> V {
-        // With `x` the part of the way that lies within the width: half its square, and all that lies beyond.
+        // Half the square of the part that lies within the width, over the width, and all that lies beyond.
         let (half, way) = (i.constant(0.5), i.abs());
         let within = way.lower(self.width);
         half * within * within * self.per_width + (way - within)
