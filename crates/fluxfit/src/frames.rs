@@ -127,21 +127,22 @@ impl Turn {
 /// A vector turned forward by an angle with this cosine and sine.
 #[inline(always)]
 pub(crate) fn turned<V: Number>([d, q]: [V; 2], cos: V, sin: V) -> [V; 2] {
-    [cos * d - sin * q, sin * d + cos * q]
+    [cos.mul_add(d, -(sin * q)), sin.mul_add(d, cos * q)]
 }
 
 /// Clarke transform of vectors side by side, amplitude-invariant: as [`Abc::to_alpha_beta`].
 #[inline(always)]
 pub(crate) fn clarke<V: Number>([a, b, c]: [V; 3]) -> [V; 2] {
-    [(a.constant(2.0) * a - b - c) / a.constant(3.0), (b - c) / a.constant(3.0_f64.sqrt())]
+    let (third, two_thirds) = (a.constant(1.0 / 3.0), a.constant(2.0 / 3.0));
+    [two_thirds.mul_add(a, -(third * (b + c))), a.constant(1.0 / 3.0_f64.sqrt()) * (b - c)]
 }
 
 /// Inverse Clarke transform of vectors side by side: as [`AlphaBeta::to_abc`].
 #[inline(always)]
 pub(crate) fn inverse_clarke<V: Number>([alpha, beta]: [V; 2]) -> [V; 3] {
-    let half_beta = alpha.constant(0.5 * 3.0_f64.sqrt()) * beta;
+    let along = alpha.constant(0.5 * 3.0_f64.sqrt());
     let minus_half = alpha.constant(-0.5) * alpha;
-    [alpha, minus_half + half_beta, minus_half - half_beta]
+    [alpha, along.mul_add(beta, minus_half), (-along).mul_add(beta, minus_half)]
 }
 
 #[cfg(test)]

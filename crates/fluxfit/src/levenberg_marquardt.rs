@@ -35,6 +35,9 @@ const NO_STEP_OF_CHOICE: f64 = 1e-7;
 /// What such a fit must gain to go on, by twice the logarithm of the odds: a tenth of very strong evidence.
 const WORTH_GOING_ON: f64 = 1.0;
 
+/// It ends, too, where its derivatives promise less than this part of that gain, all steps to come together.
+const WORTH_A_STEP: f64 = 0.1;
+
 /// It ends after so many evaluations without that gain. Where a current's sign decides, residuals have kinks: derivatives promise what no
 /// step keeps, and steps would be halved twenty times in vain. A step that is too long is shortened to a half or less at once. Of 746
 /// numbers of drawn drives two are wrong with four evaluations, three with three.
@@ -281,6 +284,8 @@ struct Point {
     /// Without priors; infinite where a residual is no number, so that it loses every comparison.
     cost: f64,
     residuals: DVector<f64>,
+    /// The cost, with that of priors, where derivatives see the minimum, A².
+    left: f64,
     /// None if a derivative is no number, or nobody asks for it.
     jacobian: Option<DMatrix<f64>>,
 }
@@ -289,7 +294,18 @@ impl Problem<'_> {
     /// Whether the fit is good enough for what it is for.
     fn is_enough(&self) -> bool {
         let limit = if self.in_vain.gains > 1 { EVALUATIONS_IN_VAIN } else { FIRST_EVALUATIONS_IN_VAIN };
-        self.purpose == Purpose::Choice && self.in_vain.evaluations >= limit
+        self.purpose == Purpose::Choice && (self.in_vain.evaluations >= limit || self.promises_little())
+    }
+
+    /// Whether the best point so far is the lowest one to within rounding of what is worth a step, as far as its derivatives can tell.
+    fn promises_little(&self) -> bool {
+        let Some(best) = self.best.as_ref().filter(|best| best.jacobian.is_some()) else { return false };
+        best.left > best.residuals.norm_squared() * self.odds(-WORTH_A_STEP * WORTH_GOING_ON)
+    }
+
+    /// The ratio of two costs whose odds have this logarithm, twice: it is the number of residuals times the logarithm of that ratio.
+    fn odds(&self, twice_the_logarithm: f64) -> f64 {
+        (twice_the_logarithm / (2 * self.objective.rows()) as f64).exp()
     }
 
     /// Whether the next point is the last one.
@@ -325,7 +341,7 @@ impl Problem<'_> {
             (None, DVector::zeros(count))
         };
         let rest = (squares - explained.norm_squared()).max(0.0).sqrt();
-        Point { units: units.clone(), drive, cost, residuals: explained.push(rest), jacobian }
+        Point { units: units.clone(), drive, cost, residuals: explained.push(rest), left: rest * rest, jacobian }
     }
 }
 
@@ -342,10 +358,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let point = self.point(units);
         self.simulations += 1 + if self.purpose == Purpose::Answer { 2 } else { 1 } * self.unknowns.len();
         (self.progress)(self.simulations);
-        // Twice the logarithm of the odds is the number of residuals times that of the costs' ratio.
-        let residuals = (2 * self.objective.rows()) as f64;
         let with_priors = point.residuals.norm_squared();
-        self.in_vain = if with_priors < self.in_vain.since * (-WORTH_GOING_ON / residuals).exp() {
+        self.in_vain = if with_priors < self.in_vain.since * self.odds(-WORTH_GOING_ON) {
             InVain { since: with_priors, evaluations: 0, gains: self.in_vain.gains + 1 }
         } else {
             InVain { evaluations: self.in_vain.evaluations + 1, ..self.in_vain }

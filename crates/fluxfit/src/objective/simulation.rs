@@ -172,15 +172,15 @@ impl<V: Number, const C: usize> Drives<V, C> {
     /// All rows of drives with faults, or with periods of lengths of their own: block by block, the transitions first.
     #[inline(always)]
     fn faulty_rows(&self, segment: &SimulatedSegment, state: &mut State<V>, sums: &mut Sums<V>, mut trace: Option<&mut Trace>) {
-        let mut transitions = Vec::with_capacity(BLOCK);
+        let mut transitions = [TransitionLanes::of_nothing(self.motors.rs); BLOCK];
         for first in (0..segment.periods.len()).step_by(BLOCK) {
-            self.transitions(segment, first, &mut transitions);
+            let count = self.transitions(segment, first, &mut transitions);
             state.i[0].call(FaultyBlock {
                 motors: &self.motors,
                 faults: &self.faults,
                 segment,
                 first,
-                transitions: &transitions,
+                transitions: &transitions[..count],
                 per_henry: [self.motors.rs.constant(1.0) / self.motors.ld, self.motors.rs.constant(1.0) / self.motors.lq],
                 state,
                 sums,
@@ -189,18 +189,19 @@ impl<V: Number, const C: usize> Drives<V, C> {
         }
     }
 
-    /// The transitions over the periods of a block.
+    /// The transitions over the periods of a block, and how many they are.
     #[inline(always)]
-    fn transitions(&self, segment: &SimulatedSegment, first: usize, transitions: &mut Vec<TransitionLanes<V>>) {
-        transitions.clear();
+    fn transitions(&self, segment: &SimulatedSegment, first: usize, transitions: &mut [TransitionLanes<V>; BLOCK]) -> usize {
         let last = (first + BLOCK).min(segment.periods.len());
-        for (row, period) in segment.rows_of_periods[first..last].iter().zip(&segment.periods[first..last]) {
-            transitions.push(if self.polynomials.is_empty() {
+        let periods = segment.rows_of_periods[first..last].iter().zip(&segment.periods[first..last]);
+        for (transition, (row, period)) in transitions.iter_mut().zip(periods) {
+            *transition = if self.polynomials.is_empty() {
                 TransitionLanes::exact(&self.motors, row.turn, period.length, self.held)
             } else {
                 self.polynomials[row.class].at(row.turn, row.place)
-            });
+            };
         }
+        last - first
     }
 
     /// What a volt over each period does to linear functions of the simulated currents, one function a lane, of which `weights` gives the
@@ -209,10 +210,10 @@ impl<V: Number, const C: usize> Drives<V, C> {
     #[inline(always)]
     pub(super) fn by_voltage(&self, segment: &SimulatedSegment, weights: impl Fn(usize) -> [V; 2], lanes: usize, effects: &mut [f64]) {
         let mut behind = [self.motors.rs.constant(0.0); 2];
-        let mut transitions = Vec::with_capacity(BLOCK);
+        let mut transitions = [TransitionLanes::of_nothing(self.motors.rs); BLOCK];
         for first in (0..segment.periods.len()).step_by(BLOCK).rev() {
-            self.transitions(segment, first, &mut transitions);
-            for (k, transition) in transitions.iter().enumerate().rev() {
+            let count = self.transitions(segment, first, &mut transitions);
+            for (k, transition) in transitions[..count].iter().enumerate().rev() {
                 let row = first + k;
                 let TransitionLanes { fdd, fdq, fqd, fqq, gdd, gdq, gqd, gqq, .. } = *transition;
                 let own = weights(row + 1);
@@ -415,7 +416,7 @@ impl<V: Number> FaultyBlock<'_, V> {
         let mut end = linear;
         for _ in 0..EXTRA_FLUX_ROUNDS {
             let grown = self.faults.extra_flux(end);
-            end = [linear[0] - (grown[0] - flux[0]) / self.motors.ld, linear[1] - (grown[1] - flux[1]) / self.motors.lq];
+            end = [0, 1].map(|axis| self.per_henry[axis].mul_add(flux[axis] - grown[axis], linear[axis]));
         }
         end
     }

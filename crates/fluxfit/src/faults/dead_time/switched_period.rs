@@ -72,10 +72,9 @@ impl<V: Number> SwitchedLoss<V> {
     pub(crate) fn over(&self, kinds: LossKinds, u: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
         let (zero, half, one) = (self.voltage.constant(0.0), self.voltage.constant(0.5), self.voltage.constant(1.0));
         // The rotor turns under a voltage that stands still: the way from sample to sample is bent.
-        let turn = zero.constant(place.omega_e * place.length);
-        let pushed = half * turn * zero.constant(place.length);
-        let bend =
-            [half * turn * turn * start[0] - pushed * per_henry[0] * u[1], half * turn * turn * start[1] + pushed * per_henry[1] * u[0]];
+        let turn = place.omega_e * place.length;
+        let (pulled, pushed) = (zero.constant(0.5 * turn * turn), zero.constant(0.5 * turn * place.length));
+        let bend = [pulled.mul_add(start[0], -(pushed * per_henry[0] * u[1])), pulled.mul_add(start[1], pushed * per_henry[1] * u[0])];
         let bend = inverse_clarke(place.middle.forward(bend));
         let (start, end) = (inverse_clarke(place.start.forward(start)), inverse_clarke(place.end.forward(end)));
         let v = modulated(inverse_clarke(place.middle.forward(u)));
@@ -94,12 +93,15 @@ impl<V: Number> SwitchedLoss<V> {
         // The currents at the edges, but for what the others lose before.
         let (mut low, mut up, mut down) = ([zero; 3], [zero; 3], [zero; 3]);
         for x in 0..3 {
-            low[x] = half - v[x] * per_bus;
-            let mut commanded = zero;
-            for y in 0..3 {
-                let driven = half * (later[x][y] - half * v[y] + v[x] * v[y] * per_bus);
-                commanded = amperes[x][y].mul_add(driven, commanded);
+            low[x] = (-v[x]).mul_add(per_bus, half);
+            let mut together = amperes[x][x] * v[x];
+            let mut ahead = zero;
+            for y in [(x + 1) % 3, (x + 2) % 3] {
+                together = amperes[x][y].mul_add(v[y], together);
+                ahead = amperes[x][y].mul_add(later[x][y], ahead);
             }
+            // The sum over all phases `y` of what a volt second on `y` does, by what has driven it more than its mean until `x` goes up.
+            let commanded = half * (-low[x]).mul_add(together, ahead);
             let (when, way) = (half * carrier * low[x], end[x] - start[x]);
             let bent = when * (one - when) * bend[x];
             up[x] = when.mul_add(way, start[x]) + bent + commanded;
@@ -124,7 +126,7 @@ impl<V: Number> SwitchedLoss<V> {
         for x in 0..3 {
             mirrored[x] = -down[x];
             for y in 0..3 {
-                mirrored[x] = mirrored[x] + amperes[x][y] * risen * out[y];
+                mirrored[x] = (amperes[x][y] * risen).mul_add(out[y], mirrored[x]);
             }
         }
         // An edge down gives where an edge up takes.
@@ -133,15 +135,16 @@ impl<V: Number> SwitchedLoss<V> {
         for x in 0..3 {
             let (up, down) = (up[x], -mirrored[x]);
             if kinds.edges {
-                let at_edges = rising * ramp.at(up) + (one - rising) * ramp.at(down);
+                let (at_up, at_down) = (ramp.at(up), ramp.at(down));
+                let at_edges = rising.mul_add(at_up - at_down, at_down);
                 loss[x] = (one - self.lasting) * at_edges;
             }
             if kinds.lasting {
                 let half_way = half * carrier * (end[x] - start[x]);
                 let (top, bottom) = (start[x] + half_way, end[x] - half_way);
-                let of_up = low[x] * ramp.mean(start[x], up) + (one - low[x]) * ramp.mean(up, top);
-                let of_down = (one - low[x]) * ramp.mean(bottom, down) + low[x] * ramp.mean(down, end[x]);
-                loss[x] = loss[x] + self.lasting * (rising * of_up + (one - rising) * of_down);
+                let of_up = ramp.means([start[x], up, top], [low[x], one - low[x]]);
+                let of_down = ramp.means([bottom, down, end[x]], [one - low[x], low[x]]);
+                loss[x] = loss[x] + self.lasting * of_up.times(rising).plus(of_down.times(one - rising)).value();
             }
         }
         let [d, q] = place.middle.backward(clarke(loss));
@@ -160,7 +163,7 @@ fn after_others<V: Number>(alone: [V; 3], missed: [[V; 3]; 3], ramp: Ramp<V>) ->
         i = alone;
         for x in 0..3 {
             for y in [(x + 1) % 3, (x + 2) % 3] {
-                i[x] = i[x] - missed[x][y] * out[y];
+                i[x] = (-missed[x][y]).mul_add(out[y], i[x]);
             }
         }
     }
@@ -205,6 +208,33 @@ const NARROWEST: f64 = 1e-100;
 /// A way this short, as a fraction of its ends, leaves no digits in a difference of integrals.
 const SHORT: f64 = 1e-6;
 
+/// The same, A: shorter than any current, and the product of four such ways is still a number.
+const SHORTEST: f64 = 1e-60;
+
+/// A quotient that is not yet divided: divisions take as long as all else here, and sums of quotients need but one.
+#[derive(Clone, Copy)]
+struct Fraction<V> {
+    above: V,
+    below: V,
+}
+
+impl<V: Number> Fraction<V> {
+    #[inline(always)]
+    fn times(self, factor: V) -> Self {
+        Self { above: self.above * factor, ..self }
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self { above: self.above.mul_add(other.below, other.above * self.below), below: self.below * other.below }
+    }
+
+    #[inline(always)]
+    fn value(self) -> V {
+        self.above / self.below
+    }
+}
+
 impl<V: Number> Ramp<V> {
     #[inline(always)]
     fn of(width: V) -> Self {
@@ -230,14 +260,21 @@ impl<V: Number> Ramp<V> {
         out
     }
 
+    /// Its mean while its argument goes from one value to the next and on to the last, each way with a weight of its own.
+    #[inline(always)]
+    fn means(self, [from, between, to]: [V; 3], weights: [V; 2]) -> Fraction<V> {
+        self.mean(from, between).times(weights[0]).plus(self.mean(between, to).times(weights[1]))
+    }
+
     /// Its mean while its argument goes from one value to another.
     #[inline(always)]
-    fn mean(self, from: V, to: V) -> V {
+    fn mean(self, from: V, to: V) -> Fraction<V> {
         // Over a short way the ramp is straight, or about to be.
         let straight = self.at(from.constant(0.5) * (from + to));
         let way = to - from;
-        let long = from.constant(SHORT) * (from.abs() + to.abs());
-        long.if_less(way.abs(), (self.integral(to) - self.integral(from)) / way, straight)
+        let long = from.constant(SHORT).mul_add(from.abs() + to.abs(), from.constant(SHORTEST));
+        let integrals = self.integral(to) - self.integral(from);
+        Fraction { above: long.if_less(way.abs(), integrals, straight), below: long.if_less(way.abs(), way, way.constant(1.0)) }
     }
 
     /// Its integral: a parabola up to the width, straight from there on.
@@ -246,7 +283,7 @@ impl<V: Number> Ramp<V> {
         // Half the square of the part that lies within the width, over the width, and all that lies beyond.
         let (half, way) = (i.constant(0.5), i.abs());
         let within = way.lower(self.width);
-        half * within * within * self.per_width + (way - within)
+        (half * self.per_width * within).mul_add(within, way - within)
     }
 }
 
@@ -262,7 +299,7 @@ mod tests {
             const POINTS: u32 = 20_000;
             let point = |k: u32| ((from + (to - from) * (f64::from(k) + 0.5) / f64::from(POINTS)) / width).clamp(-1.0, 1.0);
             let expected = (0..POINTS).map(point).sum::<f64>() / f64::from(POINTS);
-            prop_assert!((Ramp::of(width).mean(from, to) - expected).abs() < 1e-4);
+            prop_assert!((Ramp::of(width).mean(from, to).value() - expected).abs() < 1e-4);
         }
     }
 
