@@ -27,6 +27,8 @@ pub enum Problem {
     NumbersForHeader { text: String },
     #[error("{} is a single column; separate names and values by comma, semicolon or tab", quote(.text))]
     OneColumn { text: String },
+    #[error("this export of TwinCAT Scope has channels with the sample times {} ms, so the values of a row are not simultaneous; export the channels of the log with one sample time", list(.times))]
+    SampleTimes { times: Vec<String> },
     #[error("the row has {} where the header has {expected}; {}", cells(*.found), row_remedy(*.found > *.expected, *.multiline))]
     RowLength { found: usize, expected: usize, multiline: bool },
     #[error("{} is not a number; correct it or remove the row", quote(.text))]
@@ -63,7 +65,7 @@ impl Problem {
             | Self::Document { .. }
             | Self::NoHeader
             | Self::NumbersForHeader { .. } => FileErrorKind::Format,
-            Self::OneColumn { .. } | Self::RowLength { .. } => FileErrorKind::Format,
+            Self::OneColumn { .. } | Self::RowLength { .. } | Self::SampleTimes { .. } => FileErrorKind::Format,
             Self::NotANumber { .. } | Self::Value { .. } | Self::Word { .. } | Self::Range { .. } => FileErrorKind::Value,
             Self::Key { .. } | Self::OutsideTable { .. } | Self::OtherTable { .. } | Self::InsideTable | Self::MissingKey { .. } => {
                 FileErrorKind::Key

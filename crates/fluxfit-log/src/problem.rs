@@ -119,6 +119,11 @@ pub(crate) enum Problem {
     )]
     ChannelsNotSimultaneous,
     #[error(
+        "this column has a time of its own, {}, which is {apart} {}: its rows are not simultaneous with the others; export all channels with one sample time and one time",
+        quote(.own), quote(.time)
+    )]
+    OwnTimes { own: String, time: String, apart: String },
+    #[error(
         "at no instant of {base} does every other channel have values nearby; log the channels at the same instants, or over the same time"
     )]
     NoCommonInstants { base: &'static str },
@@ -215,7 +220,9 @@ impl Problem {
             Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
-            Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } => FileErrorKind::Data,
+            Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } | Self::OwnTimes { .. } => {
+                FileErrorKind::Data
+            }
             Self::NoMotors { .. } | Self::MotorNames => FileErrorKind::Columns,
             Self::Lengths { .. } | Self::SeveralGroups | Self::Log(_) | Self::LongCharacteristic { .. } => FileErrorKind::Data,
             Self::ExternalHdf5 | Self::MatObject { .. } | Self::NewerHdf5 { .. } | Self::Hdf5Filter { .. } => FileErrorKind::Unsupported,

@@ -39,7 +39,7 @@ const LONGEST_UNIT: usize = 16;
 /// If there is no header, or it has only one name.
 pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     let mut header = match scope::find(text) {
-        Some(export) => of_scope(text, export, notes),
+        Some(export) => of_scope(text, export, notes)?,
         None => names(text, notes)?,
     };
     if header.rows == RowStyle::Plain && header.separator != b';' && first_row(text, header.body).is_some_and(|row| row.ends_with(';')) {
@@ -63,10 +63,17 @@ pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
 }
 
 /// The header of an export of TwinCAT Scope.
-fn of_scope(text: &str, export: Export, notes: &mut Vec<String>) -> Header {
-    let Export { names, units, start, separator, body } = export;
+///
+/// # Errors
+/// If its channels have different sample times.
+fn of_scope(text: &str, export: Export, notes: &mut Vec<String>) -> Result<Header, FileError> {
+    let Export { names, units, start, separator, body, sample_times } = export;
+    let line = record::line_of(text, start);
+    if !sample_times.is_empty() {
+        return Err(FileError::from(Problem::SampleTimes { times: sample_times }).at_line(line));
+    }
     notes.push("read as an export of TwinCAT Scope, whose times are milliseconds".to_owned());
-    Header { names, units, line: record::line_of(text, start), separator, rows: RowStyle::Plain, body, body_line: 0 }
+    Ok(Header { names, units, line, separator, rows: RowStyle::Plain, body, body_line: 0 })
 }
 
 /// Tektronix writes the labels of the channels above their names, `TIME,CH1`: what has a label has that name.

@@ -15,6 +15,8 @@ pub(super) struct Export {
     pub(super) start: usize,
     pub(super) separator: u8,
     pub(super) body: usize,
+    /// The sample times of the channels, ms, if they differ: then the rows are not simultaneous.
+    pub(super) sample_times: Vec<String>,
 }
 
 /// The header, if a text begins as such an export.
@@ -37,14 +39,20 @@ pub(super) fn find(text: &str) -> Option<Export> {
         }
         is_row.then_some((start, row.len()))
     })?;
-    // Channels of different sample times stand beside each other without being simultaneous: no time is that of the row.
-    let is_one_time = periods.windows(2).all(|pair| pair[0] == pair[1]);
-    let is_shared = width == channels.len() + 1 && is_one_time;
+    let is_shared = width == channels.len() + 1;
+    let mut sample_times: Vec<String> = Vec::new();
+    for period in periods.into_iter().filter(|period| !period.is_empty()) {
+        if !sample_times.contains(&period) {
+            sample_times.push(period);
+        }
+    }
+    if sample_times.len() < 2 {
+        sample_times.clear();
+    }
     let (mut names, mut units) = (Vec::new(), Vec::new());
     for (at, channel) in channels.into_iter().enumerate() {
         if at == 0 || !is_shared {
-            let first = if is_one_time { "Time" } else { "time of the next channel" };
-            names.push(if at == 0 { first.to_owned() } else { format!("its time {at}") });
+            names.push(if at == 0 { "Time".to_owned() } else { format!("Time {}", at + 1) });
             units.push("ms".to_owned());
         }
         names.push(channel);
@@ -52,7 +60,7 @@ pub(super) fn find(text: &str) -> Option<Export> {
         let unit = stated.get(at).and_then(|unit| unit.split('(').next());
         units.push(unit.unwrap_or_default().trim().to_owned());
     }
-    Some(Export { names, units, start, separator, body })
+    Some(Export { names, units, start, separator, body, sample_times })
 }
 
 fn cells(line: &str, separator: u8) -> Vec<String> {
@@ -77,12 +85,12 @@ mod tests {
         let head = "Name;ud;Name;iq\nSampleTime[ms];0,1;SampleTime[ms];0,1\nUnit;V (Voltage);Unit;(None)\n\n";
         let text = format!("{titles}{head}0,0;-3,5;0,0;2\n");
         let export = find(&text).unwrap();
-        assert_eq!(export.names, ["Time", "ud", "its time 1", "iq"]);
+        assert_eq!(export.names, ["Time", "ud", "Time 2", "iq"]);
         assert_eq!(export.units, ["ms", "V", "ms", ""]);
         assert_eq!((&text[export.start..][..7], export.separator, &text[export.body..]), ("Name;ud", b';', "0,0;-3,5;0,0;2\n"));
         assert_eq!(find(&format!("{titles}{head}0,0;-3,5;2\n")).unwrap().names, ["Time", "ud", "iq"]);
         let two_rates = find(&format!("{titles}{}0,0;-3,5;0,0;2\n", head.replacen("0,1", "0,2", 1))).unwrap();
-        assert!(!two_rates.names.contains(&"Time".to_owned()));
+        assert_eq!((export.sample_times, two_rates.sample_times), (vec![], vec!["0,2".to_owned(), "0,1".to_owned()]));
         assert!(find("Name,File\n1,2\n").is_none() && find(titles).is_none());
     }
 }

@@ -51,6 +51,9 @@ struct Column {
 /// Maximum length of the shorter side of a matrix whose lines are columns: a larger matrix is an image or a map, not a log.
 const MOST_LINES: u64 = 1024;
 
+/// Columns of a log, without its time: two voltages, two currents, the speed.
+const COLUMNS_OF_A_LOG: usize = 5;
+
 impl Mat {
     /// Opens a file; none if it is neither a MAT nor an HDF5 file.
     pub(super) fn open(start: &[u8], source: RandomAccess) -> Result<Option<Self>, FileError> {
@@ -146,12 +149,13 @@ impl Mat {
                 return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
             }
         }
+        // A whole workspace was saved: what it has besides is no log, so the log is in the object.
+        let is_log = |object: &&Object| heads.is_empty() || heads.len() < COLUMNS_OF_A_LOG && object.holds_a_table();
+        if let Some(Object { name, class }) = contents.objects.iter().find(is_log) {
+            return Err(Problem::MatObject { name: name.clone(), class: class.clone() }.into());
+        }
         if heads.is_empty() {
-            return Err(match contents.objects.into_iter().next() {
-                Some(Object { name, class }) => Problem::MatObject { name, class },
-                None => Problem::NoNumbers { format },
-            }
-            .into());
+            return Err(Problem::NoNumbers { format }.into());
         }
         let mut unreadable = contents.unreadable;
         unreadable.extend(contents.objects.into_iter().map(|object| object.name));

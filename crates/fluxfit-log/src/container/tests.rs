@@ -1,7 +1,8 @@
 //! Files of independent writers, made by `tests/containers/make.py`, with values that are known by formula.
 
 use super::{limits::BLOCK, *};
-use std::{fs, path::PathBuf};
+use flate2::read::GzDecoder;
+use std::{fs, io::Read, path::PathBuf};
 
 const ROWS: usize = 100;
 
@@ -250,6 +251,9 @@ fn mat_variables_that_are_not_columns() {
     let object = format!("\"run\" is a timeseries object, which only MATLAB can read; {remedy}");
     assert_eq!(refusal("opaque.mat"), object);
     assert_eq!(refusal("v73_object.mat"), object);
+    // Beside a vector, in one workspace.
+    let workspace = [fs::read(path("mixed.mat")).unwrap(), fs::read(path("opaque.mat")).unwrap()[128..].to_vec()].concat();
+    assert_eq!(Binary::open(RandomAccess::memory(workspace)).err().unwrap().to_string(), object);
     let mut cut = fs::read(path("v5.mat")).unwrap();
     cut.truncate(2000);
     let error = Binary::open(RandomAccess::memory(cut)).err().unwrap().to_string();
@@ -302,6 +306,17 @@ fn hdf5_refusals() {
     assert_eq!(refusal("many_tracked.h5"), newer("a group with its links in a heap"));
     let filter = "column 'id': this HDF5 file is compressed by filter 32000, which is not supported; use gzip";
     assert_eq!(refusal("lzf.h5"), format!("{filter}, {parquet}"));
+}
+
+/// The array is listed under its first names only.
+#[test]
+fn hdf5_with_3000_links_to_one_array_is_listed_in_2_s() {
+    let mut bytes = Vec::new();
+    GzDecoder::new(&fs::read(path("many_links.h5.gz")).unwrap()[..]).read_to_end(&mut bytes).unwrap();
+    let start = std::time::Instant::now();
+    let binary = Binary::open(RandomAccess::memory(bytes)).unwrap().unwrap();
+    assert!(names(&binary).starts_with(&["n0000", "n0001"]) && binary.heads().len() < 3000, "{}", binary.heads().len());
+    assert!(start.elapsed().as_secs_f64() < 2.0, "{:?}", start.elapsed());
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::{
     layout::Layout,
     lines::Lines,
     options::ResolvedOptions,
+    own_times::OwnTimes,
     selection::{Features, Selected, Selection, mean_and_deviation},
     table::Table,
 };
@@ -74,18 +75,23 @@ pub(super) fn gather(
 fn of_group(chosen: &[ChosenColumn], heads: &[ColumnHead], group: usize) -> Option<Vec<ChosenColumn>> {
     let mut columns: Vec<ChosenColumn> = chosen.iter().filter(|column| heads[column.index].group == group).cloned().collect();
     let has_time = |columns: &[ChosenColumn]| columns.iter().any(|column| column.channel == T);
-    if !has_time(&columns) && chosen.iter().any(|column| column.channel == T) {
+    if !has_time(&columns)
+        && let Some(time) = chosen.iter().find(|column| column.channel == T)
+    {
         let index = heads.iter().position(|head| head.group == group && head.is_time)?;
         let header = heads[index].name.clone();
         let instants = heads[index].instants.clone();
-        let (unit, is_unit_stated, is_optional) = (Unit::Second, true, false);
+        let is_as_chosen =
+            instants.is_none() && time.instants.is_none() && heads[time.index].is_time && heads[time.index].unit == heads[index].unit;
+        let (unit, scale) = if is_as_chosen { (time.unit, time.scale) } else { (Unit::Second, 1.0) };
+        let (is_unit_stated, is_optional) = (true, false);
         columns.push(ChosenColumn {
             channel: T,
             index,
             header,
             unit,
             pole_pairs: 1,
-            scale: 1.0,
+            scale,
             is_optional,
             is_unit_stated,
             is_unit_written: false,
@@ -110,7 +116,8 @@ fn one_group(
     notes: &mut Vec<Note>,
 ) -> Result<Gathered, FileError> {
     let place = |channel: Channel| columns.iter().position(|column| column.channel == channel);
-    let wanted: Vec<WantedColumn> = columns.iter().map(ChosenColumn::wanted).collect();
+    let mut own_times = OwnTimes::of(table.heads(), columns);
+    let wanted: Vec<WantedColumn> = columns.iter().map(ChosenColumn::wanted).chain(own_times.wanted(columns)).collect();
     let mut counted = period.filter(|_| place(T).is_none()).map(|period| Counted { period, t: -period, run: None });
     let mut selection = Selection::new(columns.len() + usize::from(counted.is_some()), features(&place), most_rows);
     let is_unit_stated = place(T).is_some_and(|t| columns[t].is_unit_stated);
@@ -124,6 +131,12 @@ fn one_group(
                     if first.is_none() {
                         *first = later.take();
                     }
+                }
+                let others = block.values.split_off(columns.len());
+                if !others.is_empty()
+                    && let Some(t) = place(T)
+                {
+                    own_times.compare(&block.values[t], &others);
                 }
                 for (column, values) in columns.iter().zip(&mut block.values) {
                     column.to_si(values);
@@ -141,6 +154,9 @@ fn one_group(
             .into_iter()
             .map(Note::from),
     );
+    if let Some(t) = place(T) {
+        own_times.refuse(&columns[t].header)?;
+    }
     notes.extend(clock.notes().into_iter().map(Note::from));
     if let Some(step) = clock.unstated_step() {
         return Err(Problem::TimeUnit { step }.into());

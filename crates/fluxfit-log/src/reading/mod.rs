@@ -24,6 +24,7 @@ mod mapping;
 mod mapping_template;
 mod names;
 mod options;
+mod own_times;
 mod phases;
 mod plausibility;
 mod read;

@@ -5,6 +5,8 @@ Every log has N rows of formulas that the tests repeat. No reader or writer of f
 
 import datetime
 import decimal
+import gzip
+import io
 import pathlib
 
 import h5py
@@ -176,8 +178,19 @@ def hdf5():
     with h5py.File(HERE / "many_tracked.h5", "w", track_order=True) as file:
         for at in range(12):
             file[f"x{at}"] = i_d
+    many_links()
     v73("v73", False)
     v73("v73_object", True)
+
+
+def many_links():
+    """3000 names of one array. Packed, because the names take far more room than a test needs."""
+    memory = io.BytesIO()
+    with h5py.File(memory, "w", libver="earliest") as file:
+        array = file.create_dataset("n0000", data=numpy.zeros(200_000))
+        for at in range(1, 3000):
+            file[f"n{at:04}"] = array
+    (HERE / "many_links.h5.gz").write_bytes(gzip.compress(memory.getvalue(), 9, mtime=0))
 
 
 def v73(name, objects):

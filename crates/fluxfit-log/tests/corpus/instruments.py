@@ -42,7 +42,7 @@ def twincat(make):
     export("twincat_one_time.csv", ";", ",", shared=True)
     make.read("twincat_one_time.csv", "the same with one time for all channels, and semicolons", fast, tolerances={"t": 1e-15}, notes=["TwinCAT"])
     export("twincat_two_rates.csv", "\t", ".", periods=["0.1", "0.1", "0.1", "0.1", "1"])
-    make.refuse("twincat_two_rates.csv", "channels of two sample times, whose rows are not simultaneous", "t is missing", line=7)
+    make.refuse("twincat_two_rates.csv", "channels of two sample times, whose rows are not simultaneous", "sample times 0.1 and 1 ms", "one sample time", line=7)
 
 
 def oscilloscopes(make):

@@ -42,6 +42,14 @@ pub(crate) enum Line {
     Row(u64),
 }
 
+impl Object {
+    /// Whether MATLAB keeps tables or signals in objects of this class.
+    pub(super) fn holds_a_table(&self) -> bool {
+        let classes = ["table", "timetable", "timeseries", "tscollection", "Simulink.SimulationData.Dataset", "Simulink.SimulationOutput"];
+        classes.contains(&self.class.as_str())
+    }
+}
+
 /// Fields with texts that name the numbers of their structure, or state their unit.
 pub(super) fn is_label(path: &str) -> bool {
     [".label", ".Name", ".Unit"].iter().any(|field| path.ends_with(field))
