@@ -2,7 +2,7 @@
 // Numbers on standard output are what this program is for.
 #![allow(clippy::print_stdout)]
 
-use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, Period, Real, period::current_after};
+use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, Number, Period, Real, period::current_after};
 use std::{
     cell::RefCell,
     collections::BTreeMap,
@@ -52,13 +52,13 @@ impl SubAssign for Counted {
     }
 }
 
-impl Real for Counted {
+impl Number for Counted {
     const ZERO: Self = Self(0.0);
     const ONE: Self = Self(1.0);
     fn of(value: f64) -> Self {
         Self(value as f32)
     }
-    fn to_f64(self) -> f64 {
+    fn largest(self) -> f64 {
         f64::from(self.0)
     }
     fn sqrt(self) -> Self {
@@ -80,6 +80,21 @@ impl Real for Counted {
     fn exp_m1(self) -> Self {
         count("exponentials");
         Self(self.0.exp_m1())
+    }
+    fn if_above(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if self > other { then } else { otherwise }
+    }
+    fn larger(self, other: Self) -> Self {
+        self.if_above(other, self, other)
+    }
+    fn smaller(self, other: Self) -> Self {
+        other.if_above(self, self, other)
+    }
+}
+
+impl Real for Counted {
+    fn to_f64(self) -> f64 {
+        f64::from(self.0)
     }
     fn is_finite(self) -> bool {
         self.0.is_finite()

@@ -2,7 +2,7 @@
 // Numbers on standard output are what this program is for.
 #![allow(clippy::print_stdout)]
 
-use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, Period, Real, period::current_after};
+use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, Period, Real, bank::Together, period::current_after};
 use std::time::Instant;
 
 const TRUTH: [f64; 4] = [0.958, 5.25e-3, 12e-3, 0.1827];
@@ -82,11 +82,33 @@ fn measured<T: Real>(name: &str, count: usize) {
     );
 }
 
+/// Nanoseconds a sample of six filters with different unknown voltages, each alone and all together.
+fn bank(count: usize) {
+    let periods = recorded::<f64>();
+    let filter = |level| Ekf::new(EkfSettings { unknown_voltage: level, ..EkfSettings::tracking(TRUTH, 10.0) }, [1.0; 4]);
+    let mut alone = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0].map(filter);
+    let mut bank = alone;
+    let begun = Instant::now();
+    for k in 0..count {
+        let (period, i) = period(&periods, k);
+        alone.iter_mut().for_each(|filter| filter.advance(&period, i));
+    }
+    let of_alone = begun.elapsed().as_secs_f64() / count as f64;
+    let (mut together, begun) = (Together::new(), Instant::now());
+    for k in 0..count {
+        let (period, i) = period(&periods, k);
+        together.advance(&mut bank, &[true; 6], &period, i);
+    }
+    let of_bank = begun.elapsed().as_secs_f64() / count as f64;
+    println!("six filters: each alone {:.0} ns, together {:.0} ns, same bits: {}", 1e9 * of_alone, 1e9 * of_bank, alone == bank);
+}
+
 fn main() {
     let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(100_000);
     let only = std::env::args().nth(2);
     if only.as_deref() != Some("f32") {
         measured::<f64>("f64", count);
+        bank(count);
     }
     if only.as_deref() != Some("f64") {
         measured::<f32>("f32", count);

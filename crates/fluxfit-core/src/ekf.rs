@@ -18,8 +18,8 @@
 
 use crate::{
     PARAMETERS,
-    period::{Period, arrival},
-    real::Real,
+    period::{Period, arrival, is_divided_alike},
+    real::{Number, Real},
     step_test::{Step, StepTest},
     ud::{STATES, Ud},
     walk::Walk,
@@ -138,6 +138,204 @@ pub struct Ekf<T> {
     last_surprise: T,
 }
 
+/// Whether all is a number, and the period longer than nothing.
+fn is_sound<T: Real>(period: &Period<T>, measured: [T; 2]) -> bool {
+    let are_finite = [period.u[0], period.u[1], period.omega_e, measured[0], measured[1]].iter().all(|value| value.is_finite());
+    are_finite && period.length > T::ZERO
+}
+
+/// What is the same for one filter and for several in the lanes of a vector.
+impl<T: Number> Ekf<T> {
+    /// A filter of no numbers yet, in whose lanes others are laid.
+    pub(crate) fn blank() -> Self {
+        let (zeros, two) = ([T::ZERO; PARAMETERS], [T::ZERO; 2]);
+        let settings =
+            EkfSettings { nominal: zeros, start_error: zeros, walk: zeros, unknown_voltage: T::ZERO, noise: T::ZERO, steps: false };
+        let ud = Ud::new([T::ZERO; STATES]);
+        Self {
+            settings,
+            is_begun: true,
+            i: two,
+            z: zeros,
+            ud,
+            noise: T::ZERO,
+            test: StepTest::new(),
+            before: Before { z: zeros, ud, noise: T::ZERO, may_step: [false; PARAMETERS] },
+            walk: Walk::new(),
+            steps: 0,
+            outliers: 0,
+            in_a_row: 0,
+            is_waiting: false,
+            may_step: [false; PARAMETERS],
+            left_out: 0,
+            surprise: T::ZERO,
+            last_surprise: T::ZERO,
+        }
+    }
+
+    /// Takes over whether steps are looked for and whether the samples excite the parameters.
+    pub(crate) fn become_like<U: Number>(&mut self, other: &Ekf<U>) {
+        self.settings.steps = other.settings.steps;
+        self.walk.note(other.walk.is_excited());
+    }
+
+    /// Whether both would be made alike by [`Self::become_like`].
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.settings.steps == other.settings.steps && self.walk.is_excited() == other.walk.is_excited()
+    }
+
+    /// Whether all lanes divide the period alike.
+    #[inline(always)]
+    pub(crate) fn divides_alike(&self, period: &Period<T>) -> bool {
+        is_divided_alike(&self.values(), period)
+    }
+
+    /// Calls `with` for each setting that [`Self::learn`] reads and that of another filter.
+    #[inline(always)]
+    pub(crate) fn with_settings_of<U: Number>(&mut self, other: &mut Ekf<U>, with: impl Fn(&mut T, &mut U)) {
+        let (own, other) = (&mut self.settings, &mut other.settings);
+        for j in 0..PARAMETERS {
+            with(&mut own.nominal[j], &mut other.nominal[j]);
+            with(&mut own.walk[j], &mut other.walk[j]);
+        }
+        with(&mut own.unknown_voltage, &mut other.unknown_voltage);
+        with(&mut own.noise, &mut other.noise);
+    }
+
+    /// Calls `with` for each number that [`Self::learn`] changes and that of another filter.
+    #[inline(always)]
+    pub(crate) fn with_state_of<U: Number>(&mut self, other: &mut Ekf<U>, with: impl Fn(&mut T, &mut U)) {
+        for c in 0..2 {
+            with(&mut self.i[c], &mut other.i[c]);
+        }
+        for j in 0..PARAMETERS {
+            with(&mut self.z[j], &mut other.z[j]);
+        }
+        self.ud.with(&mut other.ud, &with);
+        with(&mut self.noise, &mut other.noise);
+        if self.settings.steps {
+            self.test.with(&mut other.test, &with);
+        }
+        self.walk.with(&mut other.walk, &with);
+        with(&mut self.surprise, &mut other.surprise);
+        with(&mut self.last_surprise, &mut other.last_surprise);
+    }
+
+    /// Goes on by a period, and learns from the current at its end; `late` as in [`StepTest::note`]. One for each current that lay beyond
+    /// three standard deviations, else zero.
+    #[inline(always)]
+    pub(crate) fn learn(&mut self, period: &Period<T>, measured: [T; 2], late: T) -> [T; 2] {
+        let (arrived, phi) = self.predicted(period);
+        self.walk(&phi, &self.values(), period);
+        self.i = arrived;
+        if self.settings.steps {
+            self.test.propagate(&phi);
+        }
+        [self.measure(0, measured[0], late), self.measure(1, measured[1], late)]
+    }
+
+    /// The current after a period, and the first two rows of the transition.
+    #[inline(always)]
+    fn predicted(&self, period: &Period<T>) -> ([T; 2], [[T; STATES]; 2]) {
+        let arrived = arrival(&self.values(), self.i, period);
+        let (scale, [fd, fq]) = (self.scale(), arrived.by_current);
+        let mut phi = [[T::ZERO; STATES]; 2];
+        for (c, row) in phi.iter_mut().enumerate() {
+            (row[0], row[1]) = (fd[c], fq[c]);
+            for j in 0..PARAMETERS {
+                row[j + 2] = arrived.by_parameter[j][c] * scale[j];
+            }
+        }
+        (arrived.i, phi)
+    }
+
+    /// The covariance after a period, with the unknown voltage and the walk of the parameters.
+    #[inline(always)]
+    fn walk(&mut self, phi: &[[T; STATES]; 2], theta: &[T; PARAMETERS], period: &Period<T>) {
+        let [kick_d, kick_q] = self.kick(theta, period);
+        let q = self.settings.walk.map(|walk| walk * walk * period.length);
+        let [rs, ld, lq, psi_f] = self.walk.of_all(q);
+        self.ud.propagate(phi, &[kick_d, kick_q, rs, ld, lq, psi_f]);
+        let (scale, [id, iq], omega) = (self.scale(), self.i, period.omega_e);
+        let of_ud = [id * scale[0], T::ZERO, -(omega * iq * scale[2]), T::ZERO];
+        let of_uq = [iq * scale[0], omega * id * scale[1], T::ZERO, omega * scale[3]];
+        for v in self.walk.of_told(period.length, q, [of_ud, of_uq]).into_iter().flatten() {
+            self.ud.add(&[T::ZERO, T::ZERO, v[0], v[1], v[2], v[3]]);
+        }
+    }
+
+    /// Variance of each current that the unknown voltage makes in a period, A².
+    #[inline(always)]
+    fn kick(&self, theta: &[T; PARAMETERS], period: &Period<T>) -> [T; 2] {
+        [theta[1], theta[2]].map(|l| {
+            let kick = period.length * self.settings.unknown_voltage / l;
+            kick * kick
+        })
+    }
+
+    /// Learns from one current. One if it lay beyond three standard deviations, else zero.
+    #[inline(always)]
+    fn measure(&mut self, state: usize, measured: T, late: T) -> T {
+        let innovation = measured - self.i[state];
+        let explained = self.ud.variance(state);
+        let variance = explained + self.noise;
+        let (size, deviation) = (innovation.abs(), variance.sqrt());
+        let limit = T::of(OUTLIER) * deviation;
+        let beyond = size.if_above(limit, T::ONE, T::ZERO);
+        let noise = size.if_above(limit, size * deviation / T::of(OUTLIER) - explained, self.noise);
+        let measured = self.ud.measure(state, noise);
+        if self.settings.steps {
+            self.test.note(state, innovation, variance, &measured, late);
+        }
+        let (mut change, innovation_variance) = measured;
+        let step = innovation / innovation_variance;
+        for change in &mut change {
+            *change = *change * step;
+        }
+        self.shift(&change);
+        let squared = innovation * innovation;
+        let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
+        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
+        self.last_surprise = if state == 0 { surprise } else { self.last_surprise + surprise };
+        let seen = (squared - explained).smaller(T::of(LARGEST_SEEN) * self.noise);
+        let adapted = self.noise + T::of(ADAPTION) * (seen - self.noise);
+        self.noise = adapted.larger(T::of(LEAST_NOISE) * self.settings.noise);
+        beyond
+    }
+
+    /// Changes the states.
+    #[inline(always)]
+    fn shift(&mut self, change: &[T; STATES]) {
+        self.i[0] += change[0];
+        self.i[1] += change[1];
+        for j in 0..PARAMETERS {
+            let change = change[j + 2];
+            if IS_LOGARITHM[j] {
+                // Not as a product with the exponential: in single precision that is rounded down more often than up.
+                self.z[j] += self.z[j] * change.exp_m1();
+                self.z[j] = self.z[j].larger(T::of(LEAST_PART)).smaller(T::of(1.0 / LEAST_PART));
+            } else {
+                self.z[j] += change;
+            }
+        }
+        self.z[0] = self.z[0].larger(T::of(LEAST_PART));
+    }
+
+    /// The parameters, SI.
+    #[inline(always)]
+    pub fn values(&self) -> [T; PARAMETERS] {
+        let (z, nominal) = (&self.z, &self.settings.nominal);
+        [z[0] * nominal[0], z[1] * nominal[1], z[2] * nominal[2], z[3] * nominal[3]]
+    }
+
+    /// How much each parameter changes with its state.
+    #[inline(always)]
+    fn scale(&self) -> [T; PARAMETERS] {
+        let values = self.values();
+        [0, 1, 2, 3].map(|j| if IS_LOGARITHM[j] { values[j] } else { self.settings.nominal[j] })
+    }
+}
+
 impl<T: Real> Ekf<T> {
     /// A filter at its start values, as parts of the nominal ones.
     pub fn new(settings: EkfSettings<T>, z: [T; PARAMETERS]) -> Self {
@@ -198,8 +396,7 @@ impl<T: Real> Ekf<T> {
 
     /// Goes on by a period with the current, A, measured at its end. What is no number is left out, as a gap.
     pub fn advance(&mut self, period: &Period<T>, measured: [T; 2]) {
-        let is_sound = [period.u[0], period.u[1], period.omega_e, measured[0], measured[1]].iter().all(|value| value.is_finite());
-        if !(is_sound && period.length > T::ZERO) {
+        if !is_sound(period, measured) {
             self.left_out = self.left_out.saturating_add(1);
             self.is_begun = false;
             return;
@@ -208,30 +405,37 @@ impl<T: Real> Ekf<T> {
             self.begin(measured);
             return;
         }
-        let theta = self.values();
-        let arrived = arrival(&theta, self.i, period);
-        let mut by_scaled = arrived.by_parameter;
-        for (column, scale) in by_scaled.iter_mut().zip(self.scale()) {
-            *column = [column[0] * scale, column[1] * scale];
-        }
-        let [fd, fq] = arrived.by_current;
-        let phi = [0, 1].map(|c| [fd[c], fq[c], by_scaled[0][c], by_scaled[1][c], by_scaled[2][c], by_scaled[3][c]]);
         if self.is_waiting {
-            self.wait(&phi, self.kick(&theta, period), arrived.i, measured);
+            self.wait(period, measured);
             return;
         }
+        self.open_window();
+        let beyond = self.learn(period, measured, self.late());
+        self.decide(beyond.map(|beyond| beyond > T::ZERO), measured);
+    }
+
+    /// Whether it takes this period with others that do so: nothing is special about it.
+    pub(crate) fn goes_along(&self, period: &Period<T>, measured: [T; 2]) -> bool {
+        is_sound(period, measured) && self.is_begun && !self.is_waiting
+    }
+
+    /// Whether its test for steps is in the last periods of a window: one, else zero.
+    pub(crate) fn late(&self) -> T {
+        self.test.late()
+    }
+
+    /// Keeps what is known at the beginning of a window of the test for steps.
+    pub(crate) fn open_window(&mut self) {
         if self.settings.steps && self.test.is_new() {
             self.before = Before { z: self.z, ud: self.ud, noise: self.noise, may_step: self.may_step };
         }
-        self.walk(&phi, &theta, period);
-        self.i = arrived.i;
-        if self.settings.steps {
-            self.test.propagate(&phi);
-        }
-        let outliers = self.outliers;
-        self.measure(0, measured[0]);
-        self.measure(1, measured[1]);
-        self.in_a_row = if self.outliers == outliers { 0 } else { self.in_a_row + 1 };
+    }
+
+    /// After what was learned of a period: which of both currents lay beyond three standard deviations, and whether the motor changed.
+    pub(crate) fn decide(&mut self, beyond: [bool; 2], measured: [T; 2]) {
+        let outliers = beyond.iter().filter(|beyond| **beyond).count() as u32;
+        self.outliers = self.outliers.saturating_add(outliers);
+        self.in_a_row = if outliers == 0 { 0 } else { self.in_a_row + 1 };
         let all_may_step = (0..PARAMETERS).all(|j| self.may_step[j] || self.settings.start_error[j] <= T::ZERO);
         if self.settings.steps && self.in_a_row >= OUTLIERS_IN_A_ROW && all_may_step {
             (self.in_a_row, self.is_waiting, self.i) = (0, true, measured);
@@ -247,13 +451,16 @@ impl<T: Real> Ekf<T> {
 
     /// After a change of the motor it learns nothing for a window, and compares single periods, each from the measured current to the next
     /// one: how long ago the motor changed is of no importance to them.
-    fn wait(&mut self, phi: &[[T; STATES]; 2], kick: [T; 2], arrived: [T; 2], measured: [T; 2]) {
+    fn wait(&mut self, period: &Period<T>, measured: [T; 2]) {
+        let (arrived, phi) = self.predicted(period);
+        let kick = self.kick(&self.values(), period);
+        let late = self.late();
         self.test.forget_current();
-        self.test.propagate(phi);
+        self.test.propagate(&phi);
         for c in 0..2 {
             // With the noise of both currents.
             let variance = self.noise + self.noise + kick[c];
-            self.test.note(c, measured[c] - arrived[c], variance, &([T::ZERO; STATES], variance));
+            self.test.note(c, measured[c] - arrived[c], variance, &([T::ZERO; STATES], variance), late);
         }
         // As likely as usual, beside filters that do not wait.
         self.last_surprise = T::of(2.0) * (self.noise.ln() + T::ONE);
@@ -283,83 +490,6 @@ impl<T: Real> Ekf<T> {
         self.ud.add(&wrong);
         self.begin(measured);
         self.steps = self.steps.saturating_add(1);
-    }
-
-    /// The covariance after a period, with the unknown voltage and the walk of the parameters.
-    fn walk(&mut self, phi: &[[T; STATES]; 2], theta: &[T; PARAMETERS], period: &Period<T>) {
-        let [kick_d, kick_q] = self.kick(theta, period);
-        let q = self.settings.walk.map(|walk| walk * walk * period.length);
-        let [rs, ld, lq, psi_f] = self.walk.of_all(q);
-        self.ud.propagate(phi, &[kick_d, kick_q, rs, ld, lq, psi_f]);
-        let (scale, [id, iq], omega) = (self.scale(), self.i, period.omega_e);
-        let of_ud = [id * scale[0], T::ZERO, -(omega * iq * scale[2]), T::ZERO];
-        let of_uq = [iq * scale[0], omega * id * scale[1], T::ZERO, omega * scale[3]];
-        for v in self.walk.of_told(period.length, q, [of_ud, of_uq]).into_iter().flatten() {
-            self.ud.add(&[T::ZERO, T::ZERO, v[0], v[1], v[2], v[3]]);
-        }
-    }
-
-    /// Variance of each current that the unknown voltage makes in a period, A².
-    fn kick(&self, theta: &[T; PARAMETERS], period: &Period<T>) -> [T; 2] {
-        [theta[1], theta[2]].map(|l| {
-            let kick = period.length * self.settings.unknown_voltage / l;
-            kick * kick
-        })
-    }
-
-    fn measure(&mut self, state: usize, measured: T) {
-        let innovation = measured - self.i[state];
-        let explained = self.ud.variance(state);
-        let variance = explained + self.noise;
-        let (size, deviation) = (innovation.abs(), variance.sqrt());
-        let mut noise = self.noise;
-        if size > T::of(OUTLIER) * deviation {
-            noise = size * deviation / T::of(OUTLIER) - explained;
-            self.outliers = self.outliers.saturating_add(1);
-        }
-        let measured = self.ud.measure(state, noise);
-        if self.settings.steps {
-            self.test.note(state, innovation, variance, &measured);
-        }
-        let (gain, innovation_variance) = measured;
-        let step = innovation / innovation_variance;
-        self.shift(&gain.map(|gain| gain * step));
-        let squared = innovation * innovation;
-        let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
-        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
-        self.last_surprise = if state == 0 { surprise } else { self.last_surprise + surprise };
-        let seen = (squared - explained).smaller(T::of(LARGEST_SEEN) * self.noise);
-        let adapted = self.noise + T::of(ADAPTION) * (seen - self.noise);
-        self.noise = adapted.larger(T::of(LEAST_NOISE) * self.settings.noise);
-    }
-
-    /// Changes the states.
-    fn shift(&mut self, change: &[T; STATES]) {
-        self.i[0] += change[0];
-        self.i[1] += change[1];
-        for j in 0..PARAMETERS {
-            let change = change[j + 2];
-            if IS_LOGARITHM[j] {
-                // Not as a product with the exponential: in single precision that is rounded down more often than up.
-                self.z[j] += self.z[j] * change.exp_m1();
-                self.z[j] = self.z[j].larger(T::of(LEAST_PART)).smaller(T::of(1.0 / LEAST_PART));
-            } else {
-                self.z[j] += change;
-            }
-        }
-        self.z[0] = self.z[0].larger(T::of(LEAST_PART));
-    }
-
-    /// The parameters, SI.
-    pub fn values(&self) -> [T; PARAMETERS] {
-        let (z, nominal) = (&self.z, &self.settings.nominal);
-        [z[0] * nominal[0], z[1] * nominal[1], z[2] * nominal[2], z[3] * nominal[3]]
-    }
-
-    /// How much each parameter changes with its state.
-    fn scale(&self) -> [T; PARAMETERS] {
-        let values = self.values();
-        [0, 1, 2, 3].map(|j| if IS_LOGARITHM[j] { values[j] } else { self.settings.nominal[j] })
     }
 
     /// Their standard errors, SI.

@@ -31,13 +31,16 @@
 //! | [`ud`] | a covariance in UD form |
 //! | [`step_test`] | likelihood-ratio test for steps of a parameter |
 //! | [`ekf`] | extended Kalman filter of currents and parameters |
+//! | [`lanes`], [`bank`] | several filters at once, a filter in each lane of a vector |
 #![no_std]
 #![allow(clippy::needless_range_loop, reason = "the formulas of matrices have indices")]
 
+pub mod bank;
 pub mod block;
 pub mod block_rls;
 pub mod ekf;
 pub mod gate;
+pub mod lanes;
 pub mod period;
 pub mod real;
 pub mod square_root;
@@ -47,8 +50,9 @@ pub mod walk;
 
 pub use block_rls::{BlockRls, BlockRlsSettings, Estimate};
 pub use ekf::{Ekf, EkfSettings};
+pub use lanes::Lanes;
 pub use period::Period;
-pub use real::Real;
+pub use real::{Number, Real};
 
 /// Number of parameters: rs, ld, lq, psi_f.
 pub const PARAMETERS: usize = 4;

@@ -10,7 +10,7 @@
 //! `i^(n+1) = A i^(n) + L^-1 u^(n)`; the sensitivities follow the derivative of the same recursion. A period in which the winding or the
 //! rotor changes much is divided.
 
-use crate::{PARAMETERS, real::Real};
+use crate::{PARAMETERS, real::Number};
 
 /// What acts over a sample period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +53,8 @@ struct Rates<T> {
     a: [[T; 2]; 2],
 }
 
-impl<T: Real> Rates<T> {
+impl<T: Number> Rates<T> {
+    #[inline(always)]
     fn new(theta: &[T; PARAMETERS], omega_e: T) -> Self {
         let [rs, ld, lq, _] = *theta;
         let inverse = [T::ONE / ld, T::ONE / lq];
@@ -61,12 +62,17 @@ impl<T: Real> Rates<T> {
         Self { theta: *theta, omega_e, inverse, a }
     }
 
-    /// How many parts, and their length.
-    fn parts(&self, length: T) -> (usize, T) {
+    /// What the turn of the current in a period is of the largest one.
+    #[inline(always)]
+    fn wanted(&self, length: T) -> T {
         let rate = (-self.a[0][0]).abs().larger(self.a[1][1].abs()) + self.a[0][1].abs().larger(self.a[1][0].abs());
-        let wanted = (rate * length / T::of(LONGEST)).to_f64();
-        // A number that is no number takes one part.
-        let count = if wanted > 1.0 { (wanted as usize + 1).min(MOST_PARTS) } else { 1 };
+        rate * length / T::of(LONGEST)
+    }
+
+    /// How many parts, and their length.
+    #[inline(always)]
+    fn parts(&self, length: T) -> (usize, T) {
+        let count = count_of(self.wanted(length).largest());
         (count, length / T::of(count as f64))
     }
 
@@ -85,7 +91,7 @@ impl<T: Real> Rates<T> {
 
 /// The voltage at the beginning of a period, seen from the rotor, from that at its middle.
 #[inline(always)]
-fn at_beginning<T: Real>(period: &Period<T>) -> [T; 2] {
+fn at_beginning<T: Number>(period: &Period<T>) -> [T; 2] {
     let (sin, cos) = (T::of(0.5) * period.omega_e * period.length).sin_cos();
     let [d, q] = period.u;
     [cos * d - sin * q, sin * d + cos * q]
@@ -93,13 +99,26 @@ fn at_beginning<T: Real>(period: &Period<T>) -> [T; 2] {
 
 /// The voltage after a further time, seen from the rotor.
 #[inline(always)]
-fn turned_back<T: Real>(u: [T; 2], angle: T) -> [T; 2] {
+fn turned_back<T: Number>(u: [T; 2], angle: T) -> [T; 2] {
     let (sin, cos) = angle.sin_cos();
     [cos * u[0] + sin * u[1], cos * u[1] - sin * u[0]]
 }
 
+/// Whether a period is divided into the same number of parts in all lanes.
+#[inline(always)]
+pub(crate) fn is_divided_alike<T: Number>(theta: &[T; PARAMETERS], period: &Period<T>) -> bool {
+    let wanted = Rates::new(theta, period.omega_e).wanted(period.length);
+    count_of(wanted.largest()) == count_of(-(-wanted).largest())
+}
+
+/// Number of parts. A number that is no number takes one part.
+#[inline(always)]
+fn count_of(wanted: f64) -> usize {
+    if wanted > 1.0 { (wanted as usize + 1).min(MOST_PARTS) } else { 1 }
+}
+
 /// The current after a period, A, of a motor with the parameters `theta`.
-pub fn current_after<T: Real>(theta: &[T; PARAMETERS], i: [T; 2], period: &Period<T>) -> [T; 2] {
+pub fn current_after<T: Number>(theta: &[T; PARAMETERS], i: [T; 2], period: &Period<T>) -> [T; 2] {
     let rates = Rates::new(theta, period.omega_e);
     let (parts, h) = rates.parts(period.length);
     let (mut i, mut u_start) = (i, at_beginning(period));
@@ -121,7 +140,8 @@ pub fn current_after<T: Real>(theta: &[T; PARAMETERS], i: [T; 2], period: &Perio
 }
 
 /// The current after a period, with its derivatives.
-pub fn arrival<T: Real>(theta: &[T; PARAMETERS], i: [T; 2], period: &Period<T>) -> Arrival<T> {
+#[inline(always)]
+pub fn arrival<T: Number>(theta: &[T; PARAMETERS], i: [T; 2], period: &Period<T>) -> Arrival<T> {
     let rates = Rates::new(theta, period.omega_e);
     let (parts, h) = rates.parts(period.length);
     let mut u_start = at_beginning(period);
@@ -134,8 +154,9 @@ pub fn arrival<T: Real>(theta: &[T; PARAMETERS], i: [T; 2], period: &Period<T>) 
     whole
 }
 
-impl<T: Real> Arrival<T> {
+impl<T: Number> Arrival<T> {
     /// This part of a period followed by another.
+    #[inline(always)]
     fn then(&self, later: &Self) -> Self {
         let f = &later.by_current;
         let through = |x: [T; 2]| [f[0][0] * x[0] + f[1][0] * x[1], f[0][1] * x[0] + f[1][1] * x[1]];
@@ -149,7 +170,8 @@ impl<T: Real> Arrival<T> {
 }
 
 /// The series over one part, with all derivatives.
-fn part_of<T: Real>(rates: &Rates<T>, i: [T; 2], u_start: [T; 2], h: T) -> Arrival<T> {
+#[inline(always)]
+fn part_of<T: Number>(rates: &Rates<T>, i: [T; 2], u_start: [T; 2], h: T) -> Arrival<T> {
     let omega_e = rates.omega_e;
     let [inv_d, inv_q] = rates.inverse;
     let mut arrival = Arrival { i, by_current: [[T::ONE, T::ZERO], [T::ZERO, T::ONE]], by_parameter: [[T::ZERO; 2]; PARAMETERS] };

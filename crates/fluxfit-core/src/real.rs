@@ -5,11 +5,11 @@ use core::{
     ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign},
 };
 
-/// A floating-point number. It is a trait because the same equations run in `f32` in firmware and in `f64` elsewhere.
-pub trait Real:
+/// What the equations need of a number. It is a trait because they run in `f32` in firmware, in `f64` elsewhere, and for several filters
+/// at once on [`Lanes`](crate::Lanes).
+pub trait Number:
     Copy
     + Debug
-    + PartialOrd
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -24,8 +24,8 @@ pub trait Real:
     const ONE: Self;
     /// The nearest number to a constant.
     fn of(value: f64) -> Self;
-    /// The same number in double precision.
-    fn to_f64(self) -> f64;
+    /// The largest of its lanes in double precision; of a single number, itself.
+    fn largest(self) -> f64;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Absolute value.
@@ -36,23 +36,25 @@ pub trait Real:
     fn ln(self) -> Self;
     /// Exponential function less one, with all digits near zero.
     fn exp_m1(self) -> Self;
+    /// Where it is above another number `then`, else `otherwise`.
+    fn if_above(self, other: Self, then: Self, otherwise: Self) -> Self;
+    /// The larger of two numbers; the other one, if one is NaN.
+    fn larger(self, other: Self) -> Self;
+    /// The smaller of two numbers; the other one, if one is NaN.
+    fn smaller(self, other: Self) -> Self;
+}
+
+/// A single floating-point number.
+pub trait Real: Number + PartialOrd {
+    /// The same number in double precision.
+    fn to_f64(self) -> f64;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
-
-    /// The larger of two numbers; the other one, if one is NaN.
-    fn larger(self, other: Self) -> Self {
-        if self > other || other.partial_cmp(&other).is_none() { self } else { other }
-    }
-
-    /// The smaller of two numbers; the other one, if one is NaN.
-    fn smaller(self, other: Self) -> Self {
-        if self < other || other.partial_cmp(&other).is_none() { self } else { other }
-    }
 }
 
 macro_rules! real {
     ($number:ty, $sqrt:path, $abs:path, $sincos:path, $ln:path, $exp_m1:path) => {
-        impl Real for $number {
+        impl Number for $number {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             #[inline(always)]
@@ -60,7 +62,7 @@ macro_rules! real {
                 value as Self
             }
             #[inline(always)]
-            fn to_f64(self) -> f64 {
+            fn largest(self) -> f64 {
                 f64::from(self)
             }
             #[inline(always)]
@@ -82,6 +84,25 @@ macro_rules! real {
             #[inline(always)]
             fn exp_m1(self) -> Self {
                 $exp_m1(self)
+            }
+            #[inline(always)]
+            fn if_above(self, other: Self, then: Self, otherwise: Self) -> Self {
+                if self > other { then } else { otherwise }
+            }
+            #[inline(always)]
+            fn larger(self, other: Self) -> Self {
+                if self > other || other.is_nan() { self } else { other }
+            }
+            #[inline(always)]
+            fn smaller(self, other: Self) -> Self {
+                if self < other || other.is_nan() { self } else { other }
+            }
+        }
+
+        impl Real for $number {
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
             }
             #[inline(always)]
             fn is_finite(self) -> bool {

@@ -13,7 +13,11 @@
 //! The likelihood ratio of a step is `n²/g`. Without a step the innovations are white, and it is that of chance, `chi²` with one degree of
 //! freedom: what the filter does not know well is in `s`, and does not look like a step where it is corrected.
 
-use crate::{PARAMETERS, real::Real, ud::STATES};
+use crate::{
+    PARAMETERS,
+    real::{Number, Real},
+    ud::STATES,
+};
 
 /// Periods of a window. A shorter one tells inductances and resistance apart too badly.
 const WINDOW: u32 = 128;
@@ -51,7 +55,7 @@ pub struct Step<T> {
     pub size: T,
 }
 
-impl<T: Real> StepTest<T> {
+impl<T: Number> StepTest<T> {
     /// At the beginning of a window.
     pub fn new() -> Self {
         let mut wrong = [[T::ZERO; PARAMETERS]; STATES];
@@ -59,41 +63,68 @@ impl<T: Real> StepTest<T> {
         Self { count: 0, wrong, along: [T::ZERO; PARAMETERS], squared: [T::ZERO; PARAMETERS], late: [[T::ZERO; 2]; PARAMETERS] }
     }
 
+    /// Calls `with` for each sum and that of another test.
+    #[inline(always)]
+    pub(crate) fn with<U>(&mut self, other: &mut StepTest<U>, with: impl Fn(&mut T, &mut U)) {
+        for state in 0..STATES {
+            for j in 0..PARAMETERS {
+                with(&mut self.wrong[state][j], &mut other.wrong[state][j]);
+            }
+        }
+        for j in 0..PARAMETERS {
+            with(&mut self.along[j], &mut other.along[j]);
+            with(&mut self.squared[j], &mut other.squared[j]);
+            with(&mut self.late[j][0], &mut other.late[j][0]);
+            with(&mut self.late[j][1], &mut other.late[j][1]);
+        }
+    }
+
     /// Whether a window begins.
     pub fn is_new(&self) -> bool {
         self.count == 0
     }
 
+    /// Whether the window is in its last periods: one, else zero.
+    pub fn late(&self) -> T {
+        if self.count >= WINDOW - LATE { T::ONE } else { T::ZERO }
+    }
+
     /// Notes that the states moved on: the first two rows of the transition, as in [`Ud::propagate`](crate::ud::Ud::propagate).
+    #[inline(always)]
     pub fn propagate(&mut self, phi: &[[T; STATES]; 2]) {
-        let moved = phi.map(|row| {
-            let mut sums = [T::ZERO; PARAMETERS];
+        let mut moved = [[T::ZERO; PARAMETERS]; 2];
+        for (sums, row) in moved.iter_mut().zip(phi) {
             for (phi, wrong) in row.iter().zip(&self.wrong) {
-                (0..PARAMETERS).for_each(|j| sums[j] += *phi * wrong[j]);
+                for j in 0..PARAMETERS {
+                    sums[j] += *phi * wrong[j];
+                }
             }
-            sums
-        });
+        }
         [self.wrong[0], self.wrong[1]] = moved;
     }
 
     /// Notes a measurement of a state: its innovation and the variance of that, then what [`Ud::measure`](crate::ud::Ud::measure) gave.
-    pub fn note(&mut self, state: usize, innovation: T, variance: T, (gain, weighted): &([T; STATES], T)) {
+    /// `late` is [`Self::late`].
+    #[inline(always)]
+    pub fn note(&mut self, state: usize, innovation: T, variance: T, (gain, weighted): &([T; STATES], T), late: T) {
         let (per_variance, per_weighted) = (T::ONE / variance, T::ONE / *weighted);
-        let is_late = self.count >= WINDOW - LATE;
         let own = self.wrong[state];
-        let share = own.map(|own| own * per_weighted);
+        let mut share = own;
+        for share in &mut share {
+            *share = *share * per_weighted;
+        }
         for j in 0..PARAMETERS {
             self.along[j] += share[j] * innovation;
             self.squared[j] += own[j] * own[j] * per_variance;
         }
-        if is_late {
-            for j in 0..PARAMETERS {
-                self.late[j][0] += share[j] * innovation;
-                self.late[j][1] += share[j] * own[j];
-            }
+        for j in 0..PARAMETERS {
+            self.late[j][0] += late.if_above(T::ZERO, share[j] * innovation, T::ZERO);
+            self.late[j][1] += late.if_above(T::ZERO, share[j] * own[j], T::ZERO);
         }
         for (wrong, gain) in self.wrong.iter_mut().zip(gain) {
-            (0..PARAMETERS).for_each(|j| wrong[j] -= *gain * share[j]);
+            for j in 0..PARAMETERS {
+                wrong[j] -= *gain * share[j];
+            }
         }
     }
 
@@ -101,7 +132,9 @@ impl<T: Real> StepTest<T> {
     pub fn forget_current(&mut self) {
         [self.wrong[0], self.wrong[1]] = [[T::ZERO; PARAMETERS]; 2];
     }
+}
 
+impl<T: Real> StepTest<T> {
     /// Ends a period. At the end of a window: the step of a parameter that may change, if there was one.
     pub fn end_period(&mut self, may_change: [bool; PARAMETERS]) -> Option<Step<T>> {
         self.count += 1;
@@ -130,7 +163,7 @@ impl<T: Real> StepTest<T> {
     }
 }
 
-impl<T: Real> Default for StepTest<T> {
+impl<T: Number> Default for StepTest<T> {
     fn default() -> Self {
         Self::new()
     }

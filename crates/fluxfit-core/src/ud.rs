@@ -1,7 +1,7 @@
 //! A covariance `P = U D U'` with unit upper triangular `U` and diagonal `D` (Bierman and Thornton 1977, doi
 //! 10.1016/0005-1098(77)90006-1). It stays positive whatever the rounding.
 
-use crate::{PARAMETERS, real::Real};
+use crate::{PARAMETERS, real::Number};
 
 /// States: i_d, i_q and the four parameters.
 pub const STATES: usize = 6;
@@ -14,12 +14,24 @@ pub struct Ud<T> {
     d: [T; STATES],
 }
 
-impl<T: Real> Ud<T> {
+impl<T: Number> Ud<T> {
     /// Independent states with these variances.
+    #[inline(always)]
     pub fn new(d: [T; STATES]) -> Self {
         let mut u = [[T::ZERO; STATES]; STATES];
         (0..STATES).for_each(|j| u[j][j] = T::ONE);
         Self { u, d }
+    }
+
+    /// Calls `with` for each number that may change and that of another covariance.
+    #[inline(always)]
+    pub(crate) fn with<U>(&mut self, other: &mut Ud<U>, with: impl Fn(&mut T, &mut U)) {
+        for j in 0..STATES {
+            with(&mut self.d[j], &mut other.d[j]);
+            for i in 0..j {
+                with(&mut self.u[i][j], &mut other.u[i][j]);
+            }
+        }
     }
 
     /// Makes the last states, the parameters, have the covariance `W W'` with an upper triangular `W`, independent of the first two.
@@ -29,7 +41,8 @@ impl<T: Real> Ud<T> {
             let own = w[j][j];
             self.d[first + j] = own * own;
             for i in 0..j {
-                self.u[first + i][first + j] = if own == T::ZERO { T::ZERO } else { w[i][j] / own };
+                // Where the diagonal is zero, the whole column is.
+                self.u[first + i][first + j] = own.abs().if_above(T::ZERO, w[i][j] / own, T::ZERO);
             }
         }
         for i in 0..first {
@@ -46,25 +59,25 @@ impl<T: Real> Ud<T> {
     }
 
     /// Adds `v v'` to the covariance (Agee and Turner 1972, as in Bierman 1977, section III.3).
+    #[inline(always)]
     pub fn add(&mut self, v: &[T; STATES]) {
         let (mut v, mut weight) = (*v, T::ONE);
         for j in (0..STATES).rev() {
             let (own, before) = (v[j], self.d[j]);
             let sum = before + weight * own * own;
             self.d[j] = sum;
-            // A state that is exact before and after.
-            if sum <= T::ZERO {
-                continue;
-            }
+            // Of a state that is exact before and after, `own` is zero, and nothing changes.
+            let divisor = sum.if_above(T::ZERO, sum, T::ONE);
             for i in 0..j {
                 v[i] -= own * self.u[i][j];
-                self.u[i][j] += weight * own * v[i] / sum;
+                self.u[i][j] += weight * own * v[i] / divisor;
             }
-            weight = weight * before / sum;
+            weight = sum.if_above(T::ZERO, weight * before / divisor, weight);
         }
     }
 
     /// Variance of one state.
+    #[inline(always)]
     pub fn variance(&self, state: usize) -> T {
         (state..STATES).fold(T::ZERO, |sum, k| sum + self.u[state][k] * self.u[state][k] * self.d[k])
     }
@@ -72,6 +85,7 @@ impl<T: Real> Ud<T> {
     /// The covariance after the states moved on: `Phi P Phi' + diag(q)`, where `Phi` is the identity but for its first two rows.
     ///
     /// Weighted Gram-Schmidt orthogonalization of the rows of `[Phi U | I]` with the weights `(D, q)` (Thornton).
+    #[inline(always)]
     pub fn propagate(&mut self, phi: &[[T; STATES]; 2], q: &[T; STATES]) {
         let mut w = self.u;
         for (row, phi) in w.iter_mut().zip(phi) {
@@ -84,26 +98,36 @@ impl<T: Real> Ud<T> {
         let mut noise = Self::new(d).u;
         for j in (0..STATES).rev() {
             let (own, own_noise) = (w[j], noise[j]);
+            // Left of the diagonal both are zero, but the first two rows of `Phi U`.
+            let first = if j < 2 { 0 } else { j };
             let mut weighted = [T::ZERO; STATES];
             let mut weighted_noise = [T::ZERO; STATES];
             let mut sum = T::ZERO;
-            for k in 0..STATES {
+            for k in first..STATES {
                 weighted[k] = d[k] * own[k];
+                sum += weighted[k] * own[k];
+            }
+            for k in j..STATES {
                 weighted_noise[k] = q[k] * own_noise[k];
-                sum += weighted[k] * own[k] + weighted_noise[k] * own_noise[k];
+                sum += weighted_noise[k] * own_noise[k];
             }
             self.d[j] = sum;
             // A state without variance is exact, and independent of all others.
-            let per_sum = if sum > T::ZERO { T::ONE / sum } else { T::ZERO };
+            let per_sum = sum.if_above(T::ZERO, T::ONE / sum, T::ZERO);
             for i in 0..j {
                 let mut product = T::ZERO;
-                for k in 0..STATES {
-                    product += w[i][k] * weighted[k] + noise[i][k] * weighted_noise[k];
+                for k in first..STATES {
+                    product += w[i][k] * weighted[k];
+                }
+                for k in j..STATES {
+                    product += noise[i][k] * weighted_noise[k];
                 }
                 let factor = product * per_sum;
                 self.u[i][j] = factor;
-                for k in 0..STATES {
+                for k in first..STATES {
                     w[i][k] -= factor * own[k];
+                }
+                for k in j..STATES {
                     noise[i][k] -= factor * own_noise[k];
                 }
             }
@@ -112,6 +136,7 @@ impl<T: Real> Ud<T> {
 
     /// The covariance after one state was measured with noise of this variance, above zero. Returns the gain times the innovation's
     /// variance, and that variance (Bierman).
+    #[inline(always)]
     pub fn measure(&mut self, state: usize, variance: T) -> ([T; STATES], T) {
         let mut gain = [T::ZERO; STATES];
         let mut alpha = variance;

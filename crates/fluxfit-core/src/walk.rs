@@ -15,7 +15,7 @@
 //! What is owed after a time `t` is `Q (t + t²/s)`. A winding that warms goes on warming: nobody sees its drift, so that its standard
 //! error grows with the time, not with the root of it.
 
-use crate::{PARAMETERS, real::Real};
+use crate::{PARAMETERS, real::Number};
 
 /// Seconds after which a drift in one direction is as large as a random walk.
 const DRIFT: f64 = 1.0;
@@ -34,7 +34,7 @@ pub struct Walk<T> {
     unseen: T,
 }
 
-impl<T: Real> Walk<T> {
+impl<T: Number> Walk<T> {
     /// One in all directions.
     pub fn new() -> Self {
         Self { is_excited: true, owed: [T::ZERO; PARAMETERS], unseen: T::ZERO }
@@ -45,7 +45,22 @@ impl<T: Real> Walk<T> {
         self.is_excited = is_excited;
     }
 
+    /// Whether the last samples excite the parameters.
+    pub(crate) fn is_excited(&self) -> bool {
+        self.is_excited
+    }
+
+    /// Calls `with` for each number and that of another walk.
+    #[inline(always)]
+    pub(crate) fn with<U>(&mut self, other: &mut Walk<U>, with: impl Fn(&mut T, &mut U)) {
+        for j in 0..PARAMETERS {
+            with(&mut self.owed[j], &mut other.owed[j]);
+        }
+        with(&mut self.unseen, &mut other.unseen);
+    }
+
     /// What a period adds to the variances of the parameters, of which `q` is the walk's over it.
+    #[inline(always)]
     pub fn of_all(&mut self, q: [T; PARAMETERS]) -> [T; PARAMETERS] {
         if !self.is_excited {
             return [T::ZERO; PARAMETERS];
@@ -57,6 +72,7 @@ impl<T: Real> Walk<T> {
 
     /// What a period of this length, s, adds in the directions `v` that the operating point tells, as `v v'`; nothing while the parameters
     /// are excited. `h` has the derivatives of u_d and u_q to the parameters.
+    #[inline(always)]
     pub fn of_told(&mut self, length: T, q: [T; PARAMETERS], h: [[T; PARAMETERS]; 2]) -> Option<[[T; PARAMETERS]; 2]> {
         if self.is_excited {
             return None;
@@ -65,13 +81,14 @@ impl<T: Real> Walk<T> {
         // Orthogonal directions, by Gram and Schmidt.
         let [mut of_d, of_q] = h;
         let squared = product(&of_q, &of_q);
-        if squared > T::ZERO {
-            let part = product(&of_d, &of_q) / squared;
-            (0..PARAMETERS).for_each(|j| of_d[j] -= part * of_q[j]);
+        let part = squared.if_above(T::ZERO, product(&of_d, &of_q) / squared, T::ZERO);
+        for j in 0..PARAMETERS {
+            of_d[j] -= part * of_q[j];
         }
         let v = [of_q, of_d].map(|h| {
             let squared = product(&h, &h);
-            if squared > T::ZERO { [0, 1, 2, 3].map(|j| q[j] * h[j] / squared.sqrt()) } else { [T::ZERO; PARAMETERS] }
+            let root = squared.if_above(T::ZERO, squared.sqrt(), T::ONE);
+            [0, 1, 2, 3].map(|j| squared.if_above(T::ZERO, q[j] * h[j] / root, T::ZERO))
         });
         // The derivative of t + t²/s.
         let growth = T::ONE + T::of(2.0 / DRIFT) * self.unseen;
@@ -89,7 +106,7 @@ impl<T: Real> Walk<T> {
     }
 }
 
-impl<T: Real> Default for Walk<T> {
+impl<T: Number> Default for Walk<T> {
     fn default() -> Self {
         Self::new()
     }

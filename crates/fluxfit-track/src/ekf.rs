@@ -11,12 +11,13 @@
 //! - Where a parameter becomes identifiable later, or the filter contradicts the least squares for long, the filter starts anew.
 
 use crate::{
+    bank,
     estimate::{Estimate, IDENTIFIABLE},
     rls::{Form, Rls},
     start::Start,
 };
 use fluxfit::motor::PARAMETERS;
-use fluxfit_core::{Ekf, EkfSettings, Period};
+use fluxfit_core::{Ekf, EkfSettings, Period, bank::Together};
 use serde::{Deserialize, Serialize};
 
 /// Levels of unknown voltage, as parts of the largest voltage: 0.03 to 3 V beside 100 V.
@@ -56,6 +57,8 @@ pub struct WatchedEkf {
     /// A filter for each level.
     bank: Vec<Ekf<f64>>,
     active: [bool; LEVELS.len()],
+    #[serde(skip)]
+    together: Together,
     best: usize,
     periods: u64,
     /// Current, A, voltage, V, and noise of each current, A, with which a filter starts.
@@ -88,6 +91,7 @@ impl WatchedEkf {
             is_tracking,
             bank: Vec::with_capacity(LEVELS.len()),
             active: [true; LEVELS.len()],
+            together: Together::new(),
             best: 0,
             periods: 0,
             scale,
@@ -114,9 +118,7 @@ impl WatchedEkf {
         self.scale = [self.scale[0].max(i[0].hypot(i[1])), self.scale[1].max(period.u[0].hypot(period.u[1])), self.scale[2]];
         self.last_i = i;
         let steps = self.filter().steps();
-        for (filter, _) in self.bank.iter_mut().zip(self.active).filter(|(_, active)| *active) {
-            filter.advance(period, i);
-        }
+        bank::advance(&mut self.together, &mut self.bank, &self.active, period, i);
         if self.filter().steps() != steps {
             self.outdated = MEMORY;
         }

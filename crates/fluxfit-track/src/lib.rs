@@ -23,6 +23,7 @@
 #![allow(clippy::needless_range_loop, reason = "the formulas of matrices have indices")]
 
 pub mod adaline;
+mod bank;
 pub mod bias_compensated;
 mod cholesky;
 pub mod comparison;

@@ -191,8 +191,8 @@ impl Estimator {
             Method::RlsDirectional => forgetting(Kind::Directional),
             Method::InstrumentalVariable => Self::InstrumentalVariable(Box::new(InstrumentalVariable::new(nominal))),
             Method::BiasCompensated => Self::BiasCompensated(Box::new(BiasCompensated::new(nominal))),
-            Method::Mras => Self::Mras(Box::new(Mras::new(nominal, Gain::Matrix))),
-            Method::MrasScalar => Self::Mras(Box::new(Mras::new(nominal, Gain::Scalar))),
+            Method::Mras => Self::Mras(Box::new(Mras::new(nominal, Gain::Matrix, scale[1]))),
+            Method::MrasScalar => Self::Mras(Box::new(Mras::new(nominal, Gain::Scalar, scale[1]))),
             Method::Adaline => Self::Adaline(Box::new(Adaline::new(nominal))),
         }
     }

@@ -12,14 +12,21 @@
 //! The flux error `L0 e` in place of the current error makes the linear block strictly passive for a salient motor (Popov; Landau 1976, doi
 //! 10.1109/TAC.1976.1101195), so that any gain is stable in continuous time. With four parameters a scalar gain is a gradient on a valley
 //! of 1 : 7000; the matrix gain `wn² (W + small)^-1`, with `W` the mean of `Phi'Phi`, makes all directions equally fast.
+//!
+//! The mean does not begin at zero: in the first samples, of a motor that does not turn yet, the gain would have no limit. Noise would
+//! drive the parameters to their limits, and they would still be on their way back at the end of a log of a second.
 
 use crate::{cholesky::solved, estimate::Estimate};
 use fluxfit::motor::PARAMETERS;
 use fluxfit_core::{Period, period::current_after};
 use serde::{Deserialize, Serialize};
 
-/// Speed of the adaption, rad/s. Sampled at 10 kHz `wn Ts` must stay below 0.05.
-const SPEED: f64 = 60.0;
+/// Speed of the adaption with a matrix, rad/s: beyond it, the noise of the currents moves the parameters more than what is left of the
+/// start's error after half a second.
+const SPEED: f64 = 50.0;
+
+/// Speed of the adaption with scalar gains, rad/s: they are slower along the valley than across it.
+const SCALAR_SPEED: f64 = 100.0;
 
 /// Largest speed of the adaption as an angle per sample.
 const LARGEST_ANGLE: f64 = 0.05;
@@ -31,7 +38,13 @@ const PROPORTIONAL: f64 = 0.3;
 const FEEDBACK: f64 = 3.0;
 
 /// Memory of the mean of `Phi'Phi`, s.
-const MEMORY: f64 = 1.0;
+const MEMORY: f64 = 0.5;
+
+/// The mean's diagonal at first, as the square of a part of the largest voltage of the lead-in: little more than noise makes.
+const FIRST_MEAN: f64 = 1e-3;
+
+/// The same with scalar gains. Each of these reads the voltage that the other parameters leave over as its own, which is much more.
+const SCALAR_FIRST_MEAN: f64 = 3e-2;
 
 /// Added to that mean, as a part of its trace, so that it can be inverted.
 const REGULAR: f64 = 1e-9;
@@ -59,14 +72,19 @@ pub struct Mras {
     /// The integral part, and all of it, as parts of the nominal values.
     integral: [f64; PARAMETERS],
     z: [f64; PARAMETERS],
-    /// Mean of `Phi'Phi`, scaled; from zero on, so that the first samples move the parameters fast.
+    /// Mean of `Phi'Phi`, scaled.
     mean: [[f64; PARAMETERS]; PARAMETERS],
 }
 
 impl Mras {
-    /// Begins with these values.
-    pub fn new(nominal: [f64; PARAMETERS], gain: Gain) -> Self {
-        let mean = [[0.0; PARAMETERS]; PARAMETERS];
+    /// Begins with these values, in a drive whose largest voltage, V, was this one so far.
+    pub fn new(nominal: [f64; PARAMETERS], gain: Gain, voltage: f64) -> Self {
+        let part = match gain {
+            Gain::Scalar => SCALAR_FIRST_MEAN,
+            Gain::Matrix => FIRST_MEAN,
+        };
+        let mut mean = [[0.0; PARAMETERS]; PARAMETERS];
+        (0..PARAMETERS).for_each(|j| mean[j][j] = (part * voltage).powi(2));
         Self { nominal, gain, i: [0.0; 2], error: [0.0; 2], integral: [1.0; PARAMETERS], z: [1.0; PARAMETERS], mean }
     }
 
@@ -96,7 +114,11 @@ impl Mras {
                 self.mean[i][j] += part * (phi[0][i] * phi[0][j] + phi[1][i] * phi[1][j] - self.mean[i][j]);
             }
         }
-        let speed = SPEED.min(LARGEST_ANGLE / period.length);
+        let speed = match self.gain {
+            Gain::Scalar => SCALAR_SPEED,
+            Gain::Matrix => SPEED,
+        };
+        let speed = speed.min(LARGEST_ANGLE / period.length);
         let Some(direction) = self.direction(&phi, &gradient) else { return };
         for j in 0..PARAMETERS {
             let rate = speed * speed * direction[j];

@@ -55,7 +55,7 @@ fn errors(tracker: &Tracker) -> [f64; 4] {
 fn errors_at_the_end_are_those_of_the_prototypes() {
     let (a, c, f3) = (commands("paper_rig_ideal.csv"), commands("paper_rig_pwm_noise.csv"), commands("id_zero_two_loads.csv"));
     type Table = [f64; 4];
-    let cases: [(Method, Table, Table, Table); 9] = [
+    let cases: [(Method, Table, Table, Table); 13] = [
         (Method::Ekf, [0.0; 4], [0.08, 0.0, 0.01, 0.01], [0.01, 3.6, 0.01, 0.0]),
         (Method::EkfTracking, [0.0; 4], [0.16, 0.16, 0.03, 0.03], [0.01, 2.5, 0.07, 0.02]),
         (Method::RlsExponential, [0.0, 0.0, 0.01, 0.0], [0.07, 0.15, 0.02, 0.0], [0.18, 79.0, 0.0, 0.01]),
@@ -64,8 +64,11 @@ fn errors_at_the_end_are_those_of_the_prototypes() {
         (Method::RlsDirectional, [0.0, 0.0, 0.01, 0.0], [0.17, 0.19, 0.02, 0.01], [0.15, 77.0, 0.0, 0.0]),
         (Method::RlsSteady, [3.6, 1.4, 0.12, 0.45], [3.4, 1.0, 0.13, 0.41], [4.7, 75.0, 0.03, 0.3]),
         (Method::InstrumentalVariable, [0.0, 0.0, 0.01, 0.0], [0.13, 1.1, 0.0, 0.06], [0.04, 5.9, 0.0, 0.01]),
-        // On c their scatter over 500 draws, of which one draw's error is a chance: 38, 12, 77 and 30 times the bound.
-        (Method::Adaline, [0.75, 0.08, 0.24, 0.05], [1.6, 0.62, 0.46, 0.12], [30.0, 40.0, 0.04, 2.5]),
+        (Method::RlsSample, [0.0, 0.0, 0.01, 0.0], [14.0, 64.0, 2.6, 3.3], [0.2, 97.0, 5.6, 0.0]),
+        (Method::BiasCompensated, [0.01, 0.08, 0.01, 0.0], [0.08, 0.06, 0.02, 0.0], [1.4, 1500.0, 0.04, 0.01]),
+        (Method::Mras, [0.3, 1.7, 0.01, 0.06], [1.6, 1.5, 0.04, 0.09], [0.17, 19.0, 0.02, 0.0]),
+        (Method::MrasScalar, [93.0, 41.0, 4.0, 13.0], [145.0, 178.0, 6.0, 6.0], [174.0, 596.0, 2.0, 13.0]),
+        (Method::Adaline, [0.75, 0.08, 0.24, 0.05], [1.3, 0.08, 0.15, 0.14], [30.0, 40.0, 0.04, 2.5]),
     ];
     let mut beyond = Vec::new();
     for (method, of_a, of_c, of_f3) in cases {

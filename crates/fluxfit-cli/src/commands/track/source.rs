@@ -69,7 +69,11 @@ pub(super) fn file(path: &Path, options: &LogOptions, take: &mut Take) -> Result
 pub(super) fn stream(path: &Path, follows: bool, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
     let name = input::name(path);
     let receiver = if files::is_standard(path) {
-        reading(|sender| pass_on(&mut std::io::stdin().lock(), &sender))?
+        reading(|sender| {
+            if let Err(error) = pass_on(&mut std::io::stdin().lock(), &sender) {
+                let _ = sender.send(Message::Failed(error));
+            }
+        })?
     } else {
         let of_file = |error: &std::io::Error| FileError::from(files::io_problem("reading", error)).in_file(&name);
         let file = File::open(path).map_err(|error| of_file(&error))?;
@@ -89,12 +93,7 @@ pub(super) fn listen(place: &str, options: &LogOptions, take: &mut Take) -> Resu
     }
     let receiver = reading(move |sender| {
         for connection in listener.incoming() {
-            let result = connection.map(|mut connection| pass_on(&mut connection, &sender));
-            let sent = match result {
-                Ok(()) => sender.send(Message::Anew("the connection was closed; waiting for the next".to_owned())),
-                Err(error) => sender.send(Message::Anew(format!("a connection failed: {error}; waiting for the next"))),
-            };
-            if sent.is_err() {
+            if sender.send(of_connection(connection, &sender)).is_err() {
                 return;
             }
         }
@@ -108,22 +107,26 @@ fn reading(read: impl FnOnce(SyncSender<Message>) + Send + 'static) -> Result<Re
     Ok(receiver)
 }
 
+/// Passes on what a connection brings. At its end, however it ended: what is told of it, and that the next one begins anew.
+fn of_connection(connection: std::io::Result<impl Read>, sender: &SyncSender<Message>) -> Message {
+    Message::Anew(match connection.and_then(|mut connection| pass_on(&mut connection, sender)) {
+        Ok(()) => "the connection was closed; waiting for the next".to_owned(),
+        Err(error) => format!("a connection failed: {error}; waiting for the next"),
+    })
+}
+
 /// Passes bytes on as they arrive, to the end.
-fn pass_on(reader: &mut dyn Read, sender: &SyncSender<Message>) {
+fn pass_on(reader: &mut dyn Read, sender: &SyncSender<Message>) -> std::io::Result<()> {
     loop {
         let mut piece = vec![0; PIECE];
-        let message = match reader.read(&mut piece) {
-            Ok(0) => return,
-            Ok(count) => {
-                piece.truncate(count);
-                Message::Bytes(piece)
-            }
+        match reader.read(&mut piece) {
+            Ok(0) => return Ok(()),
+            Ok(count) => piece.truncate(count),
             Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-            Err(error) => Message::Failed(error),
-        };
-        let is_end = matches!(message, Message::Failed(_));
-        if sender.send(message).is_err() || is_end {
-            return;
+            Err(error) => return Err(error),
+        }
+        if sender.send(Message::Bytes(piece)).is_err() {
+            return Ok(());
         }
     }
 }
@@ -293,5 +296,33 @@ impl Text<'_> {
             Some(row) => take(&row),
             None => Ok(true),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Error, ErrorKind};
+
+    /// A connection that brings a row and is then reset by the peer.
+    struct Reset(Option<&'static [u8]>);
+
+    impl Read for Reset {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            let row = self.0.take().ok_or(Error::from(ErrorKind::ConnectionReset))?;
+            buffer[..row.len()].copy_from_slice(row);
+            Ok(row.len())
+        }
+    }
+
+    #[test]
+    fn after_a_connection_that_was_reset_the_next_one_is_waited_for() {
+        let (sender, receiver) = sync_channel(WAITING);
+        let last = of_connection(Ok(Reset(Some(b"0.1,2\n"))), &sender);
+        assert!(matches!(receiver.try_recv(), Ok(Message::Bytes(bytes)) if bytes == b"0.1,2\n"));
+        assert!(receiver.try_recv().is_err());
+        assert!(
+            matches!(last, Message::Anew(reason) if reason.starts_with("a connection failed") && reason.ends_with("waiting for the next"))
+        );
     }
 }
