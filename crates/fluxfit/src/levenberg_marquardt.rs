@@ -39,8 +39,8 @@ const WORTH_GOING_ON: f64 = 1.0;
 const WORTH_A_STEP: f64 = 0.1;
 
 /// It ends after so many evaluations without that gain. Where a current's sign decides, residuals have kinks: derivatives promise what no
-/// step keeps, and steps would be halved twenty times in vain. A step that is too long is shortened to a half or less at once. Of 746
-/// numbers of drawn drives two are wrong with four evaluations, three with three.
+/// step keeps, and steps would be halved twenty times in vain. A step that is too long is shortened to a half or less at once. With
+/// three, more numbers of drawn drives were wrong.
 const EVALUATIONS_IN_VAIN: usize = 4;
 
 /// The same before anything was gained: the first steps may be much too long.

@@ -32,12 +32,15 @@ pub(super) struct OwnTime {
 struct Seen {
     ends: Option<(f64, f64)>,
     count: usize,
+    /// Of them, those after the one before.
+    later: usize,
     runs_back: bool,
 }
 
 impl Seen {
     fn push(&mut self, time: f64) {
         self.count += 1;
+        self.later += usize::from(self.ends.is_some_and(|(_, last)| time > last));
         self.runs_back |= self.ends.is_some_and(|(_, last)| time < last);
         self.ends = Some((self.ends.map_or(time, |(first, _)| first), time));
     }
@@ -106,8 +109,9 @@ impl OwnTimes {
     /// Refuses rows of which some channels have another time.
     pub(super) fn refuse(&self, time: &str) -> Result<(), FileError> {
         let Some(step) = self.time.step() else { return Ok(()) };
-        // A column that stands still or runs back is no time, whatever its name is.
-        let is_time = |own: &&OwnTime| !own.seen.runs_back && own.seen.step().is_some_and(|step| step > 0.0);
+        // A column that stands still or runs back is no time, whatever its name is; nor is a `t2` that mostly stands still: a temperature.
+        let is_temperature = |own: &OwnTime| stem(&own.header) == "t" && 2 * own.seen.later < own.seen.count;
+        let is_time = |own: &&OwnTime| !own.seen.runs_back && own.seen.step().is_some_and(|step| step > 0.0) && !is_temperature(own);
         let is_other = |own: &&OwnTime| own.apart > EQUAL * step || own.is_missing;
         let Some(own) = self.others.iter().filter(is_time).find(is_other) else { return Ok(()) };
         let apart = match own.seen.step() {
@@ -134,9 +138,13 @@ impl std::fmt::Display for Apart {
     }
 }
 
+/// A name without the number at its end.
+fn stem(name: &str) -> String {
+    name.trim_end_matches(|c: char| c.is_ascii_digit() || " ._-#".contains(c)).to_lowercase()
+}
+
 /// Whether a name is the time's again, as in `Time 2`, `Time.1` or the same once more.
 fn is_again(name: &str, time: &str) -> bool {
-    let stem = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit() || " ._-#".contains(c)).to_lowercase();
     let stem_of_time = stem(time);
     !stem_of_time.is_empty() && stem(name) == stem_of_time
 }
@@ -197,6 +205,7 @@ mod tests {
         // A number of a motor, a temperature, and a time of the whole beside the time.
         assert_eq!(read("t,ud,uq,t1,id,iq,omega_e", &[], |_| "7".to_owned()), Ok(40));
         assert_eq!(read("t,ud,uq,t1,id,iq,omega_e", &[], |k| (k % 3).to_string()), Ok(40));
+        assert_eq!(read("t,ud,uq,t1,id,iq,omega_e", &[], |k| format!("{:.1}", 25.0 + f64::from(k / 10) * 0.1)), Ok(40));
         assert_eq!(read("log.time,ud,uq,log.t_rest,id,iq,omega_e", &[("t", "log.time")], |k| (k * 2).to_string()), Ok(40));
     }
 }
