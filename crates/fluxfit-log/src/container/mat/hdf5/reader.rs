@@ -27,7 +27,11 @@ pub(crate) struct Reader {
 
 impl Reader {
     pub(super) fn bytes(&self, at: u64, length: u64) -> Result<Vec<u8>, FileError> {
-        let left = self.budget.get().checked_sub(length).ok_or_else(|| self.damaged("its links lead in a circle, or far too many of them to the same objects"))?;
+        let left = self
+            .budget
+            .get()
+            .checked_sub(length)
+            .ok_or_else(|| self.damaged("its links lead in a circle, or far too many of them to the same objects"))?;
         self.budget.set(left);
         let at = self.base.checked_add(at).ok_or_else(|| self.damaged("an address in it is impossible"))?;
         self.source.bytes_at(at, length).map_err(|error| unread(self.format, &error))
