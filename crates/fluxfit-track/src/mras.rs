@@ -13,8 +13,8 @@
 //! 10.1109/TAC.1976.1101195), so that any gain is stable in continuous time. With four parameters a scalar gain is a gradient on a valley
 //! of 1 : 7000; the matrix gain `wn² (W + small)^-1`, with `W` the mean of `Phi'Phi`, makes all directions equally fast.
 //!
-//! The mean does not begin at zero: in the first samples, of a motor that does not turn yet, the gain would have no limit. Noise would
-//! drive the parameters to their limits, and they would still be on their way back at the end of a log of a second.
+//! Beside the mean stands a least square: in the first samples and at standstill, of a motor that does not turn, the gain would have no
+//! limit. Noise would drive the parameters to their limits, and they would still be on their way back after a second.
 
 use crate::{cholesky::solved, estimate::Estimate};
 use fluxfit::motor::PARAMETERS;
@@ -40,11 +40,11 @@ const FEEDBACK: f64 = 3.0;
 /// Memory of the mean of `Phi'Phi`, s.
 const MEMORY: f64 = 0.5;
 
-/// The mean's diagonal at first, as the square of a part of the largest voltage of the lead-in: little more than noise makes.
-const FIRST_MEAN: f64 = 1e-3;
+/// The part of the largest voltage so far whose square is the least one: little more than noise makes.
+const LEAST_PART: f64 = 1e-3;
 
 /// The same with scalar gains. Each of these reads the voltage that the other parameters leave over as its own, which is much more.
-const SCALAR_FIRST_MEAN: f64 = 3e-2;
+const SCALAR_LEAST_PART: f64 = 3e-2;
 
 /// Added to that mean, as a part of its trace, so that it can be inverted.
 const REGULAR: f64 = 1e-9;
@@ -74,18 +74,15 @@ pub struct Mras {
     z: [f64; PARAMETERS],
     /// Mean of `Phi'Phi`, scaled.
     mean: [[f64; PARAMETERS]; PARAMETERS],
+    /// Largest voltage so far, V.
+    voltage: f64,
 }
 
 impl Mras {
     /// Begins with these values, in a drive whose largest voltage, V, was this one so far.
     pub fn new(nominal: [f64; PARAMETERS], gain: Gain, voltage: f64) -> Self {
-        let part = match gain {
-            Gain::Scalar => SCALAR_FIRST_MEAN,
-            Gain::Matrix => FIRST_MEAN,
-        };
-        let mut mean = [[0.0; PARAMETERS]; PARAMETERS];
-        (0..PARAMETERS).for_each(|j| mean[j][j] = (part * voltage).powi(2));
-        Self { nominal, gain, i: [0.0; 2], error: [0.0; 2], integral: [1.0; PARAMETERS], z: [1.0; PARAMETERS], mean }
+        let mean = [[0.0; PARAMETERS]; PARAMETERS];
+        Self { nominal, gain, i: [0.0; 2], error: [0.0; 2], integral: [1.0; PARAMETERS], z: [1.0; PARAMETERS], mean, voltage }
     }
 
     /// Begins at a current, A.
@@ -108,6 +105,7 @@ impl Mras {
         ];
         let flux_error = [ld * self.error[0], lq * self.error[1]];
         let gradient: [f64; PARAMETERS] = std::array::from_fn(|j| phi[0][j] * flux_error[0] + phi[1][j] * flux_error[1]);
+        self.voltage = self.voltage.max(period.u[0].hypot(period.u[1]));
         let part = (period.length / MEMORY).min(1.0);
         for i in 0..PARAMETERS {
             for j in 0..PARAMETERS {
@@ -132,13 +130,15 @@ impl Mras {
         let mean = &self.mean;
         match self.gain {
             Gain::Scalar => Some(std::array::from_fn(|j| {
-                let square = (phi[0][j] * phi[0][j] + phi[1][j] * phi[1][j]).max(mean[j][j]);
+                let least = (SCALAR_LEAST_PART * self.voltage).powi(2);
+                let square = (phi[0][j] * phi[0][j] + phi[1][j] * phi[1][j]).max(mean[j][j]).max(least);
                 if square > 0.0 { gradient[j] / square } else { 0.0 }
             })),
             Gain::Matrix => {
                 let trace: f64 = (0..PARAMETERS).map(|j| mean[j][j]).sum();
                 let mut regular = *mean;
-                (0..PARAMETERS).for_each(|j| regular[j][j] += REGULAR * trace);
+                let least = (LEAST_PART * self.voltage).powi(2);
+                (0..PARAMETERS).for_each(|j| regular[j][j] += REGULAR * trace + least);
                 solved(&regular, gradient)
             }
         }
