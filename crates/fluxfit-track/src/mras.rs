@@ -13,8 +13,7 @@
 //! 10.1109/TAC.1976.1101195), so that any gain is stable in continuous time. With four parameters a scalar gain is a gradient on a valley
 //! of 1 : 7000; the matrix gain `wn² (W + small)^-1`, with `W` the mean of `Phi'Phi`, makes all directions equally fast.
 //!
-//! Beside the mean stands a least square: in the first samples and at standstill, of a motor that does not turn, the gain would have no
-//! limit. Noise would drive the parameters to their limits, and they would still be on their way back after a second.
+//! The mean has a floor: in the first samples and at standstill, of a motor that does not turn, the gain would have no limit. Noise would drive the parameters to their limits, and they would still be on their way back after a second.
 
 use crate::{cholesky::solved, estimate::Estimate};
 use fluxfit::motor::PARAMETERS;
@@ -40,11 +39,11 @@ const FEEDBACK: f64 = 3.0;
 /// Memory of the mean of `Phi'Phi`, s.
 const MEMORY: f64 = 0.5;
 
-/// The part of the largest voltage so far whose square is the least one: little more than noise makes.
-const LEAST_PART: f64 = 1e-3;
+/// The floor of that mean is the square of this part of the largest voltage so far: little more than noise makes.
+const FLOOR: f64 = 1e-3;
 
 /// The same with scalar gains. Each of these reads the voltage that the other parameters leave over as its own, which is much more.
-const SCALAR_LEAST_PART: f64 = 3e-2;
+const SCALAR_FLOOR: f64 = 3e-2;
 
 /// Added to that mean, as a part of its trace, so that it can be inverted.
 const REGULAR: f64 = 1e-9;
@@ -130,15 +129,15 @@ impl Mras {
         let mean = &self.mean;
         match self.gain {
             Gain::Scalar => Some(std::array::from_fn(|j| {
-                let least = (SCALAR_LEAST_PART * self.voltage).powi(2);
-                let square = (phi[0][j] * phi[0][j] + phi[1][j] * phi[1][j]).max(mean[j][j]).max(least);
+                let floor = (SCALAR_FLOOR * self.voltage).powi(2);
+                let square = (phi[0][j] * phi[0][j] + phi[1][j] * phi[1][j]).max(mean[j][j]).max(floor);
                 if square > 0.0 { gradient[j] / square } else { 0.0 }
             })),
             Gain::Matrix => {
                 let trace: f64 = (0..PARAMETERS).map(|j| mean[j][j]).sum();
                 let mut regular = *mean;
-                let least = (LEAST_PART * self.voltage).powi(2);
-                (0..PARAMETERS).for_each(|j| regular[j][j] += REGULAR * trace + least);
+                let floor = (FLOOR * self.voltage).powi(2);
+                (0..PARAMETERS).for_each(|j| regular[j][j] += REGULAR * trace + floor);
                 solved(&regular, gradient)
             }
         }

@@ -297,7 +297,7 @@ impl Problem<'_> {
         self.purpose == Purpose::Choice && (self.in_vain.evaluations >= limit || self.promises_little())
     }
 
-    /// Whether the best point so far is the lowest one to within rounding of what is worth a step, as far as its derivatives can tell.
+    /// Whether the derivatives at the best point so far promise less than is worth a step.
     fn promises_little(&self) -> bool {
         let Some(best) = self.best.as_ref().filter(|best| best.jacobian.is_some()) else { return false };
         best.left > best.residuals.norm_squared() * self.odds(-WORTH_A_STEP * WORTH_GOING_ON)

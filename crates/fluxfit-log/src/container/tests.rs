@@ -308,15 +308,13 @@ fn hdf5_refusals() {
     assert_eq!(refusal("lzf.h5"), format!("{filter}, {parquet}"));
 }
 
-/// The array is listed under its first names only.
+/// Each further name would cost a look at the array: without a limit such a file takes time that its size does not show.
 #[test]
-fn hdf5_with_3000_links_to_one_array_is_listed_in_2_s() {
+fn of_3000_links_to_one_array_in_hdf5_the_first_are_listed() {
     let mut bytes = Vec::new();
     GzDecoder::new(&fs::read(path("many_links.h5.gz")).unwrap()[..]).read_to_end(&mut bytes).unwrap();
-    let start = std::time::Instant::now();
     let binary = Binary::open(RandomAccess::memory(bytes)).unwrap().unwrap();
     assert!(names(&binary).starts_with(&["n0000", "n0001"]) && binary.heads().len() < 3000, "{}", binary.heads().len());
-    assert!(start.elapsed().as_secs_f64() < 2.0, "{:?}", start.elapsed());
 }
 
 #[test]

@@ -172,15 +172,15 @@ impl<V: Number, const C: usize> Drives<V, C> {
     /// All rows of drives with faults, or with periods of lengths of their own: block by block, the transitions first.
     #[inline(always)]
     fn faulty_rows(&self, segment: &SimulatedSegment, state: &mut State<V>, sums: &mut Sums<V>, mut trace: Option<&mut Trace>) {
-        let mut transitions = [TransitionLanes::of_nothing(self.motors.rs); BLOCK];
+        let mut transitions = Vec::with_capacity(BLOCK);
         for first in (0..segment.periods.len()).step_by(BLOCK) {
-            let count = self.transitions(segment, first, &mut transitions);
+            self.transitions(segment, first, &mut transitions);
             state.i[0].call(FaultyBlock {
                 motors: &self.motors,
                 faults: &self.faults,
                 segment,
                 first,
-                transitions: &transitions[..count],
+                transitions: &transitions,
                 per_henry: [self.motors.rs.constant(1.0) / self.motors.ld, self.motors.rs.constant(1.0) / self.motors.lq],
                 state,
                 sums,
@@ -189,19 +189,18 @@ impl<V: Number, const C: usize> Drives<V, C> {
         }
     }
 
-    /// The transitions over the periods of a block, and how many they are.
+    /// The transitions over the periods of a block.
     #[inline(always)]
-    fn transitions(&self, segment: &SimulatedSegment, first: usize, transitions: &mut [TransitionLanes<V>; BLOCK]) -> usize {
+    fn transitions(&self, segment: &SimulatedSegment, first: usize, transitions: &mut Vec<TransitionLanes<V>>) {
+        transitions.clear();
         let last = (first + BLOCK).min(segment.periods.len());
-        let periods = segment.rows_of_periods[first..last].iter().zip(&segment.periods[first..last]);
-        for (transition, (row, period)) in transitions.iter_mut().zip(periods) {
-            *transition = if self.polynomials.is_empty() {
+        for (row, period) in segment.rows_of_periods[first..last].iter().zip(&segment.periods[first..last]) {
+            transitions.push(if self.polynomials.is_empty() {
                 TransitionLanes::exact(&self.motors, row.turn, period.length, self.held)
             } else {
                 self.polynomials[row.class].at(row.turn, row.place)
-            };
+            });
         }
-        last - first
     }
 
     /// What a volt over each period does to linear functions of the simulated currents, one function a lane, of which `weights` gives the
@@ -210,10 +209,10 @@ impl<V: Number, const C: usize> Drives<V, C> {
     #[inline(always)]
     pub(super) fn by_voltage(&self, segment: &SimulatedSegment, weights: impl Fn(usize) -> [V; 2], lanes: usize, effects: &mut [f64]) {
         let mut behind = [self.motors.rs.constant(0.0); 2];
-        let mut transitions = [TransitionLanes::of_nothing(self.motors.rs); BLOCK];
+        let mut transitions = Vec::with_capacity(BLOCK);
         for first in (0..segment.periods.len()).step_by(BLOCK).rev() {
-            let count = self.transitions(segment, first, &mut transitions);
-            for (k, transition) in transitions[..count].iter().enumerate().rev() {
+            self.transitions(segment, first, &mut transitions);
+            for (k, transition) in transitions.iter().enumerate().rev() {
                 let row = first + k;
                 let TransitionLanes { fdd, fdq, fqd, fqq, gdd, gdq, gqd, gqq, .. } = *transition;
                 let own = weights(row + 1);

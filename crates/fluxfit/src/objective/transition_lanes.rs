@@ -44,13 +44,6 @@ pub(super) struct TransitionLanes<V> {
 }
 
 impl<V: Number> TransitionLanes<V> {
-    /// After which nothing is left; `kind` says how many lanes.
-    #[inline(always)]
-    pub(super) fn of_nothing(kind: V) -> Self {
-        let zero = kind.constant(0.0);
-        Self { fdd: zero, fdq: zero, fqd: zero, fqq: zero, gdd: zero, gdq: zero, gqd: zero, gqq: zero, hd: zero, hq: zero }
-    }
-
     /// The current after a period: `F i + G u + h`.
     #[inline(always)]
     pub(super) fn after(&self, i: [V; 2], u: [V; 2]) -> [V; 2] {

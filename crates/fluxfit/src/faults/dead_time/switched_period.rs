@@ -100,7 +100,7 @@ impl<V: Number> SwitchedLoss<V> {
                 together = amperes[x][y].mul_add(v[y], together);
                 ahead = amperes[x][y].mul_add(later[x][y], ahead);
             }
-            // The sum over all phases `y` of what a volt second on `y` does, by what has driven it more than its mean until `x` goes up.
+            // What all phases have been driven by beyond their mean until `x` goes up, as a current in `x`.
             let commanded = half * (-low[x]).mul_add(together, ahead);
             let (when, way) = (half * carrier * low[x], end[x] - start[x]);
             let bent = when * (one - when) * bend[x];
@@ -211,7 +211,7 @@ const SHORT: f64 = 1e-6;
 /// The same, A: shorter than any current, and the product of four such ways is still a number.
 const SHORTEST: f64 = 1e-60;
 
-/// A quotient that is not yet divided: divisions take as long as all else here, and sums of quotients need but one.
+/// A quotient that is not yet divided: a division takes as long as many products, and a sum of quotients needs only one.
 #[derive(Clone, Copy)]
 struct Fraction<V> {
     above: V,
