@@ -13,7 +13,8 @@
 //! 10.1109/TAC.1976.1101195), so that any gain is stable in continuous time. With four parameters a scalar gain is a gradient on a valley
 //! of 1 : 7000; the matrix gain `wn² (W + small)^-1`, with `W` the mean of `Phi'Phi`, makes all directions equally fast.
 //!
-//! The mean has a floor: in the first samples and at standstill, of a motor that does not turn, the gain would have no limit. Noise would drive the parameters to their limits, and they would still be on their way back after a second.
+//! The mean has a floor: in the first samples and at standstill, of a motor that does not turn, the gain would have no limit. Noise would
+//! drive the parameters to their limits, and they would still be on their way back after a second.
 
 use crate::{cholesky::solved, estimate::Estimate};
 use fluxfit::motor::PARAMETERS;
