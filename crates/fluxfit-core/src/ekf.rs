@@ -138,6 +138,16 @@ pub struct Ekf<T> {
     last_surprise: T,
 }
 
+/// What a measured current told beyond what was expected of it.
+struct Innovation<T> {
+    /// The variance that was expected, A².
+    variance: T,
+    /// Its square in such variances, no more than the adaption sees.
+    squared: T,
+    /// One if it lay beyond three standard deviations, else zero.
+    beyond: T,
+}
+
 /// Whether all is a number, and the period longer than nothing.
 fn is_sound<T: Real>(period: &Period<T>, measured: [T; 2]) -> bool {
     let are_finite = [period.u[0], period.u[1], period.omega_e, measured[0], measured[1]].iter().all(|value| value.is_finite());
@@ -231,7 +241,11 @@ impl<T: Number> Ekf<T> {
         if self.settings.steps {
             self.test.propagate(&phi);
         }
-        [self.measure(0, measured[0], late), self.measure(1, measured[1], late)]
+        let of_d = self.measure(0, measured[0], late);
+        let of_q = self.measure(1, measured[1], late);
+        self.last_surprise = (of_d.variance * of_q.variance).ln() + of_d.squared + of_q.squared;
+        self.surprise = self.surprise * T::of(1.0 - 1.0 / MEMORY) + self.last_surprise;
+        [of_d.beyond, of_q.beyond]
     }
 
     /// The current after a period, and the first two rows of the transition.
@@ -273,9 +287,9 @@ impl<T: Number> Ekf<T> {
         })
     }
 
-    /// Learns from one current. One if it lay beyond three standard deviations, else zero.
+    /// Learns from one current.
     #[inline(always)]
-    fn measure(&mut self, state: usize, measured: T, late: T) -> T {
+    fn measure(&mut self, state: usize, measured: T, late: T) -> Innovation<T> {
         let innovation = measured - self.i[state];
         let explained = self.ud.variance(state);
         let variance = explained + self.noise;
@@ -294,13 +308,10 @@ impl<T: Number> Ekf<T> {
         }
         self.shift(&change);
         let squared = innovation * innovation;
-        let surprise = variance.ln() + (squared / variance).smaller(T::of(LARGEST_SEEN));
-        self.surprise = self.surprise * T::of(1.0 - 0.5 / MEMORY) + surprise;
-        self.last_surprise = if state == 0 { surprise } else { self.last_surprise + surprise };
         let seen = (squared - explained).smaller(T::of(LARGEST_SEEN) * self.noise);
         let adapted = self.noise + T::of(ADAPTION) * (seen - self.noise);
         self.noise = adapted.larger(T::of(LEAST_NOISE) * self.settings.noise);
-        beyond
+        Innovation { variance, squared: (squared / variance).smaller(T::of(LARGEST_SEEN)), beyond }
     }
 
     /// Changes the states.

@@ -44,6 +44,17 @@ pub trait Number:
     fn smaller(self, other: Self) -> Self;
 }
 
+/// Largest size of a number at which [`near_zero`] has all digits: the first term left out is `x^7 / 5040`.
+pub(crate) const NEAR_ZERO: f64 = 1.0 / 128.0;
+
+/// The exponential function less one by its Taylor series: without a table or a branch, for several numbers at once.
+#[inline(always)]
+pub(crate) fn near_zero<T: Number>(x: T) -> T {
+    let term = |n: f64, rest: T| T::of(1.0 / n) + x * rest;
+    let rest = term(2.0, term(6.0, term(24.0, term(120.0, T::of(1.0 / 720.0)))));
+    x + x * x * rest
+}
+
 /// A single floating-point number.
 pub trait Real: Number + PartialOrd {
     /// The same number in double precision.
@@ -83,7 +94,7 @@ macro_rules! real {
             }
             #[inline(always)]
             fn exp_m1(self) -> Self {
-                $exp_m1(self)
+                if $abs(self) <= Self::of(NEAR_ZERO) { near_zero(self) } else { $exp_m1(self) }
             }
             #[inline(always)]
             fn if_above(self, other: Self, then: Self, otherwise: Self) -> Self {

@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Track) -> Result<Status, CommandError> {
             place.clone()
         }
         (None, Some(path)) if arguments.follow || path == Path::new("-") => {
-            source::stream(path, arguments.follow, &options, &mut |row| run.take(row))?;
+            source::stream(path, &options, &mut |row| run.take(row))?;
             input::name(path)
         }
         (None, Some(path)) => {

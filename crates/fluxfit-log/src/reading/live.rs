@@ -38,6 +38,8 @@ pub struct LiveLog {
     sample_period: Option<f64>,
     rows: u64,
     scratch: String,
+    /// Where the cells of a line begin and end.
+    bounds: Vec<[usize; 2]>,
     /// What was inferred.
     pub notes: Vec<Note>,
     /// What was read as what, in a line.
@@ -72,7 +74,18 @@ impl LiveLog {
         }
         let described = chosen::describe(&chosen);
         let (separator, style, cells) = (header.separator, header.rows, header.names.len());
-        let live = Self { columns: chosen, separator, style, cells, sample_period, rows: 0, scratch: String::new(), notes, described };
+        let live = Self {
+            columns: chosen,
+            separator,
+            style,
+            cells,
+            sample_period,
+            rows: 0,
+            scratch: String::new(),
+            bounds: Vec::new(),
+            notes,
+            described,
+        };
         Ok((live, head[header.body.min(head.len())..].to_owned()))
     }
 
@@ -84,18 +97,25 @@ impl LiveLog {
         if bare.is_empty() || bare.starts_with(['#', '%']) {
             return None;
         }
-        let cells: Vec<&[u8]> = tidied.as_bytes().split(|byte| *byte == self.separator).collect();
+        let bytes = tidied.as_bytes();
+        self.bounds.clear();
+        let mut begin = 0;
+        for end in memchr::memchr_iter(self.separator, bytes).chain([bytes.len()]) {
+            self.bounds.push([begin, end]);
+            begin = end + 1;
+        }
         let mut row = Row { t: f64::NAN, ud: f64::NAN, uq: f64::NAN, id: f64::NAN, iq: f64::NAN, omega_e: f64::NAN, ..Row::default() };
         if let Some(period) = self.sample_period {
             row.t = self.rows as f64 * period;
         }
         self.rows += 1;
         // A line that was cut may end within a number.
-        if cells.len() < self.cells {
+        if self.bounds.len() < self.cells {
             return Some(row);
         }
         for column in &self.columns {
-            let Some(cell) = cells.get(column.index) else { continue };
+            let Some([begin, end]) = self.bounds.get(column.index).copied() else { continue };
+            let cell = &bytes[begin..end];
             let value = match &column.instants {
                 Some(instants) => instants.seconds(record::trimmed(cell)),
                 None => record::number(cell, self.separator, &mut self.scratch),

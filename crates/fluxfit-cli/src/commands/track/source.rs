@@ -6,11 +6,11 @@ use fluxfit::log::Row;
 use fluxfit_files::{FileError, input as files};
 use fluxfit_log::{LiveLog, LogOptions, read_log_with_progress};
 use std::{
+    borrow::Cow,
     fs::{self, File},
     io::{Read, Seek},
-    net::TcpListener,
-    path::{Path, PathBuf},
-    sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
+    net::{TcpListener, TcpStream},
+    path::Path,
     thread,
     time::Duration,
 };
@@ -18,28 +18,21 @@ use std::{
 /// Takes rows; false if no more are wanted.
 pub(super) type Take<'a> = dyn FnMut(&Row) -> Result<bool, CommandError> + 'a;
 
-/// Time after which a file that has not grown is looked at again: half of the 10 ms within which a row is told.
+/// Time after which a source that had little to read is looked at again: half of the 10 ms within which a row is told. A drive sends its
+/// rows one by one, and waking up for each of them takes more of a core than the estimators.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Time after which it is noticed that Ctrl-C was pressed.
+/// Longest time until it is noticed that Ctrl-C was pressed.
 const INTERRUPT: Duration = Duration::from_millis(100);
 
 /// Bytes that are read at a time.
 const PIECE: usize = 1 << 16;
 
-/// Pieces that may wait.
-const WAITING: usize = 16;
+/// Fewer bytes than this are little: a pipe holds no more than a piece, and whoever fills it faster than that is not waited for.
+const LITTLE: usize = PIECE / 4;
 
 /// Most bytes of one line.
 const LONGEST_LINE: usize = 1 << 20;
-
-/// What a reading thread sends.
-enum Message {
-    Bytes(Vec<u8>),
-    /// The text begins anew, with a header, for this reason.
-    Anew(String),
-    Failed(std::io::Error),
-}
 
 /// Reads a finished log of any format.
 pub(super) fn file(path: &Path, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
@@ -66,21 +59,15 @@ pub(super) fn file(path: &Path, options: &LogOptions, take: &mut Take) -> Result
 }
 
 /// Reads standard input or a file that is being written, line by line.
-pub(super) fn stream(path: &Path, follows: bool, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
+pub(super) fn stream(path: &Path, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
     let name = input::name(path);
-    let receiver = if files::is_standard(path) {
-        reading(|sender| {
-            if let Err(error) = pass_on(&mut std::io::stdin().lock(), &sender) {
-                let _ = sender.send(Message::Failed(error));
-            }
-        })?
-    } else {
-        let of_file = |error: &std::io::Error| FileError::from(files::io_problem("reading", error)).in_file(&name);
-        let file = File::open(path).map_err(|error| of_file(&error))?;
-        let path = path.to_owned();
-        reading(move |sender| if follows { follow(&path, file, &sender) } else { drop(sender) })?
-    };
-    lines(&name, receiver, options, take)
+    if files::is_standard(path) {
+        let mut input = std::io::stdin().lock();
+        return lines(&name, &mut |piece| next_of(&mut input, piece), options, take);
+    }
+    let mut file = File::open(path).map_err(|error| FileError::from(files::io_problem("reading", &error)).in_file(&name))?;
+    let mut read = 0;
+    lines(&name, &mut |piece| next_of_file(path, &mut file, &mut read, piece), options, take)
 }
 
 /// Waits for connections, one after the other, and reads lines from each.
@@ -91,89 +78,117 @@ pub(super) fn listen(place: &str, options: &LogOptions, take: &mut Take) -> Resu
     if let Ok(address) = listener.local_addr() {
         terminal::note(&format!("listening on {address}"));
     }
-    let receiver = reading(move |sender| {
-        for connection in listener.incoming() {
-            if sender.send(of_connection(connection, &sender)).is_err() {
-                return;
-            }
-        }
-    })?;
-    lines(place, receiver, options, take)
+    let mut connection = None;
+    lines(place, &mut |piece| Ok(next_of_connections(&listener, &mut connection, piece)), options, take)
 }
 
-fn reading(read: impl FnOnce(SyncSender<Message>) + Send + 'static) -> Result<Receiver<Message>, CommandError> {
-    let (sender, receiver) = sync_channel(WAITING);
-    thread::Builder::new().name("reading".to_owned()).spawn(move || read(sender))?;
-    Ok(receiver)
+/// What a source brings next.
+enum Next {
+    /// So many bytes.
+    Bytes(usize),
+    /// Nothing yet.
+    Nothing,
+    /// The text begins anew, with a header, for this reason.
+    Anew(String),
+    End,
 }
 
-/// Passes on what a connection brings. At its end, however it ended: what is told of it, and that the next one begins anew.
-fn of_connection(connection: std::io::Result<impl Read>, sender: &SyncSender<Message>) -> Message {
-    Message::Anew(match connection.and_then(|mut connection| pass_on(&mut connection, sender)) {
-        Ok(()) => "the connection was closed; waiting for the next".to_owned(),
-        Err(error) => format!("a connection failed: {error}; waiting for the next"),
-    })
-}
+/// Brings the next bytes, without waiting much longer than [`INTERRUPT`].
+type Bring<'a> = dyn FnMut(&mut [u8]) -> std::io::Result<Next> + 'a;
 
-/// Passes bytes on as they arrive, to the end.
-fn pass_on(reader: &mut dyn Read, sender: &SyncSender<Message>) -> std::io::Result<()> {
-    loop {
-        let mut piece = vec![0; PIECE];
-        match reader.read(&mut piece) {
-            Ok(0) => return Ok(()),
-            Ok(count) => piece.truncate(count),
-            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(error),
-        }
-        if sender.send(Message::Bytes(piece)).is_err() {
-            return Ok(());
-        }
+/// Whether there is something to read, or an end or an error, within [`INTERRUPT`].
+#[cfg(unix)]
+fn is_ready(source: &impl std::os::fd::AsFd) -> std::io::Result<bool> {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    let patience = Timespec { tv_sec: 0, tv_nsec: INTERRUPT.subsec_nanos().into() };
+    match poll(&mut [PollFd::new(source, PollFlags::IN)], Some(&patience)) {
+        Ok(ready) => Ok(ready > 0),
+        Err(rustix::io::Errno::INTR) => Ok(false),
+        Err(error) => Err(error.into()),
     }
 }
 
-/// Follows a file that grows, is truncated or is replaced, until nobody listens any more.
-fn follow(path: &PathBuf, mut file: File, sender: &SyncSender<Message>) {
-    let mut read = 0_u64;
-    loop {
-        let mut piece = vec![0; PIECE];
-        match file.read(&mut piece) {
-            Ok(0) => thread::sleep(LOOK),
-            Ok(count) => {
-                read += count as u64;
-                piece.truncate(count);
-                if sender.send(Message::Bytes(piece)).is_err() {
-                    return;
-                }
-                continue;
-            }
-            Err(error) => {
-                let _ = sender.send(Message::Failed(error));
-                return;
-            }
-        }
-        let reason = match fs::metadata(path) {
-            // It is being replaced: look again.
-            Err(_) => continue,
-            Ok(now) if !is_same(&file, &now) => "the file was replaced; going on with the new one",
-            Ok(now) if now.len() < read => "the file was truncated; going on from its beginning",
-            Ok(_) => continue,
-        };
-        // What the old file got since it was last read is read first.
-        if reason.starts_with("the file was replaced") {
-            let mut rest = Vec::new();
-            if file.read_to_end(&mut rest).is_ok() && !rest.is_empty() && sender.send(Message::Bytes(rest)).is_err() {
-                return;
-            }
-            match File::open(path) {
-                Ok(new) => file = new,
-                Err(_) => continue,
-            }
-        }
-        read = 0;
-        if file.rewind().is_err() || sender.send(Message::Anew(reason.to_owned())).is_err() {
-            return;
-        }
+/// Where nothing tells, reading waits, and Ctrl-C is noticed with the next row.
+#[cfg(not(unix))]
+fn is_ready<T>(_: &T) -> std::io::Result<bool> {
+    Ok(true)
+}
+
+#[cfg(unix)]
+use std::os::fd::AsFd as Waited;
+
+/// What can be waited for.
+#[cfg(not(unix))]
+trait Waited {}
+
+#[cfg(not(unix))]
+impl<T> Waited for T {}
+
+fn next_of(source: &mut (impl Read + Waited), piece: &mut [u8]) -> std::io::Result<Next> {
+    if !is_ready(source)? {
+        return Ok(Next::Nothing);
     }
+    match source.read(piece) {
+        Ok(0) => Ok(Next::End),
+        Ok(count) => Ok(Next::Bytes(count)),
+        Err(error) if error.kind() == std::io::ErrorKind::Interrupted => Ok(Next::Nothing),
+        Err(error) => Err(error),
+    }
+}
+
+/// Of the connection there is, or of the next one.
+fn next_of_connections(listener: &TcpListener, connection: &mut Option<TcpStream>, piece: &mut [u8]) -> Next {
+    let next = match connection {
+        Some(connection) => next_of(connection, piece),
+        None => is_ready(listener).and_then(|is_ready| {
+            if is_ready {
+                *connection = Some(listener.accept()?.0);
+            }
+            Ok(Next::Nothing)
+        }),
+    };
+    let next = of_connection(next);
+    if matches!(next, Next::Anew(_)) {
+        *connection = None;
+    }
+    next
+}
+
+/// At the end of a connection, however it ended: what is told of it, and that the next one begins anew.
+fn of_connection(next: std::io::Result<Next>) -> Next {
+    match next {
+        Ok(Next::End) => Next::Anew("the connection was closed; waiting for the next".to_owned()),
+        Ok(next) => next,
+        Err(error) => Next::Anew(format!("a connection failed: {error}; waiting for the next")),
+    }
+}
+
+/// Of a file that grows, is truncated or is replaced; `read` counts its bytes.
+fn next_of_file(path: &Path, file: &mut File, read: &mut u64, piece: &mut [u8]) -> std::io::Result<Next> {
+    // Asked for before the rest is read: what the old file got until it was replaced is read first.
+    let now = fs::metadata(path);
+    let count = file.read(piece)?;
+    *read += count as u64;
+    if count > 0 {
+        return Ok(Next::Bytes(count));
+    }
+    let reason = match now {
+        Ok(now) if !is_same(file, &now) => match File::open(path) {
+            Ok(new) => {
+                *file = new;
+                "the file was replaced; going on with the new one"
+            }
+            Err(_) => return Ok(Next::Nothing),
+        },
+        Ok(now) if now.len() < *read => {
+            file.rewind()?;
+            "the file was truncated; going on from its beginning"
+        }
+        // It is being replaced, or has not grown: it is looked at again.
+        _ => return Ok(Next::Nothing),
+    };
+    *read = 0;
+    Ok(Next::Anew(reason.to_owned()))
 }
 
 /// Whether a path still leads to this file.
@@ -190,29 +205,38 @@ fn is_same(_: &File, _: &fs::Metadata) -> bool {
 }
 
 /// Makes rows of the bytes that arrive.
-fn lines(name: &str, receiver: Receiver<Message>, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
+fn lines(name: &str, bring: &mut Bring, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
     interrupt::doing("tracking");
     interrupt::be_gentle(true);
     let mut text = Text { name, options, log: None, head: String::new(), rest: Vec::new() };
     let mut has_rows = false;
+    let mut piece = vec![0; PIECE];
     loop {
-        let goes_on = match receiver.recv_timeout(INTERRUPT) {
-            Ok(Message::Bytes(bytes)) => text.take(&bytes, take, &mut has_rows)?,
-            Ok(Message::Anew(reason)) => {
+        let next = bring(&mut piece).map_err(|error| FileError::from(files::io_problem("reading", &error)).in_file(name))?;
+        let is_little = match next {
+            Next::Bytes(count) => {
+                if !text.take(&piece[..count], take, &mut has_rows)? {
+                    break;
+                }
+                count < LITTLE
+            }
+            Next::Nothing => true,
+            Next::Anew(reason) => {
                 terminal::note(&format!("{name}: {reason}"));
                 text.end(take, &mut has_rows)?;
                 (text.log, text.head) = (None, String::new());
-                true
-            }
-            Ok(Message::Failed(error)) => return Err(FileError::from(files::io_problem("reading", &error)).in_file(name).into()),
-            Err(RecvTimeoutError::Timeout) => true,
-            Err(RecvTimeoutError::Disconnected) => {
-                text.end(take, &mut has_rows)?;
                 false
             }
+            Next::End => {
+                text.end(take, &mut has_rows)?;
+                break;
+            }
         };
-        if !goes_on || interrupt::go_on().is_break() {
+        if interrupt::go_on().is_break() {
             break;
+        }
+        if is_little {
+            thread::sleep(LOOK);
         }
     }
     interrupt::be_gentle(false);
@@ -238,15 +262,15 @@ struct Text<'a> {
 impl Text<'_> {
     fn take(&mut self, bytes: &[u8], take: &mut Take, has_rows: &mut bool) -> Result<bool, CommandError> {
         let mut begin = 0;
-        for end in bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1) {
+        for end in memchr::memchr_iter(b'\n', bytes).map(|at| at + 1) {
             let piece = &bytes[begin..end];
             begin = end;
             let goes_on = if self.rest.is_empty() {
-                self.line(&String::from_utf8_lossy(piece), take, has_rows)?
+                self.line(&text_of(piece), take, has_rows)?
             } else {
                 let mut line = std::mem::take(&mut self.rest);
                 line.extend_from_slice(piece);
-                let goes_on = self.line(&String::from_utf8_lossy(&line), take, has_rows)?;
+                let goes_on = self.line(&text_of(&line), take, has_rows)?;
                 line.clear();
                 self.rest = line;
                 goes_on
@@ -265,7 +289,7 @@ impl Text<'_> {
     /// The last line may lack its end.
     fn end(&mut self, take: &mut Take, has_rows: &mut bool) -> Result<(), CommandError> {
         if !self.rest.is_empty() {
-            let mut line = String::from_utf8_lossy(&std::mem::take(&mut self.rest)).into_owned();
+            let mut line = text_of(&std::mem::take(&mut self.rest)).into_owned();
             line.push('\n');
             self.line(&line, take, has_rows)?;
         }
@@ -299,30 +323,22 @@ impl Text<'_> {
     }
 }
 
+/// What is no UTF-8 becomes a mark, as in a log that is read whole. Valid text, nearly all of it, is only looked over.
+fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    std::str::from_utf8(bytes).map_or_else(|_| String::from_utf8_lossy(bytes), Cow::Borrowed)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::io::{Error, ErrorKind};
 
-    /// A connection that brings a row and is then reset by the peer.
-    struct Reset(Option<&'static [u8]>);
-
-    impl Read for Reset {
-        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-            let row = self.0.take().ok_or(Error::from(ErrorKind::ConnectionReset))?;
-            buffer[..row.len()].copy_from_slice(row);
-            Ok(row.len())
-        }
-    }
-
     #[test]
     fn after_a_connection_that_was_reset_the_next_one_is_waited_for() {
-        let (sender, receiver) = sync_channel(WAITING);
-        let last = of_connection(Ok(Reset(Some(b"0.1,2\n"))), &sender);
-        assert!(matches!(receiver.try_recv(), Ok(Message::Bytes(bytes)) if bytes == b"0.1,2\n"));
-        assert!(receiver.try_recv().is_err());
+        let last = of_connection(Err(Error::from(ErrorKind::ConnectionReset)));
         assert!(
-            matches!(last, Message::Anew(reason) if reason.starts_with("a connection failed") && reason.ends_with("waiting for the next"))
+            matches!(last, Next::Anew(reason) if reason.starts_with("a connection failed") && reason.ends_with("waiting for the next"))
         );
+        assert!(matches!(of_connection(Ok(Next::Bytes(3))), Next::Bytes(3)));
     }
 }
