@@ -3,7 +3,7 @@
 //! Every operation acts on each lane alone and rounds as it does on one number. The loops over the lanes are plain ones, which the compiler
 //! turns into the wide instructions of the processor that it compiles for.
 
-use crate::real::{NEAR_ZERO, Number, near_zero};
+use crate::real::{NEAR_ZERO, Number, exp_m1_by_series};
 use core::{
     array::from_fn,
     ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign},
@@ -133,7 +133,7 @@ impl Number for Lanes {
     #[inline(always)]
     fn exp_m1(self) -> Self {
         // A filter that has settled changes little with each measurement.
-        if self.0.iter().all(|lane| lane.abs() <= NEAR_ZERO) { near_zero(self) } else { self.each_different(Number::exp_m1) }
+        if self.0.iter().all(|lane| lane.abs() <= NEAR_ZERO) { exp_m1_by_series(self) } else { self.each_different(Number::exp_m1) }
     }
 
     #[inline(always)]

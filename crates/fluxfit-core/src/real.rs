@@ -44,12 +44,12 @@ pub trait Number:
     fn smaller(self, other: Self) -> Self;
 }
 
-/// Largest size of a number at which [`near_zero`] has all digits: the first term left out is `x^7 / 5040`.
+/// Largest size of a number at which [`exp_m1_by_series`] has all digits: the first term left out is `x^7 / 5040`.
 pub(crate) const NEAR_ZERO: f64 = 1.0 / 128.0;
 
 /// The exponential function less one by its Taylor series: without a table or a branch, for several numbers at once.
 #[inline(always)]
-pub(crate) fn near_zero<T: Number>(x: T) -> T {
+pub(crate) fn exp_m1_by_series<T: Number>(x: T) -> T {
     let term = |n: f64, rest: T| T::of(1.0 / n) + x * rest;
     let rest = term(2.0, term(6.0, term(24.0, term(120.0, T::of(1.0 / 720.0)))));
     x + x * x * rest
@@ -94,7 +94,7 @@ macro_rules! real {
             }
             #[inline(always)]
             fn exp_m1(self) -> Self {
-                if $abs(self) <= Self::of(NEAR_ZERO) { near_zero(self) } else { $exp_m1(self) }
+                if $abs(self) <= Self::of(NEAR_ZERO) { exp_m1_by_series(self) } else { $exp_m1(self) }
             }
             #[inline(always)]
             fn if_above(self, other: Self, then: Self, otherwise: Self) -> Self {
@@ -125,3 +125,17 @@ macro_rules! real {
 
 real!(f32, libm::sqrtf, libm::fabsf, libm::sincosf, libm::logf, libm::expm1f);
 real!(f64, libm::sqrt, libm::fabs, libm::sincos, libm::log, libm::expm1);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_series_and_the_function_agree_up_to_the_last_digit() {
+        for k in 0..=1000 {
+            let x = NEAR_ZERO * (f64::from(k) / 500.0 - 1.0);
+            let expected = libm::expm1(x);
+            assert!((Number::exp_m1(x) - expected).abs() <= f64::EPSILON * expected.abs(), "{x}");
+        }
+    }
+}
