@@ -65,7 +65,7 @@ pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
 /// The header of an export of TwinCAT Scope.
 ///
 /// # Errors
-/// If its channels have different sample times.
+/// If its channels have different sample times and one time for all.
 fn of_scope(text: &str, export: Export, notes: &mut Vec<String>) -> Result<Header, FileError> {
     let Export { names, units, start, separator, body, sample_times } = export;
     let line = record::line_of(text, start);

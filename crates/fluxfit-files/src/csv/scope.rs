@@ -1,6 +1,6 @@
 //! The header of a text that TwinCAT Scope exported: after the name of the scope and its times, a line for each property of the channels,
 //! in which every value stands behind the property's name (`Name  ud  Name  uq`), then the rows. Each channel has a time of its own
-//! before its values, or channels of one sample time share it. Times are milliseconds.
+//! before its values, or channels of one sample time share it; one that is sampled more slowly ends earlier. Times are milliseconds.
 //! Source: Beckhoff, TE13xx TwinCAT 3 Scope View, Export to csv.
 
 use super::record::{self, lines};
@@ -15,7 +15,7 @@ pub(super) struct Export {
     pub(super) start: usize,
     pub(super) separator: u8,
     pub(super) body: usize,
-    /// The sample times of the channels, ms, if they differ: then the rows are not simultaneous.
+    /// The sample times of the channels, ms, if they differ and one time stands for all: then the rows are not simultaneous.
     pub(super) sample_times: Vec<String>,
 }
 
@@ -41,18 +41,19 @@ pub(super) fn find(text: &str) -> Option<Export> {
     })?;
     let is_shared = width == channels.len() + 1;
     let mut sample_times: Vec<String> = Vec::new();
-    for period in periods.into_iter().filter(|period| !period.is_empty()) {
-        if !sample_times.contains(&period) {
-            sample_times.push(period);
+    for period in periods.iter().filter(|period| is_shared && !period.is_empty()) {
+        if !sample_times.contains(period) {
+            sample_times.push(period.clone());
         }
     }
     if sample_times.len() < 2 {
         sample_times.clear();
     }
+    let timing = first_of_most(&periods);
     let (mut names, mut units) = (Vec::new(), Vec::new());
     for (at, channel) in channels.into_iter().enumerate() {
         if at == 0 || !is_shared {
-            names.push(if at == 0 { "Time".to_owned() } else { format!("Time {}", at + 1) });
+            names.push(if is_shared || at == timing { "Time".to_owned() } else { format!("Time {}", at + 1) });
             units.push("ms".to_owned());
         }
         names.push(channel);
@@ -61,6 +62,12 @@ pub(super) fn find(text: &str) -> Option<Export> {
         units.push(unit.unwrap_or_default().trim().to_owned());
     }
     Some(Export { names, units, start, separator, body, sample_times })
+}
+
+/// The first channel of the sample time that most channels have: its time is that of the log.
+fn first_of_most(periods: &[String]) -> usize {
+    let count = |period: &String| periods.iter().filter(|other| *other == period).count();
+    (0..periods.len()).rev().max_by_key(|&at| count(&periods[at])).unwrap_or(0)
 }
 
 fn cells(line: &str, separator: u8) -> Vec<String> {
@@ -89,8 +96,11 @@ mod tests {
         assert_eq!(export.units, ["ms", "V", "ms", ""]);
         assert_eq!((&text[export.start..][..7], export.separator, &text[export.body..]), ("Name;ud", b';', "0,0;-3,5;0,0;2\n"));
         assert_eq!(find(&format!("{titles}{head}0,0;-3,5;2\n")).unwrap().names, ["Time", "ud", "iq"]);
-        let two_rates = find(&format!("{titles}{}0,0;-3,5;0,0;2\n", head.replacen("0,1", "0,2", 1))).unwrap();
-        assert_eq!((export.sample_times, two_rates.sample_times), (vec![], vec!["0,2".to_owned(), "0,1".to_owned()]));
+        let shared = find(&format!("{titles}{}0,0;-3,5;2\n", head.replacen("0,1", "0,2", 1))).unwrap();
+        assert_eq!((export.sample_times, shared.sample_times), (vec![], vec!["0,2".to_owned(), "0,1".to_owned()]));
+        // The time of the log is that of most channels.
+        let slow = "Name;warm;Name;ud;Name;iq\nSampleTime[ms];10;SampleTime[ms];0,1;SampleTime[ms];0,1\n\n0,0;25;0,0;-3,5;0,0;2\n";
+        assert_eq!(find(&format!("{titles}{slow}")).unwrap().names, ["Time 1", "warm", "Time", "ud", "Time 3", "iq"]);
         assert!(find("Name,File\n1,2\n").is_none() && find(titles).is_none());
     }
 }

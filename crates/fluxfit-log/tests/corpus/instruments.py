@@ -17,23 +17,27 @@ def twincat(make):
     names = make.NAMES[1:]
     units = ["V (Voltage)", "V (Voltage)", "A (Current)", "A (Current)", "(None)"]
 
-    def export(file, separator, decimal, shared=False, periods=None):
+    def export(file, separator, decimal, shared=False, names=names, units=units, slow=None):
         def of_each(key, values):
             return separator.join(f"{key}{separator}{value}" for value in values)
 
+        # Every tenth value of the slow channel; where it has ended, its cells are empty.
+        every = {name: 10 if name == slow else 1 for name in names}
+        series = {name: [(f"{t * 1e3:.1f}", make.plain(value)) for t, value in zip(fast["t"], fast.get(name, fast["t"] + 25.0))][:: every[name]] for name in names}
         lines = ["Name" + separator + "Scope Project", "File" + separator + "C:\\scopes\\drive.svdx",
                  separator.join(["Starttime of export", "132959733843760000", "Montag, 2. Mai 2022", "15:56:24.376"]),
                  separator.join(["Endtime of export", "132959733853750000", "Montag, 2. Mai 2022", "15:56:25.375"]), "", ""]
         count = len(names)
-        for key, values in [("Name", names), ("SymbolComment", [""] * count), ("Data-Type", ["REAL64"] * count), ("SampleTime[ms]", periods or ["0" + decimal + "1"] * count),
+        for key, values in [("Name", names), ("SymbolComment", [""] * count), ("Data-Type", ["REAL64"] * count),
+                            ("SampleTime[ms]", ["1" if name == slow else "0" + decimal + "1" for name in names]),
                             ("VariableSize", [8] * count), ("SymbolBased", ["True"] * count), ("IndexGroup", [16448] * count), ("IndexOffset", range(385000, 385000 + count)),
                             ("SymbolName", [f"GVL.{name}" for name in names]), ("Port", [851] * count), ("Offset", [0] * count), ("ScaleFactor", [1] * count), ("Unit", units),
                             ("Unit ScaleFactor", [1] * count)]:
             lines.append(of_each(key, values))
         lines.append("")
         for k, t in enumerate(fast["t"]):
-            time, values = f"{t * 1e3:.1f}", [make.plain(fast[name][k]) for name in names]
-            cells = [time] + values if shared else [cell for value in values for cell in (time, value)]
+            pairs = [series[name][k] if k < len(series[name]) else ("", "") for name in names]
+            cells = [f"{t * 1e3:.1f}"] + [value for _, value in pairs] if shared else [cell for pair in pairs for cell in pair]
             lines.append(separator.join(cell.replace(".", decimal) for cell in cells))
         return make.put(file, "\r\n".join(lines) + "\r\n")
 
@@ -41,8 +45,10 @@ def twincat(make):
     make.read("twincat.csv", "an export of TwinCAT Scope: a time before each channel, decimal commas", fast, tolerances={"t": 1e-15}, notes=["TwinCAT"])
     export("twincat_one_time.csv", ";", ",", shared=True)
     make.read("twincat_one_time.csv", "the same with one time for all channels, and semicolons", fast, tolerances={"t": 1e-15}, notes=["TwinCAT"])
-    export("twincat_two_rates.csv", "\t", ".", periods=["0.1", "0.1", "0.1", "0.1", "1"])
-    make.refuse("twincat_two_rates.csv", "channels of two sample times, whose rows are not simultaneous", "sample times 0.1 and 1 ms", "one sample time", line=7)
+    export("twincat_two_rates.csv", "\t", ".", slow="omega_e")
+    make.refuse("twincat_two_rates.csv", "the speed has another sample time than the other channels, so a row is not simultaneous", "steps of 1.00 and not of 0.100", "\"Time 5\"")
+    export("twincat_slow_channel.csv", "\t", ",", names=["winding", *names], units=["(None)", *units], slow="winding")
+    make.read("twincat_slow_channel.csv", "a channel of another sample time that the log does not need", fast, tolerances={"t": 1e-15}, notes=["TwinCAT"])
 
 
 def oscilloscopes(make):
