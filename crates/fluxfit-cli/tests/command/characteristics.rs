@@ -287,3 +287,12 @@ fn what_only_looks_like_a_table_is_refused() {
     let run = fluxfit(&["identify", &load]);
     assert!(run.status == 2 && run.err.contains("do not grow with the speed"), "{}", run.err);
 }
+
+/// A MATLAB workspace may hold what only MATLAB can read besides.
+#[test]
+fn a_table_beside_a_timetable_is_read() {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fluxfit-log/tests/corpus/logs/table_beside_timetable.mat");
+    let (_, document) = json(&["identify", workspace.to_str().unwrap(), "--pole-pairs", "3"]);
+    let value = document["parameters"]["psi_f"]["value"].as_f64().unwrap();
+    assert!((value / 0.06 - 1.0).abs() < 1e-6, "{value}");
+}

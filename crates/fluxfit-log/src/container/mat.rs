@@ -34,6 +34,7 @@ pub(crate) struct Mat {
     heads: Vec<ColumnHead>,
     columns: Vec<Column>,
     unreadable: Vec<String>,
+    passed_over: Option<Problem>,
 }
 
 enum Version {
@@ -149,18 +150,17 @@ impl Mat {
                 return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
             }
         }
-        // A whole workspace was saved: what it has besides is no log, so the log is in the object.
+        // A whole workspace was saved: where the rest of it is too little for a log, the log is in the object.
         let is_log = |object: &&Object| heads.is_empty() || heads.len() < COLUMNS_OF_A_LOG && object.holds_a_table();
-        if let Some(Object { name, class }) = contents.objects.iter().find(is_log) {
-            return Err(Problem::MatObject { name: name.clone(), class: class.clone() }.into());
-        }
+        let object = contents.objects.iter().find(is_log);
+        let passed_over = object.map(|Object { name, class }| Problem::MatObject { name: name.clone(), class: class.clone() });
         if heads.is_empty() {
-            return Err(Problem::NoNumbers { format }.into());
+            return Err(passed_over.unwrap_or(Problem::NoNumbers { format }).into());
         }
         let mut unreadable = contents.unreadable;
         unreadable.extend(contents.objects.into_iter().map(|object| object.name));
         let file = version(contents.arrays.into_iter().map(|array| array.place).collect());
-        Ok(Self { file, format, heads, columns, unreadable })
+        Ok(Self { file, format, heads, columns, unreadable, passed_over })
     }
 
     pub(super) fn heads(&self) -> &[ColumnHead] {
@@ -169,6 +169,10 @@ impl Mat {
 
     pub(super) fn unreadable(&self) -> &[String] {
         &self.unreadable
+    }
+
+    pub(super) fn passed_over(&self) -> Option<&Problem> {
+        self.passed_over.as_ref()
     }
 
     pub(super) fn read(&self, wanted: &[usize], take: &mut dyn FnMut(Vec<Vec<f64>>) -> Result<(), FileError>) -> Result<(), FileError> {

@@ -118,6 +118,14 @@ impl Binary {
         }
     }
 
+    /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
+    pub(crate) fn passed_over(&self) -> Option<&Problem> {
+        match self {
+            Self::Mat(mat) => mat.passed_over(),
+            _ => None,
+        }
+    }
+
     /// Passes blocks of at most [`BLOCK`](limits::BLOCK) rows to `take`, in order: one vector for each wanted column, of equal lengths.
     /// Missing values are NaN. The wanted columns must be of one group.
     ///

@@ -27,7 +27,7 @@ pub(super) fn choose(
 ) -> Result<Vec<ChosenColumn>, FileError> {
     let (heads, line) = (table.heads(), table.line());
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
-    let finder = Finder { heads, unreadable: table.unreadable(), layout, options };
+    let finder = Finder { heads, unreadable: table.unreadable(), passed_over: table.passed_over(), layout, options };
     let found = finder.needed().map_err(at_header)?;
     let mut unstated = Vec::new();
     let mut chosen: Vec<ChosenColumn> = Vec::new();
@@ -84,7 +84,7 @@ pub(super) fn survey(heads: &[ColumnHead], layout: Option<&'static Layout>, opti
     // With pole pairs given, mechanical units are not an error.
     let mut with_pole_pairs = options.clone();
     with_pole_pairs.pole_pairs.get_or_insert(1);
-    let finder = Finder { heads, unreadable: &[], layout, options: &with_pole_pairs };
+    let finder = Finder { heads, unreadable: &[], passed_over: None, layout, options: &with_pole_pairs };
     let mut survey = Survey { taken: Vec::new(), resembling: Vec::new(), shares: Vec::new() };
     let [voltages, currents] = [[Ud, Uq], [Id, Iq]].map(|pair| finder.pair(pair).unwrap_or_default());
     let duties = if voltages.iter().all(Option::is_some) { None } else { finder.duties() };

@@ -25,6 +25,8 @@ pub(super) struct Finder<'a> {
     pub(super) heads: &'a [ColumnHead],
     /// Names of columns that hold no numbers.
     pub(super) unreadable: &'a [String],
+    /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
+    pub(super) passed_over: Option<&'a Problem>,
     pub(super) layout: Option<&'static Layout>,
     pub(super) options: &'a ResolvedOptions,
 }
@@ -323,6 +325,9 @@ impl Finder<'_> {
             && let Some((layout, refusal)) = NotALog::by_names(&self.names())
         {
             return Problem::NotALog { layout, reason: refusal.reason(), advice: refusal.advice() }.into();
+        }
+        if let Some(problem) = self.passed_over {
+            return problem.clone().into();
         }
         // Columns that are used already are not proposed for another channel, and references not for measured currents.
         let present = self.names();

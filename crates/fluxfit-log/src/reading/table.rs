@@ -6,6 +6,7 @@ use crate::{
     csv::{Text, TextTable},
     file_part::{FilePart, PartRows},
     memory_table::Held,
+    problem::Problem,
     records::Records,
 };
 use fluxfit_files::{
@@ -97,6 +98,14 @@ impl Table<'_> {
             Self::Records(records) => records.unreadable(),
             Self::Binary(table) => table.unreadable(),
             Self::Held(held) => &held.table.unreadable,
+        }
+    }
+
+    /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
+    pub(super) fn passed_over(&self) -> Option<&Problem> {
+        match self {
+            Self::Binary(table) => table.passed_over(),
+            _ => None,
         }
     }
 

@@ -607,6 +607,13 @@ def mat():
     scipy.io.loadmat(LOGS / "timeseries_v5.mat")  # another reader takes it for what it is
     refuse("timeseries_v5.mat", "MAT v5 with a timeseries, which is an object", *words)
 
+    # Not a log, but an open-circuit table: 60 mWb at 3 pole pairs.
+    speed = np.linspace(500.0, 4000.0, 8)
+    bench = put_mat("table_beside_timetable.mat", {"speed_rpm": speed, "Ull_V": speed * 3 / RPM * 0.06 * math.sqrt(1.5)}, oned_as="column")
+    with open(LOGS / bench, "ab") as target:
+        target.write(opaque(b"drive", b"timetable")[128:])
+    refuse(bench, "a workspace with a timetable and the vectors of a bench, read as a log", "'drive' is a timetable object")
+
     i_d, i_q = np.meshgrid(np.arange(-10.0, 1.0, 2.0), np.arange(0.0, 11.0, 2.0))
     # SyR-e's axes: d and q swapped.
     fluxes = {"Id": i_q, "Iq": -i_d, "Fd": LQ * i_q, "Fq": -(LD * i_d + PSI_F), "T": 0.0 * i_d}
