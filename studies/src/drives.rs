@@ -88,6 +88,8 @@ pub struct Found {
     pub drawn: Drawn,
     /// What was found for each parameter, in the order of [`Parameter::ALL`].
     pub numbers: [Number; PARAMETERS],
+    /// Keys of the faults that were taken, as in `nuisance` of the command's JSON.
+    pub terms: Vec<&'static str>,
     /// Why there is no answer at all; nothing is printed then.
     pub refusal: Option<String>,
 }
@@ -95,11 +97,20 @@ pub struct Found {
 impl Drawn {
     /// Log number `index` of a sequence that depends on the motors alone; `None` if there are no motors.
     pub fn new(index: u64, motors: &[Rated]) -> Option<Self> {
+        Self::with_faults(index, motors, MOST_FAULTS)
+    }
+
+    /// The same of drives without a fault.
+    pub fn without_fault(index: u64, motors: &[Rated]) -> Option<Self> {
+        Self::with_faults(index, motors, 0)
+    }
+
+    fn with_faults(index: u64, motors: &[Rated], most: u64) -> Option<Self> {
         let mut draws = Draws::seeded(SEED, index);
         let rated = *pick(&mut draws, motors)?;
         let course = *pick(&mut draws, &Course::ALL)?;
         let kind = LogKind::drawn(&mut draws)?;
-        let count = (draws.uniform() * (MOST_FAULTS + 1) as f64) as usize;
+        let count = (draws.uniform() * (most + 1) as f64) as usize;
         let mut left = Fault::ALL.to_vec();
         let mut faults: Vec<Fault> = (0..count).filter_map(|_| take(&mut draws, &mut left)).collect();
         faults.sort();
@@ -123,12 +134,13 @@ impl Drawn {
 
     /// What is found in it.
     pub fn found(self) -> Found {
-        let none = Parameter::ALL.map(Number::none);
-        let (numbers, refusal) = self.numbers().map_or_else(|error| (none, Some(error)), |numbers| (numbers, None));
-        Found { drawn: self, numbers, refusal }
+        match self.numbers_and_terms() {
+            Ok((numbers, terms)) => Found { drawn: self, numbers, terms, refusal: None },
+            Err(error) => Found { drawn: self, numbers: Parameter::ALL.map(Number::none), terms: Vec::new(), refusal: Some(error) },
+        }
     }
 
-    fn numbers(&self) -> Result<[Number; PARAMETERS], String> {
+    fn numbers_and_terms(&self) -> Result<([Number; PARAMETERS], Vec<&'static str>), String> {
         let log = self.record().map_err(|error| error.to_string())?.log().map_err(|error| error.to_string())?;
         let answer = identify(&log, &Request::default()).map_err(|error| error.to_string())?;
         let number = |parameter: Parameter| {
@@ -140,7 +152,8 @@ impl Drawn {
                 half_width: judgement.uncertainty.half_width / truth,
             })
         };
-        Ok(Parameter::ALL.map(number))
+        let estimates = answer.identification.output.iter().flat_map(|fit| &fit.fault_estimates);
+        Ok((Parameter::ALL.map(number), estimates.map(|estimate| estimate.unknown.key()).collect()))
     }
 
     /// The error of a value that is given as a fraction of the truth. A drifting resistance has the values from start to end.
@@ -150,9 +163,9 @@ impl Drawn {
     }
 }
 
-/// Simulates and identifies the logs with these numbers on as many threads as there are, with the same result on any number.
-pub fn survey(logs: Range<u64>, motors: &[Rated]) -> Vec<Found> {
-    let found: Vec<Option<Found>> = logs.into_par_iter().map(|index| Some(Drawn::new(index, motors)?.found())).collect();
+/// Draws, simulates and identifies the logs with these numbers on as many threads as there are, with the same result on any number.
+pub fn survey(logs: Range<u64>, motors: &[Rated], draw: fn(u64, &[Rated]) -> Option<Drawn>) -> Vec<Found> {
+    let found: Vec<Option<Found>> = logs.into_par_iter().map(|index| Some(draw(index, motors)?.found())).collect();
     found.into_iter().flatten().collect()
 }
 

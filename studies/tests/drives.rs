@@ -32,7 +32,7 @@ fn every_draw_is_a_drive_that_can_be_simulated() {
 
 #[test]
 fn no_motors_give_no_logs() {
-    assert!(survey(0..3, &[]).is_empty());
+    assert!(survey(0..3, &[], Drawn::new).is_empty());
 }
 
 /// Results come in index order, whatever the threads do.
@@ -40,7 +40,7 @@ fn no_motors_give_no_logs() {
 fn any_number_of_threads_gives_the_same_bits() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        format!("{:?}", pool.install(|| survey(0..4, &typical()[..3])))
+        format!("{:?}", pool.install(|| survey(0..4, &typical()[..3], Drawn::new)))
     };
     assert_eq!(on(1), on(3));
 }

@@ -20,7 +20,7 @@ const MOST_WRONG_WITHOUT_FAULT: usize = 3;
 
 #[test]
 fn most_numbers_hold_on_drawn_drives() {
-    let found = survey(0..LOGS, &typical());
+    let found = survey(0..LOGS, &typical(), Drawn::new);
     let (mut all, mut without_fault) = (Tally::default(), Tally::default());
     for log in &found {
         assert_eq!(log.refusal, None, "log {}", log.drawn.index);

@@ -1,8 +1,8 @@
 //! Logs as drives make them, identified, and how many of the numbers are wrong, as tables.
 //!
 //! `drives [LOGS | FIRST..END] [--motors MOTORS.csv]` draws logs over motors, faults, courses and kinds of logs; the first 200 and a dozen
-//! motors of our own unless told otherwise. `drives --show N [--motors MOTORS.csv]` writes log number N as CSV, and its scenario to
-//! standard error.
+//! motors of our own unless told otherwise; with `--clean` first, of drives without a fault. `drives --show N [--motors MOTORS.csv]`
+//! writes log number N as CSV, and its scenario to standard error.
 // Tables on standard output are what this program is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -24,12 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         all => (all, typical()),
     };
     match words {
-        [] => print(0..LOGS, &motors),
+        [] => print(0..LOGS, &motors, Drawn::new),
         ["--show", index] => show(number(index)?, &motors)?,
-        [logs] => print(range(logs)?, &motors),
+        ["--clean", logs] => print(range(logs)?, &motors, Drawn::without_fault),
+        [logs] => print(range(logs)?, &motors, Drawn::new),
         _ => {
             return Err(
-                "give a number of logs: drives [LOGS | FIRST..END] [--motors MOTORS.csv], or drives --show N [--motors MOTORS.csv]".into(),
+                "give a number of logs: drives [--clean] [LOGS | FIRST..END] [--motors MOTORS.csv], or drives --show N [--motors MOTORS.csv]".into(),
             );
         }
     }
@@ -48,9 +49,9 @@ fn range(word: &str) -> Result<Range<u64>, String> {
     }
 }
 
-fn print(logs: Range<u64>, motors: &[Rated]) {
+fn print(logs: Range<u64>, motors: &[Rated], draw: fn(u64, &[Rated]) -> Option<Drawn>) {
     println!("logs {} to before {} of {} motors", logs.start, logs.end, motors.len());
-    print!("{}", tables(&survey(logs, motors)));
+    print!("{}", tables(&survey(logs, motors, draw)));
 }
 
 /// For a closer look at one log.

@@ -13,6 +13,9 @@ use std::fmt::Write;
 /// How many of the worst numbers are listed.
 const WORST: usize = 20;
 
+/// An identified number that is farther off than this is listed where a term was taken for a fault that is not there.
+const FAR: f64 = 0.01;
+
 /// Everything as Markdown.
 pub fn tables(found: &[Found]) -> String {
     let faults = |count: usize| move |drawn: &Drawn| drawn.faults.len() == count;
@@ -45,7 +48,8 @@ pub fn tables(found: &[Found]) -> String {
     for label in LogKind::LABELS {
         text += &row(label, found, |drawn| drawn.kind.label() == label, |_| true);
     }
-    text + &worst("farthest off", found, |_| true) + &worst("the same without a fault", found, faults(0)) + &refused(found)
+    text += &worst("farthest off", found, |_| true);
+    text + &worst("the same without a fault", found, faults(0)) + &false_terms(found) + &refused(found)
 }
 
 fn head(title: &str) -> String {
@@ -99,6 +103,29 @@ fn worst(title: &str, found: &[Found], logs: impl Fn(&Drawn) -> bool) -> String 
         );
     }
     text
+}
+
+/// How many logs without a fault have a term for one, and those of them where an identified number is far off.
+fn false_terms(found: &[Found]) -> String {
+    let perfect: Vec<&Found> = found.iter().filter(|log| log.drawn.faults.is_empty()).collect();
+    let with_term: Vec<&Found> = perfect.iter().copied().filter(|log| !log.terms.is_empty()).collect();
+    let farthest = |log: &Found| {
+        let identified = log.numbers.iter().filter(|number| number.verdict == Verdict::Identified);
+        identified.map(|number| number.error.abs()).fold(0.0, f64::max)
+    };
+    let far: Vec<String> = with_term
+        .iter()
+        .filter(|log| farthest(log) > FAR)
+        .map(|log| format!("- log {}: {}, {:.2} %\n", log.drawn.index, log.terms.join(", "), 100.0 * farthest(log)))
+        .collect();
+    format!(
+        "\nOf {} logs without a fault {} have a term for one; in {} of these an identified number is more than {} % off.\n\n{}",
+        perfect.len(),
+        with_term.len(),
+        far.len(),
+        100.0 * FAR,
+        far.concat()
+    )
 }
 
 /// Logs without any answer, with the reason.
