@@ -12,7 +12,7 @@
 //! | file | concept |
 //! |---|---|
 //! | [`tracker`] | the whole: rows in, what is known of the motor out |
-//! | [`timing`], [`stream`] | rows become periods: voltage timing, gaps, garbage |
+//! | [`timing`], [`stream`], `alternation` | rows become periods: voltage timing, gaps, garbage; the first voltage of a stretch |
 //! | [`faults`] | faults of the drive that are known |
 //! | [`start`], [`lead_in`] | what is known before the first sample; the first samples |
 //! | [`method`] | the estimators, as one choice |
@@ -23,6 +23,7 @@
 #![allow(clippy::needless_range_loop, reason = "the formulas of matrices have indices")]
 
 pub mod adaline;
+mod alternation;
 mod bank;
 pub mod bias_compensated;
 mod cholesky;

@@ -4,6 +4,7 @@
 //! rows whose acting voltage is not known are left out. Taking them as 0 V would throw the inductances by 200 %.
 
 use crate::{
+    alternation::{Alternation, turned},
     faults::DriveFaults,
     timing::{LONGEST_DELAY, Timing},
 };
@@ -73,17 +74,13 @@ pub struct Stream {
     count: usize,
     /// Of centred voltages: the vector that acted over the period before, in the stator's frame, V.
     before: [f64; 2],
+    alternation: Alternation,
     usual_period: f64,
     odd_periods: u32,
     largest: [f64; 3],
     rows_seen: u64,
     spikes_in_a_row: u32,
     left_out: LeftOut,
-}
-
-fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
-    [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]]
 }
 
 impl Stream {
@@ -96,6 +93,7 @@ impl Stream {
             rows: [Logged::default(); LONGEST_DELAY + 2],
             count: 0,
             before: [0.0; 2],
+            alternation: Alternation::default(),
             usual_period: 0.0,
             odd_periods: 0,
             largest: [0.0; 3],
@@ -163,9 +161,9 @@ impl Stream {
             Timing::Delayed { delay, .. } => delay,
         };
         if self.count == 1 && self.timing == Timing::Centered {
-            // The vector before the first row is not in the log. The mean around that row stands in for it: the error alternates from
-            // period to period, and is none where a log begins at rest.
+            // The vector before the first row is not in the log. The mean around that row stands in for it.
             self.before = turned(self.rows[0].u, self.rows[0].theta);
+            self.alternation = Alternation::new(self.rows[0].u);
         }
         if self.count == lost + 1 {
             return Some(Event::Begin(i));
@@ -180,7 +178,7 @@ impl Stream {
             Timing::Centered => {
                 let mean = turned(start.u, start.theta);
                 self.before = [2.0 * mean[0] - self.before[0], 2.0 * mean[1] - self.before[1]];
-                turned(self.before, -middle)
+                self.alternation.without(turned(self.before, -middle), middle)
             }
             Timing::Delayed { delay, at_row } => {
                 let logged = self.rows[1 + delay];

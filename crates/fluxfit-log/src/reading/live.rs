@@ -104,11 +104,7 @@ impl LiveLog {
             self.bounds.push([begin, end]);
             begin = end + 1;
         }
-        let mut row = Row { t: f64::NAN, ud: f64::NAN, uq: f64::NAN, id: f64::NAN, iq: f64::NAN, omega_e: f64::NAN, ..Row::default() };
-        if let Some(period) = self.sample_period {
-            row.t = self.rows as f64 * period;
-        }
-        self.rows += 1;
+        let mut row = self.cut_row();
         // A line that was cut may end within a number.
         if self.bounds.len() < self.cells {
             return Some(row);
@@ -137,6 +133,13 @@ impl LiveLog {
             }
         }
         Some(row)
+    }
+
+    /// The row of a line that was cut within its last number, which may be a smaller number now: nothing but NaN.
+    pub fn cut_row(&mut self) -> Row {
+        let t = self.sample_period.map_or(f64::NAN, |period| self.rows as f64 * period);
+        self.rows += 1;
+        Row { t, ud: f64::NAN, uq: f64::NAN, id: f64::NAN, iq: f64::NAN, omega_e: f64::NAN, ..Row::default() }
     }
 }
 

@@ -223,8 +223,7 @@ fn lines(name: &str, bring: &mut Bring, options: &LogOptions, take: &mut Take) -
             Next::Nothing => true,
             Next::Anew(reason) => {
                 terminal::note(&format!("{name}: {reason}"));
-                text.end(take, &mut has_rows)?;
-                (text.log, text.head) = (None, String::new());
+                text.break_off(take)?;
                 false
             }
             Next::End => {
@@ -284,6 +283,18 @@ impl Text<'_> {
             self.rest.extend_from_slice(&bytes[begin..]);
         }
         Ok(true)
+    }
+
+    /// The text begins anew: a line without an end was cut, and may look whole.
+    fn break_off(&mut self, take: &mut Take) -> Result<(), CommandError> {
+        if let Some(mut log) = self.log.take()
+            && !self.rest.is_empty()
+        {
+            take(&log.cut_row())?;
+        }
+        self.head.clear();
+        self.rest.clear();
+        Ok(())
     }
 
     /// The last line may lack its end.

@@ -1,0 +1,97 @@
+//! What is wrong with voltages that are computed from means of two periods.
+//!
+//! Of centred voltages a row has the mean of the vectors before and after it, so each vector follows from the one before it:
+//! `u[k] = 2 mean[k] - u[k-1]`. What the first vector is wrong by goes on for ever, with its sign changing from period to period, in the
+//! stator's frame; and each rounding of the log adds to it. The Kalman filter takes it for an answer of the current: from the middle of a
+//! log on, L_d came out 6 % wrong.
+//!
+//! No mean shows a part of the voltage that alternates, so there is no other knowledge of it than that a drive makes none: what alternates
+//! in the computed vectors, on the average, is taken out. In the rotor's frame the rest is smooth, and its second difference leaves it out.
+
+use serde::{Deserialize, Serialize};
+
+/// Periods over which the mean is taken: the noise of the voltages is a hundredth in it, and roundings are followed.
+const MEMORY: f64 = 1e4;
+
+/// Weight of knowing nothing, in periods: the first vector is wrong by half of what changes from period to period.
+const NOTHING: f64 = 1.0;
+
+/// The part that alternates.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Alternation {
+    /// In the stator's frame, V, with the sign of the first period.
+    vector: [f64; 2],
+    /// Periods that it rests on.
+    weight: f64,
+    sign: f64,
+    /// The last two vectors in the rotor's frame, newest first, V; how many there are; and the angle of the newest.
+    last: [[f64; 2]; 2],
+    count: u8,
+    angle: f64,
+}
+
+pub(crate) fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]]
+}
+
+impl Alternation {
+    /// From a first row on: a drive that was off before it makes the first vector right.
+    pub(crate) fn new(first: [f64; 2]) -> Self {
+        let is_at_rest = first == [0.0; 2];
+        Self { weight: if is_at_rest { MEMORY } else { NOTHING }, sign: -1.0, ..Self::default() }
+    }
+
+    /// The vector of the next period, in the rotor's frame at this angle, without the part that alternates.
+    pub(crate) fn without(&mut self, u: [f64; 2], angle: f64) -> [f64; 2] {
+        if self.count == 2 {
+            let [newest, older] = self.last;
+            // Of a vector whose sign alternates this is the vector.
+            let change = [0, 1].map(|c| 0.25 * (2.0 * newest[c] - older[c] - u[c]));
+            let seen = turned(change, self.angle);
+            self.weight = MEMORY.min(self.weight + 1.0);
+            for (mean, seen) in self.vector.iter_mut().zip(seen) {
+                *mean += (self.sign * seen - *mean) / self.weight;
+            }
+        }
+        self.sign = -self.sign;
+        self.last = [u, self.last[0]];
+        self.count = 2.min(self.count + 1);
+        self.angle = angle;
+        let wrong = turned(self.vector, -angle);
+        [u[0] - self.sign * wrong[0], u[1] - self.sign * wrong[1]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A vector of 40 V that turns with the rotor and rises, wrong by 3 V and -2 V in turn.
+    #[test]
+    fn what_alternates_is_taken_out() {
+        let mut alternation = Alternation::new([40.0, 0.0]);
+        let mut left: f64 = 0.0;
+        for k in 0..2000 {
+            let (angle, sign) = (0.04 * f64::from(k), if k % 2 == 0 { 1.0 } else { -1.0 });
+            let right = [1e-3 * f64::from(k), 40.0];
+            let wrong = turned([3.0 * sign, -2.0 * sign], -angle);
+            let [d, q] = alternation.without([right[0] + wrong[0], right[1] + wrong[1]], angle);
+            if k > 1000 {
+                left = left.max((d - right[0]).hypot(q - right[1]));
+            }
+        }
+        // The gain of the second difference is (1 + cos 0.04)/2; nothing is known for one period of a thousand.
+        assert!(left < 3.7 * (1.5e-3), "{left}");
+    }
+
+    #[test]
+    fn a_drive_that_was_off_leaves_nothing_to_take_out() {
+        let mut alternation = Alternation::new([0.0; 2]);
+        for k in 0..5000 {
+            let right = [10.0, 1e-2 * f64::from(k)];
+            let [d, q] = alternation.without(right, 0.04 * f64::from(k));
+            assert!((d - right[0]).hypot(q - right[1]) < 1e-9, "{d} {q}");
+        }
+    }
+}
