@@ -7,14 +7,16 @@
 //!
 //! No mean shows a part of the voltage that alternates, so there is no other knowledge of it than that a drive makes none: what alternates
 //! in the computed vectors, on the average, is taken out. In the rotor's frame the rest is smooth, and its second difference leaves it out.
+//! Later periods count more, so that what a step of the voltages adds is soon forgotten; the first periods are not used otherwise.
 
 use serde::{Deserialize, Serialize};
 
-/// Periods over which the mean is taken: the noise of the voltages is a hundredth in it, and roundings are followed.
-const MEMORY: f64 = 1e4;
+/// Periods over which the mean is taken: a thirtieth of the noise of the voltages is left in it, and of roundings, which add up, those of
+/// so many periods.
+const MEMORY: f64 = 1e3;
 
-/// Weight of knowing nothing, in periods: the first vector is wrong by half of what changes from period to period.
-const NOTHING: f64 = 1.0;
+/// Periods after which it is known well enough: a fifth of the noise of a voltage is left, and a thousandth of a step at the beginning.
+const KNOWN: f64 = 30.0;
 
 /// The part that alternates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -22,7 +24,7 @@ pub(crate) struct Alternation {
     /// In the stator's frame, V, with the sign of the first period.
     vector: [f64; 2],
     /// Periods that it rests on.
-    weight: f64,
+    periods: f64,
     sign: f64,
     /// The last two vectors in the rotor's frame, newest first, V; how many there are; and the angle of the newest.
     last: [[f64; 2]; 2],
@@ -39,7 +41,12 @@ impl Alternation {
     /// From a first row on: a drive that was off before it makes the first vector right.
     pub(crate) fn new(first: [f64; 2]) -> Self {
         let is_at_rest = first == [0.0; 2];
-        Self { weight: if is_at_rest { MEMORY } else { NOTHING }, sign: -1.0, ..Self::default() }
+        Self { periods: if is_at_rest { MEMORY } else { 0.0 }, sign: -1.0, ..Self::default() }
+    }
+
+    /// Whether the vectors can be used.
+    pub(crate) fn is_known(&self) -> bool {
+        self.periods >= KNOWN
     }
 
     /// The vector of the next period, in the rotor's frame at this angle, without the part that alternates.
@@ -49,9 +56,11 @@ impl Alternation {
             // Of a vector whose sign alternates this is the vector.
             let change = [0, 1].map(|c| 0.25 * (2.0 * newest[c] - older[c] - u[c]));
             let seen = turned(change, self.angle);
-            self.weight = MEMORY.min(self.weight + 1.0);
+            self.periods = MEMORY.min(self.periods + 1.0);
+            // The weight of a period is its number, until the memory is full.
+            let part = 2.0 / (self.periods + 1.0);
             for (mean, seen) in self.vector.iter_mut().zip(seen) {
-                *mean += (self.sign * seen - *mean) / self.weight;
+                *mean += part * (self.sign * seen - *mean);
             }
         }
         self.sign = -self.sign;
@@ -67,22 +76,23 @@ impl Alternation {
 mod tests {
     use super::*;
 
-    /// A vector of 40 V that turns with the rotor and rises, wrong by 3 V and -2 V in turn.
+    /// A vector of 40 V that turns with the rotor and steps to 50 V and back at first, wrong by 3 V and -2 V in turn.
     #[test]
     fn what_alternates_is_taken_out() {
         let mut alternation = Alternation::new([40.0, 0.0]);
         let mut left: f64 = 0.0;
         for k in 0..2000 {
             let (angle, sign) = (0.04 * f64::from(k), if k % 2 == 0 { 1.0 } else { -1.0 });
-            let right = [1e-3 * f64::from(k), 40.0];
+            let right = [1e-3 * f64::from(k), if k == 5 { 50.0 } else { 40.0 }];
             let wrong = turned([3.0 * sign, -2.0 * sign], -angle);
             let [d, q] = alternation.without([right[0] + wrong[0], right[1] + wrong[1]], angle);
+            assert_eq!(alternation.is_known(), k > 30);
             if k > 1000 {
                 left = left.max((d - right[0]).hypot(q - right[1]));
             }
         }
-        // The gain of the second difference is (1 + cos 0.04)/2; nothing is known for one period of a thousand.
-        assert!(left < 3.7 * (1.5e-3), "{left}");
+        // The gain of the second difference is (1 + cos 0.04)/2, and twice what the step added in three periods is left of it.
+        assert!(left < 3.7 * 4e-4 + 10.0 * 2.0 * 7.0 / 1e6, "{left}");
     }
 
     #[test]

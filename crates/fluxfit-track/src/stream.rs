@@ -166,7 +166,7 @@ impl Stream {
             self.alternation = Alternation::new(self.rows[0].u);
         }
         if self.count == lost + 1 {
-            return Some(Event::Begin(i));
+            return (self.timing != Timing::Centered || self.alternation.is_known()).then_some(Event::Begin(i));
         }
         if self.count <= lost {
             return None;
@@ -178,7 +178,12 @@ impl Stream {
             Timing::Centered => {
                 let mean = turned(start.u, start.theta);
                 self.before = [2.0 * mean[0] - self.before[0], 2.0 * mean[1] - self.before[1]];
-                self.alternation.without(turned(self.before, -middle), middle)
+                let was_known = self.alternation.is_known();
+                let u = self.alternation.without(turned(self.before, -middle), middle);
+                if !was_known {
+                    return self.alternation.is_known().then_some(Event::Begin(i));
+                }
+                u
             }
             Timing::Delayed { delay, at_row } => {
                 let logged = self.rows[1 + delay];
