@@ -18,6 +18,9 @@ const MEMORY: f64 = 1e3;
 /// Periods after which it is known well enough: a fifth of the noise of a voltage is left, and a thousandth of a step at the beginning.
 const KNOWN: f64 = 30.0;
 
+/// Least factor of the turn between three periods: a quarter turn in each, beyond which no sample rate serves a drive.
+const LEAST_TURN: f64 = 0.5;
+
 /// The part that alternates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Alternation {
@@ -53,8 +56,9 @@ impl Alternation {
     pub(crate) fn without(&mut self, u: [f64; 2], angle: f64) -> [f64; 2] {
         if self.count == 2 {
             let [newest, older] = self.last;
-            // Of a vector whose sign alternates this is the vector.
-            let change = [0, 1].map(|c| 0.25 * (2.0 * newest[c] - older[c] - u[c]));
+            // Of a vector whose sign alternates this is the vector, but for the turn of the rotor between the three.
+            let turn = (0.5 * (1.0 + (angle - self.angle).cos())).max(LEAST_TURN);
+            let change = [0, 1].map(|c| 0.25 / turn * (2.0 * newest[c] - older[c] - u[c]));
             let seen = turned(change, self.angle);
             self.periods = MEMORY.min(self.periods + 1.0);
             // The weight of a period is its number, until the memory is full.
@@ -82,7 +86,7 @@ mod tests {
         let mut alternation = Alternation::new([40.0, 0.0]);
         let mut left: f64 = 0.0;
         for k in 0..2000 {
-            let (angle, sign) = (0.04 * f64::from(k), if k % 2 == 0 { 1.0 } else { -1.0 });
+            let (angle, sign) = (0.4 * f64::from(k), if k % 2 == 0 { 1.0 } else { -1.0 });
             let right = [1e-3 * f64::from(k), if k == 5 { 50.0 } else { 40.0 }];
             let wrong = turned([3.0 * sign, -2.0 * sign], -angle);
             let [d, q] = alternation.without([right[0] + wrong[0], right[1] + wrong[1]], angle);
@@ -91,8 +95,8 @@ mod tests {
                 left = left.max((d - right[0]).hypot(q - right[1]));
             }
         }
-        // The gain of the second difference is (1 + cos 0.04)/2, and twice what the step added in three periods is left of it.
-        assert!(left < 3.7 * 4e-4 + 10.0 * 2.0 * 7.0 / 1e6, "{left}");
+        // Of what the step added in three periods, a quarter, a half and a quarter of it, is left what is left of the weights of these.
+        assert!(left < 10.0 * 2.0 * 7.0 / 1e6, "{left}");
     }
 
     #[test]

@@ -612,7 +612,7 @@ def mat():
     bench = put_mat("table_beside_timetable.mat", {"speed_rpm": speed, "Ull_V": speed * 3 / RPM * 0.06 * math.sqrt(1.5)}, oned_as="column")
     with open(LOGS / bench, "ab") as target:
         target.write(opaque(b"drive", b"timetable")[128:])
-    refuse(bench, "a workspace with a timetable and the vectors of a bench, read as a log", "'drive' is a timetable object")
+    refuse(bench, "a workspace with a timetable and the vectors of a bench, read as a log", "timetable object, which only MATLAB can read")
 
     i_d, i_q = np.meshgrid(np.arange(-10.0, 1.0, 2.0), np.arange(0.0, 11.0, 2.0))
     # SyR-e's axes: d and q swapped.
