@@ -1,25 +1,25 @@
-//! What is wrong with voltages that are computed from means of two periods.
+//! The error of voltages that are computed from means of two periods.
 //!
-//! Of centred voltages a row has the mean of the vectors before and after it, so each vector follows from the one before it:
-//! `u[k] = 2 mean[k] - u[k-1]`. What the first vector is wrong by goes on for ever, with its sign changing from period to period, in the
-//! stator's frame; and each rounding of the log adds to it. The Kalman filter takes it for an answer of the current: from the middle of a
-//! log on, L_d came out 6 % wrong.
+//! A row of centred voltages has the mean of the vectors before and after it, so each vector follows from the one before it:
+//! `u[k] = 2 mean[k] - u[k-1]`. An error of the first vector stays in all vectors, with its sign changing from period to period, in the
+//! stator's frame; each rounding of the log adds to it. Left in, it made L_d 6 % wrong where a noisy log began in the middle of a drive,
+//! and thirteen times too large in a log without noise.
 //!
-//! No mean shows a part of the voltage that alternates, so there is no other knowledge of it than that a drive makes none: what alternates
-//! in the computed vectors, on the average, is taken out. In the rotor's frame the rest is smooth, and its second difference leaves it out.
-//! Later periods count more, so that what a step of the voltages adds is soon forgotten; the first periods are not used otherwise.
+//! No mean shows a voltage that alternates from period to period, so the log cannot tell it; a drive makes none. The mean of what
+//! alternates in the computed vectors is therefore the error, and is subtracted. It is found by second differences in the rotor's frame,
+//! where the voltage itself is smooth. Later periods have more weight, so that a step of the voltage soon matters no more. The first
+//! periods serve for this mean alone.
 
 use serde::{Deserialize, Serialize};
 
-/// Periods over which the mean is taken: a thirtieth of the noise of the voltages is left in it, and of roundings, which add up, those of
-/// so many periods.
+/// Periods of the mean. More would let roundings add up, fewer would leave more noise: of that of the voltages a thirtieth is left.
 const MEMORY: f64 = 1e3;
 
-/// Periods after which it is known well enough: a fifth of the noise of a voltage is left, and a thousandth of a step at the beginning.
+/// Periods until the mean is used: a fifth of the noise of the voltages is left in it, and a thousandth of a step at the beginning.
 const KNOWN: f64 = 30.0;
 
-/// Least factor of the turn between three periods: a quarter turn in each, beyond which no sample rate serves a drive.
-const LEAST_TURN: f64 = 0.5;
+/// Least part of the alternating vector in a second difference: where the rotor turns by 90 degrees in a period.
+const LEAST_SEEN: f64 = 0.5;
 
 /// The part that alternates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -56,9 +56,9 @@ impl Alternation {
     pub(crate) fn without(&mut self, u: [f64; 2], angle: f64) -> [f64; 2] {
         if self.count == 2 {
             let [newest, older] = self.last;
-            // Of a vector whose sign alternates this is the vector, but for the turn of the rotor between the three.
-            let turn = (0.5 * (1.0 + (angle - self.angle).cos())).max(LEAST_TURN);
-            let change = [0, 1].map(|c| 0.25 / turn * (2.0 * newest[c] - older[c] - u[c]));
+            // The difference of an alternating vector is four times the vector, or less where the rotor turns between the three periods.
+            let part_seen = (0.5 * (1.0 + (angle - self.angle).cos())).max(LEAST_SEEN);
+            let change = [0, 1].map(|c| (2.0 * newest[c] - older[c] - u[c]) / (4.0 * part_seen));
             let seen = turned(change, self.angle);
             self.periods = MEMORY.min(self.periods + 1.0);
             // The weight of a period is its number, until the memory is full.
@@ -95,8 +95,8 @@ mod tests {
                 left = left.max((d - right[0]).hypot(q - right[1]));
             }
         }
-        // Of what the step added in three periods, a quarter, a half and a quarter of it, is left what is left of the weights of these.
-        assert!(left < 10.0 * 2.0 * 7.0 / 1e6, "{left}");
+        // A quarter, a half and a quarter of the 10 V are in the fourth to sixth of a thousand periods, whose weights are their numbers.
+        assert!(left < 10.0 * (0.25 * 4.0 + 0.5 * 5.0 + 0.25 * 6.0) / (1000.0 * 1001.0 / 2.0) * 1.05, "{left}");
     }
 
     #[test]

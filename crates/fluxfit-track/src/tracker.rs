@@ -11,7 +11,7 @@ use crate::{
     lead_in::LeadIn,
     method::{Beginning, Estimator, Method},
     start::Start,
-    stream::{LeftOut, Stream},
+    stream::{Event, LeftOut, Stream},
     timing::Timing,
     verdict::{Excitation, Tracked, Verdict},
 };
@@ -83,8 +83,9 @@ impl Lane {
         Self { stream: Stream::new(timing, faults), lead_in: Some(LeadIn::new()), estimator: None, racer: None, surprise: 0.0 }
     }
 
-    fn push(&mut self, row: &Row, method: Method, start: &Start, is_racing: bool) {
-        let Some(event) = self.stream.push(row) else { return };
+    /// Takes a row. How unlikely its currents were, if it ends a period and a filter runs that can tell.
+    fn push(&mut self, row: &Row, method: Method, start: &Start, is_racing: bool) -> Option<f64> {
+        let event = self.stream.push(row)?;
         if let Some(estimator) = &mut self.estimator {
             estimator.take(&event);
             if let Some(racer) = &mut self.racer {
@@ -115,8 +116,9 @@ impl Lane {
                 self.lead_in = None;
             }
         }
-        if let Some(Estimator::Ekf(filter)) = self.racer.as_ref().or(self.estimator.as_ref()) {
-            self.surprise += filter.filter().last_surprise() - self.surprise / SURPRISE_MEMORY;
+        match self.racer.as_ref().or(self.estimator.as_ref()) {
+            Some(Estimator::Ekf(filter)) if matches!(event, Event::Period(..)) => Some(filter.filter().last_surprise()),
+            _ => None,
         }
     }
 }
@@ -135,8 +137,16 @@ impl Tracker {
     pub fn push(&mut self, row: &Row) {
         self.rows += 1;
         let is_racing = self.lanes.len() > 1;
-        for lane in &mut self.lanes {
-            lane.push(row, self.settings.method, &self.settings.start, is_racing);
+        let Self { lanes, settings, .. } = self;
+        let mut surprises = [None; Timing::USUAL.len()];
+        for (lane, surprise) in lanes.iter_mut().zip(&mut surprises) {
+            *surprise = lane.push(row, settings.method, &settings.start, is_racing);
+        }
+        // Only rows that all of them used are compared: a timing that loses more rows after a gap is no less likely for it.
+        if is_racing && surprises[..lanes.len()].iter().all(Option::is_some) {
+            for (lane, surprise) in lanes.iter_mut().zip(surprises.into_iter().flatten()) {
+                lane.surprise += surprise - lane.surprise / SURPRISE_MEMORY;
+            }
         }
         if row.t.is_finite() {
             self.t = row.t;
