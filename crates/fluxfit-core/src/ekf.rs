@@ -468,13 +468,14 @@ impl<T: Real> Ekf<T> {
         let late = self.late();
         self.test.forget_current();
         self.test.propagate(&phi);
+        self.last_surprise = T::ZERO;
         for c in 0..2 {
             // With the noise of both currents.
-            let variance = self.noise + self.noise + kick[c];
-            self.test.note(c, measured[c] - arrived[c], variance, &([T::ZERO; STATES], variance), late);
+            let (innovation, variance) = (measured[c] - arrived[c], self.noise + self.noise + kick[c]);
+            self.test.note(c, innovation, variance, &([T::ZERO; STATES], variance), late);
+            // As it is, not as it would be usual: else a filter with a wrong setting, which waits again and again, were the most likely.
+            self.last_surprise += variance.ln() + (innovation * innovation / variance).smaller(T::of(LARGEST_SEEN));
         }
-        // As likely as usual, beside filters that do not wait.
-        self.last_surprise = T::of(2.0) * (self.noise.ln() + T::ONE);
         self.surprise = self.surprise * T::of(1.0 - 1.0 / MEMORY) + self.last_surprise;
         self.i = measured;
         let step = self.end_period();
