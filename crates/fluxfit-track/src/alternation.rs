@@ -9,24 +9,44 @@
 //! alternates in the computed vectors is therefore the error, and is subtracted. It is found by second differences in the rotor's frame,
 //! where the voltage itself is smooth. Later periods have more weight, so that a step of the voltage soon matters no more. The first
 //! periods serve for this mean alone.
+//!
+//! How long a mean should be depends on the log: roundings to 0.01 V add up to 0.1 V in 300 periods, so that a short one is better, while
+//! a short one of exact voltages takes their noise for the error. So means of several lengths run, and that is used which has predicted the
+//! next second differences best.
 
 use serde::{Deserialize, Serialize};
 
-/// Periods of the mean. More would let roundings add up, fewer would leave more noise: of that of the voltages a thirtieth is left.
-const MEMORY: f64 = 1e3;
+/// Periods of the means. Of the noise of the voltages a third is left in the shortest, and a thirtieth in the longest.
+const MEMORIES: [f64; 3] = [10.0, 100.0, 1e3];
 
-/// Periods until the mean is used: a fifth of the noise of the voltages is left in it, and a thousandth of a step at the beginning.
+/// Periods until a mean is used: a fifth of the noise of the voltages is left in it, and a thousandth of a step at the beginning.
 const KNOWN: f64 = 30.0;
+
+/// Periods between a mean and the second difference that it predicts: so many that they have no voltage in common.
+const AHEAD: usize = 3;
+
+/// Periods over which the errors of the predictions are averaged: as long as the longest mean.
+const JUDGED: f64 = 1e3;
 
 /// Least part of the alternating vector in a second difference: where the rotor turns by 90 degrees in a period.
 const LEAST_SEEN: f64 = 0.5;
 
+/// A mean of what alternates.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Mean {
+    /// In the stator's frame, V, with the sign of the first period; the newest first.
+    vectors: [[f64; 2]; AHEAD + 1],
+    /// Mean square of the errors of its predictions, V².
+    error: f64,
+}
+
 /// The part that alternates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Alternation {
-    /// In the stator's frame, V, with the sign of the first period.
-    vector: [f64; 2],
-    /// Periods that it rests on.
+    means: [Mean; MEMORIES.len()],
+    /// Which of them is used.
+    best: usize,
+    /// Periods that they rest on.
     periods: f64,
     sign: f64,
     /// The last two vectors in the rotor's frame, newest first, V; how many there are; and the angle of the newest.
@@ -40,11 +60,23 @@ pub(crate) fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
     [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]]
 }
 
+impl Mean {
+    /// Takes what was seen, with this weight, and judges its prediction of that with another.
+    fn take(&mut self, seen: [f64; 2], part: f64, judged: f64) {
+        let [now, .., before] = self.vectors;
+        let error = (seen[0] - before[0]).powi(2) + (seen[1] - before[1]).powi(2);
+        self.error += judged * (error - self.error);
+        self.vectors.rotate_right(1);
+        self.vectors[0] = [0, 1].map(|c| now[c] + part * (seen[c] - now[c]));
+    }
+}
+
 impl Alternation {
     /// From a first row on: a drive that was off before it makes the first vector right.
     pub(crate) fn new(first: [f64; 2]) -> Self {
         let is_at_rest = first == [0.0; 2];
-        Self { periods: if is_at_rest { MEMORY } else { 0.0 }, sign: -1.0, ..Self::default() }
+        let longest = MEMORIES.len() - 1;
+        Self { best: longest, periods: if is_at_rest { MEMORIES[longest] } else { 0.0 }, sign: -1.0, ..Self::default() }
     }
 
     /// Whether the vectors can be used.
@@ -60,18 +92,24 @@ impl Alternation {
             let part_seen = (0.5 * (1.0 + (angle - self.angle).cos())).max(LEAST_SEEN);
             let change = [0, 1].map(|c| (2.0 * newest[c] - older[c] - u[c]) / (4.0 * part_seen));
             let seen = turned(change, self.angle);
-            self.periods = MEMORY.min(self.periods + 1.0);
-            // The weight of a period is its number, until the memory is full.
-            let part = 2.0 / (self.periods + 1.0);
-            for (mean, seen) in self.vector.iter_mut().zip(seen) {
-                *mean += part * (self.sign * seen - *mean);
+            self.periods += 1.0;
+            // The weight of a period is its number, until the memory is full. The first predictions are none.
+            let part = |memory: f64| 2.0 / (memory.min(self.periods) + 1.0);
+            let judged = if self.is_known() { part(JUDGED) } else { 0.0 };
+            for (mean, memory) in self.means.iter_mut().zip(MEMORIES) {
+                mean.take(seen.map(|seen| self.sign * seen), part(memory), judged);
+            }
+            if self.is_known() {
+                let error = |place: &usize| self.means[*place].error;
+                // Of equal ones the longest.
+                self.best = (0..MEMORIES.len()).rev().min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(self.best);
             }
         }
         self.sign = -self.sign;
         self.last = [u, self.last[0]];
         self.count = 2.min(self.count + 1);
         self.angle = angle;
-        let wrong = turned(self.vector, -angle);
+        let wrong = turned(self.means[self.best].vectors[0], -angle);
         [u[0] - self.sign * wrong[0], u[1] - self.sign * wrong[1]]
     }
 }
