@@ -48,6 +48,9 @@ const PATIENCE: u32 = 100;
 /// Blocks after which least squares has forgotten what was before a step or a spell without excitation: 0.99 to this power is 0.05.
 const MEMORY: u32 = 300;
 
+/// Periods after which a filter has adapted its noise: it starts with that of its current's size, and forgets this by 1/e in 500 periods.
+const SETTLED: u64 = 2500;
+
 /// The pair.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WatchedEkf {
@@ -76,6 +79,8 @@ pub struct WatchedEkf {
     /// Steps that were found before it was started anew.
     #[serde(default)]
     steps_before: u32,
+    /// Periods since it started, since the last gap, and since it came to know a parameter.
+    undisturbed: u64,
 }
 
 impl WatchedEkf {
@@ -101,6 +106,7 @@ impl WatchedEkf {
             contradictions: 0,
             outdated: 0,
             steps_before: 0,
+            undisturbed: 0,
         };
         pair.fill(values, [None; PARAMETERS]);
         pair
@@ -109,6 +115,7 @@ impl WatchedEkf {
     /// Begins at a current, A.
     pub fn begin(&mut self, i: [f64; 2]) {
         self.last_i = i;
+        self.undisturbed = 0;
         self.rls.begin(i);
         self.bank.iter_mut().for_each(|filter| filter.begin(i));
     }
@@ -117,6 +124,7 @@ impl WatchedEkf {
     pub fn advance(&mut self, period: &Period<f64>, i: [f64; 2]) {
         self.scale = [self.scale[0].max(i[0].hypot(i[1])), self.scale[1].max(period.u[0].hypot(period.u[1])), self.scale[2]];
         self.last_i = i;
+        self.undisturbed += 1;
         let steps = self.filter().steps();
         bank::advance(&mut self.together, &mut self.bank, &self.active, period, i);
         if self.filter().steps() != steps {
@@ -144,6 +152,18 @@ impl WatchedEkf {
             filter.note_excitation(is_excited);
             filter.note_determined(is_determined);
         }
+    }
+
+    /// Whether its likelihood is that of the timing of the voltages, and not of how it started: it has adapted its noise, and the last
+    /// samples excite and determine all that it knows.
+    pub(crate) fn is_settled(&self) -> bool {
+        let is_determined = self.watch.identifiable.unwrap_or_default();
+        self.undisturbed >= SETTLED && self.watch.excited == Some(true) && (0..PARAMETERS).all(|j| is_determined[j] || !self.was_trusted[j])
+    }
+
+    /// How many parameters it has come to know.
+    pub(crate) fn known(&self) -> u32 {
+        self.was_trusted.iter().map(|known| u32::from(*known)).sum()
     }
 
     /// The level with the greatest likelihood, and which levels go on.
@@ -181,6 +201,9 @@ impl WatchedEkf {
         let contradicts = (0..PARAMETERS).any(|j| contradicts(j, errors[j].hypot(own_errors[j])));
         self.contradictions = if contradicts && self.outdated == 0 { self.contradictions + 1 } else { 0 };
         for j in 0..PARAMETERS {
+            if trusted[j] && !self.was_trusted[j] {
+                self.undisturbed = 0;
+            }
             self.was_trusted[j] |= trusted[j];
             self.is_guessed[j] &= !trusted[j];
         }
@@ -216,6 +239,7 @@ impl WatchedEkf {
             }
         }
         self.bank.clear();
+        self.undisturbed = 0;
         let is_determined = self.watch.identifiable.unwrap_or_default();
         for level in LEVELS {
             let mut filter = Ekf::new(EkfSettings { unknown_voltage: level * self.scale[1], ..settings }, [1.0; PARAMETERS]);

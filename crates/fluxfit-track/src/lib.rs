@@ -13,6 +13,7 @@
 //! |---|---|
 //! | [`tracker`] | the whole: rows in, what is known of the motor out |
 //! | [`timing`], [`stream`], `alternation` | rows become periods: voltage timing, gaps, garbage; the first voltage of a stretch |
+//! | `lane`, `race` | what follows from one timing of the voltages; which timing is right |
 //! | [`faults`] | faults of the drive that are known |
 //! | [`start`], [`lead_in`] | what is known before the first sample; the first samples |
 //! | [`method`] | the estimators, as one choice |
@@ -34,9 +35,11 @@ pub mod estimate;
 pub mod faults;
 pub mod forgetting;
 pub mod instrumental_variable;
+mod lane;
 pub mod lead_in;
 pub mod method;
 pub mod mras;
+mod race;
 pub mod rls;
 pub mod start;
 pub mod stream;

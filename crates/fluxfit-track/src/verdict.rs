@@ -5,7 +5,7 @@ use fluxfit::motor::PARAMETERS;
 use serde::{Deserialize, Serialize};
 
 /// Normal quantile of a 95 % interval.
-const HALF_WIDTH95: f64 = 1.959_964;
+pub(crate) const HALF_WIDTH95: f64 = 1.959_964;
 
 /// Largest half-width of an identified parameter, as a part of its value: the limit of `fluxfit identify`.
 const IDENTIFIED: f64 = 0.05;
