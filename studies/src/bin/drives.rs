@@ -1,8 +1,8 @@
 //! Logs as drives make them, identified, and how many of the numbers are wrong, as tables.
 //!
 //! `drives [LOGS | FIRST..END] [--motors MOTORS.csv]` draws logs over motors, faults, courses and kinds of logs; the first 200 and a dozen
-//! motors of our own unless told otherwise; with `--clean` first, of drives without a fault. `drives --show N [--motors MOTORS.csv]`
-//! writes log number N as CSV, and its scenario to standard error.
+//! motors of our own unless told otherwise; with `--clean` first, of drives without a fault. `drives [--clean] --show N
+//! [--motors MOTORS.csv]` writes log number N as CSV, and its scenario to standard error.
 // Tables on standard output are what this program is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -16,6 +16,9 @@ use std::{error::Error, ops::Range, path::Path};
 /// Logs unless told otherwise: a few minutes.
 const LOGS: u64 = 200;
 
+/// Draws the log of a number.
+type Draw = fn(u64, &[Rated]) -> Option<Drawn>;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -23,16 +26,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         [rest @ .., "--motors", path] => (rest, read(Path::new(path))?),
         all => (all, typical()),
     };
+    let (words, draw): (&[&str], Draw) = match words {
+        ["--clean", rest @ ..] => (rest, Drawn::without_fault),
+        all => (all, Drawn::new),
+    };
     match words {
-        [] => print(0..LOGS, &motors, Drawn::new),
-        ["--show", index] => show(number(index)?, &motors)?,
-        ["--clean", logs] => print(range(logs)?, &motors, Drawn::without_fault),
-        [logs] => print(range(logs)?, &motors, Drawn::new),
-        _ => {
-            return Err(
-                "give a number of logs: drives [--clean] [LOGS | FIRST..END] [--motors MOTORS.csv], or drives --show N [--motors MOTORS.csv]".into(),
-            );
-        }
+        [] => print(0..LOGS, &motors, draw),
+        ["--show", index] => show(&draw(number(index)?, &motors).ok_or("the file has no motors")?)?,
+        [logs] => print(range(logs)?, &motors, draw),
+        _ => return Err("give a number of logs: drives [--clean] [LOGS | FIRST..END | --show N] [--motors MOTORS.csv]".into()),
     }
     Ok(())
 }
@@ -49,14 +51,13 @@ fn range(word: &str) -> Result<Range<u64>, String> {
     }
 }
 
-fn print(logs: Range<u64>, motors: &[Rated], draw: fn(u64, &[Rated]) -> Option<Drawn>) {
+fn print(logs: Range<u64>, motors: &[Rated], draw: Draw) {
     println!("logs {} to before {} of {} motors", logs.start, logs.end, motors.len());
     print!("{}", tables(&survey(logs, motors, draw)));
 }
 
 /// For a closer look at one log.
-fn show(index: u64, motors: &[Rated]) -> Result<(), Box<dyn Error>> {
-    let drawn = Drawn::new(index, motors).ok_or("the file has no motors")?;
+fn show(drawn: &Drawn) -> Result<(), Box<dyn Error>> {
     eprintln!("{drawn:#?}");
     write_recording(&mut std::io::stdout().lock(), &drawn.record()?)?;
     Ok(())

@@ -226,6 +226,17 @@ impl Fault {
         self.row().family
     }
 
+    /// Whether it is a filter of what is logged.
+    pub(crate) fn is_filter(self) -> bool {
+        matches!(self, Self::CurrentFilter | Self::DqCurrentFilter | Self::DqVoltageFilter | Self::DqFilter)
+    }
+
+    /// Whether at most one of them can be part of an answer: they explain the same, or both are the filter of the voltages.
+    pub(crate) fn excludes(self, other: Self) -> bool {
+        let filters_voltages = |fault: Self| matches!(fault, Self::DqFilter | Self::DqVoltageFilter);
+        self.family() == other.family() || filters_voltages(self) && filters_voltages(other)
+    }
+
     /// What it needs of the electrical angle.
     pub(crate) fn angle_need(self) -> AngleNeed {
         self.row().angle
@@ -348,6 +359,23 @@ mod tests {
         let (found, expected) = (induced(1e-4, 0.2), induced(0.0, 0.0));
         assert!((found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-6, "{found:?} {expected:?}");
         assert!((found[0] - induced(0.0, 0.2)[0]).abs() > 1.0);
+    }
+
+    /// Faults that can be found together leave each other's numbers alone, in whichever order a fit sets them.
+    #[test]
+    fn faults_share_no_number_unless_they_exclude_each_other() {
+        for (one, other) in Fault::ALL.into_iter().flat_map(|one| Fault::ALL.map(|other| (one, other))) {
+            if one.excludes(other) {
+                continue;
+            }
+            for (number, of_other) in one.numbers().flat_map(|number| other.numbers().map(move |of_other| (number, of_other))) {
+                let mut faults = Faults::default();
+                faults.set(number, 0.25);
+                faults.set(of_other, 0.5);
+                assert_eq!(faults.get(number), 0.25, "{} beside {}", number.key(), of_other.key());
+            }
+        }
+        assert!(Fault::DqFilter.excludes(Fault::DqVoltageFilter) && !Fault::DqCurrentFilter.excludes(Fault::DqVoltageFilter));
     }
 
     /// A fit of each begins with finite steps, and a drive without a fault is changed by no fault.

@@ -31,7 +31,7 @@ use super::{
     request::Request,
 };
 use crate::{
-    error::Error,
+    error::{Error, ErrorKind},
     faults::{Fault, Faults},
     log::Log,
     motor::{PARAMETERS, Parameter},
@@ -151,22 +151,23 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
     let _ = progress(Step::OperatingPoints);
     let steady = SteadyFit::of(log, request);
     let model = model::choose(log, request.model);
-    let (steady, mut output) = match model.model {
-        Model::Steady => (Some(steady?), None),
+    let points_tell_more = ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore };
+    let (model, mut steady, mut output) = match model.model {
+        Model::Steady => (model, Some(steady?), None),
         Model::OutputError => {
             log.refuse_short_circuit()?;
             let steady = steady.ok();
-            let output = OutputFit::of(log, steady.as_ref(), request, known, progress)?;
-            (steady, Some(output))
+            match OutputFit::of(log, steady.as_ref(), request, known, progress) {
+                // Where no simulation stays finite, points still tell what they do, with an angle that may be off.
+                Err(error) if *error.kind() == ErrorKind::NoFiniteFit && request.model.is_none() && steady.is_some() => {
+                    (points_tell_more, Some(SteadyFit::with_drive_in_doubt(log, request)?), None)
+                }
+                output => (model, steady, Some(output?)),
+            }
         }
     };
-    let mut steady = steady;
     let points_answer = by_excitation(log, &mut steady, output.as_mut(), request)?;
-    let (model, mut output, outvoted) = if points_answer {
-        (ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore }, None, output)
-    } else {
-        (model, output, None)
-    };
+    let (model, mut output, outvoted) = if points_answer { (points_tell_more, None, output) } else { (model, output, None) };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
     // Only now: what all sensors share decides neither the model nor the value.
     common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;

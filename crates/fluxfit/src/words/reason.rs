@@ -47,6 +47,12 @@ impl Display for Reason {
                 "unknown voltages disturb the motor, and without the electrical angle they cannot be told from dead time or unequal \
                  current sensors, which move every parameter"
             ),
+            Self::RunawayFault { fault } => write!(
+                f,
+                "beside the motor, {} came out as no drive has it, so it took the place of something else, and nothing of this fit is to be \
+                 trusted",
+                fault.label()
+            ),
             Self::CurrentsMissed { fraction } => write!(
                 f,
                 "the simulated currents miss the measured ones by {:.0} % of the largest current, and not by noise: no motor makes \

@@ -117,7 +117,7 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measu
             None => Remedy::CheckSigns { units: false },
         },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
-        Reason::BelowRows { .. } => measure().unwrap_or_else(|| or_stretch(None)),
+        Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Reason::DisturbedWithoutAngle => Remedy::LogAngle,
         Reason::Wide { part, .. } => narrower(*part, parameter, finding, measure),

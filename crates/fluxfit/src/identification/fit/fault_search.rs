@@ -307,7 +307,7 @@ impl FaultSearch<'_> {
         let left: Vec<Fault> = faults.iter().copied().filter(|fault| !taken.iter().any(|taken| taken.fault == *fault)).collect();
         let this = &*self;
         let outcome = |fault: &Fault| {
-            if taken.iter().any(|taken| taken.fault.family() == fault.family()) {
+            if taken.iter().any(|taken| taken.fault.excludes(*fault)) {
                 FaultOutcome::Covered
             } else if this.ruled_out.iter().any(|ruled_out| ruled_out.family() == fault.family()) {
                 FaultOutcome::NotPhysical
@@ -390,7 +390,7 @@ const ALIKE: f64 = 1e-3;
 const TOO_FAR: f64 = 1e4;
 
 /// Schwarz's criterion for so many further unknowns, given how many independent residuals there are.
-fn schwarz(before: f64, after: f64, unknowns: usize, independent: f64) -> f64 {
+pub(super) fn schwarz(before: f64, after: f64, unknowns: usize, independent: f64) -> f64 {
     if before <= 0.0 || after >= before || after.is_nan() {
         return f64::NEG_INFINITY;
     }

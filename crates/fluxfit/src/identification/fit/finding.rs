@@ -2,6 +2,7 @@
 
 use super::uncertainty::Uncertainty;
 use crate::{
+    faults::Fault,
     frames::Dq,
     motor::{Motor, PARAMETERS, Parameter},
 };
@@ -48,6 +49,8 @@ pub struct Trust {
     pub too_sharp: bool,
     /// Root mean square of what a simulation without any correction misses, as a fraction of the largest current.
     pub misses: f64,
+    /// A fault of the drive that was found with values that no drive has: it took the place of something else, with the motor beside it.
+    pub runaway: Option<Fault>,
     /// An inductance below this, H, does nothing from row to row that a simulation could follow.
     pub least_inductance: f64,
 }

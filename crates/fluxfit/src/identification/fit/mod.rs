@@ -1,5 +1,6 @@
 //! Fits: a motor and its uncertainty, from steady operating points or from simulated currents.
 
+mod all_rows;
 mod coasting;
 pub(crate) mod common_gains;
 pub(crate) mod estimate;

@@ -10,6 +10,7 @@ use super::{
         progress::{Progress, Step},
         request::{Provenance, Request, Resolved},
     },
+    all_rows::AllRows,
     excitation::Excitation,
     fault_search::{FaultOutcome, FaultTrial, LEAST_RESIDUAL},
     faults_in_doubt,
@@ -28,10 +29,9 @@ use super::{
     within_rows,
 };
 use crate::{
-    error::{Error, ErrorKind},
+    error::Error,
     faults::Fault,
     frames::Dq,
-    levenberg_marquardt::{Polished, polish_with_progress},
     log::Log,
     motor::Motor,
     objective::{acting_voltage::VoltageTiming, adjustable::Adjustable, output_error::OutputError},
@@ -104,19 +104,16 @@ impl OutputFit {
                 |chosen, log| chosen.again(log, &stretches, request),
             )?,
         };
-        let Chosen { reading, drive, unknowns, priors, readings, terms, independent, .. } = chosen;
         let log = advanced.as_ref().unwrap_or(log);
-        let objective = &OutputError::of_rows(log, &stretches, reading)?;
-        let usual = USUAL_STEPS * (1 + 2 * unknowns.len());
+        let usual = USUAL_STEPS * (1 + 2 * chosen.unknowns.len());
         let fitting = |simulations| {
             let _ = progress(Step::Fit { simulations, usual });
         };
-        let Polished { drive, cost, .. } = polish_with_progress(objective, &drive, &unknowns, &priors, &fitting);
-        if !cost.is_finite() {
-            return Err(ErrorKind::NoFiniteFit.into());
-        }
+        let AllRows { chosen, objective, drive, cost, residuals, runaway } =
+            AllRows::of((log, lag), &stretches, chosen, request, &fitting)?;
+        let Chosen { reading, unknowns, priors, readings, terms, independent, .. } = chosen;
+        let objective = &objective;
         let _ = progress(Step::Uncertainty);
-        let residuals = objective.residuals(&drive);
         let is_noise = correlation_of_neighbours(&residuals, &objective.rows_per_segment()) <= CORRELATED;
         let shifts = OutputShifts {
             timing: readings::doubt(&readings, independent),
@@ -142,6 +139,7 @@ impl OutputFit {
                 disturbed_without_angle: is_taken(&terms, Fault::Disturbance) && !objective.angle_traced(),
                 too_sharp: errors.are_too_small(objective, &drive, &unknowns, &residuals),
                 misses: missed(objective, &drive) / objective.peak_current(),
+                runaway,
                 least_inductance: if is_control_rate(log) { LEAST_PERIODS * slowest_period(log) * drive.motor.rs } else { 0.0 },
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),
@@ -189,6 +187,11 @@ impl OutputFit {
     /// Whether a fault is part of the answer.
     pub fn has(&self, fault: Fault) -> bool {
         is_taken(&self.fault_trials, fault)
+    }
+
+    /// Whether a filter of what is logged is part of the answer.
+    pub(crate) fn is_filtered(&self) -> bool {
+        Fault::ALL.into_iter().any(|fault| fault.is_filter() && self.has(fault))
     }
 
     /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.

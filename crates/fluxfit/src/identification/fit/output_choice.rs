@@ -186,8 +186,6 @@ impl Attempt {
         let unphysical = search.unphysical(&terms);
         let contested = search.contested;
         let searched = Searched::of(search, terms);
-        // Where nothing is left to explain, no other fault explains more.
-        let contested = contested.filter(|_| !searched.explained);
         Self { searched, is_unphysical: unphysical.is_some(), in_doubt: unphysical.or(contested) }
     }
 }

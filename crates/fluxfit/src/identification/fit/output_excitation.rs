@@ -10,11 +10,13 @@
 //! it comes out too small however many rows there are, as of any regressor with errors (W. A. Fuller, Measurement Error Models, 1987,
 //! section 1.1): there residuals do not average out. An axis whose current was held at zero has only the controller's answers to noise and
 //! to steps of the other axis; where rows come slower than the drive controls, or are means, those are between the rows, and its
-//! inductance is open.
+//! inductance is open. So it is where a filter or disturbing voltages were found: they are told by the same answers to noise, and rows that
+//! are means pass for filtered ones.
 
 use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, voltage_loss::is_control_rate};
 use crate::{
     error::Error,
+    faults::Fault,
     identification::{
         prepare::stretches,
         request::{Known, Request},
@@ -48,17 +50,17 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let mut drive = fit.drive;
     let logged = log.columns();
     let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
-    let slow = averaged || !is_control_rate(log);
-    let slow_and_held = |current: &[f64]| slow && root_mean_square(current) < HELD * objective.peak_current();
+    let hidden = averaged || !is_control_rate(log) || fit.is_filtered() || fit.has(Fault::Disturbance);
+    let hidden_and_held = |current: &[f64]| hidden && root_mean_square(current) < HELD * objective.peak_current();
     let mut held = None;
     match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
         [true, false] => {
             drive.motor.ld = drive.motor.lq;
-            held = Some(Parameter::Ld).filter(|_| slow_and_held(&logged.id));
+            held = Some(Parameter::Ld).filter(|_| hidden_and_held(&logged.id));
         }
         [false, true] => {
             drive.motor.lq = drive.motor.ld;
-            held = Some(Parameter::Lq).filter(|_| slow_and_held(&logged.iq));
+            held = Some(Parameter::Lq).filter(|_| hidden_and_held(&logged.iq));
         }
         _ => {}
     }

@@ -18,9 +18,6 @@ use super::{
 };
 use crate::{faults::Fault, motor::PARAMETERS, objective::acting_voltage::VoltageTiming};
 
-/// Filters of what is logged.
-const FILTERS: [Fault; 4] = [Fault::CurrentFilter, Fault::DqCurrentFilter, Fault::DqVoltageFilter, Fault::DqFilter];
-
 /// What operating points have over the simulated currents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Points {
@@ -45,6 +42,9 @@ pub(crate) fn points_tell_more(
     if points.misfit.is_some() {
         return Points::TellLess;
     }
+    if currents.finding.trust.runaway.is_some() {
+        return Points::AreNarrower;
+    }
     let judged = judge(&currents.finding, None, request, false);
     let told: [bool; PARAMETERS] = std::array::from_fn(|p| !open[p] && judged[p].verdict != Verdict::NotIdentifiable);
     let combined = open.iter().filter(|open| **open).count() > 1;
@@ -55,8 +55,7 @@ pub(crate) fn points_tell_more(
     let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
     if may_be_decimated {
         // What passes for a filter there is the voltage between the rows; of means it is only known to go about straight.
-        let is_filtered =
-            FILTERS.into_iter().any(|filter| currents.has(filter)) || currents.voltage_timing.value == VoltageTiming::Averaged;
+        let is_filtered = currents.is_filtered() || currents.voltage_timing.value == VoltageTiming::Averaged;
         let of_points = judge(&points.finding, None, request, false).map(|one| one.verdict != Verdict::NotIdentifiable);
         return if_so((!is_explained || is_filtered) && of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told));
     }
@@ -70,8 +69,11 @@ pub(crate) fn is_narrower(points: &SteadyFit, currents: &OutputFit, request: &Re
 }
 
 /// Sum of the logarithms of the intervals' half-widths as parts of the values, faults in doubt not counted: the points know of none.
-/// What is wider than its value, or not positive, is not told: one.
+/// What is wider than its value, or not positive, is not told: one; nor is anything beside a fault that ran away.
 fn width(finding: &Finding, request: &Request) -> f64 {
+    if finding.trust.runaway.is_some() {
+        return 0.0;
+    }
     let judged = judge(finding, None, request, false);
     let told = judged.iter().filter(|one| !matches!(request.known[one.parameter as usize], Known::Fixed(_)));
     let widths = told.map(|one| if one.raw > 0.0 { (one.uncertainty.half_width_without_doubt() / one.raw).min(1.0) } else { 1.0 });

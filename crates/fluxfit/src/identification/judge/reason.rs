@@ -7,6 +7,7 @@ use super::super::fit::{
     uncertainty::ParameterUncertainty,
 };
 use crate::{
+    faults::Fault,
     frames::Dq,
     motor::{PARAMETERS, Parameter},
 };
@@ -57,6 +58,11 @@ pub enum Reason {
     SharperThanNoise,
     /// Unknown voltages disturb the motor, and without the electrical angle they cannot be told from faults of the drive.
     DisturbedWithoutAngle,
+    /// A fault of the drive came out as no drive has it, so the motor beside it is no answer either.
+    RunawayFault {
+        /// Which.
+        fault: Fault,
+    },
     /// The simulated currents differ from the measured ones by far more than noise: voltages and currents do not belong together.
     CurrentsMissed {
         /// Root mean square of the difference, as a fraction of the largest current.

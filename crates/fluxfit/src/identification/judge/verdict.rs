@@ -108,6 +108,9 @@ pub(crate) fn judge(
     if correlation > CORRELATED && fraction > least {
         distrust_all(&mut judged, request, &Reason::CurrentsMissed { fraction });
     }
+    if let Some(fault) = finding.trust.runaway {
+        distrust_all(&mut judged, request, &Reason::RunawayFault { fault });
+    }
     distrust_if_impossible(&mut judged, finding.trust.least_inductance, request);
     // Zero times any motor fits as well, and a prior does not hold against equations without any voltage error.
     if is_short_circuit && !request.known.iter().any(|known| matches!(known, Known::Fixed(_))) {
@@ -175,6 +178,7 @@ fn distrust_all(judged: &mut [Judged], request: &Request, reason: &Reason) {
 mod tests {
     use super::*;
     use crate::{
+        faults::Fault,
         identification::fit::{
             finding::Bench,
             uncertainty::{Systematic, Uncertainty},
@@ -217,6 +221,21 @@ mod tests {
         let mut stated = Request::default();
         stated.known[Parameter::Lq as usize] = Known::Fixed(10e-6);
         assert_eq!(verdicts(&judged(small, trust, &stated)), [Verdict::Identified; PARAMETERS]);
+    }
+
+    /// As sharp as the others look.
+    #[test]
+    fn a_fault_that_no_drive_has_takes_its_fit_with_it() {
+        let trust = Trust { runaway: Some(Fault::DqFilter), ..Trust::default() };
+        let mut request = Request::default();
+        request.known[Parameter::Lq as usize] = Known::Fixed(3e-3);
+        for one in judged(MOTOR, trust, &request) {
+            let expected = match one.parameter {
+                Parameter::Lq => (Verdict::Identified, Reason::Given),
+                _ => (Verdict::NotIdentifiable, Reason::RunawayFault { fault: Fault::DqFilter }),
+            };
+            assert_eq!((one.verdict, one.reason), (expected.0, Some(expected.1)));
+        }
     }
 
     /// Not below ±5 %, and weak.

@@ -1,0 +1,103 @@
+//! The fit of all rows, with the reading of the voltages and the faults that were chosen on a part of them.
+//!
+//! A fault whose values come out of all rows as no drive has them took the place of something else, or has nothing left to explain beside
+//! a fault that was taken after it. It is left out where the fit is as good without it, by the criterion that it was taken by; where it is
+//! not, the fit is not to be trusted.
+
+use super::{
+    super::request::Request,
+    fault_search::{FaultOutcome, FaultTrial, schwarz},
+    long_run,
+    output_choice::Chosen,
+    readings::VERY_STRONG,
+};
+use crate::{
+    error::{Error, ErrorKind},
+    faults::{Fault, Faults, speed_lag::SpeedLag},
+    levenberg_marquardt::{Polished, polish_with_progress},
+    log::Log,
+    objective::{
+        adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
+    },
+};
+use std::ops::Range;
+
+/// What was chosen, fitted to all rows.
+pub(super) struct AllRows {
+    pub(super) chosen: Chosen,
+    pub(super) objective: OutputError,
+    pub(super) drive: Adjustable,
+    pub(super) cost: f64,
+    pub(super) residuals: Vec<f64>,
+    /// A fault whose values no drive has, and without which the fit is worse.
+    pub(super) runaway: Option<Fault>,
+}
+
+impl AllRows {
+    /// Of a log whose speed was advanced by a lag, s, or by zero.
+    ///
+    /// # Errors
+    /// If no stretch is long enough, or nothing finite fits.
+    pub(super) fn of(
+        (log, lag): (&Log, f64),
+        stretches: &[Range<usize>],
+        chosen: Chosen,
+        request: &Request,
+        fitting: &dyn Fn(usize),
+    ) -> Result<Self, Error> {
+        let mut fit = Self::polished(log, stretches, chosen, fitting)?;
+        if !fit.cost.is_finite() {
+            return Err(ErrorKind::NoFiniteFit.into());
+        }
+        while let Some(fault) = fit.unphysical(lag) {
+            let chosen = fit.chosen.without(fault, &fit.drive).again(log, stretches, request)?;
+            let without = Self::polished(log, stretches, chosen, fitting)?;
+            let further = fit.chosen.unknowns.len() - without.chosen.unknowns.len();
+            if schwarz(without.cost, fit.cost, further, long_run::effective_sample_size(&fit.residuals)) > VERY_STRONG {
+                fit.runaway = Some(fault);
+                break;
+            }
+            fit = without;
+        }
+        Ok(fit)
+    }
+
+    fn polished(log: &Log, stretches: &[Range<usize>], chosen: Chosen, fitting: &dyn Fn(usize)) -> Result<Self, Error> {
+        let objective = OutputError::of_rows(log, stretches, chosen.reading)?;
+        let Polished { drive, cost, .. } = polish_with_progress(&objective, &chosen.drive, &chosen.unknowns, &chosen.priors, fitting);
+        let residuals = objective.residuals(&drive);
+        Ok(Self { chosen, objective, drive, cost, residuals, runaway: None })
+    }
+
+    /// The first fault of the answer whose values no drive has. Of a lag of the speed only the rest is left to find, after it was undone.
+    fn unphysical(&self, lag: f64) -> Option<Fault> {
+        let Adjustable { faults, motor, .. } = &self.drive;
+        let faults = Faults { speed_lag: SpeedLag { time: faults.speed_lag.time + lag, ..faults.speed_lag }, ..*faults };
+        let peak = self.objective.peak_current();
+        let is_unknown = |fault: Fault| self.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
+        let is_runaway = |trial: &&FaultTrial| {
+            let FaultTrial { fault, outcome, .. } = **trial;
+            let is_taken = outcome == FaultOutcome::Taken && fault != Fault::Disturbance && is_unknown(fault);
+            is_taken && !fault.is_physical(&faults, motor, peak)
+        };
+        self.chosen.terms.iter().find(is_runaway).map(|trial| trial.fault)
+    }
+}
+
+impl Chosen {
+    /// The same without a fault, from what was found beside it.
+    fn without(&self, fault: Fault, drive: &Adjustable) -> Self {
+        let mut terms = self.terms.clone();
+        terms.iter_mut().filter(|trial| trial.fault == fault).for_each(|trial| trial.outcome = FaultOutcome::NotPhysical);
+        terms.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);
+        Self {
+            drive: Unknown::of_fault(fault).fold(*drive, |drive, unknown| drive.with(unknown, 0.0)),
+            unknowns: self.unknowns.iter().copied().filter(|unknown| unknown.fault() != Some(fault)).collect(),
+            terms,
+            priors: self.priors.iter().copied().filter(|prior| prior.unknown.fault() != Some(fault)).collect(),
+            readings: self.readings.clone(),
+            ..*self
+        }
+    }
+}
