@@ -37,10 +37,9 @@ fn most_numbers_hold_on_drawn_drives() {
 }
 
 /// Each of these printed a wrong number once: a late angle (125) or a drift of R_s (915, 995) beside dead time that an observer hid; a fit
-/// that stopped where it began (168); at i_d = 0 and slow rows an L_d of noise (955, 1076); what dead time, devices and the turn of the
-/// rotor do within rows that are means (160, 1215, 1247); a winding that warms from one operating point to the next (1733, 1763); a filter beside which an angle that is off
-/// moves it out of any drive's range, and next to which it explains nothing more (2360); what an axis without current answers to noise, by a
-/// filter (2275).
+/// that stopped where it began (168); at i_d = 0 and slow rows an L_d of noise (955, 1076), or one by a filter (2275); what dead time,
+/// devices and the turn of the rotor do within rows that are means (160, 1215, 1247); a winding that warms from one operating point to the
+/// next (1733, 1763); a filter taken before an angle that was off, beside which it had nothing to explain (2360).
 #[test]
 fn logs_that_were_wrong_are_right() {
     for index in [125, 160, 168, 915, 955, 995, 1076, 1215, 1247, 1733, 1763, 2275, 2360] {

@@ -10,13 +10,11 @@
 //! it comes out too small however many rows there are, as of any regressor with errors (W. A. Fuller, Measurement Error Models, 1987,
 //! section 1.1): there residuals do not average out. An axis whose current was held at zero has only the controller's answers to noise and
 //! to steps of the other axis; where rows come slower than the drive controls, or are means, those are between the rows, and its
-//! inductance is open. So it is where a filter or disturbing voltages were found: they are told by the same answers to noise, and rows that
-//! are means pass for filtered ones.
+//! inductance is open. So it is where a filter was found: rows that are means pass for filtered ones.
 
 use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, voltage_loss::is_control_rate};
 use crate::{
     error::Error,
-    faults::Fault,
     identification::{
         prepare::stretches,
         request::{Known, Request},
@@ -50,7 +48,7 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let mut drive = fit.drive;
     let logged = log.columns();
     let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
-    let hidden = averaged || !is_control_rate(log) || fit.is_filtered() || fit.has(Fault::Disturbance);
+    let hidden = averaged || !is_control_rate(log) || fit.is_filtered();
     let hidden_and_held = |current: &[f64]| hidden && root_mean_square(current) < HELD * objective.peak_current();
     let mut held = None;
     match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
