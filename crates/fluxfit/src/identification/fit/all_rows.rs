@@ -73,7 +73,7 @@ impl AllRows {
     /// The first fault of the answer whose values no drive has. Of a lag of the speed only the rest is left to find, after it was undone.
     fn unphysical(&self, lag: f64) -> Option<Fault> {
         let Adjustable { faults, motor, .. } = &self.drive;
-        let faults = Faults { speed_lag: SpeedLag { time: faults.speed_lag.time + lag, ..faults.speed_lag }, ..*faults };
+        let faults = Faults { speed_lag: SpeedLag { time: faults.speed_lag.time + lag }, ..*faults };
         let peak = self.objective.peak_current();
         let is_unknown = |fault: Fault| self.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
         let is_runaway = |trial: &&FaultTrial| {
