@@ -1,4 +1,4 @@
-//! Nanoseconds a sample of the recursive estimators, as JSON: one Kalman filter, the bank of six that `fluxfit track` runs at first, and
+//! Nanoseconds a sample of the recursive estimators, as JSON: one Kalman filter, a bank of six, and
 //! block least squares. `estimators.py` calls it.
 // The JSON on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
@@ -17,7 +17,7 @@ const REPEATS: usize = 15;
 /// Rated current, A.
 const CURRENT: f64 = 10.0;
 
-/// Levels of unknown voltage of the bank, V, as `fluxfit track` has them beside 100 V.
+/// Levels of unknown voltage of the bank, V.
 const LEVELS: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0];
 
 #[derive(Serialize)]

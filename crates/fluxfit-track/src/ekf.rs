@@ -20,14 +20,15 @@ use fluxfit::motor::PARAMETERS;
 use fluxfit_core::{Ekf, EkfSettings, Period, bank::Together};
 use serde::{Deserialize, Serialize};
 
-/// Levels of unknown voltage, as parts of the largest voltage: 0.03 to 3 V beside 100 V.
-const LEVELS: [f64; 6] = [0.0, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
+/// Levels of unknown voltage, as parts of the largest voltage, a factor of 1.7 apart: 0.01 to 10 V beside 100 V. With levels a factor of
+/// three apart, the nearest one makes the values biased by more than their intervals; so does a largest level below what acts.
+const LEVELS: [f64; 14] = [0.0, 1e-4, 1.7e-4, 3e-4, 5.2e-4, 1e-3, 1.7e-3, 3e-3, 5.2e-3, 1e-2, 1.7e-2, 3e-2, 5.2e-2, 1e-1];
 
 /// Periods between two choices of the level.
 const CHOICE: u64 = 64;
 
 /// Periods for which all levels run; later only the best one and its neighbours.
-const ALL_LEVELS: u64 = 20_000;
+const ALL_LEVELS: u64 = 5_000;
 
 /// Relative standard error with which least squares is trusted against the filter.
 const TRUSTED: f64 = 0.1;
@@ -38,6 +39,9 @@ const CONTRADICTION: f64 = 4.0;
 /// How many times larger the standard errors of least squares are taken where the filter starts with them: it sees them without their
 /// correlation, and some samples twice.
 const CAUTION: f64 = 2.0;
+
+/// Periods over which a filter remembers how surprised it was (`fluxfit_core::Ekf::surprise`).
+const SURPRISE_MEMORY: u64 = 100_000;
 
 /// Part of a value by which a filter that started badly is off: overconfident, it would stay there.
 const FAR: f64 = 0.2;
@@ -60,6 +64,8 @@ pub struct WatchedEkf {
     /// A filter for each level.
     bank: Vec<Ekf<f64>>,
     active: [bool; LEVELS.len()],
+    /// Periods since each level joined.
+    ages: [u64; LEVELS.len()],
     #[serde(skip)]
     together: Together,
     best: usize,
@@ -96,6 +102,7 @@ impl WatchedEkf {
             is_tracking,
             bank: Vec::with_capacity(LEVELS.len()),
             active: [true; LEVELS.len()],
+            ages: [0; LEVELS.len()],
             together: Together::new(),
             best: 0,
             periods: 0,
@@ -175,12 +182,14 @@ impl WatchedEkf {
         let surprise = |level: usize| self.bank[level].surprise();
         let best = (0..LEVELS.len()).filter(|level| self.active[*level]).min_by(|a, b| surprise(*a).total_cmp(&surprise(*b)));
         self.best = best.unwrap_or(0);
+        self.ages.iter_mut().for_each(|age| *age += CHOICE);
         if self.periods < ALL_LEVELS {
             return;
         }
         for level in 0..LEVELS.len() {
             let goes_on = level.abs_diff(self.best) <= 1;
             if goes_on && !self.active[level] {
+                self.ages[level] = 0;
                 // Joins at what the best one knows.
                 self.bank[level] = self.bank[self.best].with_unknown_voltage(self.bank[level].settings().unknown_voltage);
             }
@@ -247,7 +256,7 @@ impl WatchedEkf {
             filter.note_determined(is_determined);
             self.bank.push(filter);
         }
-        (self.active, self.best, self.periods) = ([true; LEVELS.len()], 0, 0);
+        (self.active, self.ages, self.best, self.periods) = ([true; LEVELS.len()], [0; LEVELS.len()], 0, 0);
     }
 
     /// Whether the last half second excited the parameters.
@@ -260,6 +269,38 @@ impl WatchedEkf {
         &self.bank[self.best]
     }
 
+    /// Values and standard errors at the level that is most likely between the best one and its neighbours: where a log excites a parameter
+    /// little, its value may differ by 15 % from level to level. The likelihood is taken for a parabola over the levels, which are about as
+    /// far apart from each other, and so is each value; what the parabola bends, and how well its least is known, are part of the errors.
+    fn between_levels(&self) -> ([f64; PARAMETERS], [f64; PARAMETERS]) {
+        let best = self.filter();
+        let (values, mut errors) = (best.values(), best.standard_errors());
+        let neighbour = |level: Option<usize>| level.filter(|level| self.active.get(*level) == Some(&true)).map(|level| &self.bank[level]);
+        let (Some(below), Some(above)) = (neighbour(self.best.checked_sub(1)), neighbour(Some(self.best + 1))) else {
+            return (values, errors);
+        };
+        let [lower, higher] = [below, above].map(|other| other.surprise() - best.surprise());
+        let bend = lower + higher;
+        // Neighbours that joined late were not surprised as long as the best one.
+        let are_of_age =
+            (self.best - 1..=self.best + 1).all(|level| self.ages[level] >= SURPRISE_MEMORY.min(self.periods - self.periods % CHOICE));
+        if !are_of_age || bend <= 0.0 {
+            return (values, errors);
+        }
+        // In levels; minus twice the log-likelihood grows by one within a standard deviation.
+        let (place, deviation) = ((0.5 * (lower - higher) / bend).clamp(-0.5, 0.5), bend.recip().sqrt() * 2.0_f64.sqrt());
+        let (of_below, of_above, errors_of) = (below.values(), above.values(), if place < 0.0 { below } else { above }.standard_errors());
+        let mut between = values;
+        for j in 0..PARAMETERS {
+            let slope = 0.5 * (of_above[j] - of_below[j]);
+            let curve = 0.5 * (of_above[j] + of_below[j]) - values[j];
+            between[j] += place * slope + place * place * curve;
+            let own = errors[j] + place.abs() * (errors_of[j] - errors[j]);
+            errors[j] = own.hypot(place * place * curve).hypot(deviation.min(0.5) * slope);
+        }
+        (between, errors)
+    }
+
     /// How many steps of parameters were found.
     pub fn steps(&self) -> u32 {
         self.steps_before + self.filter().steps()
@@ -267,8 +308,7 @@ impl WatchedEkf {
 
     /// Values and intervals of the filter; what is identifiable, by least squares.
     pub fn estimate(&self) -> Estimate {
-        let filter = self.filter();
-        let (values, errors) = (filter.values(), filter.standard_errors());
+        let (values, errors) = self.between_levels();
         let is_known = |j: usize| self.start.standard_errors[j].is_some() && errors[j] < IDENTIFIABLE * values[j].abs();
         let of_watch = self.watch.identifiable.unwrap_or_default();
         Estimate {
