@@ -57,8 +57,8 @@ const LEAST_PART: f64 = 0.05;
 /// Which parameters are estimated as logarithms.
 const IS_LOGARITHM: [bool; PARAMETERS] = [false, true, true, false];
 
-/// Periods over which the likelihood is remembered.
-const MEMORY: f64 = 1e5;
+/// Periods over which [`Ekf::surprise`] is remembered.
+pub const SURPRISE_MEMORY: u32 = 100_000;
 
 /// Settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -244,7 +244,7 @@ impl<T: Number> Ekf<T> {
         let of_d = self.measure(0, measured[0], late);
         let of_q = self.measure(1, measured[1], late);
         self.last_surprise = (of_d.variance * of_q.variance).ln() + of_d.squared + of_q.squared;
-        self.surprise = self.surprise * T::of(1.0 - 1.0 / MEMORY) + self.last_surprise;
+        self.surprise = self.surprise * T::of(1.0 - 1.0 / f64::from(SURPRISE_MEMORY)) + self.last_surprise;
         [of_d.beyond, of_q.beyond]
     }
 
@@ -476,7 +476,7 @@ impl<T: Real> Ekf<T> {
             // As it is, not as it would be usual: else a filter with a wrong setting, which waits again and again, were the most likely.
             self.last_surprise += variance.ln() + (innovation * innovation / variance).smaller(T::of(LARGEST_SEEN));
         }
-        self.surprise = self.surprise * T::of(1.0 - 1.0 / MEMORY) + self.last_surprise;
+        self.surprise = self.surprise * T::of(1.0 - 1.0 / f64::from(SURPRISE_MEMORY)) + self.last_surprise;
         self.i = measured;
         let step = self.end_period();
         if self.test.is_new() {

@@ -49,7 +49,7 @@ pub mod ud;
 pub mod walk;
 
 pub use block_rls::{BlockRls, BlockRlsSettings, Estimate};
-pub use ekf::{Ekf, EkfSettings};
+pub use ekf::{Ekf, EkfSettings, SURPRISE_MEMORY};
 pub use lanes::Lanes;
 pub use period::Period;
 pub use real::{Number, Real};

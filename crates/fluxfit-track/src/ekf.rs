@@ -17,7 +17,7 @@ use crate::{
     start::Start,
 };
 use fluxfit::motor::PARAMETERS;
-use fluxfit_core::{Ekf, EkfSettings, Period, bank::Together};
+use fluxfit_core::{Ekf, EkfSettings, Period, SURPRISE_MEMORY, bank::Together};
 use serde::{Deserialize, Serialize};
 
 /// Levels of unknown voltage, as parts of the largest voltage, a factor of 1.7 apart: 0.01 to 10 V beside 100 V. With levels a factor of
@@ -39,9 +39,6 @@ const CONTRADICTION: f64 = 4.0;
 /// How many times larger the standard errors of least squares are taken where the filter starts with them: it sees them without their
 /// correlation, and some samples twice.
 const CAUTION: f64 = 2.0;
-
-/// Periods over which a filter remembers how surprised it was (`fluxfit_core::Ekf::surprise`).
-const SURPRISE_MEMORY: u64 = 100_000;
 
 /// Part of a value by which a filter that started badly is off: overconfident, it would stay there.
 const FAR: f64 = 0.2;
@@ -269,9 +266,9 @@ impl WatchedEkf {
         &self.bank[self.best]
     }
 
-    /// Values and standard errors at the level that is most likely between the best one and its neighbours: where a log excites a parameter
-    /// little, its value may differ by 15 % from level to level. The likelihood is taken for a parabola over the levels, which are about as
-    /// far apart from each other, and so is each value; what the parabola bends, and how well its least is known, are part of the errors.
+    /// Values and standard errors at the most likely level, which lies between the best one of the bank and a neighbour. Where a log
+    /// excites a parameter little, its value differs by up to 15 % from level to level. The log-likelihood is a parabola through three
+    /// levels, and so is each value. Errors include the curvature of the values, and the uncertainty of the level.
     fn between_levels(&self) -> ([f64; PARAMETERS], [f64; PARAMETERS]) {
         let best = self.filter();
         let (values, mut errors) = (best.values(), best.standard_errors());
@@ -281,14 +278,14 @@ impl WatchedEkf {
         };
         let [lower, higher] = [below, above].map(|other| other.surprise() - best.surprise());
         let bend = lower + higher;
-        // Neighbours that joined late were not surprised as long as the best one.
-        let are_of_age =
-            (self.best - 1..=self.best + 1).all(|level| self.ages[level] >= SURPRISE_MEMORY.min(self.periods - self.periods % CHOICE));
-        if !are_of_age || bend <= 0.0 {
+        // The likelihoods of levels that joined at different times cannot be compared.
+        let longest = u64::from(SURPRISE_MEMORY).min(self.periods - self.periods % CHOICE);
+        let are_comparable = (self.best - 1..=self.best + 1).all(|level| self.ages[level] >= longest);
+        if !are_comparable || bend <= 0.0 {
             return (values, errors);
         }
-        // In levels; minus twice the log-likelihood grows by one within a standard deviation.
-        let (place, deviation) = ((0.5 * (lower - higher) / bend).clamp(-0.5, 0.5), bend.recip().sqrt() * 2.0_f64.sqrt());
+        // Both count in steps of the bank. Minus twice the log-likelihood grows by one within a standard deviation.
+        let (place, deviation) = ((0.5 * (lower - higher) / bend).clamp(-0.5, 0.5), (2.0 / bend).sqrt());
         let (of_below, of_above, errors_of) = (below.values(), above.values(), if place < 0.0 { below } else { above }.standard_errors());
         let mut between = values;
         for j in 0..PARAMETERS {

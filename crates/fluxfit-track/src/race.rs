@@ -14,6 +14,7 @@ use crate::{
     verdict::HALF_WIDTH95,
 };
 use fluxfit::motor::PARAMETERS;
+use fluxfit_core::SURPRISE_MEMORY;
 use serde::{Deserialize, Serialize};
 
 /// Time that is compared before a timing is given up, s.
@@ -21,9 +22,6 @@ const EARLIEST_CHOICE: f64 = 0.5;
 
 /// Time that is compared after which the best timing is taken in any case, s.
 const LATEST_CHOICE: f64 = 5.0;
-
-/// Periods over which the likelihood of a timing is remembered, as that of a filter's level.
-const SURPRISE_MEMORY: f64 = 1e5;
 
 /// By how much minus twice the log-likelihood of the best timing must be less than that of another: far beyond chance.
 const CLEAR: f64 = 100.0;
@@ -57,7 +55,7 @@ impl Race {
             self.compared += lanes[0].stream.usual_period();
         }
         for (lane, told) in lanes.iter_mut().zip(told) {
-            lane.surprise += told.surprise - lane.surprise / SURPRISE_MEMORY;
+            lane.surprise += told.surprise - lane.surprise / f64::from(SURPRISE_MEMORY);
         }
     }
 

@@ -355,5 +355,7 @@ fn voltage_that_is_not_logged_is_part_of_the_intervals() {
     for drive in [drive(2.0, 1.39), drive(0.5, 1.39), drive(0.5, 0.2), drive(0.5, 0.06), drive(0.5, 0.02)] {
         let tracker = followed(TrackSettings::new(Method::EkfTracking, Some(COMMANDS)), &drive.log(Some(1)));
         holds(&tracker, &drive);
+        let printed = tracker.parameters().unwrap().iter().filter(|tracked| tracked.value.is_some()).count();
+        assert!(printed >= 2, "{printed}");
     }
 }

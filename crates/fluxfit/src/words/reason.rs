@@ -49,8 +49,8 @@ impl Display for Reason {
             ),
             Self::RunawayFault { fault } => write!(
                 f,
-                "beside the motor, {} came out as no drive has it, so it took the place of something else, and nothing of this fit is to be \
-                 trusted",
+                "the fault that was found beside the motor, {}, came out with values that no drive has: it took the place of something else, \
+                 and nothing of this fit is to be trusted",
                 fault.label()
             ),
             Self::CurrentsMissed { fraction } => write!(

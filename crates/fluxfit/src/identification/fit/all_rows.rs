@@ -6,14 +6,14 @@
 
 use super::{
     super::request::Request,
-    fault_search::{FaultOutcome, FaultTrial, schwarz},
+    fault_search::{FaultOutcome, schwarz, unphysical},
     long_run,
     output_choice::Chosen,
     readings::VERY_STRONG,
 };
 use crate::{
     error::{Error, ErrorKind},
-    faults::{Fault, Faults, speed_lag::SpeedLag},
+    faults::Fault,
     levenberg_marquardt::{Polished, polish_with_progress},
     log::Log,
     objective::{
@@ -70,18 +70,11 @@ impl AllRows {
         Ok(Self { chosen, objective, drive, cost, residuals, runaway: None })
     }
 
-    /// The first fault of the answer whose values no drive has. Of a lag of the speed only the rest is left to find, after it was undone.
+    /// The first fault whose values no drive has. Of a lag of the speed only the rest is left to find, after it was undone.
     fn unphysical(&self, lag: f64) -> Option<Fault> {
-        let Adjustable { faults, motor, .. } = &self.drive;
-        let faults = Faults { speed_lag: SpeedLag { time: faults.speed_lag.time + lag }, ..*faults };
-        let peak = self.objective.peak_current();
-        let is_unknown = |fault: Fault| self.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
-        let is_runaway = |trial: &&FaultTrial| {
-            let FaultTrial { fault, outcome, .. } = **trial;
-            let is_taken = outcome == FaultOutcome::Taken && fault != Fault::Disturbance && is_unknown(fault);
-            is_taken && !fault.is_physical(&faults, motor, peak)
-        };
-        self.chosen.terms.iter().find(is_runaway).map(|trial| trial.fault)
+        let mut drive = self.drive;
+        drive.faults.speed_lag.time += lag;
+        unphysical(&self.chosen.terms, &drive, self.objective.peak_current())
     }
 }
 

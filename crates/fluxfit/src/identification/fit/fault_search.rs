@@ -128,9 +128,7 @@ impl FaultSearch<'_> {
 
     /// The same in another drive.
     fn unphysical_in(&self, drive: &Adjustable, trials: &[FaultTrial]) -> Option<Fault> {
-        let mut taken = trials.iter().filter(|trial| trial.outcome == FaultOutcome::Taken && trial.fault != Fault::Disturbance);
-        let peak = self.objective().peak_current();
-        taken.find(|trial| !trial.fault.is_physical(&drive.faults, &drive.motor, peak)).map(|trial| trial.fault)
+        unphysical(trials, drive, self.objective().peak_current())
     }
 
     /// The output error under the reading that fits best now.
@@ -352,6 +350,12 @@ impl FaultSearch<'_> {
         }
         trials.into_iter().map(|(trial, _)| trial).collect()
     }
+}
+
+/// The first fault that was taken and whose values no drive has; of the observer's, nothing is asked.
+pub(super) fn unphysical(trials: &[FaultTrial], drive: &Adjustable, peak: f64) -> Option<Fault> {
+    let mut taken = trials.iter().filter(|trial| trial.outcome == FaultOutcome::Taken && trial.fault != Fault::Disturbance);
+    taken.find(|trial| !trial.fault.is_physical(&drive.faults, &drive.motor, peak)).map(|trial| trial.fault)
 }
 
 /// Readings under which a filter is exchanged for another fault.
