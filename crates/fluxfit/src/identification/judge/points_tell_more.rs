@@ -3,8 +3,9 @@
 //! Rows that are every n-th of a drive's periods, filtered columns, or a fault that no term describes leave residuals of the simulated
 //! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals
 //! are not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
-//! answers. Where rows come slower than drives control currents, the points answer even if they cannot contradict each other, unless they
-//! leave out a parameter that the currents tell: the voltage between the rows is not in the log.
+//! answers. Where rows come slower than drives control currents, the points answer even if they cannot contradict each other: the voltage
+//! between the rows is not in the log. Not if they leave out a parameter that the currents tell, and rows beside the points do tell it: a
+//! ramp of the speed, not the few rows of a step.
 //!
 //! Where the simulated currents leave a whole combination of parameters open, or all that they leave is rounding, their parameters were
 //! fitted to what no parameter explains. Operating points leave such directions at zero, so they answer if they leave nothing else open.
@@ -52,16 +53,30 @@ pub(crate) fn points_tell_more(
     if (combined || is_rounding) && told.contains(&false) {
         return if_so(points.finding.open.iter().zip(told).all(|(of_points, told)| !(*of_points && told)));
     }
-    let is_explained = currents.finding.trust.correlation_of_neighbours <= CORRELATED && !currents.has(Fault::Disturbance);
+    let is_white = currents.finding.trust.correlation_of_neighbours <= CORRELATED;
+    let is_explained = is_white && !currents.has(Fault::Disturbance);
     if may_be_decimated {
         // What passes for a filter there is the voltage between the rows; of means it is only known to go about straight.
         let is_filtered = currents.is_filtered() || currents.voltage_timing.value == VoltageTiming::Averaged;
         let of_points = judge(&points.finding, None, request, false).map(|one| one.verdict != Verdict::NotIdentifiable);
-        return if_so((!is_explained || is_filtered) && of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told));
+        let tell_all = of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told);
+        let is_misread = currents.is_filtered() || !is_white;
+        return if_so((!is_explained || is_filtered) && (tell_all || is_misread && are_most_rows(points, currents)));
     }
     let can_contradict = points.estimate.redundancy > 0;
     if !is_explained && can_contradict && is_narrower(points, currents, request) { Points::AreNarrower } else { Points::TellLess }
 }
+
+/// Whether operating points are nearly all that the currents were compared at: what these tell beyond them is in a few steps.
+fn are_most_rows(points: &SteadyFit, currents: &OutputFit) -> bool {
+    let of_points: usize = points.operating_points.iter().map(|point| point.rows.len()).sum();
+    let compared: usize = currents.stretches.iter().map(|stretch| stretch.len()).sum();
+    of_points as f64 > MOST * compared as f64
+}
+
+/// Transients of the windings, a few milliseconds after each change of a mode that is held for a second, are less than the rest; ramps are
+/// more.
+const MOST: f64 = 0.9;
 
 /// Whether the points' intervals are narrower than the currents'.
 pub(crate) fn is_narrower(points: &SteadyFit, currents: &OutputFit, request: &Request) -> bool {
