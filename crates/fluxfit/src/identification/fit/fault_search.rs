@@ -108,6 +108,8 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) priors: &'a [PriorResidual],
     pub(crate) drive: Adjustable,
     pub(crate) unknowns: Vec<Unknown>,
+    /// Faults that are among the unknowns from the beginning.
+    pub(crate) begun_with: Vec<FaultTrial>,
     pub(crate) cost: f64,
     pub(crate) voltage_accuracy: f64,
     /// Whether the rows may be the drive's own periods.
@@ -156,7 +158,7 @@ impl FaultSearch<'_> {
         let is_there = |fault: Fault| self.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
         let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault) && !is_there(*fault));
         let faults: Vec<Fault> = faults.collect();
-        let mut taken = Vec::new();
+        let mut taken = self.begun_with.clone();
         let mut not_taken = self.add(&faults, &mut taken);
         if taken.len() > 1 {
             self.choose_kinds(&taken, false);

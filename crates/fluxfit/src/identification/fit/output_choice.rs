@@ -6,10 +6,10 @@ use super::{
         progress::{Progress, Step},
         request::Request,
     },
-    fault_search::{FaultSearch, FaultTrial, LEAST_RESIDUAL},
+    fault_search::{FaultOutcome, FaultSearch, FaultTrial, LEAST_RESIDUAL, schwarz},
     long_run,
-    output_start::{self, free},
-    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, TimingTrial},
+    output_start::{self, Start, free},
+    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, TimingTrial, VERY_STRONG},
     voltage_loss::is_control_rate,
 };
 use crate::{
@@ -17,9 +17,11 @@ use crate::{
     faults::Fault,
     levenberg_marquardt::PriorResidual,
     log::Log,
+    motor::{Motor, Parameter},
     objective::{
         acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
+        output_error::OutputError,
     },
 };
 use std::ops::Range;
@@ -46,6 +48,41 @@ struct Searched {
     explained: bool,
 }
 
+/// Where a search for faults begins.
+struct Begin {
+    /// The reading, by its place, and what was fitted under it.
+    tried: (usize, TimingTrial),
+    unknowns: Vec<Unknown>,
+    /// Faults among the unknowns.
+    faults: Vec<FaultTrial>,
+}
+
+impl Begin {
+    /// With an angle that is off or late, if the evidence for one is very strong beside what was `tried` without.
+    fn with_angle(
+        objectives: &[(VoltageTiming, OutputError)],
+        start: &Adjustable,
+        free: &[Unknown],
+        priors: &[PriorResidual],
+        tried: &[(usize, TimingTrial)],
+    ) -> Option<Self> {
+        let (_, without) = tried.first()?;
+        let each = [Fault::AngleOffset, Fault::AngleDelay].into_iter().filter_map(|fault| {
+            let unknowns: Vec<Unknown> = free.iter().copied().chain(Unknown::of_fault(fault)).collect();
+            let (place, with) = *readings::readings(objectives, start, &unknowns, priors, HOPELESS).first()?;
+            let (objective, drive) = (&objectives[place].1, with.polished.drive);
+            let independent = long_run::effective_sample_size(&objective.residuals(&drive));
+            let gain = schwarz(without.mean_square(), with.mean_square(), unknowns.len() - free.len(), independent);
+            let is_there =
+                gain > VERY_STRONG && is_a_motor(&drive.motor) && fault.is_physical(&drive.faults, &drive.motor, objective.peak_current());
+            let moves = Parameter::ALL.map(|parameter| drive.motor.get(parameter) - without.polished.drive.motor.get(parameter));
+            let trial = FaultTrial { fault, gain, outcome: FaultOutcome::Taken, moves };
+            is_there.then(|| Self { tried: (place, with), unknowns, faults: vec![trial] })
+        });
+        each.min_by(|one, other| one.tried.1.mean_square().total_cmp(&other.tried.1.mean_square()))
+    }
+}
+
 /// Readings from which faults are looked for, where the first one leaves something unexplained: a fault may pass for a delay. Rows far
 /// apart always leave something.
 const TRIED_READINGS: usize = 2;
@@ -64,7 +101,7 @@ const MOST_RULED_OUT: usize = 2;
 pub(super) fn choose(
     log: &Log,
     stretches: &[Range<usize>],
-    start: &Adjustable,
+    start: &Start,
     undone_lag: f64,
     request: &Request,
     progress: Progress,
@@ -72,22 +109,25 @@ pub(super) fn choose(
     let _ = progress(Step::VoltageTiming);
     let free: Vec<Unknown> = free(request).into_iter().chain(output_start::rest_of_lag(undone_lag)).collect();
     let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
-    let rough = readings::readings(&objectives, start, &free, &[], HOPELESS);
+    let rough = readings::readings(&objectives, &start.drive, &free, &[], HOPELESS);
     let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut found: Vec<Searched> = Vec::new();
     let mut begun: Vec<FaultSearch> = Vec::new();
-    let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, start, &free, &priors, HOPELESS) };
+    let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, &start.drive, &free, &priors, HOPELESS) };
+    let with_angle = if start.may_hide_an_angle { Begin::with_angle(&objectives, &start.drive, &free, &priors, &tried) } else { None };
     let _ = progress(Step::Faults);
     let every_period = is_control_rate(log);
     let most = if every_period { TRIED_READINGS } else { 1 };
-    let search_from = |(place, tried): (usize, TimingTrial), objectives, begun: &mut Vec<_>| {
+    let search_from = |begin: Begin, objectives, begun: &mut Vec<_>| {
+        let Begin { tried: (place, tried), unknowns, faults } = begin;
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
         let mut search = FaultSearch {
             objectives,
             reading: place,
             priors: &priors,
             drive,
-            unknowns: free.clone(),
+            unknowns,
+            begun_with: faults,
             cost,
             voltage_accuracy,
             every_period,
@@ -103,22 +143,28 @@ pub(super) fn choose(
             found
         })
     };
-    for tried in tried.iter().copied().take(most) {
+    let without = |tried| Begin { tried, unknowns: free.clone(), faults: Vec::new() };
+    let given = usize::from(with_angle.is_some());
+    for begin in with_angle.into_iter().chain(tried.iter().copied().take(most).map(without)) {
         // The search from the reading before has compared all of them, and ended with this one.
-        if found.iter().any(|found| found.chosen.reading == tried.1.timing) {
+        if found.iter().skip(given).any(|found| found.chosen.reading == begin.tried.1.timing) {
             break;
         }
-        found.extend(search_from(tried, &objectives, &mut begun));
+        found.extend(search_from(begin, &objectives, &mut begun));
         if found.last().is_some_and(|found| found.explained) {
             break;
         }
     }
-    found.sort_by(|one, other| one.chosen.criterion.total_cmp(&other.chosen.criterion));
+    let rank = |found: &Searched| (!is_a_motor(&found.chosen.drive.motor), found.chosen.criterion);
+    found.sort_by(|one, other| {
+        let ((one, criterion), (other, of_other)) = (rank(one), rank(other));
+        one.cmp(&other).then(criterion.total_cmp(&of_other))
+    });
     // A reading that is no inverter's may hide what a speed that lags does: it is looked for without them, too.
     if every_period && found.first().is_some_and(|best| best.chosen.reading.is_unusual() && !best.explained) {
         let usual = &objectives[..objectives.iter().take_while(|(reading, _)| !reading.is_unusual()).count()];
         let first = tried.iter().copied().find(|(place, _)| *place < usual.len());
-        found.extend(first.and_then(|first| search_from(first, usual, &mut begun)));
+        found.extend(first.and_then(|first| search_from(without(first), usual, &mut begun)));
     }
     let mut found: Vec<Chosen> = found.into_iter().map(|found| found.chosen).collect();
     let best = found.first_mut().ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
@@ -129,6 +175,11 @@ pub(super) fn choose(
         best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
     }
     Ok(found)
+}
+
+/// Whether all parameters are positive, as a motor's are.
+fn is_a_motor(motor: &Motor) -> bool {
+    motor.to_array().iter().all(|value| *value > 0.0)
 }
 
 impl Chosen {

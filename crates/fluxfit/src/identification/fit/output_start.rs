@@ -41,14 +41,23 @@ pub(super) fn priors(request: &Request, undone_lag: f64, mean_square: f64) -> Ve
     priors.chain(rest).collect()
 }
 
-/// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations.
+/// Where the polish begins.
+pub(super) struct Start {
+    pub(super) drive: Adjustable,
+    /// Whether the operating points leave one inductance open. No fit leads from there to an angle that is off: without the angle, that
+    /// inductance takes the voltage which does not belong to its axis, and grows without limit.
+    pub(super) may_hide_an_angle: bool,
+}
+
+/// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations. An inductance that
+/// only the points leave open is as large as the other: differences of a current that is held come out too small by their noise.
 pub(super) fn start(
     log: &Log,
     stretches: &[Range<usize>],
     steady: Option<&SteadyFit>,
     request: &Request,
     scale: &[f64; PARAMETERS],
-) -> Adjustable {
+) -> Start {
     let rows = by_differences(log, stretches).to_array();
     let mut values: [f64; PARAMETERS] = std::array::from_fn(|p| {
         let parameter = Parameter::ALL[p];
@@ -56,13 +65,20 @@ pub(super) fn start(
         // An arbitrary fallback start: a tenth of what the voltage allows.
         [of_points, Some(rows[p])].into_iter().flatten().find(|value| *value > 0.0 && value.is_finite()).unwrap_or(0.1 * scale[p])
     });
+    let is_open = |parameter| steady.is_some_and(|fit| fit.excitation.is_open(parameter));
+    let (ld, lq) = (Parameter::Ld as usize, Parameter::Lq as usize);
+    match (is_open(Parameter::Ld), is_open(Parameter::Lq)) {
+        (true, false) => values[ld] = values[lq],
+        (false, true) => values[lq] = values[ld],
+        _ => {}
+    }
     for (value, known) in values.iter_mut().zip(request.known) {
         match known {
             Known::Fixed(known) | Known::Prior { value: known, .. } => *value = known,
             Known::Nothing => {}
         }
     }
-    Adjustable::from(Motor::from(values))
+    Start { drive: Adjustable::from(Motor::from(values)), may_hide_an_angle: is_open(Parameter::Ld) != is_open(Parameter::Lq) }
 }
 
 /// Rows over which a difference of currents stands for their slope: enough to calm noise, few enough to follow a transient.
