@@ -229,15 +229,15 @@ fn finding<'a>(steady: Option<&'a SteadyFit>, output: Option<&'a OutputFit>) -> 
 
 /// Saturation: found by the operating points, by the terms of the simulated currents, or by both.
 fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>, request: &Request) -> Option<SaturationFinding> {
-    let of_points = steady.and_then(|fit| fit.saturation(request));
-    let Some(fit) = output else { return of_points };
+    let of_points = || steady.and_then(|fit| fit.saturation(request));
+    let Some(fit) = output else { return of_points() };
     if !fit.has(Fault::Saturation) {
         // The simulated currents know the drive's faults, which the points may take for saturation; where they leave noise, there is none.
-        return of_points.filter(|_| !fit.is_explained());
+        return if fit.is_explained() { None } else { of_points() };
     }
     let rs_uncertainty = fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
     let points = steady.map_or(&[][..], |fit| &fit.operating_points);
-    Some(SaturationFinding::of_currents(log, &fit.drive, rs_uncertainty, &fit.stretches, (points, of_points), request))
+    Some(SaturationFinding::of_currents(log, &fit.drive, rs_uncertainty, &fit.stretches, points, request))
 }
 
 /// The swarm's search of the same cost that the answering model minimized.

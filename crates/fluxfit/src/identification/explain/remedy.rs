@@ -120,6 +120,7 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measu
         Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Reason::DisturbedWithoutAngle => Remedy::LogAngle,
+        Reason::Saturates => Remedy::NarrowCurrents,
         Reason::Wide { part, .. } => narrower(*part, parameter, finding, measure),
     })
 }

@@ -25,6 +25,10 @@ pub struct Incremental {
 /// third derivative of the flux times a 24th of the square of that.
 const CLOSE: f64 = 1.0 / 3.0;
 
+/// They differ by a step of the current, and not by its noise or a controller's answer, if by at least this part of the largest one: what
+/// voltages lose near one point and not near the other would be divided by next to nothing.
+const LEAST_STEP: f64 = 0.05;
+
 /// The other current may differ by this part of it: what cross saturation makes of that is less than other errors.
 const ASIDE: f64 = 0.1;
 
@@ -43,7 +47,7 @@ impl SaturationFinding {
                 let is_pair = |other: &Flux| {
                     let step = apart(other);
                     let aside = (aside(other.current) - aside(one.current)).abs();
-                    step > 0.0 && step <= CLOSE * peak && aside <= ASIDE * step
+                    step >= LEAST_STEP * peak && step <= CLOSE * peak && aside <= ASIDE * step
                 };
                 let others = told.iter().enumerate().filter(|(other, (_, flux))| *other != k && is_pair(flux));
                 let Some((_, (second, other))) = others.min_by(|(_, (_, a)), (_, (_, b))| apart(a).total_cmp(&apart(b))) else { continue };

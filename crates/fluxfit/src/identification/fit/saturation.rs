@@ -26,7 +26,7 @@ use crate::{
     objective::adjustable::Adjustable,
     steady::OperatingPoint,
 };
-use std::{f64::consts::PI, ops::Range};
+use std::ops::Range;
 
 /// Saturation, and what the flux is instead of an inductance times the current.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,21 +102,23 @@ impl SaturationFinding {
         Some(Self::at((points, &none), best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
     }
 
-    /// What simulated currents with terms of saturation say of it, over these rows; `of_points` is what the operating points say.
+    /// What simulated currents with terms of saturation say of it, over these rows and at these operating points.
     pub(crate) fn of_currents(
         log: &Log,
         drive: &Adjustable,
         rs_uncertainty: f64,
         stretches: &[Range<usize>],
-        (points, of_points): (&[OperatingPoint], Option<Self>),
+        points: &[OperatingPoint],
         request: &Request,
     ) -> Self {
         let (motor, terms) = (drive.motor, drive.faults.saturation);
-        // The fundamental of what each phase loses.
-        let loss = 4.0 / PI * drive.faults.dead_time.voltage;
-        let lost: Vec<[f64; 2]> =
-            points.iter().map(|point| voltage_loss::along(point.current())).map(|i| [loss * i.d, loss * i.q]).collect();
-        let mut found = of_points.unwrap_or_else(|| Self::at((points, &lost), motor, (motor.rs, rs_uncertainty), request));
+        // The fluxes are those of the resistance that is the answer, and of voltages less what dead time takes, which points know less of.
+        let lost: Vec<[f64; 2]> = points
+            .iter()
+            .map(|point| voltage_loss::fundamental(&drive.faults.dead_time, point.current()))
+            .map(|lost| [lost.d, lost.q])
+            .collect();
+        let mut found = Self::at((points, &lost), motor, (motor.rs, rs_uncertainty), request);
         let (mut least, mut most) = (Apparent { current: f64::INFINITY, inductance: 0.0 }, Apparent { current: 0.0, inductance: 0.0 });
         for row in stretches.iter().cloned().flatten() {
             let i = Dq { d: log.columns().id[row], q: log.columns().iq[row] };

@@ -17,7 +17,13 @@
 //! Electronics 38, 1991, doi:10.1109/41.88903.
 
 use super::{super::request::Request, part::Part};
-use crate::{faults::dead_time::ripple::Harmonic, frames::Dq, log::Log, objective::acting_voltage::VoltageTiming, steady::OperatingPoint};
+use crate::{
+    faults::dead_time::{DeadTime, ripple::Harmonic},
+    frames::Dq,
+    log::Log,
+    objective::acting_voltage::VoltageTiming,
+    steady::OperatingPoint,
+};
 use std::f64::consts::{FRAC_PI_4, PI};
 
 /// Longest dead time of a drive, s: that of IGBTs. MOSFETs take a tenth to one microsecond.
@@ -178,6 +184,13 @@ pub(crate) fn slowest_period(log: &Log) -> f64 {
 pub(crate) fn along(i: Dq) -> Dq {
     let magnitude = i.magnitude().max(f64::MIN_POSITIVE);
     Dq { d: i.d / magnitude, q: i.q / magnitude }
+}
+
+/// The fundamental of what the phases lose at a current, V, by simulated currents' dead time.
+pub(super) fn fundamental(loss: &DeadTime, i: Dq) -> Dq {
+    let volts = 4.0 / PI * loss.voltage * (1.0 - lacking(loss.width.abs().max(loss.least_width), i.magnitude()));
+    let Dq { d, q } = along(i);
+    Dq { d: volts * d, q: volts * q }
 }
 
 /// The part that the fundamental of the loss lacks where each phase loses in proportion up to `width`, A, and a constant voltage from

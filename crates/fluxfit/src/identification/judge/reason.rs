@@ -63,6 +63,8 @@ pub enum Reason {
         /// Which.
         fault: Fault,
     },
+    /// The interval is narrow, but the motor saturates, and a fit describes that by a few terms.
+    Saturates,
     /// The simulated currents differ from the measured ones by far more than noise: voltages and currents do not belong together.
     CurrentsMissed {
         /// Root mean square of the difference, as a fraction of the largest current.

@@ -102,6 +102,12 @@ pub(crate) fn judge(
     let mut judged = Parameter::ALL
         .map(|parameter| by_interval(parameter, finding, uncertainty.parameters[parameter as usize], request.known[parameter as usize]));
     distrust_sharp_intervals(&mut judged, &finding.trust);
+    if saturation.is_some() {
+        // No constant describes such a motor, however narrow the interval of one is.
+        for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
+            (one.verdict, one.reason) = (Verdict::Weak, Some(Reason::Saturates));
+        }
+    }
     let Trust { correlation_of_neighbours: correlation, misses: fraction, .. } = finding.trust;
     let tells_nothing = finding.open == [false; PARAMETERS] && judged.iter().all(|one| one.verdict == Verdict::NotIdentifiable);
     let least = if tells_nothing { MISSES_AND_TELLS_NOTHING } else { MISSES };
