@@ -43,6 +43,10 @@ const CAUTION: f64 = 2.0;
 /// Part of a value by which a filter that started badly is off: overconfident, it would stay there.
 const FAR: f64 = 0.2;
 
+/// Standard errors of least squares by which chance makes the filter differ from it: those errors are about twice too large. A larger
+/// difference is part of the filter's interval.
+const AGREEMENT: f64 = 0.5;
+
 /// Blocks of a contradiction after which the filter starts anew: half a second at 10 kHz.
 const PATIENCE: u32 = 100;
 
@@ -298,6 +302,18 @@ impl WatchedEkf {
         (between, errors)
     }
 
+    /// Standard errors with what least squares contradicts in them. A filter that was far off while it began, or that did not see a step
+    /// in much unknown voltage, is surer than it may be, and stays wrong for seconds.
+    fn with_contradiction(&self, values: &[f64; PARAMETERS], mut errors: [f64; PARAMETERS]) -> [f64; PARAMETERS] {
+        let Some(of_watch) = self.watch.standard_errors else { return errors };
+        let is_told = |j: &usize| of_watch[*j] < TRUSTED * self.watch.values[*j] && self.start.standard_errors[*j].is_none();
+        for j in (0..PARAMETERS).filter(is_told) {
+            let beyond = (values[j] - self.watch.values[j]).abs() - AGREEMENT * of_watch[j];
+            errors[j] = errors[j].hypot(beyond.max(0.0));
+        }
+        errors
+    }
+
     /// How many steps of parameters were found.
     pub fn steps(&self) -> u32 {
         self.steps_before + self.filter().steps()
@@ -306,6 +322,7 @@ impl WatchedEkf {
     /// Values and intervals of the filter; what is identifiable, by least squares.
     pub fn estimate(&self) -> Estimate {
         let (values, errors) = self.between_levels();
+        let errors = self.with_contradiction(&values, errors);
         let is_known = |j: usize| self.start.standard_errors[j].is_some() && errors[j] < IDENTIFIABLE * values[j].abs();
         let of_watch = self.watch.identifiable.unwrap_or_default();
         Estimate {
