@@ -86,8 +86,8 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         ),
         Part::FrameLag => write!(
             f,
-            "between rows so far apart the angle, or the voltages' frame against that of the currents, may be off or late, which acts like \
-             inductance and {leaves}"
+            "the rows are too far apart to show whether the angle is off, or voltages and currents are of different instants; either acts \
+             like inductance, which {leaves}"
         ),
         Part::WithinRows => {
             write!(f, "each row spans several of the drive's periods, and what the voltages do between them is not logged, which {leaves}")

@@ -22,21 +22,22 @@ impl Display for Warning {
             Self::NoRedundancy => write!(
                 f,
                 "there are exactly as many equations as unknowns, so a perfect fit proves nothing: saturation, dead time or a wrong \
-                 unit would go unseen; add a third operating point, or give a known value"
+                 unit would go unseen; add another operating point, or give a known value"
             ),
             Self::Misfit { ratio, voltage_accuracy } => write!(
                 f,
-                "the operating points contradict each other {} times beyond noise and accuracy, and agree only to {} of the \
-                 voltage: inductances fall with current (saturation), flux and resistance change with temperature, or these are not the \
-                 voltages at the terminals (dead time, device drops, delay); the intervals are widened to the scatter of the points",
+                "the operating points contradict each other {} times as much as noise and accuracy explain, and agree only to {} of the \
+                 voltage; possible causes are inductances that fall with current (saturation), flux and resistance that change with \
+                 temperature, or voltages that are not those at the terminals (dead time, device drops, delay); the intervals are widened \
+                 to the scatter of the points",
                 three_digits(*ratio),
                 percent(*voltage_accuracy)
             ),
             Self::DeadTime { voltage } => write!(
                 f,
-                "voltages and currents ripple at six times the electrical frequency, as dead time or device drops make them that take \
-                 about {voltage:.2} V along the current; that is solved for beside the motor, and what the currents do not tell from resistance \
-                 counts as uncertainty"
+                "voltages and currents ripple at six times the electrical frequency, as dead time or device drops make them; these take about \
+                 {voltage:.2} V in the direction of the current; that voltage is fitted beside the motor, and the part that cannot be told from \
+                 resistance counts as uncertainty"
             ),
             Self::NoCurrent { rows, of } => write!(f, "{rows} of {of} rows carry no current and were not used: {COASTING}"),
             Self::NoCurrentInWindows { windows } => {
@@ -65,8 +66,8 @@ impl Display for Warning {
                 );
                 write!(
                     f,
-                    "the voltages turn with speed against the currents: their frame is {late} by {} ± {} us, {:.1} degrees at the highest \
-                     speed{show}; that is solved for beside the motor; the wrong sign of a column is not the cause",
+                    "the angle between voltages and currents grows with speed: the voltages' frame is {late} by {} ± {} us, {:.1} degrees at \
+                     the highest speed{show}; that lag is fitted beside the motor; the wrong sign of a column is not the cause",
                     three_digits(micro),
                     one_digit(error),
                     angle.abs().to_degrees()
@@ -95,8 +96,8 @@ impl Display for Warning {
             }
             Self::ProcessNoise => write!(
                 f,
-                "voltages that the log does not hold disturb the motor: the residuals of the simulated currents depend on those before; \
-                 each row is predicted from the row before instead, and the difference this makes is counted as uncertainty"
+                "voltages that are not logged disturb the motor: successive residuals of the simulated currents are correlated; each row is \
+                 therefore predicted from the row before, and the difference that this makes counts as uncertainty"
             ),
             Self::Angle => write!(
                 f,
@@ -105,14 +106,14 @@ impl Display for Warning {
             ),
             Self::Saturation { lq } => write!(
                 f,
-                "the motor saturates{}; no constant inductances and flux explain the log, and the intervals hold what each operating \
-                 point would call them; the flux of each operating point is reported instead",
+                "the motor saturates{}; no constant inductances and flux fit the log, and the intervals cover the values at each operating \
+                 point; the flux of each operating point is listed instead",
                 lq.as_ref().map_or_else(String::new, apparent)
             ),
             Self::LowSpeed { omega_e, own, lost } => write!(
                 f,
-                "even at the highest speed, {} rad/s, the motor's own voltage is only {} V, and the inverter takes some {} V of what it \
-                 is told: psi_f and the inductances are no better than that; log at a higher speed",
+                "even at the highest speed, {} rad/s, the motor's own voltage is only {} V, while dead time and device drops take about {} V; \
+                 that limits psi_f and the inductances: log at a higher speed",
                 three_digits(*omega_e),
                 three_digits(*own),
                 three_digits(*lost)

@@ -21,7 +21,7 @@ impl Warning {
             Self::CoarseSampling => "rows are far apart: taken as decimated".to_owned(),
             Self::FrameLag { seconds, .. } => {
                 let late = if *seconds > 0.0 { "late" } else { "early" };
-                format!("the voltages' frame is {} us {late}: solved for", three_digits(1e6 * seconds.abs()))
+                format!("the voltages' frame is {} us {late}: corrected", three_digits(1e6 * seconds.abs()))
             }
             Self::OpenLoop { times } => {
                 format!("open loop in {} stretch{}: only R_s is taken from there", times.len(), if times.len() == 1 { "" } else { "es" })
@@ -43,7 +43,7 @@ impl Warning {
                 None => "no constant inductances explain the log".to_owned(),
             },
             Self::LowSpeed { own, lost, .. } => {
-                format!("too slow: {} V of the motor, {} V lost", three_digits(*own), three_digits(*lost))
+                format!("too slow: motor {} V, lost in the drive {} V", three_digits(*own), three_digits(*lost))
             }
             Self::VoltageLimit { rows, of } => format!("{rows} of {of} rows have |u| above u_dc / sqrt 3"),
             Self::OutsideBox { parameters } => {
