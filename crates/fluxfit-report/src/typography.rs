@@ -29,14 +29,38 @@ pub(crate) fn symbol(parameter: Parameter) -> Markup {
     prose(parameter.symbol())
 }
 
-/// A sentence with typographic symbols and minus signs, and command-line options as code. Everything else is escaped.
+/// Units in sentences, without their prefix.
+const UNITS: [&str; 9] = ["%", "A", "V", "s", "H", "Wb", "ohm", "Hz", "K"];
+
+/// A sentence with typographic symbols, units and minus signs, and command-line options as code. Everything else is escaped.
 pub(crate) fn prose(text: &str) -> Markup {
+    let words: Vec<&str> = text.split(' ').collect();
     html! {
-        @for (k, word) in text.split(' ').enumerate() {
-            @if k > 0 { " " }
-            (set_word(word))
+        @for (k, word) in words.iter().enumerate() {
+            @let number = k.checked_sub(1).and_then(|before| words.get(before)).filter(|before| before.ends_with(|c: char| c.is_ascii_digit()));
+            // A line does not break between a number and its unit.
+            @if let Some(unit) = number.and_then(|_| set_unit(word)) { (NO_BREAK) (unit) } @else {
+                @if k > 0 { " " }
+                (set_word(word))
+            }
         }
     }
+}
+
+/// A space at which no line breaks.
+const NO_BREAK: &str = "\u{a0}";
+
+/// A unit with what follows it; none if the word is no unit.
+fn set_unit(word: &str) -> Option<String> {
+    let core = word.trim_end_matches(['.', ',', ';', ':', ')']);
+    let bare = core.strip_prefix(['n', 'u', 'm', 'k']).filter(|bare| *bare != "%").unwrap_or(core);
+    (UNITS.contains(&core) || UNITS.contains(&bare)).then(|| greek(core) + word.strip_prefix(core).unwrap_or_default())
+}
+
+/// A unit with Greek letters.
+fn greek(unit: &str) -> String {
+    let unit = unit.replace("ohm", "Ω");
+    unit.strip_prefix('u').map(|rest| format!("µ{rest}")).unwrap_or(unit)
 }
 
 fn set_word(word: &str) -> Markup {
@@ -64,8 +88,7 @@ pub(crate) fn svg_subscripts(svg: &str) -> String {
 
 /// The unit of a parameter with a scale, with Greek letters.
 pub(crate) fn unit(parameter: Parameter, scale: &Scale) -> String {
-    let unit = scale.unit(parameter.unit()).replace("ohm", "Ω");
-    unit.strip_prefix('u').map(|rest| format!("µ{rest}")).unwrap_or(unit)
+    greek(&scale.unit(parameter.unit()))
 }
 
 /// A number with a minus sign (not a hyphen), and without one before zero.
@@ -122,8 +145,8 @@ pub(crate) fn amperes(current: f64) -> String {
 /// The value of a fault of the drive with its 95 % interval and unit.
 pub(crate) fn fault(nuisance: &FaultEstimate) -> Markup {
     let [value, half_width, unit] = format_unknown(nuisance.unknown, nuisance.value, HALF_WIDTH * nuisance.standard_error);
-    let unit = unit.replace("deg", "°").strip_prefix('u').map_or_else(|| unit.replace("deg", "°"), |rest| format!("µ{rest}"));
-    html! { (minus(value)) " ± " (half_width) " " (unit) }
+    let unit = greek(&unit.replace("deg", "°"));
+    html! { (minus(value)) (NO_BREAK) "± " (half_width) @if !unit.is_empty() { (NO_BREAK) (unit) } }
 }
 
 /// A count, up to nine in words.
@@ -175,7 +198,11 @@ mod tests {
     fn sentences_get_typographic_symbols() {
         assert_eq!(
             prose("R_s, near -2 A (see --fix <b>)").into_string(),
-            "<i>R</i><sub>s</sub>, near \u{2212}2 A (see <code>--fix</code> &lt;b&gt;)"
+            "<i>R</i><sub>s</sub>, near \u{2212}2\u{a0}A (see <code>--fix</code> &lt;b&gt;)"
+        );
+        assert_eq!(
+            prose("falls from 221 to 126 uH, by 45 %: it is late by 45.6 us (tell us).").into_string(),
+            "falls from 221 to 126\u{a0}µH, by 45\u{a0}%: it is late by 45.6\u{a0}µs (tell us)."
         );
         assert_eq!(prose("").into_string(), "");
         assert_eq!(prose("...").into_string(), "...");

@@ -42,7 +42,7 @@ pub(super) fn thresholds() -> Markup {
 }
 
 fn percent(fraction: f64) -> String {
-    format!("{:.0} %", 100.0 * fraction)
+    format!("{:.0}\u{a0}%", 100.0 * fraction)
 }
 
 fn parameters(found: &Identification) -> Markup {
@@ -51,7 +51,7 @@ fn parameters(found: &Identification) -> Markup {
             table.parameters {
                 thead { tr {
                     th scope="col" { "Parameter" } th scope="col" { "Value" } th scope="col" { "± 95 %" }
-                    th scope="col" { "95 % interval" } th scope="col" { "Main source of uncertainty" } th scope="col" { "Verdict" }
+                    th scope="col" { "95 % interval" } th.words scope="col" { "Main source of uncertainty" } th scope="col" { "Verdict" }
                 } }
                 tbody {
                     @for judgement in &found.parameters {
@@ -69,7 +69,10 @@ fn parameter(judgement: &Judgement) -> Markup {
     let heading = html! { th scope="row" { (symbol(judgement.parameter)) } };
     let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) else {
         return html! {
-            tr { (heading) td.value { (DASH) } @for _ in 0..3 { td.none { (DASH) } } td { (badge(judgement.verdict)) } }
+            tr {
+                (heading) td.value { (DASH) } @for _ in 0..2 { td.none { (DASH) } } td.words.none { (DASH) }
+                td { (badge(judgement.verdict)) }
+            }
         };
     };
     let (scale, error) = (Scale::for_value(judgement.parameter, value), judgement.uncertainty.standard_error());
@@ -86,7 +89,8 @@ fn parameter(judgement: &Judgement) -> Markup {
                 td.words { (judgement.uncertainty.largest_part().label()) }
             } @else {
                 // Given, not identified, as the reason says.
-                @for _ in 0..3 { td.none { (DASH) } }
+                @for _ in 0..2 { td.none { (DASH) } }
+                td.words.none { (DASH) }
             }
             td { @if is_given(judgement) { span.badge { "given" } } @else { (badge(judgement.verdict)) } }
         }
@@ -96,15 +100,16 @@ fn parameter(judgement: &Judgement) -> Markup {
 /// What no log shows: what the intervals count of it as stated, and what they do not.
 fn not_counted(found: &Identification) -> Markup {
     let counted: Vec<String> = found.counted.iter().map(ToString::to_string).collect();
-    let unseen: Vec<String> = found.unseen.iter().map(ToString::to_string).collect();
-    let rows = [("Counted", "as stated", counted), ("Not counted", "no log shows it", unseen)];
+    let unseen: Vec<String> = found.unseen_in_values().iter().map(ToString::to_string).collect();
+    let rows =
+        [("Counted", "In the intervals, as stated:", counted), ("Not counted", "Not in the intervals, because no log shows it:", unseen)];
     html! {
         @for (what, why, errors) in rows.iter().filter(|(.., errors)| !errors.is_empty()) {
             tr.note {
                 th scope="row" { (what) }
                 td colspan="5" {
-                    (why) ": "
-                    @for (place, error) in errors.iter().enumerate() { @if place > 0 { "; " } (prose(error)) }
+                    (why)
+                    @for error in errors { br; (prose(error)) }
                 }
             }
         }

@@ -2,24 +2,23 @@
 
 use crate::{
     table,
-    typography::{DASH, decimals, number, prose},
+    typography::{DASH, decimals, number, prose, unit},
 };
-use fluxfit::evidence::{Apparent, Flux, Incremental, SaturationFinding};
-use fluxfit_units::significant;
+use fluxfit::{
+    evidence::{Apparent, Flux, Incremental, SaturationFinding},
+    motor::Parameter,
+};
+use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
 
-/// Millihenries in a henry.
-const MILLI: f64 = 1e3;
+/// The prefix of an inductance.
+fn scale(henries: f64) -> Scale {
+    Scale::for_value(Parameter::Lq, henries)
+}
 
-/// An inductance, mH, with an uncertainty, or with three digits without one.
-fn millihenries(henries: f64, uncertainty: Option<f64>) -> String {
-    match uncertainty.filter(|uncertainty| *uncertainty > 0.0 && uncertainty.is_finite()) {
-        Some(uncertainty) => {
-            let digits = decimals(MILLI * uncertainty, 1);
-            number(MILLI * henries, |value| format!("{value:.digits$}"))
-        }
-        None => number(MILLI * henries, |value| significant(value, 3)),
-    }
+/// The unit of an inductance.
+fn henry(scale: &Scale) -> String {
+    unit(Parameter::Lq, scale)
 }
 
 fn amperes(current: f64) -> String {
@@ -57,13 +56,17 @@ pub(crate) fn saturated(found: &SaturationFinding) -> Markup {
 }
 
 fn apparent(one: &Apparent) -> Markup {
-    html! { strong { (millihenries(one.inductance, None)) } " mH at " (prose("i_q")) " = " (amperes(one.current)) " A" }
+    let scale = scale(one.inductance);
+    // Three digits.
+    let value = number(one.inductance, |henries| scale.format(henries, 0.1 * henries.abs()));
+    html! { strong { (value) } " " (henry(&scale)) " at " (prose("i_q")) " = " (amperes(one.current)) " A" }
 }
 
 fn incremental(one: &Incremental) -> Markup {
+    let (scale, half_width) = (scale(one.inductance), 2.0 * one.uncertainty);
+    let show = |henries: f64| number(henries, |henries| scale.format(henries, half_width));
     html! {
-        strong { (millihenries(one.inductance, Some(2.0 * one.uncertainty))) }
-        " ± " (number(2.0 * MILLI * one.uncertainty, |value| significant(value, 2))) " mH at " (prose("i_d")) " = " (amperes(one.current.d))
+        strong { (show(one.inductance)) } " ± " (show(half_width)) " " (henry(&scale)) " at " (prose("i_d")) " = " (amperes(one.current.d))
         " A, " (prose("i_q")) " = " (amperes(one.current.q)) " A, between operating points " (one.points[0] + 1) " and " (one.points[1] + 1)
     }
 }
@@ -86,14 +89,18 @@ pub(crate) fn inductances(found: &SaturationFinding) -> Markup {
 
 /// The table, with an explanation.
 pub(crate) fn table(found: &SaturationFinding) -> Markup {
-    let least = |error: fn(&Flux) -> f64| 1e3 * found.fluxes.iter().flatten().map(error).fold(f64::INFINITY, f64::min);
+    let fluxes = || found.fluxes.iter().flatten();
+    let least = |error: fn(&Flux) -> f64| 1e3 * fluxes().map(error).fold(f64::INFINITY, f64::min);
     let digits = [decimals(least(|flux| flux.uncertainty.d), 1), decimals(least(|flux| flux.uncertainty.q), 1)];
+    let inductances = fluxes().flat_map(|flux| [flux.apparent_ld, flux.apparent_lq]).flatten();
+    let scale = scale(inductances.map(f64::abs).fold(0.0, f64::max));
+    let has_ld = fluxes().any(|flux| flux.apparent_ld.is_some());
     html! {
         h3 { "Flux linkage" }
         p {
             "The motor saturates: its inductances depend on the current. The flux linkages below follow from the voltage of each operating point "
             "with "
-            (prose("R_s")) " = " (resistance(found)) " ohm; ± is two standard uncertainties."
+            (prose("R_s")) " = " (resistance(found)) "; ± is two standard uncertainties."
         }
         (table::scrolling("Flux at the operating points", &html! {
             table {
@@ -101,10 +108,20 @@ pub(crate) fn table(found: &SaturationFinding) -> Markup {
                     th scope="col" { "Point" }
                     th scope="col" { (prose("i_d")) ", A" } th scope="col" { (prose("i_q")) ", A" }
                     th scope="col" { (prose("psi_d")) ", mWb" } th scope="col" { (prose("psi_q")) ", mWb" }
-                    th scope="col" { "apparent " (prose("L_d")) ", mH" } th scope="col" { "apparent " (prose("L_q")) ", mH" }
+                    @if has_ld { th scope="col" { "apparent " (prose("L_d")) ", " (henry(&scale)) } }
+                    th scope="col" { "apparent " (prose("L_q")) ", " (henry(&scale)) }
                 } }
                 tbody {
-                    @for (k, flux) in found.fluxes.iter().enumerate() { @if let Some(flux) = flux { (row(k + 1, flux, digits)) } }
+                    @for (k, flux) in found.fluxes.iter().enumerate() {
+                        @if let Some(flux) = flux {
+                            tr {
+                                th scope="row" { (k + 1) }
+                                (row(flux, digits))
+                                @if has_ld { td { (quotient(flux.apparent_ld, &scale)) } }
+                                td { (quotient(flux.apparent_lq, &scale)) }
+                            }
+                        }
+                    }
                 }
             }
         }))
@@ -112,28 +129,25 @@ pub(crate) fn table(found: &SaturationFinding) -> Markup {
 }
 
 /// The resistance, rounded to its uncertainty.
-fn resistance(found: &SaturationFinding) -> String {
-    let half_width = 2.0 * found.rs_uncertainty;
-    if half_width > 0.0 && half_width.is_finite() {
-        let digits = decimals(half_width, 4);
-        format!("{} ± {half_width:.digits$}", number(found.rs, |rs| format!("{rs:.digits$}")))
-    } else {
-        number(found.rs, |rs| significant(rs, 4))
+fn resistance(found: &SaturationFinding) -> Markup {
+    let (scale, half_width) = (Scale::for_value(Parameter::Rs, found.rs), 2.0 * found.rs_uncertainty);
+    let show = |ohms: f64| number(ohms, |ohms| scale.format(ohms, half_width));
+    html! {
+        (show(found.rs)) @if half_width > 0.0 && half_width.is_finite() { " ± " (show(half_width)) } " " (unit(Parameter::Rs, &scale))
     }
 }
 
-fn row(k: usize, flux: &Flux, digits: [usize; 2]) -> Markup {
+/// Currents and fluxes of a point.
+fn row(flux: &Flux, digits: [usize; 2]) -> Markup {
     let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
     html! {
-        tr {
-            th scope="row" { (k) }
-            td { (fixed(flux.current.d, 3)) } td { (fixed(flux.current.q, 3)) }
-            td { (fixed(1e3 * flux.psi.d, digits[0])) " ± " (fixed(2e3 * flux.uncertainty.d, digits[0])) }
-            td { (fixed(1e3 * flux.psi.q, digits[1])) " ± " (fixed(2e3 * flux.uncertainty.q, digits[1])) }
-            @let of_axes = [(flux.apparent_ld, flux.uncertainty.d / flux.current.d), (flux.apparent_lq, flux.uncertainty.q / flux.current.q)];
-            @for (apparent, uncertainty) in of_axes {
-                td { @match apparent { Some(henries) => (millihenries(henries, Some(2.0 * uncertainty.abs()))), None => (DASH) } }
-            }
-        }
+        td { (fixed(flux.current.d, 3)) } td { (fixed(flux.current.q, 3)) }
+        td { (fixed(1e3 * flux.psi.d, digits[0])) " ± " (fixed(2e3 * flux.uncertainty.d, digits[0])) }
+        td { (fixed(1e3 * flux.psi.q, digits[1])) " ± " (fixed(2e3 * flux.uncertainty.q, digits[1])) }
     }
+}
+
+/// An apparent inductance in four digits, as the terminal prints it.
+fn quotient(henries: Option<f64>, scale: &Scale) -> String {
+    henries.map_or_else(|| DASH.to_owned(), |henries| number(henries, |henries| scale.format(henries, 0.0)))
 }

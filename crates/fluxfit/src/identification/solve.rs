@@ -82,6 +82,12 @@ impl Identification {
         self.steady.as_ref().map_or(&[], |fit| &fit.operating_points)
     }
 
+    /// Errors that no log shows and no interval counts, and what they do to the parameters that have a value.
+    pub fn unseen_in_values(&self) -> Vec<Unseen> {
+        let has_value = self.parameters.each_ref().map(|judgement| judgement.value().is_some());
+        self.unseen.iter().filter_map(|unseen| unseen.of(has_value)).collect()
+    }
+
     /// Whether the verdict on every parameter is [`Verdict::Identified`], as it is on a fixed one.
     pub fn is_complete(&self) -> bool {
         self.parameters.iter().all(|judgement| judgement.verdict == Verdict::Identified)

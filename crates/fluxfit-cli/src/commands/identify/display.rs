@@ -4,7 +4,7 @@
 use super::details;
 use crate::terminal::{self, BAD, DIM, GOOD, HEADING, WARNING, frequency, options, table, wrapped};
 use fluxfit::{
-    Answer, HeldOut, Judgement, Log, NextStep, Reason, Remedy, Request, Summary, Verdict,
+    Answer, HeldOut, Judgement, Log, Parameter, Reason, Remedy, Request, Summary, Verdict,
     evidence::{Flux, Identification, OutputFit, Provenance, SaturationFinding},
     identify,
 };
@@ -160,20 +160,33 @@ fn explanations(found: &Identification) -> String {
         let lines = wrapped("", &format!("{symbols}: {reason}."));
         text += &format!("{HEADING}{symbols}{HEADING:#}{}", lines.strip_prefix(&symbols).unwrap_or(&lines));
     }
-    let next = Summary::of(&found.parameters).next;
-    if let Some(NextStep { remedy, .. }) = &next {
-        text += &to_do("To do", remedy);
-    }
-    if terminal::is_verbose() {
-        let mut told: Vec<&Remedy> = next.iter().map(|next| &next.remedy).collect();
-        for remedy in found.parameters.iter().filter_map(|judgement| judgement.remedy.as_ref()) {
-            if !told.contains(&remedy) {
-                told.push(remedy);
-                text += &to_do("Or", remedy);
-            }
+    text += &steps(found);
+    if text.is_empty() { text } else { format!("\n{text}") }
+}
+
+/// The step that helps most, and what else helps the parameters that it leaves as they are; everything that helps, where all is to be told.
+fn steps(found: &Identification) -> String {
+    let Some(next) = Summary::of(&found.parameters).next else { return String::new() };
+    let mut text = to_do("To do", &next.remedy);
+    // Columns in doubt may be behind everything else: they come first, alone.
+    let is_of_columns = matches!(next.remedy, Remedy::CheckSigns { .. } | Remedy::CheckFrame { .. });
+    let mut others: Vec<(&Remedy, Vec<Parameter>)> = Vec::new();
+    for judgement in &found.parameters {
+        let Some(remedy) = judgement.remedy.as_ref().filter(|remedy| **remedy != next.remedy) else { continue };
+        match others.iter_mut().find(|(other, _)| *other == remedy) {
+            Some((_, parameters)) => parameters.push(judgement.parameter),
+            None => others.push((remedy, vec![judgement.parameter])),
         }
     }
-    if text.is_empty() { text } else { format!("\n{text}") }
+    for (remedy, parameters) in others {
+        if terminal::is_verbose() {
+            text += &to_do("Or", remedy);
+        } else if !is_of_columns && !parameters.iter().any(|parameter| next.parameters.contains(parameter)) {
+            let symbols: Vec<&str> = parameters.into_iter().map(Parameter::symbol).collect();
+            text += &to_do(&format!("To do for {}", symbols.join(", ")), remedy);
+        }
+    }
+    text
 }
 
 fn to_do(what: &str, remedy: &Remedy) -> String {
@@ -183,11 +196,11 @@ fn to_do(what: &str, remedy: &Remedy) -> String {
 
 /// What no log shows: what the intervals count of it as stated, and what they do not.
 fn unseen(found: &Identification) -> String {
-    let line = |what: &str, errors: Vec<String>| {
-        if errors.is_empty() { String::new() } else { wrapped("", &format!("{what}: {}.", errors.join("; "))) }
+    let list = |what: &str, errors: Vec<String>| {
+        if errors.is_empty() { String::new() } else { errors.iter().fold(format!("{what}:\n"), |text, error| text + &wrapped("  ", error)) }
     };
-    let counted = line("In the intervals, as stated", found.counted.iter().map(ToString::to_string).collect());
-    let unseen = line("Not in the intervals, because no log shows it", found.unseen.iter().map(ToString::to_string).collect());
+    let counted = list("In the intervals, as stated", found.counted.iter().map(ToString::to_string).collect());
+    let unseen = list("Not in the intervals, because no log shows it", found.unseen_in_values().iter().map(ToString::to_string).collect());
     if counted.is_empty() && unseen.is_empty() {
         String::new()
     } else {
@@ -255,34 +268,46 @@ fn beside(fit: &OutputFit) -> String {
 
 /// Flux per operating point, where inductances depend on the current.
 fn fluxes(found: &SaturationFinding) -> String {
-    let given = if found.rs_uncertainty > 0.0 { format!(" ± {}", significant(2.0 * found.rs_uncertainty, 2)) } else { String::new() };
     // The same digits down a column: two of its best error.
     let decimals = |error: fn(&Flux) -> f64| {
         let least = found.fluxes.iter().flatten().map(error).fold(f64::INFINITY, f64::min);
         (1 - (2e3 * least).log10().floor() as i32).clamp(0, 6) as usize
     };
     let (of_d, of_q) = (decimals(|flux| flux.uncertainty.d), decimals(|flux| flux.uncertainty.q));
-    let rows = found.fluxes.iter().flatten().map(|flux| {
+    let fluxes = || found.fluxes.iter().flatten();
+    let inductances = fluxes().flat_map(|flux| [flux.apparent_ld, flux.apparent_lq]).flatten();
+    let inductance = Scale::for_value(Parameter::Lq, inductances.map(f64::abs).fold(0.0, f64::max));
+    let has_ld = fluxes().any(|flux| flux.apparent_ld.is_some());
+    let rows = fluxes().map(|flux| {
         let millis = |value: f64, decimals: usize| format!("{:.decimals$}", 1e3 * value);
-        let apparent = |henries: Option<f64>| henries.map_or("-".to_owned(), |henries| significant(1e3 * henries, 4));
-        vec![
+        let apparent = |henries: Option<f64>| henries.map_or("-".to_owned(), |henries| inductance.format(henries, 0.0));
+        let mut row = vec![
             format!("{:.3}", flux.current.d),
             format!("{:.3}", flux.current.q),
             millis(flux.psi.d, of_d),
             millis(2.0 * flux.uncertainty.d, of_d),
             millis(flux.psi.q, of_q),
             millis(2.0 * flux.uncertainty.q, of_q),
-            apparent(flux.apparent_ld),
-            apparent(flux.apparent_lq),
-        ]
+        ];
+        row.extend(has_ld.then(|| apparent(flux.apparent_ld)));
+        row.push(apparent(flux.apparent_lq));
+        row
     });
     let rows: Vec<_> = rows.collect();
     if rows.is_empty() {
         return String::new();
     }
-    format!(
-        "\n{DIM}Flux from voltage, with R_s = {}{given} ohm{DIM:#}\n{}",
-        significant(found.rs, 4),
-        table(&["i_d\nA", "i_q\nA", "psi_d\nmWb", "\n±", "psi_q\nmWb", "\n±", "apparent\nL_d mH", "\nL_q mH"], 0, rows)
-    )
+    let unit = inductance.unit(Parameter::Lq.unit());
+    let [of_ld, of_lq] = ["L_d", "L_q"].map(|symbol| format!("apparent\n{symbol} {unit}"));
+    let mut heading = vec!["i_d\nA", "i_q\nA", "psi_d\nmWb", "\n±", "psi_q\nmWb", "\n±"];
+    heading.extend(has_ld.then_some(of_ld.as_str()));
+    heading.push(&of_lq);
+    format!("\n{DIM}Flux from voltage, with R_s = {}{DIM:#}\n{}", resistance(found), table(&heading, 0, rows))
+}
+
+/// The resistance that the fluxes were computed with, and its 95 % half-width where it was not given.
+fn resistance(found: &SaturationFinding) -> String {
+    let (scale, half_width) = (Scale::for_value(Parameter::Rs, found.rs), 2.0 * found.rs_uncertainty);
+    let margin = if half_width > 0.0 { format!(" ± {}", scale.format(half_width, half_width)) } else { String::new() };
+    format!("{}{margin} {}", scale.format(found.rs, half_width), scale.unit(Parameter::Rs.unit()))
 }

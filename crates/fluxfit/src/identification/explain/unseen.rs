@@ -93,6 +93,14 @@ pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS],
     unseen.into_iter().filter(is_left).collect()
 }
 
+impl Unseen {
+    /// The same for some of the parameters; `None` if it moves none of them.
+    pub(crate) fn of(&self, is_meant: [bool; PARAMETERS]) -> Option<Self> {
+        let moves: [f64; PARAMETERS] = std::array::from_fn(|parameter| if is_meant[parameter] { self.moves[parameter] } else { 0.0 });
+        moves.iter().any(|fraction| *fraction != 0.0).then_some(Self { moves, ..*self })
+    }
+}
+
 impl UnseenError {
     /// Name in files.
     pub fn key(self) -> &'static str {
