@@ -4,6 +4,9 @@
 const CHARACTER: (i32, i32) = (8, 14);
 const MARKER: i32 = 5;
 
+/// Space between two labels side by side, pixels: less would make one number of two.
+const BETWEEN: i32 = 6;
+
 /// Smallest distance between two names below each other, pixels.
 pub(crate) const NAMES_APART: i32 = 16;
 
@@ -12,8 +15,8 @@ pub(crate) fn places(points: &[(i32, i32)], labels: &[String], (width, height): 
     let mut boxes: Vec<[i32; 4]> = points.iter().map(|(x, y)| [x - MARKER, y - MARKER, x + MARKER, y + MARKER]).collect();
     let mut places = Vec::new();
     for ((x, y), label) in points.iter().zip(labels) {
-        let half = label.chars().count() as i32 * CHARACTER.0 / 2;
-        let (aside, above) = (half + MARKER + 2, MARKER + 2 + CHARACTER.1 / 2);
+        let half = (label.chars().count() as i32 * CHARACTER.0 + BETWEEN) / 2;
+        let (aside, above) = (half + MARKER, MARKER + 2 + CHARACTER.1 / 2);
         let far = aside + 2 * half + 4;
         let tried = [(0, -above), (aside, 0), (-aside, 0), (0, above), (far, 0), (-far, 0), (aside, -above), (-aside, -above)];
         let place = tried.into_iter().map(|(dx, dy)| (x + dx, y + dy)).find_map(|(x, y)| {

@@ -131,8 +131,8 @@
       const points = u.data[0].map((x, k) => [at(x, "x"), at(u.data[1][k], "y")]), m = 5 * ratio;
       const boxes = points.map(([x, y]) => [x - m, y - m, x + m, y + m]);
       points.forEach(([x, y], k) => {
-        const name = descriptions[k].match(/\d+/)[0], half = 0.5 * ctx.measureText(name).width + ratio, tall = 7 * ratio;
-        const aside = half + m + 2 * ratio, above = m + 2 * ratio + tall, far = aside + 2 * half + 4 * ratio;
+        const name = descriptions[k].match(/\d+/)[0], half = 0.5 * ctx.measureText(name).width + 3 * ratio, tall = 7 * ratio;
+        const aside = half + m, above = m + 2 * ratio + tall, far = aside + 2 * half + 4 * ratio;
         for (const [dx, dy] of [[0, -above], [aside, 0], [-aside, 0], [0, above], [far, 0], [-far, 0], [aside, -above], [-aside, -above]]) {
           const box = [x + dx - half, y + dy - tall, x + dx + half, y + dy + tall];
           if (box[0] < left || box[1] < top || box[2] > left + width || box[3] > top + height) continue;
@@ -229,7 +229,7 @@
         : data.descriptions.length ? data.descriptions[k] : data.x.name + " " + fixed(x[k], decimals(data.x)) + (data.x.unit && " " + data.x.unit) + spanAt(x[k]));
       plots.forEach(u => u.values.forEach((value, s) => {
         const y = none ? null : u.data[u.shown[s]][k], one = u.panel.series[s];
-        value.textContent = y === null || y === undefined ? DASH
+        value.textContent = none ? "" : y === null || y === undefined ? DASH
           : u.panel.kind === "decades" ? power(y)
           : fixed(y, decimals(one)) + (one.about && u.panel.kind === "bars" ? " \u00b1 " + fixed(column(one.about[0])[k] || 0, decimals(one)) : "");
       }));
@@ -248,9 +248,7 @@
         mark.style.opacity = one.opacity;
         if (one.dash) mark.style.borderTopStyle = one.dash[0] > 2 ? "dashed" : "dotted";
         words(element("span", "", name), one.name);
-        const value = element("b", "", name);
-        value.textContent = DASH;
-        return value;
+        return element("b", "", name);
       });
       const { columns, series, bands, shown } = drawn(panel, x);
       const plane = panel.kind === "plane";

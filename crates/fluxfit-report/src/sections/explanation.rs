@@ -40,7 +40,7 @@ fn model(found: &Identification) -> Markup {
                 "as "
                 (fit.voltage_timing.value.label()) @if fit.voltage_timing.provenance == Provenance::Found { ", determined from the currents" } ". "
                 @if fit.fault_estimates.is_empty() { "No fault of the drive was found" } @else {
-                    "Faults found and corrected: "
+                    "Found beside the motor, and corrected: "
                     @for (k, nuisance) in fit.fault_estimates.iter().enumerate() {
                         @if k > 0 { "; " } (prose(nuisance.unknown.label())) " " (fault(nuisance))
                     }

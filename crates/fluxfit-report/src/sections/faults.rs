@@ -77,7 +77,7 @@ fn row(tried: &FaultTrial, warnings: &[Warning]) -> Markup {
     let judged = !matches!(tried.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle);
     html! {
         tr {
-            th scope="row" { (capitalized(tried.fault.label())) }
+            th scope="row" { (prose(&capitalized(tried.fault.label()))) }
             td { @if judged { (number(tried.gain, gain)) } @else { (DASH) } }
             td.words { @if tried.outcome == FaultOutcome::Taken { span.badge.identified { "taken" } } @else {
                 (explained(tried))
@@ -120,7 +120,7 @@ fn voltage_timings(fit: &OutputFit) -> Markup {
             }
         }
         (table::scrolling("Voltage timings", &html! {
-            table.tried {
+            table.tried.timings {
                 thead { tr {
                     th.words scope="col" { "The voltage of a row is" } th scope="col" { "Residual, A rms" }
                     th scope="col" { "Relative to the best" } th.words scope="col" { "Outcome" }

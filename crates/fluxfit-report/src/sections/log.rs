@@ -30,7 +30,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
         @if let Some(fit) = output(report) { (stretches(report, fit)) }
         @if !report.operating_points.is_empty() { (windows(report.operating_points)) }
     };
-    Some(Section { anchor: "log", heading: "Log", content })
+    Some(Section { anchor: "log", heading: "Rows, columns and windows", content })
 }
 
 /// Rate, duration and segments.

@@ -52,8 +52,8 @@ fn description(fit: &SteadyFit) -> Markup {
                 " " strong { "There are no more equations than unknown parameters" }
                 ", so the fit is perfect by construction and does not test the model."
             } @else {
-                " There " @if redundancy == 1 { "is one equation" } @else { "are " (redundancy) " equations" }
-                " more than unknown parameters"
+                " There " @if redundancy == 1 { "is one more equation" } @else { "are " (redundancy) " more equations" }
+                " than unknown parameters"
                 @if fit.misfit.is_none() { ", so small residuals confirm the model." }
                 @else { ", and " strong { "the points contradict each other" } " beyond noise and accuracy: see the warning “misfit” above." }
             }
