@@ -146,7 +146,7 @@ pub(crate) fn amperes(current: f64) -> String {
 pub(crate) fn fault(nuisance: &FaultEstimate) -> Markup {
     let [value, half_width, unit] = format_unknown(nuisance.unknown, nuisance.value, HALF_WIDTH * nuisance.standard_error);
     let unit = greek(&unit.replace("deg", "°"));
-    html! { (minus(value)) (NO_BREAK) "± " (half_width) @if !unit.is_empty() { (NO_BREAK) (unit) } }
+    html! { (minus(value)) " ± " (half_width) @if !unit.is_empty() { (NO_BREAK) (unit) } }
 }
 
 /// A count, up to nine in words.

@@ -50,10 +50,10 @@ fn the_terminal_and_the_page_say_what_is_counted() {
     let page = directory.path().join("page.html");
     let run = fluxfit(&["identify", NOISY, "--bus-accuracy", "0.5%", "--report", page.to_str().unwrap()]);
     assert_eq!(run.status, 0, "{}", run.err);
-    let sentence = "In the intervals, as stated: the DC voltage read up to 0.50 % too large or too small.";
+    let sentence = "In the intervals, as stated: the DC voltage read up to 0.50 % too large or too small";
     assert!(super::unwrapped(&run.out).contains(sentence), "{}", run.out);
     assert!(!run.out.contains("the DC voltage read 1 % too large"), "{}", run.out);
-    assert!(std::fs::read_to_string(page).unwrap().contains("as stated: the DC voltage read up to 0.50 %"));
+    assert!(std::fs::read_to_string(page).unwrap().contains("as stated:<br>the DC voltage read up to 0.50\u{a0}%"));
 }
 
 /// A difference that the sensors may make is none.

@@ -51,8 +51,8 @@ fn a_parameter_that_is_not_identifiable_has_no_number() {
     let ld = found.parameter(Parameter::Ld);
     assert_eq!(ld.verdict, Verdict::NotIdentifiable);
     let text = checked(&page);
-    assert!(text.contains("3 of 4 identified. Ld needs 0.2 s at id = −2 A: then about ±"));
-    assert!(text.contains("To do next: add 0.2 s at id = −2 A, same speed: Ld to about ±"), "{text}");
+    assert!(text.contains("3 of 4 identified. Ld needs 0.2\u{a0}s at id = −2\u{a0}A: then about ±"));
+    assert!(text.contains("To do next: add 0.2\u{a0}s at id = −2\u{a0}A, same speed: Ld to about ±"), "{text}");
     // A row of the answer, and none of any other table.
     assert_eq!(page.matches("<th scope=\"row\"><i>L</i><sub>d</sub></th>").count(), 1);
     assert!(page.contains("<th scope=\"row\"><i>L</i><sub>d</sub></th><td class=\"value\">–</td>"));
@@ -139,7 +139,7 @@ fn faults_of_the_drive_are_shown_with_their_values() {
     let shown = |key: &str| {
         let (_, rest) = page.split_once(&format!("<th scope=\"row\">Current sensor offset, {key}</th><td>")).unwrap();
         let (value, rest) = rest.split_once(" ± ").unwrap();
-        let (margin, _) = rest.split_once(" mA").unwrap();
+        let (margin, _) = rest.split_once("\u{a0}mA").unwrap();
         (value.replace('\u{2212}', "-").parse::<f64>().unwrap(), margin.parse::<f64>().unwrap())
     };
     for (key, expected) in [("alpha", -100.0), ("beta", 300.0 / 3.0_f64.sqrt())] {
