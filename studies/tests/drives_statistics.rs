@@ -71,6 +71,33 @@ fn an_angle_that_two_points_do_not_show_is_in_doubt() {
     assert_eq!(is_printed, [true, true, false, true]);
 }
 
+/// An angle that is off by 1.6 degrees (5505) or 2.5 degrees (5533), at i_d = 0 and full rate: without it L_d grew to thirty or sixty times
+/// its size, an observer did the rest, and all four numbers were refused.
+#[test]
+fn an_angle_that_is_off_is_found_where_i_d_is_zero() {
+    const TRACTION: Rated = Rated {
+        row: 121,
+        motor: Motor { rs: 4.5e-3, ld: 0.42e-3, lq: 0.42e-3, psi_f: 0.579 },
+        pole_pairs: 2,
+        u_dc: 641.0,
+        current: 228.0,
+        omega_e: 314.0,
+    };
+    const SMALL: Rated = Rated {
+        row: 260,
+        motor: Motor { rs: 6.0, ld: 36e-3, lq: 36e-3, psi_f: 0.939 },
+        pole_pairs: 2,
+        u_dc: 528.0,
+        current: 1.6,
+        omega_e: 157.0,
+    };
+    for (index, motor) in [(5505, TRACTION), (5533, SMALL)] {
+        let found = Drawn::new(index, &[motor; 12]).unwrap().found();
+        println!("log {index}: {:?}", found.numbers);
+        assert!(found.numbers.iter().all(|number| number.is_printed() && !number.is_wrong()), "log {index}: {:?}", found.numbers);
+    }
+}
+
 /// In two points whose rows are far apart, a filter of seconds or of less than a hundred hertz and a resistance that drifts by its own size
 /// took the motor's place: the points answer, and tell the flux.
 #[test]

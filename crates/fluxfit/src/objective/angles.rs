@@ -87,7 +87,7 @@ fn logged_and_rotor(log: &Log, rows: &Range<usize>) -> (Vec<f64>, Vec<f64>, bool
             angles.push(angle);
         }
         // A mechanical angle turns too little on the whole, and one of the other sense turns backward.
-        let (whole, expected) = (angles[angles.len() - 1] - angles[0], summed[summed.len() - 1]);
+        let (whole, expected) = (angles[angles.len() - 1] - angles[0], summed[summed.len() - 1] - before);
         let turns = (whole - expected).abs() <= WHOLE_MISFIT * expected.abs() + TAU;
         if turns && misfits as f64 <= MISFITS * rows.len() as f64 {
             let rotor = smoothed(&angles, &summed);
@@ -117,4 +117,31 @@ fn moving_mean(series: &[f64]) -> Vec<f64> {
         (sums[row + reach + 1] - sums[row - reach]) / (2 * reach + 1) as f64
     };
     (0..series.len()).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Columns;
+
+    /// A rotor at 400 rad/s, whose angle in the log turns so many times as fast.
+    fn log(angle_per_turn: f64) -> Log {
+        const PERIOD: f64 = 1e-4;
+        let t: Vec<f64> = (0..2000).map(|k| f64::from(k) * PERIOD).collect();
+        let theta_e = t.iter().map(|t| (angle_per_turn * 400.0 * t).rem_euclid(TAU)).collect();
+        let rest = || vec![0.0; t.len()];
+        let omega_e = vec![400.0; t.len()];
+        Log::new(Columns { ud: rest(), uq: rest(), id: rest(), iq: rest(), omega_e, theta_e: Some(theta_e), t, ..Columns::default() })
+            .unwrap()
+    }
+
+    /// What the rotor turned before them is nothing to rows in the middle of a log.
+    #[test]
+    fn an_angle_that_turns_with_the_speed_is_known_in_all_parts_of_a_log() {
+        for rows in [0..2000, 0..300, 700..1000, 1700..2000] {
+            assert!(Angles::of(&log(1.0), &rows).known, "{rows:?}");
+            assert!(!Angles::of(&log(-1.0), &rows).known, "{rows:?}");
+        }
+        assert!(!Angles::of(&log(0.25), &(0..2000)).known);
+    }
 }

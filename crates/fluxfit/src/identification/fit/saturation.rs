@@ -136,6 +136,11 @@ impl SaturationFinding {
         found
     }
 
+    /// Whether the simulated currents have terms for it.
+    pub(crate) fn is_of_currents(&self) -> bool {
+        self.over_rows != [0.0; PARAMETERS]
+    }
+
     /// The fluxes at the operating points, of whose voltages so much is lost, V.
     fn at(
         (points, lost): (&[OperatingPoint], &[[f64; 2]]),

@@ -102,7 +102,7 @@ pub(crate) fn judge(
     let mut judged = Parameter::ALL
         .map(|parameter| by_interval(parameter, finding, uncertainty.parameters[parameter as usize], request.known[parameter as usize]));
     distrust_sharp_intervals(&mut judged, &finding.trust);
-    if saturation.is_some() {
+    if saturation.is_some_and(SaturationFinding::is_of_currents) {
         // No constant describes such a motor, however narrow the interval of one is.
         for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
             (one.verdict, one.reason) = (Verdict::Weak, Some(Reason::Saturates));
