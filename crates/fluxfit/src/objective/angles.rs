@@ -129,10 +129,9 @@ mod tests {
         const PERIOD: f64 = 1e-4;
         let t: Vec<f64> = (0..2000).map(|k| f64::from(k) * PERIOD).collect();
         let theta_e = t.iter().map(|t| (angle_per_turn * 400.0 * t).rem_euclid(TAU)).collect();
-        let rest = || vec![0.0; t.len()];
+        let any = || t.iter().map(|t| 1.0 + (300.0 * t).sin()).collect();
         let omega_e = vec![400.0; t.len()];
-        Log::new(Columns { ud: rest(), uq: rest(), id: rest(), iq: rest(), omega_e, theta_e: Some(theta_e), t, ..Columns::default() })
-            .unwrap()
+        Log::new(Columns { ud: any(), uq: any(), id: any(), iq: any(), omega_e, theta_e: Some(theta_e), t, ..Columns::default() }).unwrap()
     }
 
     /// What the rotor turned before them is nothing to rows in the middle of a log.
