@@ -28,10 +28,14 @@ fn documents(out: &str) -> Vec<Value> {
     out.lines().map(read).collect()
 }
 
+/// Part of a value that its interval spans at most. After a gap block least squares differs by 2 % from the filter in L_d, which i_d tells
+/// in one step alone, and the interval holds both.
+const NARROW: f64 = 0.12;
+
 fn assert_holds_the_truth(document: &Value) {
     for (key, truth) in TRUTH {
         let ends: Vec<f64> = document[key]["ci95"].as_array().unwrap().iter().map(|end| end.as_f64().unwrap()).collect();
-        assert!(ends[0] < truth && truth < ends[1] && ends[1] - ends[0] < 0.1 * truth, "{key}: {ends:?}");
+        assert!(ends[0] < truth && truth < ends[1] && ends[1] - ends[0] < NARROW * truth, "{key}: {ends:?}");
     }
 }
 
