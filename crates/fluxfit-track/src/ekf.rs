@@ -47,6 +47,14 @@ const FAR: f64 = 0.2;
 /// difference is part of the filter's interval.
 const AGREEMENT: f64 = 0.5;
 
+/// Part of the standard errors of least squares, which are about twice too large, that those of the filter have at least where voltage
+/// acts that is not logged. Beside it, noise of the currents is small, and no linear estimator is better than least squares (Gauss and
+/// Markov): what a filter seems to know beyond that comes from how it began.
+const NO_SURER: f64 = 0.5;
+
+/// Minus twice the logarithm of the likelihood without unlogged voltage, over that with it, from which on there is some: one in 150.
+const CERTAIN: f64 = 10.0;
+
 /// Blocks of a contradiction after which the filter starts anew: half a second at 10 kHz.
 const PATIENCE: u32 = 100;
 
@@ -302,14 +310,22 @@ impl WatchedEkf {
         (between, errors)
     }
 
-    /// Standard errors with what least squares contradicts in them. A filter that was far off while it began, or that did not see a step
-    /// in much unknown voltage, is surer than it may be, and stays wrong for seconds.
-    fn with_contradiction(&self, values: &[f64; PARAMETERS], mut errors: [f64; PARAMETERS]) -> [f64; PARAMETERS] {
+    /// Whether voltage acts that is not logged: the level without any is far less likely, or no longer compared.
+    fn is_disturbed(&self) -> bool {
+        self.best > 0 && !(self.active[0] && self.bank[0].surprise() - self.filter().surprise() < CERTAIN)
+    }
+
+    /// Standard errors with what least squares contradicts in them, and no smaller than its own allow. A filter that was far off while it
+    /// began, or that did not see a step in much unknown voltage, is surer than it may be, and stays wrong for seconds.
+    fn beside_least_squares(&self, values: &[f64; PARAMETERS], mut errors: [f64; PARAMETERS]) -> [f64; PARAMETERS] {
         let Some(of_watch) = self.watch.standard_errors else { return errors };
         let is_told = |j: &usize| of_watch[*j] < TRUSTED * self.watch.values[*j] && self.start.standard_errors[*j].is_none();
         for j in (0..PARAMETERS).filter(is_told) {
             let beyond = (values[j] - self.watch.values[j]).abs() - AGREEMENT * of_watch[j];
             errors[j] = errors[j].hypot(beyond.max(0.0));
+            if self.is_disturbed() {
+                errors[j] = errors[j].max(NO_SURER * of_watch[j]);
+            }
         }
         errors
     }
@@ -322,7 +338,7 @@ impl WatchedEkf {
     /// Values and intervals of the filter; what is identifiable, by least squares.
     pub fn estimate(&self) -> Estimate {
         let (values, errors) = self.between_levels();
-        let errors = self.with_contradiction(&values, errors);
+        let errors = self.beside_least_squares(&values, errors);
         let is_known = |j: usize| self.start.standard_errors[j].is_some() && errors[j] < IDENTIFIABLE * values[j].abs();
         let of_watch = self.watch.identifiable.unwrap_or_default();
         Estimate {
