@@ -155,11 +155,10 @@ pub(super) fn choose(
             break;
         }
     }
-    let rank = |found: &Searched| (!is_a_motor(&found.chosen.drive.motor), found.chosen.criterion);
-    found.sort_by(|one, other| {
-        let ((one, criterion), (other, of_other)) = (rank(one), rank(other));
-        one.cmp(&other).then(criterion.total_cmp(&of_other))
-    });
+    // What is no motor comes last, however well it fits.
+    let is_motor = |found: &Searched| is_a_motor(&found.chosen.drive.motor);
+    let criterion = |found: &Searched| found.chosen.criterion;
+    found.sort_by(|one, other| is_motor(other).cmp(&is_motor(one)).then(criterion(one).total_cmp(&criterion(other))));
     // A reading that is no inverter's may hide what a speed that lags does: it is looked for without them, too.
     if every_period && found.first().is_some_and(|best| best.chosen.reading.is_unusual() && !best.explained) {
         let usual = &objectives[..objectives.iter().take_while(|(reading, _)| !reading.is_unusual()).count()];

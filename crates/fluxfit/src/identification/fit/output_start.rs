@@ -49,8 +49,9 @@ pub(super) struct Start {
     pub(super) may_hide_an_angle: bool,
 }
 
-/// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations. An inductance that
-/// only the points leave open is as large as the other: differences of a current that is held come out too small by their noise.
+/// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations. Where the
+/// points leave one inductance open, it starts as large as the other: from differences of a current that is held it comes out too small by
+/// their noise.
 pub(super) fn start(
     log: &Log,
     stretches: &[Range<usize>],
