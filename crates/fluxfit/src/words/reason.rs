@@ -47,10 +47,7 @@ impl Display for Reason {
                 "unknown voltages disturb the motor, and without the electrical angle they cannot be told from dead time or unequal \
                  current sensors, which move every parameter"
             ),
-            Self::Saturates => write!(
-                f,
-                "the motor saturates, which was fitted by a few terms only, so even a narrow interval is no more than a good estimate"
-            ),
+            Self::Saturates => write!(f, "the motor saturates, and only a few terms of that were fitted: take the number as an estimate"),
             Self::RunawayFault { fault } => write!(
                 f,
                 "the fault that was found beside the motor, {}, came out with values that no drive has: it took the place of something else, \

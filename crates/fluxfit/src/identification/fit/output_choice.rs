@@ -144,10 +144,10 @@ pub(super) fn choose(
         })
     };
     let without = |tried| Begin { tried, unknowns: free.clone(), faults: Vec::new() };
-    let given = usize::from(with_angle.is_some());
+    let first_plain = usize::from(with_angle.is_some());
     for begin in with_angle.into_iter().chain(tried.iter().copied().take(most).map(without)) {
         // The search from the reading before has compared all of them, and ended with this one.
-        if found.iter().skip(given).any(|found| found.chosen.reading == begin.tried.1.timing) {
+        if found.iter().skip(first_plain).any(|found| found.chosen.reading == begin.tried.1.timing) {
             break;
         }
         found.extend(search_from(begin, &objectives, &mut begun));

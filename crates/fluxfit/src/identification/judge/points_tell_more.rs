@@ -4,8 +4,8 @@
 //! currents that are no noise. Means over operating points suffer less: transients and harmonics are not in them. So where the residuals
 //! are not explained, and operating points agree with each other although they could contradict, the model with the narrower intervals
 //! answers. Where rows come slower than drives control currents, the points answer even if they cannot contradict each other: the voltage
-//! between the rows is not in the log. Not if they leave out a parameter that the currents tell, and rows beside the points do tell it: a
-//! ramp of the speed, not the few rows of a step.
+//! between the rows is not in the log. If they leave out a parameter that the currents tell, they answer only where the currents were
+//! misread and nearly all rows belong to points: the few rows after a step do not tell a parameter, a ramp of the speed does.
 //!
 //! Where the simulated currents leave a whole combination of parameters open, or all that they leave is rounding, their parameters were
 //! fitted to what no parameter explains. Operating points leave such directions at zero, so they answer if they leave nothing else open.
@@ -61,22 +61,22 @@ pub(crate) fn points_tell_more(
         let of_points = judge(&points.finding, None, request, false).map(|one| one.verdict != Verdict::NotIdentifiable);
         let tell_all = of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told);
         let is_misread = currents.is_filtered() || !is_white;
-        return if_so((!is_explained || is_filtered) && (tell_all || is_misread && are_most_rows(points, currents)));
+        return if_so((!is_explained || is_filtered) && (tell_all || is_misread && are_nearly_all_rows(points, currents)));
     }
     let can_contradict = points.estimate.redundancy > 0;
     if !is_explained && can_contradict && is_narrower(points, currents, request) { Points::AreNarrower } else { Points::TellLess }
 }
 
-/// Whether operating points are nearly all that the currents were compared at: what these tell beyond them is in a few steps.
-fn are_most_rows(points: &SteadyFit, currents: &OutputFit) -> bool {
+/// Whether operating points are nearly all rows at which the currents were compared.
+fn are_nearly_all_rows(points: &SteadyFit, currents: &OutputFit) -> bool {
     let of_points: usize = points.operating_points.iter().map(|point| point.rows.len()).sum();
     let compared: usize = currents.stretches.iter().map(|stretch| stretch.len()).sum();
-    of_points as f64 > MOST * compared as f64
+    of_points as f64 > NEARLY_ALL * compared as f64
 }
 
-/// Transients of the windings, a few milliseconds after each change of a mode that is held for a second, are less than the rest; ramps are
-/// more.
-const MOST: f64 = 0.9;
+/// Part of the rows that is nearly all: transients of the windings, a few milliseconds of each mode that is held for a second, are less
+/// than the rest; ramps are more.
+const NEARLY_ALL: f64 = 0.9;
 
 /// Whether the points' intervals are narrower than the currents'.
 pub(crate) fn is_narrower(points: &SteadyFit, currents: &OutputFit, request: &Request) -> bool {
