@@ -243,7 +243,7 @@ fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>,
     }
     let rs_uncertainty = fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
     let points = steady.map_or(&[][..], |fit| &fit.operating_points);
-    Some(SaturationFinding::of_currents(log, &fit.drive, rs_uncertainty, &fit.stretches, points, request))
+    Some(SaturationFinding::of_currents(log, &fit.drive, (rs_uncertainty, &fit.fault_estimates), &fit.stretches, points, request))
 }
 
 /// The swarm's search of the same cost that the answering model minimized.

@@ -192,14 +192,19 @@ impl<V: Number, const C: usize> Drives<V, C> {
     /// The transitions over the periods of a block.
     #[inline(always)]
     fn transitions(&self, segment: &SimulatedSegment, first: usize, transitions: &mut Vec<TransitionLanes<V>>) {
-        transitions.clear();
         let last = (first + BLOCK).min(segment.periods.len());
-        for (row, period) in segment.rows_of_periods[first..last].iter().zip(&segment.periods[first..last]) {
-            transitions.push(if self.polynomials.is_empty() {
-                TransitionLanes::exact(&self.motors, row.turn, period.length, self.held)
-            } else {
-                self.polynomials[row.class].at(row.turn, row.place)
-            });
+        let rows = &segment.rows_of_periods[first..last];
+        if self.polynomials.is_empty() {
+            transitions.clear();
+            for (row, period) in rows.iter().zip(&segment.periods[first..last]) {
+                transitions.push(TransitionLanes::exact(&self.motors, row.turn, period.length, self.held));
+            }
+            return;
+        }
+        // In place: what is pushed is copied once more.
+        transitions.resize(rows.len(), TransitionLanes::none(self.motors.rs.constant(0.0)));
+        for (transition, row) in transitions.iter_mut().zip(rows) {
+            *transition = self.polynomials[row.class].at(row.turn, row.place);
         }
     }
 

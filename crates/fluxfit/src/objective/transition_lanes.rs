@@ -44,6 +44,13 @@ pub(super) struct TransitionLanes<V> {
 }
 
 impl<V: Number> TransitionLanes<V> {
+    /// Of no motor.
+    #[inline(always)]
+    pub(super) fn none(zero: V) -> Self {
+        let (fdd, fdq, fqd, fqq) = (zero, zero, zero, zero);
+        Self { fdd, fdq, fqd, fqq, gdd: zero, gdq: zero, gqd: zero, gqq: zero, hd: zero, hq: zero }
+    }
+
     /// The current after a period: `F i + G u + h`.
     #[inline(always)]
     pub(super) fn after(&self, i: [V; 2], u: [V; 2]) -> [V; 2] {

@@ -9,7 +9,7 @@ use super::{
     fault_search::{FaultOutcome, schwarz, unphysical},
     long_run,
     output_choice::Chosen,
-    readings::VERY_STRONG,
+    readings::{self, VERY_STRONG},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -51,7 +51,7 @@ impl AllRows {
             return Err(ErrorKind::NoFiniteFit.into());
         }
         while let Some(fault) = fit.unphysical(lag) {
-            let chosen = fit.chosen.without(fault, &fit.drive).again(log, stretches, request)?;
+            let chosen = fit.chosen.without(fault, &fit.drive).again(log, stretches, &readings::asked(request))?;
             let without = Self::polished(log, stretches, chosen, fitting)?;
             let further = fit.chosen.unknowns.len() - without.chosen.unknowns.len();
             if schwarz(without.cost, fit.cost, further, long_run::effective_sample_size(&fit.residuals)) > VERY_STRONG {

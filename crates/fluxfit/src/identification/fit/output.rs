@@ -101,7 +101,7 @@ impl OutputFit {
             None => with_speed_in_time(
                 log,
                 |log, undone_lag| choose(log, &stretches, &start, undone_lag, request, progress),
-                |chosen, log| chosen.again(log, &stretches, request),
+                |chosen, log| chosen.again(log, &stretches, &readings::asked(request)),
             )?,
         };
         let log = advanced.as_ref().unwrap_or(log);
@@ -180,7 +180,10 @@ impl OutputFit {
             // Nothing else is chosen from.
             criterion: 0.0,
         };
-        let chosen = chosen.again(advanced.as_ref().unwrap_or(log), stretches, request)?;
+        // What this log has ruled out stays so.
+        let asked =
+            request.voltage_timing.map_or_else(|| self.possible_timings().map(|trial| trial.timing).collect(), |stated| vec![stated]);
+        let chosen = chosen.again(advanced.as_ref().unwrap_or(log), stretches, &asked)?;
         Ok(Advanced { log: advanced, lag: self.undone_lag, chosen })
     }
 

@@ -108,12 +108,12 @@ pub(super) fn choose(
 ) -> Result<Vec<Chosen>, Error> {
     let _ = progress(Step::VoltageTiming);
     let free: Vec<Unknown> = free(request).into_iter().chain(output_start::rest_of_lag(undone_lag)).collect();
-    let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
+    let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &readings::asked(request))?;
     let rough = readings::readings(&objectives, &start.drive, &free, &[], HOPELESS);
     let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut found: Vec<Searched> = Vec::new();
     let mut begun: Vec<FaultSearch> = Vec::new();
-    let tried = if priors.is_empty() { rough } else { readings::readings(&objectives, &start.drive, &free, &priors, HOPELESS) };
+    let tried = if priors.is_empty() { rough } else { readings::with_priors(&objectives, &rough, &free, &priors) };
     let with_angle = if start.may_hide_an_angle { Begin::with_angle(&objectives, &start.drive, &free, &priors, &tried) } else { None };
     let _ = progress(Step::Faults);
     let every_period = is_control_rate(log);
@@ -182,9 +182,9 @@ fn is_a_motor(motor: &Motor) -> bool {
 }
 
 impl Chosen {
-    /// The same choice for a log that differs a little: its numbers and the reading are fitted again.
-    pub(super) fn again(self, log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Self, Error> {
-        let objectives = readings::objectives(log, &stretches::spread(stretches), request)?;
+    /// The same choice for a log that differs a little: its numbers are fitted again, and the reading is chosen of these.
+    pub(super) fn again(self, log: &Log, stretches: &[Range<usize>], asked: &[VoltageTiming]) -> Result<Self, Error> {
+        let objectives = OutputError::under_readings(log, &stretches::spread(stretches), asked)?;
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);
         let readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
         let Some((place, best)) = tried.first() else { return Ok(self) };

@@ -5,9 +5,7 @@
 
 use super::super::request::Request;
 use crate::{
-    error::Error,
     levenberg_marquardt::{Polished, PriorResidual, polish_to_choose, step},
-    log::Log,
     motor::PARAMETERS,
     objective::{
         acting_voltage::VoltageTiming,
@@ -16,7 +14,6 @@ use crate::{
     },
     parallel,
 };
-use std::ops::Range;
 
 /// Twice the logarithm of the odds against a reading from which on it is ruled out: e^-5, one in 150. R. E. Kass and A. E. Raftery, "Bayes
 /// factors", J. Am. Stat. Assoc. 90 (1995) 773, call it very strong.
@@ -58,13 +55,9 @@ const UNUSUAL: f64 = 0.01;
 /// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
 const AVERAGED: f64 = 0.1;
 
-/// The fitness under every reading, or under the one that is stated.
-///
-/// # Errors
-/// If no stretch is long enough.
-pub(crate) fn objectives(log: &Log, stretches: &[Range<usize>], request: &Request) -> Result<Vec<(VoltageTiming, OutputError)>, Error> {
-    let readings = request.voltage_timing.map_or(VoltageTiming::ALL.to_vec(), |stated| vec![stated]);
-    OutputError::under_readings(log, stretches, &readings)
+/// Every reading, or the one that is stated.
+pub(crate) fn asked(request: &Request) -> Vec<VoltageTiming> {
+    request.voltage_timing.map_or(VoltageTiming::ALL.to_vec(), |stated| vec![stated])
 }
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
@@ -84,6 +77,17 @@ pub(crate) fn readings(
 ) -> Vec<(usize, TimingTrial)> {
     let starts = (0..objectives.len()).map(|place| (place, *start)).collect();
     contest(objectives, starts, unknowns, priors, &Rules { stepped: usize::MAX, fitted: usize::MAX, hopeless })
+}
+
+/// The same from where each reading ended without priors.
+pub(crate) fn with_priors(
+    objectives: &[(VoltageTiming, OutputError)],
+    without: &[(usize, TimingTrial)],
+    unknowns: &[Unknown],
+    priors: &[PriorResidual],
+) -> Vec<(usize, TimingTrial)> {
+    let starts = without.iter().map(|(place, trial)| (*place, trial.polished.drive)).collect();
+    contest(objectives, starts, unknowns, priors, &Rules { stepped: usize::MAX, fitted: usize::MAX, hopeless: HOPELESS })
 }
 
 /// How many starts of a contest come how far.

@@ -16,6 +16,7 @@ use super::{
     super::request::{Known, Request},
     excitation::Excitation,
     misfit::Misfit,
+    output_errors::FaultEstimate,
     saturation_equations::{self, peak},
     voltage_loss::{self, Loss},
 };
@@ -54,7 +55,7 @@ pub struct Flux {
     pub current: Dq,
     /// Flux linkage, Wb.
     pub psi: Dq,
-    /// Its standard uncertainty, Wb: noise of the means, accuracy of the voltages, resistance.
+    /// Its standard uncertainty, Wb: noise of the means, accuracy of the voltages, resistance, what dead time takes.
     pub uncertainty: Dq,
     /// Whether the point itself tells both fluxes, R_s left aside: to half of their size, beyond which a parameter would be no answer.
     pub is_told: bool,
@@ -62,6 +63,27 @@ pub struct Flux {
     pub apparent_lq: Option<f64>,
     /// `(psi_d - psi_f) / i_d`, H; none where i_d is too small for it, or psi_f is not known beforehand.
     pub apparent_ld: Option<f64>,
+}
+
+/// What an inverter takes at an operating point, V.
+#[derive(Clone, Copy, Default)]
+struct Lost {
+    volts: Dq,
+    standard_error: Dq,
+}
+
+impl Lost {
+    /// What dead time takes, given the errors of its numbers. What they share with each other and with R_s is not counted: the standard
+    /// error is rather too large.
+    fn of_dead_time(drive: &Adjustable, beside: &[FaultEstimate], i: Dq) -> Self {
+        let lost = |drive: &Adjustable| voltage_loss::fundamental(&drive.faults.dead_time, i);
+        let volts = lost(drive);
+        let standard_error = beside.iter().fold(Dq::default(), |sum, FaultEstimate { unknown, value, standard_error }| {
+            let moved = lost(&drive.with(*unknown, value + standard_error));
+            Dq { d: sum.d.hypot(moved.d - volts.d), q: sum.q.hypot(moved.q - volts.q) }
+        });
+        Self { volts, standard_error }
+    }
 }
 
 /// An apparent inductance, H, and the current, A, at which it is one.
@@ -98,26 +120,23 @@ impl SaturationFinding {
         misfit?;
         let best = saturation_equations::explain(points, losses, excitation, motor, request)?;
         // A loss beside terms of saturation bends to what these cannot describe: no voltage is taken off the fluxes for it.
-        let none = vec![[0.0; 2]; points.len()];
+        let none = vec![Lost::default(); points.len()];
         Some(Self::at((points, &none), best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
     }
 
-    /// What simulated currents with terms of saturation say of it, over these rows and at these operating points.
+    /// What simulated currents with terms of saturation say of it, over these rows and at these operating points, given the standard error
+    /// of R_s, ohm, and the drive's other numbers that were fitted.
     pub(crate) fn of_currents(
         log: &Log,
         drive: &Adjustable,
-        rs_uncertainty: f64,
+        (rs_uncertainty, beside): (f64, &[FaultEstimate]),
         stretches: &[Range<usize>],
         points: &[OperatingPoint],
         request: &Request,
     ) -> Self {
         let (motor, terms) = (drive.motor, drive.faults.saturation);
         // The fluxes are those of the resistance that is the answer, and of voltages less what dead time takes, which points know less of.
-        let lost: Vec<[f64; 2]> = points
-            .iter()
-            .map(|point| voltage_loss::fundamental(&drive.faults.dead_time, point.current()))
-            .map(|lost| [lost.d, lost.q])
-            .collect();
+        let lost: Vec<Lost> = points.iter().map(|point| Lost::of_dead_time(drive, beside, point.current())).collect();
         let mut found = Self::at((points, &lost), motor, (motor.rs, rs_uncertainty), request);
         let (mut least, mut most) = (Apparent { current: f64::INFINITY, inductance: 0.0 }, Apparent { current: 0.0, inductance: 0.0 });
         for row in stretches.iter().cloned().flatten() {
@@ -143,7 +162,7 @@ impl SaturationFinding {
 
     /// The fluxes at the operating points, of whose voltages so much is lost, V.
     fn at(
-        (points, lost): (&[OperatingPoint], &[[f64; 2]]),
+        (points, lost): (&[OperatingPoint], &[Lost]),
         small_currents: Motor,
         (rs, rs_uncertainty): (f64, f64),
         request: &Request,
@@ -153,21 +172,24 @@ impl SaturationFinding {
             Known::Nothing => None,
         };
         let least = LEAST_CURRENT * peak(points);
-        let flux = |(point, lost): (&OperatingPoint, &[f64; 2])| {
+        let flux = |(point, lost): (&OperatingPoint, &Lost)| {
             let (omega_e, u, i) = (point.omega_e(), point.voltage(), point.current());
             let noise = point.residual_covariance(&small_currents);
             let accuracy = request.voltage_accuracy * u.magnitude();
             let own = [0, 1].map(|axis: usize| noise[axis][axis].max(0.0).sqrt().hypot(accuracy) / omega_e.abs());
             let of_rs = |i: f64| rs_uncertainty * i / omega_e;
             let psi = Dq {
-                d: (u.q - lost[1] - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
-                q: (rs * i.d + small_currents.ld * point.drift.d - (u.d - lost[0])) / omega_e,
+                d: (u.q - lost.volts.q - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
+                q: (rs * i.d + small_currents.ld * point.drift.d - (u.d - lost.volts.d)) / omega_e,
             };
             let own = Dq { d: own[1], q: own[0] };
             let flux = Flux {
                 current: i,
                 psi,
-                uncertainty: Dq { d: own.d.hypot(of_rs(i.q)), q: own.q.hypot(of_rs(i.d)) },
+                uncertainty: Dq {
+                    d: own.d.hypot(of_rs(i.q)).hypot(lost.standard_error.q / omega_e),
+                    q: own.q.hypot(of_rs(i.d)).hypot(lost.standard_error.d / omega_e),
+                },
                 is_told: 2.0 * own.d <= TOLD * psi.d.abs() && 2.0 * own.q <= TOLD * psi.q.abs(),
                 apparent_lq: (i.q.abs() > least && 2.0 * own.q <= TOLD * psi.q.abs()).then_some(psi.q / i.q),
                 apparent_ld: psi_f.filter(|_| i.d.abs() > least).map(|psi_f| (psi.d - psi_f) / i.d),
