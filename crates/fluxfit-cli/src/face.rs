@@ -384,6 +384,7 @@ impl Tracking {
     /// # Errors
     /// None in practice: every state can be written.
     pub fn end(&mut self) -> Result<String, Refusal> {
+        self.tracking.end();
         self.look();
         self.line(true)
     }

@@ -1,4 +1,6 @@
-//! The first 0.15 s of a stream: kept until block least squares has found values to begin with, then played to the estimator.
+//! The first 0.15 s of a stream: kept until block least squares has found values to begin with, then played to the estimator. Played at
+//! once they would hold up a stream for as long as a filter takes for all of them; so the rows that follow play a few each, and are kept
+//! until their turn comes.
 
 use crate::{
     rls::{Form, Rls},
@@ -17,6 +19,9 @@ const FEWEST: usize = 500;
 /// Most periods that are kept: half a minute of a log of 1 kHz, a tenth of a second of one of 200 kHz.
 const MOST: usize = 20_000;
 
+/// Part by which the samples grow before they are looked at again, if they did not tell a value: a motor may stand still for long.
+const GROWTH: f64 = 0.05;
+
 /// Largest relative standard error with which a value of least squares is one to begin with.
 const STARTS: f64 = 0.3;
 
@@ -25,29 +30,51 @@ const STARTS: f64 = 0.3;
 pub(crate) struct LeadIn {
     events: Vec<Event>,
     elapsed: f64,
+    /// So many events are enough to look at.
+    #[serde(default)]
+    enough: usize,
+    /// So many were played.
+    #[serde(default)]
+    played: usize,
 }
 
 impl LeadIn {
     pub(crate) fn new() -> Self {
-        Self { events: Vec::with_capacity(MOST), elapsed: 0.0 }
+        Self { events: Vec::with_capacity(MOST), elapsed: 0.0, enough: FEWEST, played: 0 }
     }
 
-    /// Keeps an event. True if there are enough.
-    pub(crate) fn keep(&mut self, event: Event) -> bool {
+    /// Keeps an event.
+    pub(crate) fn keep(&mut self, event: Event) {
         if let Event::Period(period, _) = event {
             self.elapsed += period.length;
         }
         self.events.push(event);
-        self.elapsed >= LEAD_IN && self.events.len() >= FEWEST || self.events.len() >= MOST
+    }
+
+    /// Whether it is time to look for values to begin with; then again when there are some more events.
+    pub(crate) fn is_due(&mut self) -> bool {
+        let is_due = self.elapsed >= LEAD_IN && self.events.len() >= self.enough || self.is_full();
+        if is_due {
+            self.enough = self.events.len() + (GROWTH * self.events.len() as f64) as usize;
+        }
+        is_due
+    }
+
+    /// The next events to play, at most so many.
+    pub(crate) fn play(&mut self, most: usize) -> &[Event] {
+        let first = self.played;
+        self.played = first.saturating_add(most).min(self.events.len());
+        &self.events[first..self.played]
+    }
+
+    /// Whether all events were played.
+    pub(crate) fn is_over(&self) -> bool {
+        self.played == self.events.len()
     }
 
     /// Whether no more can be kept.
     pub(crate) fn is_full(&self) -> bool {
         self.events.len() >= MOST
-    }
-
-    pub(crate) fn events(&self) -> &[Event] {
-        &self.events
     }
 
     /// Standard deviation of the noise of each current, A, from their second differences, in which changes of the current count as noise.
@@ -88,5 +115,27 @@ impl LeadIn {
         let is_found = |j: usize| found.values[j] > 0.0 && errors[j] < STARTS * found.values[j];
         let values = std::array::from_fn(|j| if is_found(j) { found.values[j] } else { nominal[j] });
         (values, std::array::from_fn(is_found))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fluxfit_core::Period;
+
+    /// The samples of a motor that stands still are looked at again and again, each time all of them: seldom enough.
+    #[test]
+    fn what_tells_nothing_is_looked_at_seldom() {
+        let mut lead_in = LeadIn::new();
+        let period = Period { u: [0.0; 2], omega_e: 0.0, length: 1e-4 };
+        let mut looked_at = 0;
+        while !lead_in.is_full() {
+            lead_in.keep(Event::Period(period, [0.0; 2]));
+            if lead_in.is_due() {
+                looked_at += lead_in.events.len();
+            }
+        }
+        // A geometric series: at most 1 / GROWTH + 1 times the last look, and the end.
+        assert!(looked_at as f64 <= (1.0 / GROWTH + 2.0) * MOST as f64, "{looked_at}");
     }
 }

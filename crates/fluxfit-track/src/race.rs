@@ -11,6 +11,7 @@ use crate::{
     ekf::WatchedEkf,
     estimate::Estimate,
     lane::{Lane, Told},
+    method::Estimator,
     verdict::HALF_WIDTH95,
 };
 use fluxfit::motor::PARAMETERS;
@@ -61,7 +62,7 @@ impl Race {
 
     /// Puts the most likely timing first, and gives up those of which it is clear that they are wrong.
     pub(crate) fn decide(&mut self, lanes: &mut Vec<Lane>) {
-        if !lanes.iter().all(|lane| lane.estimator.is_some()) {
+        if !lanes.iter().all(|lane| lane.estimator().is_some()) {
             return;
         }
         let mut is_new = false;
@@ -96,7 +97,7 @@ impl Race {
 
     /// What the most likely timing's estimator knows, with standard errors so large that the intervals hold those of the others.
     pub(crate) fn estimate(&self, lanes: &[Lane]) -> Option<Estimate> {
-        let mut estimate = lanes[0].estimator.as_ref()?.estimate();
+        let mut estimate = lanes[0].estimator()?.estimate();
         let growth = self.doubt.unwrap_or_else(|| self.growth(lanes));
         if let Some(errors) = &mut estimate.standard_errors {
             for j in 0..PARAMETERS {
@@ -109,7 +110,7 @@ impl Race {
     /// By how much the standard errors of the first timing must grow for that, as parts of its values: only what both determine can differ.
     fn growth(&self, lanes: &[Lane]) -> [f64; PARAMETERS] {
         let mut growth = [0.0_f64; PARAMETERS];
-        let known = |lane: &Lane| lane.estimator.as_ref().map(|estimator| estimator.estimate());
+        let known = |lane: &Lane| lane.estimator().map(Estimator::estimate);
         let Some(Estimate { values: best, standard_errors: Some(best_errors), .. }) = known(&lanes[0]) else { return growth };
         let in_question = lanes[1..].iter().filter(|lane| self.compared == 0.0 || lane.surprise - lanes[0].surprise <= CLEAR);
         for other in in_question.filter_map(known) {

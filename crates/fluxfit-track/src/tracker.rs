@@ -22,6 +22,9 @@ use serde::{Deserialize, Serialize};
 /// Rows between two looks at the timings.
 const RACE: u64 = 64;
 
+/// Events of the lead-in that a row of a stream plays: four timings at 10 kHz keep up with the rows, and catch up in 0.08 s.
+const PLAYED: usize = 3;
+
 /// What is asked of a tracker.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrackSettings {
@@ -66,12 +69,27 @@ impl Tracker {
 
     /// Takes a row.
     pub fn push(&mut self, row: &Row) {
+        self.take(row, usize::MAX);
+    }
+
+    /// Takes a row in about the time that any other row takes, also where the estimator begins: it catches up with the first 0.15 s over
+    /// the next 0.08 s, until which nothing is told; at the end of a stream, by [`catch_up`](Self::catch_up).
+    pub fn push_in_time(&mut self, row: &Row) {
+        self.take(row, PLAYED);
+    }
+
+    /// Lets the estimator take what it has not taken yet.
+    pub fn catch_up(&mut self) {
+        self.lanes.iter_mut().for_each(|lane| lane.play(usize::MAX));
+    }
+
+    fn take(&mut self, row: &Row, most: usize) {
         self.rows += 1;
         let is_racing = self.lanes.len() > 1;
         let Self { lanes, settings, race, .. } = self;
         let mut told = [None; Timing::USUAL.len()];
         for (lane, told) in lanes.iter_mut().zip(&mut told) {
-            *told = lane.push(row, settings.method, &settings.start, is_racing);
+            *told = lane.push(row, settings.method, &settings.start, is_racing, most);
         }
         if is_racing {
             race.note(lanes, &told);
@@ -82,7 +100,7 @@ impl Tracker {
         if is_racing && self.rows.is_multiple_of(RACE) {
             race.decide(lanes);
         }
-        if let Some(estimator) = &self.lanes[0].estimator {
+        if let Some(estimator) = self.lanes[0].estimator() {
             self.excitation.note(self.t, estimator.is_excited());
         }
     }
@@ -114,7 +132,7 @@ impl Tracker {
 
     /// The estimator; none during the lead-in.
     pub fn estimator(&self) -> Option<&Estimator> {
-        self.lanes[0].estimator.as_ref()
+        self.lanes[0].estimator()
     }
 
     /// What may be said of rs, ld, lq and psi_f now; nothing during the lead-in.

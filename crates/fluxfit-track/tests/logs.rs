@@ -397,3 +397,23 @@ fn a_step_that_is_not_found_is_in_the_intervals() {
     }
     assert!(tracker.parameters().unwrap()[1].value.is_some());
 }
+
+/// A stream tells nothing until its estimator has caught up, 0.08 s after the first 0.15 s, and then what it tells where nobody waits, to
+/// the same bits; so it does at an end before.
+#[test]
+fn a_stream_catches_up_with_its_beginning() {
+    let rows = commands("paper_rig_pwm_noise.csv");
+    let settings = settings(Method::EkfTracking);
+    let in_time = |count: usize| {
+        let mut tracker = Tracker::new(settings);
+        rows[..count].iter().for_each(|row| tracker.push_in_time(row));
+        tracker
+    };
+    let bits = |tracker: &Tracker| format!("{:?}", tracker.parameters().unwrap());
+    for (count, is_told) in [(1600, false), (2200, false), (2400, true), (3000, true)] {
+        let mut tracker = in_time(count);
+        assert_eq!(tracker.parameters().is_some(), is_told, "{count}");
+        tracker.catch_up();
+        assert_eq!(bits(&tracker), bits(&followed(settings, &rows[..count])), "{count}");
+    }
+}

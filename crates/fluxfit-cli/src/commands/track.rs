@@ -184,6 +184,7 @@ impl Running {
     }
 
     fn end(&mut self, name: &str) -> Result<(), CommandError> {
+        self.tracking.end();
         self.look();
         self.lines.end(name, &self.tracking)?;
         let left_out = self.tracking.tracker.left_out();

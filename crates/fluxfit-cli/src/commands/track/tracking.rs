@@ -28,7 +28,7 @@ impl Tracking {
             let sentence = "--faults: dead time and sensor offsets stand still in the stator, so each row needs the electrical angle; add a column theta_e, or leave --faults out";
             return Err(CommandError::Usage(sentence.to_owned()));
         }
-        self.tracker.push(row);
+        self.tracker.push_in_time(row);
         // A sample at a multiple of the interval belongs to it, whatever the rounding.
         let interval = (self.tracker.time() / self.every + 1e-9).floor();
         let is_due = self.told.is_none_or(|told| told != interval);
@@ -37,6 +37,11 @@ impl Tracking {
             thermometer.note(self.tracker.time(), &self.tracker.parameters_or_nothing());
         }
         Ok(is_due)
+    }
+
+    /// Takes what is left to take at the end.
+    pub(crate) fn end(&mut self) {
+        self.tracker.catch_up();
     }
 
     /// What is known now; `last` at the end.
