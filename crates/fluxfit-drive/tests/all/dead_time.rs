@@ -7,7 +7,7 @@ use fluxfit::{
 };
 use fluxfit_drive::{
     Scenario,
-    scenario::{Control, Inverter, Mechanics, Modulation, Schedule, Sensors, SimulatedMotor},
+    scenario::{Control, Inverter, Mechanics, Modulation, Schedule, Sensors, SimulatedMotor, Update},
     schedule::{Profile, Ramp},
     simulate,
 };
@@ -150,4 +150,39 @@ fn one_operating_point_without_noise_tells_lq_alone() {
     assert!((lq.unwrap() / paper::MOTOR.lq - 1.0).abs() < 5e-4, "{lq:?}");
     // u_q = R_s i_q + omega psi_f: 42 mohm at 9.89 A and 418.9 rad/s are 1 mWb.
     assert!((psi_f.unwrap() - (paper::MOTOR.psi_f - (1.0 - paper::MOTOR.rs) * 9.886 / 418.87)).abs() < 1e-4, "{psi_f:?}");
+}
+
+/// 1 us at 700 V and 20 kHz take as much from each phase as the magnet induces, and move the current by a tenth within it: no shape that
+/// a fit knows of is that loss's. What it leaves an observer corrects, and R_s comes out 16 % too large, once with an interval of 4 %. No
+/// number is wrong: beyond one and a half of its half-widths.
+#[test]
+fn a_loss_of_another_shape_makes_no_number_wrong() {
+    let motor = Motor { rs: 0.4, ld: 0.8e-3, lq: 0.8e-3, psi_f: 0.02 };
+    let steps = |points: &[(f64, f64)]| Profile::new(points.iter().map(|(at, to)| Ramp { at: *at, to: *to, over: 0.0 }).collect());
+    for seed in [2, 4] {
+        let mut scenario = Scenario {
+            duration: 0.2,
+            seed,
+            motor: SimulatedMotor::new(motor.rs, motor.into(), 5),
+            mechanics: Mechanics::Dyno,
+            inverter: Inverter { update: Update::Single, dead_time: 1e-6, ..Inverter::ideal(700.0, 20e3) },
+            control: Control::new(500.0, 20.0, 15.0),
+            schedule: Schedule {
+                id: steps(&[(0.0, 0.0), (0.03, -3.0), (0.09, 0.0)]),
+                iq: steps(&[(0.004, -3.0), (0.06, -6.0), (0.125, -4.5)]),
+                speed: Profile::constant(150.0),
+                ..Schedule::default()
+            },
+            sensors: Sensors { current_noise: 0.06, ..Sensors::IDEAL },
+            ..Scenario::paper()
+        };
+        scenario.logging.theta_e = false;
+        let found = identify(&simulate(&scenario, 0, || ()).unwrap().log().unwrap(), &Request::default()).unwrap().identification;
+        assert!(found.output.as_ref().unwrap().drive.faults.dead_time.voltage > 10.0);
+        for judgement in &found.parameters {
+            let (truth, half_width) = (motor.get(judgement.parameter), judgement.uncertainty.half_width);
+            let raw = judgement.raw;
+            assert!((raw - truth).abs() <= 1.5 * half_width, "{seed}, {:?}: {raw} ± {half_width}", judgement.parameter);
+        }
+    }
 }

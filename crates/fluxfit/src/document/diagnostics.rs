@@ -97,7 +97,7 @@ impl SystematicEntry {
         Self {
             prior: finite(parts.prior),
             timing: finite(parts.timing),
-            dead_time: finite(parts.dead_time),
+            dead_time: finite(parts.dead_time.hypot(parts.loss_shape)),
             frame_lag: finite(parts.frame_lag),
             within_rows: finite(parts.within_rows),
             process_noise: finite(parts.process_noise),

@@ -124,8 +124,10 @@ impl OutputFit {
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };
         let misshapen = voltage_loss::misshapen_in_rows(log, reading, drive.faults.dead_time.voltage);
-        let accuracy = VoltageAccuracy { fraction: request.voltage_accuracy, volts: misshapen };
-        let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, accuracy, &scale);
+        let of_loss = voltage_loss::corrected(log, &drive, rms_by_axis(&residuals));
+        let accuracies = [(request.voltage_accuracy, misshapen), (0.0, of_loss)];
+        let accuracies = accuracies.map(|(fraction, volts)| VoltageAccuracy { fraction, volts });
+        let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, accuracies, &scale);
         let shifts = OutputShifts { process_noise: errors.by_contradiction(&unknowns, &shifts.process_noise), ..shifts };
         let uncertainty = errors.uncertainty(&unknowns, &shifts);
         let correlation = errors.correlation_of_neighbours;
@@ -209,9 +211,7 @@ impl OutputFit {
 
     /// Root mean square of the residuals along d and q, A.
     pub fn residual_rms(&self) -> Dq {
-        let (rows, _) = self.residuals.as_chunks::<2>();
-        let rms = |axis: usize| (rows.iter().map(|row| row[axis].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
-        Dq { d: rms(0), q: rms(1) }
+        rms_by_axis(&self.residuals)
     }
 
     /// Autocorrelation, about zero, of the residuals along d and q at lags of 1 to `lags` rows; none reaches across a gap.
@@ -240,6 +240,13 @@ impl OutputFit {
         let motor = Motor::from(std::array::from_fn(|p| report.best[p]));
         Ok(Search { cost_above_optimum: report.cost - self.cost, motor, bounds, report })
     }
+}
+
+/// Root mean square of residuals, `d, q` of each row in turn.
+fn rms_by_axis(residuals: &[f64]) -> Dq {
+    let (rows, _) = residuals.as_chunks::<2>();
+    let rms = |axis: usize| (rows.iter().map(|row| row[axis].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
+    Dq { d: rms(0), q: rms(1) }
 }
 
 /// Root mean square of what a simulation misses that no measured current corrects, A: an observer follows anything.

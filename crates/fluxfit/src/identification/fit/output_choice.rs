@@ -90,9 +90,6 @@ const TRIED_READINGS: usize = 2;
 /// Correlation of neighbours below which residuals are white enough.
 const WHITE: f64 = 0.1;
 
-/// An observer's gain below which little is left for another reading of the voltages to explain.
-const SMALL_GAIN: f64 = 0.2;
-
 /// Faults that are ruled out because their values run away beside others: each costs a search.
 const MOST_RULED_OUT: usize = 2;
 
@@ -249,7 +246,7 @@ impl Searched {
         let independent = long_run::effective_sample_size(&residuals);
         Self {
             explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
-                || drive.faults.disturbance.gain.magnitude() < SMALL_GAIN && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+                || drive.faults.disturbance.is_small() && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
             chosen: Chosen {
                 reading: *reading,
                 readings: compared.into_iter().map(|(_, tried)| tried).collect(),

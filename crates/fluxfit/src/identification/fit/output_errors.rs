@@ -99,6 +99,8 @@ pub(super) struct Errors {
     degrees_of_freedom: f64,
     /// Of the unknowns, from the voltages' accuracy.
     accuracy: DMatrix<f64>,
+    /// Of the unknowns, from what an observer corrects and may be the loss's.
+    loss_shape: DMatrix<f64>,
     /// Of the unknowns, per prior.
     priors: Vec<Vec<f64>>,
     /// How far what the rows do not tell at all could move each unknown.
@@ -113,7 +115,7 @@ impl Errors {
         unknowns: &[Unknown],
         priors: &[PriorResidual],
         residuals: &[f64],
-        voltage_accuracy: VoltageAccuracy,
+        [voltage_accuracy, of_loss]: [VoltageAccuracy; 2],
         scale: &[f64; PARAMETERS],
     ) -> Self {
         let slopes = jacobian(objective, drive, unknowns);
@@ -143,6 +145,7 @@ impl Errors {
             covariance,
             degrees_of_freedom,
             accuracy: voltage_accuracy::covariance(objective, drive, &inverse, &slopes, voltage_accuracy),
+            loss_shape: voltage_accuracy::covariance(objective, drive, &inverse, &slopes, of_loss),
             priors: priors
                 .iter()
                 .map(|belief| {
@@ -207,6 +210,7 @@ impl Errors {
                 faults_in_doubt: shifts.faults_in_doubt[p],
                 sensors: shifts.sensors[p],
                 dead_time: shifts.dead_time[p],
+                loss_shape: self.loss_shape[(k, k)].max(0.0).sqrt(),
                 excitation: self.open[k],
                 ..Systematic::default()
             };
@@ -258,6 +262,7 @@ mod tests {
             covariance: DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 4.0]),
             degrees_of_freedom: 100.0,
             accuracy: DMatrix::zeros(2, 2),
+            loss_shape: DMatrix::zeros(2, 2),
             priors: Vec::new(),
             open: vec![0.0; 2],
             correlation_of_neighbours: 0.0,

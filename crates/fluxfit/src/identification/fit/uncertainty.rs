@@ -39,6 +39,8 @@ pub struct Systematic {
     pub timing: f64,
     /// Of dead time or device drops.
     pub dead_time: f64,
+    /// Of what an observer corrects beside dead time, and may be dead time's.
+    pub loss_shape: f64,
     /// Of a recorder's voltages that may turn with speed against its currents.
     pub frame_lag: f64,
     /// Of what goes on within rows that each span several of the drive's periods.
@@ -73,7 +75,7 @@ impl Systematic {
         [
             (self.prior, Part::Prior),
             (self.timing, Part::Timing),
-            (self.dead_time, Part::DeadTime),
+            (self.dead_time.hypot(self.loss_shape), Part::DeadTime),
             (self.frame_lag, Part::FrameLag),
             (self.within_rows, Part::WithinRows),
             (self.process_noise, Part::ProcessNoise),
@@ -120,10 +122,10 @@ impl ParameterUncertainty {
         Self { statistical, systematic, degrees_of_freedom, half_width: quantile(degrees_of_freedom) * standard_error }
     }
 
-    /// Half the width if no fault were [in doubt](super::faults_in_doubt).
+    /// Half the width if no fault were [in doubt](super::faults_in_doubt), nor the shape of a loss.
     pub(crate) fn half_width_without_doubt(&self) -> f64 {
         let standard_error = |systematic: &Systematic| self.statistical.hypot(systematic.total());
-        let without = standard_error(&Systematic { faults_in_doubt: 0.0, ..self.systematic });
+        let without = standard_error(&Systematic { faults_in_doubt: 0.0, loss_shape: 0.0, ..self.systematic });
         if without > 0.0 { self.half_width * without / standard_error(&self.systematic) } else { without }
     }
 

@@ -18,13 +18,16 @@
 
 use super::{super::request::Request, part::Part};
 use crate::{
-    faults::dead_time::{DeadTime, ripple::Harmonic},
+    faults::{
+        Faults,
+        dead_time::{DeadTime, ripple::Harmonic},
+    },
     frames::Dq,
     log::Log,
-    objective::acting_voltage::VoltageTiming,
+    objective::{acting_voltage::VoltageTiming, adjustable::Adjustable},
     steady::OperatingPoint,
 };
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI};
 
 /// Longest dead time of a drive, s: that of IGBTs. MOSFETs take a tenth to one microsecond.
 const LONGEST_DEAD_TIME: f64 = 3e-6;
@@ -154,6 +157,17 @@ impl LossPrior {
 pub(super) fn misshapen_in_rows(log: &Log, reading: VoltageTiming, voltage: f64) -> f64 {
     // In rows that are the drive's own periods, the loss is computed edge by edge.
     if reading.is_unusual() || !is_control_rate(log) { MISSHAPEN * 4.0 / PI * voltage.abs() } else { 0.0 }
+}
+
+/// The voltage, V, that an observer corrects from row to row where there is a loss, too, given what is left of the currents, A. It may be
+/// the loss's: no noise, which a mean over an operating point would not hold.
+pub(super) fn corrected(log: &Log, drive: &Adjustable, residual_rms: Dq) -> f64 {
+    let Adjustable { motor, faults: Faults { dead_time, disturbance, .. } } = drive;
+    if dead_time.voltage == 0.0 || disturbance.is_small() {
+        return 0.0;
+    }
+    let linkage = Dq { d: disturbance.gain.d * residual_rms.d * motor.ld, q: disturbance.gain.q * residual_rms.q * motor.lq };
+    FRAC_1_SQRT_2 * linkage.magnitude() / slowest_period(log)
 }
 
 /// By how many volts each point's loss may differ from these unknowns, where rows come slower than drives control; where they do not,
