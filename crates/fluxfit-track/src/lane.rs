@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Lane {
     pub(crate) stream: Stream,
-    /// What the estimator has not been played yet.
+    /// The first events, until the estimator has taken all of them.
     lead_in: Option<LeadIn>,
     estimator: Option<Estimator>,
     /// Beside an estimator without a likelihood, while timings are in question: a Kalman filter, which has one.
@@ -54,7 +54,7 @@ impl Lane {
         }
     }
 
-    /// Takes a row, and plays at most so many events of the lead-in. What it told, if it ends a period and a filter runs that can tell.
+    /// Takes a row, and replays at most so many events of the lead-in. What it told, if it ends a period and a filter runs that can tell.
     pub(crate) fn push(&mut self, row: &Row, method: Method, start: &Start, is_racing: bool, most: usize) -> Option<Told> {
         let event = self.stream.push(row)?;
         let Some(lead_in) = &mut self.lead_in else {
@@ -68,14 +68,14 @@ impl Lane {
             self.racer = (is_racing && !method.has_likelihood()).then(|| Estimator::new(Method::Ekf, &beginning));
             self.estimator = Some(Estimator::new(method, &beginning));
         }
-        self.play(most);
+        self.replay(most);
         None
     }
 
-    /// Plays at most so many events of the lead-in to an estimator that has begun.
-    pub(crate) fn play(&mut self, most: usize) {
+    /// Replays at most so many events of the lead-in to an estimator that has begun.
+    pub(crate) fn replay(&mut self, most: usize) {
         let Self { lead_in: Some(lead_in), estimator: Some(estimator), racer, .. } = self else { return };
-        for event in lead_in.play(most) {
+        for event in lead_in.replay(most) {
             estimator.take(event);
             if let Some(racer) = racer {
                 racer.take(event);

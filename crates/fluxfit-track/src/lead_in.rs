@@ -1,6 +1,7 @@
-//! The first 0.15 s of a stream: kept until block least squares has found values to begin with, then played to the estimator. Played at
-//! once they would hold up a stream for as long as a filter takes for all of them; so the rows that follow play a few each, and are kept
-//! until their turn comes.
+//! The first 0.15 s of a stream: kept until block least squares has found values to begin with, then replayed to the estimator.
+//!
+//! A row that replays all of them takes some ten milliseconds, and a stream has to wait. So each later row replays only a few, and is kept
+//! until those before it are done.
 
 use crate::{
     rls::{Form, Rls},
@@ -19,7 +20,8 @@ const FEWEST: usize = 500;
 /// Most periods that are kept: half a minute of a log of 1 kHz, a tenth of a second of one of 200 kHz.
 const MOST: usize = 20_000;
 
-/// Part by which the samples grow before they are looked at again, if they did not tell a value: a motor may stand still for long.
+/// If the samples do not tell a value, they are looked at again when there are more of them by this part. A motor may stand still for long,
+/// and each look takes all samples.
 const GROWTH: f64 = 0.05;
 
 /// Largest relative standard error with which a value of least squares is one to begin with.
@@ -30,17 +32,15 @@ const STARTS: f64 = 0.3;
 pub(crate) struct LeadIn {
     events: Vec<Event>,
     elapsed: f64,
-    /// So many events are enough to look at.
-    #[serde(default)]
+    /// Events at which the next look is due.
     enough: usize,
-    /// So many were played.
-    #[serde(default)]
-    played: usize,
+    /// Events that the estimator has taken.
+    replayed: usize,
 }
 
 impl LeadIn {
     pub(crate) fn new() -> Self {
-        Self { events: Vec::with_capacity(MOST), elapsed: 0.0, enough: FEWEST, played: 0 }
+        Self { events: Vec::with_capacity(MOST), elapsed: 0.0, enough: FEWEST, replayed: 0 }
     }
 
     /// Keeps an event.
@@ -51,7 +51,7 @@ impl LeadIn {
         self.events.push(event);
     }
 
-    /// Whether it is time to look for values to begin with; then again when there are some more events.
+    /// Whether a look for values to begin with is due. The next one is due when there are some more events.
     pub(crate) fn is_due(&mut self) -> bool {
         let is_due = self.elapsed >= LEAD_IN && self.events.len() >= self.enough || self.is_full();
         if is_due {
@@ -60,16 +60,16 @@ impl LeadIn {
         is_due
     }
 
-    /// The next events to play, at most so many.
-    pub(crate) fn play(&mut self, most: usize) -> &[Event] {
-        let first = self.played;
-        self.played = first.saturating_add(most).min(self.events.len());
-        &self.events[first..self.played]
+    /// The next events for the estimator, at most so many.
+    pub(crate) fn replay(&mut self, most: usize) -> &[Event] {
+        let first = self.replayed;
+        self.replayed = first.saturating_add(most).min(self.events.len());
+        &self.events[first..self.replayed]
     }
 
-    /// Whether all events were played.
+    /// Whether the estimator has taken all events.
     pub(crate) fn is_over(&self) -> bool {
-        self.played == self.events.len()
+        self.replayed == self.events.len()
     }
 
     /// Whether no more can be kept.
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use fluxfit_core::Period;
 
-    /// The samples of a motor that stands still are looked at again and again, each time all of them: seldom enough.
+    /// A look takes all samples of a motor that stands still: there must be few looks.
     #[test]
     fn what_tells_nothing_is_looked_at_seldom() {
         let mut lead_in = LeadIn::new();

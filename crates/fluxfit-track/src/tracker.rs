@@ -22,8 +22,8 @@ use serde::{Deserialize, Serialize};
 /// Rows between two looks at the timings.
 const RACE: u64 = 64;
 
-/// Events of the lead-in that a row of a stream plays: four timings at 10 kHz keep up with the rows, and catch up in 0.08 s.
-const PLAYED: usize = 3;
+/// Events of the lead-in that a row of a stream replays: so few that estimators of four timings keep up with rows of 10 kHz.
+const REPLAYED: usize = 3;
 
 /// What is asked of a tracker.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -72,15 +72,15 @@ impl Tracker {
         self.take(row, usize::MAX);
     }
 
-    /// Takes a row in about the time that any other row takes, also where the estimator begins: it catches up with the first 0.15 s over
-    /// the next 0.08 s, until which nothing is told; at the end of a stream, by [`catch_up`](Self::catch_up).
+    /// Takes a row of a stream that must not wait. After the first 0.15 s each row replays a few of the first ones to the estimator, and
+    /// nothing is told for another 0.08 s, or until [`catch_up`](Self::catch_up), which belongs at the end of a stream.
     pub fn push_in_time(&mut self, row: &Row) {
-        self.take(row, PLAYED);
+        self.take(row, REPLAYED);
     }
 
-    /// Lets the estimator take what it has not taken yet.
+    /// Replays all that the estimator has not taken yet.
     pub fn catch_up(&mut self) {
-        self.lanes.iter_mut().for_each(|lane| lane.play(usize::MAX));
+        self.lanes.iter_mut().for_each(|lane| lane.replay(usize::MAX));
     }
 
     fn take(&mut self, row: &Row, most: usize) {

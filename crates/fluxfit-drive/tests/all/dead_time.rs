@@ -152,9 +152,8 @@ fn one_operating_point_without_noise_tells_lq_alone() {
     assert!((psi_f.unwrap() - (paper::MOTOR.psi_f - (1.0 - paper::MOTOR.rs) * 9.886 / 418.87)).abs() < 1e-4, "{psi_f:?}");
 }
 
-/// 1 us at 700 V and 20 kHz take as much from each phase as the magnet induces, and move the current by a tenth within it: no shape that
-/// a fit knows of is that loss's. What it leaves an observer corrects, and R_s comes out 16 % too large, once with an interval of 4 %. No
-/// number is wrong: beyond one and a half of its half-widths.
+/// 1 us at 700 V and 20 kHz take as much from each phase as the magnet induces, and the model does not have the shape of such a loss. An
+/// observer corrects the rest, and R_s comes out 16 % too large. The intervals are wide enough: no error exceeds 1.5 half-widths.
 #[test]
 fn a_loss_of_another_shape_makes_no_number_wrong() {
     let motor = Motor { rs: 0.4, ld: 0.8e-3, lq: 0.8e-3, psi_f: 0.02 };

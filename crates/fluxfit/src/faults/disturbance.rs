@@ -15,8 +15,7 @@ pub struct Disturbance {
     pub gain: Dq,
 }
 
-/// Gain below which next to no observer was needed. Drives whose loss is computed edge by edge, with nothing else in the log that the model
-/// lacks, come to 0.01 to 0.14.
+/// Gain below which next to no observer was needed. Simulated drives whose log has nothing that the model lacks come to 0.01 to 0.14.
 const SMALL: f64 = 0.2;
 
 impl Disturbance {

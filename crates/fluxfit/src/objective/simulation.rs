@@ -201,7 +201,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
             }
             return;
         }
-        // In place: what is pushed is copied once more.
+        // Written in place, because a push copies each of them once more.
         transitions.resize(rows.len(), TransitionLanes::none(self.motors.rs.constant(0.0)));
         for (transition, row) in transitions.iter_mut().zip(rows) {
             *transition = self.polynomials[row.class].at(row.turn, row.place);

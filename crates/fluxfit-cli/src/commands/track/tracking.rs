@@ -39,7 +39,7 @@ impl Tracking {
         Ok(is_due)
     }
 
-    /// Takes what is left to take at the end.
+    /// The stream has ended: the estimator takes what it has not taken yet.
     pub(crate) fn end(&mut self) {
         self.tracker.catch_up();
     }

@@ -124,7 +124,7 @@ impl OutputFit {
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };
         let misshapen = voltage_loss::misshapen_in_rows(log, reading, drive.faults.dead_time.voltage);
-        let of_loss = voltage_loss::corrected(log, &drive, rms_by_axis(&residuals));
+        let of_loss = voltage_loss::corrected_by_observer(log, &drive, rms_by_axis(&residuals));
         let accuracies = [(request.voltage_accuracy, misshapen), (0.0, of_loss)];
         let accuracies = accuracies.map(|(fraction, volts)| VoltageAccuracy { fraction, volts });
         let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, accuracies, &scale);
@@ -182,10 +182,9 @@ impl OutputFit {
             // Nothing else is chosen from.
             criterion: 0.0,
         };
-        // What this log has ruled out stays so.
-        let asked =
-            request.voltage_timing.map_or_else(|| self.possible_timings().map(|trial| trial.timing).collect(), |stated| vec![stated]);
-        let chosen = chosen.again(advanced.as_ref().unwrap_or(log), stretches, &asked)?;
+        // A reading that this log has ruled out stays so.
+        let possible: Vec<VoltageTiming> = self.possible_timings().map(|trial| trial.timing).collect();
+        let chosen = chosen.again(advanced.as_ref().unwrap_or(log), stretches, &possible)?;
         Ok(Advanced { log: advanced, lag: self.undone_lag, chosen })
     }
 

@@ -9,7 +9,7 @@ use super::{
     fault_search::{FaultOutcome, FaultSearch, FaultTrial, LEAST_RESIDUAL, schwarz},
     long_run,
     output_start::{self, Start, free},
-    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, TimingTrial, VERY_STRONG},
+    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest},
     voltage_loss::is_control_rate,
 };
 use crate::{
@@ -110,7 +110,12 @@ pub(super) fn choose(
     let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut found: Vec<Searched> = Vec::new();
     let mut begun: Vec<FaultSearch> = Vec::new();
-    let tried = if priors.is_empty() { rough } else { readings::with_priors(&objectives, &rough, &free, &priors) };
+    let tried = if priors.is_empty() {
+        rough
+    } else {
+        let ends = rough.iter().map(|(place, trial)| (*place, trial.polished.drive)).collect();
+        contest(&objectives, ends, &free, &priors, &Rules::all(HOPELESS))
+    };
     let with_angle = if start.may_hide_an_angle { Begin::with_angle(&objectives, &start.drive, &free, &priors, &tried) } else { None };
     let _ = progress(Step::Faults);
     let every_period = is_control_rate(log);
@@ -179,7 +184,7 @@ fn is_a_motor(motor: &Motor) -> bool {
 }
 
 impl Chosen {
-    /// The same choice for a log that differs a little: its numbers are fitted again, and the reading is chosen of these.
+    /// The same choice for a log that differs a little: its numbers are fitted again, and the reading is chosen from these.
     pub(super) fn again(self, log: &Log, stretches: &[Range<usize>], asked: &[VoltageTiming]) -> Result<Self, Error> {
         let objectives = OutputError::under_readings(log, &stretches::spread(stretches), asked)?;
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);

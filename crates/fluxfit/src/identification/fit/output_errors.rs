@@ -99,7 +99,7 @@ pub(super) struct Errors {
     degrees_of_freedom: f64,
     /// Of the unknowns, from the voltages' accuracy.
     accuracy: DMatrix<f64>,
-    /// Of the unknowns, from what an observer corrects and may be the loss's.
+    /// Of the unknowns, from voltages that an observer corrects and that may be a part of the loss.
     loss_shape: DMatrix<f64>,
     /// Of the unknowns, per prior.
     priors: Vec<Vec<f64>>,

@@ -76,18 +76,7 @@ pub(crate) fn readings(
     hopeless: f64,
 ) -> Vec<(usize, TimingTrial)> {
     let starts = (0..objectives.len()).map(|place| (place, *start)).collect();
-    contest(objectives, starts, unknowns, priors, &Rules { stepped: usize::MAX, fitted: usize::MAX, hopeless })
-}
-
-/// The same from where each reading ended without priors.
-pub(crate) fn with_priors(
-    objectives: &[(VoltageTiming, OutputError)],
-    without: &[(usize, TimingTrial)],
-    unknowns: &[Unknown],
-    priors: &[PriorResidual],
-) -> Vec<(usize, TimingTrial)> {
-    let starts = without.iter().map(|(place, trial)| (*place, trial.polished.drive)).collect();
-    contest(objectives, starts, unknowns, priors, &Rules { stepped: usize::MAX, fitted: usize::MAX, hopeless: HOPELESS })
+    contest(objectives, starts, unknowns, priors, &Rules::all(hopeless))
 }
 
 /// How many starts of a contest come how far.
@@ -99,6 +88,13 @@ pub(crate) struct Rules {
     pub(crate) fitted: usize,
     /// But none whose mean square is so many times the least one then.
     pub(crate) hopeless: f64,
+}
+
+impl Rules {
+    /// All of them come to the end but the hopeless ones.
+    pub(crate) const fn all(hopeless: f64) -> Self {
+        Self { stepped: usize::MAX, fitted: usize::MAX, hopeless }
+    }
 }
 
 /// Fits drives from starts under one reading or another, given by its place among the objectives. One step tells which are worth a whole

@@ -73,8 +73,8 @@ struct Lost {
 }
 
 impl Lost {
-    /// What dead time takes, given the errors of its numbers. What they share with each other and with R_s is not counted: the standard
-    /// error is rather too large.
+    /// What dead time takes, given the drive's fitted numbers with their errors. Correlations between these, and with R_s, are not counted:
+    /// the standard error is rather too large.
     fn of_dead_time(drive: &Adjustable, beside: &[FaultEstimate], i: Dq) -> Self {
         let lost = |drive: &Adjustable| voltage_loss::fundamental(&drive.faults.dead_time, i);
         let volts = lost(drive);

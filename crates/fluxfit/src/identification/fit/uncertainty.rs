@@ -39,7 +39,7 @@ pub struct Systematic {
     pub timing: f64,
     /// Of dead time or device drops.
     pub dead_time: f64,
-    /// Of what an observer corrects beside dead time, and may be dead time's.
+    /// Of voltages that an observer corrects beside dead time: they may be a part of it.
     pub loss_shape: f64,
     /// Of a recorder's voltages that may turn with speed against its currents.
     pub frame_lag: f64,
@@ -122,7 +122,7 @@ impl ParameterUncertainty {
         Self { statistical, systematic, degrees_of_freedom, half_width: quantile(degrees_of_freedom) * standard_error }
     }
 
-    /// Half the width if no fault were [in doubt](super::faults_in_doubt), nor the shape of a loss.
+    /// Half the width if neither a fault were [in doubt](super::faults_in_doubt) nor the shape of a loss.
     pub(crate) fn half_width_without_doubt(&self) -> f64 {
         let standard_error = |systematic: &Systematic| self.statistical.hypot(systematic.total());
         let without = standard_error(&Systematic { faults_in_doubt: 0.0, loss_shape: 0.0, ..self.systematic });

@@ -159,9 +159,9 @@ pub(super) fn misshapen_in_rows(log: &Log, reading: VoltageTiming, voltage: f64)
     if reading.is_unusual() || !is_control_rate(log) { MISSHAPEN * 4.0 / PI * voltage.abs() } else { 0.0 }
 }
 
-/// The voltage, V, that an observer corrects from row to row where there is a loss, too, given what is left of the currents, A. It may be
-/// the loss's: no noise, which a mean over an operating point would not hold.
-pub(super) fn corrected(log: &Log, drive: &Adjustable, residual_rms: Dq) -> f64 {
+/// The voltage, V, that an observer corrects from row to row beside a loss, given what is left of the currents, A. It may be a part of the
+/// loss that the model lacks. Noise averages out over an operating point; such a part does not.
+pub(super) fn corrected_by_observer(log: &Log, drive: &Adjustable, residual_rms: Dq) -> f64 {
     let Adjustable { motor, faults: Faults { dead_time, disturbance, .. } } = drive;
     if dead_time.voltage == 0.0 || disturbance.is_small() {
         return 0.0;
