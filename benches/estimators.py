@@ -14,7 +14,9 @@ RUNS = 5
 ROWS = [
     ("kalman_filter_ns", "one Kalman filter, tracking", 600),
     ("bank_one_by_one_ns", "six of them, one by one", None),
-    ("bank_ns", "the bank of six in lanes, with the least squares that watch it", 1500),
+    ("bank_ns", "the bank of six in lanes", 1500),
+    ("default_first_ns", "the default of `fluxfit track`, first half second: fourteen of them in lanes, with the least squares that watch them", None),
+    ("default_later_ns", "the same later: the likeliest three", None),
     ("block_least_squares_ns", "block least squares", 15),
 ]
 

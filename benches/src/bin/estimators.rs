@@ -1,13 +1,13 @@
-//! Nanoseconds a sample of the recursive estimators, as JSON: one Kalman filter, a bank of six, and
-//! block least squares. `estimators.py` calls it.
+//! Nanoseconds a sample of the recursive estimators, as JSON: one Kalman filter, a bank of six one by one and in lanes, block least
+//! squares, and the estimator that `fluxfit track` has by default. `estimators.py` calls it.
 // The JSON on standard output is what this program is for.
 #![allow(clippy::print_stdout)]
 
 use cpu_time::ProcessTime;
 use fluxfit::{log::Row, paper};
-use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings};
+use fluxfit_core::{BlockRls, BlockRlsSettings, Ekf, EkfSettings, Period, bank::Together};
 use fluxfit_drive::{Scenario, simulate};
-use fluxfit_track::{Beginning, DriveFaults, Estimator, Event, Method, Start, Stream, Timing};
+use fluxfit_track::{Beginning, DriveFaults, Estimator, Event, Method, Start, Stream, Timing, bank};
 use serde::Serialize;
 use std::{error::Error, hint::black_box};
 
@@ -25,6 +25,8 @@ struct Times {
     kalman_filter_ns: f64,
     bank_one_by_one_ns: f64,
     bank_ns: f64,
+    default_first_ns: f64,
+    default_later_ns: f64,
     block_least_squares_ns: f64,
 }
 
@@ -44,12 +46,15 @@ fn events() -> Result<Vec<Event>, Box<dyn Error>> {
     Ok((0..columns.t.len()).filter_map(|k| stream.push(&row(k))).collect())
 }
 
-/// CPU time per event of the fastest repetition, ns.
-fn nanoseconds(events: &[Event], mut pass: impl FnMut()) -> f64 {
-    let mut once = || {
+/// CPU time per event of the fastest repetition, ns, of a pass that continues from a state which takes no part in the time.
+fn nanoseconds<S>(events: &[Event], begin: impl Fn() -> S, pass: impl Fn(&mut S, &[Event])) -> f64 {
+    let once = || {
+        let mut state = begin();
         let start = ProcessTime::now();
-        pass();
-        start.elapsed().as_secs_f64()
+        pass(&mut state, events);
+        let elapsed = start.elapsed().as_secs_f64();
+        black_box(state);
+        elapsed
     };
     1e9 * (0..REPEATS).map(|_| once()).fold(f64::INFINITY, f64::min) / events.len() as f64
 }
@@ -60,14 +65,39 @@ fn filter(unknown_voltage: f64) -> Ekf<f64> {
     Ekf::new(settings, [1.0; 4])
 }
 
-fn pass(filters: &mut [Ekf<f64>], events: &[Event]) {
+/// The filters learn from all events, with `advance` for a period.
+fn learn(filters: &mut [Ekf<f64>], events: &[Event], mut advance: impl FnMut(&mut [Ekf<f64>], &Period<f64>, [f64; 2])) {
     for event in events {
         match event {
             Event::Begin(i) => filters.iter_mut().for_each(|filter| filter.begin(*i)),
-            Event::Period(period, i) => filters.iter_mut().for_each(|filter| filter.advance(period, *i)),
+            Event::Period(period, i) => advance(filters, period, *i),
         }
     }
-    black_box(filters);
+}
+
+fn one_by_one(filters: &mut [Ekf<f64>], events: &[Event]) {
+    learn(filters, events, |filters, period, i| filters.iter_mut().for_each(|filter| filter.advance(period, i)));
+}
+
+fn in_lanes(filters: &mut [Ekf<f64>], events: &[Event]) {
+    let mut together = Together::new();
+    learn(filters, events, |filters, period, i| bank::advance(&mut together, filters, &[true; LEVELS.len()], period, i));
+}
+
+fn least_squares(rls: &mut BlockRls<f64>, events: &[Event]) {
+    for event in events {
+        match event {
+            Event::Begin(i) => rls.begin(*i),
+            Event::Period(period, i) => {
+                rls.advance(period, *i);
+            }
+        }
+    }
+}
+
+/// The default estimator, which takes events.
+fn take(estimator: &mut Estimator, events: &[Event]) {
+    events.iter().for_each(|event| estimator.take(event));
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -80,26 +110,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         is_guessed: [false; 4],
         scale: [CURRENT, 100.0, 0.0],
     };
+    let (first, later) = events.split_at(events.len() / 2);
+    let new = || Estimator::new(Method::EkfTracking, &beginning);
+    let after_first = {
+        let mut estimator = new();
+        take(&mut estimator, first);
+        estimator
+    };
     let times = Times {
-        kalman_filter_ns: nanoseconds(&events, || pass(&mut [filter(0.3)], &events)),
-        bank_one_by_one_ns: nanoseconds(&events, || pass(&mut LEVELS.map(filter), &events)),
-        bank_ns: nanoseconds(&events, || {
-            let mut estimator = Estimator::new(Method::EkfTracking, &beginning);
-            events.iter().for_each(|event| estimator.take(event));
-            black_box(estimator);
-        }),
-        block_least_squares_ns: nanoseconds(&events, || {
-            let mut rls = BlockRls::new(BlockRlsSettings::new(theta));
-            for event in &events {
-                match event {
-                    Event::Begin(i) => rls.begin(*i),
-                    Event::Period(period, i) => {
-                        rls.advance(period, *i);
-                    }
-                }
-            }
-            black_box(rls);
-        }),
+        kalman_filter_ns: nanoseconds(&events, || [filter(0.3)], |filters, events| one_by_one(filters, events)),
+        bank_one_by_one_ns: nanoseconds(&events, || LEVELS.map(filter), |filters, events| one_by_one(filters, events)),
+        bank_ns: nanoseconds(&events, || LEVELS.map(filter), |filters, events| in_lanes(filters, events)),
+        default_first_ns: nanoseconds(first, new, take),
+        default_later_ns: nanoseconds(later, || after_first.clone(), take),
+        block_least_squares_ns: nanoseconds(&events, || BlockRls::new(BlockRlsSettings::new(theta)), least_squares),
     };
     println!("{}", serde_json::to_string(&times)?);
     Ok(())

@@ -25,43 +25,44 @@ impl Together {
         Self { filter: Ekf::blank() }
     }
 
-    /// Those filters that are active go on by a period with the current, A, measured at its end. Compiled for wide instructions where its
-    /// caller is.
+    /// Those filters that are active go on by a period with the current, A, measured at its end, as many side by side as there are lanes.
+    /// Compiled for wide instructions where its caller is.
     #[inline(always)]
     pub fn advance(&mut self, filters: &mut [Ekf<f64>], active: &[bool], period: &Period<f64>, measured: [f64; 2]) {
+        let mut places = (0..filters.len()).filter(|place| active.get(*place) == Some(&true));
         let mut along = [0; LANES];
-        let mut count = 0;
-        for (place, filter) in filters.iter_mut().enumerate().filter(|(place, _)| active.get(*place) == Some(&true)) {
-            if count < LANES && filter.goes_along(period, measured) {
-                along[count] = place;
-                count += 1;
-            } else {
-                filter.advance(period, measured);
+        loop {
+            let mut count = 0;
+            while count < LANES
+                && let Some(place) = places.next()
+            {
+                let is_alike = count == 0 || filters[place].is_like(&filters[along[0]]);
+                if is_alike && filters[place].goes_along(period, measured) {
+                    along[count] = place;
+                    count += 1;
+                } else {
+                    filters[place].advance(period, measured);
+                }
             }
-        }
-        let mut alike = 0;
-        for k in 0..count {
-            if filters[along[k]].is_like(&filters[along[0]]) {
-                along[alike] = along[k];
-                alike += 1;
-            } else {
-                filters[along[k]].advance(period, measured);
+            if count == 0 {
+                return;
             }
+            self.learn(filters, &along[..count], period, measured);
         }
-        if alike < FEWEST {
-            along[..alike].iter().for_each(|place| filters[*place].advance(period, measured));
-            return;
-        }
-        self.learn(filters, &along, alike, period, measured);
     }
 
+    /// The filters at these places learn side by side.
     #[inline(always)]
-    fn learn(&mut self, filters: &mut [Ekf<f64>], along: &[usize; LANES], count: usize, period: &Period<f64>, measured: [f64; 2]) {
+    fn learn(&mut self, filters: &mut [Ekf<f64>], along: &[usize], period: &Period<f64>, measured: [f64; 2]) {
+        if along.len() < FEWEST {
+            along.iter().for_each(|place| filters[*place].advance(period, measured));
+            return;
+        }
         let mut late = Lanes::all(0.0);
         self.filter.become_like(&filters[along[0]]);
         for lane in 0..LANES {
             // Lanes without a filter of their own repeat the first one.
-            let filter = &mut filters[if lane < count { along[lane] } else { along[0] }];
+            let filter = &mut filters[*along.get(lane).unwrap_or(&along[0])];
             filter.open_window();
             late.0[lane] = filter.late();
             self.filter.with_settings_of(filter, |lanes, own| lanes.0[lane] = *own);
@@ -69,11 +70,11 @@ impl Together {
         }
         let wide = Period { u: period.u.map(Lanes::all), omega_e: Lanes::all(period.omega_e), length: Lanes::all(period.length) };
         if !self.filter.divides_alike(&wide) {
-            along[..count].iter().for_each(|place| filters[*place].advance(period, measured));
+            along.iter().for_each(|place| filters[*place].advance(period, measured));
             return;
         }
         let beyond = self.filter.learn(&wide, measured.map(Lanes::all), late);
-        for (lane, place) in along[..count].iter().enumerate() {
+        for (lane, place) in along.iter().enumerate() {
             let filter = &mut filters[*place];
             self.filter.with_state_of(filter, |lanes, own| *own = lanes.0[lane]);
             filter.decide([beyond[0].0[lane] > 0.0, beyond[1].0[lane] > 0.0], measured);

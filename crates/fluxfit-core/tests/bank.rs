@@ -6,7 +6,8 @@ mod rig;
 use fluxfit_core::{Ekf, EkfSettings, Period, bank::Together, period::current_after};
 use rig::{NOISE, Noise, TRUTH};
 
-const LEVELS: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0];
+/// More than a vector has lanes, so that they go in groups.
+const LEVELS: [f64; 12] = [0.0, 0.01, 0.02, 0.03, 0.06, 0.1, 0.2, 0.3, 0.6, 1.0, 2.0, 3.0];
 
 fn filter(level: f64, steps: bool) -> Ekf<f64> {
     let start = TRUTH.map(|value| 1.1 * value);
@@ -43,7 +44,7 @@ fn filters_have_the_same_bits_together_and_alone() {
                 _ => {}
             }
             // Later the outermost levels stand still, then all but two.
-            let active = LEVELS.map(|level| k < 24_000 || level > 0.0 && (k < 28_000 || level < 0.2));
+            let active = LEVELS.map(|level| k < 24_000 || level > 0.0 && (k < 28_000 || level < 0.025));
             for (filter, is_active) in alone.iter_mut().zip(active) {
                 filter.note_excitation(!(21_000..=26_000).contains(&k));
                 if is_active {

@@ -30,8 +30,8 @@ impl Advance<'_> {
     }
 }
 
-/// The active filters go on by a period to a current, A.
-pub(crate) fn advance(together: &mut Together, filters: &mut [Ekf<f64>], active: &[bool], period: &Period<f64>, i: [f64; 2]) {
+/// The active filters go on by a period to a current, A. `together` is room that is kept from one period to the next.
+pub fn advance(together: &mut Together, filters: &mut [Ekf<f64>], active: &[bool], period: &Period<f64>, i: [f64; 2]) {
     let advance = Advance { together, filters, active, period, i };
     // AVX-512 was tried too: what is laid into lanes number by number and read as a whole vector at once makes it wait; it took longer.
     #[cfg(target_arch = "x86_64")]

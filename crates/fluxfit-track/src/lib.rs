@@ -18,6 +18,7 @@
 //! | [`start`], [`lead_in`] | what is known before the first sample; the first samples |
 //! | [`method`] | the estimators, as one choice |
 //! | [`ekf`], [`rls`], [`forgetting`], [`instrumental_variable`], [`bias_compensated`], [`mras`], [`adaline`] | one estimator each |
+//! | [`bank`] | filters with different settings on the same samples, side by side |
 //! | [`comparison`] | all estimators on one log |
 //! | [`temperature`], [`document`] | temperatures of winding and magnets; the JSON document |
 //! | [`estimate`], [`verdict`] | what an estimator says; what may be said of a parameter |
@@ -25,7 +26,7 @@
 
 pub mod adaline;
 mod alternation;
-mod bank;
+pub mod bank;
 pub mod bias_compensated;
 mod cholesky;
 pub mod comparison;
