@@ -158,7 +158,7 @@ fn one_operating_point_without_noise_tells_lq_alone() {
 fn a_loss_of_another_shape_makes_no_number_wrong() {
     let motor = Motor { rs: 0.4, ld: 0.8e-3, lq: 0.8e-3, psi_f: 0.02 };
     let steps = |points: &[(f64, f64)]| Profile::new(points.iter().map(|(at, to)| Ramp { at: *at, to: *to, over: 0.0 }).collect());
-    for seed in [2, 4] {
+    for (seed, current_noise) in [(2, 0.06), (4, 0.06), (3, 0.006), (4, 0.006)] {
         let mut scenario = Scenario {
             duration: 0.2,
             seed,
@@ -172,16 +172,18 @@ fn a_loss_of_another_shape_makes_no_number_wrong() {
                 speed: Profile::constant(150.0),
                 ..Schedule::default()
             },
-            sensors: Sensors { current_noise: 0.06, ..Sensors::IDEAL },
+            sensors: Sensors { current_noise, ..Sensors::IDEAL },
             ..Scenario::paper()
         };
         scenario.logging.theta_e = false;
         let found = identify(&simulate(&scenario, 0, || ()).unwrap().log().unwrap(), &Request::default()).unwrap().identification;
-        assert!(found.output.as_ref().unwrap().drive.faults.dead_time.voltage > 10.0);
+        if let Some(fit) = &found.output {
+            assert!(fit.drive.faults.dead_time.voltage > 10.0);
+        }
         for judgement in &found.parameters {
             let (truth, half_width) = (motor.get(judgement.parameter), judgement.uncertainty.half_width);
             let raw = judgement.raw;
-            assert!((raw - truth).abs() <= 1.5 * half_width, "{seed}, {:?}: {raw} ± {half_width}", judgement.parameter);
+            assert!((raw - truth).abs() <= 1.5 * half_width, "{seed} {current_noise}, {:?}: {raw} ± {half_width}", judgement.parameter);
         }
     }
 }

@@ -166,7 +166,7 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
             match OutputFit::of(log, steady.as_ref(), request, known, progress) {
                 // Where no simulation stays finite, points still tell what they do, with an angle that may be off.
                 Err(error) if *error.kind() == ErrorKind::NoFiniteFit && request.model.is_none() && steady.is_some() => {
-                    (points_tell_more, Some(SteadyFit::with_drive_in_doubt(log, request)?), None)
+                    (points_tell_more, Some(SteadyFit::with_drive_in_doubt(log, request, 0.0)?), None)
                 }
                 output => (model, steady, Some(output?)),
             }
@@ -215,7 +215,7 @@ fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut 
         match points_tell_more(points, output, &open, !is_control_rate(log), request) {
             Points::TellMore => return Ok(true),
             Points::AreNarrower => {
-                let in_doubt = SteadyFit::with_drive_in_doubt(log, request)?;
+                let in_doubt = SteadyFit::with_drive_in_doubt(log, request, output.unexplained_loss)?;
                 if is_narrower(&in_doubt, output, request) {
                     *points = in_doubt;
                     return Ok(true);

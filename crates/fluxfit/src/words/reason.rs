@@ -40,7 +40,7 @@ impl Display for Reason {
             Self::SharperThanNoise => write!(
                 f,
                 "the simulated currents jump at the least change of what was fitted, as those of a phase that switches around zero do, so the \
-                 fit looks sharper than its noise allows"
+                 fit looks sharper than its noise allows, and nothing of it is to be trusted"
             ),
             Self::DisturbedWithoutAngle => write!(
                 f,

@@ -15,6 +15,7 @@ use super::{
     super::request::{Known, Request},
     excitation::Excitation,
     part::Part,
+    voltage_accuracy::VoltageAccuracy,
     voltage_loss::{self, Loss},
 };
 use crate::{
@@ -69,20 +70,20 @@ pub struct Estimate {
 impl Estimate {
     /// Solves the points.
     pub(crate) fn solve(points: &[OperatingPoint], excitation: &Excitation, request: &Request, losses: &[Loss]) -> Self {
-        Self::solve_with(points, excitation, request, losses, request.voltage_accuracy)
+        Self::solve_with(points, excitation, request, losses, VoltageAccuracy { fraction: request.voltage_accuracy, volts: 0.0 })
     }
 
-    /// Solves the points with voltages trusted to another fraction than the request'.
+    /// Solves the points with voltages trusted otherwise than the request has it.
     pub(crate) fn solve_with(
         points: &[OperatingPoint],
         excitation: &Excitation,
         request: &Request,
         losses: &[Loss],
-        voltage_accuracy: f64,
+        accuracy: VoltageAccuracy,
     ) -> Self {
         // Whoever states the steady model states its equations.
         let misshapen = if request.model.is_none() { voltage_loss::misshapen(points, losses) } else { 0.0 };
-        let accuracy = voltage_uncertainty(points, voltage_accuracy, misshapen);
+        let accuracy = voltage_uncertainty(points, accuracy.fraction, accuracy.volts.max(misshapen));
         let mut motor = Motor::from(request.known.map(|known| if let Known::Fixed(value) = known { value } else { 0.0 }));
         let mut system = System::of(points, &motor, &accuracy, request, losses);
         let mut solved = system.solve(excitation, request);

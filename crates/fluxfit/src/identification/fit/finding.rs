@@ -55,6 +55,13 @@ pub struct Trust {
     pub least_inductance: f64,
 }
 
+impl Trust {
+    /// Whether nothing of the fit is an answer.
+    pub(crate) fn is_none(&self) -> bool {
+        self.too_sharp || self.runaway.is_some()
+    }
+}
+
 /// What is known from noise, accuracy and excitation, and where the motor was held: what a further measurement would add to.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bench {

@@ -10,6 +10,7 @@ use super::{
     super::request::{Known, Request},
     estimate::Estimate,
     excitation::Excitation,
+    voltage_accuracy::VoltageAccuracy,
     voltage_loss::Loss,
 };
 use crate::steady::OperatingPoint;
@@ -31,20 +32,24 @@ pub struct Misfit {
     pub voltage_accuracy: f64,
 }
 
-/// Looks for contradiction; if there is any, solves the points again at the accuracy to which they agree. Priors have no part in it: one
-/// that the points contradict must not make the voltages look worse.
+/// Solves the points with voltages that may err by so many volts besides their accuracy, and looks for contradiction; if there is any,
+/// again at the accuracy to which they agree. Priors have no part in it: one that the points contradict must not make the voltages look
+/// worse.
 pub(crate) fn admit(
     points: &[OperatingPoint],
     excitation: &Excitation,
-    estimate: Estimate,
     request: &Request,
     losses: &[Loss],
+    volts: f64,
 ) -> (Estimate, Option<Misfit>) {
     let without = |known| if matches!(known, Known::Prior { .. }) { Known::Nothing } else { known };
     let alone = Request { known: request.known.map(without), ..request.clone() };
     let of_points = Excitation::of(points, &alone.known);
-    let solve = |fraction: f64| Estimate::solve_with(points, &of_points, &alone, losses, fraction);
-    let Some(ratio) = significant_ratio(points, &solve(request.voltage_accuracy)) else { return (estimate, None) };
+    let solve = |fraction: f64| Estimate::solve_with(points, &of_points, &alone, losses, VoltageAccuracy { fraction, volts });
+    let solve_whole = |fraction: f64| Estimate::solve_with(points, excitation, request, losses, VoltageAccuracy { fraction, volts });
+    let Some(ratio) = significant_ratio(points, &solve(request.voltage_accuracy)) else {
+        return (solve_whole(request.voltage_accuracy), None);
+    };
     // At an accuracy of the whole voltage nothing contradicts anything.
     let (mut low, mut high) = (request.voltage_accuracy.max(f64::EPSILON), 1.0_f64);
     for _ in 0..BISECTIONS {
@@ -56,7 +61,7 @@ pub(crate) fn admit(
             high = middle;
         }
     }
-    (Estimate::solve_with(points, excitation, request, losses, high), Some(Misfit { ratio, voltage_accuracy: high }))
+    (solve_whole(high), Some(Misfit { ratio, voltage_accuracy: high }))
 }
 
 /// Root of chi squared per degree of freedom, if an F test finds it too large.

@@ -72,6 +72,8 @@ pub struct OutputFit {
     pub correlation_of_neighbours: f64,
     /// Whether the electrical angle was in the log and turned with the speed.
     pub angle_known: bool,
+    /// By how many volts dead time may differ from what was found of it: what the model of it usually lacks, or what an observer corrects.
+    pub(crate) unexplained_loss: f64,
     /// What it comes to.
     pub finding: Finding,
 }
@@ -124,8 +126,8 @@ impl OutputFit {
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };
         let misshapen = voltage_loss::misshapen_in_rows(log, reading, drive.faults.dead_time.voltage);
-        let of_loss = voltage_loss::corrected_by_observer(log, &drive, rms_by_axis(&residuals));
-        let accuracies = [(request.voltage_accuracy, misshapen), (0.0, of_loss)];
+        let corrected_beside_loss = voltage_loss::corrected_by_observer(log, &drive, rms_by_axis(&residuals));
+        let accuracies = [(request.voltage_accuracy, misshapen), (0.0, corrected_beside_loss)];
         let accuracies = accuracies.map(|(fraction, volts)| VoltageAccuracy { fraction, volts });
         let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, accuracies, &scale);
         let shifts = OutputShifts { process_noise: errors.by_contradiction(&unknowns, &shifts.process_noise), ..shifts };
@@ -159,6 +161,7 @@ impl OutputFit {
             stretches: objective.stretches().collect(),
             angle_known: objective.angle_known(),
             redundancy: residuals.len().saturating_sub(unknowns.len()),
+            unexplained_loss: corrected_beside_loss.max(voltage_loss::misshapen_if_fitted(drive.faults.dead_time.voltage)),
             correlation_of_neighbours: correlation,
             finding,
             timings: readings,

@@ -74,19 +74,19 @@ impl SteadyFit {
     /// # Errors
     /// If there is none.
     pub fn of(log: &Log, request: &Request) -> Result<Self, Error> {
-        Self::solved(log, request, !is_control_rate(log))
+        Self::solved(log, request, InDoubt { angle_and_winding: !is_control_rate(log), loss: 0.0 })
     }
 
     /// The same of points that answer because simulated currents do not explain the log: its angle may be off, and its winding may warm, at
-    /// any rate of the rows.
+    /// any rate of the rows; so may what dead time takes from each point differ from its unknowns, by so many volts.
     ///
     /// # Errors
     /// If there is none.
-    pub(crate) fn with_drive_in_doubt(log: &Log, request: &Request) -> Result<Self, Error> {
-        Self::solved(log, request, true)
+    pub(crate) fn with_drive_in_doubt(log: &Log, request: &Request, loss: f64) -> Result<Self, Error> {
+        Self::solved(log, request, InDoubt { angle_and_winding: true, loss })
     }
 
-    fn solved(log: &Log, request: &Request, in_doubt: bool) -> Result<Self, Error> {
+    fn solved(log: &Log, request: &Request, in_doubt: InDoubt) -> Result<Self, Error> {
         let (as_measured, frames) = frames(log, operating_points(log, request)?, request);
         let (mut unturned, mut other_timing) = measure(log, &as_measured, request);
         if recorder::is_recorders(log) {
@@ -94,8 +94,9 @@ impl SteadyFit {
                 recorder::pool_noise(points, windows::least_current(log));
             }
         }
-        let angle = FrameAngle::possible(log, request).filter(|_| in_doubt);
+        let angle = FrameAngle::possible(log, request).filter(|_| in_doubt.angle_and_winding);
         let solved = match &frames {
+            // Of a recorder's log everything is in doubt, and simulated currents tell nothing of its dead time.
             Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
             None => solve_at_angle(log, &unturned, angle, in_doubt, request),
         };
@@ -174,6 +175,15 @@ impl SteadyFit {
     }
 }
 
+/// What is in doubt of a drive.
+#[derive(Debug, Clone, Copy)]
+struct InDoubt {
+    /// Whether its angle may be off, and its winding may warm.
+    angle_and_winding: bool,
+    /// By how many volts what dead time takes from a point may differ from its unknowns.
+    loss: f64,
+}
+
 /// What is in doubt of the frames of a recorder's columns.
 struct Frames {
     lag: FrameLag,
@@ -233,7 +243,7 @@ fn solve_at_lag(
         let points = lag.turned_back(unturned);
         let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other)));
         let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, lag, psi_f, log)).collect();
-        let solved = solve_beside(log, points, &unknowns, true, request);
+        let solved = solve_beside(log, points, &unknowns, InDoubt { angle_and_winding: true, loss: 0.0 }, request);
         (*lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
         solved
     };
@@ -246,7 +256,7 @@ fn solve_at_lag(
 
 /// Solves points of a drive whose angle may be unknown; again with the points turned back by what was found of it. Points that contradict
 /// each other are left so: an angle bends to anything, and what makes them contradict each other may be something else.
-fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAngle>, in_doubt: bool, request: &Request) -> Solved {
+fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAngle>, in_doubt: InDoubt, request: &Request) -> Solved {
     let at_the_angle = solve_beside(log, unturned.to_vec(), &[], in_doubt, request);
     let Some(mut angle) = angle.filter(|_| at_the_angle.misfit.is_none()) else { return at_the_angle };
     let mut motor = Motor { rs: 0.0, ld: 0.0, lq: 0.0, psi_f: frame_lag::rough_flux(unturned) };
@@ -263,14 +273,15 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
     round(&mut angle)
 }
 
-/// Solves points beside the losses, these unknowns of their frames, and a resistance that changes: `in_doubt`, if nothing shows it.
-fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_doubt: bool, request: &Request) -> Solved {
+/// Solves points beside the losses, these unknowns of their frames, and a resistance that changes: if that is in doubt, though nothing shows
+/// it.
+fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_doubt: InDoubt, request: &Request) -> Solved {
     let excitation = Excitation::of(&points, &request.known);
     let possible = LossPrior::possible(log, request);
     let harmonics = harmonics(log, &points, &excitation, &possible, request);
     let mut losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
     let all = |losses: &[Loss]| losses.iter().chain(of_frames).cloned().collect::<Vec<_>>();
-    let admit = |all: &[Loss]| misfit::admit(&points, &excitation, Estimate::solve(&points, &excitation, request, all), request, all);
+    let admit = |all: &[Loss]| misfit::admit(&points, &excitation, request, all, in_doubt.loss);
     let (mut estimate, mut misfit) = admit(&all(&losses));
     // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
     // saturation.
@@ -278,7 +289,7 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_d
         losses.clear();
         (estimate, misfit) = admit(&all(&losses));
     }
-    let mut warming = Warming::expected(log, &points, &estimate.motor, in_doubt, request);
+    let mut warming = Warming::expected(log, &points, &estimate.motor, in_doubt.angle_and_winding, request);
     if let Some(warming) = &mut warming {
         losses.push(warming.unknown(log, &points));
         (estimate, misfit) = admit(&all(&losses));

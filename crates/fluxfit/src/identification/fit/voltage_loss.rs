@@ -156,7 +156,13 @@ impl LossPrior {
 /// By how many volts each row's loss may differ from what a fit of simulated currents makes of it, if each phase loses this voltage, V.
 pub(super) fn misshapen_in_rows(log: &Log, reading: VoltageTiming, voltage: f64) -> f64 {
     // In rows that are the drive's own periods, the loss is computed edge by edge.
-    if reading.is_unusual() || !is_control_rate(log) { MISSHAPEN * 4.0 / PI * voltage.abs() } else { 0.0 }
+    if reading.is_unusual() || !is_control_rate(log) { misshapen_if_fitted(voltage) } else { 0.0 }
+}
+
+/// By how many volts each operating point's loss may differ from its unknowns, if simulated currents found that each phase loses this
+/// voltage, V.
+pub(super) fn misshapen_if_fitted(voltage: f64) -> f64 {
+    MISSHAPEN * 4.0 / PI * voltage.abs()
 }
 
 /// The voltage, V, that an observer corrects from row to row beside a loss, given what is left of the currents, A. It may be a part of the

@@ -43,7 +43,7 @@ pub(crate) fn points_tell_more(
     if points.misfit.is_some() {
         return Points::TellLess;
     }
-    if currents.finding.trust.runaway.is_some() {
+    if currents.finding.trust.is_none() {
         return Points::AreNarrower;
     }
     let judged = judge(&currents.finding, None, request, false);
@@ -84,9 +84,9 @@ pub(crate) fn is_narrower(points: &SteadyFit, currents: &OutputFit, request: &Re
 }
 
 /// Sum of the logarithms of the intervals' half-widths as parts of the values, faults in doubt not counted: the points know of none.
-/// What is wider than its value, or not positive, is not told: one; nor is anything beside a fault that ran away.
+/// What is wider than its value, or not positive, is not told: one; nor is anything of a fit that is not to be trusted.
 fn width(finding: &Finding, request: &Request) -> f64 {
-    if finding.trust.runaway.is_some() {
+    if finding.trust.is_none() {
         return 0.0;
     }
     let judged = judge(finding, None, request, false);

@@ -101,7 +101,7 @@ pub(crate) fn judge(
     };
     let mut judged = Parameter::ALL
         .map(|parameter| by_interval(parameter, finding, uncertainty.parameters[parameter as usize], request.known[parameter as usize]));
-    distrust_sharp_intervals(&mut judged, &finding.trust);
+    distrust_if_disturbed(&mut judged, &finding.trust);
     if saturation.is_some_and(SaturationFinding::is_of_currents) {
         // No constant describes such a motor, however narrow the interval of one is.
         for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
@@ -116,6 +116,8 @@ pub(crate) fn judge(
     }
     if let Some(fault) = finding.trust.runaway {
         distrust_all(&mut judged, request, &Reason::RunawayFault { fault });
+    } else if finding.trust.too_sharp {
+        distrust_all(&mut judged, request, &Reason::SharperThanNoise);
     }
     distrust_if_impossible(&mut judged, finding.trust.least_inductance, request);
     // Zero times any motor fits as well, and a prior does not hold against equations without any voltage error.
@@ -140,17 +142,15 @@ fn by_interval(parameter: Parameter, finding: &Finding, uncertainty: ParameterUn
     Judged { parameter, raw, uncertainty, verdict, reason }
 }
 
-/// Where the residuals are not noise, or the slopes are chaos, an interval that comes from them would be as sharp as it is wrong.
-fn distrust_sharp_intervals(judged: &mut [Judged], trust: &Trust) {
-    let why = match trust {
-        Trust { too_sharp: true, .. } => Reason::SharperThanNoise,
-        Trust { disturbed_without_angle: true, .. } => Reason::DisturbedWithoutAngle,
-        _ => return,
-    };
+/// Where the residuals are not noise, an interval that comes from them would be as sharp as it is wrong.
+fn distrust_if_disturbed(judged: &mut [Judged], trust: &Trust) {
+    if !trust.disturbed_without_angle {
+        return;
+    }
     for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
         one.verdict = Verdict::Weak;
         one.uncertainty = one.uncertainty.with_min_half_width(IDENTIFIED * one.raw.abs());
-        one.reason = Some(why.clone());
+        one.reason = Some(Reason::DisturbedWithoutAngle);
     }
 }
 
@@ -244,12 +244,11 @@ mod tests {
         }
     }
 
-    /// Not below ±5 %, and weak.
+    /// Its slopes mean nothing, and so do intervals from them.
     #[test]
-    fn a_fit_sharper_than_its_noise_is_weak() {
+    fn a_fit_sharper_than_its_noise_tells_nothing() {
         for one in judged(MOTOR, Trust { too_sharp: true, ..Trust::default() }, &Request::default()) {
-            assert_eq!((one.verdict, one.reason.as_ref()), (Verdict::Weak, Some(&Reason::SharperThanNoise)));
-            assert!(one.relative_half_width() >= IDENTIFIED);
+            assert_eq!((one.verdict, one.reason), (Verdict::NotIdentifiable, Some(Reason::SharperThanNoise)));
         }
     }
 }
