@@ -177,7 +177,6 @@ fn kind(remedy: &Remedy) -> &'static str {
         Remedy::RemoveDisturbances => "stretch for the steady model (no width)",
         Remedy::CalibrateSensors => "calibrate the sensors (no width)",
         Remedy::SharperPrior => "sharper prior (no width)",
-        Remedy::LogAngle => "log the angle (no width)",
         _ => "another (no width)",
     }
 }

@@ -101,7 +101,6 @@ impl Case {
                 case.hold(at, 0.5 * omega_e, HOLD);
                 case.request.model = Some(Model::Steady);
             }
-            Remedy::LogAngle if !self.scenario.logging.theta_e => case.scenario.logging.theta_e = true,
             Remedy::SharperPrior => case.give_rs(MULTIMETER),
             _ => return None,
         }

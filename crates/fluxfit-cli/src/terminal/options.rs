@@ -14,7 +14,6 @@ pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
         Remedy::RemoveDisturbances => Some("--window T0:T1 --model steady"),
         Remedy::NarrowCurrents | Remedy::SimilarWindows => Some("--window T0:T1"),
         Remedy::SharperPrior => Some("--prior"),
-        Remedy::LogAngle => Some("--model steady"),
         _ => None,
     }
 }

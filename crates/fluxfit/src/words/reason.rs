@@ -42,11 +42,6 @@ impl Display for Reason {
                 "the simulated currents jump at the least change of what was fitted, as those of a phase that switches around zero do, so the \
                  fit looks sharper than its noise allows, and nothing of it is to be trusted"
             ),
-            Self::DisturbedWithoutAngle => write!(
-                f,
-                "unknown voltages disturb the motor, and without the electrical angle they cannot be told from dead time or unequal \
-                 current sensors, which move every parameter"
-            ),
             Self::Saturates => write!(f, "the motor saturates, and only a few terms of that were fitted: take the number as an estimate"),
             Self::RunawayFault { fault } => write!(
                 f,

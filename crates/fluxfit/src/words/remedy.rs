@@ -58,9 +58,6 @@ impl Display for Remedy {
                 f,
                 "if the terminals were shorted, give one parameter exactly, for example R_s as measured there; else log the voltages"
             ),
-            Self::LogAngle => {
-                write!(f, "log theta_e too (electrical, as the drive uses it), or hold the drive still and use the steady model")
-            }
             Self::CheckFrame { lag } => write!(
                 f,
                 "check that voltages and currents are of one instant and one frame: voltages whose frame is late by {} us explain it, and a \

@@ -79,7 +79,6 @@ fn need(remedy: &Remedy) -> String {
         Remedy::SimilarWindows => "three windows at nearly the same currents".to_owned(),
         Remedy::SharperPrior => "a sharper prior, or another operating point".to_owned(),
         Remedy::FixOne => "one parameter given".to_owned(),
-        Remedy::LogAngle => "theta_e in the log".to_owned(),
         Remedy::CheckFrame { lag } => format!("voltages of the currents' instant (now {} us late)", three_digits(1e6 * lag)),
         Remedy::CheckSigns { .. } => "signs and order of the columns checked".to_owned(),
     }

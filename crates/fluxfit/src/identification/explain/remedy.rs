@@ -70,9 +70,6 @@ pub enum Remedy {
     SharperPrior,
     /// Fix one parameter ([`Known::Fixed`](crate::Known::Fixed)), for example R_s as measured at the terminals.
     FixOne,
-    /// Log the electrical angle too ([`Columns::theta_e`](crate::Columns::theta_e)), or hold currents and speed constant and use the steady
-    /// model.
-    LogAngle,
     /// Check that voltages and currents are of one instant and one frame: a lag explains what else looks like a wrong sign.
     CheckFrame {
         /// The lag that would, s.
@@ -119,7 +116,6 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measu
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
         Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
-        Reason::DisturbedWithoutAngle => Remedy::LogAngle,
         Reason::Saturates => Remedy::NarrowCurrents,
         Reason::Wide { part, .. } => narrower(*part, parameter, finding, measure),
     })

@@ -43,8 +43,6 @@ impl Finding {
 pub struct Trust {
     /// Correlation of neighbouring residuals; zero where the residuals are too small to mean anything.
     pub correlation_of_neighbours: f64,
-    /// Whether an observer follows disturbances which, without the electrical angle, cannot be told from faults of the drive.
-    pub disturbed_without_angle: bool,
     /// Whether the intervals are sharper than noise allows: then the slopes behind them mean nothing.
     pub too_sharp: bool,
     /// Root mean square of what a simulation without any correction misses, as a fraction of the largest current.

@@ -140,7 +140,6 @@ impl OutputFit {
             open: [false; 4],
             trust: Trust {
                 correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
-                disturbed_without_angle: is_taken(&terms, Fault::Disturbance) && !objective.angle_traced(),
                 too_sharp: errors.are_too_small(objective, &drive, &unknowns, &residuals),
                 misses: missed(objective, &drive) / objective.peak_current(),
                 runaway,

@@ -273,8 +273,7 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
     round(&mut angle)
 }
 
-/// Solves points beside the losses, these unknowns of their frames, and a resistance that changes: if that is in doubt, though nothing shows
-/// it.
+/// Solves points beside the losses, these unknowns of their frames, and a resistance that changes, if that is in doubt.
 fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_doubt: InDoubt, request: &Request) -> Solved {
     let excitation = Excitation::of(&points, &request.known);
     let possible = LossPrior::possible(log, request);

@@ -59,8 +59,8 @@ pub struct Systematic {
     pub saturation: f64,
     /// Of directions that are not excited.
     pub excitation: f64,
-    /// Of contradiction between the operating points, where there is any; it then replaces `accuracy`. Also what widens an interval to ±5 %
-    /// where disturbances and the missing angle leave it open what acts.
+    /// Of contradiction between the operating points, where there is any; it then replaces `accuracy`. Also what widens that
+    /// of psi_f of a recorder's log to the scatter of its points.
     pub misfit: f64,
 }
 

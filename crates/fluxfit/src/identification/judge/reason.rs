@@ -56,8 +56,6 @@ pub enum Reason {
     },
     /// The fit looks sharper than the noise of the currents allows.
     SharperThanNoise,
-    /// Unknown voltages disturb the motor, and without the electrical angle they cannot be told from faults of the drive.
-    DisturbedWithoutAngle,
     /// A fault of the drive came out as no drive has it, so the motor beside it is no answer either.
     RunawayFault {
         /// Which.

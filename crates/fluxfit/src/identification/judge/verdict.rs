@@ -101,7 +101,6 @@ pub(crate) fn judge(
     };
     let mut judged = Parameter::ALL
         .map(|parameter| by_interval(parameter, finding, uncertainty.parameters[parameter as usize], request.known[parameter as usize]));
-    distrust_if_disturbed(&mut judged, &finding.trust);
     if saturation.is_some_and(SaturationFinding::is_of_currents) {
         // No constant describes such a motor, however narrow the interval of one is.
         for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
@@ -140,18 +139,6 @@ fn by_interval(parameter: Parameter, finding: &Finding, uncertainty: ParameterUn
         _ => Some(reason::of(parameter, finding, &uncertainty, WEAK)),
     };
     Judged { parameter, raw, uncertainty, verdict, reason }
-}
-
-/// Where the residuals are not noise, an interval that comes from them would be as sharp as it is wrong.
-fn distrust_if_disturbed(judged: &mut [Judged], trust: &Trust) {
-    if !trust.disturbed_without_angle {
-        return;
-    }
-    for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
-        one.verdict = Verdict::Weak;
-        one.uncertainty = one.uncertainty.with_min_half_width(IDENTIFIED * one.raw.abs());
-        one.reason = Some(Reason::DisturbedWithoutAngle);
-    }
 }
 
 /// If one parameter came out negative, and not by noise, or as an inductance with which the current would settle within a part of a row,
