@@ -116,7 +116,10 @@ fn false_terms(found: &[Found]) -> String {
     let far: Vec<String> = with_term
         .iter()
         .filter(|log| farthest(log) > FAR)
-        .map(|log| format!("- log {}: {}, {:.2} %\n", log.drawn.index, log.terms.join(", "), 100.0 * farthest(log)))
+        .map(|log| {
+            let Drawn { index, kind, .. } = &log.drawn;
+            format!("- log {index} ({}): {}, {:.2} %\n", kind.label(), log.terms.join(", "), 100.0 * farthest(log))
+        })
         .collect();
     format!(
         "\nOf {} logs without a fault {} have a term for one; in {} of these an identified number is more than {} % off.\n\n{}",
