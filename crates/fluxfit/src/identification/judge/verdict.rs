@@ -115,10 +115,13 @@ pub(crate) fn judge(
     }
     if let Some(fault) = finding.trust.runaway {
         distrust_all(&mut judged, request, &Reason::RunawayFault { fault });
-    } else if finding.trust.too_sharp {
-        distrust_all(&mut judged, request, &Reason::SharperThanNoise);
     }
     distrust_if_impossible(&mut judged, finding.trust.least_inductance, request);
+    // That nothing is told anyway has a reason which says more.
+    let is_told = |one: &Judged| one.verdict != Verdict::NotIdentifiable && one.reason != Some(Reason::Given);
+    if finding.trust.too_sharp && judged.iter().any(is_told) {
+        distrust_all(&mut judged, request, &Reason::SharperThanNoise);
+    }
     // Zero times any motor fits as well, and a prior does not hold against equations without any voltage error.
     if is_short_circuit && !request.known.iter().any(|known| matches!(known, Known::Fixed(_))) {
         distrust_all(&mut judged, request, &Reason::ShortCircuit);
