@@ -74,12 +74,12 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         Part::Timing => write!(f, "the timing of the voltage columns is not known, which {leaves}"),
         Part::DeadTime => write!(
             f,
-            "the currents ripple as dead time or device drops make them, and the voltage these take looks like resistance, which {leaves}"
+            "how much voltage dead time and device drops take is not known well enough, and it looks like resistance, which {leaves}"
         ),
         Part::FrameLag => write!(
             f,
-            "the rows are too far apart to show whether the angle is off, or voltages and currents are of different instants; either acts \
-             like inductance, which {leaves}"
+            "operating points do not show whether the angle is off, or voltages and currents are of different instants; either acts like \
+             inductance, which {leaves}"
         ),
         Part::WithinRows => {
             write!(f, "each row spans several of the drive's periods, and what the voltages do between them is not logged, which {leaves}")
