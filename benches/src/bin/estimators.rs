@@ -46,7 +46,7 @@ fn events() -> Result<Vec<Event>, Box<dyn Error>> {
     Ok((0..columns.t.len()).filter_map(|k| stream.push(&row(k))).collect())
 }
 
-/// CPU time per event of the fastest repetition, ns, of a pass that continues from a state which takes no part in the time.
+/// CPU time per event of a pass, ns, the fastest of all; how it begins takes no part in the time.
 fn nanoseconds<S>(events: &[Event], begin: impl Fn() -> S, pass: impl Fn(&mut S, &[Event])) -> f64 {
     let once = || {
         let mut state = begin();

@@ -177,9 +177,9 @@ fn a_loss_of_another_shape_makes_no_number_wrong() {
         };
         scenario.logging.theta_e = false;
         let found = identify(&simulate(&scenario, 0, || ()).unwrap().log().unwrap(), &Request::default()).unwrap().identification;
-        if let Some(fit) = &found.output {
-            assert!(fit.drive.faults.dead_time.voltage > 10.0);
-        }
+        // With little noise operating points may answer.
+        let dead_time = found.output.as_ref().map(|fit| fit.drive.faults.dead_time.voltage);
+        assert!(dead_time.is_none() && current_noise < 0.01 || dead_time > Some(10.0), "{seed} {current_noise}: {dead_time:?}");
         for judgement in &found.parameters {
             let (truth, half_width) = (motor.get(judgement.parameter), judgement.uncertainty.half_width);
             let raw = judgement.raw;

@@ -46,9 +46,9 @@ pub(crate) fn admit(
     let alone = Request { known: request.known.map(without), ..request.clone() };
     let of_points = Excitation::of(points, &alone.known);
     let solve = |fraction: f64| Estimate::solve_with(points, &of_points, &alone, losses, VoltageAccuracy { fraction, volts });
-    let solve_whole = |fraction: f64| Estimate::solve_with(points, excitation, request, losses, VoltageAccuracy { fraction, volts });
+    let with_priors = |fraction: f64| Estimate::solve_with(points, excitation, request, losses, VoltageAccuracy { fraction, volts });
     let Some(ratio) = significant_ratio(points, &solve(request.voltage_accuracy)) else {
-        return (solve_whole(request.voltage_accuracy), None);
+        return (with_priors(request.voltage_accuracy), None);
     };
     // At an accuracy of the whole voltage nothing contradicts anything.
     let (mut low, mut high) = (request.voltage_accuracy.max(f64::EPSILON), 1.0_f64);
@@ -61,7 +61,7 @@ pub(crate) fn admit(
             high = middle;
         }
     }
-    (solve_whole(high), Some(Misfit { ratio, voltage_accuracy: high }))
+    (with_priors(high), Some(Misfit { ratio, voltage_accuracy: high }))
 }
 
 /// Root of chi squared per degree of freedom, if an F test finds it too large.

@@ -117,7 +117,7 @@ pub(crate) fn judge(
         distrust_all(&mut judged, request, &Reason::RunawayFault { fault });
     }
     distrust_if_impossible(&mut judged, finding.trust.least_inductance, request);
-    // That nothing is told anyway has a reason which says more.
+    // Where nothing is told anyway, the reason there says more.
     let is_told = |one: &Judged| one.verdict != Verdict::NotIdentifiable && one.reason != Some(Reason::Given);
     if finding.trust.too_sharp && judged.iter().any(is_told) {
         distrust_all(&mut judged, request, &Reason::SharperThanNoise);
