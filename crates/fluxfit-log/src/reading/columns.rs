@@ -1,13 +1,10 @@
 //! The choice of columns: which column of the file is which channel.
 
-use super::{alias, chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, resemblance, table::Table};
-use crate::{
-    block::ColumnHead,
-    channel::Channel,
-    header_unit::{HeaderUnit, split_header, unit_in_row},
-    note::Note,
-    problem::Problem,
+use super::{
+    alias, chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, proposal::propose, resemblance,
+    table::Table,
 };
+use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
 use Channel::{Id, Iq, UA, UB, UC, Ud, Uq};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_units::{
@@ -115,24 +112,11 @@ pub(super) fn survey(heads: &[ColumnHead], layout: Option<&'static Layout>, opti
             survey.taken.push((channel, index, unit.ok().or(assumed)));
         }
     }
-    let mut free = finder.names();
-    survey.taken.iter().for_each(|(_, index, _)| free[*index].clear());
-    for channel in Channel::NEEDED.into_iter().filter(|channel| survey.taken.iter().all(|(taken, ..)| taken != channel)) {
-        let fitting: Vec<String> = (free.iter().zip(heads))
-            .map(|(name, head)| if resemblance::has_other_unit(channel, head) { String::new() } else { name.clone() })
-            .collect();
-        if let Some(index) = resemblance::propose(channel, &fitting) {
-            free[index].clear();
-            let head = &heads[index];
-            let in_name = split_header(&head.name, channel.dimension()).1;
-            let in_row = head.unit.as_deref().map(|unit| unit_in_row(unit, &head.name, channel.dimension()));
-            let unit = [Some(in_name), in_row].into_iter().flatten().find_map(|named| match named {
-                HeaderUnit::Known(unit) => Some(unit),
-                _ => None,
-            });
-            survey.resembling.push((channel, index, options.unit(channel).or(unit)));
-        }
-    }
+    let is_missing = |channel: &Channel| survey.taken.iter().all(|(taken, ..)| taken != channel);
+    let missing: Vec<Channel> = Channel::NEEDED.into_iter().filter(is_missing).collect();
+    let is_free = |index: usize| survey.taken.iter().all(|(_, taken, _)| *taken != index);
+    let resembling = propose(&missing, heads, is_free).into_iter();
+    survey.resembling = resembling.map(|found| (found.channel, found.index, options.unit(found.channel).or(found.unit))).collect();
     survey
 }
 

@@ -6,7 +6,8 @@ use super::{
     layout::{Layout, NotALog, is_called},
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
-    resemblance::{has_other_unit, is_reference, propose},
+    proposal::propose,
+    resemblance::{fit, has_other_unit, is_reference},
 };
 use crate::{
     block::ColumnHead,
@@ -114,7 +115,7 @@ impl Finder<'_> {
             if let Some(header) = self.options.header(channel)
                 && found.iter().all(|(taken, _)| *taken != channel)
             {
-                found.push((channel, mapped(channel, header, &self.names())?));
+                found.push((channel, mapped(channel, header, self.heads)?));
             }
         }
         Ok(())
@@ -186,7 +187,7 @@ impl Finder<'_> {
     pub(super) fn index(&self, channel: Channel) -> Result<Option<usize>, FileError> {
         let names = self.names();
         if let Some(header) = self.options.header(channel) {
-            return mapped(channel, header, &names).map(Some);
+            return mapped(channel, header, self.heads).map(Some);
         }
         if let Some(column) = self.layout.and_then(|layout| layout.column(channel)) {
             let tiers = [positions(&names, |name| name == column.header), positions(&names, |name| is_called(name, column.header))];
@@ -329,33 +330,21 @@ impl Finder<'_> {
         if let Some(problem) = self.passed_over {
             return problem.clone().into();
         }
-        // Columns that are used already are not proposed for another channel, and references not for measured currents.
+        // References are not proposed for measured currents.
         let present = self.names();
-        let mut free = present.clone();
-        found.iter().for_each(|(_, index)| free[*index].clear());
         let currents: Vec<Channel> = missing.iter().copied().filter(|channel| channel.dimension() == Dimension::Current).collect();
-        for (name, _) in free.iter_mut().zip(self.heads).filter(|(_, head)| missing.iter().all(|channel| has_other_unit(*channel, head))) {
-            name.clear();
-        }
-        let mut references = Vec::new();
-        for name in free.iter_mut().filter(|name| is_reference(name)) {
-            if currents.iter().any(|channel| propose(*channel, std::slice::from_ref(name)).is_some()) {
-                references.push(std::mem::take(name));
-            }
-        }
-        let resembles = |name: &&String| missing.iter().any(|channel| propose(*channel, std::slice::from_ref(*name)).is_some());
-        let unreadable: Vec<String> = self.unreadable.iter().filter(resembles).cloned().collect();
-        let mut proposals = Vec::new();
-        for channel in missing {
-            let fitting: Vec<String> = free
-                .iter()
-                .zip(self.heads)
-                .map(|(name, head)| if has_other_unit(*channel, head) { String::new() } else { name.clone() })
-                .collect();
-            if let Some(index) = propose(*channel, &fitting) {
-                proposals.push((channel.name(), std::mem::take(&mut free[index])));
-            }
-        }
+        let resembles = |channels: &[Channel], name: &str| channels.iter().any(|channel| fit(*channel, name).is_some());
+        let is_used = |index: usize| found.iter().any(|(_, used)| *used == index);
+        let is_reference_of_current = |index: usize| {
+            let head = &self.heads[index];
+            let may_be = missing.iter().any(|channel| !has_other_unit(*channel, head));
+            !is_used(index) && may_be && is_reference(&head.name) && resembles(&currents, &head.name)
+        };
+        let references: Vec<usize> = (0..present.len()).filter(|index| is_reference_of_current(*index)).collect();
+        let proposals = propose(missing, self.heads, |index| !is_used(index) && !references.contains(&index));
+        let proposals = proposals.into_iter().map(|proposal| (proposal.channel.name(), present[proposal.index].clone())).collect();
+        let references = references.into_iter().map(|index| present[index].clone()).collect();
+        let unreadable: Vec<String> = self.unreadable.iter().filter(|name| resembles(missing, name)).cloned().collect();
         let missing = missing.iter().map(|channel| channel.name()).collect();
         Problem::Missing { missing, present, proposals, references, unreadable }.into()
     }

@@ -27,6 +27,7 @@ mod options;
 mod own_times;
 mod phases;
 mod plausibility;
+mod proposal;
 mod read;
 mod repair;
 mod resemblance;

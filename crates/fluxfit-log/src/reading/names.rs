@@ -1,6 +1,6 @@
 //! The column of a channel, by the names in the header.
 
-use super::resemblance::propose;
+use super::proposal::propose;
 use crate::{
     block::ColumnHead,
     channel::Channel,
@@ -18,13 +18,16 @@ const SHORTEST_MISSPELT: usize = 5;
 ///
 /// # Errors
 /// If the file has no such column, or several.
-pub(super) fn mapped(channel: Channel, header: &str, names: &[String]) -> Result<usize, FileError> {
+pub(super) fn mapped(channel: Channel, header: &str, heads: &[ColumnHead]) -> Result<usize, FileError> {
+    let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
+    let names = names.as_slice();
     let tiers = [positions(names, |name| name == header), positions(names, |name| name.to_lowercase() == header.to_lowercase())];
     if let Some(index) = only(channel, names, tiers)? {
         return Ok(index);
     }
     let containing = names.iter().find(|name| name.to_lowercase().contains(&header.to_lowercase()));
-    let likely = containing.or_else(|| propose(channel, names).map(|index| &names[index])).map(String::as_str);
+    let proposed = || propose(&[channel], heads, |_| true).first().map(|proposal| &names[proposal.index]);
+    let likely = containing.or_else(proposed).map(String::as_str);
     let nearest = likely.or_else(|| nearest(header, names.iter().map(String::as_str).filter(|name| name.len() >= SHORTEST_MISSPELT)));
     Err(Problem::MappedHeader {
         channel: channel.name(),

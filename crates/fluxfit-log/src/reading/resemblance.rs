@@ -65,13 +65,6 @@ const OTHER_UNITS: [&str; 22] = [
     "ah",
 ];
 
-/// The header that most resembles `channel`, if any does.
-pub(super) fn propose(channel: Channel, names: &[String]) -> Option<usize> {
-    let scored = names.iter().enumerate().filter_map(|(index, name)| score(channel, name).map(|score| (index, score)));
-    // Of equal ones the first: a second motor or sensor comes later.
-    scored.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(index, _)| index)
-}
-
 /// Whether a header states the unit of another quantity than the channel's.
 pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
     let dimension = channel.dimension();
@@ -101,8 +94,16 @@ fn without_unit(header: &str) -> Vec<String> {
     words(header.split(['[', '(']).next().unwrap_or(header))
 }
 
+/// How a header resembles a channel.
+pub(super) struct Fit {
+    /// 1 for a name of the channel and nothing else; other words and wrong letters take from it.
+    pub(super) score: f64,
+    /// What stands before and behind the name of the channel, without a unit: the same for columns that belong together.
+    pub(super) around: String,
+}
+
 /// The best similarity of consecutive words to a spelling.
-fn score(channel: Channel, name: &str) -> Option<f64> {
+pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     let words = words(name);
     // Neither time nor speed is proposed for a reference; voltages are, because their references are measured well enough.
     if matches!(channel.dimension(), Dimension::Time | Dimension::Speed)
@@ -116,14 +117,36 @@ fn score(channel: Channel, name: &str) -> Option<f64> {
     }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();
     let runs = (0..words.len()).flat_map(|start| (start + 1..=(start + WORDS).min(words.len())).map(move |end| start..end));
-    let scores = runs.filter_map(|run| {
-        let run = words[run].concat();
-        let length = run.chars().count();
-        let similarity = channel.spellings().iter().map(|spelling| similarity(channel, &run, spelling)).fold(0.0, f64::max);
-        let others = 1.0 - (STEPS * length as f64 / letters as f64).round() / STEPS;
-        (similarity >= SIMILAR).then_some(similarity - OTHER_WORDS * others)
+    let fits = runs.filter_map(|run| {
+        let joined = words[run.clone()].concat();
+        let (bare, number) = without_number(&joined);
+        let of = |text: &str| channel.spellings().iter().map(|spelling| similarity(channel, text, spelling)).fold(0.0, f64::max);
+        let (similarity, named, number) = match of(bare) {
+            exact if exact == 1.0 => (exact, bare, number),
+            _ => (of(&joined), joined.as_str(), ""),
+        };
+        let others = 1.0 - (STEPS * named.chars().count() as f64 / letters as f64).round() / STEPS;
+        let fit = || Fit { score: similarity - OTHER_WORDS * others, around: around(channel, name, &words, run, number) };
+        (similarity >= SIMILAR).then(fit)
     });
-    scores.reduce(f64::max)
+    // Of equal ones the first.
+    fits.reduce(|best, next| if next.score > best.score { next } else { best })
+}
+
+/// A name and the number behind it, of one motor of several: `vd1`. Of a single letter it is more: `T1` is a temperature.
+fn without_number(name: &str) -> (&str, &str) {
+    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    if bare.chars().count() > 1 { name.split_at(bare.len()) } else { (name, "") }
+}
+
+/// What stands around some of the words of a name.
+fn around(channel: Channel, name: &str, words: &[String], run: std::ops::Range<usize>, number: &str) -> String {
+    let end = match split_header(name, channel.dimension()) {
+        (stem, HeaderUnit::Known(_)) => self::words(stem).len().max(run.end),
+        _ => words.len(),
+    };
+    let behind = words.get(run.end..end).unwrap_or_default();
+    format!("{}|{number}|{}", words[..run.start].join(" "), behind.join(" "))
 }
 
 fn similarity(channel: Channel, run: &str, spelling: &str) -> f64 {
@@ -159,28 +182,6 @@ pub(super) fn words(name: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// What is proposed for t, ud, uq, id, iq and omega_e.
-    fn proposed(header: &str) -> Vec<&str> {
-        let names: Vec<String> = header.split(';').map(str::to_owned).collect();
-        let find = |channel| propose(channel, &names).map_or("-", |index| header.split(';').nth(index).unwrap());
-        Channel::NEEDED.into_iter().map(find).collect()
-    }
-
-    #[test]
-    fn headers_of_known_tools() {
-        let paderborn = "u_q;coolant;stator_winding;u_d;stator_tooth;motor_speed;i_d;i_q;pm;stator_yoke;ambient;torque;profile_id";
-        assert_eq!(proposed(paderborn), ["-", "u_d", "u_q", "i_d", "i_q", "motor_speed"]);
-        let vesc = "ms_today;input_voltage;current_motor;current_in;d_axis_current;q_axis_current;erpm;duty_cycle;vesc_id;d_axis_voltage;q_axis_voltage;ms_today_setup";
-        assert_eq!(proposed(vesc), ["ms_today", "d_axis_voltage", "q_axis_voltage", "d_axis_current", "q_axis_current", "erpm"]);
-        let tritium = "Time;BusVoltage;MotorId;MotorIq;MotorVd;MotorVq;MotorVelocity";
-        assert_eq!(proposed(tritium), ["Time", "MotorVd", "MotorVq", "MotorId", "MotorIq", "MotorVelocity"]);
-        let dyno = "Input voltage;Test motor q-axis current;Test motor d-axis current;Output Torque;Output Speed;Output Speed set-point;Absorber q-axis current";
-        assert_eq!(proposed(dyno), ["-", "-", "-", "Test motor d-axis current", "Test motor q-axis current", "Output Speed"]);
-        assert_eq!(proposed("tmie;omga;uds"), ["tmie", "-", "-", "-", "-", "omga"]);
-        assert_eq!(proposed("timestep;speed_step"), ["-"; 6]);
-        assert_eq!(proposed("uq.Time;id.time"), ["uq.Time", "-", "-", "-", "-", "-"]);
-    }
 
     #[test]
     fn references_are_recognized_by_name() {

@@ -30,6 +30,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import scipy.io
 
+import guesses
 import instruments
 import tools
 
@@ -746,6 +747,7 @@ def main():
         write()
     tools.write(sys.modules[__name__])
     instruments.write(sys.modules[__name__])
+    guesses.write(sys.modules[__name__])
     lines = ["# Written by make.py, which says what the keys mean.\n"]
     for case in cases:
         lines.append("\n[[case]]\n")
