@@ -6,6 +6,13 @@
 pub enum Advice {
     /// Name the columns that hold these channels; where a column of the file resembles the channel, its header.
     MapColumns(Vec<(&'static str, Option<String>)>),
+    /// The same, and state the units of these channels, which the headers do not.
+    MapInUnits {
+        /// Channels and headers.
+        columns: Vec<(&'static str, Option<String>)>,
+        /// Channels and units.
+        units: Vec<(&'static str, &'static str)>,
+    },
     /// State the unit of a channel.
     StateUnit {
         /// The channel.

@@ -38,13 +38,14 @@ pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
 pub fn parse_unit(text: &str) -> Result<(String, Unit), FileError> {
     let (name, unit) = key_value(text, "COLUMN=UNIT", "omega=rpm-mech")?;
     let channel = Channel::from_name(name)?;
-    let found = Unit::from_name(unit, channel.dimension()).ok_or_else(|| wrong_unit(channel, unit))?;
+    let found = Unit::from_name(unit, channel.dimension()).filter(|found| channel.units().any(|allowed| allowed == *found));
+    let found = found.ok_or_else(|| wrong_unit(channel, unit))?;
     Ok((channel.name().to_owned(), found))
 }
 
 /// The error for a unit that does not fit its channel.
 pub(crate) fn wrong_unit(channel: Channel, unit: &str) -> FileError {
-    let allowed = Unit::of(channel.dimension()).map(Unit::name).collect();
+    let allowed = channel.units().map(Unit::name).collect();
     Problem::Unit { channel: channel.name(), unit: unit.to_owned(), allowed }.into()
 }
 
@@ -64,7 +65,10 @@ mod tests {
             refusal("omega=rpm"),
             "\"rpm\" is not a unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
         );
-        assert_eq!(refusal("ud=A"), "\"A\" is not a unit of ud; it can be V or mV");
+        assert_eq!(refusal("ud=A"), "\"A\" is not a unit of ud; it can be V, mV or Vrms");
+        assert_eq!(parse_unit("id=arms"), Ok(("id".into(), Unit::AmpereRms)));
+        // An instantaneous value is no root mean square.
+        assert_eq!(refusal("ia=Arms"), "\"Arms\" is not a unit of ia; it can be A or mA");
         assert_eq!(refusal("ud"), "\"ud\" is not understood; write COLUMN=UNIT, as in omega=rpm-mech");
         assert_eq!(parse_map("ud=").unwrap_err().to_string(), "\"ud=\" is not understood; write COLUMN=HEADER, as in omega_e=motor_speed");
     }

@@ -96,6 +96,12 @@ impl Channel {
         self.unit().dimension()
     }
 
+    /// The units that it can have, SI first.
+    pub(crate) fn units(self) -> impl Iterator<Item = Unit> {
+        let is_of_dq = matches!(self, Self::Ud | Self::Uq | Self::Id | Self::Iq);
+        Unit::of(self.dimension()).filter(move |unit| is_of_dq || !unit.is_rms())
+    }
+
     /// What drives and tools call it, in lower case without punctuation: to propose a column, never to choose one.
     pub(crate) fn spellings(self) -> &'static [&'static str] {
         match self {

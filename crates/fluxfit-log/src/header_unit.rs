@@ -55,7 +55,11 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         "deg" | "degree" | "degrees" | "°" => by_rotation(Unit::Degree, Unit::DegreeMechanical, Unit::Degree),
         // Lower case: the unit may be °C or C.
         "degc" | "°c" | "c" | "celsius" => Unit::Celsius,
-        _ => return Unit::from_name(&text, dimension).or_else(|| Unit::from_name(&text.replace('_', "-"), dimension)),
+        _ => {
+            let named = Unit::from_name(&text, dimension).or_else(|| Unit::from_name(&text.replace('_', "-"), dimension));
+            // Root mean squares are read as such only where the user states it.
+            return named.filter(|unit| !unit.is_rms());
+        }
     };
     (unit.dimension() == dimension).then_some(unit)
 }

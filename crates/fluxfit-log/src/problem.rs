@@ -33,16 +33,22 @@ pub(crate) enum Problem {
     OtherMark { other: u64 },
 
     // Columns
-    #[error("{}{}", missing_columns(.missing, .present, .proposals), not_measured(.references, .unreadable))]
+    #[error("{}{}{}", missing_columns(.missing, .present, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable))]
     Missing {
         missing: Vec<&'static str>,
         present: Vec<String>,
         proposals: Vec<(&'static str, String)>,
+        /// The proposed channels whose columns hold root mean squares, and their units.
+        rms: Vec<(&'static str, &'static str)>,
         references: Vec<String>,
         unreadable: Vec<String>,
     },
     #[error("by its name this column is a reference, not the measured current; map {channel} to the measured current, or log it")]
     Reference { channel: &'static str },
+    #[error("{}; state their unit, also if they are peak values", are_rms(&.columns.iter().map(|(_, header, _)| header.as_str()).collect::<Vec<_>>()))]
+    Rms { columns: Vec<(&'static str, String, &'static str)> },
+    #[error("by its name this column holds rms values, and the phase quantity is needed at each instant; log it, or id and iq")]
+    PhaseRms,
     #[error("the file has the layout '{layout}': {reason}")]
     NotALog { layout: &'static str, reason: &'static str, advice: Option<Advice> },
     #[error("the header has this name {count} times; rename or remove all but one")]
@@ -211,13 +217,15 @@ impl Problem {
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::ManyColumns { .. } => FileErrorKind::Format,
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
-            Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::Duplicate { .. } => FileErrorKind::Columns,
+            Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::PhaseRms | Self::Duplicate { .. } => {
+                FileErrorKind::Columns
+            }
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
             Self::AmbiguousQuantity { .. } | Self::LoadCurve | Self::DirectVoltage { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
-            Self::ElectricalSpeed { .. } => FileErrorKind::Unit,
+            Self::ElectricalSpeed { .. } | Self::Rms { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } | Self::OwnTimes { .. } => {
@@ -239,10 +247,11 @@ impl Problem {
         let map = |channels: &[&'static str]| vec![Advice::MapColumns(channels.iter().map(|channel| (*channel, None)).collect())];
         match self {
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
-            Self::Missing { proposals, .. } => {
-                let pairs = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone())));
-                vec![Advice::MapColumns(pairs.collect())]
+            Self::Missing { proposals, rms, .. } => {
+                let columns = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect();
+                vec![if rms.is_empty() { Advice::MapColumns(columns) } else { Advice::MapInUnits { columns, units: rms.clone() } }]
             }
+            Self::Rms { columns } => columns.iter().map(|(channel, _, unit)| Advice::StateUnit { channel, unit: Some(unit) }).collect(),
             Self::Reference { channel } | Self::Ambiguous { channel, .. } => map(&[channel]),
             Self::Shared { first, second } => map(&[first, second]),
             Self::MappedHeader { channel, nearest: Some(header), .. } => vec![Advice::MapColumns(vec![(channel, Some(header.clone()))])],
@@ -305,6 +314,22 @@ fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, Str
     let lacking = if rest.is_empty() { String::new() } else { format!("; no column resembles {}", list(&rest)) };
     let (by, if_so) = if pairs.len() == 1 { ("its name", "map it if it is") } else { ("their names", "map them if they are") };
     format!("{what}; by {by}, {}: {if_so}{lacking}", list(&pairs))
+}
+
+/// What is to be said of proposed columns that hold root mean squares.
+fn proposed_rms(proposals: &[(&str, String)], rms: &[(&str, &str)]) -> String {
+    let is_rms = |channel: &str| rms.iter().any(|(of, _)| *of == channel);
+    let headers: Vec<&str> = proposals.iter().filter(|(channel, _)| is_rms(channel)).map(|(_, header)| header.as_str()).collect();
+    if headers.is_empty() {
+        return String::new();
+    }
+    format!("; {}, so state their units too, and check whether the others are rms values", are_rms(&headers))
+}
+
+fn are_rms(headers: &[&str]) -> String {
+    let quoted: Vec<String> = headers.iter().map(|header| format!("'{}'", shorten(header))).collect();
+    let are = if headers.len() == 1 { "is an rms value" } else { "are rms values" };
+    format!("{} {are} by name, where dq values are peak values, sqrt 2 times as large", list(&quoted))
 }
 
 fn not_measured(references: &[String], unreadable: &[String]) -> String {

@@ -1,7 +1,7 @@
 //! Units that a column of a log may have.
 
 use crate::quantity::Dimension;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// A unit that a column of a log may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -22,6 +22,10 @@ pub enum Unit {
     Ampere,
     /// mA.
     Milliampere,
+    /// Root mean square of a phase's voltage, where the voltage itself is its peak value.
+    VoltRms,
+    /// The same of a current.
+    AmpereRms,
     /// Electrical rad/s.
     RadianPerSecond,
     /// Electrical r/min.
@@ -50,15 +54,17 @@ pub enum Unit {
 
 impl Unit {
     /// All of them; of each dimension the SI unit first.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 22] = [
         Self::Second,
         Self::Millisecond,
         Self::Microsecond,
         Self::Nanosecond,
         Self::Volt,
         Self::Millivolt,
+        Self::VoltRms,
         Self::Ampere,
         Self::Milliampere,
+        Self::AmpereRms,
         Self::RadianPerSecond,
         Self::RpmElectrical,
         Self::RpmMechanical,
@@ -82,8 +88,10 @@ impl Unit {
             Self::Nanosecond => ("ns", "ns", Dimension::Time, 1e-9),
             Self::Volt => ("V", "V", Dimension::Voltage, 1.0),
             Self::Millivolt => ("mV", "mV", Dimension::Voltage, 1e-3),
+            Self::VoltRms => ("Vrms", "V rms", Dimension::Voltage, SQRT_2),
             Self::Ampere => ("A", "A", Dimension::Current, 1.0),
             Self::Milliampere => ("mA", "mA", Dimension::Current, 1e-3),
+            Self::AmpereRms => ("Arms", "A rms", Dimension::Current, SQRT_2),
             Self::RadianPerSecond => ("rad/s", "electrical rad/s", Dimension::Speed, 1.0),
             Self::RpmElectrical => ("rpm-elec", "electrical r/min", Dimension::Speed, TAU / 60.0),
             Self::RpmMechanical => ("rpm-mech", "mechanical r/min", Dimension::Speed, TAU / 60.0),
@@ -117,6 +125,11 @@ impl Unit {
     /// Whether the number of pole pairs is needed to convert it to electrical quantities.
     pub fn is_mechanical(self) -> bool {
         self.properties().0.ends_with("-mech")
+    }
+
+    /// Whether it is that of a root mean square, which only vectors of the dq frame can be in: of these a value is the peak of the phases.
+    pub fn is_rms(self) -> bool {
+        matches!(self, Self::VoltRms | Self::AmpereRms)
     }
 
     /// Its size in SI units; of mechanical units, for one pole pair.
@@ -161,6 +174,7 @@ mod tests {
         };
         assert_eq!(si(Unit::Millisecond), 0.3);
         assert_eq!(si(Unit::Volt), 300.0);
+        assert_eq!(si(Unit::AmpereRms), 300.0 * SQRT_2);
         assert_eq!(si(Unit::RpmElectrical), 300.0 * (TAU / 60.0));
         assert_eq!(si(Unit::RpmMechanical), 300.0 * (TAU / 60.0 * 4.0));
         assert_eq!(si(Unit::HertzMechanical), 300.0 * (TAU * 4.0));

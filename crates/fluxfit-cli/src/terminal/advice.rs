@@ -25,6 +25,11 @@ fn units(advice: &[Advice]) -> Option<String> {
 
 pub(super) fn option(advice: &Advice) -> Option<String> {
     match advice {
+        Advice::MapInUnits { columns, units } => {
+            let units: Vec<String> = units.iter().map(|(channel, unit)| format!("{channel}={unit}")).collect();
+            let map = option(&Advice::MapColumns(columns.clone()))?;
+            Some(if units.is_empty() { map } else { format!("{map} --unit {}", units.join(",")) })
+        }
         Advice::MapColumns(pairs) => {
             let pair = |(channel, header): &(&str, Option<String>)| format!("{channel}={}", header.as_deref().unwrap_or("COLUMN"));
             let argument = pairs.iter().map(pair).collect::<Vec<_>>().join(",");
@@ -66,6 +71,9 @@ mod tests {
         assert_eq!(with_options("a", &map(&[("uq", Some("a\u{202e}b"))])), "a (--map uq=COLUMN)");
         let pole_pairs = [Advice::StatePolePairs, Advice::StateUnit { channel: "omega_e", unit: Some("rpm-elec") }];
         assert_eq!(with_options("a", &pole_pairs), "a (--pole-pairs N, or --unit omega_e=rpm-elec)");
+        let columns = vec![("id", Some("Id rms".to_owned())), ("iq", Some("Iq rms".to_owned()))];
+        let units = vec![("id", "Arms"), ("iq", "Arms")];
+        assert_eq!(with_options("a", &[Advice::MapInUnits { columns, units }]), "a (--map 'id=Id rms,iq=Iq rms' --unit id=Arms,iq=Arms)");
         let currents = ["id", "iq"].map(|channel| Advice::StateUnit { channel, unit: Some("mA") });
         assert_eq!(with_options("a", &currents), "a (--unit id=mA,iq=mA)");
         assert_eq!(with_options("a", &[Advice::FixParameters(vec!["ld", "rs"])]), "a (--fix ld=VALUE,rs=VALUE)");

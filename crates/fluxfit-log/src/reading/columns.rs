@@ -1,7 +1,7 @@
 //! The choice of columns: which column of the file is which channel.
 
 use super::{
-    alias, chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, proposal::propose, resemblance,
+    alias, chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, proposal::propose, resemblance, rms,
     table::Table,
 };
 use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
@@ -26,6 +26,7 @@ pub(super) fn choose(
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
     let finder = Finder { heads, unreadable: table.unreadable(), passed_over: table.passed_over(), layout, options };
     let found = finder.needed().map_err(at_header)?;
+    refuse_rms(&found, heads, options).map_err(at_header)?;
     let mut unstated = Vec::new();
     let mut chosen: Vec<ChosenColumn> = Vec::new();
     for (channel, index) in found {
@@ -64,6 +65,24 @@ pub(super) fn choose(
         notes.push(format!("the number of pole pairs, {pole_pairs}, is not needed to read this: the speed is electrical already").into());
     }
     Ok(chosen)
+}
+
+/// Whether a column holds root mean squares by its name, and the user states neither a unit nor a scale.
+fn is_unstated_rms(channel: Channel, head: &ColumnHead, options: &ResolvedOptions) -> bool {
+    rms::is_rms(head) && options.unit(channel).is_none() && options.factor(channel).abs() == 1.0
+}
+
+/// Refuses columns of root mean squares that would be read as peak values or as instantaneous ones.
+fn refuse_rms(found: &[(Channel, usize)], heads: &[ColumnHead], options: &ResolvedOptions) -> Result<(), FileError> {
+    let is_electric = |channel: Channel| rms::unit(channel).is_some() || Channel::PHASES.contains(&channel);
+    let of_rms = found.iter().filter(|(channel, index)| is_electric(*channel) && is_unstated_rms(*channel, &heads[*index], options));
+    let mut columns = Vec::new();
+    for (channel, index) in of_rms {
+        let header = &heads[*index].name;
+        let Some(unit) = rms::unit(*channel) else { return Err(FileError::from(Problem::PhaseRms).in_column(header)) };
+        columns.push((channel.name(), header.clone(), unit.name()));
+    }
+    if columns.is_empty() { Ok(()) } else { Err(Problem::Rms { columns }.into()) }
 }
 
 /// What the columns of a table seem to be, whether they make a log or not.
@@ -105,6 +124,8 @@ pub(super) fn survey(heads: &[ColumnHead], layout: Option<&'static Layout>, opti
             let is_share = share(channel) == Some(index) || options.shares_of_bus.contains(&channel);
             let assumed = (channel.dimension() != Dimension::Speed && !is_share).then_some(channel.unit());
             let unit = if is_share { Err(()) } else { unit.map_err(drop) };
+            let of_rms = rms::unit(channel).filter(|_| is_unstated_rms(channel, &heads[index], options));
+            let unit = of_rms.map_or(unit, Ok);
             if is_share {
                 let percent = if share(channel) == Some(index) && alias::is_percent(&heads[index]) { 0.01 } else { 1.0 };
                 survey.shares.push((index, percent * options.factor(channel)));

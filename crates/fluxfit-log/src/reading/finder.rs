@@ -342,11 +342,13 @@ impl Finder<'_> {
         };
         let references: Vec<usize> = (0..present.len()).filter(|index| is_reference_of_current(*index)).collect();
         let proposals = propose(missing, self.heads, |index| !is_used(index) && !references.contains(&index));
+        let rms = proposals.iter().filter(|proposal| proposal.is_rms());
+        let rms = rms.filter_map(|proposal| Some((proposal.channel.name(), proposal.unit?.name()))).collect();
         let proposals = proposals.into_iter().map(|proposal| (proposal.channel.name(), present[proposal.index].clone())).collect();
         let references = references.into_iter().map(|index| present[index].clone()).collect();
         let unreadable: Vec<String> = self.unreadable.iter().filter(|name| resembles(missing, name)).cloned().collect();
         let missing = missing.iter().map(|channel| channel.name()).collect();
-        Problem::Missing { missing, present, proposals, references, unreadable }.into()
+        Problem::Missing { missing, present, proposals, rms, references, unreadable }.into()
     }
 
     /// The unit of a column: the stated one; else the layout's; else the one in the header or the row of units; else SI.
@@ -382,7 +384,7 @@ impl Finder<'_> {
             // The scale in a mapping file leads from there to SI.
             (None, _, HeaderUnit::Unknown(_)) if self.options.factor(channel).abs() != 1.0 => si,
             (None, _, HeaderUnit::Unknown(text)) => {
-                let units = Unit::of(dimension).map(Unit::name).collect();
+                let units = channel.units().map(Unit::name).collect();
                 return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), units }.into());
             }
             _ if dimension == Dimension::Speed && self.is_alias(channel, name) && !states_electrical(name) => {

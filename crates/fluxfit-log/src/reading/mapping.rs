@@ -143,9 +143,10 @@ fn column(document: &Document<'_>, channel: Channel) -> Result<Option<MappedColu
     let table = entry.table(COLUMN_KEYS, "the name of a column, or a table with its name and unit", EXAMPLE)?;
     let unit = table.get("unit").map(|entry| {
         let text = entry.text()?;
-        let allowed = || Unit::of(channel.dimension()).map(Unit::name).collect();
+        let allowed = || channel.units().map(Unit::name).collect();
         let unknown = || Problem::Unit { channel: channel.name(), unit: text.to_owned(), allowed: allowed() };
-        Unit::from_name(text, channel.dimension()).ok_or_else(|| entry.refuse(unknown()))
+        let found = Unit::from_name(text, channel.dimension()).filter(|found| channel.units().any(|allowed| allowed == *found));
+        found.ok_or_else(|| entry.refuse(unknown()))
     });
     let scale = table.get("scale").map(|entry| match entry.quantity(Dimension::Ratio)? {
         scale if scale != 0.0 => Ok(scale),
@@ -198,7 +199,7 @@ mod tests {
     #[test]
     fn errors_name_line_and_key() {
         let cases = [
-            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is not a unit of ud; it can be V or mV"),
+            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is not a unit of ud; it can be V, mV or Vrms"),
             ("[columns]\nud = { scale = 0 }", "line 2, key 'scale': \"0\" is out of range; it must be a number other than zero"),
             ("sample_period = 0", "line 1, key 'sample_period': \"0\" is out of range; it must be a time above zero"),
             (

@@ -31,6 +31,7 @@ mod proposal;
 mod read;
 mod repair;
 mod resemblance;
+mod rms;
 mod selection;
 mod steady_test;
 mod table;

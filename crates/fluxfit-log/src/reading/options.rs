@@ -61,7 +61,7 @@ impl ResolvedOptions {
         let mut units: Vec<(Channel, Unit)> = Vec::new();
         for (name, unit) in &options.units {
             let channel = Channel::from_name(name)?;
-            if unit.dimension() != channel.dimension() {
+            if channel.units().all(|allowed| allowed != *unit) {
                 return Err(wrong_unit(channel, unit.name()));
             }
             if units.iter().any(|(earlier, _)| *earlier == channel) {

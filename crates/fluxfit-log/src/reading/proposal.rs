@@ -1,6 +1,9 @@
 //! Which columns may be channels that no column is read as: by names that resemble theirs.
 
-use super::resemblance::{Fit, fit, has_other_unit};
+use super::{
+    resemblance::{Fit, fit, has_other_unit},
+    rms,
+};
 use crate::{
     block::ColumnHead,
     channel::Channel,
@@ -13,9 +16,19 @@ use fluxfit_units::{Dimension, Unit};
 pub(super) struct Proposal {
     pub(super) channel: Channel,
     pub(super) index: usize,
-    /// The unit that the header states.
+    /// The unit that the header states, or that of root mean squares.
     pub(super) unit: Option<Unit>,
 }
+
+impl Proposal {
+    /// Whether the column holds root mean squares by its name.
+    pub(super) fn is_rms(&self) -> bool {
+        self.unit.is_some_and(Unit::is_rms)
+    }
+}
+
+/// A root mean square is proposed only where no other column resembles the channel: as good as no resemblance.
+const OF_RMS: f64 = 1.0;
 
 /// A column that resembles a channel.
 struct Candidate {
@@ -29,7 +42,9 @@ pub(super) fn propose(channels: &[Channel], heads: &[ColumnHead], is_free: impl 
     let of = |channel: Channel| {
         let candidate = |(index, head): (usize, &ColumnHead)| {
             let may_be = is_free(index) && !has_other_unit(channel, head);
-            may_be.then(|| fit(channel, &head.name)).flatten().map(|fit| Candidate { index, fit })
+            let fit = may_be.then(|| fit(channel, &head.name)).flatten()?;
+            let of_rms = if rms::is_rms(head) { OF_RMS } else { 0.0 };
+            Some(Candidate { index, fit: Fit { score: fit.score - of_rms, ..fit } })
         };
         (channel, heads.iter().enumerate().filter_map(candidate).collect::<Vec<_>>())
     };
@@ -40,7 +55,9 @@ pub(super) fn propose(channels: &[Channel], heads: &[ColumnHead], is_free: impl 
         let free = |candidate: &&Candidate| proposals.iter().all(|other| other.index != candidate.index);
         let together = around.and_then(|around| best(candidates.iter().filter(free).filter(|candidate| candidate.fit.around == around)));
         if let Some(Candidate { index, .. }) = together.or_else(|| best(candidates.iter().filter(free))) {
-            proposals.push(Proposal { channel: *channel, index: *index, unit: stated_unit(*channel, &heads[*index]) });
+            let head = &heads[*index];
+            let of_rms = rms::unit(*channel).filter(|_| rms::is_rms(head));
+            proposals.push(Proposal { channel: *channel, index: *index, unit: of_rms.or_else(|| stated_unit(*channel, head)) });
         }
     }
     proposals
@@ -115,6 +132,9 @@ mod tests {
             let names: Vec<String> = ["id", "iq", "ud", "uq"].iter().map(|name| format!("{name}{suffix}")).collect();
             assert_eq!(proposed(&names.join(";"))[1..5], [&names[2], &names[3], &names[0], &names[1]].map(String::as_str));
         }
+        let of_rms = "Iq_RMS;Id_RMS;Is_RMS;Iq_Pk;Id_Pk;Is_Pk";
+        assert_eq!(proposed(of_rms)[3..5], ["Id_Pk", "Iq_Pk"]);
+        assert_eq!(proposed("id_RMS_A;iq_RMS_A")[3..5], ["id_RMS_A", "iq_RMS_A"]);
         // A letter and a number are a temperature or a torque.
         assert_eq!(proposed("t1;n1")[0], "-");
     }

@@ -7,6 +7,7 @@ use super::{
     bench_columns::{DRIVEN, Found, Quantity, across, convention, values_of},
     layout::NotALog,
     resemblance::{is_reference, words},
+    rms,
     table::Table,
 };
 use crate::{
@@ -87,6 +88,9 @@ fn rows<const N: usize>(table: &mut Table, columns: [(usize, f64); N]) -> Result
 /// The factor to SI of a column of this channel.
 fn in_si(head: &ColumnHead, channel: Channel) -> f64 {
     let dimension = channel.dimension();
+    if let Some(unit) = rms::unit(channel).filter(|_| rms::is_rms(head)) {
+        return unit.in_si();
+    }
     let of_row = || head.unit.as_deref().map(|unit| unit_in_row(unit, &head.name, dimension));
     match (split_header(&head.name, dimension).1, of_row()) {
         (HeaderUnit::Known(unit), _) | (_, Some(HeaderUnit::Known(unit))) => unit.in_si(),
@@ -109,8 +113,8 @@ fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Fou
         rows.iter_mut().for_each(|row| row.torque = -row.torque);
     }
     let q_name = heads[q].name.trim().to_owned();
-    let mut notes: Vec<Note> =
-        vec![format!("the current {} is read as the peak value of a phase, as of all dq currents here", quote(&q_name)).into()];
+    let how = if rms::is_rms(&heads[q]) { "an rms value of a phase" } else { "the peak value of a phase, as of all dq currents here" };
+    let mut notes: Vec<Note> = vec![format!("the current {} is read as {how}", quote(&q_name)).into()];
     let mut used = vec![("current", q_name), ("torque", torque.header.clone())];
     match d {
         Some(d) => used.push(("current", heads[d].name.trim().to_owned())),

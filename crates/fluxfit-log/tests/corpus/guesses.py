@@ -6,8 +6,11 @@ make.py calls write(make), with itself, as it does with tools.py.
 import numpy as np
 
 
+ROWS = 5
+
+
 def write(make):
-    for part in (suffixes,):
+    for part in (suffixes, root_mean_squares):
         part(make)
 
 
@@ -17,7 +20,8 @@ def columns(make, *names):
 
 
 def refuse(make, file, says, log, *words, **more):
-    make.put(file, make.table(log))
+    """A table that is refused for its header, so that some rows are enough."""
+    make.put(file, make.table({name: values[:ROWS] for name, values in log.items()}))
     make.refuse(file, says, *words, **more)
 
 
@@ -26,3 +30,31 @@ def suffixes(make):
     numbered |= {"data.id1_ref": np.full(len(numbered["data.time"]), -1.0), "data.iq1_ref": np.full(len(numbered["data.time"]), 2.0)}
     refuse(make, "names_numbered.csv", "a number behind every name, and references beside", numbered, "'data.vd1' may be ud", "'data.vq1' may be uq",
            "'data.id1' may be id", "'data.iq1' may be iq", "'data.speed1' may be omega_e", line=1)
+
+
+def root_mean_squares(make):
+    """A dq value is a peak value: root mean squares are proposed with the unit that says so, and are read with nothing less."""
+    def with_rms(*names):
+        log = columns(make, *names)
+        return log | {name: log[name] / np.sqrt(2.0) for name in names[3:5]}
+
+    tolerances = {"id": 1e-14, "iq": 1e-14}
+    for file, says, names in [
+        ("rms_units.csv", "rms and the unit in the names of the currents", ("t", "vd", "vq", "id_RMS_A", "iq_RMS_A", "omega_e")),
+        ("rms_one_word.csv", "rms without a mark between", ("t", "vd", "vq", "IdRMS", "IqRMS", "omega_e")),
+        ("rms_brackets.csv", "rms in brackets", ("t", "vd", "vq", "id (RMS)", "iq (RMS)", "omega_e")),
+    ]:
+        refuse(make, file, says, with_rms(*names), "the columns id and iq are missing", f"'{names[3]}' may be id", f"'{names[4]}' may be iq", "rms values", "peak values")
+        told = {"map": [f"id={names[3]}", f"iq={names[4]}"]}
+        mapped = "mapped_" + file
+        refuse(make, mapped, says + ", mapped without a unit", with_rms(*names), "rms values", "state their unit", told=told)
+    log = with_rms("t", "ud", "uq", "id_RMS_A", "iq_RMS_A", "omega_e")
+    told = {"map": ["id=id_RMS_A", "iq=iq_RMS_A"], "units": ["id=Arms", "iq=Arms"]}
+    make.put("rms_stated.csv", make.table(log))
+    make.read("rms_stated.csv", "rms values with their unit stated", make.part(make.FAST), make.MAPPED, tolerances, told=told, notes=["A rms"])
+    beside = columns(make, "t", "ud", "uq", "id_Pk", "iq_Pk", "omega_e")
+    beside = {"t": beside["t"], "id_RMS": beside["id_Pk"] / np.sqrt(2.0), "iq_RMS": beside["iq_Pk"] / np.sqrt(2.0)} | beside
+    refuse(make, "rms_beside_peak.csv", "peak values beside rms values", beside, "'id_Pk' may be id", "'iq_Pk' may be iq")
+    phases = dict(zip(["ia", "ib", "ic"], make.phases(make.FAST["id"], make.FAST["iq"], make.FAST["theta_e"])))
+    log = make.part(make.FAST, ["t", "ud", "uq"]) | {f"{name}_rms": values for name, values in phases.items()} | make.part(make.FAST, ["omega_e", "theta_e"])
+    refuse(make, "rms_of_phases.csv", "rms values of the phases", log, "at each instant", told={"map": [f"{name}={name}_rms" for name in phases]})

@@ -1,0 +1,64 @@
+//! Names that say that a column holds root mean squares. A dq quantity is the peak value of the phases here, sqrt 2 times as large.
+
+use super::resemblance::words;
+use crate::{block::ColumnHead, channel::Channel};
+use fluxfit_units::{Dimension, Unit};
+
+/// Words for a root mean square; `eff` and `effektiv` are German, the others French and Spanish.
+const RMS: [&str; 8] = ["rms", "trms", "eff", "effektiv", "effektivwert", "efficace", "eficaz", "efficaz"];
+
+/// What `rms` is written behind without a mark between: `Arms`, `idrms`.
+const BEFORE: [&str; 18] = ["a", "v", "ma", "mv", "ka", "kv", "i", "u", "is", "us", "vs", "id", "iq", "ud", "uq", "vd", "vq", "phase"];
+
+/// Whether the name or the unit of a column says that it holds root mean squares.
+pub(super) fn is_rms(head: &ColumnHead) -> bool {
+    let says = |text: &str| {
+        let is_word =
+            |word: &String| RMS.contains(&word.as_str()) || word.strip_suffix("rms").is_some_and(|before| BEFORE.contains(&before));
+        words(text).iter().any(is_word)
+    };
+    says(&head.name) || head.unit.as_deref().is_some_and(says)
+}
+
+/// The unit of a channel of the dq frame whose column holds root mean squares.
+pub(super) fn unit(channel: Channel) -> Option<Unit> {
+    let unit = if channel.dimension() == Dimension::Voltage { Unit::VoltRms } else { Unit::AmpereRms };
+    channel.units().find(|allowed| *allowed == unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_units_say_root_mean_square() {
+        let is = |name: &str, unit: Option<&str>| {
+            is_rms(&ColumnHead { name: name.to_owned(), unit: unit.map(str::to_owned), ..ColumnHead::default() })
+        };
+        for name in [
+            "id_RMS_A",
+            "IdRMS",
+            "id_rms",
+            "id (RMS)",
+            "idrms",
+            "Iq [Arms]",
+            "iq [A_rms]",
+            "vd [Vrms]",
+            "Id eff. [A]",
+            "i_d [A rms]",
+            "ID_TRMS",
+        ] {
+            assert!(is(name, None), "{name}");
+        }
+        assert!(is("id", Some("Arms")) && is("uq", Some("[V rms]")));
+        for name in ["id", "id_Pk", "terms_d", "alarms", "i_d [A]", "robot_arm_id", "effort_id", "forms"] {
+            assert!(!is(name, Some("A")), "{name}");
+        }
+    }
+
+    #[test]
+    fn only_quantities_of_the_dq_frame_have_a_unit_for_it() {
+        assert_eq!([Channel::Id, Channel::Uq].map(unit), [Some(Unit::AmpereRms), Some(Unit::VoltRms)]);
+        assert_eq!([Channel::IA, Channel::UDc, Channel::T].map(unit), [None; 3]);
+    }
+}
