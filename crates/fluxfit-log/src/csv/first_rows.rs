@@ -1,4 +1,4 @@
-//! What the first rows of a table tell about its columns: which hold instants.
+//! What the first rows of a table tell about its columns: which hold instants, and which hold no numbers.
 
 use crate::instant::{Instants, counted};
 use fluxfit_files::csv::{
@@ -6,11 +6,22 @@ use fluxfit_files::csv::{
     record::first_record,
 };
 
-/// Number of rows that are looked at.
+/// Number of rows that are looked at for instants.
 const ROWS: usize = 1000;
 
 /// Digits before the point of the shortest number of seconds since 1970.
 const EPOCH_DIGITS: usize = 9;
+
+/// Number of rows of which one has to hold a number of a column.
+const ROWS_WITHOUT: usize = 100;
+
+/// The columns whose cells in the first rows are texts, or all empty.
+pub(super) fn without_numbers(head: &str, header: &Header) -> Vec<usize> {
+    let rows = head[header.body.min(head.len())..].split(['\r', '\n']).filter(|line| !line.trim().is_empty());
+    let table: Vec<Vec<String>> = rows.take(ROWS_WITHOUT).map(|line| first_record(line, header.separator).0).collect();
+    let has_number = |place: usize| table.iter().filter_map(|row| row.get(place)).any(|cell| is_number(cell, header.separator));
+    (0..header.names.len()).filter(|place| !table.is_empty() && !has_number(*place)).collect()
+}
 
 /// For each column, how its cells state instants, if they do.
 pub(super) fn instants(head: &str, header: &Header) -> Vec<Option<Instants>> {

@@ -82,6 +82,12 @@ impl TextTable {
         Ok(Self { heads: heads.collect(), header, text: Some(text), block_size: blocks::BLOCK, notes })
     }
 
+    /// The columns that hold no numbers, by the first rows; none once the rows are read.
+    pub(crate) fn without_numbers(&self) -> Vec<usize> {
+        let found = self.text.as_ref().map_or(Vec::new(), |text| first_rows::without_numbers(&text.head, &self.header));
+        found.into_iter().filter(|place| self.heads.get(*place).is_some_and(|head| head.instants.is_none())).collect()
+    }
+
     /// The line of the header.
     pub(crate) fn line(&self) -> u64 {
         self.header.line

@@ -5,6 +5,7 @@
 
 use super::{
     bench_columns::{DRIVEN, Found, Quantity, across, are_phases, convention, found, values_of},
+    layout::NotALog,
     resemblance::words,
     steady_test,
     table::Table,
@@ -59,7 +60,8 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
     if let Some((characteristic, used, notes)) = steady_test::read(&mut table, &columns, pole_pairs)? {
         return Ok(Some(ReadCharacteristic { columns: used, table: characteristic, notes }));
     }
-    if heads.iter().any(is_of_log) {
+    let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
+    if heads.iter().any(is_of_log) || NotALog::by_names(&names).is_some() {
         return Ok(None);
     }
     let has = |quantity: Quantity| columns.iter().any(|column| column.quantity == quantity);

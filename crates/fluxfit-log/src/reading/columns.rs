@@ -24,7 +24,9 @@ pub(super) fn choose(
 ) -> Result<Vec<ChosenColumn>, FileError> {
     let (heads, line) = (table.heads(), table.line());
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
-    let finder = Finder { heads, unreadable: table.unreadable(), passed_over: table.passed_over(), layout, options };
+    let without_numbers = || table.without_numbers();
+    let (unreadable, passed_over) = (table.unreadable(), table.passed_over());
+    let finder = Finder { heads, unreadable, without_numbers: &without_numbers, passed_over, layout, options };
     let found = finder.needed().map_err(at_header)?;
     refuse_rms(&found, heads, options).map_err(at_header)?;
     let mut unstated = Vec::new();
@@ -96,11 +98,12 @@ pub(super) struct Survey {
 }
 
 /// Looks for every channel, and for columns that resemble a needed channel that was not found.
-pub(super) fn survey(heads: &[ColumnHead], layout: Option<&'static Layout>, options: &ResolvedOptions) -> Survey {
+pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &ResolvedOptions) -> Survey {
+    let (heads, without_numbers) = (table.heads(), table.without_numbers());
     // With pole pairs given, mechanical units are not an error.
     let mut with_pole_pairs = options.clone();
     with_pole_pairs.pole_pairs.get_or_insert(1);
-    let finder = Finder { heads, unreadable: &[], passed_over: None, layout, options: &with_pole_pairs };
+    let finder = Finder { heads, unreadable: &[], without_numbers: &Vec::new, passed_over: None, layout, options: &with_pole_pairs };
     let mut survey = Survey { taken: Vec::new(), resembling: Vec::new(), shares: Vec::new() };
     let [voltages, currents] = [[Ud, Uq], [Id, Iq]].map(|pair| finder.pair(pair).unwrap_or_default());
     let duties = if voltages.iter().all(Option::is_some) { None } else { finder.duties() };
@@ -135,7 +138,7 @@ pub(super) fn survey(heads: &[ColumnHead], layout: Option<&'static Layout>, opti
     }
     let is_missing = |channel: &Channel| survey.taken.iter().all(|(taken, ..)| taken != channel);
     let missing: Vec<Channel> = Channel::NEEDED.into_iter().filter(is_missing).collect();
-    let is_free = |index: usize| survey.taken.iter().all(|(_, taken, _)| *taken != index);
+    let is_free = |index: usize| survey.taken.iter().all(|(_, taken, _)| *taken != index) && !without_numbers.contains(&index);
     let resembling = propose(&missing, heads, is_free).into_iter();
     survey.resembling = resembling.map(|found| (found.channel, found.index, options.unit(found.channel).or(found.unit))).collect();
     survey

@@ -24,8 +24,10 @@ use fluxfit_units::{Dimension, Unit, wording::shorten};
 /// Finds columns by mapping, layout and name.
 pub(super) struct Finder<'a> {
     pub(super) heads: &'a [ColumnHead],
-    /// Names of columns that hold no numbers.
+    /// Names of columns that hold no numbers and are not among `heads`.
     pub(super) unreadable: &'a [String],
+    /// Columns of `heads` that hold no numbers.
+    pub(super) without_numbers: &'a dyn Fn() -> Vec<usize>,
     /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
     pub(super) passed_over: Option<&'a Problem>,
     pub(super) layout: Option<&'static Layout>,
@@ -340,13 +342,16 @@ impl Finder<'_> {
             let may_be = missing.iter().any(|channel| !has_other_unit(*channel, head));
             !is_used(index) && may_be && is_reference(&head.name) && resembles(&currents, &head.name)
         };
+        let without_numbers = (self.without_numbers)();
         let references: Vec<usize> = (0..present.len()).filter(|index| is_reference_of_current(*index)).collect();
-        let proposals = propose(missing, self.heads, |index| !is_used(index) && !references.contains(&index));
+        let proposals =
+            propose(missing, self.heads, |index| !is_used(index) && !references.contains(&index) && !without_numbers.contains(&index));
         let rms = proposals.iter().filter(|proposal| proposal.is_rms());
         let rms = rms.filter_map(|proposal| Some((proposal.channel.name(), proposal.unit?.name()))).collect();
         let proposals = proposals.into_iter().map(|proposal| (proposal.channel.name(), present[proposal.index].clone())).collect();
         let references = references.into_iter().map(|index| present[index].clone()).collect();
-        let unreadable: Vec<String> = self.unreadable.iter().filter(|name| resembles(missing, name)).cloned().collect();
+        let texts = without_numbers.iter().map(|index| &present[*index]);
+        let unreadable = self.unreadable.iter().chain(texts).filter(|name| resembles(missing, name)).cloned().collect();
         let missing = missing.iter().map(|channel| channel.name()).collect();
         Problem::Missing { missing, present, proposals, rms, references, unreadable }.into()
     }

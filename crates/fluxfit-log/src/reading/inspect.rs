@@ -66,7 +66,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
     let table = input::open(path).and_then(|bytes| Table::open(bytes, resolved.dbc.as_deref())).map_err(|error| error.in_file(&name))?;
     let names: Vec<String> = table.heads().iter().map(|head| head.name.clone()).collect();
     let layout = Layout::recognize(&names);
-    let survey = columns::survey(table.heads(), layout, &resolved);
+    let survey = columns::survey(&table, layout, &resolved);
     let read_as = |index: usize| {
         let taken = survey.taken.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit);
         let unit = taken.or_else(|| survey.resembling.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit))?;

@@ -306,13 +306,21 @@ impl Layout {
     }
 }
 
-/// The letters of a name in lower case, without a unit of a flux, a current, an inductance or a resistance at its end.
+/// The letters of a name in lower case, without a unit of a flux, a current, an inductance or a resistance at its end, and without what it
+/// says of root mean squares and peaks.
 fn stem_of_table(name: &str) -> String {
     let lower = name.to_lowercase();
-    let words: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
-    let is_unit = |word: &&&str| ["wb", "mwb", "vs", "mvs", "a", "h", "mh", "uh", "ohm", "mohm", "ohms"].contains(word);
-    let kept = words.len() - usize::from(words.len() > 1 && words.last().as_ref().is_some_and(is_unit));
-    words[..kept].concat()
+    let mut words: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let is_unit =
+        |word: &&str| ["wb", "mwb", "vs", "mvs", "a", "h", "mh", "uh", "ohm", "mohm", "ohms", "arms", "apk", "apeak"].contains(word);
+    if words.len() > 1 && words.last().is_some_and(is_unit) {
+        words.pop();
+    }
+    // `idrms`, `psi_d_pk`.
+    let measures = ["rms", "pk", "peak"];
+    words.retain(|word| !measures.contains(word));
+    let stem = words.concat();
+    measures.iter().find_map(|measure| stem.strip_suffix(measure)).unwrap_or(&stem).to_owned()
 }
 
 /// Whether a name is this header, apart from case and from a unit after `@` or in brackets.
@@ -348,6 +356,8 @@ mod tests {
         let of = |header: &str| NotALog::by_names(&header.split(',').map(str::to_owned).collect::<Vec<_>>()).map(|(name, _)| name);
         assert_eq!(of("id_A,iq_A,psi_d_Wb,psi_q_Wb"), Some("flux map"));
         assert_eq!(of("Id (A),Iq (A),Flux d [Vs],Flux q [Vs],T [Nm]"), Some("flux map"));
+        assert_eq!(of("case_id,id_RMS_A,iq_RMS_A,torque_Nm,psiD_Wb,psiQ_Wb,Ld_H,Lq_H,Bmax_T"), Some("flux map"));
+        assert_eq!(of("IqRMS,IdRMS,psiD_Pk,psiQ_Pk,Lq,Ld,Torque(Nm),TopSpeed"), Some("flux map"));
         assert_eq!(of("Ld_H,Lq_H,Rs_ohm,pole_pairs,psi_pm_Wb"), Some("table of parameters"));
         for header in ["t,id,iq,ud,uq,omega_e", "speed,id,iq", "Ld,Lq,t", "psi_d,psi_q,t"] {
             assert_eq!(of(header), None, "{header}");

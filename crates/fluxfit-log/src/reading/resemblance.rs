@@ -115,6 +115,9 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     if channel.dimension() != Dimension::Time && name.to_lowercase().ends_with(".time") {
         return None;
     }
+    if channel == Channel::T && is_in_tesla(name) {
+        return None;
+    }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();
     let runs = (0..words.len()).flat_map(|start| (start + 1..=(start + WORDS).min(words.len())).map(move |end| start..end));
     let fits = runs.filter_map(|run| {
@@ -131,6 +134,12 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     });
     // Of equal ones the first.
     fits.reduce(|best, next| if next.score > best.score { next } else { best })
+}
+
+/// Whether a name ends in the unit of a flux density, `Bmax_T`: that letter is no time.
+fn is_in_tesla(name: &str) -> bool {
+    let name = name.trim_end_matches([']', ')']);
+    name.strip_suffix('T').is_some_and(|before| before.ends_with(['_', ' ', '[', '(']))
 }
 
 /// A name and the number behind it, of one motor of several: `vd1`. Of a single letter it is more: `T1` is a temperature.

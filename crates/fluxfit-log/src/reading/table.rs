@@ -101,6 +101,14 @@ impl Table<'_> {
         }
     }
 
+    /// Columns of a text that hold no numbers, by the first rows. They are looked at only when this is asked for.
+    pub(super) fn without_numbers(&self) -> Vec<usize> {
+        match self {
+            Self::Text(table) => table.without_numbers(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
     pub(super) fn passed_over(&self) -> Option<&Problem> {
         match self {

@@ -10,7 +10,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares):
+    for part in (suffixes, root_mean_squares, flux_maps):
         part(make)
 
 
@@ -58,3 +58,21 @@ def root_mean_squares(make):
     phases = dict(zip(["ia", "ib", "ic"], make.phases(make.FAST["id"], make.FAST["iq"], make.FAST["theta_e"])))
     log = make.part(make.FAST, ["t", "ud", "uq"]) | {f"{name}_rms": values for name, values in phases.items()} | make.part(make.FAST, ["omega_e", "theta_e"])
     refuse(make, "rms_of_phases.csv", "rms values of the phases", log, "at each instant", told={"map": [f"{name}={name}_rms" for name in phases]})
+
+
+def flux_maps(make):
+    """Maps of currents to flux linkages, as programs of finite elements write them, with texts and empty columns beside."""
+    i_d, i_q = np.array([-20.0, -20.0, -10.0, -10.0]), np.array([10.0, 20.0, 10.0, 20.0])
+    fluxes = [make.PSI_F + make.LD * i_d, make.LQ * i_q]
+    numbers = {"id_RMS_A": i_d / np.sqrt(2.0), "iq_RMS_A": i_q / np.sqrt(2.0), "torque_Nm": 6.0 * i_q, "psiD_Wb": fluxes[0], "psiQ_Wb": fluxes[1],
+               "Ld_H": np.full(4, make.LD), "Lq_H": np.full(4, make.LQ)}
+    lines = make.table(numbers).splitlines()
+    text = "case_id," + lines[0] + ",Bmax_T\n" + "".join(f"CASE_{k},{line},\n" for k, line in enumerate(lines[1:]))
+    make.refuse(make.put("flux_map_of_cases.csv", text), "a flux map with names of its cases and an empty column", "flux map", line=1)
+    peaks = {"Iq_RMS": i_q / np.sqrt(2.0), "Id_RMS": i_d / np.sqrt(2.0), "Iq_Pk": i_q, "Id_Pk": i_d, "psiD_Pk": fluxes[0], "psiQ_Pk": fluxes[1],
+             "Lq": np.full(4, make.LQ), "Ld": np.full(4, make.LD), "Torque(Nm)": 6.0 * i_q, "TopSpeed": np.full(4, 9000.0)}
+    make.refuse(make.put("flux_map_of_peaks.csv", make.table(peaks)), "a flux map in peak values, with a speed", "flux map", line=1)
+    lines = make.table(make.part(make.FAST, ["ud", "uq", "iq", "omega_e"])).splitlines()[:6]
+    text = lines[0] + ",Bench t,id_text,my id\n" + "".join(f"{line},,run {k},-1.5\n" for k, line in enumerate(lines[1:]))
+    make.refuse(make.put("texts_beside.csv", text), "a text and an empty column whose names resemble those of missing channels", "'my id' may be id",
+                "'Bench t' and 'id_text' hold no numbers", "no column resembles t", line=1)
