@@ -262,6 +262,8 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
         return false;
     }
     let Some((name, beside)) = named(channel, stem, unit) else { return false };
+    // Of `phase_current_a` the last letter is no unit.
+    let is_named_phase = || is_of_named_phase(channel, stem) || is_of_named_phase(channel, field(&head.name));
     match channel {
         // `t_motor` is its temperature.
         Channel::T => {
@@ -275,8 +277,8 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
         Channel::Uq => is_of_axis(&name, "q", &VOLTAGE) || has_unit && name == "q",
         Channel::Id => is_of_axis(&name, "d", &CURRENT) || has_unit && name == "d",
         Channel::Iq => is_of_axis(&name, "q", &CURRENT) || has_unit && name == "q",
-        Channel::IA | Channel::IB | Channel::IC => is_of_phase(channel, &name, "i"),
-        Channel::UA | Channel::UB | Channel::UC => is_of_phase(channel, &name, "u") || is_of_phase(channel, &name, "v"),
+        Channel::IA | Channel::IB | Channel::IC => is_of_phase(channel, &name, "i") || is_named_phase(),
+        Channel::UA | Channel::UB | Channel::UC => is_of_phase(channel, &name, "u") || is_of_phase(channel, &name, "v") || is_named_phase(),
         Channel::UAlpha => is_of_axis(&name, "alpha", &VOLTAGE),
         Channel::UBeta => is_of_axis(&name, "beta", &VOLTAGE),
         Channel::IAlpha => is_of_axis(&name, "alpha", &CURRENT),
@@ -368,6 +370,36 @@ fn is_of_axis(name: &str, axis: &str, quantities: &[&str]) -> bool {
     is(name) || quantities.iter().filter(of_quantity).any(beside_word)
 }
 
+/// Words that say that the letter beside them is a phase.
+const PHASE: [&str; 3] = ["phase", "ph", "strang"];
+
+/// Letters and numbers of the three phases.
+const LETTERS: [[&str; 4]; 3] = [["a", "u", "1", "r"], ["b", "v", "2", "s"], ["c", "w", "3", "t"]];
+
+/// Whether a name is a quantity, the word phase and the letter of one: `Current(PhaseA)`, `Phase A Current`, `I phase U`. Between two
+/// phases there would be two letters.
+fn is_of_named_phase(channel: Channel, name: &str) -> bool {
+    let (place, quantities): (usize, &[&str]) = match channel {
+        Channel::IA => (0, &CURRENT),
+        Channel::IB => (1, &CURRENT),
+        Channel::IC => (2, &CURRENT),
+        Channel::UA => (0, &VOLTAGE),
+        Channel::UB => (1, &VOLTAGE),
+        Channel::UC => (2, &VOLTAGE),
+        _ => return false,
+    };
+    let words: Vec<String> = words(name).into_iter().filter(|word| !BESIDE.contains(&word.as_str())).collect();
+    let Some(phase) = words.iter().position(|word| PHASE.contains(&word.as_str())).filter(|_| words.len() == 3) else { return false };
+    // The letter stands behind the word phase, as in `U phase V`, or else before it or at the end.
+    let letter = |at: usize| {
+        let quantity = &words[3 - phase - at];
+        let of = LETTERS.iter().position(|letters| letters.contains(&words[at].as_str()));
+        of.filter(|_| quantities.contains(&quantity.as_str()))
+    };
+    let places = [(phase + 1) % 3, (phase + 2) % 3];
+    places.into_iter().find_map(letter) == Some(place)
+}
+
 /// Whether a name is that of a phase: by its letter, or of a current by u, v, w, where no line voltage can be meant.
 fn is_of_phase(channel: Channel, name: &str, quantity: &str) -> bool {
     let (letter, other) = match channel {
@@ -433,7 +465,20 @@ mod tests {
             ),
             (Channel::ThetaE, &["theta", "theta_el", "Rotorwinkel [°]", "electrical_angle_deg"]),
             (Channel::UDc, &["vbus", "V_dc", "dc_link_voltage [V]"]),
-            (Channel::IA, &["i_a", "iu", "ia_meas [A]"]),
+            (
+                Channel::IA,
+                &[
+                    "i_a",
+                    "iu",
+                    "ia_meas [A]",
+                    "Current(PhaseA) [A]",
+                    "Phase A Current (A)",
+                    "I phase U",
+                    "phase_current_a",
+                    "Strom Phase 1 [A]",
+                ],
+            ),
+            (Channel::UB, &["u_b", "Voltage(PhaseB) [V]", "U phase V", "phase_b_voltage_V", "Motor Phase B Voltage", "V_phase_b"]),
         ] {
             names.iter().for_each(|name| assert!(is(channel, name), "{name} is {}", channel.name()));
         }
@@ -482,7 +527,11 @@ mod tests {
                 ],
             ),
             (Channel::Id, &["vesc_id", "id_set", "run_id", "DC current", "direct current", "target.id", "d", "motor 3/id_ref"]),
-            (Channel::IA, &["I [A]", "I (A)"]),
+            (
+                Channel::IA,
+                &["I [A]", "I (A)", "Phase A", "Phase AB current", "Phase A RMS Current", "Phase A current ref", "phase a to b current"],
+            ),
+            (Channel::UA, &["Phase A Current", "U phase V", "Voltage phase A phase B", "phase angle u"]),
             (Channel::OmegaE, &["speed_step", "speed setpoint", "speed_meters_per_sec", "Velocity (m/s)", "wind speed", "SO_N_SOLL"]),
             (Channel::Ud, &["u_dc", "ud_ref", "vd [mA]", "u_d [°C]"]),
         ] {

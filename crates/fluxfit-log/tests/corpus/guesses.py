@@ -10,7 +10,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps):
+    for part in (suffixes, root_mean_squares, flux_maps, phases):
         part(make)
 
 
@@ -76,3 +76,23 @@ def flux_maps(make):
     text = lines[0] + ",Bench t,id_text,my id\n" + "".join(f"{line},,run {k},-1.5\n" for k, line in enumerate(lines[1:]))
     make.refuse(make.put("texts_beside.csv", text), "a text and an empty column whose names resemble those of missing channels", "'my id' may be id",
                 "'Bench t' and 'id_text' hold no numbers", "no column resembles t", line=1)
+
+
+def phases(make):
+    """Phase quantities that are called so in words."""
+    log = make.part(make.FAST, ["t", "theta_e", *make.NAMES[1:]])
+    for quantity, d, q in [("Current", "id", "iq"), ("Voltage", "ud", "uq")]:
+        log |= dict(zip([f"{quantity}{letter}" for letter in "ABC"], make.phases(log[d], log[q], log["theta_e"])))
+    for file, says, current, voltage in [
+        ("phases_in_brackets.csv", "the phase in brackets before the unit", "Current(Phase{}) [A]", "Voltage(Phase{}) [V]"),
+        ("phases_before.csv", "the phase before the quantity", "Phase {} Current (A)", "Phase {} Voltage (V)"),
+    ]:
+        named = {"Time [ms]": log["t"] * 1e3, "theta_e": log["theta_e"]}
+        for letter in "ABC":
+            named |= {current.format(letter): log[f"Current{letter}"], voltage.format(letter): log[f"Voltage{letter}"]}
+        form = {name: make.fixed(9) for name in named}
+        make.put(file, make.table(named, form=form))
+        tolerances = {"t": 1e-12} | {name: 1e-8 for name in ("ud", "uq", "id", "iq")}
+        make.read(file, says, log, tolerances=tolerances, names=make.NAMES[:5], notes=["usual names", "phase quantities"])
+    named = {"Time [ms]": log["t"] * 1e3} | {f"Current(Phase{letter}) [A]": log[f"Current{letter}"] for letter in "ABC"}
+    refuse(make, "phases_alone.csv", "currents of the phases and nothing else", named | {"Speed(Rotor) [rpm]": log["omega_e"]}, "ud, uq and theta_e are missing", line=1)
