@@ -48,9 +48,9 @@ pub struct ColumnEntry {
     pub unit: Option<String>,
     /// The channel that it is read as; null if it is not read.
     pub channel: Option<&'static str>,
-    /// The missing channel that its name resembles, if it is not read.
+    /// The channel that it may be by its name, if it is not read.
     pub resembles: Option<&'static str>,
-    /// The unit in which it is read, or would be.
+    /// The unit in which it is read, or would be; null if it is not read and nothing states its unit.
     pub read_as: Option<&'static str>,
     /// Its smallest and largest number, as the file has them; null if it has no numbers, or if the file came through a pipe.
     pub range: Option<[f64; 2]>,

@@ -1,14 +1,10 @@
 //! The choice of columns: which column of the file is which channel.
 
-use super::{
-    alias, chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, proposal::propose, resemblance, rms,
-    table::Table,
-};
+use super::{chosen, chosen::ChosenColumn, finder::Finder, layout::Layout, options::ResolvedOptions, resemblance, rms, table::Table};
 use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
-use Channel::{Id, Iq, UA, UB, UC, Ud, Uq};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_units::{
-    Dimension, Unit,
+    Dimension,
     wording::{list, shorten},
 };
 
@@ -69,15 +65,10 @@ pub(super) fn choose(
     Ok(chosen)
 }
 
-/// Whether a column holds root mean squares by its name, and the user states neither a unit nor a scale.
-fn is_unstated_rms(channel: Channel, head: &ColumnHead, options: &ResolvedOptions) -> bool {
-    rms::is_rms(head) && options.unit(channel).is_none() && options.factor(channel).abs() == 1.0
-}
-
 /// Refuses columns of root mean squares that would be read as peak values or as instantaneous ones.
 fn refuse_rms(found: &[(Channel, usize)], heads: &[ColumnHead], options: &ResolvedOptions) -> Result<(), FileError> {
     let is_electric = |channel: Channel| rms::unit(channel).is_some() || Channel::PHASES.contains(&channel);
-    let of_rms = found.iter().filter(|(channel, index)| is_electric(*channel) && is_unstated_rms(*channel, &heads[*index], options));
+    let of_rms = found.iter().filter(|(channel, index)| is_electric(*channel) && rms::is_unstated(*channel, &heads[*index], options));
     let mut columns = Vec::new();
     for (channel, index) in of_rms {
         let header = &heads[*index].name;
@@ -85,63 +76,6 @@ fn refuse_rms(found: &[(Channel, usize)], heads: &[ColumnHead], options: &Resolv
         columns.push((channel.name(), header.clone(), unit.name()));
     }
     if columns.is_empty() { Ok(()) } else { Err(Problem::Rms { columns }.into()) }
-}
-
-/// What the columns of a table seem to be, whether they make a log or not.
-pub(super) struct Survey {
-    /// Columns that would be read, with the unit unless a speed's has to be stated.
-    pub(super) taken: Vec<(Channel, usize, Option<Unit>)>,
-    /// Columns that resemble a needed channel, with the unit that the header states.
-    pub(super) resembling: Vec<(Channel, usize, Option<Unit>)>,
-    /// Columns that are shares of the DC voltage, and what the value 1 of the file is of it.
-    pub(super) shares: Vec<(usize, f64)>,
-}
-
-/// Looks for every channel, and for columns that resemble a needed channel that was not found.
-pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &ResolvedOptions) -> Survey {
-    let (heads, without_numbers) = (table.heads(), table.without_numbers());
-    // With pole pairs given, mechanical units are not an error.
-    let mut with_pole_pairs = options.clone();
-    with_pole_pairs.pole_pairs.get_or_insert(1);
-    let finder = Finder { heads, unreadable: &[], without_numbers: &Vec::new, passed_over: None, layout, options: &with_pole_pairs };
-    let mut survey = Survey { taken: Vec::new(), resembling: Vec::new(), shares: Vec::new() };
-    let [voltages, currents] = [[Ud, Uq], [Id, Iq]].map(|pair| finder.pair(pair).unwrap_or_default());
-    let duties = if voltages.iter().all(Option::is_some) { None } else { finder.duties() };
-    let share = |channel: Channel| {
-        let place = [UA, UB, UC].iter().position(|phase| *phase == channel)?;
-        duties.map(|duties| duties[place])
-    };
-    for channel in Channel::all() {
-        let index = match channel {
-            Ud => Ok(voltages[0]),
-            Uq => Ok(voltages[1]),
-            Id => Ok(currents[0]),
-            Iq => Ok(currents[1]),
-            _ => finder.index(channel),
-        };
-        let index = index.map(|index| index.or_else(|| share(channel)));
-        if let Ok(Some(index)) = index
-            && survey.taken.iter().all(|(_, taken, _)| *taken != index)
-        {
-            let unit = finder.unit(channel, &heads[index], &mut Vec::new(), &mut Vec::new());
-            let is_share = share(channel) == Some(index) || options.shares_of_bus.contains(&channel);
-            let assumed = (channel.dimension() != Dimension::Speed && !is_share).then_some(channel.unit());
-            let unit = if is_share { Err(()) } else { unit.map_err(drop) };
-            let of_rms = rms::unit(channel).filter(|_| is_unstated_rms(channel, &heads[index], options));
-            let unit = of_rms.map_or(unit, Ok);
-            if is_share {
-                let percent = if share(channel) == Some(index) && alias::is_percent(&heads[index]) { 0.01 } else { 1.0 };
-                survey.shares.push((index, percent * options.factor(channel)));
-            }
-            survey.taken.push((channel, index, unit.ok().or(assumed)));
-        }
-    }
-    let is_missing = |channel: &Channel| survey.taken.iter().all(|(taken, ..)| taken != channel);
-    let missing: Vec<Channel> = Channel::NEEDED.into_iter().filter(is_missing).collect();
-    let is_free = |index: usize| survey.taken.iter().all(|(_, taken, _)| *taken != index) && !without_numbers.contains(&index);
-    let resembling = propose(&missing, heads, is_free).into_iter();
-    survey.resembling = resembling.map(|found| (found.channel, found.index, options.unit(found.channel).or(found.unit))).collect();
-    survey
 }
 
 #[cfg(test)]

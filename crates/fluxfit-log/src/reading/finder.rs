@@ -208,7 +208,7 @@ impl Finder<'_> {
     }
 
     /// Whether a column has not the channel's own name, nor one that the user or the layout gives it.
-    fn is_alias(&self, channel: Channel, name: &str) -> bool {
+    pub(super) fn is_alias(&self, channel: Channel, name: &str) -> bool {
         !self.is_given(channel) && {
             let head = ColumnHead { name: name.to_owned(), ..ColumnHead::default() };
             !matches!(automatic(channel, &[head]), Ok(Some(_)))

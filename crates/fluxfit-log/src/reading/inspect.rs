@@ -2,10 +2,10 @@
 
 use super::{
     characteristic::{ReadCharacteristic, read_characteristic},
-    columns,
     layout::Layout,
     options::{LogOptions, ResolvedOptions},
     read::{ReadLog, read},
+    survey::{Surveyed, survey},
     table::Table,
 };
 use crate::{block::WantedColumn, problem::Problem};
@@ -39,10 +39,14 @@ pub struct InspectedColumn {
     pub unit: Option<String>,
     /// The channel that it is read as.
     pub channel: Option<&'static str>,
-    /// The missing channel that it resembles, if it is not read.
+    /// The channel that it may be by its name, if it is not read.
     pub resembles: Option<&'static str>,
-    /// The unit in which it is read, or would be: its short name, and its name in a sentence.
+    /// The unit in which it is read, or would be if it is stated: its short name, and its name in a sentence.
     pub read_as: Option<(&'static str, &'static str)>,
+    /// Whether the file, the layout, the user or its own name states its unit; otherwise SI is assumed of what is read.
+    pub is_unit_stated: bool,
+    /// Whether one of them states that it is electrical or mechanical, if it is a speed or an angle.
+    pub is_rotation_stated: bool,
     /// Its smallest and largest number, as the file has them; none if it has no numbers, or if the log came through a pipe.
     pub range: Option<[f64; 2]>,
     /// The smallest and largest number of each of some hundred equal stretches of rows, in order, as the file has them; empty if it has no
@@ -66,27 +70,33 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
     let table = input::open(path).and_then(|bytes| Table::open(bytes, resolved.dbc.as_deref())).map_err(|error| error.in_file(&name))?;
     let names: Vec<String> = table.heads().iter().map(|head| head.name.clone()).collect();
     let layout = Layout::recognize(&names);
-    let survey = columns::survey(&table, layout, &resolved);
-    let read_as = |index: usize| {
-        let taken = survey.taken.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit);
-        let unit = taken.or_else(|| survey.resembling.iter().find(|(_, place, _)| *place == index).and_then(|(_, _, unit)| *unit))?;
-        Some((unit.name(), unit.prose()))
-    };
-    let courses = courses(path, resolved.dbc.as_deref());
-    let inspected = table.heads().iter().enumerate().map(|(index, head)| InspectedColumn {
-        header: head.name.clone(),
-        unit: head.unit.clone(),
-        channel: survey.taken.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
-        read_as: read_as(index),
-        resembles: survey.resembling.iter().find(|(_, place, _)| *place == index).map(|(channel, ..)| channel.name()),
-        range: courses.get(index).and_then(Course::range),
-        course: courses.get(index).map(|course| course.spans.clone()).unwrap_or_default(),
-        is_time: head.is_time,
-        is_instant: head.instants.is_some(),
-        share: survey.shares.iter().find(|(place, _)| *place == index).map(|(_, scale)| *scale),
-    });
-    let (kind, columns) = (table.kind(), inspected.collect());
+    let survey = survey(&table, layout, &resolved);
+    let (kind, heads) = (table.kind(), table.heads().to_vec());
     let log = read(table, &resolved).map_err(|error| error.in_file(&name));
+    let survey = if log.is_ok() { survey } else { survey.without_guesses() };
+    let courses = courses(path, resolved.dbc.as_deref());
+    let columns = heads.iter().enumerate().map(|(index, head)| {
+        let of = |columns: &[Surveyed]| columns.iter().find(|column| column.index == index).copied();
+        let (taken, resembling) = (of(&survey.taken), of(&survey.resembling));
+        let found = taken.or(resembling);
+        // Of what is read, SI is assumed where nothing states a unit; of what is not, nothing is.
+        let unit = found.filter(|found| found.is_unit_stated || log.is_ok()).and_then(|found| found.unit);
+        InspectedColumn {
+            header: head.name.clone(),
+            unit: head.unit.clone(),
+            channel: taken.map(|column| column.channel.name()),
+            read_as: unit.map(|unit| (unit.name(), unit.prose())),
+            is_unit_stated: found.is_some_and(|found| found.is_unit_stated),
+            is_rotation_stated: found.is_some_and(|found| found.is_rotation_stated),
+            resembles: resembling.filter(|_| taken.is_none()).map(|column| column.channel.name()),
+            range: courses.get(index).and_then(Course::range),
+            course: courses.get(index).map(|course| course.spans.clone()).unwrap_or_default(),
+            is_time: head.is_time,
+            is_instant: head.instants.is_some(),
+            share: survey.shares.iter().find(|(place, _)| *place == index).map(|(_, scale)| *scale),
+        }
+    });
+    let columns = columns.collect();
     let (table, log) = match log.as_ref().err().map(|_| read_characteristic(path, resolved.pole_pairs)) {
         Some(Ok(table)) => (table, log),
         // It is a table, and that is what is wrong with it.

@@ -38,34 +38,16 @@ impl Inspection {
             if taken.is_none() && (channel == Channel::T && period.is_some() || self.is_computed(channel)) {
                 continue;
             }
-            let (column, remark) = match (taken, resembling) {
-                (Some(column), _) if column.read_as.is_none() && !column.is_instant && column.share.is_none() => {
-                    (column.header.as_str(), "  # nothing states its unit: rad/s, rpm-elec, rpm-mech, ..")
-                }
-                (Some(column), _) => (column.header.as_str(), ""),
-                (None, Some(column)) if column.read_as.is_none() => {
-                    (column.header.as_str(), "  # by its name; check it, and add unit = .. unless it is SI")
-                }
-                (None, Some(column)) => (column.header.as_str(), "  # by its name; check it"),
-                (None, None) => ("", "  # no column resembles it"),
-            };
-            // Of a column that only resembles the channel, the unit only if its header states it.
-            let read_as = taken.or(resembling).and_then(|column| column.read_as);
-            let unit = if taken.is_some_and(|column| column.share.is_none()) {
-                Some(read_as.map_or("?", |(unit, _)| unit))
-            } else {
-                read_as.map(|(unit, _)| unit)
-            };
-            let is_instant = channel == Channel::T && taken.is_some_and(|column| column.is_instant);
-            let unit = unit.filter(|_| !is_instant).map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default()
-                + &factor(taken, channel, options);
-            let _ = writeln!(text, "{} = {{ column = {}{unit} }}{remark}", channel.name(), quoted(column));
+            match (taken, resembling) {
+                (Some(column), _) => text += &entry(channel, column, options),
+                (None, Some(column)) => text += &entry(channel, column, options),
+                (None, None) => _ = writeln!(text, "{} = {{ column = \"\" }}  # no column resembles it", channel.name()),
+            }
         }
         for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
-            if let Some(column) = self.columns.iter().find(|column| column.channel == Some(channel.name())) {
-                let unit = column.read_as.filter(|(unit, _)| *unit != "1").map(|(unit, _)| format!(", unit = \"{unit}\""));
-                let unit = unit.unwrap_or_default() + &factor(Some(column), channel, options);
-                let _ = writeln!(text, "{} = {{ column = {}{unit} }}", channel.name(), quoted(&column.header));
+            let is_of = |column: &&InspectedColumn| column.channel.or(column.resembles) == Some(channel.name());
+            if let Some(column) = self.columns.iter().find(is_of) {
+                text += &entry(channel, column, options);
             }
         }
         text
@@ -81,6 +63,39 @@ impl Inspection {
             _ => false,
         }
     }
+}
+
+/// The entry of a channel, with a remark if there is something to check.
+fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> String {
+    let is_taken = column.channel.is_some();
+    let is_instant = channel == Channel::T && column.is_instant;
+    let is_speed = channel == Channel::OmegaE;
+    let unit = match column.read_as {
+        _ if is_instant || column.share.is_some() => None,
+        Some((unit, _)) => Some(unit).filter(|unit| *unit != "1"),
+        // To be filled in: a speed is not read without.
+        None => (is_taken && is_speed).then_some("?"),
+    };
+    let by_name = if is_taken { "" } else { "by its name; check it" };
+    let of_unit = match (column.read_as, channel) {
+        _ if is_instant || column.share.is_some() => "",
+        (None, Channel::OmegaE) if is_taken => "nothing states its unit: rad/s, rpm-elec, rpm-mech, ..",
+        (None, _) if is_taken => "nothing states its unit; check it, and add unit = .. unless it is SI",
+        (None, _) => ", and add unit = .. unless it is SI",
+        (Some(_), _) if !column.is_unit_stated => "nothing states its unit; check it",
+        (Some(_), Channel::OmegaE | Channel::ThetaE) if !column.is_rotation_stated => {
+            if is_taken {
+                "electrical or mechanical is not stated; check it"
+            } else {
+                ", and whether it is electrical"
+            }
+        }
+        _ => "",
+    };
+    let remark = if by_name.is_empty() && of_unit.is_empty() { String::new() } else { format!("  # {by_name}{of_unit}") };
+    let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default();
+    let factor = factor(Some(column).filter(|_| is_taken), channel, options);
+    format!("{} = {{ column = {}{unit}{factor} }}{remark}\n", channel.name(), quoted(&column.header))
 }
 
 /// Scale and sign, from the mapping file that was given or of a share of the DC voltage.
@@ -154,6 +169,37 @@ mod tests {
             mapping.contains("\nomega_e = { column = \"Motor.Load speed_rpm\", unit = \"rpm-mech\" }  # by its name; check it\n"),
             "{mapping}"
         );
+    }
+
+    /// Nothing of these columns was read, so nothing says that they are what their names say, or in SI.
+    #[test]
+    fn guesses_are_marked_and_have_no_unit_that_nothing_states() {
+        let text = "Time,Position,Output Speed [rad.s],Ia,VDC,iq [A]\n1,2,3,512,500,6\n2,2,3,388,500,6\n";
+        let found = inspected(text, &LogOptions::default());
+        let of = |index: usize| {
+            let column = &found.columns[index];
+            (column.channel, column.resembles, column.read_as.map(|(unit, _)| unit))
+        };
+        let all: Vec<_> = (0..6).map(of).collect();
+        let expected = [
+            (Some("t"), None, None),
+            (None, Some("theta_e"), None),
+            (None, Some("omega_e"), Some("rad/s")),
+            (Some("ia"), None, None),
+            (None, Some("u_dc"), None),
+            (Some("iq"), None, Some("A")),
+        ];
+        assert_eq!(all, expected);
+        let mapping = found.mapping(&LogOptions::default());
+        for line in [
+            "t = { column = \"Time\" }  # nothing states its unit; check it, and add unit = .. unless it is SI",
+            "omega_e = { column = \"Output Speed [rad.s]\", unit = \"rad/s\" }  # by its name; check it, and whether it is electrical",
+            "theta_e = { column = \"Position\" }  # by its name; check it, and add unit = .. unless it is SI",
+            "ia = { column = \"Ia\" }  # nothing states its unit; check it, and add unit = .. unless it is SI",
+            "iq = { column = \"iq [A]\", unit = \"A\" }",
+        ] {
+            assert!(mapping.contains(&format!("\n{line}\n")), "{line}\n{mapping}");
+        }
     }
 
     #[test]

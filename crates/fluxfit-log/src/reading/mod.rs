@@ -34,6 +34,7 @@ mod resemblance;
 mod rms;
 mod selection;
 mod steady_test;
+mod survey;
 mod table;
 mod turning;
 

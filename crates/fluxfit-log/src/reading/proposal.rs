@@ -84,7 +84,7 @@ fn shared_around(candidates: &[(Channel, Vec<Candidate>)]) -> Option<&str> {
 }
 
 /// The unit that the header of a column, or a row of units, states.
-fn stated_unit(channel: Channel, head: &ColumnHead) -> Option<Unit> {
+pub(super) fn stated_unit(channel: Channel, head: &ColumnHead) -> Option<Unit> {
     let in_name = split_header(&head.name, channel.dimension()).1;
     let in_row = head.unit.as_deref().map(|unit| unit_in_row(unit, &head.name, channel.dimension()));
     [Some(in_name), in_row].into_iter().flatten().find_map(|named| match named {

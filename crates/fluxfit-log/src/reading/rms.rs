@@ -1,6 +1,6 @@
 //! Names that say that a column holds root mean squares. A dq quantity is the peak value of the phases here, sqrt 2 times as large.
 
-use super::resemblance::words;
+use super::{options::ResolvedOptions, resemblance::words};
 use crate::{block::ColumnHead, channel::Channel};
 use fluxfit_units::{Dimension, Unit};
 
@@ -18,6 +18,11 @@ pub(super) fn is_rms(head: &ColumnHead) -> bool {
         words(text).iter().any(is_word)
     };
     says(&head.name) || head.unit.as_deref().is_some_and(says)
+}
+
+/// Whether a column holds root mean squares by its name, and the user states neither a unit nor a scale.
+pub(super) fn is_unstated(channel: Channel, head: &ColumnHead, options: &ResolvedOptions) -> bool {
+    is_rms(head) && options.unit(channel).is_none() && options.factor(channel).abs() == 1.0
 }
 
 /// The unit of a channel of the dq frame whose column holds root mean squares.

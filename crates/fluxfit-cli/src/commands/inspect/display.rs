@@ -2,7 +2,7 @@
 
 use crate::terminal::{self, BAD, DIM, GOOD, HEADING, frequency, plot, table, told::Told};
 use fluxfit::log::Log;
-use fluxfit_log::{Inspection, ReadCharacteristic, ReadLog};
+use fluxfit_log::{InspectedColumn, Inspection, ReadCharacteristic, ReadLog};
 use fluxfit_units::significant;
 
 /// Most columns that are listed.
@@ -63,7 +63,7 @@ fn show_table(name: &str, inspection: &Inspection, read: &ReadCharacteristic) ->
 fn candidates(inspection: &Inspection) -> Vec<(String, &[[f64; 2]])> {
     let of_column = |channel: &str| {
         let column = inspection.columns.iter().find(|column| column.channel.or(column.resembles) == Some(channel))?;
-        let unit = column.read_as.map(|(_, prose)| format!(", {prose}")).unwrap_or_default();
+        let unit = column.read_as.map(|_| format!(", {}", unit(column, false))).unwrap_or_default();
         Some((format!("{channel} = {}{unit}", column.header), column.course.as_slice()))
     };
     PLOTTED.into_iter().filter_map(of_column).collect()
@@ -81,8 +81,7 @@ fn columns(inspection: &Inspection, log: Option<&Log>) -> String {
         };
         let of_log = || column.channel.zip(log).and_then(|(channel, log)| of_channel(log, channel));
         let range = column.range.or_else(of_log).map(range).unwrap_or_default();
-        let unit = column.read_as.map(|(_, prose)| prose.to_owned()).or(column.unit.clone()).unwrap_or_default();
-        vec![column.header.chars().take(40).collect(), taken, unit, range]
+        vec![column.header.chars().take(40).collect(), taken, unit(column, log.is_some()), range]
     });
     let mut text = table(&["column", "taken for", "in", "range in the file"], 3, rows);
     if inspection.columns.iter().any(|column| column.resembles.is_some()) {
@@ -92,6 +91,19 @@ fn columns(inspection: &Inspection, log: Option<&Log>) -> String {
         text += &format!("  {DIM}and {} more{DIM:#}\n", inspection.columns.len() - LISTED);
     }
     text
+}
+
+/// The unit of a column, and what of it is not stated.
+fn unit(column: &InspectedColumn, is_read: bool) -> String {
+    match column.read_as {
+        Some((_, prose)) if is_read && column.channel.is_some() && !(column.is_unit_stated && column.is_rotation_stated) => {
+            format!("{prose}, assumed")
+        }
+        Some((_, prose)) if !column.is_rotation_stated => format!("{}, elec. or mech.", prose.trim_start_matches("electrical ")),
+        Some((_, prose)) => prose.to_owned(),
+        None if column.channel.or(column.resembles).is_some() && column.share.is_none() => "not stated".to_owned(),
+        None => column.unit.clone().unwrap_or_default(),
+    }
 }
 
 /// Least and largest value of a channel, in SI: of what came through a pipe there is nothing else.

@@ -1,0 +1,123 @@
+//! What the columns of a table seem to be, whether they make a log or not: for an inspection.
+
+use super::{
+    alias,
+    finder::Finder,
+    layout::{Layout, is_called},
+    options::ResolvedOptions,
+    proposal::{propose, stated_unit},
+    rms,
+    table::Table,
+};
+use crate::{block::ColumnHead, channel::Channel, header_unit::states_electrical};
+use Channel::{Id, Iq, UA, UB, UC, Ud, Uq};
+use fluxfit_units::{Dimension, Unit};
+
+/// A column that is, or may be, a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Surveyed {
+    pub(super) channel: Channel,
+    pub(super) index: usize,
+    /// The unit in which it would be read; none of a share of the DC voltage, or where a speed's has to be stated.
+    pub(super) unit: Option<Unit>,
+    /// The file, the layout, the user or the channel's own name states the unit.
+    pub(super) is_unit_stated: bool,
+    /// One of them states whether a speed or an angle is electrical; true of other channels.
+    pub(super) is_rotation_stated: bool,
+    /// It has the channel's own name, or one that the layout or the user gives it.
+    pub(super) is_named: bool,
+}
+
+/// What the columns of a table seem to be.
+#[derive(Debug, Default)]
+pub(super) struct Survey {
+    /// Columns that would be read.
+    pub(super) taken: Vec<Surveyed>,
+    /// Columns that resemble a needed channel.
+    pub(super) resembling: Vec<Surveyed>,
+    /// Columns that are shares of the DC voltage, and what the value 1 of the file is of it.
+    pub(super) shares: Vec<(usize, f64)>,
+}
+
+impl Survey {
+    /// Moves the columns that a usual name alone makes a channel, without a unit, to those that resemble one: nothing was read that would
+    /// show it.
+    pub(super) fn without_guesses(mut self) -> Self {
+        let is_guess = |column: &mut Surveyed| !(column.is_named || column.is_unit_stated && column.is_rotation_stated);
+        let is_speed_in_unit = |column: &Surveyed| column.channel == Channel::OmegaE && column.is_unit_stated;
+        self.resembling.extend(self.taken.extract_if(.., |column| is_guess(column) && !is_speed_in_unit(column)));
+        self
+    }
+}
+
+/// Looks for every channel, and for columns that resemble a needed channel that was not found.
+pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &ResolvedOptions) -> Survey {
+    let (heads, without_numbers) = (table.heads(), table.without_numbers());
+    // With pole pairs given, mechanical units are not an error.
+    let mut with_pole_pairs = options.clone();
+    with_pole_pairs.pole_pairs.get_or_insert(1);
+    let finder = Finder { heads, unreadable: &[], without_numbers: &Vec::new, passed_over: None, layout, options: &with_pole_pairs };
+    let mut survey = Survey::default();
+    let [voltages, currents] = [[Ud, Uq], [Id, Iq]].map(|pair| finder.pair(pair).unwrap_or_default());
+    let duties = if voltages.iter().all(Option::is_some) { None } else { finder.duties() };
+    let share = |channel: Channel| {
+        let place = [UA, UB, UC].iter().position(|phase| *phase == channel)?;
+        duties.map(|duties| duties[place])
+    };
+    for channel in Channel::all() {
+        let index = match channel {
+            Ud => Ok(voltages[0]),
+            Uq => Ok(voltages[1]),
+            Id => Ok(currents[0]),
+            Iq => Ok(currents[1]),
+            _ => finder.index(channel),
+        };
+        let index = index.map(|index| index.or_else(|| share(channel)));
+        if let Ok(Some(index)) = index
+            && survey.taken.iter().all(|taken| taken.index != index)
+        {
+            let head = &heads[index];
+            let is_share = share(channel) == Some(index) || options.shares_of_bus.contains(&channel);
+            if is_share {
+                let percent = if share(channel) == Some(index) && alias::is_percent(head) { 0.01 } else { 1.0 };
+                survey.shares.push((index, percent * options.factor(channel)));
+            }
+            let of_rms = rms::unit(channel).filter(|_| rms::is_unstated(channel, head, options));
+            let read_in = || finder.unit(channel, head, &mut Vec::new(), &mut Vec::new()).ok();
+            let assumed = || (channel.dimension() != Dimension::Speed).then_some(channel.unit());
+            let unit = of_rms.or_else(read_in).or_else(assumed).filter(|_| !is_share);
+            let is_named = !finder.is_alias(channel, &head.name);
+            let stated = Surveyed { is_named, ..surveyed(channel, index, head, layout, options) };
+            survey.taken.push(Surveyed { unit: unit.or(stated.unit), is_unit_stated: stated.is_unit_stated || is_share, ..stated });
+        }
+    }
+    let is_missing = |channel: &Channel| survey.taken.iter().all(|taken| taken.channel != *channel);
+    let missing: Vec<Channel> = Channel::NEEDED.into_iter().filter(is_missing).collect();
+    let is_free = |index: usize| survey.taken.iter().all(|taken| taken.index != index) && !without_numbers.contains(&index);
+    let resembling = propose(&missing, heads, is_free).into_iter();
+    survey.resembling = resembling.map(|found| surveyed(found.channel, found.index, &heads[found.index], layout, options)).collect();
+    survey
+}
+
+/// What is stated of a column: by the user, by its header or a row of units, by the layout, or by its name.
+fn surveyed(channel: Channel, index: usize, head: &ColumnHead, layout: Option<&'static Layout>, options: &ResolvedOptions) -> Surveyed {
+    let of_rms = rms::unit(channel).filter(|_| rms::is_unstated(channel, head, options));
+    let of_user = options.unit(channel);
+    let of_file = of_rms.or_else(|| stated_unit(channel, head));
+    let of_layout = layout.and_then(|layout| layout.column(channel)).filter(|column| is_called(&head.name, column.header));
+    let field = head.name.rsplit_once('.').map_or(head.name.as_str(), |(_, field)| field);
+    let is_own_name = field == channel.name();
+    let is_instant = channel == Channel::T && head.instants.is_some();
+    let is_scaled = options.factor(channel).abs() != 1.0;
+    let is_turning = matches!(channel.dimension(), Dimension::Speed | Dimension::Angle);
+    let unit = of_user.or(of_file).or(of_layout.map(|column| column.unit));
+    let is_known = of_user.is_some() || of_layout.is_some() || is_own_name;
+    Surveyed {
+        channel,
+        index,
+        unit: unit.or((is_own_name && !is_instant).then_some(channel.unit())),
+        is_unit_stated: is_known || of_file.is_some() || is_instant || is_scaled || channel.dimension() == Dimension::Ratio,
+        is_rotation_stated: !is_turning || is_known || states_electrical(&head.name) || unit.is_some_and(Unit::is_mechanical),
+        is_named: false,
+    }
+}
