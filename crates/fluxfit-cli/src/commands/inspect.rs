@@ -6,13 +6,13 @@ use super::{Status, input};
 use crate::{
     arguments::ColumnArguments,
     error::CommandError,
-    json,
+    json, shell,
     terminal::{self, mending, told::Told},
 };
 use clap::Args;
 use fluxfit::{check_columns, check_samples};
 use fluxfit_files::{check_writable, write_atomically};
-use fluxfit_log::{Inspection, document::InspectionDocument, inspect};
+use fluxfit_log::{Inspection, LogOptions, document::InspectionDocument, inspect};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -43,7 +43,11 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     if arguments.json {
         terminal::print(&json::text(&InspectionDocument::of(&inspection))?)?;
     } else if arguments.output.as_deref() != Some(Path::new("-")) {
-        display::show(&input::name(&arguments.log), &inspection, &findings(&inspection, options.pole_pairs), &samples(&inspection))?;
+        let name = input::name(&arguments.log);
+        match &inspection.table {
+            Some(read) => display::show_table(&name, &inspection, read, &command_for_table(arguments, &options))?,
+            None => display::show(&name, &inspection, &findings(&inspection, options.pole_pairs), &samples(&inspection))?,
+        }
     }
     if let Some(path) = arguments.output.as_deref() {
         write_atomically(path, mapping_file(&inspection.mapping(&options)).as_bytes())?;
@@ -53,6 +57,15 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
         Err(error) if inspection.table.is_none() => Err(error.into()),
         _ => Ok(Status::Complete),
     }
+}
+
+/// What identifies from a table, to be pasted: of the options that read logs, one alone is for tables too.
+fn command_for_table(arguments: &Inspect, options: &LogOptions) -> String {
+    // A name with a dash in front would be an option.
+    let is_dashed = arguments.log.as_os_str().as_encoded_bytes().starts_with(b"-");
+    let log = if is_dashed { Path::new(".").join(&arguments.log) } else { arguments.log.clone() };
+    let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs).map(|pole_pairs| format!(" --pole-pairs {pole_pairs}"));
+    format!("fluxfit identify {}{}", shell::word(log.as_os_str()), pole_pairs.unwrap_or_default())
 }
 
 /// What the columns contradict each other in, with what mends it.

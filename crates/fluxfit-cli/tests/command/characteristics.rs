@@ -61,6 +61,21 @@ fn written(folder: &Path, name: &str, text: &str) -> String {
     path.display().to_string()
 }
 
+/// The command stands on a line of its own, with what was given, so that it can be pasted however long the path is.
+#[test]
+fn an_inspection_of_a_table_says_the_command_that_comes_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(
+        folder.path(),
+        "open circuit of the motor with a long name, at 20 degrees.csv",
+        "speed_rpm,U_ll [V]\n100,1\n200,2\n300,3\n",
+    );
+    let run = fluxfit(&["inspect", &path, "--pole-pairs", "3"]);
+    assert_eq!(run.status, 0, "{}", run.err);
+    let command = format!("    fluxfit identify '{path}' --pole-pairs 3");
+    assert!(run.out.lines().any(|line| line == command), "{}", run.out);
+}
+
 #[test]
 fn both_tables_together_tell_the_whole_motor() {
     let folder = tempfile::tempdir().unwrap();

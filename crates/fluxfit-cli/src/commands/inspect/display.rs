@@ -13,9 +13,6 @@ const GAPS: usize = 3;
 
 /// Shows an inspection, what is wrong with it first; notes go to standard error.
 pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told], samples: &[Told]) -> std::io::Result<()> {
-    if let Some(read) = &inspection.table {
-        return show_table(name, inspection, read);
-    }
     let status = match (&inspection.log, findings.len()) {
         (Err(_), _) => format!("{BAD}Not a log yet: the reason is below.{BAD:#}\n"),
         (Ok(_), 0) if !samples.is_empty() => format!("{BAD}Readable, but some samples are no measurements.{BAD:#}\n"),
@@ -43,10 +40,10 @@ pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told], sampl
     Ok(())
 }
 
-/// Shows a table of a test bench: its columns, and what each is taken for.
-fn show_table(name: &str, inspection: &Inspection, read: &ReadCharacteristic) -> std::io::Result<()> {
-    let status = format!("A table of a test bench: {}. Next: fluxfit identify {name}", read.table.describe());
-    let mut text = format!("{GOOD}{}{GOOD:#}\n", terminal::wrapped("", &status).trim_end());
+/// Shows a table of a test bench: its columns, what each is taken for, and the command that identifies from it, on a line of its own.
+pub(crate) fn show_table(name: &str, inspection: &Inspection, read: &ReadCharacteristic, next: &str) -> std::io::Result<()> {
+    let status = format!("A table of a test bench: {}. Next:", read.table.describe());
+    let mut text = format!("{GOOD}{}{GOOD:#}\n    {next}\n\n", terminal::wrapped("", &status).trim_end());
     text += &format!("{}\n", terminal::wrapped("", &format!("{HEADING}{name}{HEADING:#}: {}", inspection.kind)));
     let rows = inspection.columns.iter().take(LISTED).map(|column| {
         let taken = read.columns.iter().find(|(_, header)| *header == column.header.trim()).map_or("-", |(quantity, _)| quantity);
