@@ -81,7 +81,7 @@ pub(crate) enum Problem {
     // Characteristics
     #[error("the columns {} could each be the {quantity}; leave one of them in the table", columns(.headers))]
     AmbiguousQuantity { quantity: &'static str, headers: Vec<String> },
-    #[error("the speed {} is electrical, and a table of a test bench needs that of the shaft; state the number of pole pairs", quote(.header))]
+    #[error("the speed {} is electrical, and the torque is that of the shaft; state the number of pole pairs", quote(.header))]
     ElectricalSpeed { header: String },
     #[error("the name of the voltage {} does not say between which points it was measured; put 'll' (two terminals in series) or 'phase' (a terminal and the star point) into it", quote(.header))]
     DirectVoltage { header: String },

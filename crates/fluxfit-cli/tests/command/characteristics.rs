@@ -98,6 +98,29 @@ fn both_tables_together_tell_the_whole_motor() {
     assert!(held >= 42, "{held} of {drawn}");
 }
 
+/// The flux follows from the electrical speed alone; beside a table of the shaft the pole pairs are needed.
+#[test]
+fn electrical_speeds_need_no_pole_pairs() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = &mut Noise(9);
+    let rows = SPEEDS.map(|rpm| {
+        let omega_e = PAIRS * rpm * std::f64::consts::TAU / 60.0;
+        let voltage = omega_e * PSI_F * 3.0_f64.sqrt() / 2.0_f64.sqrt() * (1.0 + 2e-3 * noise.next());
+        format!("{},{voltage:.5}\n", omega_e / std::f64::consts::TAU)
+    });
+    let open = written(folder.path(), "hertz.csv", &format!("f_el [Hz],U_ll_rms [V]\n{}", rows.concat()));
+    let (status, document) = json(&["identify", &open]);
+    assert_eq!((status, &document["pole_pairs"]), (1, &serde_json::Value::Null));
+    let psi_f = &document["parameters"]["psi_f"];
+    assert!((psi_f["value"].as_f64().unwrap() / PSI_F - 1.0).abs() < 0.003 && psi_f["verdict"] == "identified", "{psi_f}");
+    assert!(document["times_pole_pairs"]["psi_f"]["value"].is_null());
+    let run = fluxfit(&["identify", &open]);
+    assert!(!run.out.contains("p psi_f") && !run.out.contains("--pole-pairs"), "{}", run.out);
+    let short = short_circuit(folder.path(), noise, false);
+    let run = fluxfit(&["identify", &open, &short]);
+    assert!(run.status == 2 && run.err.contains("--pole-pairs N"), "{}", run.err);
+}
+
 #[test]
 fn without_pole_pairs_the_values_are_times_these() {
     let folder = tempfile::tempdir().unwrap();

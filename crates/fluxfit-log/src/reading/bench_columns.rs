@@ -146,24 +146,25 @@ pub(super) fn values_of(table: &mut Table, columns: &[(usize, &str)]) -> Result<
 const MOST_ROWS: usize = 100_000;
 
 /// What a name says of the convention, as a factor; and what is assumed where it says nothing.
-pub(super) fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<u32>, notes: &mut Vec<Note>) -> Result<f64, FileError> {
+pub(super) fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<u32>, notes: &mut Vec<Note>) -> f64 {
     let name = quote(&column.header);
     match quantity {
         Quantity::Voltage | Quantity::Current => {
             let (factor, how, is_stated) = to_rms(&column.header);
             let doubt = if is_stated { "" } else { ", because its name does not say so; if it is an amplitude, add 'peak' to the name" };
             notes.push(format!("the {} {name} is read as {how}{doubt}", quantity.name()).into());
-            Ok(factor)
+            factor
         }
-        Quantity::Speed if column.is_electrical => match pole_pairs {
-            Some(pole_pairs) => Ok(1.0 / f64::from(pole_pairs)),
-            None => Err(Problem::ElectricalSpeed { header: column.header.clone() }.into()),
-        },
+        Quantity::Speed if column.is_electrical => {
+            let doubt = if states_electrical(&column.header) { "" } else { "; if it is that of the shaft, add 'mech' to its name" };
+            notes.push(format!("the speed {name} is read as the electrical one{doubt}").into());
+            1.0 / f64::from(pole_pairs.unwrap_or(1))
+        }
         Quantity::Speed => {
             notes.push(format!("the speed {name} is read as that of the shaft").into());
-            Ok(1.0)
+            1.0
         }
-        Quantity::Torque => Ok(1.0),
+        Quantity::Torque => 1.0,
     }
 }
 

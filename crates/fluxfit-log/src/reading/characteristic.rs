@@ -7,7 +7,7 @@ use super::{
     bench_columns::{DRIVEN, Found, Quantity, across, are_phases, convention, found, values_of},
     layout::NotALog,
     resemblance::words,
-    steady_test,
+    steady_test::{self, SteadyTest},
     table::Table,
 };
 use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
@@ -24,6 +24,8 @@ pub struct ReadCharacteristic {
     pub table: Characteristic,
     /// What was inferred or left out.
     pub notes: Vec<Note>,
+    /// The speeds are electrical, because nobody says how many pole pairs the motor has: the table tells the motor's own values.
+    pub has_electrical_speed: bool,
 }
 
 /// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. What can be read only once
@@ -57,8 +59,8 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
             || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
     };
     let columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
-    if let Some((characteristic, used, notes)) = steady_test::read(&mut table, &columns, pole_pairs)? {
-        return Ok(Some(ReadCharacteristic { columns: used, table: characteristic, notes }));
+    if let Some(SteadyTest { table, columns, notes, has_electrical_speed }) = steady_test::read(&mut table, &columns, pole_pairs)? {
+        return Ok(Some(ReadCharacteristic { columns, table, notes, has_electrical_speed }));
     }
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
     if heads.iter().any(is_of_log) || NotALog::by_names(&names).is_some() {
@@ -108,6 +110,14 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
         }
         _ => return Ok(None),
     };
+    let speeds = candidates(&columns, Quantity::Speed);
+    let electrical = speeds.first().filter(|(column, _)| column.is_electrical && pole_pairs.is_none());
+    if let Some((column, _)) = electrical
+        && torque.is_some()
+        && matches!(table, Characteristic::ShortCircuit(_))
+    {
+        return Err(Problem::ElectricalSpeed { header: column.header.clone() }.into());
+    }
     let left_out = speed.len() - table.rows();
     if left_out > 0 {
         notes.push(format!("{left_out} of {} rows have no speed or no value above zero and are left out", speed.len()).into());
@@ -115,7 +125,7 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
     let used =
         Quantity::ALL.into_iter().flat_map(|quantity| headers(&columns, quantity).into_iter().map(move |name| (quantity.name(), name)));
     let used = used.map(|(quantity, header)| (quantity, header.to_owned())).collect();
-    Ok(Some(ReadCharacteristic { columns: used, table, notes }))
+    Ok(Some(ReadCharacteristic { columns: used, table, notes, has_electrical_speed: electrical.is_some() }))
 }
 
 /// The columns that a quantity is taken from: those with a unit before those without.
@@ -150,7 +160,7 @@ fn channel(
         let headers = headers.into_iter().map(str::to_owned).collect();
         return Err(Problem::AmbiguousQuantity { quantity: quantity.name(), headers }.into());
     }
-    let factor = first.in_si * convention(first, quantity, pole_pairs, notes)?;
+    let factor = first.in_si * convention(first, quantity, pole_pairs, notes);
     let mean = |k: usize| {
         let values: Vec<f64> = candidates.iter().map(|(_, values)| factor * values[k]).collect();
         let count = values.len() as f64;
@@ -228,7 +238,12 @@ mod tests {
         let read = of("f [Hz],n [1/min],U [V]\n50,1000,10\n100,2000,20\n").unwrap().unwrap();
         let Characteristic::OpenCircuit(table) = read.table else { panic!() };
         assert!((table.rows[0].speed - 104.719_755).abs() < 1e-5);
-        assert!(of("f [Hz],U [V]\n50,10\n100,20\n").unwrap_err().to_string().contains("number of pole pairs"));
+        let read = of("f [Hz],U [V]\n50,10\n100,20\n").unwrap().unwrap();
+        let Characteristic::OpenCircuit(table) = &read.table else { panic!() };
+        assert!(read.has_electrical_speed && (table.rows[0].speed - 314.159_265).abs() < 1e-5);
+        // A torque is that of the shaft.
+        let of_torque = of("f [Hz],I [A],T [Nm]\n50,10,1\n100,20,2\n").unwrap_err().to_string();
+        assert!(of_torque.contains("number of pole pairs"), "{of_torque}");
     }
 
     #[test]

@@ -103,6 +103,11 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         Some(Err(error)) => (None, Err(error)),
         None => (None, log),
     };
+    let mut columns: Vec<InspectedColumn> = columns;
+    if table.is_some() {
+        // Its speeds are not those of a log: nothing of it is a channel.
+        columns.iter_mut().for_each(|column| (column.channel, column.resembles, column.read_as) = (None, None, None));
+    }
     Ok(Inspection { kind, layout, columns, table, log })
 }
 

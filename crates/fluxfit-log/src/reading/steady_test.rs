@@ -24,8 +24,14 @@ use fluxfit::{
 use fluxfit_files::FileError;
 use fluxfit_units::wording::quote;
 
-/// The table, the columns that it was taken from, and notes.
-pub(super) type SteadyTest = (Characteristic, Vec<(&'static str, String)>, Vec<Note>);
+/// A table that is such a test.
+pub(super) struct SteadyTest {
+    pub(super) table: Characteristic,
+    /// The quantities and the columns that they were taken from.
+    pub(super) columns: Vec<(&'static str, String)>,
+    pub(super) notes: Vec<Note>,
+    pub(super) has_electrical_speed: bool,
+}
 
 /// Whether a column may be a channel.
 fn is(channel: Channel, head: &ColumnHead) -> bool {
@@ -120,7 +126,8 @@ fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Fou
         Some(d) => used.push(("current", heads[d].name.trim().to_owned())),
         None => notes.push("i_d is taken as zero: no column has it".to_owned().into()),
     }
-    Ok((Characteristic::TorqueOfCurrent(TorqueOfCurrent { rows }), used, notes))
+    let table = Characteristic::TorqueOfCurrent(TorqueOfCurrent { rows });
+    Ok(SteadyTest { table, columns: used, notes, has_electrical_speed: false })
 }
 
 fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<SteadyTest, FileError> {
@@ -134,7 +141,8 @@ fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result
         .collect();
     let used = vec![("voltage", voltage.header.clone()), ("current", current.header.clone())];
     let note = "voltage and current are read as those of a direct current, the rotor at rest".to_owned();
-    Ok((Characteristic::DirectCurrent(DirectCurrent { rows, across }), used, vec![note.into()]))
+    let table = Characteristic::DirectCurrent(DirectCurrent { rows, across });
+    Ok(SteadyTest { table, columns: used, notes: vec![note.into()], has_electrical_speed: false })
 }
 
 /// Words of the DC voltage beside a duty cycle.
@@ -154,8 +162,14 @@ fn duty_cycle(table: &mut Table, duty: usize, speed: &Found, pole_pairs: Option<
     let current = heads.iter().position(is_of_motor);
     let mut notes = Vec::new();
     let is_vesc = DUTY_OF_VESC.contains(&heads[duty].name.trim());
-    let speed = &Found { is_electrical: speed.is_electrical || is_vesc, header: speed.header.clone(), ..*speed };
-    let per_turn = speed.in_si * convention(speed, Quantity::Speed, pole_pairs, &mut notes)?;
+    let per_turn = speed.in_si
+        * if is_vesc {
+            notes.push(format!("the speed {} is read as the electrical one, as VESC counts it", quote(&speed.header)).into());
+            1.0 / f64::from(pole_pairs.unwrap_or(1))
+        } else {
+            convention(speed, Quantity::Speed, pole_pairs, &mut notes)
+        };
+    let has_electrical_speed = pole_pairs.is_none() && (is_vesc || speed.is_electrical);
     let percent = |head: &ColumnHead| head.name.contains('%') || head.unit.as_deref().is_some_and(|unit| unit.contains('%'));
     let share = if percent(&heads[duty]) { 0.01 } else { 1.0 };
     let of_current = current.map_or((duty, 0.0), |index| (index, in_si(&heads[index], Channel::Iq)));
@@ -181,7 +195,7 @@ fn duty_cycle(table: &mut Table, duty: usize, speed: &Found, pole_pairs: Option<
     let named = [("duty", Some(duty)), ("input voltage", Some(input)), ("speed", Some(speed.index)), ("current", current)];
     let used = named.into_iter().filter_map(|(what, index)| Some((what, heads[index?].name.trim().to_owned())));
     let used = used.collect();
-    Ok(Some((Characteristic::DutyCycle(DutyCycle { rows }), used, notes)))
+    Ok(Some(SteadyTest { table: Characteristic::DutyCycle(DutyCycle { rows }), columns: used, notes, has_electrical_speed }))
 }
 
 #[cfg(test)]
@@ -210,6 +224,11 @@ mod tests {
     #[test]
     fn duty_cycles_take_the_current_of_the_motor_and_not_of_the_supply() {
         let text = "t,inpVoltage,avgMotorCurrent,avgInputCurrent,rpm,dutyCycleNow\n0,12,3,1,6000,0.5\n1,12,3,1,0,0\n";
+        // Without pole pairs the speed stays electrical.
+        let electrical = of(text, None).unwrap().unwrap();
+        assert!(electrical.has_electrical_speed);
+        let Characteristic::DutyCycle(read) = electrical.table else { panic!() };
+        assert!((read.rows[0].speed - 628.318_531).abs() < 1e-5);
         let Characteristic::DutyCycle(read) = table(text) else { panic!() };
         let [row] = read.rows[..] else { panic!() };
         // Of VESC, 6000 electrical r/min are 3000 of the shaft with two pole pairs.

@@ -36,6 +36,8 @@ pub struct CharacteristicsAnswer {
     pub parameters: [CharacteristicEstimate; PARAMETERS],
     /// Pole pairs, if they are known: then the parameters are the motor's own.
     pub pole_pairs: Option<u32>,
+    /// The speeds of the tables are electrical: the parameters are the motor's own without pole pairs.
+    pub has_electrical_speeds: bool,
     /// What is left, in the order of [`Residual::ALL`]: root mean squares, as a fraction or SI; `None` where there are none.
     pub residual_rms: [Option<f64>; RESIDUALS],
     /// How open-circuit voltages were taken; `None` without any.
@@ -48,9 +50,14 @@ pub struct CharacteristicsAnswer {
 }
 
 impl CharacteristicsAnswer {
+    /// Whether inductances and flux are the motor's own, not these times the pole pairs.
+    pub fn is_of_motor(&self) -> bool {
+        self.pole_pairs.is_some() || self.has_electrical_speeds
+    }
+
     /// Whether all four parameters are identified, and are the motor's own.
     pub fn is_complete(&self) -> bool {
-        self.pole_pairs.is_some() && self.parameters.iter().all(|estimate| estimate.verdict == Verdict::Identified)
+        self.is_of_motor() && self.parameters.iter().all(|estimate| estimate.verdict == Verdict::Identified)
     }
 }
 
@@ -127,7 +134,26 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
         Ok((instrument, std::array::from_fn(|p| if told[p] { changes[p] } else { 0.0 })))
     };
     let unseen = Instrument::ALL.into_iter().filter(|instrument| rows.has(*instrument)).map(change).collect::<Result<_, Error>>()?;
-    Ok(CharacteristicsAnswer { parameters, pole_pairs, residual_rms: fit.residual_rms, voltages, if_line_to_line, unseen })
+    let has_electrical_speeds = false;
+    Ok(CharacteristicsAnswer {
+        parameters,
+        pole_pairs,
+        has_electrical_speeds,
+        residual_rms: fit.residual_rms,
+        voltages,
+        if_line_to_line,
+        unseen,
+    })
+}
+
+/// The same of tables whose speeds are electrical. Everything is then as of a motor with one pole pair, and inductances and flux are the
+/// motor's own; a torque, which is that of the shaft, would be missed by the pole pairs, so none may be among the tables.
+///
+/// # Errors
+/// As [`identify_characteristics`].
+pub fn identify_electrical_characteristics(tables: &[Characteristic]) -> Result<CharacteristicsAnswer, Error> {
+    let answer = identify_characteristics(tables, Some(1))?;
+    Ok(CharacteristicsAnswer { pole_pairs: None, has_electrical_speeds: true, ..answer })
 }
 
 /// What a short circuit's currents, or voltages of open terminals, are missed by at most, as a fraction: a motor that saturates by half is

@@ -28,7 +28,9 @@ mod torque_of_current;
 pub use characteristic::Characteristic;
 pub use direct_current::{DirectCurrent, DirectCurrentRow};
 pub use duty_cycle::{DutyCycle, DutyCycleRow};
-pub use fit::{CharacteristicEstimate, CharacteristicsAnswer, VoltageReading, identify_characteristics};
+pub use fit::{
+    CharacteristicEstimate, CharacteristicsAnswer, VoltageReading, identify_characteristics, identify_electrical_characteristics,
+};
 pub use open_circuit::{Across, OpenCircuit, OpenCircuitRow};
 pub use rows::{Instrument, Residual};
 pub use short_circuit::{ShortCircuit, ShortCircuitRow};

@@ -31,9 +31,10 @@ pub struct CharacteristicsDocument {
     pub times_pole_pairs_if_line_to_line: ByParameter<Option<f64>>,
     /// Pole pairs; null if they are not known.
     pub pole_pairs: Option<u32>,
-    /// The motor's own parameters: without pole pairs only the resistance has a value.
+    /// The motor's own parameters: without pole pairs only the resistance has a value, unless the speeds are electrical.
     pub parameters: ByParameter<EstimateEntry>,
-    /// What the tables tell without pole pairs: inductances and flux times these, and the resistance.
+    /// What the tables tell without pole pairs: inductances and flux times these, and the resistance; where the speeds are electrical and
+    /// the pole pairs are not known, the resistance alone.
     pub times_pole_pairs: ByParameter<EstimateEntry>,
     /// What is left of the voltages, as a fraction, root mean square.
     pub residual_voltage: Option<f64>,
@@ -121,7 +122,9 @@ impl CharacteristicsDocument {
             },
             changes: (*changes).into(),
         };
-        let is_own = |parameter: Parameter| parameter == Parameter::Rs || answer.pole_pairs.is_some();
+        let is_own = |parameter: Parameter| parameter == Parameter::Rs || answer.is_of_motor();
+        // Of electrical speeds the pole pairs are not known, nor anything times these.
+        let has_times = |parameter: Parameter| parameter == Parameter::Rs || !answer.has_electrical_speeds;
         Self {
             schema: CHARACTERISTICS,
             tables: tables.iter().map(table).collect(),
@@ -141,10 +144,15 @@ impl CharacteristicsDocument {
             times_pole_pairs: answer
                 .parameters
                 .each_ref()
-                .map(|one| EstimateEntry::of(one, if one.parameter == Parameter::Rs { 1.0 } else { pairs }))
+                .map(|one| match has_times(one.parameter) {
+                    true => EstimateEntry::of(one, if one.parameter == Parameter::Rs { 1.0 } else { pairs }),
+                    false => EstimateEntry::unknown(one.parameter),
+                })
                 .into(),
             times_pole_pairs_if_line_to_line: std::array::from_fn(|p| {
-                answer.if_line_to_line[p].map(|value| if p == Parameter::Rs as usize { value } else { pairs * value })
+                answer.if_line_to_line[p]
+                    .filter(|_| has_times(Parameter::ALL[p]))
+                    .map(|value| if p == Parameter::Rs as usize { value } else { pairs * value })
             })
             .into(),
             residual_voltage: left(Residual::OpenVoltage),

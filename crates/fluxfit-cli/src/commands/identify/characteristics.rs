@@ -11,7 +11,7 @@ use fluxfit::{
     Verdict,
     characteristics::{
         Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Residual, VoltageReading,
-        identify_characteristics,
+        identify_characteristics, identify_electrical_characteristics,
     },
     document::CharacteristicsDocument,
     motor::Parameter,
@@ -46,7 +46,15 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<
     let tables: Vec<Characteristic> = read.iter().map(|(_, read)| read.table.clone()).collect();
     let names: Vec<String> = read.iter().map(|(name, read)| format!("{name}: {}", read.table.describe())).collect();
     let files = read.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
-    let answer = identify_characteristics(&tables, pole_pairs).map_err(|error| CommandError::Log { log: files, error })?;
+    let is_electrical = pole_pairs.is_none() && read.iter().any(|(_, read)| read.has_electrical_speed);
+    if let Some((name, _)) = read.iter().find(|(_, read)| is_electrical && !read.has_electrical_speed && needs_pole_pairs(&read.table)) {
+        return Err(CommandError::Usage(format!(
+            "{name} has the speed or the torque of the shaft, and another table the electrical speed: state the pole pairs (--pole-pairs N)"
+        )));
+    }
+    let identified =
+        if is_electrical { identify_electrical_characteristics(&tables) } else { identify_characteristics(&tables, pole_pairs) };
+    let answer = identified.map_err(|error| CommandError::Log { log: files, error })?;
     if arguments.json {
         terminal::print(&json::text(&CharacteristicsDocument::of(&tables, notes, &answer))?)?;
     } else {
@@ -55,11 +63,16 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<
     Ok(Some(if answer.is_complete() { Status::Complete } else { Status::Incomplete }))
 }
 
+/// Whether a table beside those of electrical speeds needs the pole pairs: a direct current has neither speed nor torque.
+fn needs_pole_pairs(table: &Characteristic) -> bool {
+    !matches!(table, Characteristic::DirectCurrent(_))
+}
+
 /// The symbol of what the tables tell: without pole pairs, inductances and flux times these.
 fn symbol(parameter: Parameter, answer: &CharacteristicsAnswer) -> String {
-    match (parameter, answer.pole_pairs) {
-        (Parameter::Rs, _) | (_, Some(_)) => parameter.symbol().to_owned(),
-        _ => format!("p {}", parameter.symbol()),
+    match parameter == Parameter::Rs || answer.is_of_motor() {
+        true => parameter.symbol().to_owned(),
+        false => format!("p {}", parameter.symbol()),
     }
 }
 
@@ -87,7 +100,7 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
         };
         status += &format!(" For {}: add {what}.", symbols(Verdict::NotIdentifiable));
     }
-    if answer.pole_pairs.is_none() {
+    if !answer.is_of_motor() {
         status += " p are the pole pairs: with --pole-pairs N the values are the motor's own.";
     }
     let mut text = format!("{style}{}{style:#}\n", wrapped("", &status).trim_end());
