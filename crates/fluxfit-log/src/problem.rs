@@ -55,6 +55,10 @@ pub(crate) enum Problem {
     Duplicate { count: usize },
     #[error("the columns {} could each be {channel}; map one of them to {channel}", columns(.headers))]
     Ambiguous { channel: &'static str, headers: Vec<String> },
+    #[error(
+        "the file holds {} logs, in {}; map the columns of one of them, as here those of the first", .names.len(), columns(.names)
+    )]
+    SeveralLogs { names: Vec<String>, first: Vec<(&'static str, String)> },
     #[error("this column would be both {first} and {second}; map each of them to a column of its own")]
     Shared { first: &'static str, second: &'static str },
     #[error(
@@ -217,9 +221,12 @@ impl Problem {
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::ManyColumns { .. } => FileErrorKind::Format,
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
-            Self::Missing { .. } | Self::Reference { .. } | Self::NotALog { .. } | Self::PhaseRms | Self::Duplicate { .. } => {
-                FileErrorKind::Columns
-            }
+            Self::Missing { .. }
+            | Self::Reference { .. }
+            | Self::NotALog { .. }
+            | Self::PhaseRms
+            | Self::SeveralLogs { .. }
+            | Self::Duplicate { .. } => FileErrorKind::Columns,
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
@@ -246,6 +253,9 @@ impl Problem {
     fn advice(&self) -> Vec<Advice> {
         let map = |channels: &[&'static str]| vec![Advice::MapColumns(channels.iter().map(|channel| (*channel, None)).collect())];
         match self {
+            Self::SeveralLogs { first, .. } => {
+                vec![Advice::MapColumns(first.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect())]
+            }
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
             Self::Missing { proposals, rms, .. } => {
                 let columns = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect();

@@ -23,7 +23,8 @@ pub(super) fn choose(
     let without_numbers = || table.without_numbers();
     let (unreadable, passed_over) = (table.unreadable(), table.passed_over());
     let finder = Finder { heads, unreadable, without_numbers: &without_numbers, passed_over, layout, options };
-    let found = finder.needed().map_err(at_header)?;
+    let several = |error: FileError| finder.several_logs().map_or(error, FileError::from);
+    let found = finder.needed().map_err(several).map_err(at_header)?;
     refuse_rms(&found, heads, options).map_err(at_header)?;
     let mut unstated = Vec::new();
     let mut chosen: Vec<ChosenColumn> = Vec::new();

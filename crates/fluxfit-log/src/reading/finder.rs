@@ -34,6 +34,14 @@ pub(super) struct Finder<'a> {
     pub(super) options: &'a ResolvedOptions,
 }
 
+/// The needed channels.
+pub(super) struct Needed {
+    /// Those with a column.
+    pub(super) found: Vec<(Channel, usize)>,
+    /// Those that no column is read as.
+    pub(super) missing: Vec<Channel>,
+}
+
 impl Finder<'_> {
     /// The names of all columns.
     pub(super) fn names(&self) -> Vec<String> {
@@ -43,6 +51,22 @@ impl Finder<'_> {
     /// The columns that a log needs: time, voltages, currents and speed, or the phase quantities and the angle that these are
     /// computed from. Then the further ones that the user mapped.
     pub(super) fn needed(&self) -> Result<Vec<(Channel, usize)>, FileError> {
+        let Needed { mut found, missing } = self.found_and_missing()?;
+        if !missing.is_empty() {
+            return Err(self.refuse_missing(&missing, &found));
+        }
+        self.add_mapped(&mut found)?;
+        for (place, (second, index)) in found.iter().enumerate() {
+            if let Some((first, _)) = found[..place].iter().find(|(_, earlier)| earlier == index) {
+                let shared = Problem::Shared { first: first.name(), second: second.name() };
+                return Err(FileError::from(shared).in_column(&self.heads[*index].name));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Looks for the needed channels.
+    pub(super) fn found_and_missing(&self) -> Result<Needed, FileError> {
         let mut found: Vec<(Channel, usize)> = Vec::new();
         let mut missing: Vec<Channel> = Vec::new();
         let mut take = |channel: Channel, index: Option<usize>| match index {
@@ -98,17 +122,7 @@ impl Finder<'_> {
         } else if has_phases || speed.is_none() && has_angle {
             take(ThetaE, theta?);
         }
-        if !missing.is_empty() {
-            return Err(self.refuse_missing(&missing, &found));
-        }
-        self.add_mapped(&mut found)?;
-        for (place, (second, index)) in found.iter().enumerate() {
-            if let Some((first, _)) = found[..place].iter().find(|(_, earlier)| earlier == index) {
-                let shared = Problem::Shared { first: first.name(), second: second.name() };
-                return Err(FileError::from(shared).in_column(&self.heads[*index].name));
-            }
-        }
-        Ok(found)
+        Ok(Needed { found, missing })
     }
 
     /// Adds the columns that the user mapped and that are not among those found.

@@ -32,6 +32,7 @@ mod read;
 mod repair;
 mod resemblance;
 mod rms;
+mod runs;
 mod selection;
 mod steady_test;
 mod survey;

@@ -30,6 +30,9 @@ impl Proposal {
 /// A root mean square is proposed only where no other column resembles the channel: as good as no resemblance.
 const OF_RMS: f64 = 1.0;
 
+/// Of two speeds the one that states its unit is proposed, also where its name has some words more.
+const WITH_UNIT: f64 = 0.05;
+
 /// A column that resembles a channel.
 struct Candidate {
     index: usize,
@@ -44,7 +47,8 @@ pub(super) fn propose(channels: &[Channel], heads: &[ColumnHead], is_free: impl 
             let may_be = is_free(index) && !has_other_unit(channel, head);
             let fit = may_be.then(|| fit(channel, &head.name)).flatten()?;
             let of_rms = if rms::is_rms(head) { OF_RMS } else { 0.0 };
-            Some(Candidate { index, fit: Fit { score: fit.score - of_rms, ..fit } })
+            let of_unit = if channel == Channel::OmegaE && stated_unit(channel, head).is_some() { WITH_UNIT } else { 0.0 };
+            Some(Candidate { index, fit: Fit { score: fit.score - of_rms + of_unit, ..fit } })
         };
         (channel, heads.iter().enumerate().filter_map(candidate).collect::<Vec<_>>())
     };

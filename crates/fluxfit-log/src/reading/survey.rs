@@ -86,7 +86,9 @@ pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &R
             let read_in = || finder.unit(channel, head, &mut Vec::new(), &mut Vec::new()).ok();
             let assumed = || (channel.dimension() != Dimension::Speed).then_some(channel.unit());
             let unit = of_rms.or_else(read_in).or_else(assumed).filter(|_| !is_share);
-            let is_named = !finder.is_alias(channel, &head.name);
+            // A group's time is named by the file.
+            let is_time = channel == Channel::T && (head.is_time || head.instants.is_some());
+            let is_named = is_time || !finder.is_alias(channel, &head.name);
             let stated = Surveyed { is_named, ..surveyed(channel, index, head, layout, options) };
             survey.taken.push(Surveyed { unit: unit.or(stated.unit), is_unit_stated: stated.is_unit_stated || is_share, ..stated });
         }

@@ -10,7 +10,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several):
         part(make)
 
 
@@ -96,3 +96,14 @@ def phases(make):
         make.read(file, says, log, tolerances=tolerances, names=make.NAMES[:5], notes=["usual names", "phase quantities"])
     named = {"Time [ms]": log["t"] * 1e3} | {f"Current(Phase{letter}) [A]": log[f"Current{letter}"] for letter in "ABC"}
     refuse(make, "phases_alone.csv", "currents of the phases and nothing else", named | {"Speed(Rotor) [rpm]": log["omega_e"]}, "ud, uq and theta_e are missing", line=1)
+
+
+def several(make):
+    """Structures of one file that are a log each."""
+    names = ("t", "u_d", "u_q", "id", "iq", "omega_rpm")
+    log = {f"result.{run}.{name}": values for run in ("id0", "mtpa") for name, values in columns(make, *names).items()}
+    log |= {f"result.{run}.omega_m": make.FAST["omega_e"] for run in ("id0", "mtpa")}
+    refuse(make, "several_logs.csv", "two runs, and each has two speeds", log, "2 logs, in 'result.id0' and 'result.mtpa'", "map the columns of one", line=1)
+    told = {"map": ["t=result.mtpa.t", "ud=result.mtpa.u_d", "uq=result.mtpa.u_q", "id=result.mtpa.id", "iq=result.mtpa.iq", "omega=result.mtpa.omega_m"]}
+    make.put("several_logs_mapped.csv", make.table(log))
+    make.read("several_logs_mapped.csv", "the second of two runs, mapped", make.part(make.FAST), make.MAPPED, told=told)

@@ -203,6 +203,12 @@ fn errors_and_notes_carry_the_advice_as_facts() {
     };
     let missing = error("t,load u_d,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &LogOptions::default());
     assert_eq!((missing.kind(), missing.advice()), (FileErrorKind::Columns, &[map_to(&[("ud", Some("load u_d"))])][..]));
+    // Of several logs in one file, all columns of the first, at once.
+    let header: Vec<String> =
+        ["a", "b"].iter().flat_map(|run| ["t", "u_d", "u_q", "id", "iq", "w_rpm", "w"].map(|name| format!("r.{run}.{name}"))).collect();
+    let several = error(&format!("{}\n{}\n", header.join(","), vec!["1"; 14].join(",")), &LogOptions::default());
+    let first = ["t", "ud", "uq", "id", "iq", "omega_e"].into_iter().zip(header.iter().map(|name| Some(name.as_str())));
+    assert_eq!(several.advice(), [map_to(&first.collect::<Vec<_>>())], "{several}");
     let absent = error("t,uq,id,iq,omega_e\n0,2,3,4,5\n", &LogOptions::default());
     assert_eq!(absent.advice(), [map_to(&[("ud", None)])]);
     let unknown_unit = error("t [h],ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &map(&["t=t [h]"]));
