@@ -20,6 +20,17 @@ pub enum Advice {
         /// Its unit, where there is a likely one.
         unit: Option<&'static str>,
     },
+    /// State whether a channel is electrical or mechanical, by its unit.
+    StateRotation {
+        /// The channel.
+        channel: &'static str,
+        /// Its unit, if it is electrical.
+        electrical: &'static str,
+        /// Its unit, if it is mechanical; with it, the number of pole pairs has to be stated.
+        mechanical: &'static str,
+        /// The number of pole pairs is stated already.
+        has_pole_pairs: bool,
+    },
     /// State the DBC that names the signals of CAN frames.
     StateDbc,
     /// State the number of pole pairs.

@@ -1,8 +1,8 @@
 //! What can be wrong with a log, or with what is stated about it.
 
 use fluxfit_files::{Advice, FileError, FileErrorKind};
-use fluxfit_units::significant;
 use fluxfit_units::wording::{choice, columns, did_you_mean, list, quote, shorten};
+use fluxfit_units::{Unit, significant};
 
 /// Most columns that a sentence lists.
 const MOST_NAMES: usize = 20;
@@ -77,6 +77,8 @@ pub(crate) enum Problem {
         "nothing states the unit of this speed, or whether it is the electrical one; state it: rad/s is electrical, rad/s-mech and rpm-mech are those of the shaft"
     )]
     SpeedUnit,
+    #[error("this speed is in {}, and nothing states whether it is electrical or that of the shaft; state which", .electrical.prose().trim_start_matches("electrical "))]
+    SpeedRotation { electrical: Unit, mechanical: Unit, has_pole_pairs: bool },
     #[error("the times are whole numbers in steps of {step}, and nothing states their unit; state it")]
     TimeUnit { step: u64 },
     #[error("by its values this column is not the angle of the rotor; map theta_e to the angle, or log it")]
@@ -231,7 +233,9 @@ impl Problem {
                 FileErrorKind::Columns
             }
             Self::AmbiguousQuantity { .. } | Self::LoadCurve | Self::DirectVoltage { .. } => FileErrorKind::Columns,
-            Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::TimeUnit { .. } => FileErrorKind::Unit,
+            Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::SpeedRotation { .. } | Self::TimeUnit { .. } => {
+                FileErrorKind::Unit
+            }
             Self::ElectricalSpeed { .. } | Self::Rms { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
@@ -273,6 +277,12 @@ impl Problem {
             }
             Self::NoDbc => vec![Advice::StateDbc],
             Self::NoBus { .. } => map(&["u_dc"]),
+            Self::SpeedRotation { electrical, mechanical, has_pole_pairs } => vec![Advice::StateRotation {
+                channel: "omega_e",
+                electrical: electrical.name(),
+                mechanical: mechanical.name(),
+                has_pole_pairs: *has_pole_pairs,
+            }],
             Self::SpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: None }],
             Self::Digits { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
             Self::HighVoltage { channel, .. } => vec![Advice::StateUnit { channel, unit: Some("mV") }],

@@ -40,6 +40,10 @@ pub(super) fn option(advice: &Advice) -> Option<String> {
             }
         }
         Advice::StateUnit { channel, unit } => Some(format!("--unit {channel}={}", unit.unwrap_or("UNIT"))),
+        Advice::StateRotation { channel, electrical, mechanical, has_pole_pairs } => {
+            let pole_pairs = if *has_pole_pairs { "" } else { " --pole-pairs N" };
+            Some(format!("--unit {channel}={electrical}, or --unit {channel}={mechanical}{pole_pairs}"))
+        }
         Advice::StateDbc => Some("--dbc FILE.dbc".to_owned()),
         Advice::StatePolePairs => Some("--pole-pairs N".to_owned()),
         Advice::FixParameters(keys) => {
@@ -74,6 +78,8 @@ mod tests {
         let columns = vec![("id", Some("Id rms".to_owned())), ("iq", Some("Iq rms".to_owned()))];
         let units = vec![("id", "Arms"), ("iq", "Arms")];
         assert_eq!(with_options("a", &[Advice::MapInUnits { columns, units }]), "a (--map 'id=Id rms,iq=Iq rms' --unit id=Arms,iq=Arms)");
+        let rotation = Advice::StateRotation { channel: "omega_e", electrical: "Hz-elec", mechanical: "Hz-mech", has_pole_pairs: false };
+        assert_eq!(with_options("a", &[rotation]), "a (--unit omega_e=Hz-elec, or --unit omega_e=Hz-mech --pole-pairs N)");
         let currents = ["id", "iq"].map(|channel| Advice::StateUnit { channel, unit: Some("mA") });
         assert_eq!(with_options("a", &currents), "a (--unit id=mA,iq=mA)");
         assert_eq!(with_options("a", &[Advice::FixParameters(vec!["ld", "rs"])]), "a (--fix ld=VALUE,rs=VALUE)");

@@ -324,7 +324,7 @@ impl Finder<'_> {
     }
 
     /// How the cells of the time are read, if they are instants and neither the user nor the header states another unit.
-    fn instants(&self, channel: Channel, head: &ColumnHead) -> Option<Instants> {
+    pub(super) fn instants(&self, channel: Channel, head: &ColumnHead) -> Option<Instants> {
         let stated = match split_header(&head.name, Dimension::Time).1 {
             HeaderUnit::Known(unit) => Some(unit),
             _ => None,
@@ -416,7 +416,8 @@ impl Finder<'_> {
         };
         let is_alias = stated.is_none() && self.is_alias(channel, name);
         if is_alias && dimension == Dimension::Speed && !unit.is_mechanical() && !states_electrical(name) {
-            return Err(Problem::SpeedUnit.into());
+            let has_pole_pairs = self.options.pole_pairs.is_some();
+            return Err(Problem::SpeedRotation { electrical: unit, mechanical: mechanical(unit), has_pole_pairs }.into());
         }
         if unit.is_mechanical() && self.options.pole_pairs.is_none() {
             return Err(needs_pole_pairs(channel, unit).into());

@@ -8,11 +8,12 @@ use super::{
     survey::{Surveyed, survey},
     table::Table,
 };
-use crate::{block::WantedColumn, problem::Problem};
+use crate::{block::WantedColumn, instant::Instants, problem::Problem};
 use fluxfit_files::{
     FileError,
     input::{self, Bytes},
 };
+use fluxfit_units::Unit;
 use std::path::Path;
 
 /// How a file is read.
@@ -74,7 +75,10 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
     let (kind, heads) = (table.kind(), table.heads().to_vec());
     let log = read(table, &resolved).map_err(|error| error.in_file(&name));
     let survey = if log.is_ok() { survey } else { survey.without_guesses() };
-    let courses = courses(path, resolved.dbc.as_deref());
+    // Numbers that may count from 1970 are shown as such only where they are read so; dates are no numbers.
+    let is_read_as_instant = |index: usize| survey.taken.iter().any(|taken| taken.index == index && taken.is_instant);
+    let instants = |index: usize| heads[index].instants.clone().filter(|instants| instants.is_date() || is_read_as_instant(index));
+    let courses = courses(path, resolved.dbc.as_deref(), &instants);
     let columns = heads.iter().enumerate().map(|(index, head)| {
         let of = |columns: &[Surveyed]| columns.iter().find(|column| column.index == index).copied();
         let (taken, resembling) = (of(&survey.taken), of(&survey.resembling));
@@ -85,14 +89,17 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
             header: head.name.clone(),
             unit: head.unit.clone(),
             channel: taken.map(|column| column.channel.name()),
-            read_as: unit.map(|unit| (unit.name(), unit.prose())),
+            read_as: match taken.is_some_and(|taken| taken.is_instant) {
+                true => Some((Unit::Second.name(), "s from the first row")),
+                false => unit.map(|unit| (unit.name(), unit.prose())),
+            },
             is_unit_stated: found.is_some_and(|found| found.is_unit_stated),
             is_rotation_stated: found.is_some_and(|found| found.is_rotation_stated),
             resembles: resembling.filter(|_| taken.is_none()).map(|column| column.channel.name()),
             range: courses.get(index).and_then(Course::range),
             course: courses.get(index).map(|course| course.spans.clone()).unwrap_or_default(),
             is_time: head.is_time,
-            is_instant: head.instants.is_some(),
+            is_instant: instants(index).is_some(),
             share: survey.shares.iter().find(|(place, _)| *place == index).map(|(_, scale)| *scale),
         }
     });
@@ -152,7 +159,7 @@ fn range(spans: &[[f64; 2]]) -> Option<[f64; 2]> {
 }
 
 /// The course of every column, from a second reading.
-fn courses(path: &Path, dbc: Option<&str>) -> Vec<Course> {
+fn courses(path: &Path, dbc: Option<&str>, instants: &dyn Fn(usize) -> Option<Instants>) -> Vec<Course> {
     let Ok(mut table) = input::open(path).and_then(|bytes| match bytes {
         Bytes::File(..) => Table::open(bytes, dbc),
         // A pipe can be read only once.
@@ -174,7 +181,7 @@ fn courses(path: &Path, dbc: Option<&str>) -> Vec<Course> {
                 header: heads[*index].name.clone(),
                 is_time: false,
                 is_optional: true,
-                instants: heads[*index].instants.clone(),
+                instants: instants(*index),
             })
             .collect();
         // Up to the first error, if there is one.

@@ -171,6 +171,24 @@ mod tests {
         );
     }
 
+    /// Whole numbers of ns are those of the file, unless they count from 1970: then they are seconds from the first row.
+    #[test]
+    fn the_range_of_a_time_in_ns_is_its_own() {
+        for (start, expected, unit) in [
+            (0_u64, [0.0, 900e6], "ns"),
+            (951_412_772_644_479, [951_412_772_644_479.0, 951_413_672_644_479.0], "ns"),
+            (1_700_000_000_123_456_789, [0.0, 0.9], "s"),
+        ] {
+            let rows: String = (0..10_u64).map(|row| format!("{},3,4,1,2,{}\n", start + row * 100_000_000, 500 + row)).collect();
+            let found = inspected(&format!("timestamp [ns],ud,uq,id,iq,omega_e\n{rows}"), &LogOptions::default());
+            let (column, range) = (&found.columns[0], found.columns[0].range.unwrap());
+            assert!((range[0] - expected[0]).abs() < 1e-6 && (range[1] - expected[1]).abs() < 1e-6, "{start}: {range:?}");
+            assert_eq!(column.read_as.map(|(name, _)| name), Some(unit), "{start}");
+            let t = &found.log.as_ref().unwrap().log.columns().t;
+            assert!((t[9] - t[0] - 0.9).abs() < 1e-6, "{start}: {t:?}");
+        }
+    }
+
     /// Nothing of these columns was read, so nothing says that they are what their names say, or in SI.
     #[test]
     fn guesses_are_marked_and_have_no_unit_that_nothing_states() {

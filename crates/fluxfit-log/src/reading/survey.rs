@@ -24,6 +24,8 @@ pub(super) struct Surveyed {
     pub(super) is_unit_stated: bool,
     /// One of them states whether a speed or an angle is electrical; true of other channels.
     pub(super) is_rotation_stated: bool,
+    /// It is the time, and its cells are read as instants.
+    pub(super) is_instant: bool,
     /// It has the channel's own name, or one that the layout or the user gives it.
     pub(super) is_named: bool,
 }
@@ -89,7 +91,9 @@ pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &R
             // A group's time is named by the file.
             let is_time = channel == Channel::T && (head.is_time || head.instants.is_some());
             let is_named = is_time || !finder.is_alias(channel, &head.name);
-            let stated = Surveyed { is_named, ..surveyed(channel, index, head, layout, options) };
+            let is_instant = finder.instants(channel, head).is_some();
+            let stated = Surveyed { is_named, is_instant, ..surveyed(channel, index, head, layout, options) };
+            let unit = if is_instant { Some(Unit::Second) } else { unit };
             survey.taken.push(Surveyed { unit: unit.or(stated.unit), is_unit_stated: stated.is_unit_stated || is_share, ..stated });
         }
     }
@@ -120,6 +124,7 @@ fn surveyed(channel: Channel, index: usize, head: &ColumnHead, layout: Option<&'
         unit: unit.or((is_own_name && !is_instant).then_some(channel.unit())),
         is_unit_stated: is_known || of_file.is_some() || is_instant || is_scaled || channel.dimension() == Dimension::Ratio,
         is_rotation_stated: !is_turning || is_known || states_electrical(&head.name) || unit.is_some_and(Unit::is_mechanical),
+        is_instant: false,
         is_named: false,
     }
 }

@@ -10,7 +10,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases, several):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation):
         part(make)
 
 
@@ -107,3 +107,10 @@ def several(make):
     told = {"map": ["t=result.mtpa.t", "ud=result.mtpa.u_d", "uq=result.mtpa.u_q", "id=result.mtpa.id", "iq=result.mtpa.iq", "omega=result.mtpa.omega_m"]}
     make.put("several_logs_mapped.csv", make.table(log))
     make.read("several_logs_mapped.csv", "the second of two runs, mapped", make.part(make.FAST), make.MAPPED, told=told)
+
+
+def rotation(make):
+    """A speed whose unit is stated, and nothing says whether it is that of the shaft."""
+    hertz = columns(make, "t", "vd [V]", "vq [V]", "id [A]", "iq [A]", "velocity measured [Hz]")
+    hertz["velocity measured [Hz]"] = hertz["velocity measured [Hz]"] / (2.0 * np.pi)
+    refuse(make, "speed_in_hertz.csv", "a speed in Hz, and no word on whether it is electrical", hertz, "this speed is in Hz", "electrical or that of the shaft", line=1)
