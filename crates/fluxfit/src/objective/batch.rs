@@ -402,10 +402,10 @@ mod tests {
     /// Voltages that stand still in the rotor's frame and hold a current there: it stays, whatever the rows' lengths.
     #[test]
     fn a_motor_in_its_steady_state_stays_there() {
-        let hundred: Vec<f64> = (0..100).map(|k| 1e-4 * (1.0 + 0.003 * f64::from(k))).collect();
+        let many: Vec<f64> = (0..300).map(|k| 1e-4 * (1.0 + 0.003 * f64::from(k))).collect();
         let (i, omega_e) = (Dq { d: -3.0, q: 8.0 }, 4000.0);
         let u = MOTOR.steady_voltage(i, omega_e);
-        for lengths in [vec![1e-4], hundred] {
+        for lengths in [vec![1e-4], many] {
             let mut columns = log(300, 0.1, &lengths).columns().clone();
             for (column, value) in [
                 (&mut columns.ud, u.d),
@@ -427,17 +427,17 @@ mod tests {
         }
     }
 
-    /// Over a whole log, from standstill to a sixth of a turn per row, with one length of a period, three, and a hundred.
+    /// Over a whole log, from standstill to a sixth of a turn per row, with one length of a period, three, and three hundred.
     #[test]
     fn simulated_currents_are_those_of_a_matrix_exponential_per_row() {
-        let hundred: Vec<f64> = (0..100).map(|k| 1e-4 * (1.0 + 0.003 * f64::from(k))).collect();
+        let many: Vec<f64> = (0..300).map(|k| 1e-4 * (1.0 + 0.003 * f64::from(k))).collect();
         for (turn, lengths) in [
             (0.04, vec![1e-4]),
             (0.15, vec![1e-4]),
             (0.5, vec![1e-4]),
             (1.0, vec![1e-4]),
             (0.04, vec![0.99e-4, 1e-4, 1.01e-4]),
-            (0.1, hundred),
+            (0.1, many),
         ] {
             let log = log(3000, turn, &lengths);
             for timing in [VoltageTiming::ALL[0], VoltageTiming::ALL[2]] {

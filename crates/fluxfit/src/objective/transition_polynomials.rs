@@ -15,8 +15,15 @@ use crate::lanes::Number;
 /// Periods whose lengths agree within this fraction are of one length: what the digits of a time column leave.
 const EVEN: f64 = 1e-3;
 
-/// Most different lengths of periods with polynomials of their own; of more, each period is computed exactly.
-const MOST_LENGTHS: usize = 16;
+/// Most different lengths of periods with polynomials of their own; of more, each period is computed exactly. Clocks of recorders jitter by
+/// a few percent, which is so many lengths.
+const MOST_LENGTHS: usize = 128;
+
+/// So many are worth it in any log.
+const FEW_LENGTHS: usize = 16;
+
+/// Periods that a further length must have on average: the nodes of its polynomials are as many exact transitions.
+const LEAST_PERIODS: usize = 30;
 
 /// Numbers of coefficients for which the simulation is compiled.
 pub(super) const COEFFICIENTS: [usize; 4] = [4, 5, 7, 11];
@@ -71,6 +78,10 @@ impl TransitionPlan {
             } else {
                 return exact;
             }
+        }
+        let total: f64 = gathered.iter().map(|class| class.periods).sum();
+        if gathered.len() > FEW_LENGTHS && total < (LEAST_PERIODS * gathered.len()) as f64 {
+            return exact;
         }
         let classes: Vec<PeriodClass> = gathered.iter().map(Gathered::class).collect();
         let needed = classes.iter().map(|class| needed(class.middle - class.reach, class.middle + class.reach)).max().unwrap_or(0);
