@@ -12,7 +12,7 @@ pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
         Remedy::StateVoltageTiming => Some("--voltage-timing"),
         Remedy::CompensateDeadTime | Remedy::FixOne => Some("--fix rs=VALUE"),
         Remedy::RemoveDisturbances => Some("--window T0:T1 --model steady"),
-        Remedy::NarrowCurrents | Remedy::SimilarWindows => Some("--window T0:T1"),
+        Remedy::SimilarWindows => Some("--window T0:T1"),
         Remedy::SharperPrior => Some("--prior"),
         _ => None,
     }

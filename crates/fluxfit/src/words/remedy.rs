@@ -47,7 +47,11 @@ impl Display for Remedy {
             ),
             Self::CalibrateSensors => write!(f, "calibrate the current sensors"),
             Self::CalibrateBusVoltage => write!(f, "calibrate the measurement of the DC voltage"),
-            Self::NarrowCurrents => write!(f, "identify from a window in time at nearly the same currents"),
+            Self::SmallSteps => write!(
+                f,
+                "take the flux at your currents from the table of fluxes; or, for one L_d and L_q, log small steps of i_d and i_q around the \
+                 current that you need, at two speeds"
+            ),
             Self::SimilarWindows => write!(
                 f,
                 "identify from three or more windows in time at nearly the same currents, so that the motor saturates alike in them and a \

@@ -62,8 +62,8 @@ pub enum Remedy {
     CalibrateSensors,
     /// Calibrate the measurement of the DC voltage.
     CalibrateBusVoltage,
-    /// The motor saturates: identify from a part of the log at nearly the same currents ([`Request::windows`](crate::Request::windows)).
-    NarrowCurrents,
+    /// The motor saturates: log small steps around the current that matters, where the inductances are constants.
+    SmallSteps,
     /// Identify from three or more windows at nearly the same currents, so that saturation is alike in them.
     SimilarWindows,
     /// Give a sharper prior, or log another operating point.
@@ -116,7 +116,7 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measu
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
         Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
-        Reason::Saturates => Remedy::NarrowCurrents,
+        Reason::Saturates => Remedy::SmallSteps,
         Reason::Wide { part, .. } => narrower(*part, parameter, finding, measure),
     })
 }
@@ -140,7 +140,7 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, measure: impl F
         Part::ProcessNoise => Remedy::RemoveDisturbances,
         Part::Sensors | Part::CurrentGain => Remedy::CalibrateSensors,
         Part::BusVoltage => Remedy::CalibrateBusVoltage,
-        Part::Saturation => Remedy::NarrowCurrents,
+        Part::Saturation => Remedy::SmallSteps,
         Part::Misfit => Remedy::SimilarWindows,
         Part::Prior => measure().unwrap_or(Remedy::SharperPrior),
     }
