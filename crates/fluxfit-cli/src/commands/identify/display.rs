@@ -232,7 +232,8 @@ fn model(found: &Identification) -> String {
         amperes(rms.q),
         fit.voltage_timing.value.label(),
     ));
-    if !fit.fault_estimates.is_empty() {
+    let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
+    if answered && !beside(fit).is_empty() {
         text += &format!("\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit));
     }
     text
@@ -252,8 +253,10 @@ fn amperes(current: f64) -> String {
 /// Standard errors in half of a 95 % interval.
 const INTERVAL: f64 = 1.959_964;
 
+/// Numbers that may as well be zero say nothing.
 fn beside(fit: &OutputFit) -> String {
-    let rows = fit.fault_estimates.iter().map(|nuisance| {
+    let found = fit.fault_estimates.iter().filter(|nuisance| nuisance.value.abs() > INTERVAL * nuisance.standard_error);
+    let rows = found.map(|nuisance| {
         let [value, margin, unit] = format_unknown(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
         // Units stand at the left of their column.
         (nuisance.unknown.label(), value, margin, unit)
