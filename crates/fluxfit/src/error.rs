@@ -232,6 +232,11 @@ impl Error {
         ErrorKind::AllZero { what: "the voltages ud and uq are" }.into()
     }
 
+    /// The error of a log whose speed is zero throughout, although its motor turned.
+    pub(crate) fn no_speed() -> Self {
+        ErrorKind::AllZero { what: "the motor turned, by its voltages, but the speed omega_e is" }.into()
+    }
+
     /// The row of the log, from 0, that the error is about; `None` if it is about no single row.
     pub fn row(&self) -> Option<usize> {
         match self.kind() {

@@ -19,6 +19,7 @@ mod output_error;
 mod refusals;
 mod saturation;
 mod sensors;
+mod standstill;
 mod study;
 mod temperature;
 mod validate;

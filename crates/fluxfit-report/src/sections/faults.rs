@@ -74,7 +74,7 @@ fn warning_of(fault: Fault, warnings: &[Warning]) -> Option<&Warning> {
 }
 
 fn row(tried: &FaultTrial, warnings: &[Warning]) -> Markup {
-    let judged = !matches!(tried.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle);
+    let judged = !matches!(tried.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle | FaultOutcome::NeedsTurning);
     html! {
         tr {
             th scope="row" { (prose(&capitalized(tried.fault.label()))) }

@@ -237,6 +237,22 @@ impl Fault {
         self.family() == other.family() || filters_voltages(self) && filters_voltages(other)
     }
 
+    /// Whether only a rotor that turns shows it: at rest it passes for other values of the motor's parameters, or for dead time.
+    pub(crate) fn needs_turning(self) -> bool {
+        matches!(
+            self,
+            Self::AngleOffset
+                | Self::AngleDelay
+                | Self::CurrentOffset
+                | Self::SpeedLag
+                | Self::FluxHarmonics
+                | Self::ThreeSensors
+                | Self::SensorsAb
+                | Self::SensorsBc
+                | Self::SensorsCa
+        )
+    }
+
     /// What it needs of the electrical angle.
     pub(crate) fn angle_need(self) -> AngleNeed {
         self.row().angle

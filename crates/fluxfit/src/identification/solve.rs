@@ -25,7 +25,7 @@ use super::{
     },
     prepare::{
         model::{self, Model, ModelChoice, ModelReason},
-        search_box, stretches,
+        search_box, standstill, stretches,
     },
     progress::{Progress, Step, silent},
     request::Request,
@@ -156,6 +156,9 @@ struct Fitted {
 fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Progress) -> Result<Fitted, Error> {
     let _ = progress(Step::OperatingPoints);
     let steady = SteadyFit::of(log, request);
+    if log.is_at_rest() && steady.as_ref().is_ok_and(|fit| !standstill::is_possible(&fit.as_measured)) {
+        return Err(Error::no_speed());
+    }
     let model = model::choose(log, request.model);
     let points_tell_more = ModelChoice { model: Model::Steady, reason: ModelReason::PointsTellMore };
     let (model, mut steady, mut output) = match model.model {

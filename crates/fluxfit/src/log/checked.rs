@@ -127,6 +127,11 @@ impl Log {
         short_circuit::voltages_are_zero(&self.columns)
     }
 
+    /// Whether the rotor stands throughout, so that no row depends on the magnets' flux.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.columns.omega_e.iter().all(|speed| *speed == 0.0)
+    }
+
     /// Refuses a log that the output error cannot tell more of than the steady model: it would look at length for a minimum that every
     /// motor with the same ratios of parameters shares.
     ///

@@ -31,6 +31,9 @@ use std::ops::Range;
 /// Fewest rows that a segment must have left.
 const MIN_ROWS: usize = 10;
 
+/// A rotor turns if it gets this far, rad: a sixth of a turn, after which the phases have changed places.
+const LEAST_TURN: f64 = std::f64::consts::FRAC_PI_3;
+
 /// The squared error of the simulated currents.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputError {
@@ -138,6 +141,12 @@ impl OutputError {
     pub fn angle_traced(&self) -> bool {
         let segments = &self.simulated.segments;
         self.angle_known() || segments.windows(2).all(|pair| pair[0].log_segment == pair[1].log_segment)
+    }
+
+    /// Whether the rotor turns, by the speed: far enough for the phases to change their parts.
+    pub fn turns(&self) -> bool {
+        let turned: f64 = self.simulated.segments.iter().map(SimulatedSegment::turned).sum();
+        turned > LEAST_TURN
     }
 
     /// Largest measured current vector, A.

@@ -110,6 +110,16 @@ impl SimulatedSegment {
         }
     }
 
+    /// How far the rotor gets away from where it was, by the speed, rad.
+    pub(super) fn turned(&self) -> f64 {
+        let (mut angle, mut least, mut most) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for period in &self.periods {
+            angle += period.omega_e * period.length;
+            (least, most) = (least.min(angle), most.max(angle));
+        }
+        most - least
+    }
+
     /// Lays out the periods for the simulation.
     pub(super) fn plan(&mut self, plan: &TransitionPlan) {
         let signs = [1.0, -1.0].into_iter().cycle();

@@ -297,6 +297,9 @@ impl Evidence<'_> {
                 (rows().fold(0.0, within), rows().map(|row| columns.ud[row].hypot(columns.uq[row])).fold(0.0, f64::max))
             }
         };
+        if omega_e == 0.0 {
+            return None;
+        }
         // A flux that is not known makes no more voltage than there is.
         let own = self.parameters[Parameter::PsiF as usize].value().map_or(u, |psi_f| omega_e * psi_f);
         let seen = self.steady.iter().flat_map(|fit| &fit.voltage_losses).copied().fold(0.0, f64::max);

@@ -70,6 +70,8 @@ pub enum FaultOutcome {
     Covered,
     /// It needs the electrical angle, which the log does not have.
     NeedsAngle,
+    /// It needs a rotor that turns.
+    NeedsTurning,
 }
 
 impl FaultOutcome {
@@ -82,6 +84,7 @@ impl FaultOutcome {
             Self::NoMatter => "moves no parameter by more than its standard error",
             Self::Covered => "another term explains the same",
             Self::NeedsAngle => "needs the electrical angle, theta_e",
+            Self::NeedsTurning => "needs a rotor that turns",
         }
     }
 }
@@ -139,7 +142,11 @@ impl FaultSearch<'_> {
     }
 
     /// Adds the observer of a disturbed motor, if it would help: beside it residuals are white, and faults are judged by their true worth.
+    /// At rest nothing of the motor disturbs it, and an observer would take what dead time does.
     pub(crate) fn observe(&mut self) -> Option<FaultTrial> {
+        if !self.objective().turns() {
+            return None;
+        }
         let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == FaultOutcome::Taken)?;
         self.choose_reading();
         Some(observer)
@@ -313,6 +320,8 @@ impl FaultSearch<'_> {
                 FaultOutcome::NotPhysical
             } else if !fault.angle_need().is_met(this.objective().angle_known(), this.objective().angle_traced()) {
                 FaultOutcome::NeedsAngle
+            } else if fault.needs_turning() && !this.objective().turns() {
+                FaultOutcome::NeedsTurning
             } else {
                 FaultOutcome::NotNeeded
             }

@@ -15,6 +15,7 @@ use super::{
     fault_search::{FaultOutcome, FaultTrial, LEAST_RESIDUAL},
     faults_in_doubt,
     finding::{Bench, Finding, Trust, covariance},
+    halves,
     long_run,
     output_choice::{Chosen, choose},
     output_errors::{CORRELATED, Errors, FaultEstimate, OutputShifts, correlation_of_neighbours, other_kind_of_fit, sensors},
@@ -124,6 +125,7 @@ impl OutputFit {
             faults_in_doubt: faults_in_doubt::doubt(&terms),
             sensors: sensors(&drive),
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
+            misfit: halves::doubt(log, &stretches, reading, &drive, &unknowns, &priors),
         };
         let misshapen = voltage_loss::misshapen_in_rows(log, reading, drive.faults.dead_time.voltage);
         let corrected_beside_loss = voltage_loss::corrected_by_observer(log, &drive, rms_by_axis(&residuals));
@@ -140,7 +142,7 @@ impl OutputFit {
             open: [false; 4],
             trust: Trust {
                 correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
-                too_sharp: errors.are_too_small(objective, &drive, &unknowns, &residuals),
+                too_sharp: errors.are_too_small(objective, &drive, &unknowns, &priors, &residuals),
                 misses: missed(objective, &drive) / objective.peak_current(),
                 runaway,
                 least_inductance: if is_control_rate(log) { LEAST_PERIODS * slowest_period(log) * drive.motor.rs } else { 0.0 },
@@ -176,7 +178,7 @@ impl OutputFit {
         let chosen = Chosen {
             reading: self.voltage_timing.value,
             drive: self.drive,
-            unknowns: output_start::free(request).into_iter().chain(of_faults).collect(),
+            unknowns: output_start::free(log, request).into_iter().chain(of_faults).collect(),
             priors: output_start::priors(request, self.undone_lag, self.cost / self.residuals.len() as f64),
             readings: self.timings.clone(),
             terms: self.fault_trials.clone(),

@@ -104,7 +104,7 @@ pub(super) fn choose(
     progress: Progress,
 ) -> Result<Vec<Chosen>, Error> {
     let _ = progress(Step::VoltageTiming);
-    let free: Vec<Unknown> = free(request).into_iter().chain(output_start::rest_of_lag(undone_lag)).collect();
+    let free: Vec<Unknown> = free(log, request).into_iter().chain(output_start::rest_of_lag(undone_lag)).collect();
     let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &readings::asked(request))?;
     let rough = readings::readings(&objectives, &start.drive, &free, &[], HOPELESS);
     let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
@@ -178,9 +178,10 @@ pub(super) fn choose(
     Ok(found)
 }
 
-/// Whether all parameters are positive, as a motor's are.
+/// Whether all parameters are positive, as a motor's are; at rest the flux is zero, because it is not fitted.
 fn is_a_motor(motor: &Motor) -> bool {
-    motor.to_array().iter().all(|value| *value > 0.0)
+    let Motor { rs, ld, lq, psi_f } = *motor;
+    [rs, ld, lq].iter().all(|value| *value > 0.0) && psi_f >= 0.0
 }
 
 impl Chosen {

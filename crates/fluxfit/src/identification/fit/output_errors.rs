@@ -43,6 +43,7 @@ pub(super) struct OutputShifts {
     pub(super) faults_in_doubt: [f64; PARAMETERS],
     pub(super) sensors: [f64; PARAMETERS],
     pub(super) dead_time: [f64; PARAMETERS],
+    pub(super) misfit: [f64; PARAMETERS],
 }
 
 /// Gain from which an observer is fitted where none was found.
@@ -92,6 +93,57 @@ fn larger(one: DMatrix<f64>, other: DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(one.nrows(), one.ncols(), |p, q| one[(p, q)] * scale[p] * scale[q])
 }
 
+/// The currents' derivatives, with a residual more for each prior.
+fn with_priors(mut slopes: Vec<Vec<f64>>, unknowns: &[Unknown], priors: &[PriorResidual]) -> Vec<Vec<f64>> {
+    for (column, unknown) in slopes.iter_mut().zip(unknowns) {
+        column.extend(priors.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
+    }
+    slopes
+}
+
+/// What noise does to the unknowns.
+struct OfNoise {
+    covariance: DMatrix<f64>,
+    degrees_of_freedom: f64,
+    correlation_of_neighbours: f64,
+}
+
+impl OfNoise {
+    fn of(objective: &OutputError, slopes: &[Vec<f64>], inverse: &DMatrix<f64>, residuals: &[f64]) -> Self {
+        let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
+        let (rows, _) = residuals.as_chunks::<2>();
+        // A score per row: both axes together.
+        let scores = slopes.iter().map(|slope| {
+            let (slope, _) = slope.as_chunks::<2>();
+            slope.iter().zip(rows).map(|(slope, residual)| slope[0] * residual[0] + slope[1] * residual[1]).collect()
+        });
+        let scores: Vec<Vec<f64>> = scores.collect();
+        let correlation_of_neighbours = correlation_of_neighbours(residuals, &lengths);
+        let noise = long_run::covariance(&scores, &lengths);
+        let (mut covariance, mut degrees_of_freedom) = (inverse * noise.covariance * inverse, noise.degrees_of_freedom);
+        if correlation_of_neighbours > CORRELATED {
+            let blocks = long_run::covariance_of_blocks(&scores);
+            degrees_of_freedom = degrees_of_freedom.min(blocks.degrees_of_freedom);
+            covariance = larger(covariance, inverse * blocks.covariance * inverse);
+        }
+        Self { covariance, degrees_of_freedom, correlation_of_neighbours }
+    }
+}
+
+/// Standard errors of the unknowns from noise alone.
+pub(super) fn from_noise(
+    objective: &OutputError,
+    drive: &Adjustable,
+    unknowns: &[Unknown],
+    priors: &[PriorResidual],
+    residuals: &[f64],
+) -> Vec<f64> {
+    let slopes = jacobian(objective, drive, unknowns);
+    let inverse = NormalMatrix::of(&with_priors(slopes.clone(), unknowns, priors)).inverse();
+    let noise = OfNoise::of(objective, &slopes, &inverse, residuals);
+    (0..unknowns.len()).map(|k| noise.covariance[(k, k)].max(0.0).sqrt()).collect()
+}
+
 /// Errors of everything that was fitted.
 pub(super) struct Errors {
     /// Of the unknowns, from noise.
@@ -119,28 +171,9 @@ impl Errors {
         scale: &[f64; PARAMETERS],
     ) -> Self {
         let slopes = jacobian(objective, drive, unknowns);
-        let mut with_priors = slopes.clone();
-        for (column, unknown) in with_priors.iter_mut().zip(unknowns) {
-            column.extend(priors.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
-        }
+        let with_priors = with_priors(slopes.clone(), unknowns, priors);
         let inverse = NormalMatrix::of(&with_priors).inverse();
-        let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
-        let (rows, _) = residuals.as_chunks::<2>();
-        // A score per row: both axes together.
-        let scores = slopes.iter().map(|slope| {
-            let (slope, _) = slope.as_chunks::<2>();
-            slope.iter().zip(rows).map(|(slope, residual)| slope[0] * residual[0] + slope[1] * residual[1]).collect()
-        });
-        let scores: Vec<Vec<f64>> = scores.collect();
-        let correlation_of_neighbours = correlation_of_neighbours(residuals, &lengths);
-        let noise = long_run::covariance(&scores, &lengths);
-        let (noise, mut degrees_of_freedom) = (&inverse * noise.covariance * &inverse, noise.degrees_of_freedom);
-        let mut covariance = noise;
-        if correlation_of_neighbours > CORRELATED {
-            let blocks = long_run::covariance_of_blocks(&scores);
-            degrees_of_freedom = degrees_of_freedom.min(blocks.degrees_of_freedom);
-            covariance = larger(covariance, &inverse * blocks.covariance * &inverse);
-        }
+        let OfNoise { covariance, degrees_of_freedom, correlation_of_neighbours } = OfNoise::of(objective, &slopes, &inverse, residuals);
         Self {
             covariance,
             degrees_of_freedom,
@@ -164,13 +197,22 @@ impl Errors {
 
     /// Whether the motor comes out sharper than the same noise would allow if nothing but the motor were unknown, and nothing stood between
     /// it and the log: then the simulated currents depend on the unknowns as chaos does, and their slopes mean nothing.
-    pub(super) fn are_too_small(&self, objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], residuals: &[f64]) -> bool {
+    /// Priors count in both.
+    pub(super) fn are_too_small(
+        &self,
+        objective: &OutputError,
+        drive: &Adjustable,
+        unknowns: &[Unknown],
+        priors: &[PriorResidual],
+        residuals: &[f64],
+    ) -> bool {
         let of_motor: Vec<usize> = (0..unknowns.len()).filter(|k| matches!(unknowns[*k], Unknown::Motor(_))).collect();
         let motor: Vec<Unknown> = of_motor.iter().map(|k| unknowns[*k]).collect();
         let alone = Adjustable { faults: Faults::default(), ..*drive };
-        let inverse = NormalMatrix::of(&jacobian(objective, &alone, &motor)).inverse();
+        let inverse = NormalMatrix::of(&with_priors(jacobian(objective, &alone, &motor), &motor, priors)).inverse();
         let noise = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64;
-        zip(&of_motor, 0..).any(|(k, p)| self.covariance[(*k, *k)] < TOO_SHARP * TOO_SHARP * noise * inverse[(p, p)])
+        let variance = |k: usize| self.covariance[(k, k)] + self.priors.iter().map(|prior| prior[k].powi(2)).sum::<f64>();
+        zip(&of_motor, 0..).any(|(k, p)| variance(*k) < TOO_SHARP * TOO_SHARP * noise * inverse[(p, p)])
     }
 
     /// How far each parameter could be moved by what puts two kinds of fit apart, given their distance, SI: by that distance, or by as many
@@ -210,6 +252,7 @@ impl Errors {
                 faults_in_doubt: shifts.faults_in_doubt[p],
                 sensors: shifts.sensors[p],
                 dead_time: shifts.dead_time[p],
+                misfit: shifts.misfit[p],
                 loss_shape: self.loss_shape[(k, k)].max(0.0).sqrt(),
                 excitation: self.open[k],
                 ..Systematic::default()

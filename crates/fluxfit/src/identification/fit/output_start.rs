@@ -14,9 +14,12 @@ use crate::{
 };
 use std::ops::Range;
 
-/// Parameters that are not fixed.
-pub(super) fn free(request: &Request) -> Vec<Unknown> {
-    let is_free = |(_, known): &(Unknown, &Known)| !matches!(known, Known::Fixed(_));
+/// Parameters that are not fixed; at rest the flux is none, because no current depends on it.
+pub(super) fn free(log: &Log, request: &Request) -> Vec<Unknown> {
+    let at_rest = log.is_at_rest();
+    let is_free = |(unknown, known): &(Unknown, &Known)| {
+        !matches!(known, Known::Fixed(_)) && !(at_rest && *unknown == Unknown::Motor(Parameter::PsiF))
+    };
     MOTOR.into_iter().zip(&request.known).filter(is_free).map(|(unknown, _)| unknown).collect()
 }
 
@@ -72,6 +75,9 @@ pub(super) fn start(
         (true, false) => values[ld] = values[lq],
         (false, true) => values[lq] = values[ld],
         _ => {}
+    }
+    if log.is_at_rest() {
+        values[Parameter::PsiF as usize] = 0.0;
     }
     for (value, known) in values.iter_mut().zip(request.known) {
         match known {

@@ -1,7 +1,7 @@
 //! What dead time and device drops that were not found could still do to the parameters.
 //!
-//! Where rows are far apart, or the residuals are not noise, the harmonics of the loss cannot be seen, and its fundamental looks like
-//! resistance. That nothing was found then means little: the voltage of the loss is known no better than its physical limit and the rows
+//! Where rows are far apart, the rotor stands, the residuals are not noise, or harmonics of the flux were found, the harmonics of the loss
+//! cannot be seen, and its fundamental looks like resistance. That nothing was found then means little: the voltage of the loss is known no better than its physical limit and the rows
 //! say,
 //!
 //! ```text
@@ -15,7 +15,7 @@ use super::{
     long_run::effective_sample_size,
     output_errors::{CORRELATED, correlation_of_neighbours},
     steady::SteadyFit,
-    voltage_loss::{LossPrior, is_control_rate},
+    voltage_loss::{LossPrior, is_control_rate, misshapen_if_fitted},
 };
 use crate::{
     faults::Fault,
@@ -31,7 +31,7 @@ use crate::{
 };
 use std::f64::consts::PI;
 
-/// How far each parameter could be moved by it, SI, as a standard deviation; zero where dead time was found, or would have been.
+/// How far each parameter could be moved by it, SI, as a standard deviation; zero where dead time was found for sure, or would have been.
 pub(super) fn doubt(
     log: &Log,
     objective: &OutputError,
@@ -41,12 +41,20 @@ pub(super) fn doubt(
     steady: Option<&SteadyFit>,
     request: &Request,
 ) -> [f64; PARAMETERS] {
-    let was_found = unknowns.iter().any(|unknown| unknown.fault().is_some_and(|fault| fault.family() == Fault::DeadTime.family()));
+    let has = |wanted: Fault| unknowns.iter().any(|unknown| unknown.fault().is_some_and(|fault| fault.family() == wanted.family()));
+    let was_found = has(Fault::DeadTime);
     let is_noise = correlation_of_neighbours(residuals, &objective.rows_per_segment()) <= CORRELATED;
     let is_disturbed = unknowns.iter().any(|unknown| unknown.is_observer_gain());
     // A fundamental of 4/pi V per volt of each phase.
     let possible = LossPrior::possible(log, request).standard_error * PI / 4.0;
-    if was_found || possible == 0.0 || is_control_rate(log) && is_noise && !is_disturbed {
+    // Harmonics of the flux take those of the loss as their own.
+    let would_show = is_control_rate(log) && objective.turns() && is_noise && !is_disturbed && !has(Fault::FluxHarmonics);
+    if was_found
+        && possible > 0.0
+        && let Some(points) = steady.filter(|_| !objective.turns()) {
+        return at_rest(objective, drive, unknowns, points, possible);
+    }
+    if was_found || possible == 0.0 || would_show {
         return [0.0; PARAMETERS];
     }
     if let Some(points) = steady.filter(|_| !is_control_rate(log)) {
@@ -70,4 +78,28 @@ pub(super) fn doubt(
         let place = unknowns.iter().position(|unknown| *unknown == Unknown::Motor(parameter));
         place.map_or(0.0, |place| (share[place] * standard_error).abs())
     })
+}
+
+/// A current that is held is at least this part of the largest: what an injected voltage swings around is none.
+const LEAST_HELD: f64 = 0.2;
+
+/// At rest only transients tell the loss from the resistance, by a shape of the loss that is a rough one. Held currents tell them apart
+/// where their magnitudes differ, as the line `V_1 + R_s I` does; what they leave open of the resistance is doubt of it, and the other
+/// parameters move with it as they do in the fit.
+fn at_rest(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], points: &SteadyFit, possible: f64) -> [f64; PARAMETERS] {
+    let place = |parameter: Parameter| unknowns.iter().position(|unknown| *unknown == Unknown::Motor(parameter));
+    let Some(rs) = place(Parameter::Rs) else { return [0.0; PARAMETERS] };
+    let error = misshapen_if_fitted(drive.faults.dead_time.voltage);
+    let held = points.operating_points.iter().map(|point| point.current().magnitude());
+    let held: Vec<f64> = held.filter(|current| *current > LEAST_HELD * objective.peak_current()).collect();
+    if held.is_empty() {
+        return [0.0; PARAMETERS];
+    }
+    let line = [
+        held.iter().map(|i| i / error).chain([0.0]).collect(),
+        held.iter().map(|_| 1.0 / error).chain([1.0 / possible]).collect(),
+    ];
+    let of_resistance = NormalMatrix::of(&line).inverse()[(0, 0)].max(0.0).sqrt();
+    let inverse = NormalMatrix::of(&jacobian(objective, drive, unknowns)).inverse();
+    Parameter::ALL.map(|parameter| place(parameter).map_or(0.0, |p| (inverse[(p, rs)] / inverse[(rs, rs)] * of_resistance).abs()))
 }

@@ -2,4 +2,5 @@
 
 pub(crate) mod model;
 pub(crate) mod search_box;
+pub(crate) mod standstill;
 pub(crate) mod stretches;
