@@ -52,7 +52,12 @@ fn steps_of_several_sizes_tell_resistance_and_inductances_beside_dead_time() {
             for (parameter, truth) in [(Parameter::Rs, RS), (Parameter::Ld, LD), (Parameter::Lq, LQ)] {
                 let one = found.parameter(parameter);
                 let (off, half_width) = ((one.raw / truth - 1.0).abs(), one.uncertainty.half_width / truth);
-                assert_eq!(one.verdict, Verdict::Identified, "{dead_time} s, {parameter:?}: {:+.4} ± {half_width:.4}", one.raw / truth - 1.0);
+                assert_eq!(
+                    one.verdict,
+                    Verdict::Identified,
+                    "{dead_time} s, {parameter:?}: {:+.4} ± {half_width:.4}",
+                    one.raw / truth - 1.0
+                );
                 assert!(off < 1.5 * half_width, "{dead_time} s, {parameter:?}: off by {off:.5} ± {half_width:.5}");
             }
             assert_eq!(found.parameter(Parameter::PsiF).value(), None);
@@ -75,8 +80,8 @@ fn one_step_does_not_tell_resistance_from_dead_time() {
     }
 }
 
-/// A drive that did not log its speed does not stand: the voltage of its magnets is no resistance's. Where i_d is large and i_q is not, it is seen in the
-/// means, or nothing comes out.
+/// A drive that did not log its speed does not stand: the voltage of its magnets is no resistance's. Where i_d is large and i_q is not,
+/// it is seen in the means, else nothing comes out.
 #[test]
 fn a_speed_that_was_not_logged_is_no_standstill() {
     for (id, load) in [(-2.0, 10.0), (-12.0, 10.0), (-12.0, 2.0)] {

@@ -40,10 +40,7 @@ fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
         let left_out = if needs_angle {
             tried.outcome == FaultOutcome::NeedsAngle
         } else {
-            !matches!(
-                tried.outcome,
-                FaultOutcome::NeedsAngle | FaultOutcome::NeedsTurning | FaultOutcome::Taken | FaultOutcome::Covered
-            )
+            !matches!(tried.outcome, FaultOutcome::NeedsAngle | FaultOutcome::NeedsTurning | FaultOutcome::Taken | FaultOutcome::Covered)
         };
         let word = tried.fault.family();
         if left_out && !words.contains(&word) {

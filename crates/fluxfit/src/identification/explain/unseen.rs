@@ -79,8 +79,7 @@ pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS],
     let iq = log.columns().iq.iter().fold(0.0, |most: f64, iq| most.max(iq.abs()));
     // Along q the flux seems smaller by what of psi_f is turned there; in proportion to the current, that is an inductance.
     let is_found = |parameter: Parameter| verdicts[parameter as usize] != Verdict::NotIdentifiable;
-    let of_angle =
-        if is_found(Parameter::Lq) && is_found(Parameter::PsiF) && iq * lq != 0.0 { -DEGREE * psi_f / (lq * iq) } else { 0.0 };
+    let of_angle = if is_found(Parameter::Lq) && is_found(Parameter::PsiF) && iq * lq != 0.0 { -DEGREE * psi_f / (lq * iq) } else { 0.0 };
     let unseen = [
         Unseen { error: UnseenError::CurrentGain, moves: BY_CURRENTS.map(|sign| PERCENT * sign) },
         Unseen { error: UnseenError::BusVoltage, moves: BY_VOLTAGES.map(|sign| PERCENT * sign) },

@@ -30,10 +30,11 @@ use nalgebra::DMatrix;
 /// An excited direction moves the currents by at least this many times what is not explained, as at operating points.
 const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
 
-/// An excited direction moves the currents by at least this part of what is left of them, row for row. The controllers answer the noise of
-/// the sensors, so where nothing else moves a drive, what is left is not independent of the voltages, and does not average out of what the
-/// currents answer to these (L. Ljung, System Identification, 2nd ed. 1999, section 13.4). Steps that tell a parameter to a third of its
-/// value move the currents by half of the noise; a real drive at one held point, whose R_s came out 12 times too large with 3 %, by a sixth.
+/// An excited direction moves the currents by at least this part of what is left of them, row for row. Controllers answer the noise of
+/// sensors, so where nothing else moves a drive, what is left is not independent of the voltages, and does not average out of what the
+/// currents answer to these (L. Ljung, System Identification, 2nd ed. 1999, section 13.4). Steps that tell a parameter to a third of
+/// its value move the currents by half of the noise; those of a real drive at one held point, whose R_s came out 12 times too large
+/// with 3 %, by a sixth.
 const LEAST_IN_A_ROW: f64 = 0.3;
 
 /// A parameter is open if this part of its axis, or more, lies in directions that are not excited, as at operating points.

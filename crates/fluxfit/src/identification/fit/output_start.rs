@@ -18,7 +18,7 @@ use std::ops::Range;
 pub(super) fn free(log: &Log, request: &Request) -> Vec<Unknown> {
     let at_rest = log.is_at_rest();
     let is_free = |(unknown, known): &(Unknown, &Known)| {
-        !matches!(known, Known::Fixed(_)) && !(at_rest && *unknown == Unknown::Motor(Parameter::PsiF))
+        !(matches!(known, Known::Fixed(_)) || at_rest && *unknown == Unknown::Motor(Parameter::PsiF))
     };
     MOTOR.into_iter().zip(&request.known).filter(is_free).map(|(unknown, _)| unknown).collect()
 }

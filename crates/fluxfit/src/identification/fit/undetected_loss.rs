@@ -1,8 +1,8 @@
 //! What dead time and device drops that were not found could still do to the parameters.
 //!
-//! Where rows are far apart, the rotor stands, the residuals are not noise, or harmonics of the flux were found, the harmonics of the loss
-//! cannot be seen, and its fundamental looks like resistance. That nothing was found then means little: the voltage of the loss is known no better than its physical limit and the rows
-//! say,
+//! Where rows are far apart, the rotor stands, the residuals are not noise, or harmonics of the flux were found, the harmonics of the
+//! loss cannot be seen, and its fundamental looks like resistance. That nothing was found then means little: the voltage of the loss is
+//! known no better than its physical limit and the rows say,
 //!
 //! ```text
 //! s^-2 = V_possible^-2 + c'c / sigma²,     c: the currents' derivative by it, without what the unknowns explain
@@ -51,7 +51,8 @@ pub(super) fn doubt(
     let would_show = is_control_rate(log) && objective.turns() && is_noise && !is_disturbed && !has(Fault::FluxHarmonics);
     if was_found
         && possible > 0.0
-        && let Some(points) = steady.filter(|_| !objective.turns()) {
+        && let Some(points) = steady.filter(|_| !objective.turns())
+    {
         return at_rest(objective, drive, unknowns, points, possible);
     }
     if was_found || possible == 0.0 || would_show {
@@ -95,10 +96,7 @@ fn at_rest(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], po
     if held.is_empty() {
         return [0.0; PARAMETERS];
     }
-    let line = [
-        held.iter().map(|i| i / error).chain([0.0]).collect(),
-        held.iter().map(|_| 1.0 / error).chain([1.0 / possible]).collect(),
-    ];
+    let line = [held.iter().map(|i| i / error).chain([0.0]).collect(), held.iter().map(|_| 1.0 / error).chain([1.0 / possible]).collect()];
     let of_resistance = NormalMatrix::of(&line).inverse()[(0, 0)].max(0.0).sqrt();
     let inverse = NormalMatrix::of(&jacobian(objective, drive, unknowns)).inverse();
     Parameter::ALL.map(|parameter| place(parameter).map_or(0.0, |p| (inverse[(p, rs)] / inverse[(rs, rs)] * of_resistance).abs()))
