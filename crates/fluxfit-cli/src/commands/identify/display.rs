@@ -225,13 +225,14 @@ fn model(found: &Identification) -> String {
     };
     let rms = fit.residual_rms();
     let how = if fit.voltage_timing.provenance == Provenance::Stated { "as stated" } else { "found" };
-    let mut text = of_model(&format!(
-        "{label}: the currents of {} rows are simulated and miss the measured ones by {} (d) and {} (q) rms; voltages read as {} ({how}).",
-        fit.residuals.len() / 2,
-        amperes(rms.d),
-        amperes(rms.q),
-        fit.voltage_timing.value.label(),
-    ));
+    let misses = if rms.d.max(rms.q) < RUNAWAY {
+        format!("miss the measured ones by {} (d) and {} (q) rms", amperes(rms.d), amperes(rms.q))
+    } else {
+        "run away from the measured ones".to_owned()
+    };
+    let (rows, timing) = (fit.residuals.len() / 2, fit.voltage_timing.value.label());
+    let mut text =
+        of_model(&format!("{label}: the currents of {rows} rows are simulated and {misses}; voltages read as {timing} ({how})."));
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
     if answered && !beside(fit).is_empty() {
         text += &format!("\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit));
@@ -249,6 +250,9 @@ fn amperes(current: f64) -> String {
     };
     format!("{} {unit}", significant(factor * current, 2))
 }
+
+/// Simulated currents that miss by as much as this, A, grow without limit.
+const RUNAWAY: f64 = 1e6;
 
 /// Standard errors in half of a 95 % interval.
 const INTERVAL: f64 = 1.959_964;

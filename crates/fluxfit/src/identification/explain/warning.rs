@@ -218,7 +218,7 @@ pub(crate) fn all(evidence: &Evidence) -> Vec<Warning> {
         let answered = evidence.output.is_none();
         [
             no_redundancy(fit).filter(|_| answered || !evidence.has_transients()),
-            misfit(fit),
+            misfit(fit).filter(|_| answered),
             dead_time(fit).filter(|_| answered),
             frame_lag(fit).filter(|_| answered),
             open_loop(log, fit).filter(|_| answered),
