@@ -15,6 +15,10 @@ pub(crate) enum Problem {
     Gzip { reason: String },
     #[error("this is {what}; save the table as CSV")]
     Document { what: &'static str },
+    #[error(
+        "this is an archive of numpy's arrays; in Python, make a table of those of equal length: import numpy as np, pandas as pd; a = np.load('log.npz'); pd.DataFrame({{k: a[k] for k in a.files if a[k].ndim == 1}}).to_csv('log.csv', index=False)"
+    )]
+    Npz,
     #[error("a log that is read while it is written needs columns of ud, uq, id, iq and omega_e in dq; give the finished log as a file")]
     NotLive,
     #[error("there is no row below the header; export the log with its rows")]
@@ -219,7 +223,7 @@ impl Problem {
             Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
             Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
             Self::CanLog { .. } => FileErrorKind::Unsupported,
-            Self::Gzip { .. } | Self::Document { .. } | Self::NoRows => FileErrorKind::Format,
+            Self::Gzip { .. } | Self::Document { .. } | Self::Npz | Self::NoRows => FileErrorKind::Format,
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::ManyColumns { .. } => FileErrorKind::Format,
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,

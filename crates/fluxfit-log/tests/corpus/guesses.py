@@ -3,6 +3,8 @@
 make.py calls write(make), with itself, as it does with tools.py.
 """
 
+import io
+
 import numpy as np
 
 
@@ -10,7 +12,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives):
         part(make)
 
 
@@ -114,3 +116,10 @@ def rotation(make):
     hertz = columns(make, "t", "vd [V]", "vq [V]", "id [A]", "iq [A]", "velocity measured [Hz]")
     hertz["velocity measured [Hz]"] = hertz["velocity measured [Hz]"] / (2.0 * np.pi)
     refuse(make, "speed_in_hertz.csv", "a speed in Hz, and no word on whether it is electrical", hertz, "this speed is in Hz", "electrical or that of the shaft", line=1)
+
+
+def archives(make):
+    """What numpy.savez writes is a zip archive, as a workbook is."""
+    content = io.BytesIO()
+    np.savez_compressed(content, **make.part(make.FAST))
+    make.refuse(make.put("arrays.npz", content.getvalue()), "an archive of numpy's arrays", "numpy", "np.load", "to_csv")
