@@ -6,13 +6,15 @@ make.py calls write(make), with itself, as it does with tools.py.
 import io
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 
 ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists):
         part(make)
 
 
@@ -123,3 +125,12 @@ def archives(make):
     content = io.BytesIO()
     np.savez_compressed(content, **make.part(make.FAST))
     make.refuse(make.put("arrays.npz", content.getvalue()), "an archive of numpy's arrays", "numpy", "np.load", "to_csv")
+
+
+def lists(make):
+    """A row for each run, with the whole course in a cell."""
+    runs = {"Speed": [0.0], "Torque": [0.0], "Power": [0.0], "id": [list(make.FAST["id"])], "iq": [list(make.FAST["iq"])]}
+    pq.write_table(pa.table(runs), make.LOGS / "lists.parquet")
+    make.refuse("lists.parquet", "currents as lists, beside a row of zeros", "'id' and 'iq' hold a list in each row", "one number for each instant")
+    pq.write_table(pa.table({name: [list(make.FAST[name])] for name in make.NAMES}), make.LOGS / "lists_alone.parquet")
+    make.refuse("lists_alone.parquet", "all columns are lists", "hold a list in each row", "one number in each cell")
