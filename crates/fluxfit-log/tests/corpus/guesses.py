@@ -4,6 +4,7 @@ make.py calls write(make), with itself, as it does with tools.py.
 """
 
 import io
+import json
 
 import numpy as np
 import pyarrow as pa
@@ -14,7 +15,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists, nested):
         part(make)
 
 
@@ -134,3 +135,10 @@ def lists(make):
     make.refuse("lists.parquet", "currents as lists, beside a row of zeros", "'id' and 'iq' hold a list in each row", "one number for each instant")
     pq.write_table(pa.table({name: [list(make.FAST[name])] for name in make.NAMES}), make.LOGS / "lists_alone.parquet")
     make.refuse("lists_alone.parquet", "all columns are lists", "hold a list in each row", "one number in each cell")
+
+
+def nested(make):
+    """Lists of columns, two objects deep."""
+    lists = {name: [float(value) for value in make.FAST[name][:ROWS]] for name in make.NAMES}
+    text = json.dumps({"motor": "a", "runs": {"first": {"signals": lists}}})
+    make.refuse(make.put("nested_lists.json", text), "lists of columns within objects", "'runs.first.signals'", "outermost level")
