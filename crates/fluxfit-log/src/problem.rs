@@ -15,6 +15,10 @@ pub(crate) enum Problem {
     Gzip { reason: String },
     #[error("this is {what}; save the table as CSV")]
     Document { what: &'static str },
+    #[error(
+        "this is an archive of numpy's arrays; in Python, make a table of those of equal length: import numpy as np, pandas as pd; a = np.load('log.npz'); pd.DataFrame({{k: a[k] for k in a.files if a[k].ndim == 1}}).to_csv('log.csv', index=False)"
+    )]
+    Npz,
     #[error("a log that is read while it is written needs columns of ud, uq, id, iq and omega_e in dq; give the finished log as a file")]
     NotLive,
     #[error("there is no row below the header; export the log with its rows")]
@@ -33,7 +37,7 @@ pub(crate) enum Problem {
     OtherMark { other: u64 },
 
     // Columns
-    #[error("{}{}{}", missing_columns(.missing, .present, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable))]
+    #[error("{}{}{}", missing_columns(.missing, .present, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
     Missing {
         missing: Vec<&'static str>,
         present: Vec<String>,
@@ -42,6 +46,7 @@ pub(crate) enum Problem {
         rms: Vec<(&'static str, &'static str)>,
         references: Vec<String>,
         unreadable: Vec<String>,
+        lists: Vec<String>,
     },
     #[error("by its name this column is a reference, not the measured current; map {channel} to the measured current, or log it")]
     Reference { channel: &'static str },
@@ -153,6 +158,8 @@ pub(crate) enum Problem {
     Container { format: &'static str, fault: String },
     #[error("this {format} file has no column of two or more numbers; export each quantity of the log as a column of numbers")]
     NoNumbers { format: &'static str },
+    #[error("{}; write a row for each instant, with one number in each cell", are_lists(.names))]
+    Lists { names: Vec<String> },
     #[error("this file has more than {most} columns; export only those of the log")]
     ManyColumns { most: usize },
     #[error("these columns were not sampled at the same instants and cannot be read together")]
@@ -219,8 +226,10 @@ impl Problem {
             Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
             Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
             Self::CanLog { .. } => FileErrorKind::Unsupported,
-            Self::Gzip { .. } | Self::Document { .. } | Self::NoRows => FileErrorKind::Format,
-            Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::ManyColumns { .. } => FileErrorKind::Format,
+            Self::Gzip { .. } | Self::Document { .. } | Self::Npz | Self::NoRows => FileErrorKind::Format,
+            Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::Lists { .. } | Self::ManyColumns { .. } => {
+                FileErrorKind::Format
+            }
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
             Self::Missing { .. }
@@ -352,7 +361,7 @@ fn are_rms(headers: &[&str]) -> String {
     format!("{} {are} by name, where dq values are peak values, sqrt 2 times as large", list(&quoted))
 }
 
-fn not_measured(references: &[String], unreadable: &[String]) -> String {
+fn not_measured(references: &[String], unreadable: &[String], lists: &[String]) -> String {
     let of_references = match references {
         [] => String::new(),
         [one] => format!("; '{}' is a reference, not a measured current", shorten(one)),
@@ -363,5 +372,14 @@ fn not_measured(references: &[String], unreadable: &[String]) -> String {
         [one] => format!("; '{}' holds no numbers", shorten(one)),
         several => format!("; {} hold no numbers", columns(several)),
     };
-    of_references + &of_others
+    let of_lists = match lists {
+        [] => String::new(),
+        _ => format!("; {}, where a log has one number for each instant", are_lists(lists)),
+    };
+    of_references + &of_others + &of_lists
+}
+
+fn are_lists(names: &[String]) -> String {
+    let hold = if names.len() == 1 { "holds" } else { "hold" };
+    format!("{} {hold} a list in each row", columns(names))
 }

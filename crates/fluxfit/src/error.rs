@@ -87,6 +87,16 @@ pub enum ErrorKind {
         /// Rows that a window needs.
         least: usize,
     },
+    /// No steady operating point, in a log that is too short for a window.
+    #[error(
+        "no steady stretch was found, and the log has {rows} rows without a gap where a window needs {least}; log longer, with speed and current held constant"
+    )]
+    FewRows {
+        /// Rows of the longest part without a gap.
+        rows: usize,
+        /// Rows that a window needs.
+        least: usize,
+    },
     /// A window that holds too few rows.
     #[error(
         "the window {from}:{to} s holds {rows} consecutive rows of the log, which runs from {start} s to {end} s; a window needs at least {least}"

@@ -168,7 +168,7 @@ fn nameplate(input: &Input) -> Nameplate {
 /// An error of the library: of the log, if it is about the log.
 pub(crate) fn of_log(name: &str, error: Error) -> CommandError {
     match error.kind() {
-        ErrorKind::TooShort { .. } | ErrorKind::NoOperatingPoint { .. } | ErrorKind::Window { .. } => {
+        ErrorKind::TooShort { .. } | ErrorKind::NoOperatingPoint { .. } | ErrorKind::FewRows { .. } | ErrorKind::Window { .. } => {
             CommandError::Log { log: name.to_owned(), error }
         }
         _ => CommandError::Library(error),

@@ -41,6 +41,11 @@ fn unreadable_logs() {
         ("all zeros", log(100, |k| Some(format!("{:.4},0,0,0,0,0", k as f64 * 1e-4))).into(), &["zero"]),
         ("no speed", log(100, |k| Some(format!("{:.4},1,1,1,1,0", k as f64 * 1e-4))).into(), &["omega_e", "zero"]),
         (
+            "few rows",
+            log(26, |k| Some(format!("{:.2},{},{},0,{k},418", k as f64 * 1e-2, -0.418 * k as f64, 20.9 + 0.5 * k as f64))).into(),
+            &["26 rows without a gap", "log longer"],
+        ),
+        (
             "never steady",
             log(100, |k| Some(format!("{:.2},{},{},0,{k},418", k as f64 * 1e-2, -0.418 * k as f64, 20.9 + 0.5 * k as f64))).into(),
             &["no steady stretch", "--window"],

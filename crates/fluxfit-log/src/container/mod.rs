@@ -119,6 +119,13 @@ impl Binary {
     }
 
     /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
+    pub(crate) fn lists(&self) -> &[String] {
+        match self {
+            Self::Parquet(parquet) => parquet.lists(),
+            _ => &[],
+        }
+    }
+
     pub(crate) fn passed_over(&self) -> Option<&Problem> {
         match self {
             Self::Mat(mat) => mat.passed_over(),

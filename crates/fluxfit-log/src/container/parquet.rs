@@ -47,6 +47,8 @@ pub(crate) struct Parquet {
     heads: Vec<ColumnHead>,
     columns: Vec<Column>,
     unreadable: Vec<String>,
+    /// Names of columns that hold a list in each row.
+    lists: Vec<String>,
     /// The rows that are read.
     rows: Range<u64>,
     /// Rows of a stretch.
@@ -94,10 +96,18 @@ impl Parquet {
         if groups.iter().any(|group| group.num_columns() != schema.num_columns()) {
             return Err(damaged(FORMAT, "its row groups have different columns"));
         }
-        let (mut heads, mut columns, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut heads, mut columns, mut unreadable, mut lists) = (Vec::new(), Vec::new(), Vec::new(), Vec::<String>::new());
         for (leaf, column) in schema.columns().iter().enumerate() {
-            let name = column.path().parts().join(".");
-            let Some(meaning) = meaning(column).filter(|_| column.max_rep_level() == 0) else {
+            let parts = column.path().parts();
+            let name = parts.join(".");
+            if column.max_rep_level() > 0 && meaning(column).is_some() {
+                // `currents.list.element`: the parts behind the name are those of the format.
+                let is_of_format = |part: &String| ["list", "bag", "array"].contains(&part.as_str());
+                let own = 1 + parts.iter().skip(1).take_while(|part| !is_of_format(part)).count();
+                lists.push(parts[..own].join("."));
+                continue;
+            }
+            let Some(meaning) = meaning(column) else {
                 unreadable.push(name);
                 continue;
             };
@@ -105,10 +115,13 @@ impl Parquet {
             heads.push(ColumnHead { name, unit, rows, ..ColumnHead::default() });
             columns.push(Column { leaf, meaning, present: column.max_def_level() });
         }
+        if heads.is_empty() && !lists.is_empty() {
+            return Err(Problem::Lists { names: lists }.into());
+        }
         if heads.is_empty() {
             return Err(Problem::NoNumbers { format: FORMAT }.into());
         }
-        Ok(Self { file, source, heads, columns, unreadable, rows: 0..rows, stretch: STRETCH, fewest: FEWEST_VALUES })
+        Ok(Self { file, source, heads, columns, unreadable, lists, rows: 0..rows, stretch: STRETCH, fewest: FEWEST_VALUES })
     }
 
     /// The same file as if it had these rows alone, and not the column `without`, nor any that cannot be read.
@@ -126,6 +139,10 @@ impl Parquet {
 
     pub(super) fn heads(&self) -> &[ColumnHead] {
         &self.heads
+    }
+
+    pub(super) fn lists(&self) -> &[String] {
+        &self.lists
     }
 
     pub(super) fn unreadable(&self) -> &[String] {

@@ -43,6 +43,13 @@ const DOCUMENTS: [(&[u8], &str); 19] = [
     (b"\x89MCAP0\r\n", "an MCAP recording"),
 ];
 
+/// Whether bytes begin an archive of numpy's arrays: a zip archive whose first file is one. The name of it stands behind 30 bytes.
+fn is_npz(head: &[u8]) -> bool {
+    let length = || Some(usize::from(u16::from_le_bytes([*head.get(26)?, *head.get(27)?])));
+    let name = || head.get(30..30 + length()?);
+    head.starts_with(b"PK\x03\x04") && name().is_some_and(|name| name.ends_with(b".npy"))
+}
+
 /// Encodings of East Asian systems, each with words that stand in the header of a log: time, voltage, current, speed, angle. The bytes of
 /// one are often valid in another, so that only such a word decides. The first two as WHATWG Encoding calls them: GBK, Shift_JIS.
 static EAST_ASIAN: [(&Encoding, &[&str]); 5] = [
@@ -79,6 +86,9 @@ impl Text {
         let mut decoded = DecodeReaderBytesBuilder::new().utf8_passthru(true).strip_bom(true).build(raw);
         let mut head = Vec::new();
         read_up_to(&mut decoded, HEAD, is_gzip, &mut head)?;
+        if is_npz(&head) {
+            return Err(Problem::Npz.into());
+        }
         if let Some((_, what)) = DOCUMENTS.iter().find(|(start, _)| head.starts_with(start)) {
             return Err(Problem::Document { what }.into());
         }

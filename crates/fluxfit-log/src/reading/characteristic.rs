@@ -68,7 +68,7 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
     }
     let has = |quantity: Quantity| columns.iter().any(|column| column.quantity == quantity);
     if heads.iter().any(is_driven) {
-        let is_curve = has(Quantity::Speed) && has(Quantity::Torque);
+        let is_curve = has(Quantity::Speed) && has(Quantity::Torque) && turns_and_pulls(&mut table, &columns);
         return if is_curve { Err(Problem::LoadCurve.into()) } else { Ok(None) };
     }
     if !has(Quantity::Speed) || has(Quantity::Voltage) == has(Quantity::Current) {
@@ -126,6 +126,15 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
         Quantity::ALL.into_iter().flat_map(|quantity| headers(&columns, quantity).into_iter().map(move |name| (quantity.name(), name)));
     let used = used.map(|(quantity, header)| (quantity, header.to_owned())).collect();
     Ok(Some(ReadCharacteristic { columns: used, table, notes, has_electrical_speed: electrical.is_some() }))
+}
+
+/// Whether speed and torque have two rows or more that are not zero: of a curve there are some. What cannot be read is left to the names.
+fn turns_and_pulls(table: &mut Table, columns: &[Found]) -> bool {
+    let of = |quantity: Quantity| columns.iter().find(|column| column.quantity == quantity);
+    let wanted: Vec<(usize, &str)> =
+        [of(Quantity::Speed), of(Quantity::Torque)].into_iter().flatten().map(|column| (column.index, column.header.as_str())).collect();
+    let are_some = |values: &Vec<f64>| values.iter().filter(|value| **value != 0.0).count() > 1;
+    values_of(table, &wanted).map_or(true, |values| values.iter().all(are_some))
 }
 
 /// The columns that a quantity is taken from: those with a unit before those without.
@@ -250,6 +259,11 @@ mod tests {
     fn the_curve_of_a_driven_motor_is_named() {
         let error = of("Speed (RPM),Torque (Nm),Current (A),Supplied Power (W)\n1,2,3,4\n2,2,3,4\n").unwrap_err().to_string();
         assert!(error.contains("a motor that drives a load"), "{error}");
+        // One row, or rows of zeros, are no curve.
+        for rows in ["1,2,3,4\n", "0,0,0,0\n0,0,0,0\n"] {
+            let text: String = format!("Speed (RPM),Torque (Nm),Current (A),Supplied Power (W)\n{rows}");
+            assert_eq!(of(text.leak()), Ok(None), "{rows}");
+        }
     }
 
     #[test]

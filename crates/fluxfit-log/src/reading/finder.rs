@@ -26,6 +26,8 @@ pub(super) struct Finder<'a> {
     pub(super) heads: &'a [ColumnHead],
     /// Names of columns that hold no numbers and are not among `heads`.
     pub(super) unreadable: &'a [String],
+    /// Names of columns that hold a list in each row and are not among `heads`.
+    pub(super) lists: &'a [String],
     /// Columns of `heads` that hold no numbers.
     pub(super) without_numbers: &'a dyn Fn() -> Vec<usize>,
     /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
@@ -367,7 +369,7 @@ impl Finder<'_> {
         let texts = without_numbers.iter().map(|index| &present[*index]);
         let unreadable = self.unreadable.iter().chain(texts).filter(|name| resembles(missing, name)).cloned().collect();
         let missing = missing.iter().map(|channel| channel.name()).collect();
-        Problem::Missing { missing, present, proposals, rms, references, unreadable }.into()
+        Problem::Missing { missing, present, proposals, rms, references, unreadable, lists: self.lists.to_vec() }.into()
     }
 
     /// The unit of a column: the stated one; else the layout's; else the one in the header or the row of units; else SI.

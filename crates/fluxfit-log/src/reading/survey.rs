@@ -58,7 +58,8 @@ pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &R
     // With pole pairs given, mechanical units are not an error.
     let mut with_pole_pairs = options.clone();
     with_pole_pairs.pole_pairs.get_or_insert(1);
-    let finder = Finder { heads, unreadable: &[], without_numbers: &Vec::new, passed_over: None, layout, options: &with_pole_pairs };
+    let finder =
+        Finder { heads, unreadable: &[], lists: &[], without_numbers: &Vec::new, passed_over: None, layout, options: &with_pole_pairs };
     let mut survey = Survey::default();
     let [voltages, currents] = [[Ud, Uq], [Id, Iq]].map(|pair| finder.pair(pair).unwrap_or_default());
     let duties = if voltages.iter().all(Option::is_some) { None } else { finder.duties() };

@@ -101,6 +101,14 @@ impl Table<'_> {
         }
     }
 
+    /// Names of columns that hold a list in each row, where the format states it.
+    pub(super) fn lists(&self) -> &[String] {
+        match self {
+            Self::Binary(table) => table.lists(),
+            _ => &[],
+        }
+    }
+
     /// Columns of a text that hold no numbers, by the first rows. They are looked at only when this is asked for.
     pub(super) fn without_numbers(&self) -> Vec<usize> {
         match self {

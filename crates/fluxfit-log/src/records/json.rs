@@ -12,6 +12,7 @@ use crate::{
     problem::Problem,
 };
 use fluxfit_files::{FileError, Problem as FileProblem, csv::record::number, input::io_problem, json_fault};
+use fluxfit_units::wording::{list, shorten};
 use serde_json::{Map, Value};
 use std::{
     collections::HashMap,
@@ -213,9 +214,11 @@ fn without_nan(bytes: &[u8]) -> Option<Vec<u8>> {
 
 /// An object with a list for each column, as pandas writes them.
 fn of_columns(mut records: Splitter) -> Result<Opened, FileError> {
-    let none = || FileError::from(Problem::Json { reason: "it has no records".to_owned() });
-    let (_, bytes) = records.next()?.ok_or_else(none)?;
+    let none = |reason: String| FileError::from(Problem::Json { reason });
+    let nothing = || "it has no records".to_owned();
+    let (_, bytes) = records.next()?.ok_or_else(|| none(nothing()))?;
     let object = parse(&bytes)?;
+    let within = tables_within(&object, "");
     let mut columns: Vec<(String, Vec<Value>)> = Vec::new();
     match (object.get("columns"), object.get("data")) {
         (Some(Value::Array(names)), Some(Value::Array(rows))) => {
@@ -255,7 +258,7 @@ fn of_columns(mut records: Splitter) -> Result<Opened, FileError> {
         };
         let unit = instants.as_ref().map(|_| "s".to_owned());
         if let Some(instants) = &instants {
-            table.notes.push(format!("column '{}' read as {}", fluxfit_units::wording::shorten(&name), instants.describe()));
+            table.notes.push(format!("column '{}' read as {}", shorten(&name), instants.describe()));
         }
         let group = numbers.len();
         table.push(ColumnHead { name, unit, group, ..ColumnHead::default() }, numbers);
@@ -263,7 +266,24 @@ fn of_columns(mut records: Splitter) -> Result<Opened, FileError> {
             return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
         }
     }
-    if table.heads.is_empty() { Err(none()) } else { Ok(Opened::Columns(table)) }
+    match within.is_empty() {
+        _ if !table.heads.is_empty() => Ok(Opened::Columns(table)),
+        true => Err(none(nothing())),
+        false => Err(none(format!("its lists are in {}, not at the outermost level", list(&within)))),
+    }
+}
+
+/// The paths of objects that hold two lists or more, as the columns of a table.
+fn tables_within(object: &Map<String, Value>, path: &str) -> Vec<String> {
+    let lists = object.values().filter(|value| value.as_array().is_some_and(|values| values.len() > 1)).count();
+    if lists > 1 && !path.is_empty() {
+        return vec![format!("'{}'", shorten(path))];
+    }
+    let inner = |(key, value): (&String, &Value)| {
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        value.as_object().map_or(Vec::new(), |object| tables_within(object, &path))
+    };
+    object.iter().flat_map(inner).collect()
 }
 
 /// Cuts a text into its outermost objects.

@@ -3,14 +3,19 @@
 make.py calls write(make), with itself, as it does with tools.py.
 """
 
+import io
+import json
+
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 
 ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists, nested):
         part(make)
 
 
@@ -114,3 +119,26 @@ def rotation(make):
     hertz = columns(make, "t", "vd [V]", "vq [V]", "id [A]", "iq [A]", "velocity measured [Hz]")
     hertz["velocity measured [Hz]"] = hertz["velocity measured [Hz]"] / (2.0 * np.pi)
     refuse(make, "speed_in_hertz.csv", "a speed in Hz, and no word on whether it is electrical", hertz, "this speed is in Hz", "electrical or that of the shaft", line=1)
+
+
+def archives(make):
+    """What numpy.savez writes is a zip archive, as a workbook is."""
+    content = io.BytesIO()
+    np.savez_compressed(content, **make.part(make.FAST))
+    make.refuse(make.put("arrays.npz", content.getvalue()), "an archive of numpy's arrays", "numpy", "np.load", "to_csv")
+
+
+def lists(make):
+    """A row for each run, with the whole course in a cell."""
+    runs = {"Speed": [0.0], "Torque": [0.0], "Power": [0.0], "id": [list(make.FAST["id"])], "iq": [list(make.FAST["iq"])]}
+    pq.write_table(pa.table(runs), make.LOGS / "lists.parquet")
+    make.refuse("lists.parquet", "currents as lists, beside a row of zeros", "'id' and 'iq' hold a list in each row", "one number for each instant")
+    pq.write_table(pa.table({name: [list(make.FAST[name])] for name in make.NAMES}), make.LOGS / "lists_alone.parquet")
+    make.refuse("lists_alone.parquet", "all columns are lists", "hold a list in each row", "one number in each cell")
+
+
+def nested(make):
+    """Lists of columns, two objects deep."""
+    lists = {name: [float(value) for value in make.FAST[name][:ROWS]] for name in make.NAMES}
+    text = json.dumps({"motor": "a", "runs": {"first": {"signals": lists}}})
+    make.refuse(make.put("nested_lists.json", text), "lists of columns within objects", "'runs.first.signals'", "outermost level")

@@ -9,11 +9,7 @@ use super::{
     stale::StaleSamples,
     windows::{self, MIN_ROWS},
 };
-use crate::{
-    error::{Error, ErrorKind},
-    frames::Dq,
-    log::Log,
-};
+use crate::{error::Error, frames::Dq, log::Log};
 use std::ops::Range;
 
 /// Rows slower than this, Hz, are a recorder's: recorders write up to 100 a second, decimated logs of a drive come faster.
@@ -73,7 +69,7 @@ pub(crate) fn loaded(log: &Log) -> Result<Vec<Range<usize>>, Error> {
         found = different(kinds(log, &found, &scale));
     }
     let least = if are_stale { MIN_ROWS } else { FEWEST_ROWS };
-    if found.is_empty() { Err(ErrorKind::NoOperatingPoint { least }.into()) } else { Ok(found) }
+    if found.is_empty() { Err(windows::no_operating_point(log, least)) } else { Ok(found) }
 }
 
 /// Pieces of the stretches in which the rotor turns without current, in order.

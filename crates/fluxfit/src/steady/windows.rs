@@ -45,7 +45,14 @@ pub const PAPER_ROWS: usize = 4000;
 /// If there is no steady window.
 pub fn find(log: &Log) -> Result<Vec<Range<usize>>, Error> {
     let (windows, _) = find_all(log);
-    if windows.is_empty() { Err(ErrorKind::NoOperatingPoint { least: MIN_ROWS }.into()) } else { Ok(windows) }
+    if windows.is_empty() { Err(no_operating_point(log, MIN_ROWS)) } else { Ok(windows) }
+}
+
+/// The error of a log without an operating point of at least so many rows: a shorter log than a window has none to be named.
+pub(super) fn no_operating_point(log: &Log, least: usize) -> Error {
+    let rows = log.segments().iter().map(|segment| segment.rows.len()).max().unwrap_or(0);
+    let kind = if rows < MIN_ROWS { ErrorKind::FewRows { rows, least: MIN_ROWS } } else { ErrorKind::NoOperatingPoint { least } };
+    kind.into()
 }
 
 /// The steady windows, and the steady stretches that are too short to be windows. Stretches that are still shorter by the same factor
@@ -250,6 +257,8 @@ mod tests {
     fn a_log_without_steady_state_has_no_operating_point() {
         let rows = ramp(1.0, 9.0, 1000).map(|iq| (0.0, iq, 400.0));
         assert_eq!(find(&log(rows)), Err(ErrorKind::NoOperatingPoint { least: 30 }.into()));
+        let rows = ramp(1.0, 9.0, 26).map(|iq| (0.0, iq, 400.0));
+        assert_eq!(find(&log(rows)), Err(ErrorKind::FewRows { rows: 26, least: 30 }.into()));
         // A slow oscillation of 10 %: steady within each block, but not over a window.
         let rows = (0..4000).map(|k| (0.0, 8.0 + 0.8 * (f64::from(k) / 100.0).sin(), 400.0));
         assert!(find(&log(rows)).map_or_else(|_| true, |windows| windows.iter().all(|rows| rows.len() < 100)));
