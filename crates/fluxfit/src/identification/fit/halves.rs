@@ -23,20 +23,21 @@ use std::ops::Range;
 const APART: f64 = 3.0;
 
 /// How far the halves of these stretches put each parameter in doubt, SI, as a standard deviation; zero where they agree, or where one of
-/// them cannot be fitted.
+/// them cannot be fitted. What is in `doubt` of each parameter anyway may part them.
 pub(super) fn doubt(
-    log: &Log,
-    stretches: &[Range<usize>],
+    (log, stretches): (&Log, &[Range<usize>]),
     reading: VoltageTiming,
     drive: &Adjustable,
     unknowns: &[Unknown],
     priors: &[PriorResidual],
+    doubt: &[f64; PARAMETERS],
 ) -> [f64; PARAMETERS] {
     let half = |stretches: &[Range<usize>]| Half::of(log, stretches, reading, drive, unknowns, priors);
     let [first, second] = halves(stretches);
     let (Ok(first), Ok(second)) = (half(&first), half(&second)) else { return [0.0; PARAMETERS] };
     let distance: [f64; PARAMETERS] = std::array::from_fn(|p| (first.motor[p] - second.motor[p]).abs());
-    let error: [f64; PARAMETERS] = std::array::from_fn(|p| first.standard_errors[p].hypot(second.standard_errors[p]));
+    let error: [f64; PARAMETERS] =
+        std::array::from_fn(|p| first.standard_errors[p].hypot(doubt[p]).hypot(second.standard_errors[p].hypot(doubt[p])));
     let ratios = (0..PARAMETERS).filter(|p| error[*p] > 0.0).map(|p| (distance[p] / error[p]).powi(2));
     let (count, squares) = ratios.fold((0.0, 0.0), |(count, sum), square| (count + 1.0, sum + square));
     let apart = (squares / f64::max(count, 1.0)).sqrt();

@@ -46,6 +46,15 @@ pub(super) struct OutputShifts {
     pub(super) misfit: [f64; PARAMETERS],
 }
 
+impl OutputShifts {
+    /// All of them, as a standard deviation of each parameter.
+    pub(super) fn total(&self) -> [f64; PARAMETERS] {
+        let Self { timing, within_rows, process_noise, faults_in_doubt, sensors, dead_time, misfit } = self;
+        let all = [timing, within_rows, process_noise, faults_in_doubt, sensors, dead_time, misfit];
+        std::array::from_fn(|p| all.iter().map(|shift| shift[p] * shift[p]).sum::<f64>().sqrt())
+    }
+}
+
 /// Gain from which an observer is fitted where none was found.
 const GAIN: f64 = 0.3;
 
