@@ -5,6 +5,7 @@
 use fluxfit::{
     ErrorKind, Known, Parameter, Request, Verdict, identify,
     log::{Columns, Log},
+    optimizer::Draws,
 };
 use fluxfit_drive::{
     Scenario,
@@ -19,16 +20,16 @@ const LQ: f64 = 250e-6;
 
 /// On a bench that holds the rotor at an angle, steps of i_d, and one of i_q if asked for, with 50 mA of noise.
 fn bench(dead_time: f64, id: &[f64], iq: f64) -> Scenario {
-    let step = |(k, to): (usize, &f64)| Ramp { at: 0.05 + 0.05 * k as f64, to: *to, over: 0.0 };
+    let step = |(k, to): (usize, &f64)| Ramp { at: 0.05 + 0.09 * k as f64, to: *to, over: 0.0 };
     let mut scenario = Scenario::paper();
-    scenario.duration = 0.3;
+    scenario.duration = 0.41;
     scenario.motor = SimulatedMotor::new(RS, Magnetics::Constant { ld: LD, lq: LQ, psi_f: 12e-3 }, 7);
     scenario.mechanics = Mechanics::Dyno;
     (scenario.inverter.u_dc, scenario.inverter.carrier, scenario.inverter.dead_time) = (48.0, 16e3, dead_time);
     scenario.control = Control::new(400.0, 20.0, 30.0);
     scenario.schedule = Default::default();
     scenario.schedule.id = Profile::new(id.iter().enumerate().map(step).collect());
-    scenario.schedule.iq = Profile::new(vec![Ramp { at: 0.25, to: iq, over: 0.0 }]);
+    scenario.schedule.iq = Profile::new(vec![Ramp { at: 0.32, to: iq, over: 0.0 }]);
     scenario.sensors.current_noise = 0.05;
     scenario
 }
@@ -37,17 +38,19 @@ fn log(scenario: &Scenario) -> Log {
     simulate(scenario, 0, || ()).unwrap().log().unwrap()
 }
 
-/// Without its angle: where it is known, the answer is the same, because it does not change.
-fn without_angle(log: Log) -> Log {
-    Log::new(Columns { theta_e: None, ..log.columns().clone() }).unwrap()
+/// Without its angle, and with the noise of an observer as its speed: at rest they tell nothing.
+fn with_noisy_speed(log: &Log) -> Log {
+    let mut draws = Draws::seeded(3, 0);
+    let omega_e = log.columns().t.iter().map(|_| draws.normal()).collect();
+    Log::new(Columns { theta_e: None, omega_e, ..log.columns().clone() }).unwrap()
 }
 
-/// Currents of several sizes tell dead time from resistance, with and without the angle.
+/// Currents of several sizes tell dead time from resistance, with the angle and with a noisy speed alone.
 #[test]
 fn steps_of_several_sizes_tell_resistance_and_inductances_beside_dead_time() {
     for dead_time in [0.0, 1e-6] {
         let log = log(&bench(dead_time, &[5.0, 10.0, 20.0], 8.0));
-        for log in [log.clone(), without_angle(log)] {
+        for log in [with_noisy_speed(&log), log] {
             let found = identify(&log, &Request::default()).unwrap().identification;
             for (parameter, truth) in [(Parameter::Rs, RS), (Parameter::Ld, LD), (Parameter::Lq, LQ)] {
                 let one = found.parameter(parameter);
@@ -69,7 +72,7 @@ fn steps_of_several_sizes_tell_resistance_and_inductances_beside_dead_time() {
 #[test]
 fn one_step_does_not_tell_resistance_from_dead_time() {
     let log = log(&bench(1e-6, &[10.0], 0.0));
-    for log in [log.clone(), without_angle(log)] {
+    for log in [with_noisy_speed(&log), log] {
         let found = identify(&log, &Request::default()).unwrap().identification;
         for (parameter, truth) in [(Parameter::Rs, RS), (Parameter::Ld, LD), (Parameter::Lq, LQ)] {
             let one = found.parameter(parameter);

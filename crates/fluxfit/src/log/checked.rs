@@ -7,6 +7,7 @@ use super::{
     spikes::Spikes,
 };
 use crate::error::{Error, ErrorKind};
+use std::{f64::consts::FRAC_PI_3, ops::Range};
 
 /// A checked log: [`Log::new`] makes one of [`Columns`], [`LogBuilder`](super::LogBuilder) of rows as they arrive, and [`Log::join`] of
 /// several logs of one motor.
@@ -127,9 +128,25 @@ impl Log {
         short_circuit::voltages_are_zero(&self.columns)
     }
 
-    /// Whether the rotor stands throughout, so that no row depends on the magnets' flux.
-    pub(crate) fn is_at_rest(&self) -> bool {
+    /// Whether the speed is zero throughout.
+    pub(crate) fn has_no_speed(&self) -> bool {
         self.columns.omega_e.iter().all(|speed| *speed == 0.0)
+    }
+
+    /// Whether the rotor stands throughout, so that nothing tells the magnets' flux: the speed is none, or noise to either side of zero that
+    /// turns it less than a sixth of a turn.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        let Columns { t, omega_e, .. } = &self.columns;
+        let swings = || omega_e.iter().any(|speed| *speed > 0.0) && omega_e.iter().any(|speed| *speed < 0.0);
+        let turned = |rows: &Range<usize>| {
+            let steps = rows.clone().skip(1).map(|row| omega_e[row] * (t[row] - t[row - 1]));
+            let (_, least, most) = steps.fold((0.0_f64, 0.0_f64, 0.0_f64), |(angle, least, most), step| {
+                let angle = angle + step;
+                (angle, least.min(angle), most.max(angle))
+            });
+            most - least
+        };
+        self.has_no_speed() || swings() && self.segments.iter().all(|segment| turned(&segment.rows) < FRAC_PI_3)
     }
 
     /// Refuses a log that the output error cannot tell more of than the steady model: it would look at length for a minimum that every

@@ -297,7 +297,7 @@ impl Evidence<'_> {
                 (rows().fold(0.0, within), rows().map(|row| columns.ud[row].hypot(columns.uq[row])).fold(0.0, f64::max))
             }
         };
-        if omega_e == 0.0 {
+        if self.log.is_at_rest() {
             return None;
         }
         // A flux that is not known makes no more voltage than there is.

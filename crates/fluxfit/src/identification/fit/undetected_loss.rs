@@ -49,11 +49,11 @@ pub(super) fn doubt(
     let possible = LossPrior::possible(log, request).standard_error * PI / 4.0;
     // Harmonics of the flux take those of the loss as their own.
     let would_show = is_control_rate(log) && objective.turns() && is_noise && !is_disturbed && !has(Fault::FluxHarmonics);
-    if was_found
-        && possible > 0.0
-        && let Some(points) = steady.filter(|_| !objective.turns())
+    if possible > 0.0
+        && !objective.turns()
+        && let Some(doubt) = steady.and_then(|points| at_rest(objective, drive, unknowns, points, possible, request))
     {
-        return at_rest(objective, drive, unknowns, points, possible);
+        return doubt;
     }
     if was_found || possible == 0.0 || would_show {
         return [0.0; PARAMETERS];
@@ -85,19 +85,27 @@ pub(super) fn doubt(
 const LEAST_HELD: f64 = 0.2;
 
 /// At rest only transients tell the loss from the resistance, by a shape of the loss that is a rough one. Held currents tell them apart
-/// where their magnitudes differ, as the line `V_1 + R_s I` does; what they leave open of the resistance is doubt of it, and the other
-/// parameters move with it as they do in the fit.
-fn at_rest(objective: &OutputError, drive: &Adjustable, unknowns: &[Unknown], points: &SteadyFit, possible: f64) -> [f64; PARAMETERS] {
+/// where their magnitudes differ, as the line `V_1 + R_s I` does; what they leave open of the resistance is doubt of it, whether a loss was
+/// found or not, and the other parameters move with it as they do in the fit. `None` where no current is held.
+fn at_rest(
+    objective: &OutputError,
+    drive: &Adjustable,
+    unknowns: &[Unknown],
+    points: &SteadyFit,
+    possible: f64,
+    request: &Request,
+) -> Option<[f64; PARAMETERS]> {
     let place = |parameter: Parameter| unknowns.iter().position(|unknown| *unknown == Unknown::Motor(parameter));
-    let Some(rs) = place(Parameter::Rs) else { return [0.0; PARAMETERS] };
-    let error = misshapen_if_fitted(drive.faults.dead_time.voltage);
+    let rs = place(Parameter::Rs)?;
     let held = points.operating_points.iter().map(|point| point.current().magnitude());
     let held: Vec<f64> = held.filter(|current| *current > LEAST_HELD * objective.peak_current()).collect();
     if held.is_empty() {
-        return [0.0; PARAMETERS];
+        return None;
     }
+    let accuracy = request.voltage_accuracy * drive.motor.rs.abs() * objective.peak_current();
+    let error = misshapen_if_fitted(drive.faults.dead_time.voltage).hypot(accuracy);
     let line = [held.iter().map(|i| i / error).chain([0.0]).collect(), held.iter().map(|_| 1.0 / error).chain([1.0 / possible]).collect()];
     let of_resistance = NormalMatrix::of(&line).inverse()[(0, 0)].max(0.0).sqrt();
     let inverse = NormalMatrix::of(&jacobian(objective, drive, unknowns)).inverse();
-    Parameter::ALL.map(|parameter| place(parameter).map_or(0.0, |p| (inverse[(p, rs)] / inverse[(rs, rs)] * of_resistance).abs()))
+    Some(Parameter::ALL.map(|parameter| place(parameter).map_or(0.0, |p| (inverse[(p, rs)] / inverse[(rs, rs)] * of_resistance).abs())))
 }
