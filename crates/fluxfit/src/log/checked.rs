@@ -133,8 +133,8 @@ impl Log {
         self.columns.omega_e.iter().all(|speed| *speed == 0.0)
     }
 
-    /// Whether the rotor stands throughout, so that nothing tells the magnets' flux: the speed is none, or noise to either side of zero that
-    /// turns it less than a sixth of a turn.
+    /// Whether the rotor stands throughout, so that nothing tells the magnets' flux: the speed is none, or noise to either side of zero
+    /// that turns it less than a sixth of a turn.
     pub(crate) fn is_at_rest(&self) -> bool {
         let Columns { t, omega_e, .. } = &self.columns;
         let swings = || omega_e.iter().any(|speed| *speed > 0.0) && omega_e.iter().any(|speed| *speed < 0.0);
