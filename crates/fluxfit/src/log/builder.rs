@@ -5,6 +5,7 @@ use super::{
     columns::{Columns, MIN_ROWS, Row},
     segment, short_circuit,
     spikes::Spikes,
+    standstill,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -119,7 +120,8 @@ impl LogBuilder {
     /// The log, with its segments and quantization steps, and without the rows that no drive had ([`Log::spikes`]).
     ///
     /// # Errors
-    /// If there are fewer than two rows, or the currents are zero throughout, or the voltages without the currents of a short circuit.
+    /// If there are fewer than two rows, or the currents are zero throughout, or the voltages without the currents of a short circuit, or
+    /// the speed of a motor that does not rest.
     pub fn finish(self) -> Result<Log, Error> {
         let mut columns = self.columns;
         if columns.t.len() < MIN_ROWS {
@@ -132,6 +134,9 @@ impl LogBuilder {
         }
         if short_circuit::voltages_are_zero(&columns) && !short_circuit::currents_brake(&columns) {
             return Err(Error::no_voltages());
+        }
+        if all_zero([&columns.omega_e; 2]) && !standstill::is_possible(&columns) {
+            return Err(ErrorKind::AllZero { what: "the speed omega_e is" }.into());
         }
         let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| quantization::step(column));
         let segments = segment::split(&columns.t, steps, &starts);

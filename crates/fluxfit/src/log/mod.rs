@@ -14,6 +14,7 @@ mod segment;
 mod short_circuit;
 mod speed_lag;
 mod spikes;
+mod standstill;
 
 pub use builder::{LogBuilder, check_values};
 pub use checked::{Log, Source};
