@@ -96,7 +96,7 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         Part::Saturation => write!(f, "the inductances depend on the current, and one number for all of the log {leaves}"),
         Part::Misfit => write!(
             f,
-            "parts of the log contradict each other beyond their noise, which {leaves}: no motor with constant parameters explains them"
+            "the operating points contradict each other beyond their noise, which {leaves}: no motor with constant parameters explains them"
         ),
         Part::Prior => write!(f, "the prior that was given {leaves}"),
         Part::Excitation => write!(f, "what the log does not excite could move it, which {leaves}"),

@@ -11,7 +11,6 @@ pub(crate) mod finding;
 mod frame_angle;
 mod frame_free;
 pub(crate) mod frame_lag;
-mod halves;
 pub(crate) mod incremental;
 pub(crate) mod long_run;
 pub(crate) mod misfit;

@@ -15,7 +15,7 @@ use super::{
     fault_search::{FaultOutcome, FaultTrial, LEAST_RESIDUAL},
     faults_in_doubt,
     finding::{Bench, Finding, Trust, covariance},
-    halves, long_run,
+    long_run,
     output_choice::{Chosen, choose},
     output_errors::{CORRELATED, Errors, FaultEstimate, OutputShifts, correlation_of_neighbours, other_kind_of_fit, sensors},
     output_start,
@@ -33,7 +33,7 @@ use crate::{
     faults::Fault,
     frames::Dq,
     log::Log,
-    motor::{Motor, PARAMETERS},
+    motor::Motor,
     objective::{acting_voltage::VoltageTiming, adjustable::Adjustable, output_error::OutputError},
     optimizer::{Bounds, Method},
     steady::OperatingPoint,
@@ -124,7 +124,6 @@ impl OutputFit {
             faults_in_doubt: faults_in_doubt::doubt(&terms),
             sensors: sensors(&drive),
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
-            misfit: [0.0; PARAMETERS],
         };
         let misshapen = voltage_loss::misshapen_in_rows(log, reading, drive.faults.dead_time.voltage);
         let corrected_beside_loss = voltage_loss::corrected_by_observer(log, &drive, rms_by_axis(&residuals));
@@ -132,8 +131,6 @@ impl OutputFit {
         let accuracies = accuracies.map(|(fraction, volts)| VoltageAccuracy { fraction, volts });
         let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, accuracies, &scale);
         let shifts = OutputShifts { process_noise: errors.by_contradiction(&unknowns, &shifts.process_noise), ..shifts };
-        let misfit = halves::doubt((log, &stretches), reading, &drive, &unknowns, &priors, &shifts.total());
-        let shifts = OutputShifts { misfit, ..shifts };
         let uncertainty = errors.uncertainty(&unknowns, &shifts);
         let correlation = errors.correlation_of_neighbours;
         let points = steady.map_or(&whole[..], |fit| &fit.operating_points);

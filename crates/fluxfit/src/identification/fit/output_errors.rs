@@ -43,16 +43,6 @@ pub(super) struct OutputShifts {
     pub(super) faults_in_doubt: [f64; PARAMETERS],
     pub(super) sensors: [f64; PARAMETERS],
     pub(super) dead_time: [f64; PARAMETERS],
-    pub(super) misfit: [f64; PARAMETERS],
-}
-
-impl OutputShifts {
-    /// All of them, as a standard deviation of each parameter.
-    pub(super) fn total(&self) -> [f64; PARAMETERS] {
-        let Self { timing, within_rows, process_noise, faults_in_doubt, sensors, dead_time, misfit } = self;
-        let all = [timing, within_rows, process_noise, faults_in_doubt, sensors, dead_time, misfit];
-        std::array::from_fn(|p| all.iter().map(|shift| shift[p] * shift[p]).sum::<f64>().sqrt())
-    }
 }
 
 /// Gain from which an observer is fitted where none was found.
@@ -110,49 +100,6 @@ fn with_priors(mut slopes: Vec<Vec<f64>>, unknowns: &[Unknown], priors: &[PriorR
     slopes
 }
 
-/// What noise does to the unknowns.
-struct OfNoise {
-    covariance: DMatrix<f64>,
-    degrees_of_freedom: f64,
-    correlation_of_neighbours: f64,
-}
-
-impl OfNoise {
-    fn of(objective: &OutputError, slopes: &[Vec<f64>], inverse: &DMatrix<f64>, residuals: &[f64]) -> Self {
-        let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
-        let (rows, _) = residuals.as_chunks::<2>();
-        // A score per row: both axes together.
-        let scores = slopes.iter().map(|slope| {
-            let (slope, _) = slope.as_chunks::<2>();
-            slope.iter().zip(rows).map(|(slope, residual)| slope[0] * residual[0] + slope[1] * residual[1]).collect()
-        });
-        let scores: Vec<Vec<f64>> = scores.collect();
-        let correlation_of_neighbours = correlation_of_neighbours(residuals, &lengths);
-        let noise = long_run::covariance(&scores, &lengths);
-        let (mut covariance, mut degrees_of_freedom) = (inverse * noise.covariance * inverse, noise.degrees_of_freedom);
-        if correlation_of_neighbours > CORRELATED {
-            let blocks = long_run::covariance_of_blocks(&scores);
-            degrees_of_freedom = degrees_of_freedom.min(blocks.degrees_of_freedom);
-            covariance = larger(covariance, inverse * blocks.covariance * inverse);
-        }
-        Self { covariance, degrees_of_freedom, correlation_of_neighbours }
-    }
-}
-
-/// Standard errors of the unknowns from noise alone.
-pub(super) fn from_noise(
-    objective: &OutputError,
-    drive: &Adjustable,
-    unknowns: &[Unknown],
-    priors: &[PriorResidual],
-    residuals: &[f64],
-) -> Vec<f64> {
-    let slopes = jacobian(objective, drive, unknowns);
-    let inverse = NormalMatrix::of(&with_priors(slopes.clone(), unknowns, priors)).inverse();
-    let noise = OfNoise::of(objective, &slopes, &inverse, residuals);
-    (0..unknowns.len()).map(|k| noise.covariance[(k, k)].max(0.0).sqrt()).collect()
-}
-
 /// Errors of everything that was fitted.
 pub(super) struct Errors {
     /// Of the unknowns, from noise.
@@ -182,7 +129,23 @@ impl Errors {
         let slopes = jacobian(objective, drive, unknowns);
         let with_priors = with_priors(slopes.clone(), unknowns, priors);
         let inverse = NormalMatrix::of(&with_priors).inverse();
-        let OfNoise { covariance, degrees_of_freedom, correlation_of_neighbours } = OfNoise::of(objective, &slopes, &inverse, residuals);
+        let lengths: Vec<usize> = objective.stretches().map(|rows| rows.len()).collect();
+        let (rows, _) = residuals.as_chunks::<2>();
+        // A score per row: both axes together.
+        let scores = slopes.iter().map(|slope| {
+            let (slope, _) = slope.as_chunks::<2>();
+            slope.iter().zip(rows).map(|(slope, residual)| slope[0] * residual[0] + slope[1] * residual[1]).collect()
+        });
+        let scores: Vec<Vec<f64>> = scores.collect();
+        let correlation_of_neighbours = correlation_of_neighbours(residuals, &lengths);
+        let noise = long_run::covariance(&scores, &lengths);
+        let (noise, mut degrees_of_freedom) = (&inverse * noise.covariance * &inverse, noise.degrees_of_freedom);
+        let mut covariance = noise;
+        if correlation_of_neighbours > CORRELATED {
+            let blocks = long_run::covariance_of_blocks(&scores);
+            degrees_of_freedom = degrees_of_freedom.min(blocks.degrees_of_freedom);
+            covariance = larger(covariance, &inverse * blocks.covariance * &inverse);
+        }
         Self {
             covariance,
             degrees_of_freedom,
@@ -261,7 +224,6 @@ impl Errors {
                 faults_in_doubt: shifts.faults_in_doubt[p],
                 sensors: shifts.sensors[p],
                 dead_time: shifts.dead_time[p],
-                misfit: shifts.misfit[p],
                 loss_shape: self.loss_shape[(k, k)].max(0.0).sqrt(),
                 excitation: self.open[k],
                 ..Systematic::default()
