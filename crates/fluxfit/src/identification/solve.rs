@@ -156,7 +156,7 @@ struct Fitted {
 fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Progress) -> Result<Fitted, Error> {
     let _ = progress(Step::OperatingPoints);
     let steady = SteadyFit::of(log, request);
-    if log.has_no_speed() && steady.as_ref().is_ok_and(|fit| !standstill::is_possible(&fit.as_measured)) {
+    if log.has_no_speed() && steady.as_ref().is_ok_and(|fit| !standstill::voltages_lie_along_currents(&fit.as_measured)) {
         return Err(Error::no_speed());
     }
     let model = model::choose(log, request.model);

@@ -135,7 +135,7 @@ impl LogBuilder {
         if short_circuit::voltages_are_zero(&columns) && !short_circuit::currents_brake(&columns) {
             return Err(Error::no_voltages());
         }
-        if all_zero([&columns.omega_e; 2]) && !standstill::is_possible(&columns) {
+        if all_zero([&columns.omega_e; 2]) && !standstill::shows_rest(&columns) {
             return Err(ErrorKind::AllZero { what: "the speed omega_e is" }.into());
         }
         let steps = [&columns.ud, &columns.uq, &columns.id, &columns.iq, &columns.omega_e].map(|column| quantization::step(column));

@@ -12,8 +12,8 @@ const NO_VOLTAGE: f64 = 0.2;
 /// Rows without a current, in the mean of which noise and a controller's answers to it cancel.
 const LEAST_ROWS: usize = 10;
 
-/// Whether the log shows a rotor that stands.
-pub(super) fn is_possible(columns: &Columns) -> bool {
+/// Whether there is a moment without current and voltage.
+pub(super) fn shows_rest(columns: &Columns) -> bool {
     let largest = |d: &[f64], q: &[f64]| d.iter().zip(q).map(|(d, q)| d.hypot(*q)).fold(0.0, f64::max);
     let (i, u) = (largest(&columns.id, &columns.iq), largest(&columns.ud, &columns.uq));
     let rests = || (0..columns.t.len()).filter(|row| columns.id[*row].hypot(columns.iq[*row]) < NO_CURRENT * i);
@@ -35,8 +35,8 @@ mod tests {
             let all = |value: f64| vec![value; 200];
             Columns { t: all(0.0), ud, uq: all(magnets), id, iq: all(0.0), omega_e: all(0.0), ..Columns::default() }
         };
-        assert!(is_possible(&log(0.01, 0.0)));
-        assert!(!is_possible(&log(0.01, 12.0)));
-        assert!(!is_possible(&log(10.0, 0.0)));
+        assert!(shows_rest(&log(0.01, 0.0)));
+        assert!(!shows_rest(&log(0.01, 12.0)));
+        assert!(!shows_rest(&log(10.0, 0.0)));
     }
 }

@@ -19,7 +19,7 @@ const EVEN: f64 = 1e-3;
 /// a few percent, which is so many lengths.
 const MOST_LENGTHS: usize = 128;
 
-/// So many are worth it in any log.
+/// So many lengths have polynomials in any log, however short.
 const FEW_LENGTHS: usize = 16;
 
 /// Periods that a further length must have on average: the nodes of its polynomials are as many exact transitions.

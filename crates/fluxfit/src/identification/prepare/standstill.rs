@@ -6,18 +6,16 @@
 use crate::{frames::Dq, steady::OperatingPoint};
 use std::f64::consts::FRAC_PI_4;
 
-/// The angle between voltage and current, rad, that no rotor at rest exceeds: a twelfth of a turn, and as much again by half for errors of
-/// the sensors.
+/// Largest angle between voltage and current of a rotor at rest, rad: a twelfth of a turn, and 15 degrees for errors of the sensors.
 const LARGEST_ANGLE: f64 = FRAC_PI_4;
 
-/// Whether the held currents of a log are those of a rotor at rest.
-pub(crate) fn is_possible(points: &[OperatingPoint]) -> bool {
+/// Currents below this part of the largest are left out: their direction is noise.
+const LEAST_CURRENT: f64 = 0.2;
+
+/// Whether the voltage of every held current lies along it, as at rest.
+pub(crate) fn voltages_lie_along_currents(points: &[OperatingPoint]) -> bool {
     let angle = |u: Dq, i: Dq| (u.d * i.q - u.q * i.d).atan2(u.d * i.d + u.q * i.q).abs();
     let largest = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
-    // Of a current that is nearly zero the direction is noise.
     let carry_current = points.iter().filter(|point| point.current().magnitude() > LEAST_CURRENT * largest);
     carry_current.map(|point| angle(point.voltage(), point.current())).all(|angle| angle < LARGEST_ANGLE)
 }
-
-/// Part of the largest current.
-const LEAST_CURRENT: f64 = 0.2;
