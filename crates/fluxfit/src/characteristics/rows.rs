@@ -12,6 +12,7 @@ use crate::{
     error::{Error, ErrorKind},
     motor::PARAMETERS,
 };
+use std::ops::Range;
 
 /// What measured a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,6 +97,9 @@ const LEAST: usize = 3;
 /// Fewest rows of duty cycles: flux, resistance, inductance and what the switches lose, and one more.
 const LEAST_DUTY: usize = 5;
 
+/// Most parts of a table that are left out in turn: enough for a standard error to a sixth of itself.
+const MOST_PARTS: usize = 20;
+
 /// The rows of all tables, by kind.
 #[derive(Clone, Default)]
 pub(super) struct Rows {
@@ -149,6 +153,28 @@ impl Rows {
         let has_scale =
             rows.has_torque() || ![rows.open.len(), rows.torque.len(), rows.direct.len(), rows.duty.len()].iter().all(|n| *n == 0);
         if has_scale { Ok(rows) } else { Err(ErrorKind::NoScale.into()) }
+    }
+
+    /// Of each table all of what remains if a part of neighbouring rows is left out. Tables that are too short for it are kept whole.
+    pub(super) fn without_parts(&self) -> Vec<Vec<Self>> {
+        let parts = |count: usize, least: usize, drop: &dyn Fn(&mut Self, Range<usize>)| {
+            let size = count.div_ceil(MOST_PARTS).max(1);
+            let starts = (0..count).step_by(size).filter(|_| count >= least + size);
+            starts
+                .map(|first| {
+                    let mut rest = self.clone();
+                    drop(&mut rest, first..(first + size).min(count));
+                    rest
+                })
+                .collect()
+        };
+        vec![
+            parts(self.open.len(), LEAST, &|rest, part| drop(rest.open.drain(part))),
+            parts(self.shorted.len(), LEAST_SHORTED, &|rest, part| drop(rest.shorted.drain(part))),
+            parts(self.torque.len(), LEAST, &|rest, part| drop(rest.torque.drain(part))),
+            parts(self.direct.len(), LEAST, &|rest, part| drop(rest.direct.drain(part))),
+            parts(self.duty.len(), LEAST_DUTY, &|rest, part| drop(rest.duty.drain(part))),
+        ]
     }
 
     /// Open-circuit voltages times a factor.
