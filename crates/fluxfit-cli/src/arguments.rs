@@ -180,6 +180,10 @@ pub(crate) enum Timing {
     OneRotor,
     /// Mean over the row's own span, as the currents
     Averaged,
+    /// Of a simulator that goes from row to row by Euler's rule
+    Euler,
+    /// The same, logged with the current after the step
+    EulerAfter,
 }
 
 impl Timing {
@@ -200,6 +204,8 @@ impl Timing {
             Self::ZeroRotor => in_rotor(0),
             Self::OneRotor => in_rotor(1),
             Self::Averaged => Some(VoltageTiming::Averaged),
+            Self::Euler => Some(VoltageTiming::Euler { after: false }),
+            Self::EulerAfter => Some(VoltageTiming::Euler { after: true }),
         }
     }
 }

@@ -40,7 +40,7 @@ impl Timing {
             VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } if delay <= LONGEST_DELAY => {
                 Some(Self::Delayed { delay, at_row: true })
             }
-            VoltageTiming::Delayed { .. } | VoltageTiming::Averaged => None,
+            VoltageTiming::Delayed { .. } | VoltageTiming::Averaged | VoltageTiming::Euler { .. } => None,
         }
     }
 

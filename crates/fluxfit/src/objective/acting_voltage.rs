@@ -7,6 +7,9 @@
 //! An inverter holds its voltage in the stator. Some simulators, and logs whose rows lie many of the drive's periods apart, hold it in the
 //! rotor's frame. Rows that are means over their own span hold the means of the voltage as of the current: the moving mean of the current
 //! obeys the motor's equation with the moving mean of the voltage, which goes about straight from row to row.
+//!
+//! Many simulators that are written by hand go from row to row by Euler's rule: the slope of the current at a row, times the period. Their
+//! currents obey no motor's differential equation, but the rule exactly. A row holds the current before or after its voltage acted.
 
 use super::angles::{Angles, SMOOTHED};
 use crate::{
@@ -29,6 +32,11 @@ pub enum VoltageTiming {
     },
     /// The mean over the row's own span, as the currents are.
     Averaged,
+    /// By Euler's rule, the slope at a row acts over the period behind it.
+    Euler {
+        /// The row holds the current that its voltage led to, not the one before.
+        after: bool,
+    },
 }
 
 /// The frame in which a delayed voltage is written.
@@ -49,11 +57,16 @@ pub(super) enum Held {
     InStator,
     /// In the rotor's frame.
     InRotor,
+    /// In the rotor's frame, as does the slope of the current.
+    WithSlope,
 }
 
 impl VoltageTiming {
-    /// All timings that are known from drives.
-    pub const ALL: [Self; 10] = [
+    /// Of simulators that step by Euler's rule.
+    pub(crate) const BY_EULERS_RULE: [Self; 2] = [Self::Euler { after: false }, Self::Euler { after: true }];
+
+    /// All timings that are known from drives and simulators.
+    pub const ALL: [Self; 12] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
         Self::Delayed { delay: 1, frame: VoltageFrame::Middle },
@@ -64,6 +77,8 @@ impl VoltageTiming {
         Self::Delayed { delay: 0, frame: VoltageFrame::Rotor },
         Self::Delayed { delay: 1, frame: VoltageFrame::Rotor },
         Self::Averaged,
+        Self::BY_EULERS_RULE[0],
+        Self::BY_EULERS_RULE[1],
     ];
 
     /// Name in files and on the command line.
@@ -79,6 +94,8 @@ impl VoltageTiming {
             Self::Delayed { delay: 0, frame: VoltageFrame::Rotor } => "0-rotor",
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "1-rotor",
             Self::Averaged => "averaged",
+            Self::Euler { after: false } => "euler",
+            Self::Euler { after: true } => "euler-after",
         }
     }
 
@@ -99,13 +116,15 @@ impl VoltageTiming {
             }
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "what acts one period later, held in the rotor's frame",
             Self::Averaged => "the mean over the row's own span, as the currents",
+            Self::Euler { after: false } => "a simulator's that goes from row to row by Euler's rule",
+            Self::Euler { after: true } => "a simulator's that goes from row to row by Euler's rule, and logs the current after the step",
         }
     }
 
     /// Rows at a segment's start whose acting voltage is not in the log.
     pub(super) fn lost_rows(self) -> usize {
         match self {
-            Self::Centered | Self::Averaged => 0,
+            Self::Centered | Self::Averaged | Self::Euler { .. } => 0,
             Self::Delayed { delay, .. } => delay,
         }
     }
@@ -114,13 +133,14 @@ impl VoltageTiming {
     pub(super) fn held(self) -> Held {
         match self {
             Self::Averaged | Self::Delayed { frame: VoltageFrame::Rotor, .. } => Held::InRotor,
+            Self::Euler { .. } => Held::WithSlope,
             Self::Centered | Self::Delayed { .. } => Held::InStator,
         }
     }
 
     /// Whether no inverter that logs each of its periods does so.
     pub(crate) fn is_unusual(self) -> bool {
-        self.held() == Held::InRotor
+        self.held() != Held::InStator
     }
 }
 
@@ -129,7 +149,7 @@ impl VoltageTiming {
 pub(super) struct Period {
     /// Its length, s.
     pub(super) length: f64,
-    /// Mean speed, electrical rad/s.
+    /// Mean speed, or that of the slope, electrical rad/s.
     pub(super) omega_e: f64,
     /// The voltage that acts, V, in the frame at its middle, or in the rotor's where it is held there.
     pub(super) u: Dq,
@@ -191,12 +211,15 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                     let (start, end) = (in_rotor_frame(row), in_rotor_frame(row + 1));
                     Dq { d: 0.5 * (start.d + end.d), q: 0.5 * (start.q + end.q) }
                 }
+                VoltageTiming::Euler { after } => in_rotor_frame(row + usize::from(after)),
             };
             let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
+            let mean_speed = turn / length;
+            let omega_e = if reading.held() == Held::WithSlope && !angles.known { columns.omega_e[row] } else { mean_speed };
             let (slower, faster) = (angles.speed[row - rows.start], angles.speed[row + 1 - rows.start]);
             Period {
                 length,
-                omega_e: turn / length,
+                omega_e,
                 u,
                 theta_e: middle,
                 acceleration: if angles.known { 0.0 } else { acceleration(row) },
@@ -204,7 +227,7 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 angle_acceleration: if angles.known { (faster - slower) / length } else { 0.0 },
                 advance_per_lag: match reading {
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
-                    VoltageTiming::Centered | VoltageTiming::Delayed { .. } | VoltageTiming::Averaged => 0.0,
+                    VoltageTiming::Centered | VoltageTiming::Delayed { .. } | VoltageTiming::Averaged | VoltageTiming::Euler { .. } => 0.0,
                 },
                 time: (columns.t[row] + 0.5 * length - first_time) / (last_time - first_time) - 0.5,
             }

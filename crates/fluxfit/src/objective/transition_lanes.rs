@@ -79,6 +79,19 @@ impl<V: Number> TransitionLanes<V> {
     }
 }
 
+impl<V: Number> TransitionLanes<V> {
+    /// By Euler's rule: one step of the series alone.
+    #[inline(always)]
+    fn of_slope(motors: &MotorLanes<V>, turn: f64, length: f64) -> Self {
+        let MotorLanes { rs, ld, lq, psi_f } = *motors;
+        let [zero, one, turn, length] = [0.0, 1.0, turn, length].map(|number| rs.constant(number));
+        let (gdd, gqq) = (length / ld, length / lq);
+        let (fdq, fqd) = (turn * (lq / ld), -(turn * (ld / lq)));
+        let (fdd, fqq) = (one - rs * gdd, one - rs * gqq);
+        Self { fdd, fdq, fqd, fqq, gdd, gdq: zero, gqd: zero, gqq, hd: zero, hq: -(turn * psi_f / lq) }
+    }
+}
+
 /// An exact transition.
 struct Exact<'a, V> {
     motors: &'a MotorLanes<V>,
@@ -96,6 +109,7 @@ impl<V: Number> NullaryFnOnce for Exact<'_, V> {
         let turn = match self.held {
             Held::InStator => self.turn,
             Held::InRotor => 0.0,
+            Held::WithSlope => return TransitionLanes::of_slope(self.motors, self.turn, self.length),
         };
         let (mut series, most) = Series::of(self.motors, self.turn, turn, self.length);
         for doubled in 0..most {

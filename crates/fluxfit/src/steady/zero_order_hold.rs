@@ -36,7 +36,7 @@ impl From<VoltageTiming> for SteadyVoltageTiming {
     fn from(timing: VoltageTiming) -> Self {
         match timing {
             VoltageTiming::Centered => Self::Centered,
-            VoltageTiming::Delayed { .. } | VoltageTiming::Averaged => Self::Compensated,
+            VoltageTiming::Delayed { .. } | VoltageTiming::Averaged | VoltageTiming::Euler { .. } => Self::Compensated,
         }
     }
 }

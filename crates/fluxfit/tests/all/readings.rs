@@ -1,5 +1,5 @@
-//! Readings of the voltages that no inverter's own log has: held in the rotor's frame, and means over each row's span. The logs are
-//! equation (1), integrated by Runge and Kutta in fine steps; nothing of the program makes them.
+//! Readings of the voltages that no inverter's own log has: held in the rotor's frame, means over each row's span, and Euler's rule from
+//! row to row. The logs are equation (1), integrated by Runge and Kutta in fine steps or by that rule; nothing of the program makes them.
 
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
@@ -96,6 +96,48 @@ fn holds(log: &Log, timing: VoltageTiming, percent: f64) {
 fn voltages_held_in_the_rotors_frame_are_read() {
     let log = log(&course(40_000), HELD, |values| values[0]);
     holds(&log, VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Rotor }, 0.3);
+}
+
+/// A motor that starts up against its inertia under controllers of speed and current, all by Euler's rule in steps of 0.1 ms. A row holds
+/// what the step began with, or the current and the speed after it.
+fn by_eulers_rule(noise: f64, after: bool) -> Log {
+    const PERIOD: f64 = 1e-4;
+    let mut draws = Draws::seeded(7, 0);
+    let mut columns = Columns::default();
+    let (mut i, mut omega_e, mut sums) = (Dq::default(), 0.0_f64, Dq::default());
+    for k in 0..8000 {
+        let target = if k < 4000 { 600.0 } else { 900.0 };
+        let wanted = Dq { d: -4.0, q: (0.1 * (target - omega_e)).clamp(-10.0, 10.0) };
+        let error = Dq { d: wanted.d - i.d, q: wanted.q - i.q };
+        let (gain, rate) = (1000.0, 1000.0 * TRUTH.rs * PERIOD);
+        let u = Dq {
+            d: gain * TRUTH.ld * error.d + sums.d - omega_e * TRUTH.lq * i.q,
+            q: gain * TRUTH.lq * error.q + sums.q + omega_e * (TRUTH.ld * i.d + TRUTH.psi_f),
+        };
+        sums = Dq { d: sums.d + rate * error.d, q: sums.q + rate * error.q };
+        let steady = TRUTH.steady_voltage(i, omega_e);
+        let next = Dq { d: i.d + PERIOD * (u.d - steady.d) / TRUTH.ld, q: i.q + PERIOD * (u.q - steady.q) / TRUTH.lq };
+        let faster = omega_e + PERIOD * 900.0 * (i.q - 0.3) - 0.0005 * omega_e;
+        let (current, speed) = if after { (next, faster) } else { (i, omega_e) };
+        columns.t.push(f64::from(k) * PERIOD);
+        columns.id.push(current.d + noise * draws.normal());
+        columns.iq.push(current.q + noise * draws.normal());
+        columns.ud.push(u.d);
+        columns.uq.push(u.q);
+        columns.omega_e.push(speed);
+        (i, omega_e) = (next, faster);
+    }
+    Log::new(columns).unwrap()
+}
+
+/// Read as an inverter's such a log fits to its noise, with R_s and L_d wrong by many half-widths.
+#[test]
+fn a_simulators_steps_by_eulers_rule_are_read() {
+    for noise in [0.0, 0.02] {
+        for after in [false, true] {
+            holds(&by_eulers_rule(noise, after), VoltageTiming::Euler { after }, if noise > 0.0 { 0.5 } else { 0.001 });
+        }
+    }
 }
 
 /// Rows are means of four of the drive's periods.

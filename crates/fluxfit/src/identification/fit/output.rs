@@ -135,12 +135,14 @@ impl OutputFit {
         let correlation = errors.correlation_of_neighbours;
         let points = steady.map_or(&whole[..], |fit| &fit.operating_points);
         let rms = (cost / residuals.len() as f64).sqrt();
+        // Below it, what is left is the rounding of the columns, whose correlation and sharpness mean nothing.
+        let is_rounding = rms <= LEAST_RESIDUAL * objective.peak_current();
         let finding = Finding {
             motor: drive.motor,
             open: [false; 4],
             trust: Trust {
-                correlation_of_neighbours: if rms > LEAST_RESIDUAL * objective.peak_current() { correlation } else { 0.0 },
-                too_sharp: errors.are_too_small(objective, &drive, &unknowns, &priors, &residuals),
+                correlation_of_neighbours: if is_rounding { 0.0 } else { correlation },
+                too_sharp: !is_rounding && errors.are_too_small(objective, &drive, &unknowns, &priors, &residuals),
                 misses: missed(objective, &drive) / objective.peak_current(),
                 runaway,
                 least_inductance: if is_control_rate(log) { LEAST_PERIODS * slowest_period(log) * drive.motor.rs } else { 0.0 },

@@ -44,7 +44,7 @@ pub(super) struct Chosen {
 /// What a search came to.
 struct Searched {
     chosen: Chosen,
-    /// Whether what is left is noise, and next to no observer was needed to make it so.
+    /// Whether the log [is explained](is_explained).
     explained: bool,
 }
 
@@ -116,6 +116,14 @@ pub(super) fn choose(
         let ends = rough.iter().map(|(place, trial)| (*place, trial.polished.drive)).collect();
         contest(&objectives, ends, &free, &priors, &Rules::all(HOPELESS))
     };
+    let steps = by_eulers_rule(log, stretches, &start.drive, (&free, &priors), request)?;
+    let best_steps = steps.as_ref().and_then(|steps| steps.chosen.readings.first().copied());
+    if let (Some(Searched { mut chosen, explained: true }), Some(best), Some((_, tried_best))) = (steps, best_steps, tried.first())
+        && best.rank() < tried_best.rank()
+    {
+        chosen.readings.extend(tried.iter().map(|(_, tried)| *tried));
+        return Ok(vec![chosen]);
+    }
     let with_angle = if start.may_hide_an_angle { Begin::with_angle(&objectives, &start.drive, &free, &priors, &tried) } else { None };
     let _ = progress(Step::Faults);
     let every_period = is_control_rate(log);
@@ -175,7 +183,51 @@ pub(super) fn choose(
         let readings = if best.unknowns == free { tried } else { again() };
         best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
     }
+    if let Some(steps) = best_steps
+        && readings::is_better(&steps, &best.readings, best.independent)
+    {
+        best.readings.push(steps);
+    }
     Ok(found)
+}
+
+/// The motor alone, as a simulator that steps by Euler's rule would have it: such a log has none of a drive's faults, and next to its
+/// readings the rule would pass for some of them.
+fn by_eulers_rule(
+    log: &Log,
+    stretches: &[Range<usize>],
+    start: &Adjustable,
+    (unknowns, priors): (&[Unknown], &[PriorResidual]),
+    request: &Request,
+) -> Result<Option<Searched>, Error> {
+    if request.voltage_timing.is_some() {
+        return Ok(None);
+    }
+    let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &VoltageTiming::BY_EULERS_RULE)?;
+    let tried = readings::readings(&objectives, start, unknowns, priors, HOPELESS);
+    let Some((place, best)) = tried.first().copied() else { return Ok(None) };
+    let objective = &objectives[place].1;
+    let residuals = objective.residuals(&best.polished.drive);
+    let independent = long_run::effective_sample_size(&residuals);
+    let chosen = Chosen {
+        reading: best.timing,
+        drive: best.polished.drive,
+        unknowns: unknowns.to_vec(),
+        priors: priors.to_vec(),
+        readings: tried.into_iter().map(|(_, tried)| tried).collect(),
+        terms: Vec::new(),
+        independent,
+        criterion: criterion(best.polished.cost, unknowns.len(), residuals.len()),
+    };
+    let explained = is_explained(&best.polished.drive, best.polished.cost, residuals.len(), independent, objective);
+    Ok(Some(Searched { chosen, explained }))
+}
+
+/// Whether what is left is noise, and next to no observer was needed to make it so, or rounding.
+fn is_explained(drive: &Adjustable, cost: f64, residuals: usize, independent: f64, objective: &OutputError) -> bool {
+    let count = residuals as f64;
+    (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
+        || drive.faults.disturbance.is_small() && independent > (1.0 - WHITE) / (1.0 + WHITE) * count
 }
 
 /// Whether all parameters are positive, as a motor's are; at rest the flux is zero, because it is not fitted.
@@ -187,6 +239,8 @@ fn is_a_motor(motor: &Motor) -> bool {
 impl Chosen {
     /// The same choice for a log that differs a little: its numbers are fitted again, and the reading is chosen from these.
     pub(super) fn again(self, log: &Log, stretches: &[Range<usize>], asked: &[VoltageTiming]) -> Result<Self, Error> {
+        let steps = &VoltageTiming::BY_EULERS_RULE;
+        let asked = if steps.contains(&self.reading) { steps } else { asked };
         let objectives = OutputError::under_readings(log, &stretches::spread(stretches), asked)?;
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);
         let readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
@@ -248,11 +302,9 @@ impl Searched {
         let FaultSearch { drive, unknowns, cost, reading, compared, .. } = search;
         let (reading, objective) = &search.objectives[reading];
         let residuals = objective.residuals(&drive);
-        let count = residuals.len() as f64;
         let independent = long_run::effective_sample_size(&residuals);
         Self {
-            explained: (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
-                || drive.faults.disturbance.is_small() && independent > (1.0 - WHITE) / (1.0 + WHITE) * count,
+            explained: is_explained(&drive, cost, residuals.len(), independent, objective),
             chosen: Chosen {
                 reading: *reading,
                 readings: compared.into_iter().map(|(_, tried)| tried).collect(),

@@ -55,9 +55,10 @@ const UNUSUAL: f64 = 0.01;
 /// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
 const AVERAGED: f64 = 0.1;
 
-/// Every reading, or the one that is stated.
+/// Every reading of a drive's voltages, or the one that is stated.
 pub(crate) fn asked(request: &Request) -> Vec<VoltageTiming> {
-    request.voltage_timing.map_or(VoltageTiming::ALL.to_vec(), |stated| vec![stated])
+    let of_drives = || VoltageTiming::ALL.into_iter().filter(|timing| !VoltageTiming::BY_EULERS_RULE.contains(timing)).collect();
+    request.voltage_timing.map_or_else(of_drives, |stated| vec![stated])
 }
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
@@ -145,14 +146,21 @@ fn best_as_they_stand(
     standing.into_iter().take(count).map(|(_, place, drive)| (place, drive)).collect()
 }
 
-/// The readings that are not ruled out, given how many independent residuals there are. The best one first.
+/// Whether a reading is better than the best of these for certain, given how many independent residuals there are.
+pub(super) fn is_better(other: &TimingTrial, tried: &[TimingTrial], independent: f64) -> bool {
+    tried.first().is_some_and(|best| independent * (best.mean_square() / other.mean_square()).ln() > VERY_STRONG)
+}
+
+/// The readings that are not ruled out, given how many independent residuals there are. The best one first. Steps by Euler's rule stand
+/// among those of a drive only if they are better for certain, though not by their handicap.
 pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
     let least = tried.first().map_or(0.0, TimingTrial::mean_square);
     let is_unusual = tried.first().is_some_and(|best| best.timing.is_unusual());
     // Where the best is perfect, so is every other one that is possible.
     let is_possible =
         move |other: &TimingTrial| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG;
-    tried.iter().filter(move |other| is_possible(other) && (is_unusual || !other.timing.is_unusual()))
+    let is_steps = |other: &TimingTrial| VoltageTiming::BY_EULERS_RULE.contains(&other.timing);
+    tried.iter().filter(move |other| is_possible(other) && (is_unusual || !other.timing.is_unusual() || is_steps(other)))
 }
 
 /// How far each parameter moves between them.
