@@ -31,7 +31,8 @@ const PERIODS_PER_ROW: f64 = 2.0;
 /// What the voltage may be off at most, by twice its standard deviation.
 const DEVIATIONS: f64 = 2.0;
 
-/// How far each parameter could be moved by it, SI, as a standard deviation; zero where rows are the drive's own periods, or a simulator's steps.
+/// How far each parameter could be moved by it, SI, as a standard deviation; zero where rows are the drive's own periods, or a simulator's
+/// steps.
 pub(super) fn doubt(
     objective: &OutputError,
     reading: VoltageTiming,
