@@ -174,6 +174,7 @@ impl Task {
             study: None,
             online: None,
             json: Some(&document),
+            options: report::options(),
             origin: &origin,
         });
         Ok(write_atomically(path, page.as_bytes())?)

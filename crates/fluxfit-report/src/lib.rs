@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use fluxfit::{Columns, Log, Request, identify};
-//! use fluxfit_report::{Origin, Report, html};
+//! use fluxfit_report::{Options, Origin, Report, html};
 //!
 //! # let (n, omega) = (200, 400.0);
 //! # let motor = fluxfit::paper::MOTOR;
@@ -29,6 +29,7 @@
 //!     study: None,
 //!     online: None,
 //!     json: None,
+//!     options: Options::default(),
 //!     origin: &origin,
 //! });
 //! assert!(page.starts_with("<!DOCTYPE html>"));
@@ -71,4 +72,4 @@ mod typography;
 pub use drawing::size::Size;
 pub use figure_file::{FigureFile, figures, fleet_figures, screen_figures, validation_figures};
 pub use page::{fleet_html, html, validation_html};
-pub use report::{FleetReport, Origin, Report, ValidationReport};
+pub use report::{FleetReport, Options, Origin, Report, ValidationReport};

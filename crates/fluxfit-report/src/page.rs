@@ -7,7 +7,7 @@ use crate::{
     report::{FleetReport, Origin, Report, ValidationReport},
     section::Section,
     sections,
-    typography::prose,
+    typography::{breakable, prose},
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -54,7 +54,7 @@ fn document(title: &str, summary: &Markup, sections: &[Section], figures: &[Figu
             body {
                 header {
                     p.program { "fluxfit " (origin.version) " · motor parameters from a drive log" }
-                    h1 { (title) }
+                    h1 { (breakable(title)) }
                     p.found { (summary) }
                     nav aria-label="Sections" {
                         ul { @for section in sections { li { a href={ "#" (section.anchor) } { (section.heading) } } } }

@@ -1,7 +1,7 @@
 //! What a page is made from.
 
 use fluxfit::{
-    Validation,
+    Remedy, Validation, Warning,
     evidence::Identification,
     fleet::FleetOverview,
     log::Log,
@@ -33,8 +33,26 @@ pub struct Report<'a> {
     pub online: Option<&'a OnlineComparison>,
     /// The JSON document of the result, which a button of the page saves.
     pub json: Option<&'a str>,
+    /// What the program that writes the page adds to remedies and warnings.
+    pub options: Options,
     /// How to reproduce the page.
     pub origin: &'a Origin,
+}
+
+/// How the program that writes a page carries out remedies, and answers warnings: the options of its command.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// The option that carries out a remedy.
+    pub of_remedy: fn(&Remedy) -> Option<&'static str>,
+    /// The option that answers a warning.
+    pub of_warning: fn(&Warning) -> Option<&'static str>,
+}
+
+impl Default for Options {
+    /// No options, as of a program without a command line.
+    fn default() -> Self {
+        Self { of_remedy: |_| None, of_warning: |_| None }
+    }
 }
 
 /// How to reproduce a page.

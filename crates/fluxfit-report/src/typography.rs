@@ -78,6 +78,11 @@ fn set_word(word: &str) -> Markup {
     }
 }
 
+/// A name of a file, whose line breaks after a separator and not within a word or its ending.
+pub(crate) fn breakable(name: &str) -> Markup {
+    html! { @for part in name.split_inclusive(['_', '/', '-']) { (part) wbr; } }
+}
+
 /// Subscripts in SVG text, as shifted spans; a zero-width space returns to the baseline.
 pub(crate) fn svg_subscripts(svg: &str) -> String {
     SYMBOLS.iter().fold(svg.to_owned(), |svg, (name, letter, index)| {
@@ -164,6 +169,12 @@ pub(crate) fn count(n: usize, noun: &str) -> String {
 pub(crate) fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// The text as a sentence: with a capital letter, unless it begins with a symbol, and a full stop.
+pub(crate) fn sentence(text: &str) -> String {
+    let symbol = text.split(' ').next().is_some_and(|word| word.contains('_'));
+    format!("{}.", if symbol { text.to_owned() } else { capitalized(text) })
 }
 
 /// A count with grouped thousands.

@@ -114,7 +114,8 @@ def looks(browser, page, checks, axe):
             checks.that(wide <= width, f"{where}: {wide} px wide")
             hidden = tab.evaluate("""() => [...document.querySelectorAll('.scroll')].filter(box => box.scrollWidth > box.clientWidth + 1)
                 .map(box => box.getAttribute('aria-label'))""")
-            checks.that(width < 900 or not hidden, f"{where}: columns are out of sight: {hidden}")
+            # Tables of a validation and a fleet scroll on a telephone, with a shadow at the edge.
+            checks.that((width < 900 and page.stem in ("validation", "fleet")) or not hidden, f"{where}: columns are out of sight: {hidden}")
             live = tab.evaluate("[document.querySelectorAll('figure.live').length, document.querySelectorAll('figure > script').length]")
             checks.that(live[0] == live[1], f"{where}: {live[0]} of {live[1]} figures are drawn")
             clipped = tab.evaluate("""() => [...document.querySelectorAll('main p, main td, main th, header p')].filter(one =>

@@ -16,7 +16,7 @@ pub use crate::identification::{
         output::OutputFit,
         output_errors::FaultEstimate,
         part::Part,
-        readings::TimingTrial,
+        readings::{TimingTrial, VERY_STRONG},
         saturation::{Apparent, Flux, SaturationFinding},
         steady::{SteadyFit, operating_points},
         swarm::Search,

@@ -132,6 +132,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<Status, CommandError> {
         study: Some((&comparison, &methods)),
         online: None,
         json: document.as_deref(),
+        options: report::options(),
         origin: &report::origin(arguments.log.seed),
     };
     report::write(arguments.log.report.as_deref(), || html(&shown), arguments.log.figures.as_deref(), || figures(&shown))?;

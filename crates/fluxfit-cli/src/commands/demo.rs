@@ -55,6 +55,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<Status, CommandError> {
         study: Some((&comparison, &methods)),
         online: None,
         json: None,
+        options: report::options(),
         origin: &report::origin(arguments.seed),
     };
     report::write(Some(&arguments.report), || html(&shown), arguments.figures.as_deref(), || figures(&shown))?;

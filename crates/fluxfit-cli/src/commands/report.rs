@@ -1,9 +1,14 @@
 //! `--report FILE.html` and `--figures DIR`: what the verbs do about them. They are refused before anything is computed, and written
 //! after the answer is printed.
 
-use crate::{arguments::LogArguments, error::CommandError, interrupt, invocation, shell, terminal};
+use crate::{
+    arguments::LogArguments,
+    error::CommandError,
+    interrupt, invocation, shell,
+    terminal::{self, options},
+};
 use fluxfit_files::write_atomically;
-use fluxfit_report::{FigureFile, Origin};
+use fluxfit_report::{FigureFile, Options, Origin};
 use fluxfit_units::wording::one_line;
 use std::{fs, path::Path};
 
@@ -47,6 +52,11 @@ pub(crate) fn check_directory(path: Option<&Path>) -> Result<(), CommandError> {
 /// How the results can be made again.
 pub(crate) fn origin(seed: u64) -> Origin {
     Origin { command: command(), version: env!("CARGO_PKG_VERSION").to_owned(), seed }
+}
+
+/// The options that the page states beside remedies and warnings, as the terminal does.
+pub(crate) fn options() -> Options {
+    Options { of_remedy: options::of_remedy, of_warning: options::of_warning }
 }
 
 /// Writes the report and the figures, as far as they are wanted, and says so.

@@ -21,6 +21,9 @@ const MARGIN: f64 = 0.06;
 const FEW: f64 = 0.01;
 const STRETCH: f64 = 0.5;
 
+/// Ticks that tell a scale.
+const LEAST_TICKS: i64 = 3;
+
 impl Axis {
     /// From the smallest to the largest value, with about `count` ticks. Values that are not finite are ignored; equal values get a
     /// margin on both sides.
@@ -48,8 +51,13 @@ impl Axis {
     pub(crate) fn between(low: f64, high: f64, count: usize) -> Self {
         let rough = (high - low) / count.max(1) as f64;
         let power = 10.0_f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * power).find(|step| *step >= 0.999 * rough).unwrap_or(rough);
-        let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+        let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|digit| digit * power);
+        let ends = |step: f64| ((low / step).ceil() as i64, (high / step).floor() as i64);
+        let is_told = |step: f64| ends(step).1 - ends(step).0 + 1 >= LEAST_TICKS.min(count as i64);
+        let place = steps.iter().skip(1).position(|step| *step >= 0.999 * rough).map_or(0, |place| place + 1);
+        // A finer step where the round numbers of this one leave too few ticks, such as zero alone.
+        let step = steps[..=place].iter().rev().copied().find(|step| is_told(*step)).unwrap_or(rough);
+        let (first, last) = ends(step);
         Self { low, high, ticks: (first..=last).map(|k| k as f64 * step).collect(), step }
     }
 
@@ -97,6 +105,15 @@ mod tests {
         let axis = Axis::around([-0.13, 0.07], 5);
         assert_eq!(axis.label(axis.ticks[0]), "−0.10");
         assert!(axis.ticks.iter().all(|tick| (axis.low..=axis.high).contains(tick)));
+    }
+
+    #[test]
+    fn zero_is_never_the_only_tick() {
+        assert_eq!(Axis::between(-4.9, 4.9, 4).ticks, [-4.0, -2.0, 0.0, 2.0, 4.0]);
+        for tenths in 1..1000 {
+            let high = 0.1 * f64::from(tenths);
+            assert!(Axis::between(-high, 0.7 * high, 4).ticks.len() >= 3, "{high}");
+        }
     }
 
     #[test]

@@ -279,7 +279,7 @@ impl AxisCurrents<'_> {
         let name = format!("measured − {}, {unit}", self.comparison.name());
         let (behind, front) = (translucent(self.ink(), 0.8, RESIDUAL_OPACITY), line(self.ink(), 2.0));
         self.panel(area, y.clone(), ("time, s", &name), size, &[(residuals, behind), (zero, line(Ink::Text, 1.0)), (means, front)])?;
-        legend(area, size, &[(front, "mean", 67)])
+        legend(area, size, &[(behind, "rows", 134), (front, "mean", 67)])
     }
 
     /// Draws curves over time; the x axis has numbers only if it has a name.

@@ -38,7 +38,7 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
         draw: Box::new(move |size| draw(saturation, size)),
         data: None,
         caption: prose(
-            "Flux linkage at each operating point over the current of its axis; bars are two standard uncertainties. Without saturation the \
+            "Flux linkage at each operating point over the current of its axis; bars are two standard uncertainties (95 %). Without saturation the \
              points of psi_q would lie on a line through zero. Grey: a line from zero to each point, its slope is the apparent L_q there.",
         ),
     })

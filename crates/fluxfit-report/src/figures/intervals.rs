@@ -9,7 +9,7 @@ use crate::{
         size::Size,
     },
     figure::Figure,
-    judgement::relative_half_width,
+    judgement::{is_weak_though_narrow, relative_half_width},
     report::Report,
 };
 use fluxfit::{Judgement, Verdict, evidence::IDENTIFIED, evidence::Identification, evidence::WEAK};
@@ -26,20 +26,25 @@ const NARROWEST: f64 = -3.0;
 /// Right end of the scale, with space for parameters without a value.
 const WIDEST: f64 = 2.7;
 
-/// Width of a number, pixels.
-const NUMBER: i32 = 90;
+/// Width of a character of a number, pixels.
+const CHARACTER: i32 = 8;
+
+/// Distance of a number from the middle of its marker, pixels.
+const ASIDE: i32 = 9;
 
 /// The figure.
 pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
     let (found, _) = report.identification?;
     Some(Figure {
         name: "intervals",
-        section: "explanation",
+        section: "uncertainty",
         draw: Box::new(move |size| draw(found, size)),
         data: None,
         caption: html! {
             "Half-width of each 95 % interval relative to the value, on a logarithmic scale; smaller (farther left) is better. The background "
-            "shows the verdicts."
+            "shows the verdict that a width alone would have"
+            @if found.parameters.iter().any(is_weak_though_narrow) { "; “weak” beside a number: for another reason than its width" }
+            "."
         },
     })
 }
@@ -101,11 +106,13 @@ fn row(area: &Area, chart: &mut Chart, judgement: &Judgement, y: f64, size: Size
     chart.series.draw_series([PathElement::new(vec![(NARROWEST, y), (x, y)], line(ink, 2.0))])?;
     let (x, y) = chart.place(x, y);
     area.draw(&Circle::new((x, y), 5 * UNITS, solid(ink)))?;
-    let text = format!("±{} %", significant(100.0 * width, 2));
+    let weak = if is_weak_though_narrow(judgement) { ", weak" } else { "" };
+    let text = format!("±{} %{weak}", significant(100.0 * width, 2));
     // To the right of the marker, or above its line if there is no space.
-    if size.width() as i32 * UNITS - x > NUMBER * UNITS {
-        area.draw_text(&text, &anchored(Ink::Text, HPos::Left, VPos::Center), (x + 9 * UNITS, y))
+    let needed = ASIDE + CHARACTER * text.chars().count() as i32;
+    if size.width() as i32 * UNITS - x > needed * UNITS {
+        area.draw_text(&text, &anchored(Ink::Text, HPos::Left, VPos::Center), (x + ASIDE * UNITS, y))
     } else {
-        area.draw_text(&text, &anchored(Ink::Text, HPos::Right, VPos::Bottom), (x - 9 * UNITS, y - 3 * UNITS))
+        area.draw_text(&text, &anchored(Ink::Text, HPos::Right, VPos::Bottom), (x - ASIDE * UNITS, y - 3 * UNITS))
     }
 }

@@ -1,4 +1,5 @@
-//! The joint confidence region of R_s and psi_f: an ellipse about the estimate, in percent of it, and a box from the two intervals.
+//! The joint confidence region of the two parameters whose errors are correlated most: an ellipse about the estimate, in percent of it,
+//! and a box from the two intervals.
 
 use crate::{
     drawing::{
@@ -9,9 +10,9 @@ use crate::{
         size::Size,
     },
     figure::Figure,
-    judgement::has_error,
+    judgement::{correlation, most_correlated},
     report::Report,
-    typography::{minus, prose},
+    typography::{list, minus, prose, symbol},
 };
 use fluxfit::{Judgement, evidence::Identification, motor::Parameter};
 use maud::html;
@@ -46,20 +47,36 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
         draw: Box::new(move |size| draw(&pair, size)),
         data: None,
         caption: html! {
-            "The joint 95 % confidence region of " (prose("R_s and psi_f")) " about the estimate (dot), in percent of it, from the standard errors "
-            "and their correlation, " (minus(format!("{:.2}", pair.correlation))) " (that of noise, accuracy and priors). The box is made of the "
-            "two 95 % intervals. Where the ellipse is narrow and slanted, values in a corner of the box are not plausible together, although "
-            "each of them is plausible alone. Both parameters enter the voltage of the q axis; operating points at different speeds separate "
-            "them."
+            "The joint 95 % confidence region of " (list(&[symbol(pair.x.parameter), symbol(pair.y.parameter)])) ", whose errors are correlated "
+            "most, about the estimate (dot), in percent of it, from the standard errors and their correlation, "
+            (minus(format!("{:.2}", pair.correlation))) " (that of noise, accuracy and priors). The box is made of the two 95 % intervals. Where "
+            "the ellipse is narrow and slanted, values in a corner of the box are not plausible together, although each of them is plausible "
+            "alone."
+            @if let Some(remedy) = separated_by(&pair) { " " (prose(remedy)) }
         },
     })
 }
 
-/// The pair, if both parameters have an error.
+/// The pair, if two parameters have an error.
 fn pair(found: &Identification) -> Option<ParameterPair<'_>> {
-    let [x, y] = [Parameter::Rs, Parameter::PsiF].map(|parameter| found.parameter(parameter));
-    let correlation = found.correlation[Parameter::Rs as usize][Parameter::PsiF as usize];
-    (has_error(x) && has_error(y)).then_some(ParameterPair { x, y, correlation })
+    let [x, y] = most_correlated(found)?;
+    Some(ParameterPair { x, y, correlation: correlation(found, x, y) })
+}
+
+/// What tells the two apart, where one equation has both in it.
+fn separated_by(pair: &ParameterPair) -> Option<&'static str> {
+    match (pair.x.parameter, pair.y.parameter) {
+        (Parameter::Rs, Parameter::PsiF) => {
+            Some("Both parameters enter the voltage of the q axis; operating points at different speeds separate them.")
+        }
+        (Parameter::Rs, Parameter::Lq) => {
+            Some("Both parameters enter the voltage of the d axis; operating points at different speeds separate them.")
+        }
+        (Parameter::Ld, Parameter::PsiF) => {
+            Some("Both parameters enter the voltage of the q axis; operating points with different i_d separate them.")
+        }
+        _ => None,
+    }
 }
 
 /// An error of a parameter in percent of its value.

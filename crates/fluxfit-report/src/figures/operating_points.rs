@@ -16,6 +16,7 @@ use crate::{
     typography::{decimals, decimals_of_span, number, prose},
 };
 use fluxfit::{evidence::SteadyFit, frames::Dq, steady::OperatingPoint};
+use maud::html;
 use plotters::{
     element::Circle,
     style::text_anchor::{HPos, VPos},
@@ -46,11 +47,17 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
         section: "operating-points",
         draw: Box::new(move |size| draw(fit, size)),
         data: Some(Box::new(move || data(fit))),
-        caption: prose(
-            "The operating points in the plane of the currents, numbered as in the table. Green: both residuals are within two standard \
-             uncertainties; amber: within four; red: one is larger. The farther apart they are, the better the parameters \
-             can be distinguished; L_d needs operating points with different i_d.",
-        ),
+        caption: html! {
+            "The operating points in the plane of the currents, numbered as in the table. "
+            @if fit.estimate.redundancy > 0 {
+                "Green: both residuals are within two standard uncertainties"
+                @if fit.misfit.is_some() { " (widened, because the points contradict each other)" }
+                "; amber: within four; red: one is larger. "
+            }
+            (prose(
+                "The farther apart they are, the better the parameters can be distinguished; L_d needs operating points with different i_d."
+            ))
+        },
     })
 }
 
@@ -120,18 +127,18 @@ fn data(found: &SteadyFit) -> PlotData {
     }
 }
 
-/// Time, currents, speed and residuals of a point, the latter with their standard uncertainties.
+/// Time, currents, speed and residuals of a point, the latter with two standard uncertainties (95 %).
 fn description(number_of_point: usize, point: &OperatingPoint, residual: [f64; 2], uncertainty: [f64; 2]) -> String {
     let (start, end) = point.time;
     let of_time = decimals_of_span(end - start);
     let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
     let [d, q] = [0, 1].map(|axis| {
         let tenths = decimals(1e3 * uncertainty[axis], 1);
-        format!("{} ± {} mV", fixed(1e3 * residual[axis], tenths), fixed(1e3 * uncertainty[axis], tenths))
+        format!("{} ± {} mV", fixed(1e3 * residual[axis], tenths), fixed(1e3 * AGREES * uncertainty[axis], tenths))
     });
     let (current, omega_e) = (point.current(), fixed(point.omega_e(), 1));
     format!(
-        "Point {number_of_point}: {} to {} s; i_d {} A, i_q {} A, omega_e {omega_e} rad/s; residual of u_d {d}, of u_q {q}",
+        "Point {number_of_point}: {} to {} s; i_d {} A, i_q {} A, omega_e {omega_e} rad/s; residual of u_d {d}, of u_q {q} (95 %)",
         fixed(start, of_time),
         fixed(end, of_time),
         fixed(current.d, 3),

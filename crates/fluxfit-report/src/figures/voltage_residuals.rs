@@ -42,10 +42,10 @@ const REACH: f64 = 6.0;
 /// Units of the y axis: factor from volt and name; millivolt up to a volt.
 const UNITS_OF_VOLTAGE: [(f64, &str); 2] = [(1e3, "mV"), (1.0, "V")];
 
-/// The figure.
+/// The figure; `None` with as many equations as unknowns, where all residuals are zero whatever the log.
 pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
     let (found, _) = report.identification?;
-    let fit = found.steady.as_ref()?;
+    let fit = found.steady.as_ref().filter(|fit| fit.estimate.redundancy > 0)?;
     Some(Figure {
         name: "residuals",
         section: "operating-points",
@@ -57,14 +57,12 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
 
 fn caption(fit: &SteadyFit) -> Markup {
     html! {
-        "Residuals of both voltage equations with error bars of two standard uncertainties, from the noise of the means and "
+        "Residuals of both voltage equations with error bars of two standard uncertainties (95 %), from the noise of the means and "
         @if let Some(misfit) = fit.misfit {
             "the accuracy with which the operating points are consistent, " (percent(misfit.voltage_accuracy)) " % of the voltage. A pattern, such "
             "as a dependence on the current, shows what the model lacks."
         } @else {
-            "the accuracy of the voltages. "
-            @if fit.estimate.redundancy == 0 { "Without redundancy the residuals are zero by construction." }
-            @else { "If an error bar does not include zero, that operating point contradicts the others." }
+            "the accuracy of the voltages. If an error bar does not include zero, that operating point contradicts the others."
         }
         @match beyond(fit) {
             0 => {}

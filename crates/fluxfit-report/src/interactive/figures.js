@@ -266,7 +266,8 @@
           y: { range: (u, low, high) => panel.kind === "bars" || plane ? [low, high] : range(panel)(u, low, high) },
         },
         axes: [
-          { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: last ? 26 : 6, space: 60, gap: 6,
+          { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: last ? 26 : 6, space: panel.kind === "bars" ? 28 : 60,
+            gap: 6,
             incrs: panel.kind === "bars" || panel.kind === "decades" ? WHOLE : ROUND,
             values: last ? ticks : () => [] },
           { stroke: () => of(QUIET), font: FONT, grid: { stroke: () => of(GRID), width: 1 }, ticks: { show: false }, size: 64, space: panel.height < 180 ? 22 : 34, gap: 6,
@@ -365,7 +366,8 @@
     }
     const table = document.querySelector("[data-values] table");
     if (!table) return null;
-    const cells = row => [...row.cells].map(cell => quoted(cell.textContent.trim().replaceAll(MINUS, "-"))).join(",");
+    const written = cell => [...cell.childNodes].filter(part => part.className !== "key").map(part => part.textContent).join("");
+    const cells = row => [...row.cells].map(cell => quoted(written(cell).trim().replaceAll(MINUS, "-"))).join(",");
     return table.dataset.header + "\n" + [...table.tBodies[0].rows].map(cells).join("\n") + "\n";
   };
 

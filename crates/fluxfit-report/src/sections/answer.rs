@@ -2,15 +2,15 @@
 
 use super::flux;
 use crate::{
-    judgement::{is_given, relative_half_width},
+    judgement::{is_given, is_weak_though_narrow, relative_half_width},
     report::Report,
     section::Section,
     table,
-    typography::{DASH, number, prose, symbol, unit},
+    typography::{DASH, list, number, prose, symbol, unit},
 };
 use fluxfit::{
     Judgement, Verdict,
-    evidence::{IDENTIFIED, Identification, WEAK},
+    evidence::{IDENTIFIED, Identification, SaturationFinding, WEAK},
     motor::Parameter,
 };
 use fluxfit_units::{Scale, significant};
@@ -21,8 +21,8 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     let (found, _) = report.identification?;
     let content = html! {
         (parameters(found))
-        p.small { (thresholds()) }
-        @if let Some(saturation) = &found.saturation { (flux::inductances(saturation)) }
+        p.small { (thresholds()) (in_spite_of_width(found)) }
+        @if let Some(saturation) = &found.saturation { (flux::inductances(found, saturation)) }
     };
     Some(Section { anchor: "answer", heading: "Parameters", content })
 }
@@ -41,6 +41,12 @@ pub(super) fn thresholds() -> Markup {
     }
 }
 
+/// Which parameters are weak although their intervals are narrow.
+fn in_spite_of_width(found: &Identification) -> Markup {
+    let narrow: Vec<Markup> = found.parameters.iter().filter(|one| is_weak_though_narrow(one)).map(|one| symbol(one.parameter)).collect();
+    html! { @if !narrow.is_empty() { " " (list(&narrow)) ": weak although narrower, for the reason below." } }
+}
+
 fn percent(fraction: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * fraction)
 }
@@ -55,7 +61,7 @@ fn parameters(found: &Identification) -> Markup {
                 } }
                 tbody {
                     @for judgement in &found.parameters {
-                        (parameter(judgement))
+                        (parameter(judgement, found.saturation.as_ref()))
                         @if judgement.parameter == Parameter::Lq && let Some(saturation) = &found.saturation { (flux::apparent_row(saturation)) }
                     }
                     (not_counted(found))
@@ -65,7 +71,7 @@ fn parameters(found: &Identification) -> Markup {
     }
 }
 
-fn parameter(judgement: &Judgement) -> Markup {
+fn parameter(judgement: &Judgement, saturation: Option<&SaturationFinding>) -> Markup {
     let heading = html! { th scope="row" { (symbol(judgement.parameter)) } };
     let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) else {
         return html! {
@@ -82,7 +88,10 @@ fn parameter(judgement: &Judgement) -> Markup {
     html! {
         tr {
             (heading)
-            td.value { strong { (show(value)) } " " (unit) }
+            td.value {
+                strong { (show(value)) } " " (unit)
+                @if saturation.is_some_and(|saturation| flux::is_of_small_currents(judgement, saturation)) { span.at { " at small currents" } }
+            }
             @if let Some(width) = width {
                 td { "±" (significant(100.0 * width, 2)) " %" }
                 td { (show(low)) " … " (show(high)) " " (unit) }
@@ -101,8 +110,7 @@ fn parameter(judgement: &Judgement) -> Markup {
 fn not_counted(found: &Identification) -> Markup {
     let counted: Vec<String> = found.counted.iter().map(ToString::to_string).collect();
     let unseen: Vec<String> = found.unseen_in_values().iter().map(ToString::to_string).collect();
-    let rows =
-        [("Counted", "In the intervals, as stated:", counted), ("Not counted", "Not in the intervals, because no log shows it:", unseen)];
+    let rows = [("In the intervals", "As stated:", counted), ("Not in the intervals", "No log shows these errors:", unseen)];
     html! {
         @for (what, why, errors) in rows.iter().filter(|(.., errors)| !errors.is_empty()) {
             tr.note {

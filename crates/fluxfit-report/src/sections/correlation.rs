@@ -1,13 +1,13 @@
 //! Correlation of the parameters' errors.
 
 use crate::{
-    judgement::{has_error, is_given},
+    judgement::{correlation, has_error, most_correlated},
     report::Report,
     section::Section,
     table,
     typography::{list, number, symbol},
 };
-use fluxfit::{Judgement, evidence::Identification, motor::Parameter};
+use fluxfit::{Judgement, evidence::Identification};
 use maud::{Markup, html};
 
 /// Correlations above this make two parameters hard to distinguish.
@@ -24,7 +24,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
         let content = html! {
             p {
                 "The errors of the parameters are correlated. If a correlation is close to ±1, the log can hardly distinguish the two parameters, "
-                "and prior knowledge of one of them narrows the interval of the other. " (strongest(found, &shown))
+                "and prior knowledge of one of them narrows the interval of the other. " (strongest(found))
             }
             (matrix(found, &shown))
             (joint_region(found))
@@ -33,16 +33,10 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     })
 }
 
-fn of(found: &Identification, one: &Judgement, other: &Judgement) -> f64 {
-    found.correlation[one.parameter as usize][other.parameter as usize]
-}
-
-fn strongest(found: &Identification, shown: &[&Judgement]) -> Markup {
-    let pairs = shown.iter().enumerate().flat_map(|(k, one)| shown[..k].iter().map(move |other| (*other, *one)));
-    let most = pairs.max_by(|(a, b), (c, d)| of(found, a, b).abs().total_cmp(&of(found, c, d).abs()));
+fn strongest(found: &Identification) -> Markup {
     html! {
-        @if let Some((one, other)) = most {
-            @let correlation = of(found, one, other);
+        @if let Some([one, other]) = most_correlated(found) {
+            @let correlation = correlation(found, one, other);
             "The strongest correlation is that of " (list(&[symbol(one.parameter), symbol(other.parameter)])) ", " (digits(correlation))
             @if correlation.abs() < STRONG { ": all parameters can be distinguished." } @else { "." }
         }
@@ -61,7 +55,7 @@ fn matrix(found: &Identification, shown: &[&Judgement]) -> Markup {
                 tbody { @for one in shown { tr {
                     th scope="row" { (symbol(one.parameter)) }
                     @for other in shown {
-                        @let correlation = of(found, one, other);
+                        @let correlation = correlation(found, one, other);
                         @if one.parameter == other.parameter { td.own { "1" } }
                         @else { td class={ "heat-" (shade(correlation)) } { (digits(correlation)) } }
                     }
@@ -76,18 +70,11 @@ fn shade(correlation: f64) -> u8 {
     (correlation.abs() * SHADES).clamp(0.0, SHADES - 1.0) as u8
 }
 
-/// The heading of the figure of the joint region, or why there is none.
+/// The heading of the figure of the joint region.
 fn joint_region(found: &Identification) -> Markup {
-    let [x, y] = [Parameter::Rs, Parameter::PsiF].map(|parameter| found.parameter(parameter));
-    let missing: Vec<Markup> =
-        [x, y].into_iter().filter(|judgement| judgement.value().is_none()).map(|one| symbol(one.parameter)).collect();
-    let given = [x, y].into_iter().find(|judgement| is_given(judgement));
     html! {
-        h3 { "Joint confidence region of " (list(&[symbol(Parameter::Rs), symbol(Parameter::PsiF)])) }
-        @if !missing.is_empty() {
-            p { "There is no joint region: " (list(&missing)) " cannot be identified from this log." }
-        } @else if let Some(given) = given {
-            p { "There is no joint region: " (symbol(given.parameter)) " was given." }
+        @if let Some(both) = most_correlated(found) {
+            h3 { "Joint confidence region of " (list(&both.map(|judgement| symbol(judgement.parameter)))) }
         }
     }
 }

@@ -3,12 +3,12 @@
 use crate::{
     report::Report,
     section::Section,
-    table,
+    table::{self, key},
     typography::{DASH, capitalized, fault, number, power, prose},
 };
 use fluxfit::{
     Warning,
-    evidence::{FaultOutcome, FaultTrial, OutputFit, Provenance, Resolved, TimingTrial},
+    evidence::{FaultOutcome, FaultTrial, OutputFit, Provenance, Resolved, TimingTrial, VERY_STRONG},
     faults::Fault,
 };
 use fluxfit_units::significant;
@@ -43,7 +43,15 @@ fn identified(fit: &OutputFit) -> Markup {
                     } } }
                 }
             }))
-            p.small { "They are part of the fit, so the parameters above are not affected by them." }
+            p.small {
+                "They are part of the fit: what they do to voltages and currents is not mistaken for the motor, and what their own uncertainty "
+                "leaves open is part of the intervals."
+                @if fit.has(Fault::Saturation) { " Beside saturation, the inductances of the answer are those at small currents." }
+                @if fit.has(Fault::Disturbance) {
+                    " The observer gain is the share of the measured difference by which each prediction is corrected, row by row; 0 would be no "
+                    "correction."
+                }
+            }
         }
     }
 }
@@ -54,16 +62,29 @@ fn tried(fit: &OutputFit, warnings: &[Warning]) -> Markup {
         (table::scrolling("Faults that were tried", &html! {
             table.tried {
                 thead { tr { th scope="col" { "Fault tried" } th scope="col" { "Gain" } th.words scope="col" { "Outcome" } } }
-                tbody { @for tried in &fit.fault_trials { (row(tried, warnings)) } }
+                tbody { @for tried in sorted(&fit.fault_trials) { (row(tried, warnings)) } }
             }
         }))
         p.small {
-            "The gain is Schwarz’s criterion (BIC): N ln (cost before / cost after) less ln N for each unknown, with N independent residuals. If "
-            "it is positive, the fault explains more than chance. Each fault is compared with the fit that includes the faults taken before. It "
-            "is taken if its gain is positive, its value is physical, and it changes a parameter by more than its standard error or removes a "
-            "noticeable part of the residuals’ power."
+            "The gain is Schwarz’s criterion (BIC): N ln (cost before / cost after) less ln N for each unknown, with N independent residuals. "
+            "Above zero the fault explains more than chance is expected to; above " (VERY_STRONG) " the odds are 150 to 1 that it is there. Each "
+            "fault is compared with the fit that includes the faults taken before. It is taken if its gain is above " (VERY_STRONG) ", its value "
+            "is physical, and it changes a parameter by more than its standard error or removes a noticeable part of the residuals’ power."
         }
     }
+}
+
+/// First the faults that were taken, then the others that were judged, each by their gain.
+fn sorted(trials: &[FaultTrial]) -> Vec<&FaultTrial> {
+    let mut sorted: Vec<&FaultTrial> = trials.iter().collect();
+    let place = |trial: &FaultTrial| if trial.outcome == FaultOutcome::Taken { 0 } else { 1 + u8::from(!is_judged(trial)) };
+    sorted.sort_by(|one, other| place(one).cmp(&place(other)).then(other.gain.total_cmp(&one.gain)));
+    sorted
+}
+
+/// Whether the trial has a gain.
+fn is_judged(trial: &FaultTrial) -> bool {
+    !matches!(trial.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle | FaultOutcome::NeedsTurning)
 }
 
 /// The warning of the operating points of the same effect, which the simulated currents did not confirm.
@@ -74,11 +95,10 @@ fn warning_of(fault: Fault, warnings: &[Warning]) -> Option<&Warning> {
 }
 
 fn row(tried: &FaultTrial, warnings: &[Warning]) -> Markup {
-    let judged = !matches!(tried.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle | FaultOutcome::NeedsTurning);
     html! {
         tr {
             th scope="row" { (prose(&capitalized(tried.fault.label()))) }
-            td { @if judged { (number(tried.gain, gain)) } @else { (DASH) } }
+            td { @if is_judged(tried) { (number(tried.gain, gain)) } @else { (DASH) } }
             td.words { @if tried.outcome == FaultOutcome::Taken { span.badge.identified { "taken" } } @else {
                 (explained(tried))
                 @if let Some(warning) = warning_of(tried.fault, warnings) {
@@ -98,6 +118,7 @@ fn explained(tried: &FaultTrial) -> &'static str {
     match (tried.fault, tried.outcome) {
         // The observer's gain is not the size of a fault.
         (Fault::Disturbance, FaultOutcome::NotPhysical) => "correcting with the measured current does not improve the prediction",
+        (_, FaultOutcome::NotNeeded) if tried.gain > 0.0 => "explains hardly more than chance would",
         _ => tried.outcome.label(),
     }
 }
@@ -120,7 +141,7 @@ fn voltage_timings(fit: &OutputFit) -> Markup {
             }
         }
         (table::scrolling("Voltage timings", &html! {
-            table.tried.timings {
+            table.tried.timings.stacked {
                 thead { tr {
                     th.words scope="col" { "The voltage of a row is" } th scope="col" { "Residual, A rms" }
                     th scope="col" { "Relative to the best" } th.words scope="col" { "Outcome" }
@@ -128,8 +149,8 @@ fn voltage_timings(fit: &OutputFit) -> Markup {
                 tbody { @for tried in &fit.timings {
                     tr {
                         th scope="row" { (tried.timing.label()) }
-                        td { (power(tried.mean_square().sqrt())) }
-                        td { (number((tried.mean_square() / best).sqrt(), |ratio| significant(ratio, 3))) }
+                        td { (key("residual ")) (power(tried.mean_square().sqrt())) (key(" A rms")) }
+                        td { (number((tried.mean_square() / best).sqrt(), |ratio| significant(ratio, 3))) (key(" of the best")) }
                         td.words {
                             @if tried.timing == timing { span.badge.identified { "taken" } }
                             @else if possible.contains(&tried.timing) { "possible" }

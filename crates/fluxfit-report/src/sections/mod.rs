@@ -17,6 +17,7 @@ mod reproduction;
 mod residuals;
 mod search;
 mod study;
+mod uncertainty;
 mod validation;
 
 pub(crate) use flux::saturated;
@@ -31,11 +32,12 @@ use crate::{
 type MakeSection = fn(&Report) -> Option<Section>;
 
 /// All sections of a report, in the order of the page.
-const SECTIONS: [MakeSection; 15] = [
+const SECTIONS: [MakeSection; 16] = [
     answer::section,
+    explanation::section,
     online::section,
     recording::section,
-    explanation::section,
+    uncertainty::section,
     currents::section,
     residuals::section,
     held_out::section,

@@ -5,14 +5,21 @@ use crate::{
     operating_point_uncertainty::residual_uncertainties,
     report::Report,
     section::Section,
-    table,
-    typography::{decimals, number, prose},
+    table::{self, key, named},
+    typography::{decimals, number, percent, prose},
 };
-use fluxfit::{evidence::SteadyFit, steady::OperatingPoint};
+use fluxfit::{
+    Warning,
+    evidence::{Identification, SteadyFit},
+    steady::OperatingPoint,
+};
 use maud::{Markup, html};
 
 /// Decimals of a voltage without uncertainty.
 const DECIMALS: usize = 3;
+
+/// Half of a 95 % interval, in standard uncertainties; the bars of the figure are as long.
+const BAR: f64 = 2.0;
 
 /// Names of the table's columns in a file of comma-separated values.
 const HEADER: &str = "point,id,iq,omega_e,ud,ud_fitted,ud_residual_mV,uq,uq_fitted,uq_residual_mV";
@@ -34,7 +41,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                 "simpler model: the values here are fitted to the operating points alone."
             }
         }
-        (description(fit))
+        (description(fit, found))
         (points(fit))
         @if let Some(saturation) = &found.saturation { (flux::table(saturation)) }
     };
@@ -42,8 +49,10 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     Some(Section { anchor: "operating-points", heading, content })
 }
 
-fn description(fit: &SteadyFit) -> Markup {
+fn description(fit: &SteadyFit, found: &Identification) -> Markup {
     let redundancy = fit.estimate.redundancy;
+    let is_widened = found.output.is_none() && found.parameters.iter().any(|judgement| judgement.uncertainty.systematic.misfit > 0.0);
+    let is_warned = found.warnings.iter().any(|warning| matches!(warning, Warning::Misfit { .. }));
     html! {
         p {
             "At each operating point the steady voltage equations hold for the means over a window. "
@@ -54,8 +63,15 @@ fn description(fit: &SteadyFit) -> Markup {
             } @else {
                 " There " @if redundancy == 1 { "is one more equation" } @else { "are " (redundancy) " more equations" }
                 " than unknown parameters"
-                @if fit.misfit.is_none() { ", so small residuals confirm the model." }
-                @else { ", and " strong { "the points contradict each other" } " beyond noise and accuracy: see the warning “misfit” above." }
+                @if let Some(misfit) = fit.misfit {
+                    ", and constant parameters do not fit all points: " strong { "they contradict each other" } " beyond noise and accuracy and "
+                    "agree only to " (percent(misfit.voltage_accuracy)) " % of the voltage. The uncertainties of the residuals below are widened "
+                    "to that, so a residual within them only says that its point fits as well as the others."
+                    @if found.saturation.is_some() { " The cause is saturation: see the flux linkages below." }
+                    @else if is_warned { " See the warning “misfit” above." }
+                } @else if is_widened {
+                    ". The points scatter by more than their noise; what they contradict each other by is part of the intervals (misfit)."
+                } @else { ", so small residuals confirm the model." }
             }
         }
     }
@@ -68,7 +84,7 @@ fn points(found: &SteadyFit) -> Markup {
     let rows = found.operating_points.iter().zip(&found.estimate.residuals).zip(uncertainties);
     html! {
         div data-values { (table::scrolling("Operating points, measured and fitted", &html! {
-            table data-header=(HEADER) {
+            table.stacked data-header=(HEADER) {
                 thead {
                     tr {
                         th scope="col" rowspan="2" { "Point" }
@@ -77,7 +93,7 @@ fn points(found: &SteadyFit) -> Markup {
                         @for axis in ["u_d", "u_q"] { th scope="colgroup" colspan="3" { (prose(axis)) } }
                     }
                     tr { @for _ in 0..2 {
-                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual, mV" }
+                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual ± 95 %, mV" }
                     } }
                 }
                 tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, (residual, uncertainty), least)) } }
@@ -91,16 +107,19 @@ fn row(k: usize, point: &OperatingPoint, (residual, uncertainty): (&[f64; 2], [f
     let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
     html! {
         tr {
-            th scope="row" { (k) }
-            @for (value, channel) in [(i.d, ID), (i.q, IQ), (point.omega_e(), OMEGA)] {
-                td { (fixed(value, decimals(point.covariance[channel][channel].sqrt(), DECIMALS).min(DECIMALS))) }
+            th scope="row" { (key("Point ")) (k) }
+            @for (name, value, channel, unit) in [("i_d", i.d, ID, " A"), ("i_q", i.q, IQ, " A"), ("omega_e", point.omega_e(), OMEGA, " rad/s")] {
+                @let digits = decimals(point.covariance[channel][channel].sqrt(), DECIMALS).min(DECIMALS);
+                td { (named(name)) (fixed(value, digits)) (key(unit)) }
             }
-            @for (axis, measured) in [u.d, u.q].into_iter().enumerate() {
+            @for (axis, (name, measured)) in [("u_d", u.d), ("u_q", u.q)].into_iter().enumerate() {
                 @let digits = decimals(least[axis], DECIMALS);
                 @let tenths = decimals(1e3 * least[axis], 1);
-                td { (fixed(measured, digits)) }
-                td { (fixed(measured - residual[axis], digits)) }
-                td { (fixed(1e3 * residual[axis], tenths)) " ± " (fixed(1e3 * uncertainty[axis], tenths)) }
+                td.group { (named(name)) (fixed(measured, digits)) (key(" V")) }
+                td { (key("fitted ")) (fixed(measured - residual[axis], digits)) (key(" V")) }
+                td {
+                    (key("residual ")) (fixed(1e3 * residual[axis], tenths)) " ± " (fixed(1e3 * BAR * uncertainty[axis], tenths)) (key(" mV"))
+                }
             }
         }
     }

@@ -6,6 +6,7 @@ use crate::{
     section::Section,
     typography::{number, prose},
 };
+use fluxfit::faults::Fault;
 use fluxfit_units::significant;
 use maud::{Markup, html};
 
@@ -23,7 +24,15 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     let (found, _) = report.identification?;
     let fit = found.output.as_ref()?;
     let correlation = ResidualCorrelation::of(fit);
-    let content = html! { p { (verdict(&correlation, fit.leaves_something())) } };
+    let content = html! {
+        p {
+            @if fit.has(Fault::Disturbance) {
+                "Each row is predicted from the row before, which removes the correlation that unknown voltages make over many rows (warning "
+                "“process-noise”). What is tested here is what that leaves. "
+            }
+            (verdict(&correlation, fit.leaves_something()))
+        }
+    };
     Some(Section { anchor: "residuals", heading: "Are the residuals white noise?", content })
 }
 
@@ -48,8 +57,8 @@ fn verdict(correlation: &ResidualCorrelation, is_relevant: bool) -> Markup {
             (residuals_of(white)) " are correlated, but smaller than 0.01 % of the largest current, as the ripple of an inverter or rounding."
         } @else if slight {
             strong { "Almost white: " }
-            (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, but none is larger than "
-            (largest) ". The error of the model is small compared with the noise; the intervals account for it."
+            (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, but none is farther from "
+            "zero than " (largest.trim_start_matches('\u{2212}')) ". The error of the model is small compared with the noise; the intervals account for it."
         } @else {
             strong { "Not white: " }
             (residuals_of(white)) " are correlated from row to row; the largest correlation is " (largest)
@@ -77,7 +86,7 @@ mod tests {
         let with = |outside: usize, value: f64| -> Vec<f64> { (0..50).map(|lag| if lag < outside { value } else { 0.01 }).collect() };
         let of = |d: Vec<f64>, q: Vec<f64>| verdict(&ResidualCorrelation { axes: [d, q], band: 0.02 }, true).into_string();
         assert!(of(with(6, 0.9), with(0, 0.0)).contains("White: "));
-        assert!(of(with(7, -0.05), with(0, 0.0)).contains("none is larger than \u{2212}0.050"));
+        assert!(of(with(7, -0.05), with(0, 0.0)).contains("none is farther from zero than 0.050"));
         let text = of(with(0, 0.0), with(7, 0.9));
         assert!(text.contains("Not white: ") && text.contains("<i>i</i><sub>q</sub>") && text.contains("is 0.90"), "{text}");
     }

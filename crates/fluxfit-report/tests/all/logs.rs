@@ -9,7 +9,7 @@ use fluxfit_drive::{
     schedule::{Profile, Ramp},
     simulate,
 };
-use fluxfit_report::{Origin, Report};
+use fluxfit_report::{Options, Origin, Report};
 use std::sync::LazyLock;
 
 /// Rows of each operating point.
@@ -47,6 +47,7 @@ pub(crate) fn report<'a>(log: &'a Log, found: &'a Identification, origin: &'a Or
         study: None,
         online: None,
         json: None,
+        options: Options::default(),
         origin,
     }
 }

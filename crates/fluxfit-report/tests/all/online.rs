@@ -8,7 +8,7 @@ use crate::{
     markup::checked,
 };
 use fluxfit::{Log, Motor, paper};
-use fluxfit_report::{Report, figures, html};
+use fluxfit_report::{Options, Report, figures, html};
 use fluxfit_track::{
     Start, Timing, Tracked, Verdict,
     comparison::{BatchEntry, OnlineComparison, compare_online},
@@ -36,6 +36,7 @@ fn shown(comparison: &OnlineComparison) -> (String, String) {
         study: None,
         online: Some(comparison),
         json: None,
+        options: Options::default(),
         origin: &origin,
     };
     let figure = figures(&report).into_iter().find(|figure| figure.name == "estimators").unwrap();

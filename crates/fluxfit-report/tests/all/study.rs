@@ -16,7 +16,7 @@ use fluxfit::{
         comparison::{ComparisonRequest, compare},
     },
 };
-use fluxfit_report::{Report, figures, html};
+use fluxfit_report::{Options, Report, figures, html};
 use std::ops::ControlFlow;
 
 /// A study, its page checked; `change` bends what the runs left behind.
@@ -40,6 +40,7 @@ fn study_page(methods: &[Method], truth: Option<Motor>, currents: &[(f64, f64)],
         study: Some((&comparison, &methods)),
         online: None,
         json: None,
+        options: Options::default(),
         origin: &origin,
     };
     let page = html(&report);

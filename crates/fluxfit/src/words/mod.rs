@@ -8,6 +8,7 @@ mod left_out;
 mod model;
 mod nameplate;
 mod names;
+mod part;
 mod reason;
 mod remedy;
 mod sample_check;

@@ -78,8 +78,8 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         ),
         Part::FrameLag => write!(
             f,
-            "operating points do not show whether the angle is off, or voltages and currents are of different instants; either acts like \
-             inductance, which {leaves}"
+            "how far the angle is off, and how far apart the instants of voltages and currents are, is not known well enough; either acts \
+             like a change of the parameters, which {leaves}"
         ),
         Part::WithinRows => {
             write!(f, "each row spans several of the drive's periods, and what the voltages do between them is not logged, which {leaves}")

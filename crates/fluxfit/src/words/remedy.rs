@@ -37,7 +37,8 @@ impl Display for Remedy {
             }
             Self::TellFrameLag => write!(
                 f,
-                "hold two clearly different loads at one high speed, or coast down from there if the drive measures its terminal voltages"
+                "hold two clearly different loads at one high speed; coasting down from there helps too, if the drive measures its terminal \
+                 voltages"
             ),
             Self::LogEachPeriod => write!(f, "log each control period of the drive, not every n-th one or means"),
             Self::RemoveDisturbances => write!(

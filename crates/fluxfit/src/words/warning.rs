@@ -67,7 +67,8 @@ impl Display for Warning {
                 write!(
                     f,
                     "the angle between voltages and currents grows with speed: the voltages' frame is {late} by {} ± {} us, {:.1} degrees at \
-                     the highest speed{show}; that lag is fitted beside the motor; the wrong sign of a column is not the cause",
+                     the highest speed{show}; that lag is fitted beside the motor, and what stays open of \
+                     it counts as uncertainty; the wrong sign of a column is not the cause",
                     three_digits(micro),
                     one_digit(error),
                     angle.abs().to_degrees()
@@ -79,7 +80,7 @@ impl Display for Warning {
                 write!(
                     f,
                     "at {} s{more} the magnet's voltage is at right angles to the current: the drive turned the current without knowing the \
-                     rotor's angle (open loop), and its columns are not in the rotor's frame; only the resistance is taken from there",
+                     rotor's angle (open loop), and its columns are not in the rotor's frame; these rows can tell nothing but the resistance",
                     named.join(", ")
                 )
             }
@@ -96,8 +97,8 @@ impl Display for Warning {
             }
             Self::ProcessNoise => write!(
                 f,
-                "voltages that are not logged disturb the motor: successive residuals of the simulated currents are correlated; each row is \
-                 therefore predicted from the row before, and the difference that this makes counts as uncertainty"
+                "voltages that are not logged disturb the motor (process noise): successive residuals of the simulated currents are correlated; \
+                 each row is therefore predicted from the row before, and the difference that this makes counts as uncertainty"
             ),
             Self::Angle => write!(
                 f,

@@ -21,10 +21,10 @@ impl Warning {
             Self::CoarseSampling => "rows are far apart: taken as decimated".to_owned(),
             Self::FrameLag { seconds, .. } => {
                 let late = if *seconds > 0.0 { "late" } else { "early" };
-                format!("the voltages' frame is {} us {late}: corrected", three_digits(1e6 * seconds.abs()))
+                format!("the voltages' frame is {} us {late}: fitted beside the motor", three_digits(1e6 * seconds.abs()))
             }
             Self::OpenLoop { times } => {
-                format!("open loop in {} stretch{}: only R_s is taken from there", times.len(), if times.len() == 1 { "" } else { "es" })
+                format!("open loop in {} stretch{}: such rows tell nothing but R_s", times.len(), if times.len() == 1 { "" } else { "es" })
             }
             Self::Warming { change, rs, .. } => {
                 format!("R_s {} by {} while the log is taken", if *change > 0.0 { "grows" } else { "falls" }, percent((change / rs).abs()))

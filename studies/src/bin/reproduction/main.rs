@@ -16,7 +16,7 @@ use fluxfit::{
     paper,
     study::comparison::{ComparisonRequest, compare},
 };
-use fluxfit_report::{Origin, Report, Size, screen_figures};
+use fluxfit_report::{Options, Origin, Report, Size, screen_figures};
 use page::Page;
 use std::{error::Error, ops::ControlFlow, path::Path};
 
@@ -59,6 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         study: Some((&comparison, &timed)),
         online: None,
         json: None,
+        options: Options::default(),
         origin: &origin,
     };
     // The paper has no figure of its log.

@@ -54,6 +54,7 @@ pub(super) fn run(arguments: &LogArguments, truth: Option<&Path>) -> Result<Stat
         study: None,
         online: Some(&comparison),
         json: Some(&document),
+        options: report::options(),
         origin: &report::origin(arguments.seed),
     };
     report::write(arguments.report.as_deref(), || html(&shown), arguments.figures.as_deref(), || figures(&shown))?;

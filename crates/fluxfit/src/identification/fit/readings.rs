@@ -17,7 +17,7 @@ use crate::{
 
 /// Twice the logarithm of the odds against a reading from which on it is ruled out: e^-5, one in 150. R. E. Kass and A. E. Raftery, "Bayes
 /// factors", J. Am. Stat. Assoc. 90 (1995) 773, call it very strong.
-pub(crate) const VERY_STRONG: f64 = 10.0;
+pub const VERY_STRONG: f64 = 10.0;
 
 /// A trial of one timing.
 #[derive(Debug, Clone, Copy, PartialEq)]
