@@ -53,7 +53,7 @@ fn the_terminal_and_the_page_say_what_is_counted() {
     let sentence = "In the intervals, as stated: the DC voltage read up to 0.50 % too large or too small";
     assert!(super::unwrapped(&run.out).contains(sentence), "{}", run.out);
     assert!(!run.out.contains("the DC voltage read 1 % too large"), "{}", run.out);
-    assert!(std::fs::read_to_string(page).unwrap().contains("as stated:<br>the DC voltage read up to 0.50\u{a0}%"));
+    assert!(std::fs::read_to_string(page).unwrap().contains("As stated:<br>the DC voltage read up to 0.50\u{a0}%"));
 }
 
 /// A difference that the sensors may make is none.
