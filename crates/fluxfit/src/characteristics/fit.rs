@@ -3,8 +3,8 @@
 //! Voltages and currents are compared by their relative error, torques by their absolute one, because a bench's drag and its torque
 //! sensor are as large at any speed. How large these errors are is estimated from what is left, and counted for longer where neighbouring
 //! rows err alike. What brakes besides the short circuit (bearings, air, iron) is fitted as `c_0 + c_1 |Omega|`; how far the motor moves
-//! without it is counted as the doubt of it. A model that bends otherwise than the motor, by saturation for one, is seen where rows are
-//! left out: the standard error is at least that of the jackknife.
+//! without it is counted as the doubt of it. Where the motor does not follow the model, as by saturation, the
+//! numbers move when rows are left out: the standard error is at least that of the jackknife.
 
 use super::{
     characteristic::Characteristic,
@@ -283,8 +283,8 @@ impl Fit {
         std::array::from_fn(|p| if self.is_free[p] { other[p] / one[p] - 1.0 } else { 0.0 })
     }
 
-    /// Standard error of each number by what the fit changes where a part of a table is left out. Unlike the covariance it does not
-    /// trust the model: a few rows that decide a number alone show it. See B. Efron, C. Stein, The Annals of Statistics 9 (1981) 586,
+    /// Standard error of each number by what the fit changes where a part of a table is left out. The covariance trusts
+    /// the model; this shows a number that a few rows decide alone. See B. Efron, C. Stein, The Annals of Statistics 9 (1981) 586,
     /// DOI 10.1214/aos/1176345462; of several tables the sum.
     fn jackknife(&self, rows: &Rows) -> [f64; PARAMETERS] {
         let mut squares = [0.0; PARAMETERS];

@@ -9,7 +9,8 @@
 //! obeys the motor's equation with the moving mean of the voltage, which goes about straight from row to row.
 //!
 //! Many simulators that are written by hand go from row to row by Euler's rule: the slope of the current at a row, times the period. Their
-//! currents obey no motor's differential equation, but the rule exactly. A row holds the current before or after its voltage acted.
+//! currents obey the rule exactly, and the differential equation of the motor only roughly. A row holds the current before or after its
+//! voltage acted.
 
 use super::angles::{Angles, SMOOTHED};
 use crate::{
@@ -32,7 +33,7 @@ pub enum VoltageTiming {
     },
     /// The mean over the row's own span, as the currents are.
     Averaged,
-    /// By Euler's rule, the slope at a row acts over the period behind it.
+    /// By Euler's rule: the slope of the current at a row lasts until the next row.
     Euler {
         /// The row holds the current that its voltage led to, not the one before.
         after: bool,
@@ -62,7 +63,7 @@ pub(super) enum Held {
 }
 
 impl VoltageTiming {
-    /// Of simulators that step by Euler's rule.
+    /// Those of simulators that step by Euler's rule.
     pub(crate) const BY_EULERS_RULE: [Self; 2] = [Self::Euler { after: false }, Self::Euler { after: true }];
 
     /// All timings that are known from drives and simulators.

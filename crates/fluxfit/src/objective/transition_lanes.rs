@@ -80,7 +80,7 @@ impl<V: Number> TransitionLanes<V> {
 }
 
 impl<V: Number> TransitionLanes<V> {
-    /// By Euler's rule: one step of the series alone.
+    /// By Euler's rule: the first term of the series alone.
     #[inline(always)]
     fn of_slope(motors: &MotorLanes<V>, turn: f64, length: f64) -> Self {
         let MotorLanes { rs, ld, lq, psi_f } = *motors;

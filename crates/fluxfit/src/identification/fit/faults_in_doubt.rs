@@ -29,6 +29,7 @@ pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
         let family = families.entry(trial.fault.family()).or_default();
         *family = std::array::from_fn(|p| family[p].max(probability * trial.moves[p].powi(2)));
     }
+    // An empty `sum` would be minus zero.
     std::array::from_fn(|p| families.values().fold(0.0, |sum: f64, family| sum + family[p]).sqrt())
 }
 

@@ -191,8 +191,8 @@ pub(super) fn choose(
     Ok(found)
 }
 
-/// The motor alone, as a simulator that steps by Euler's rule would have it: such a log has none of a drive's faults, and next to its
-/// readings the rule would pass for some of them.
+/// The motor alone, fitted as a simulator that steps by Euler's rule would have it: such a log has none of a drive's faults. Among the
+/// readings of a drive the rule could be taken for one of its faults.
 fn by_eulers_rule(
     log: &Log,
     stretches: &[Range<usize>],

@@ -151,8 +151,8 @@ pub(super) fn is_better(other: &TimingTrial, tried: &[TimingTrial], independent:
     tried.first().is_some_and(|best| independent * (best.mean_square() / other.mean_square()).ln() > VERY_STRONG)
 }
 
-/// The readings that are not ruled out, given how many independent residuals there are. The best one first. Steps by Euler's rule stand
-/// among those of a drive only if they are better for certain, though not by their handicap.
+/// The readings that are not ruled out, given how many independent residuals there are. The best one first. Steps by Euler's rule are
+/// listed among those of a drive only if they fit better for certain, though not by enough to be taken.
 pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
     let least = tried.first().map_or(0.0, TimingTrial::mean_square);
     let is_unusual = tried.first().is_some_and(|best| best.timing.is_unusual());
