@@ -31,6 +31,13 @@ pub enum Advice {
         /// The number of pole pairs is stated already.
         has_pole_pairs: bool,
     },
+    /// State the scale of a channel in a mapping file.
+    ScaleInMapping {
+        /// The channel.
+        channel: &'static str,
+        /// Its factor to SI units.
+        scale: String,
+    },
     /// State the DBC that names the signals of CAN frames.
     StateDbc,
     /// State the number of pole pairs.

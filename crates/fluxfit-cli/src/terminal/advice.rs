@@ -44,6 +44,8 @@ pub(super) fn option(advice: &Advice) -> Option<String> {
             let pole_pairs = if *has_pole_pairs { "" } else { " --pole-pairs N" };
             Some(format!("--unit {channel}={electrical}, or --unit {channel}={mechanical}{pole_pairs}"))
         }
+        // It writes the line with those of the other columns.
+        Advice::ScaleInMapping { .. } => Some("fluxfit inspect LOG -o MAPPING.toml, then --mapping MAPPING.toml".to_owned()),
         Advice::StateDbc => Some("--dbc FILE.dbc".to_owned()),
         Advice::StatePolePairs => Some("--pole-pairs N".to_owned()),
         Advice::FixParameters(keys) => {

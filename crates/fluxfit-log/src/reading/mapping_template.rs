@@ -6,6 +6,7 @@ use super::{
     options::LogOptions,
 };
 use crate::channel::Channel;
+use fluxfit_files::{Advice, FileError};
 use std::fmt::Write;
 
 impl Inspection {
@@ -35,27 +36,38 @@ impl Inspection {
                 text += "# t: each group of channels has its own time\n";
                 continue;
             }
-            if taken.is_none() && (channel == Channel::T && period.is_some() || self.is_computed(channel)) {
+            if taken.is_none() && (channel == Channel::T && period.is_some() || self.is_computed(channel, resembling.is_none())) {
                 continue;
             }
-            match (taken, resembling) {
-                (Some(column), _) => text += &entry(channel, column, options),
-                (None, Some(column)) => text += &entry(channel, column, options),
-                (None, None) => _ = writeln!(text, "{} = {{ column = \"\" }}  # no column resembles it", channel.name()),
+            match taken.or(resembling) {
+                Some(column) => text += &self.entry(channel, column, options),
+                None => _ = writeln!(text, "{} = {{ column = \"\" }}  # no column resembles it", channel.name()),
             }
         }
         for channel in Channel::all().filter(|channel| !Channel::NEEDED.contains(channel)) {
             let is_of = |column: &&InspectedColumn| column.channel.or(column.resembles) == Some(channel.name());
             if let Some(column) = self.columns.iter().find(is_of) {
-                text += &entry(channel, column, options);
+                text += &self.entry(channel, column, options);
             }
         }
         text
     }
 
-    /// Whether a dq quantity or the speed is computed from phase quantities and an angle that the file has.
-    fn is_computed(&self, channel: Channel) -> bool {
-        let has = |name: &str| self.columns.iter().any(|column| column.channel == Some(name));
+    /// The entry of a channel: with the scale that the refusal of the log asks for, if it does.
+    fn entry(&self, channel: Channel, column: &InspectedColumn, options: &LogOptions) -> String {
+        let advice = self.log.as_ref().err().map(FileError::advice).unwrap_or_default();
+        let scale = advice.iter().find_map(|advice| match advice {
+            Advice::ScaleInMapping { channel: of, scale } if *of == channel.name() => Some(scale),
+            _ => None,
+        });
+        scale.map_or_else(|| entry(channel, column, options), |scale| scaled_entry(channel, column, scale))
+    }
+
+    /// Whether a dq quantity or the speed is computed from phase quantities and an angle that the file has; `by_names` counts those that
+    /// are known by their names alone, as all are where there is no log yet.
+    fn is_computed(&self, channel: Channel, by_names: bool) -> bool {
+        let is = |column: &InspectedColumn, name: &str| column.channel == Some(name) || by_names && column.resembles == Some(name);
+        let has = |name: &str| self.columns.iter().any(|column| is(column, name));
         match channel {
             Channel::Ud | Channel::Uq => (has("ua") || has("ualpha")) && has("theta_e"),
             Channel::Id | Channel::Iq => (has("ia") || has("ialpha")) && has("theta_e"),
@@ -63,6 +75,12 @@ impl Inspection {
             _ => false,
         }
     }
+}
+
+/// The entry of a channel whose scale to SI its values show.
+fn scaled_entry(channel: Channel, column: &InspectedColumn, scale: &str) -> String {
+    let of_shaft = if channel == Channel::ThetaE { "; if it turns with the shaft, add unit = \"rad-mech\"" } else { "" };
+    format!("{} = {{ column = {}, scale = {scale} }}  # by its values{of_shaft}\n", channel.name(), quoted(&column.header))
 }
 
 /// The entry of a channel, with a remark if there is something to check.
@@ -218,6 +236,49 @@ mod tests {
         ] {
             assert!(mapping.contains(&format!("\n{line}\n")), "{line}\n{mapping}");
         }
+    }
+
+    /// Alpha and beta, or phases, with an angle in turns: refused, until the file that was written is given. The dq quantities are those
+    /// that the rows were made of.
+    #[test]
+    fn a_log_of_the_stator_frame_with_an_angle_in_turns_is_read_with_the_mapping_that_was_written() {
+        let vectors = [["u_alpha", "u_beta", "i_alpha", "i_beta"], ["V_alpha [V]", "V_beta [V]", "I_alpha [mA]", "I_beta [mA]"]];
+        for (names, angle) in [(vectors[0], "theta"), (vectors[0], "theta_e"), (vectors[1], "theta_e")] {
+            let ampere = if names[2].ends_with("[mA]") { 1e3 } else { 1.0 };
+            let row = |k: i32| {
+                let turns = 0.3 + 0.0123 * f64::from(k);
+                let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
+                // u_d = -3 V, u_q = 20 V, i_d = -1 A, i_q = 4 A.
+                let (of_u, of_i) = ([-3.0 * cos - 20.0 * sin, -3.0 * sin + 20.0 * cos], [-cos - 4.0 * sin, -sin + 4.0 * cos]);
+                let [i_alpha, i_beta] = of_i.map(|i| i * ampere);
+                format!("{:.4},{},{},{i_alpha},{i_beta},{:.9}\n", f64::from(k) * 1e-4, of_u[0], of_u[1], turns.rem_euclid(1.0))
+            };
+            let text = format!("t,{},{angle}\n{}", names.join(","), (0..600).map(row).collect::<String>());
+            let first = inspected(&text, &LogOptions::default());
+            let sentence = first.log.as_ref().unwrap_err().to_string();
+            assert!(sentence.contains("winds around at 1,") && sentence.contains("scale = 6.28319"), "{sentence}");
+            let mapping = first.mapping(&LogOptions::default());
+            let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
+            let read = inspected(&text, &again).log.expect(&mapping);
+            let columns = read.log.columns();
+            for (values, expected) in [(&columns.ud, -3.0), (&columns.uq, 20.0), (&columns.id, -1.0), (&columns.iq, 4.0)] {
+                assert!(values.iter().all(|value| (value - expected).abs() < 1e-3), "{names:?}: {} for {expected}", values[9]);
+            }
+        }
+    }
+
+    /// A power-invariant vector is sqrt(3/2) times as long, in the stator's frame as in dq.
+    #[test]
+    fn the_scaling_of_the_clarke_transform_is_that_of_alpha_and_beta() {
+        let rows: String = (0..30).map(|k| format!("{k},3,4,1,2,{},{}\n", 0.1 * f64::from(k), 100 + k)).collect();
+        let text = format!("t,u_alpha,u_beta,i_alpha,i_beta,theta_e,omega_e\n{rows}");
+        let lengths = ["", "park = \"power-invariant\"\n"].map(|park| {
+            let options = LogOptions { mapping: Mapping::parse("m.toml", park.as_bytes()).unwrap(), ..LogOptions::default() };
+            let columns = inspected(&text, &options).log.unwrap();
+            let columns = columns.log.columns();
+            columns.ud[0].hypot(columns.uq[0])
+        });
+        assert!((lengths[0] - 5.0).abs() < 1e-9 && (lengths[0] / lengths[1] - 1.5_f64.sqrt()).abs() < 1e-9, "{lengths:?}");
     }
 
     #[test]

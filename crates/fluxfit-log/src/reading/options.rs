@@ -70,8 +70,10 @@ impl ResolvedOptions {
             units.push((channel, *unit));
         }
         let Mapping { pole_pairs, sample_period, park, columns } = &options.mapping;
-        let mut factors: Vec<(Channel, f64)> =
-            [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(|channel| (channel, park.factor())).to_vec();
+        // The Clarke transform has the scaling; the Park transform only turns.
+        let vectors =
+            [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::UAlpha, Channel::UBeta, Channel::IAlpha, Channel::IBeta];
+        let mut factors: Vec<(Channel, f64)> = vectors.map(|channel| (channel, park.factor())).to_vec();
         for column in columns {
             if let Some(header) = column.header.clone().filter(|_| headers.iter().all(|(stated, _)| *stated != column.channel)) {
                 headers.push((column.channel, header));

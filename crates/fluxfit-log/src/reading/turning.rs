@@ -57,7 +57,9 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
         return Ok(());
     }
     if channels.get(OmegaE).is_none() || channels.get(Channel::IA).is_some() || channels.get(Channel::UA).is_some() {
-        return Err(FileError::from(Problem::NoAngle).in_column(&column.header));
+        // It may be called the angle and wind around like one, in turns or digits of an encoder.
+        let span = turn(theta).filter(|span| !column.is_unit_written && round_turn(*span).is_some());
+        return Err(FileError::from(span.map_or(Problem::NoAngle, |span| other_turn(column, span))).in_column(&column.header));
     }
     let sentence =
         format!("theta_e is left out: column '{header}' does not turn as fast as omega_e says; map theta_e to it if it is the angle");
@@ -72,10 +74,7 @@ const DEGREES: std::ops::Range<f64> = 288.0..363.0;
 
 /// Leaves out an angle that winds around at neither, or refuses it if the log cannot be read without it.
 fn leave_out(channels: &mut Channels, column: &ChosenColumn, turn: f64, notes: &mut Vec<Note>) -> Result<(), FileError> {
-    let round = round_turn(turn);
-    let scale = round.map_or("6.28319 / TURN".to_owned(), |turn| significant(TAU / turn, 6));
-    let turn = round.map_or_else(|| format!("about {}", significant(turn, 3)), |turn| turn.to_string());
-    let problem = FileError::from(Problem::AngleTurn { header: column.header.clone(), turn, scale });
+    let problem = FileError::from(other_turn(column, turn));
     let is_needed = [OmegaE, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].iter().any(|channel| channels.get(*channel).is_none());
     if is_needed || !column.is_optional {
         return Err(problem.in_column(&column.header));
@@ -83,6 +82,14 @@ fn leave_out(channels: &mut Channels, column: &ChosenColumn, turn: f64, notes: &
     notes.push(left_out(ThetaE, &problem.in_column(&column.header)).into());
     channels.take(ThetaE);
     Ok(())
+}
+
+/// The problem of an angle that spans this from the start of a turn to its end.
+fn other_turn(column: &ChosenColumn, span: f64) -> Problem {
+    let round = round_turn(span);
+    let scale = round.map(|turn| significant(TAU / turn, 6));
+    let turn = round.map_or_else(|| format!("about {}", significant(span, 3)), |turn| turn.to_string());
+    Problem::AngleTurn { header: column.header.clone(), turn, scale }
 }
 
 /// Digits of a turn that encoders have besides powers of two, and the turn itself.
