@@ -123,6 +123,17 @@ pub enum ErrorKind {
         /// Speeds needed.
         least: usize,
     },
+    /// A table of voltages or torques against currents with too few of these.
+    #[error(
+        "the table has too few currents ({rows}; at least {least} are needed): measure at more of them, from small to large, because one \
+         current does not tell the motor from a constant (contacts, drag, the zero of an instrument)"
+    )]
+    FewCurrents {
+        /// Currents given.
+        rows: usize,
+        /// Currents needed.
+        least: usize,
+    },
     /// Currents of a short circuit alone: twice the resistance, inductances and flux would give the same ones.
     #[error(
         "a short circuit's currents alone give only ratios of the parameters; add its torque, or an open-circuit table of the same motor"

@@ -8,6 +8,7 @@
 
 use super::{
     characteristic::Characteristic,
+    lack::{Lack, Parts},
     machine::Machine,
     open_circuit::{Across, SQRT_3},
     problem::{Problem, start},
@@ -73,11 +74,14 @@ pub struct CharacteristicEstimate {
     pub uncertainty: ParameterUncertainty,
     /// By the same limits as that of a log.
     pub verdict: Verdict,
+    /// Why it has no value, where it has none.
+    pub lack: Option<Lack>,
 }
 
 impl CharacteristicEstimate {
-    fn unknown(parameter: Parameter) -> Self {
-        Self { parameter, value: None, uncertainty: ParameterUncertainty::default(), verdict: Verdict::NotIdentifiable }
+    fn unknown(parameter: Parameter, lack: Lack) -> Self {
+        let uncertainty = ParameterUncertainty::default();
+        Self { parameter, value: None, uncertainty, verdict: Verdict::NotIdentifiable, lack: Some(lack) }
     }
 
     /// The 95 % interval, SI.
@@ -122,14 +126,18 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
     let doubt: [f64; PARAMETERS] = std::array::from_fn(|p| of_drag[p].hypot(fit.doubt_of_minima[p]));
     let pairs = f64::from(pole_pairs.unwrap_or(1));
     let mut parameters =
-        Parameter::ALL.map(|parameter| fit.estimate(parameter, jackknife[parameter as usize], doubt[parameter as usize], pairs));
+        Parameter::ALL.map(|parameter| fit.estimate(parameter, &rows, jackknife[parameter as usize], doubt[parameter as usize], pairs));
     let mut if_line_to_line = [None; PARAMETERS];
     if voltages == Some(VoltageReading::Ambiguous) {
         if_line_to_line = parameters.map(|estimate| estimate.value);
         // A direct current alone tells the resistance without them.
         let is_told = |parameter: Parameter| parameter == Parameter::Rs && rows.shorted.is_empty();
-        parameters = parameters
-            .map(|estimate| if is_told(estimate.parameter) { estimate } else { CharacteristicEstimate::unknown(estimate.parameter) });
+        // Voltages with a name would tell what no other table lacks.
+        let is_open = |estimate: &CharacteristicEstimate| estimate.value.is_some() && !is_told(estimate.parameter);
+        parameters = parameters.map(|estimate| match is_open(&estimate) {
+            true => CharacteristicEstimate::unknown(estimate.parameter, Lack::Voltages),
+            false => estimate,
+        });
     }
     let told = parameters.map(|estimate| estimate.value.is_some());
     let change = |instrument: Instrument| {
@@ -299,20 +307,28 @@ impl Fit {
         squares.map(f64::sqrt)
     }
 
-    fn estimate(&self, parameter: Parameter, jackknife: f64, doubt: f64, pole_pairs: f64) -> CharacteristicEstimate {
+    fn estimate(&self, parameter: Parameter, rows: &Rows, jackknife: f64, doubt: f64, pole_pairs: f64) -> CharacteristicEstimate {
         let p = parameter as usize;
+        if !self.is_free[p] {
+            return CharacteristicEstimate::unknown(parameter, Lack::Absent { parameter });
+        }
+        if let Some(lack) = Lack::of_one_current(parameter, rows) {
+            return CharacteristicEstimate::unknown(parameter, lack);
+        }
         let pairs = if parameter == Parameter::Rs { 1.0 } else { pole_pairs };
         let place = self.is_free[..p].iter().filter(|free| **free).count();
         let raw = self.values()[p] / pairs;
-        let relative = if self.is_free[p] { self.covariance[(place, place)].max(0.0).sqrt() } else { f64::INFINITY };
+        let relative = self.covariance[(place, place)].max(0.0).sqrt();
         // Anywhere within the doubt alike: a uniform distribution.
         let systematic = Systematic { misfit: doubt / pairs / 3.0_f64.sqrt(), ..Systematic::default() };
         let standard_error = (relative * raw).max(jackknife / pairs);
         let uncertainty = ParameterUncertainty::of(standard_error, self.degrees_of_freedom, systematic);
-        let verdict = Verdict::of_half_width(uncertainty.half_width / raw);
+        let half_width = uncertainty.half_width / raw;
+        let verdict = Verdict::of_half_width(half_width);
         if verdict == Verdict::NotIdentifiable {
-            return CharacteristicEstimate::unknown(parameter);
+            let parts = Parts { scatter: relative * raw, few_rows: jackknife / pairs, alternatives: systematic.misfit };
+            return CharacteristicEstimate::unknown(parameter, Lack::of_wide(parameter, rows, half_width, &parts));
         }
-        CharacteristicEstimate { parameter, value: Some(raw), uncertainty, verdict }
+        CharacteristicEstimate { parameter, value: Some(raw), uncertainty, verdict, lack: None }
     }
 }

@@ -18,6 +18,7 @@ mod characteristic;
 mod direct_current;
 mod duty_cycle;
 mod fit;
+mod lack;
 mod machine;
 mod open_circuit;
 mod problem;
@@ -31,6 +32,7 @@ pub use duty_cycle::{DutyCycle, DutyCycleRow};
 pub use fit::{
     CharacteristicEstimate, CharacteristicsAnswer, VoltageReading, identify_characteristics, identify_electrical_characteristics,
 };
+pub use lack::Lack;
 pub use open_circuit::{Across, OpenCircuit, OpenCircuitRow};
 pub use rows::{Instrument, Residual};
 pub use short_circuit::{ShortCircuit, ShortCircuitRow};

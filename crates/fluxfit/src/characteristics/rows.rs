@@ -139,15 +139,19 @@ impl Rows {
         rows.torque.sort_by(|one, other| one.current.q.total_cmp(&other.current.q));
         rows.direct.sort_by(|one, other| one.current.total_cmp(&other.current));
         let counts = [
-            (rows.open.len(), LEAST),
-            (rows.shorted.len(), LEAST_SHORTED),
-            (rows.torque.len(), LEAST),
-            (rows.direct.len(), LEAST),
-            (rows.duty.len(), LEAST_DUTY),
+            (rows.open.len(), LEAST, Residual::OpenVoltage),
+            (rows.shorted.len(), LEAST_SHORTED, Residual::ShortCurrent),
+            (rows.torque.len(), LEAST, Residual::Torque),
+            (rows.direct.len(), LEAST, Residual::DirectVoltage),
+            (rows.duty.len(), LEAST_DUTY, Residual::DutyVoltage),
         ];
-        for (count, least) in counts {
+        for (count, least, test) in counts {
             if (1..least).contains(&count) {
-                return Err(ErrorKind::ShortCharacteristic { rows: count, least }.into());
+                return Err(match test {
+                    Residual::Torque | Residual::DirectVoltage => ErrorKind::FewCurrents { rows: count, least },
+                    _ => ErrorKind::ShortCharacteristic { rows: count, least },
+                }
+                .into());
             }
         }
         let has_scale =

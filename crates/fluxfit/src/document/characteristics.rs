@@ -2,7 +2,8 @@
 
 use super::by_parameter::ByParameter;
 use crate::{
-    characteristics::{Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Residual, VoltageReading},
+    characteristics::{Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Lack, Residual, VoltageReading},
+    identification::judge::verdict::Verdict,
     motor::Parameter,
 };
 use serde::Serialize;
@@ -64,7 +65,7 @@ pub struct TableEntry {
 }
 
 /// One parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EstimateEntry {
@@ -78,6 +79,10 @@ pub struct EstimateEntry {
     pub ci95: Option<[f64; 2]>,
     /// `identified`, `weak` or `not-identifiable`.
     pub verdict: &'static str,
+    /// Why it has no value; null if it has one.
+    pub reason: Option<String>,
+    /// What to do about it; null if it has a value.
+    pub remedy: Option<String>,
 }
 
 impl EstimateEntry {
@@ -89,11 +94,16 @@ impl EstimateEntry {
             standard_error: estimate.value.map(|_| factor * estimate.uncertainty.standard_error()),
             ci95: estimate.interval().map(|interval| interval.map(|end| factor * end)),
             verdict: estimate.verdict.key(),
+            reason: estimate.lack.map(|lack| lack.to_string()),
+            remedy: estimate.lack.map(|lack| lack.remedy()),
         }
     }
 
-    fn unknown(parameter: Parameter) -> Self {
-        Self { value: None, unit: parameter.unit(), standard_error: None, ci95: None, verdict: "not-identifiable" }
+    /// The entry of a number that is known but for the pole pairs, if it is known at all.
+    fn without_pole_pairs(estimate: &CharacteristicEstimate) -> Self {
+        let lack = estimate.lack.unwrap_or(Lack::PolePairs);
+        let unknown = CharacteristicEstimate { value: None, verdict: Verdict::NotIdentifiable, lack: Some(lack), ..*estimate };
+        Self::of(&unknown, 1.0)
     }
 }
 
@@ -139,14 +149,14 @@ impl CharacteristicsDocument {
             parameters: answer
                 .parameters
                 .each_ref()
-                .map(|one| if is_own(one.parameter) { EstimateEntry::of(one, 1.0) } else { EstimateEntry::unknown(one.parameter) })
+                .map(|one| if is_own(one.parameter) { EstimateEntry::of(one, 1.0) } else { EstimateEntry::without_pole_pairs(one) })
                 .into(),
             times_pole_pairs: answer
                 .parameters
                 .each_ref()
                 .map(|one| match has_times(one.parameter) {
                     true => EstimateEntry::of(one, if one.parameter == Parameter::Rs { 1.0 } else { pairs }),
-                    false => EstimateEntry::unknown(one.parameter),
+                    false => EstimateEntry::without_pole_pairs(one),
                 })
                 .into(),
             times_pole_pairs_if_line_to_line: std::array::from_fn(|p| {

@@ -4,6 +4,7 @@
 mod column_check;
 mod digits;
 mod fleet;
+mod lack;
 mod left_out;
 mod model;
 mod nameplate;

@@ -10,7 +10,7 @@ use crate::{
 use fluxfit::{
     Verdict,
     characteristics::{
-        Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Residual, VoltageReading,
+        Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Lack, Residual, VoltageReading,
         identify_characteristics, identify_electrical_characteristics,
     },
     document::CharacteristicsDocument,
@@ -76,6 +76,21 @@ fn symbol(parameter: Parameter, answer: &CharacteristicsAnswer) -> String {
     }
 }
 
+/// What is said of the numbers without a value, each sentence once with the symbols that it is about. Voltages that are line to line or of
+/// a phase have a sentence of their own.
+fn lacking(answer: &CharacteristicsAnswer, say: impl Fn(&Lack) -> String) -> Vec<(String, String)> {
+    let mut said: Vec<(String, String)> = Vec::new();
+    for estimate in &answer.parameters {
+        let Some(lack) = estimate.lack.filter(|lack| *lack != Lack::Voltages) else { continue };
+        let (symbol, sentence) = (symbol(estimate.parameter, answer), say(&lack));
+        match said.iter_mut().find(|(_, other)| *other == sentence) {
+            Some((symbols, _)) => *symbols += &format!(", {symbol}"),
+            None => said.push((symbol, sentence)),
+        }
+    }
+    said
+}
+
 fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()> {
     let of = |verdict: Verdict| answer.parameters.iter().filter(move |estimate| estimate.verdict == verdict);
     let identified = of(Verdict::Identified).count();
@@ -92,13 +107,8 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     }
     if answer.voltages == Some(VoltageReading::Ambiguous) {
         status = "0 of 4 identified: are the voltages line to line or of a phase?".to_owned();
-    } else if of(Verdict::NotIdentifiable).count() > 0 {
-        let what = if answer.residual_rms[Residual::ShortCurrent as usize].is_none() {
-            "a short-circuit table of the same motor"
-        } else {
-            "speeds from slow to fast"
-        };
-        status += &format!(" For {}: add {what}.", symbols(Verdict::NotIdentifiable));
+    } else {
+        lacking(answer, |lack| lack.remedy()).iter().for_each(|(symbols, remedy)| status += &format!(" For {symbols}: {remedy}."));
     }
     if !answer.is_of_motor() {
         status += " p are the pole pairs: with --pole-pairs N the values are the motor's own.";
@@ -133,6 +143,11 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     }
     let rows = answer.parameters.iter().map(|estimate| cells(estimate, answer));
     text += &format!("\n{}", table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows));
+    let reasons = lacking(answer, ToString::to_string);
+    if !reasons.is_empty() {
+        let lines = reasons.iter().map(|(symbols, reason)| wrapped("", &format!("{symbols}: {reason}.")).trim_end().to_owned() + "\n");
+        text += &format!("\n{}", lines.collect::<String>());
+    }
     let left = Residual::ALL.iter().zip(answer.residual_rms).filter_map(|(residual, rms)| {
         let (factor, unit) = match residual {
             Residual::ShortTorque | Residual::Torque => (1.0, "N m"),
