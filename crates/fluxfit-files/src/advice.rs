@@ -38,6 +38,8 @@ pub enum Advice {
         /// Its factor to SI units.
         scale: String,
     },
+    /// All of these, not one of them.
+    Together(Vec<Advice>),
     /// State the DBC that names the signals of CAN frames.
     StateDbc,
     /// State the number of pole pairs.

@@ -48,7 +48,7 @@ pub struct ColumnEntry {
     pub unit: Option<String>,
     /// The channel that it is read as; null if it is not read.
     pub channel: Option<&'static str>,
-    /// The channel that it may be by its name, if it is not read.
+    /// The channel that it may be by its name, if it is not read; of a table of a test bench the quantity.
     pub resembles: Option<&'static str>,
     /// The unit in which it is read, or would be; null if it is not read and nothing states its unit.
     pub read_as: Option<&'static str>,

@@ -48,6 +48,7 @@ mod instant;
 mod memory_table;
 mod note;
 mod problem;
+mod quantity;
 mod reading;
 mod records;
 

@@ -90,12 +90,15 @@ pub(crate) enum Problem {
     NoAngle,
 
     // Characteristics
-    #[error("the columns {} could each be the {quantity}; leave one of them in the table", columns(.headers))]
-    AmbiguousQuantity { quantity: &'static str, headers: Vec<String> },
-    #[error("the speed {} is electrical, and the torque is that of the shaft; state the number of pole pairs", quote(.header))]
-    ElectricalSpeed { header: String },
-    #[error("the name of the voltage {} does not say between which points it was measured; put 'll' (two terminals in series) or 'phase' (a terminal and the star point) into it", quote(.header))]
-    DirectVoltage { header: String },
+    #[error("{}", unclear(.several, .electrical.as_deref(), .direct_voltage.as_deref()))]
+    UnclearTable {
+        /// Quantities that several columns could be.
+        several: Vec<(&'static str, Vec<String>)>,
+        /// An electrical speed beside a torque of the shaft.
+        electrical: Option<String>,
+        /// A voltage of a direct current that does not say between which points it was measured.
+        direct_voltage: Option<String>,
+    },
     #[error(
         "this is the curve of a motor that drives a load, speed and torque with power: R_s, L_d, L_q and psi_f need dq voltages and currents over time, or tables with open and shorted terminals; log one of them"
     )]
@@ -241,11 +244,11 @@ impl Problem {
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
-            Self::AmbiguousQuantity { .. } | Self::LoadCurve | Self::DirectVoltage { .. } => FileErrorKind::Columns,
+            Self::UnclearTable { .. } | Self::LoadCurve => FileErrorKind::Columns,
             Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::SpeedRotation { .. } | Self::TimeUnit { .. } => {
                 FileErrorKind::Unit
             }
-            Self::ElectricalSpeed { .. } | Self::Rms { .. } => FileErrorKind::Unit,
+            Self::Rms { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } | Self::OwnTimes { .. } => {
@@ -280,7 +283,12 @@ impl Problem {
             Self::MappedHeader { channel, nearest: Some(header), .. } => vec![Advice::MapColumns(vec![(channel, Some(header.clone()))])],
             Self::NotALog { advice, .. } => advice.iter().cloned().collect(),
             Self::HeaderUnit { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
-            Self::ElectricalSpeed { .. } => vec![Advice::StatePolePairs],
+            Self::UnclearTable { several, electrical, .. } => {
+                let first = |(quantity, headers): &(&'static str, Vec<String>)| (*quantity, headers.first().cloned());
+                let map = (!several.is_empty()).then(|| Advice::MapColumns(several.iter().map(first).collect()));
+                let all: Vec<Advice> = map.into_iter().chain(electrical.as_ref().map(|_| Advice::StatePolePairs)).collect();
+                if all.len() > 1 { vec![Advice::Together(all)] } else { all }
+            }
             Self::PolePairs { channel, electrical, .. } => {
                 vec![Advice::StatePolePairs, Advice::StateUnit { channel, unit: Some(electrical) }]
             }
@@ -359,6 +367,27 @@ fn proposed_rms(proposals: &[(&str, String)], rms: &[(&str, &str)]) -> String {
 fn are_rms(headers: &[&str]) -> String {
     let quoted: Vec<String> = headers.iter().map(|header| format!("'{}'", shorten(header))).collect();
     let are = if headers.len() == 1 { "is an rms value" } else { "are rms values" };
+/// What has to be stated of a table of a test bench.
+fn unclear(several: &[(&str, Vec<String>)], electrical: Option<&str>, direct_voltage: Option<&str>) -> String {
+    let could_be = several.iter().map(|(quantity, headers)| format!("the columns {} could each be the {quantity}", columns(headers)));
+    let could_be: Vec<String> = could_be.collect();
+    let map = match could_be.as_slice() {
+        [] => None,
+        [one] => Some(format!("{one}; map the one that is, or leave it alone in the table")),
+        all => Some(format!("{}; map the one of each that is, or leave it alone in the table", list(all))),
+    };
+    let of_shaft = electrical.map(|header| {
+        format!("the speed {} is electrical, and the torque is that of the shaft; state the number of pole pairs", quote(header))
+    });
+    let points = direct_voltage.map(|header| {
+        format!(
+            "the name of the voltage {} does not say between which points it was measured; put 'll' (two terminals in series) or 'phase' (a terminal and the star point) into it",
+            quote(header)
+        )
+    });
+    [map, of_shaft, points].into_iter().flatten().collect::<Vec<_>>().join("; and ")
+}
+
     format!("{} {are} by name, where dq values are peak values, sqrt 2 times as large", list(&quoted))
 }
 

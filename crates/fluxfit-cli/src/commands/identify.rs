@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     }
     report::check(&arguments.log, [])?;
     export::check(&arguments.log, &arguments.export)?;
-    if let Some(status) = characteristics::run(&arguments.log, &for_logs(arguments), input::pole_pairs(&arguments.log)?)? {
+    if let Some(status) = characteristics::run(&arguments.log, &for_logs(arguments), &input::options_of_motor(&arguments.log)?)? {
         return Ok(status);
     }
     let input = input::read(&arguments.log)?;

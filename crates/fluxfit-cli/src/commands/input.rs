@@ -121,9 +121,9 @@ pub(crate) fn read_each(
 }
 
 /// The pole pairs that anything beside the logs tells.
-pub(crate) fn pole_pairs(arguments: &LogArguments) -> Result<Option<u32>, CommandError> {
+pub(crate) fn options_of_motor(arguments: &LogArguments) -> Result<LogOptions, CommandError> {
     let motor = arguments.motor.as_deref().map(read_motor).transpose()?.unwrap_or_default();
-    Ok(options(&arguments.columns, motor.pole_pairs)?.pole_pairs)
+    options(&arguments.columns, motor.pole_pairs)
 }
 
 /// What the reader is told; the motor file's pole pairs count where nothing else tells them.

@@ -40,6 +40,13 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     }
     let options = input::options(&arguments.columns, None)?;
     let inspection = terminal::working("reading".to_owned(), || inspect(&arguments.log, &options))?;
+    if inspection.is_table && arguments.output.is_some() {
+        // With one that names columns of a log, the table would be read as a log.
+        let name = input::name(&arguments.log);
+        let sentence =
+            format!("{name} is a table of a test bench, which takes no mapping file; leave -o out, and see what inspect says of it");
+        return Err(CommandError::Usage(sentence));
+    }
     if arguments.json {
         terminal::print(&json::text(&InspectionDocument::of(&inspection))?)?;
     } else if arguments.output.as_deref() != Some(Path::new("-")) {
@@ -59,13 +66,15 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     }
 }
 
-/// What identifies from a table, to be pasted: of the options that read logs, one alone is for tables too.
+/// What identifies from a table, to be pasted: of the options that read logs, two are for tables too.
 fn command_for_table(arguments: &Inspect, options: &LogOptions) -> String {
     // A name with a dash in front would be an option.
     let is_dashed = arguments.log.as_os_str().as_encoded_bytes().starts_with(b"-");
     let log = if is_dashed { Path::new(".").join(&arguments.log) } else { arguments.log.clone() };
     let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs).map(|pole_pairs| format!(" --pole-pairs {pole_pairs}"));
-    format!("fluxfit identify {}{}", shell::word(log.as_os_str()), pole_pairs.unwrap_or_default())
+    let pairs = options.map.iter().map(|(quantity, header)| format!("{quantity}={header}")).collect::<Vec<_>>().join(",");
+    let map = if pairs.is_empty() { String::new() } else { format!(" --map {}", shell::word(pairs.as_ref())) };
+    format!("fluxfit identify {}{map}{}", shell::word(log.as_os_str()), pole_pairs.unwrap_or_default())
 }
 
 /// What the columns contradict each other in, with what mends it.

@@ -46,6 +46,7 @@ pub(super) fn option(advice: &Advice) -> Option<String> {
         }
         // It writes the line with those of the other columns.
         Advice::ScaleInMapping { .. } => Some("fluxfit inspect LOG -o MAPPING.toml, then --mapping MAPPING.toml".to_owned()),
+        Advice::Together(all) => Some(all.iter().filter_map(option).collect::<Vec<_>>().join(" ")),
         Advice::StateDbc => Some("--dbc FILE.dbc".to_owned()),
         Advice::StatePolePairs => Some("--pole-pairs N".to_owned()),
         Advice::FixParameters(keys) => {

@@ -425,3 +425,44 @@ fn every_number_without_a_value_has_its_reason_and_its_remedy() {
     let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("psi_f: all i_q are about 8.00 A") && words.contains("For psi_f: measure at a second i_q too"), "{words}");
 }
+
+/// What is unclear of a table is asked for at once, and what is asked for can be pasted: then it is read. `inspect` says the same.
+#[test]
+fn all_that_is_unclear_of_a_table_is_asked_for_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let shorted = SPEEDS.map(|rpm| {
+        let hertz = rpm * PAIRS / 60.0;
+        let [id, iq] = short_circuit_current(hertz * std::f64::consts::TAU);
+        let (current, torque) = (id.hypot(iq) / 2.0_f64.sqrt(), 1.5 * PAIRS * (PSI_F * iq + (LD - LQ) * id * iq));
+        vec![hertz, current, 1.001 * current, torque, 1.002 * torque]
+    });
+    let shorted = table_of(folder.path(), "short.csv", "f [Hz],I_1 [A],I_4 [A],M1 [Nm],M2 [Nm]", shorted.into_iter());
+    let direct = (1..9).map(|k| 10.0 * f64::from(k)).map(|i| vec![2.0 * RS * i, 2.01 * RS * i, i, 1.01 * i]);
+    let direct = table_of(folder.path(), "direct.csv", "U1 [V],U2 [V],I1 [A],I2 [A]", direct);
+    let torques = (1..9).map(f64::from).map(|i| vec![i, 0.27 * i, 0.28 * i]);
+    let torques = table_of(folder.path(), "torque.csv", "Iq [A],M1 [Nm],M2 [Nm]", torques);
+    for (table, said, options) in [
+        (&shorted, ["'I_1 [A]' and 'I_4 [A]'", "'M1 [Nm]' and 'M2 [Nm]'"], "--map 'current=I_1 [A],torque=M1 [Nm]' --pole-pairs N"),
+        (&direct, ["'U1 [V]' and 'U2 [V]'", "put 'll'"], "--map 'voltage=U1 [V],current=I1 [A]'"),
+        (&torques, ["'M1 [Nm]' and 'M2 [Nm]'", "the torque"], "--map 'torque=M1 [Nm]'"),
+    ] {
+        let run = fluxfit(&["identify", table]);
+        assert!(run.status == 2 && said.iter().all(|words| run.err.contains(words)) && run.err.contains(options), "{}", run.err);
+        let inspected = fluxfit(&["inspect", table]);
+        assert!(inspected.status == 2 && inspected.out.starts_with("A table of a test bench, but nothing"), "{}", inspected.out);
+        let sentence = run.err.lines().find(|line| line.starts_with("error:")).unwrap();
+        assert!(inspected.err.contains(sentence) && !inspected.out.contains("omega_e"), "{}\n{}", inspected.out, inspected.err);
+        assert!(!inspected.out.contains("not stated"), "{}", inspected.out);
+        let mapping = folder.path().join("mapping.toml");
+        let run = fluxfit(&["inspect", table, "-o", mapping.to_str().unwrap()]);
+        assert!(run.status == 2 && run.err.contains("takes no mapping file") && !mapping.exists(), "{}", run.err);
+    }
+    for (table, map) in [(&shorted, "current=I_1 [A],torque=M1 [Nm]"), (&torques, "torque=M1 [Nm]")] {
+        let (status, document) = json(&["identify", table, "--pole-pairs", "3", "--map", map]);
+        assert!(status < 2 && !document["parameters"]["psi_f"]["value"].is_null(), "{document}");
+        assert_eq!(fluxfit(&["inspect", table, "--pole-pairs", "3", "--map", map]).status, 0);
+    }
+    // What is mapped to channels of a log is read as one.
+    let run = fluxfit(&["identify", &torques, "--map", "ud=M1 [Nm]"]);
+    assert!(run.status == 2 && run.err.contains("are missing"), "{}", run.err);
+}

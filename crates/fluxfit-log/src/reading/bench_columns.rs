@@ -9,30 +9,16 @@ use crate::{
     header_unit::{HeaderUnit, split_header, states_electrical, unit_in_row},
     note::Note,
     problem::Problem,
+    quantity::Quantity,
 };
 use fluxfit::characteristics::Across;
 use fluxfit_files::FileError;
 use fluxfit_units::{Dimension, Unit, wording::quote};
 
-/// What a column of a characteristic holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Quantity {
-    Speed,
-    Voltage,
-    Current,
-    Torque,
-}
-
 impl Quantity {
-    pub(super) const ALL: [Self; 4] = [Self::Speed, Self::Voltage, Self::Current, Self::Torque];
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Speed => "speed",
-            Self::Voltage => "voltage",
-            Self::Current => "current",
-            Self::Torque => "torque",
-        }
+    /// The size in SI of the unit that is assumed where none is stated.
+    fn assumed_unit(self) -> f64 {
+        if self == Self::Speed { Unit::RpmMechanical.in_si() } else { 1.0 }
     }
 
     /// Words of names that have no unit beside them, in several languages.
@@ -51,6 +37,9 @@ impl Quantity {
 /// Words of a table of a motor that is driven, or of a log.
 pub(super) const DRIVEN: [&str; 12] =
     ["power", "efficiency", "leistung", "wirkungsgrad", "puissance", "dc", "bus", "battery", "supply", "throttle", "duty", "pwm"];
+
+/// Words of a row that is an instant, not a steady test.
+pub(super) const INSTANT: [&str; 7] = ["position", "angle", "theta", "timestep", "timestamp", "sample", "encoder"];
 
 /// A column with its quantity and its size in SI units.
 pub(super) struct Found {
@@ -100,7 +89,34 @@ pub(super) fn found(index: usize, head: &ColumnHead) -> Option<Found> {
     }
     let words = words(&header);
     let quantity = Quantity::ALL.into_iter().find(|quantity| words.iter().any(|word| quantity.words().contains(&word.as_str())))?;
-    of(quantity, false, if quantity == Quantity::Speed { Unit::RpmMechanical.in_si() } else { 1.0 }, false)
+    of(quantity, false, quantity.assumed_unit(), false)
+}
+
+/// The columns of a table. Of a quantity that the user mapped that column alone, in the unit of its header, or in SI and r/min.
+///
+/// # Errors
+/// If the table has no such column.
+pub(super) fn found_all(heads: &[ColumnHead], map: &[(Quantity, String)]) -> Result<Vec<Found>, FileError> {
+    let mut columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
+    for (quantity, header) in map {
+        let is_named = |head: &ColumnHead| head.name.trim().eq_ignore_ascii_case(header.trim());
+        let Some(index) = heads.iter().position(is_named) else {
+            let present = heads.iter().map(|head| head.name.clone()).collect();
+            return Err(Problem::MappedHeader { channel: quantity.name(), header: header.clone(), present, nearest: None }.into());
+        };
+        let own = columns.iter().position(|column| column.index == index).map(|place| columns.swap_remove(place));
+        columns.retain(|column| column.quantity != *quantity);
+        columns.push(own.filter(|own| own.quantity == *quantity).unwrap_or_else(|| Found {
+            index,
+            header: heads[index].name.trim().to_owned(),
+            quantity: *quantity,
+            has_unit: true,
+            in_si: quantity.assumed_unit(),
+            is_electrical: false,
+        }));
+    }
+    columns.sort_by_key(|column| column.index);
+    Ok(columns)
 }
 
 /// The unit of a torque at the end of a header, in N m.
@@ -209,6 +225,29 @@ fn across_by_letters(names: [&str; 3]) -> Option<Across> {
         [place] if letters.get(place + 1) == Some(&'n') => Some(Across::Phase),
         [place] if letters[*place].is_alphabetic() => Some(Across::Phase),
         _ => None,
+    }
+}
+
+/// Refuses a table of which some things have to be stated, all of them at once: the column of a quantity that several could be, the pole
+/// pairs where a torque of the shaft stands beside an electrical speed, and between which points a direct voltage was measured.
+///
+/// # Errors
+/// If there is one of these.
+pub(super) fn refuse_unclear<'a>(
+    candidates: impl Iterator<Item = Vec<&'a Found>>,
+    electrical: Option<String>,
+    direct_voltage: Option<String>,
+) -> Result<(), FileError> {
+    let several = candidates.filter(|of_one| of_one.len() > 1).filter_map(|of_one| {
+        let headers: Vec<String> = of_one.iter().map(|column| column.header.clone()).collect();
+        let names = of_one.iter().map(|column| column.header.as_str()).collect::<Vec<_>>();
+        let are_phases = names.first_chunk::<3>().is_some_and(|three| names.len() == 3 && are_phases(*three));
+        (!are_phases).then(|| (of_one[0].quantity.name(), headers))
+    });
+    let several: Vec<(&'static str, Vec<String>)> = several.collect();
+    match several.is_empty() && electrical.is_none() && direct_voltage.is_none() {
+        true => Ok(()),
+        false => Err(Problem::UnclearTable { several, electrical, direct_voltage }.into()),
     }
 }
 

@@ -4,13 +4,14 @@
 //! makes power (a DC supply, shaft power, efficiency) belongs to a motor that is driven, and its table is no characteristic.
 
 use super::{
-    bench_columns::{DRIVEN, Found, Quantity, across, are_phases, convention, found, values_of},
+    bench_columns::{DRIVEN, Found, INSTANT, across, convention, found, found_all, refuse_unclear, values_of},
     layout::NotALog,
+    options::LogOptions,
     resemblance::words,
     steady_test::{self, SteadyTest},
     table::Table,
 };
-use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem};
+use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem, quantity::Quantity};
 use fluxfit::characteristics::{Characteristic, OpenCircuit, OpenCircuitRow, ShortCircuit, ShortCircuitRow};
 use fluxfit_files::{FileError, input};
 use std::path::Path;
@@ -29,23 +30,27 @@ pub struct ReadCharacteristic {
 }
 
 /// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. What can be read only once
-/// (standard input, a pipe) is always taken for a log.
+/// (standard input, a pipe) is always taken for a log, and so is a file of which the options name the columns of a log.
+/// [`map`](LogOptions::map) may name those of a table: `speed`, `voltage`, `current`, `torque`.
 ///
 /// # Errors
 /// If it is one, but cannot be read as such.
-pub fn read_characteristic(path: &Path, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
-    if !path.is_file() {
-        return Ok(None);
-    }
+pub fn read_characteristic(path: &Path, options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
+    let of_table = |(name, header): &'_ (String, String)| Quantity::from_name(name).map(|quantity| (quantity, header.clone()));
+    let map: Option<Vec<(Quantity, String)>> = options.map.iter().map(of_table).collect();
+    let Some(map) = map.filter(|_| options.mapping.columns.is_empty() && path.is_file()) else { return Ok(None) };
+    let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
     // What cannot be opened is told by whoever reads it as a log.
     let Ok(table) = input::open(path).and_then(|bytes| Table::open(bytes, None)) else { return Ok(None) };
-    read(table, pole_pairs).map_err(|error| error.in_file(&input::name(path)))
+    read(table, pole_pairs, &map).map_err(|error| error.in_file(&input::name(path)))
 }
 
-/// Words of a row that is an instant, not a steady test.
-const INSTANT: [&str; 7] = ["position", "angle", "theta", "timestep", "timestamp", "sample", "encoder"];
+/// The quantity that a column of such a table may hold.
+pub(super) fn quantity(index: usize, head: &ColumnHead) -> Option<&'static str> {
+    found(index, head).map(|found| found.quantity.name())
+}
 
-fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
+fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
     let is_driven = |head: &ColumnHead| words(&head.name).iter().any(|word| DRIVEN.contains(&word.as_str()));
     let is_of_log = |head: &ColumnHead| {
@@ -58,7 +63,7 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
             || head.instants.is_some()
             || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
     };
-    let columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
+    let columns = found_all(&heads, map)?;
     if let Some(SteadyTest { table, columns, notes, has_electrical_speed }) = steady_test::read(&mut table, &columns, pole_pairs)? {
         return Ok(Some(ReadCharacteristic { columns, table, notes, has_electrical_speed }));
     }
@@ -86,12 +91,17 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
     // A column of zeros measures nothing.
     let columns: Vec<(Found, Vec<f64>)> =
         columns.into_iter().zip(values).filter(|(_, values)| values.iter().any(|value| *value != 0.0)).collect();
+    let of_all = Quantity::ALL.map(|quantity| candidates(&columns, quantity));
+    let has_shaft = [Quantity::Torque, Quantity::Current].iter().all(|quantity| !of_all[*quantity as usize].is_empty());
+    let of_frequency = of_all[Quantity::Speed as usize].first().filter(|(column, _)| column.is_electrical && has_shaft);
+    let electrical = of_frequency.filter(|_| pole_pairs.is_none()).map(|(column, _)| column.header.clone());
+    refuse_unclear(of_all.iter().map(|of_one| of_one.iter().map(|(column, _)| column).collect()), electrical, None)?;
     let mut notes = Vec::new();
-    let speed = channel(&columns, Quantity::Speed, pole_pairs, &mut notes)?;
-    let torque = channel(&columns, Quantity::Torque, pole_pairs, &mut notes)?;
-    let voltage = channel(&columns, Quantity::Voltage, pole_pairs, &mut notes)?;
+    let speed = channel(&columns, Quantity::Speed, pole_pairs, &mut notes);
+    let torque = channel(&columns, Quantity::Torque, pole_pairs, &mut notes);
+    let voltage = channel(&columns, Quantity::Voltage, pole_pairs, &mut notes);
     let across = across(&headers(&columns, Quantity::Voltage));
-    let current = channel(&columns, Quantity::Current, pole_pairs, &mut notes)?;
+    let current = channel(&columns, Quantity::Current, pole_pairs, &mut notes);
     let Some(speed) = speed else { return Ok(None) };
     let of_row = |k: usize| torque.as_ref().map(|torque| torque[k].0).filter(|torque| torque.is_finite());
     let rows = || speed.iter().map(|(speed, _)| *speed).enumerate();
@@ -112,12 +122,6 @@ fn read(mut table: Table, pole_pairs: Option<u32>) -> Result<Option<ReadCharacte
     };
     let speeds = candidates(&columns, Quantity::Speed);
     let electrical = speeds.first().filter(|(column, _)| column.is_electrical && pole_pairs.is_none());
-    if let Some((column, _)) = electrical
-        && torque.is_some()
-        && matches!(table, Characteristic::ShortCircuit(_))
-    {
-        return Err(Problem::ElectricalSpeed { header: column.header.clone() }.into());
-    }
     let left_out = speed.len() - table.rows();
     if left_out > 0 {
         notes.push(format!("{left_out} of {} rows have no speed or no value above zero and are left out", speed.len()).into());
@@ -155,20 +159,10 @@ fn headers(columns: &[(Found, Vec<f64>)], quantity: Quantity) -> Vec<&str> {
 
 /// The values of a quantity in SI units, each with the standard error by which three phases differ; from one column, or from three whose
 /// names differ by the phase alone. Columns with a unit are preferred.
-fn channel(
-    columns: &[(Found, Vec<f64>)],
-    quantity: Quantity,
-    pole_pairs: Option<u32>,
-    notes: &mut Vec<Note>,
-) -> Result<Option<Vec<(f64, f64)>>, FileError> {
+fn channel(columns: &[(Found, Vec<f64>)], quantity: Quantity, pole_pairs: Option<u32>, notes: &mut Vec<Note>) -> Option<Vec<(f64, f64)>> {
     let candidates = candidates(columns, quantity);
-    let Some((first, _)) = candidates.first() else { return Ok(None) };
-    let headers = headers(columns, quantity);
-    let are_phases = headers.first_chunk::<3>().is_some_and(|names| candidates.len() == 3 && are_phases(*names));
-    if candidates.len() > 1 && !are_phases {
-        let headers = headers.into_iter().map(str::to_owned).collect();
-        return Err(Problem::AmbiguousQuantity { quantity: quantity.name(), headers }.into());
-    }
+    let (first, _) = candidates.first()?;
+    let are_phases = candidates.len() == 3;
     let factor = first.in_si * convention(first, quantity, pole_pairs, notes);
     let mean = |k: usize| {
         let values: Vec<f64> = candidates.iter().map(|(_, values)| factor * values[k]).collect();
@@ -177,13 +171,13 @@ fn channel(
         let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
         (mean, if are_phases { (squares / (count - 1.0) / count).sqrt() } else { 0.0 })
     };
-    Ok(Some((0..candidates[0].1.len()).map(mean).collect()))
+    Some((0..candidates[0].1.len()).map(mean).collect())
 }
 
 /// From a text, for tests of this module and of the one for further tests.
 #[cfg(test)]
 pub(super) fn parse_characteristic(text: &'static str, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
-    read(Table::open(input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes()))), None)?, pole_pairs)
+    read(Table::open(input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes()))), None)?, pole_pairs, &[])
 }
 
 #[cfg(test)]

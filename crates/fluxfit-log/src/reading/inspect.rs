@@ -1,7 +1,7 @@
 //! Inspection of a file: its columns, and how they are read, whether they make a log or not.
 
 use super::{
-    characteristic::{ReadCharacteristic, read_characteristic},
+    characteristic::{ReadCharacteristic, quantity, read_characteristic},
     layout::Layout,
     options::{LogOptions, ResolvedOptions},
     read::{ReadLog, read},
@@ -27,6 +27,8 @@ pub struct Inspection {
     pub columns: Vec<InspectedColumn>,
     /// The table of a test bench, if it is one in place of a log.
     pub table: Option<ReadCharacteristic>,
+    /// It is a table of a test bench, also if it cannot be read as such yet: [`log`](Self::log) says why.
+    pub is_table: bool,
     /// The log, or why there is none.
     pub log: Result<ReadLog, FileError>,
 }
@@ -40,7 +42,7 @@ pub struct InspectedColumn {
     pub unit: Option<String>,
     /// The channel that it is read as.
     pub channel: Option<&'static str>,
-    /// The channel that it may be by its name, if it is not read.
+    /// The channel that it may be by its name, if it is not read; of a table of a test bench the quantity.
     pub resembles: Option<&'static str>,
     /// The unit in which it is read, or would be if it is stated: its short name, and its name in a sentence.
     pub read_as: Option<(&'static str, &'static str)>,
@@ -67,7 +69,11 @@ pub struct InspectedColumn {
 /// If the file is not a table. A table that is not a log gives an inspection without a log.
 pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileError> {
     let name = input::name(path);
-    let resolved = ResolvedOptions::resolve(options)?;
+    // In the order of an identification: what is a table of a test bench is no log.
+    let of_bench = read_characteristic(path, options);
+    let is_table = !matches!(of_bench, Ok(None));
+    let of_log = LogOptions { map: if is_table { Vec::new() } else { options.map.clone() }, ..options.clone() };
+    let resolved = ResolvedOptions::resolve(&of_log)?;
     let table = input::open(path).and_then(|bytes| Table::open(bytes, resolved.dbc.as_deref())).map_err(|error| error.in_file(&name))?;
     let names: Vec<String> = table.heads().iter().map(|head| head.name.clone()).collect();
     let layout = Layout::recognize(&names);
@@ -103,19 +109,19 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
             share: survey.shares.iter().find(|(place, _)| *place == index).map(|(_, scale)| *scale),
         }
     });
-    let columns = columns.collect();
-    let (table, log) = match log.as_ref().err().map(|_| read_characteristic(path, resolved.pole_pairs)) {
-        Some(Ok(table)) => (table, log),
-        // It is a table, and that is what is wrong with it.
-        Some(Err(error)) => (None, Err(error)),
-        None => (None, log),
-    };
-    let mut columns: Vec<InspectedColumn> = columns;
-    if table.is_some() {
+    let columns: Vec<InspectedColumn> = columns.collect();
+    let mut columns = columns;
+    if is_table {
         // Its speeds are not those of a log: nothing of it is a channel.
-        columns.iter_mut().for_each(|column| (column.channel, column.resembles, column.read_as) = (None, None, None));
+        for (index, column) in columns.iter_mut().enumerate() {
+            (column.channel, column.resembles, column.read_as) = (None, quantity(index, &heads[index]), None);
+        }
     }
-    Ok(Inspection { kind, layout, columns, table, log })
+    let (table, log) = match of_bench {
+        Ok(table) => (table, log),
+        Err(error) => (None, Err(error)),
+    };
+    Ok(Inspection { kind, layout, columns, table, is_table, log })
 }
 
 /// Most stretches of a course; where there are more, each two become one.

@@ -4,7 +4,7 @@
 
 use super::{
     alias,
-    bench_columns::{DRIVEN, Found, Quantity, across, convention, values_of},
+    bench_columns::{DRIVEN, Found, INSTANT, across, convention, refuse_unclear, values_of},
     layout::NotALog,
     resemblance::{is_reference, words},
     rms,
@@ -15,7 +15,7 @@ use crate::{
     channel::Channel,
     header_unit::{HeaderUnit, split_header, unit_in_row},
     note::Note,
-    problem::Problem,
+    quantity::Quantity,
 };
 use fluxfit::{
     characteristics::{Characteristic, DirectCurrent, DirectCurrentRow, DutyCycle, DutyCycleRow, TorqueOfCurrent, TorqueOfCurrentRow},
@@ -58,24 +58,26 @@ pub(super) fn read(table: &mut Table, columns: &[Found], pole_pairs: Option<u32>
     {
         return Ok(None);
     }
-    let one = |quantity: Quantity| {
-        let mut of = columns.iter().filter(|column| column.quantity == quantity);
-        of.next().filter(|_| of.next().is_none())
-    };
+    let all = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<_>>();
+    let [speeds, voltages, currents, torques] = Quantity::ALL.map(all);
     let is_time = heads.iter().any(|head| head.is_time || head.instants.is_some() || is(Channel::T, head));
     let place = |channel: Channel| heads.iter().position(|head| is(channel, head));
-    if let (Some(q), Some(torque), false) = (place(Channel::Iq), one(Quantity::Torque), is_time) {
+    if let (Some(q), Some(torque), false) = (place(Channel::Iq), torques.first(), is_time) {
+        refuse_unclear([torques.clone()].into_iter(), None, None)?;
         return torque_of_current(table, place(Channel::Id), q, torque).map(Some);
     }
     let duty = heads.iter().position(|head| has_word(head, &["duty", "dutycycle"]) && !is_reference(&head.name));
-    if let (Some(duty), Some(speed)) = (duty, one(Quantity::Speed)) {
-        return duty_cycle(table, duty, speed, pole_pairs);
+    if let (Some(duty), Some(speed), Some(input)) = (duty, speeds.first(), heads.iter().position(is_input)) {
+        refuse_unclear([speeds.clone()].into_iter(), None, None)?;
+        return duty_cycle(table, duty, input, speed, pole_pairs);
     }
-    let has_speed = columns.iter().any(|column| column.quantity == Quantity::Speed);
     let is_driven = heads.iter().any(|head| has_word(head, &DRIVEN));
-    match (one(Quantity::Voltage), one(Quantity::Current)) {
-        (Some(voltage), Some(current)) if columns.len() == 2 && !has_speed && !is_time && !is_driven => {
-            direct_current(table, voltage, current).map(Some)
+    let is_instant = heads.iter().any(|head| has_word(head, &INSTANT));
+    match (voltages.first(), currents.first()) {
+        (Some(voltage), Some(current)) if speeds.is_empty() && torques.is_empty() && !is_time && !is_driven && !is_instant => {
+            let unnamed = across(&[&voltage.header]).is_none().then(|| voltage.header.clone());
+            refuse_unclear([voltages.clone(), currents.clone()].into_iter(), None, unnamed)?;
+            direct_current(table, voltage, current)
         }
         _ => Ok(None),
     }
@@ -130,10 +132,8 @@ fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Fou
     Ok(SteadyTest { table, columns: used, notes, has_electrical_speed: false })
 }
 
-fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<SteadyTest, FileError> {
-    let Some(across) = across(&[&voltage.header]) else {
-        return Err(Problem::DirectVoltage { header: voltage.header.clone() }.into());
-    };
+fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<Option<SteadyTest>, FileError> {
+    let Some(across) = across(&[&voltage.header]) else { return Ok(None) };
     let rows: Vec<DirectCurrentRow> = rows(table, [(voltage.index, voltage.in_si), (current.index, current.in_si)])?
         .into_iter()
         .filter(|[_, current]| *current != 0.0)
@@ -142,20 +142,27 @@ fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result
     let used = vec![("voltage", voltage.header.clone()), ("current", current.header.clone())];
     let note = "voltage and current are read as those of a direct current, the rotor at rest".to_owned();
     let table = Characteristic::DirectCurrent(DirectCurrent { rows, across });
-    Ok(SteadyTest { table, columns: used, notes: vec![note.into()], has_electrical_speed: false })
+    Ok(Some(SteadyTest { table, columns: used, notes: vec![note.into()], has_electrical_speed: false }))
 }
 
 /// Words of the DC voltage beside a duty cycle.
 const INPUT: [&str; 9] = ["input", "inp", "inpvoltage", "dc", "bus", "battery", "supply", "vin", "vbat"];
 
-fn duty_cycle(table: &mut Table, duty: usize, speed: &Found, pole_pairs: Option<u32>) -> Result<Option<SteadyTest>, FileError> {
+/// Whether a column is the DC voltage beside a duty cycle.
+fn is_input(head: &ColumnHead) -> bool {
+    let words = words(&head.name);
+    let is_voltage = words.iter().any(|word| ["voltage", "volt", "spannung", "vin", "vbat"].contains(&word.as_str()));
+    is(Channel::UDc, head) || is_voltage && words.iter().any(|word| INPUT.contains(&word.as_str()))
+}
+
+fn duty_cycle(
+    table: &mut Table,
+    duty: usize,
+    input: usize,
+    speed: &Found,
+    pole_pairs: Option<u32>,
+) -> Result<Option<SteadyTest>, FileError> {
     let heads = table.heads().to_vec();
-    let is_input = |head: &ColumnHead| {
-        let words = words(&head.name);
-        let is_voltage = words.iter().any(|word| ["voltage", "volt", "spannung", "vin", "vbat"].contains(&word.as_str()));
-        is(Channel::UDc, head) || is_voltage && words.iter().any(|word| INPUT.contains(&word.as_str()))
-    };
-    let Some(input) = heads.iter().position(is_input) else { return Ok(None) };
     // The current of the supply is not that of the motor.
     let is_of_motor =
         |head: &ColumnHead| has_word(head, &["current", "strom"]) && has_word(head, &["motor", "phase"]) && !has_word(head, &INPUT);

@@ -1,6 +1,6 @@
 //! No log is taken for a table of a test bench.
 
-use fluxfit_log::read_characteristic;
+use fluxfit_log::{LogOptions, read_characteristic};
 use std::{fs, path::Path};
 
 /// The one file of the corpus that is such a table, and no log.
@@ -13,10 +13,10 @@ fn no_log_of_the_corpus_is_a_characteristic() {
     for file in fs::read_dir(folder).unwrap() {
         let path = file.unwrap().path();
         if path.ends_with(TABLE) {
-            assert!(read_characteristic(&path, Some(3)).unwrap().is_some());
+            assert!(read_characteristic(&path, &LogOptions { pole_pairs: Some(3), ..LogOptions::default() }).unwrap().is_some());
             continue;
         }
-        assert_eq!(read_characteristic(&path, None), Ok(None), "{}", path.display());
+        assert_eq!(read_characteristic(&path, &LogOptions::default()), Ok(None), "{}", path.display());
         seen += 1;
     }
     assert!(seen > 100, "{seen}");

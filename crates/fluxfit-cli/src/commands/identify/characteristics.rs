@@ -16,15 +16,15 @@ use fluxfit::{
     document::CharacteristicsDocument,
     motor::Parameter,
 };
-use fluxfit_log::read_characteristic;
+use fluxfit_log::{LogOptions, read_characteristic};
 use fluxfit_units::{Scale, significant};
 
 /// Identifies from tables, if tables are what is given; `None` of logs. `stated` are options that were given and are for logs alone.
-pub(super) fn run(arguments: &LogArguments, stated: &[&str], pole_pairs: Option<u32>) -> Result<Option<Status>, CommandError> {
-    let logs = &arguments.logs;
+pub(super) fn run(arguments: &LogArguments, stated: &[&str], options: &LogOptions) -> Result<Option<Status>, CommandError> {
+    let (logs, pole_pairs) = (&arguments.logs, options.pole_pairs);
     let mut read = Vec::new();
     for path in logs {
-        read.extend(read_characteristic(path, pole_pairs)?.map(|read| (input::name(path), read)));
+        read.extend(read_characteristic(path, options)?.map(|read| (input::name(path), read)));
     }
     if read.is_empty() {
         return Ok(None);

@@ -14,6 +14,9 @@ const GAPS: usize = 3;
 /// Shows an inspection, what is wrong with it first; notes go to standard error.
 pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told], samples: &[Told]) -> std::io::Result<()> {
     let status = match (&inspection.log, findings.len()) {
+        (Err(_), _) if inspection.is_table => {
+            format!("{BAD}A table of a test bench, but nothing can be identified from it yet: the reason is below.{BAD:#}\n")
+        }
         (Err(_), _) => format!("{BAD}Not a log yet: the reason is below.{BAD:#}\n"),
         (Ok(_), 0) if !samples.is_empty() => format!("{BAD}Readable, but some samples are no measurements.{BAD:#}\n"),
         (Ok(_), 0) => format!("{GOOD}Readable, and the columns agree with each other.{GOOD:#}\n"),
@@ -78,10 +81,14 @@ fn columns(inspection: &Inspection, log: Option<&Log>) -> String {
         };
         let of_log = || column.channel.zip(log).and_then(|(channel, log)| of_channel(log, channel));
         let range = column.range.or_else(of_log).map(range).unwrap_or_default();
-        vec![column.header.chars().take(40).collect(), taken, unit(column, log.is_some()), range]
+        // A quantity of a table has the unit of its name.
+        let unit = if inspection.is_table { column.unit.clone().unwrap_or_default() } else { unit(column, log.is_some()) };
+        vec![column.header.chars().take(40).collect(), taken, unit, range]
     });
     let mut text = table(&["column", "taken for", "in", "range in the file"], 3, rows);
-    if inspection.columns.iter().any(|column| column.resembles.is_some()) {
+    if inspection.is_table {
+        text += &format!("  {DIM}?: by its name and unit{DIM:#}\n");
+    } else if inspection.columns.iter().any(|column| column.resembles.is_some()) {
         text += &format!("  {DIM}?: by its name. --map says that it is, or a mapping file: fluxfit inspect LOG -o MAPPING.toml{DIM:#}\n");
     }
     if inspection.columns.len() > LISTED {
