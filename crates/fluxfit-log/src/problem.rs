@@ -56,6 +56,14 @@ pub(crate) enum Problem {
     PhaseRms,
     #[error("the file has the layout '{layout}': {reason}")]
     NotALog { layout: &'static str, reason: &'static str, advice: Option<Advice> },
+    #[error(
+        "this is a trace of voltages alone, as of a motor that is turned with open terminals: it tells psi_f alone, by waves of {} Hz and {} V rms; write such a row for each of three or more speeds into a table with the columns 'f [Hz]' and 'U_ll_rms [V]' (of a phase, 'U_phase_rms [V]'), and give that", significant(*.hertz, 4), significant(*.volts, 4)
+    )]
+    OpenTerminals { hertz: f64, volts: f64 },
+    #[error(
+        "the names of its columns are numbers, as of a matrix over two quantities: of a flux linkage over i_d and i_q (a flux map, as of Motor-CAD or FEM) nothing is identified, and as the motor of a simulation it needs a row for each point, with columns id, iq, psi_d and psi_q (flux_map in a scenario)"
+    )]
+    Matrix,
     #[error("the header has this name {count} times; rename or remove all but one")]
     Duplicate { count: usize },
     #[error("the columns {} could each be {channel}; map one of them to {channel}", columns(.headers))]
@@ -196,6 +204,10 @@ pub(crate) enum Problem {
     Lvm { reason: &'static str },
     #[error("this is a candump log, whose frames have no names; state the DBC that names their signals")]
     NoDbc,
+    #[error(
+        "this is a candump log without time stamps, and a log needs the instant of each frame; record it again with them (candump -l, or -t a), and state the DBC that names its signals"
+    )]
+    NoFrameTimes,
     #[error("the DBC is damaged, or not one: {reason}")]
     Dbc { reason: String },
     #[error("{} is no frame of candump; remove the line", quote(.text))]
@@ -228,7 +240,8 @@ impl Problem {
         match self {
             Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
             Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
-            Self::CanLog { .. } => FileErrorKind::Unsupported,
+            Self::CanLog { .. } | Self::NoFrameTimes => FileErrorKind::Unsupported,
+            Self::OpenTerminals { .. } | Self::Matrix => FileErrorKind::Columns,
             Self::Gzip { .. } | Self::Document { .. } | Self::Npz | Self::NoRows => FileErrorKind::Format,
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::Lists { .. } | Self::ManyColumns { .. } => {
                 FileErrorKind::Format
@@ -354,19 +367,6 @@ fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, Str
     format!("{what}; by {by}, {}: {if_so}{lacking}", list(&pairs))
 }
 
-/// What is to be said of proposed columns that hold root mean squares.
-fn proposed_rms(proposals: &[(&str, String)], rms: &[(&str, &str)]) -> String {
-    let is_rms = |channel: &str| rms.iter().any(|(of, _)| *of == channel);
-    let headers: Vec<&str> = proposals.iter().filter(|(channel, _)| is_rms(channel)).map(|(_, header)| header.as_str()).collect();
-    if headers.is_empty() {
-        return String::new();
-    }
-    format!("; {}, so state their units too, and check whether the others are rms values", are_rms(&headers))
-}
-
-fn are_rms(headers: &[&str]) -> String {
-    let quoted: Vec<String> = headers.iter().map(|header| format!("'{}'", shorten(header))).collect();
-    let are = if headers.len() == 1 { "is an rms value" } else { "are rms values" };
 /// What has to be stated of a table of a test bench.
 fn unclear(several: &[(&str, Vec<String>)], electrical: Option<&str>, direct_voltage: Option<&str>) -> String {
     let could_be = several.iter().map(|(quantity, headers)| format!("the columns {} could each be the {quantity}", columns(headers)));
@@ -388,6 +388,19 @@ fn unclear(several: &[(&str, Vec<String>)], electrical: Option<&str>, direct_vol
     [map, of_shaft, points].into_iter().flatten().collect::<Vec<_>>().join("; and ")
 }
 
+/// What is to be said of proposed columns that hold root mean squares.
+fn proposed_rms(proposals: &[(&str, String)], rms: &[(&str, &str)]) -> String {
+    let is_rms = |channel: &str| rms.iter().any(|(of, _)| *of == channel);
+    let headers: Vec<&str> = proposals.iter().filter(|(channel, _)| is_rms(channel)).map(|(_, header)| header.as_str()).collect();
+    if headers.is_empty() {
+        return String::new();
+    }
+    format!("; {}, so state their units too, and check whether the others are rms values", are_rms(&headers))
+}
+
+fn are_rms(headers: &[&str]) -> String {
+    let quoted: Vec<String> = headers.iter().map(|header| format!("'{}'", shorten(header))).collect();
+    let are = if headers.len() == 1 { "is an rms value" } else { "are rms values" };
     format!("{} {are} by name, where dq values are peak values, sqrt 2 times as large", list(&quoted))
 }
 

@@ -21,6 +21,9 @@ use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, OmegaE, T, ThetaE, UA, UAlpha, 
 use fluxfit_files::{Advice, FileError};
 use fluxfit_units::{Dimension, Unit, wording::shorten};
 
+/// Of a matrix over two quantities at least so many names are numbers.
+const FEWEST_NUMBERS: usize = 3;
+
 /// Finds columns by mapping, layout and name.
 pub(super) struct Finder<'a> {
     pub(super) heads: &'a [ColumnHead],
@@ -344,6 +347,10 @@ impl Finder<'_> {
             && let Some((layout, refusal)) = NotALog::by_names(&self.names())
         {
             return Problem::NotALog { layout, reason: refusal.reason(), advice: refusal.advice() }.into();
+        }
+        let numbers = self.heads.iter().filter(|head| head.name.trim().parse::<f64>().is_ok()).count();
+        if numbers >= FEWEST_NUMBERS && numbers + 1 >= self.heads.len() {
+            return Problem::Matrix.into();
         }
         if let Some(problem) = self.passed_over {
             return problem.clone().into();

@@ -52,12 +52,21 @@ pub(crate) enum NotALog {
     Parameters,
 }
 
+/// Names of flux linkages, before or behind the axis; the single letter is that of SyR-e.
+const FLUXES: [&str; 9] = ["psi", "flux", "lambda", "fluxlinkage", "lam", "linkage", "phi", "fluxlinked", "f"];
+
+/// Names of a current's amplitude and of its angle, which a map may have in place of i_d and i_q, as Motor-CAD's has.
+const AMPLITUDES: [&str; 9] =
+    ["is", "im", "i", "current", "statorcurrent", "phasecurrent", "ismatrix", "currentamplitude", "statorcurrentamplitude"];
+const ADVANCES: [&str; 9] =
+    ["beta", "gamma", "gammamatrix", "phaseadvance", "advance", "advanceangle", "currentangle", "angle", "currentphaseangle"];
+
 impl NotALog {
     /// The reason, and what to do.
     pub(crate) fn reason(self) -> &'static str {
         match self {
             Self::FluxMap => {
-                "a flux map has currents and flux linkages, but no voltages and no time; it can be the motor of a simulation (flux_map in a scenario)"
+                "a flux map, measured or computed (Motor-CAD, FEM), has currents and flux linkages, but no voltages and no time, so nothing is identified from it; give the log of a drive, or take it as the motor of a simulation (flux_map in a scenario: columns id, iq, psi_d, psi_q)"
             }
             Self::Parameters => {
                 "its columns are what fluxfit finds of motors, and none is a voltage or a current of a drive; give the log of a drive, and one motor's values for comparison (motor file, or fluxfit validate)"
@@ -72,11 +81,18 @@ impl NotALog {
     pub(crate) fn by_names(names: &[String]) -> Option<(&'static str, Self)> {
         let stems: Vec<String> = names.iter().map(|name| stem_of_table(name)).collect();
         let has = |some: &[&str]| stems.iter().any(|stem| some.contains(&stem.as_str()));
-        let both_axes = |stem: &str| ["d", "q"].iter().all(|axis| has(&[&format!("{stem}{axis}")]));
-        if ["psi", "flux", "lambda", "fluxlinkage", "lam"].into_iter().any(both_axes) && both_axes("i") {
+        let is_axis = |stem: &str, axis: &str| {
+            let forms = [format!("{stem}{axis}"), format!("{axis}{stem}"), format!("{axis}axis{stem}"), format!("{stem}{axis}axis")];
+            has(&forms.each_ref().map(String::as_str))
+        };
+        let both_axes = |stem: &&str| ["d", "q"].iter().all(|axis| is_axis(stem, axis));
+        let has_currents = ["i", "is", "current", "statorcurrent"].iter().any(&both_axes) || has(&AMPLITUDES) && has(&ADVANCES);
+        // Of an observer, which estimates fluxes of a motor that turns, there is a time and a speed.
+        let is_log = has(&["t", "time"]) && has(&["speed", "omega", "omegae", "rpm", "n"]);
+        if FLUXES.iter().any(&both_axes) && has_currents && !is_log {
             return Some(("flux map", Self::FluxMap));
         }
-        (both_axes("l") && has(&["rs", "r", "rph", "ra"])).then_some(("table of parameters", Self::Parameters))
+        (both_axes(&"l") && has(&["rs", "r", "rph", "ra"])).then_some(("table of parameters", Self::Parameters))
     }
 
     /// What the user can state to have it read all the same.
@@ -311,8 +327,9 @@ impl Layout {
 fn stem_of_table(name: &str) -> String {
     let lower = name.to_lowercase();
     let mut words: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
-    let is_unit =
-        |word: &&str| ["wb", "mwb", "vs", "mvs", "a", "h", "mh", "uh", "ohm", "mohm", "ohms", "arms", "apk", "apeak"].contains(word);
+    let is_unit = |word: &&str| {
+        ["wb", "mwb", "vs", "mvs", "a", "h", "mh", "uh", "ohm", "mohm", "ohms", "arms", "apk", "apeak", "deg", "edeg", "nm"].contains(word)
+    };
     if words.len() > 1 && words.last().is_some_and(is_unit) {
         words.pop();
     }
@@ -358,6 +375,18 @@ mod tests {
         assert_eq!(of("Id (A),Iq (A),Flux d [Vs],Flux q [Vs],T [Nm]"), Some("flux map"));
         assert_eq!(of("case_id,id_RMS_A,iq_RMS_A,torque_Nm,psiD_Wb,psiQ_Wb,Ld_H,Lq_H,Bmax_T"), Some("flux map"));
         assert_eq!(of("IqRMS,IdRMS,psiD_Pk,psiQ_Pk,Lq,Ld,Torque(Nm),TopSpeed"), Some("flux map"));
+        for header in [
+            "Stator Current (Peak),Phase Advance,Flux Linkage D (Peak),Flux Linkage Q (Peak)",
+            "Is_Matrix,Gamma_Matrix,Flux_Linkage_D,Flux_Linkage_Q",
+            "Is [A],beta [deg],Psi_d [Wb],Psi_q [Wb]",
+            "d-axis current (A),q-axis current (A),d-axis flux linkage (Wb),q-axis flux linkage (Wb)",
+            "Current d,Current q,Linkage d,Linkage q",
+            "Id,Iq,Fd,Fq",
+            "Id,Iq,Phi_d,Phi_q,T",
+        ] {
+            assert_eq!(of(header), Some("flux map"), "{header}");
+        }
+        assert_eq!(of("t,id,iq,psi_d,psi_q,speed"), None);
         assert_eq!(of("Ld_H,Lq_H,Rs_ohm,pole_pairs,psi_pm_Wb"), Some("table of parameters"));
         for header in ["t,id,iq,ud,uq,omega_e", "speed,id,iq", "Ld,Lq,t", "psi_d,psi_q,t"] {
             assert_eq!(of(header), None, "{header}");

@@ -8,6 +8,7 @@
 
 mod alias;
 mod align;
+mod back_emf;
 mod bench_columns;
 mod channels;
 mod characteristic;

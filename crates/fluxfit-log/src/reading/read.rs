@@ -5,7 +5,7 @@
 //! ```
 
 use super::{
-    align,
+    align, back_emf,
     channels::Channels,
     chosen::{self, ChosenColumn},
     columns,
@@ -166,7 +166,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
     let layout = recognize(table.heads(), &mut notes).map_err(at_header)?;
     let named = layout.filter(|layout| !layout.is_canonical());
-    let chosen = columns::choose(&table, named, options, &mut notes)?;
+    let chosen = columns::choose(&table, named, options, &mut notes).map_err(|error| back_emf::named(&mut table, options, error))?;
     let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     let aligned = align::align(&mut channels, &lines)?;
     let gaps = gaps_of_file(&channels, &dropped_before);

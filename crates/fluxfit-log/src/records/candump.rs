@@ -43,6 +43,14 @@ pub(super) fn is_candump(head: &str) -> bool {
     head.lines().find(|line| !line.trim().is_empty()).is_some_and(|line| line.trim_start().starts_with('(') && frame(line).is_some())
 }
 
+/// Whether a text is such a log but for the times, as candump writes it to a terminal: by its first lines.
+pub(super) fn is_without_times(head: &str) -> bool {
+    let mut lines = head.lines().map(str::trim).filter(|line| !line.is_empty());
+    let is_frame = |line: &str| !line.starts_with('(') && frame(&format!("(0) {line}")).is_some();
+    // The second one may be cut off.
+    lines.next().is_some_and(is_frame) && lines.next().is_none_or(|line| is_frame(line) || lines.next().is_none())
+}
+
 /// Reads the frames of the messages that the DBC has.
 pub(super) fn read(text: Text, dbc: &str) -> Result<Table, FileError> {
     let dbc = Dbc::try_from(dbc)

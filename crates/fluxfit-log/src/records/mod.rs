@@ -32,6 +32,9 @@ impl Records {
         if let Some((_, what)) = OTHERS.iter().find(|(start, _)| head.starts_with(start) && (*start != "date " || head.contains("base "))) {
             return Err(Problem::CanLog { what }.into());
         }
+        if candump::is_without_times(head) {
+            return Err(Problem::NoFrameTimes.into());
+        }
         Ok(json::is_json(head) || lvm::is_lvm(head) || candump::is_candump(head))
     }
 

@@ -223,3 +223,20 @@ fn errors_and_notes_carry_the_advice_as_facts() {
     // No sentence names an option of the command line.
     assert!(read.notes.iter().all(|note| !note.sentence.contains("--")), "{:?}", read.notes);
 }
+
+/// What a file is stands first: a log of frames without times, as candump writes it to a terminal, and a map over two currents.
+#[test]
+fn files_that_can_be_no_log_are_named() {
+    for text in [
+        " can0  123   [8]  11 22 33 44 55 66 77 88\n can0  124   [2]  11 22\n",
+        "can0 123#1122334455667788\ncan0 124#1122\n",
+        "  can0  RX - -  123   [2]  11 22   '.\"'\n",
+    ] {
+        let sentence = refusal(text.as_bytes(), &LogOptions::default());
+        assert!(sentence.contains("a candump log without time stamps") && sentence.contains("record it again"), "{sentence}");
+    }
+    for text in ["psi_d,-50,0,50\n-50,1,2,3\n0,1,2,3\n", ",-50,0,50\n-50,1,2,3\n0,1,2,3\n"] {
+        let sentence = refusal(text.as_bytes(), &LogOptions::default());
+        assert!(sentence.contains("a matrix over two quantities") && sentence.contains("a row for each point"), "{sentence}");
+    }
+}

@@ -1,0 +1,168 @@
+//! Traces of an oscilloscope: the time and voltages, and nothing else, as between the terminals of a motor that something turns. They are
+//! no log; but what they tell, frequency and size of the voltages, is a row of an open-circuit table.
+
+use super::{finder::Finder, options::ResolvedOptions, proposal::stated_unit, resemblance, table::Table};
+use crate::{
+    block::{ColumnHead, WantedColumn},
+    channel::Channel,
+    problem::Problem,
+};
+use fluxfit_files::{FileError, FileErrorKind};
+use fluxfit_units::Unit;
+
+/// Most voltages: those of three phases.
+const MOST: usize = 3;
+
+/// Rows that are looked at: a screen of most oscilloscopes, in part.
+const MOST_ROWS: usize = 1 << 20;
+
+/// Fewest turns of the waves.
+const FEWEST_TURNS: usize = 3;
+
+/// Names of voltages that state no unit, before at most two letters or numbers of terminals; and of an instrument's channels.
+const VOLTAGES: [&str; 10] = ["volt", "volts", "voltage", "spannung", "tension", "emf", "bemf", "backemf", "u", "v"];
+const INPUTS: [&str; 5] = ["ch", "channel", "kanal", "c", "trace"];
+
+/// Letters and numbers of terminals.
+const TERMINALS: &str = "abcuvwrstnxyz123";
+
+/// The refusal of a table in which columns are missing: in place of it what the table is, if it is such a trace.
+pub(super) fn named(table: &mut Table, options: &ResolvedOptions, refusal: FileError) -> FileError {
+    let is_mapped = options.has_headers() || refusal.kind() != FileErrorKind::Columns;
+    let waves = if is_mapped { None } else { waves(table, options) };
+    waves.map_or(refusal, |[hertz, volts]| Problem::OpenTerminals { hertz, volts }.into())
+}
+
+/// Frequency and root mean square of the voltages, if there are a time and these alone.
+fn waves(table: &mut Table, options: &ResolvedOptions) -> Option<[f64; 2]> {
+    let heads = table.heads().to_vec();
+    let finder =
+        Finder { heads: &heads, unreadable: &[], lists: &[], without_numbers: &Vec::new, passed_over: None, layout: None, options };
+    let time = finder.index(Channel::T).ok()??;
+    let others: Vec<usize> = (0..heads.len()).filter(|index| *index != time).collect();
+    let is_one_group = heads.iter().all(|head| head.group == heads[time].group);
+    if !(1..=MOST).contains(&others.len()) || !is_one_group || !others.iter().all(|index| is_voltage(&heads[*index])) {
+        return None;
+    }
+    let instants = heads[time].instants.clone();
+    let unit = if instants.is_some() { Unit::Second } else { stated_unit(Channel::T, &heads[time]).unwrap_or(Unit::Second) };
+    let wanted = |index: usize| WantedColumn {
+        index,
+        header: heads[index].name.clone(),
+        is_time: index == time,
+        is_optional: true,
+        instants: instants.clone().filter(|_| index == time),
+    };
+    let wanted: Vec<WantedColumn> = [time].into_iter().chain(others.iter().copied()).map(wanted).collect();
+    let mut values = vec![Vec::new(); wanted.len()];
+    let full = || FileError::from(Problem::NoRows);
+    // What comes behind is not needed, and what cannot be read is no wave.
+    let _ = table.read(&wanted, &mut |block| {
+        values.iter_mut().zip(&block.values).for_each(|(all, some)| all.extend(some));
+        if values[0].len() < MOST_ROWS { Ok(()) } else { Err(full()) }
+    });
+    let (t, voltages) = values.split_first()?;
+    let of_each = voltages.iter().zip(&others).map(|(voltage, index)| {
+        let [turns, rms] = wave(t, voltage)?;
+        let size = stated_unit(Channel::UDc, &heads[*index]).map_or(1.0, Unit::in_si);
+        Some([turns / unit.in_si(), rms * size])
+    });
+    let of_each: Vec<[f64; 2]> = of_each.collect::<Option<_>>()?;
+    let mean = |k: usize| of_each.iter().map(|wave| wave[k]).sum::<f64>() / of_each.len() as f64;
+    Some([mean(0), mean(1)])
+}
+
+/// Whether a column is a voltage by its unit or name, and not one of the dq frame or of the DC bus.
+fn is_voltage(head: &ColumnHead) -> bool {
+    let name = resemblance::words(&head.name).concat();
+    let ends = |start: &&str, most: usize| {
+        name.strip_prefix(*start).is_some_and(|end| end.len() <= most && end.chars().all(|letter| TERMINALS.contains(letter)))
+    };
+    let is_named = VOLTAGES.iter().any(|start| ends(start, 2)) || INPUTS.iter().any(|start| ends(start, 1) && name.len() > start.len());
+    let is_other = [Channel::Ud, Channel::Uq, Channel::UDc].iter().any(|channel| resemblance::fit(*channel, &head.name).is_some());
+    !is_other && (stated_unit(Channel::UDc, head).is_some() || is_named && !resemblance::has_other_unit(Channel::UDc, head))
+}
+
+/// Turns for each unit of time, and root mean square without the mean, of a smooth wave that swings around zero.
+fn wave(t: &[f64], values: &[f64]) -> Option<[f64; 2]> {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let rms = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
+    if !rms.is_finite() || rms == 0.0 || mean.abs() > LARGEST_MEAN * rms {
+        return None;
+    }
+    // A switched voltage goes from one rail to the other at once.
+    let swing = values.iter().fold(0.0, |largest: f64, value| largest.max((value - mean).abs()));
+    if values.windows(2).any(|pair| (pair[1] - pair[0]).abs() > LARGEST_STEP * swing) {
+        return None;
+    }
+    // Where it rises through its mean, once it was well below.
+    let (mut is_below, mut rises) = (false, Vec::new());
+    for (row, pair) in values.windows(2).enumerate() {
+        is_below |= pair[0] < mean - 0.5 * rms;
+        if is_below && pair[1] > mean {
+            let part = (mean - pair[0]) / (pair[1] - pair[0]);
+            rises.push((row + 1, t[row] + part * (t[row + 1] - t[row])));
+            is_below = false;
+        }
+    }
+    let ((from, first), (to, last)) = (rises.first()?, rises.last()?);
+    // Of whole turns.
+    let squares: f64 = values[*from..*to].iter().map(|value| (value - mean).powi(2)).sum();
+    let rms = (squares / (to - from) as f64).sqrt();
+    (rises.len() > FEWEST_TURNS && last > first).then(|| [(rises.len() - 1) as f64 / (last - first), rms])
+}
+
+/// Of waves around zero the mean is at most this share of the root mean square.
+const LARGEST_MEAN: f64 = 0.5;
+
+/// From one row to the next a smooth wave goes at most this share of its largest value.
+const LARGEST_STEP: f64 = 0.7;
+
+#[cfg(test)]
+mod tests {
+    use crate::{LogOptions, parse_log};
+
+    fn refusal(header: &str, row: impl Fn(f64) -> Vec<f64>) -> String {
+        let rows = (0..4000).map(|k| f64::from(k) * 5e-5).map(|t| {
+            let cells: Vec<String> = [t].into_iter().chain(row(t)).map(|value| format!("{value:.6}")).collect();
+            cells.join(",") + "\n"
+        });
+        parse_log("scope.csv", format!("{header}\n{}", rows.collect::<String>()).as_bytes(), &LogOptions::default())
+            .unwrap_err()
+            .to_string()
+    }
+
+    /// Of 53.2 Hz and 17.4 V of amplitude.
+    fn phase(t: f64, number: f64) -> f64 {
+        17.4 * (std::f64::consts::TAU * (53.2 * t - number / 3.0)).cos()
+    }
+
+    #[test]
+    fn voltages_of_open_terminals_are_named_with_what_they_tell() {
+        for header in ["Time (s),CH1 (V)", "t,U_ab [V]", "TIME,CH1", "t,v", "Second,Volt", "t,Back-EMF [V]", "t,U12"] {
+            let sentence = refusal(header, |t| vec![phase(t, 0.0)]);
+            assert!(sentence.contains("53.20 Hz and 12.3") && sentence.contains("psi_f alone"), "{header}: {sentence}");
+        }
+        for header in ["t,ua,ub,uc", "t,U_ab [V],U_bc [V],U_ca [V]", "t,CH1,CH2,CH3"] {
+            let sentence = refusal(header, |t| vec![phase(t, 0.0), phase(t, 1.0), phase(t, 2.0)]);
+            assert!(sentence.contains("53.20 Hz and 12.3"), "{header}: {sentence}");
+        }
+        let in_thousandths = refusal("t [ms],CH1 [mV]", |t| vec![phase(1e-3 * t, 0.0)]);
+        assert!(in_thousandths.contains("are missing"), "too few turns: {in_thousandths}");
+    }
+
+    #[test]
+    fn what_has_currents_or_is_switched_or_does_not_swing_is_no_such_trace() {
+        let square = |t: f64| if phase(37.0 * t, 0.0) > 0.0 { 24.0 } else { -24.0 };
+        for sentence in [
+            refusal("t,CH1 [V],CH2 [A]", |t| vec![phase(t, 0.0), phase(t, 1.0)]),
+            refusal("t,CH1 [V]", |t| vec![square(t)]),
+            refusal("t,U_dc [V]", |t| vec![phase(t, 0.0)]),
+            refusal("t,CH1 [V]", |t| vec![48.0 + 0.1 * phase(t, 0.0)]),
+            refusal("t,ud,uq", |t| vec![phase(t, 0.0), phase(t, 1.0)]),
+        ] {
+            assert!(sentence.contains("missing"), "{sentence}");
+        }
+    }
+}
