@@ -106,10 +106,10 @@ impl Channel {
     pub(crate) fn spellings(self) -> &'static [&'static str] {
         match self {
             Self::T => &["t", "time", "timestamp", "mstoday", "seconds"],
-            Self::Ud => &["ud", "vd", "daxisvoltage", "voltaged", "voltagedaxis"],
-            Self::Uq => &["uq", "vq", "qaxisvoltage", "voltageq", "voltageqaxis"],
-            Self::Id => &["id", "daxiscurrent", "currentd", "currentdaxis"],
-            Self::Iq => &["iq", "qaxiscurrent", "currentq", "currentqaxis"],
+            Self::Ud => &["ud", "vd", "daxisvoltage", "voltaged", "voltagedaxis", "usd", "vsd", "uds", "vds"],
+            Self::Uq => &["uq", "vq", "qaxisvoltage", "voltageq", "voltageqaxis", "usq", "vsq", "uqs", "vqs"],
+            Self::Id => &["id", "daxiscurrent", "currentd", "currentdaxis", "isd", "ids"],
+            Self::Iq => &["iq", "qaxiscurrent", "currentq", "currentqaxis", "isq", "iqs"],
             Self::OmegaE => &["omega", "omegae", "omegael", "omegam", "speed", "velocity", "rpm", "erpm"],
             Self::ThetaE => &["theta", "thetae", "thetael", "thetam", "angle", "electricalangle", "rotorangle"],
             Self::UDc => &["udc", "vdc", "dcvoltage", "dclinkvoltage", "busvoltage", "vbus", "inputvoltage"],

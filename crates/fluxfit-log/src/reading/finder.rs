@@ -6,7 +6,7 @@ use super::{
     layout::{Layout, NotALog, is_called},
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
-    proposal::propose,
+    proposal::propose_needed,
     resemblance::{fit, has_other_unit, is_reference},
 };
 use crate::{
@@ -358,6 +358,8 @@ impl Finder<'_> {
         // References are not proposed for measured currents.
         let present = self.names();
         let currents: Vec<Channel> = missing.iter().copied().filter(|channel| channel.dimension() == Dimension::Current).collect();
+        let of_stator = if currents.is_empty() { &[][..] } else { &[IAlpha, IBeta] };
+        let currents = [&currents, of_stator].concat();
         let resembles = |channels: &[Channel], name: &str| channels.iter().any(|channel| fit(*channel, name).is_some());
         let is_used = |index: usize| found.iter().any(|(_, used)| *used == index);
         let is_reference_of_current = |index: usize| {
@@ -367,14 +369,15 @@ impl Finder<'_> {
         };
         let without_numbers = (self.without_numbers)();
         let references: Vec<usize> = (0..present.len()).filter(|index| is_reference_of_current(*index)).collect();
-        let proposals =
-            propose(missing, self.heads, |index| !is_used(index) && !references.contains(&index) && !without_numbers.contains(&index));
+        let has_angle = matches!(self.index(ThetaE), Ok(Some(_)));
+        let is_free = |index: usize| !is_used(index) && !references.contains(&index) && !without_numbers.contains(&index);
+        let (missing, proposals) = propose_needed(missing, self.heads, has_angle, is_free);
         let rms = proposals.iter().filter(|proposal| proposal.is_rms());
         let rms = rms.filter_map(|proposal| Some((proposal.channel.name(), proposal.unit?.name()))).collect();
         let proposals = proposals.into_iter().map(|proposal| (proposal.channel.name(), present[proposal.index].clone())).collect();
         let references = references.into_iter().map(|index| present[index].clone()).collect();
         let texts = without_numbers.iter().map(|index| &present[*index]);
-        let unreadable = self.unreadable.iter().chain(texts).filter(|name| resembles(missing, name)).cloned().collect();
+        let unreadable = self.unreadable.iter().chain(texts).filter(|name| resembles(&missing, name)).cloned().collect();
         let missing = missing.iter().map(|channel| channel.name()).collect();
         Problem::Missing { missing, present, proposals, rms, references, unreadable, lists: self.lists.to_vec() }.into()
     }

@@ -9,6 +9,7 @@ use crate::{
     channel::Channel,
     header_unit::{HeaderUnit, split_header, unit_in_row},
 };
+use Channel::{IAlpha, IBeta, Id, Iq, ThetaE, UAlpha, UBeta, Ud, Uq};
 use fluxfit_units::{Dimension, Unit};
 
 /// A column that may be a channel.
@@ -67,6 +68,35 @@ pub(super) fn propose(channels: &[Channel], heads: &[ColumnHead], is_free: impl 
     proposals
 }
 
+/// The same for the channels that a log needs; where a dq pair lacks and no column resembles either, for that of the stator's frame, and
+/// then for the angle that turns it, if `has_angle` does not say that it is there. Returns the channels that the log lacks then, too.
+pub(super) fn propose_needed(
+    missing: &[Channel],
+    heads: &[ColumnHead],
+    has_angle: bool,
+    is_free: impl Fn(usize) -> bool,
+) -> (Vec<Channel>, Vec<Proposal>) {
+    let mut channels = missing.to_vec();
+    let proposals = propose(&channels, heads, &is_free);
+    let is_proposed = |proposals: &[Proposal], channel: Channel| proposals.iter().any(|proposal| proposal.channel == channel);
+    for (dq, stator) in [([Ud, Uq], [UAlpha, UBeta]), ([Id, Iq], [IAlpha, IBeta])] {
+        let are_open = dq.iter().all(|channel| missing.contains(channel) && !is_proposed(&proposals, *channel));
+        if are_open && propose(&stator, heads, &is_free).len() == 2 {
+            let place = channels.iter().position(|channel| *channel == dq[0]).unwrap_or(0);
+            channels.retain(|channel| !dq.contains(channel));
+            channels.splice(place..place, stator);
+        }
+    }
+    if channels.len() == missing.len() && channels == missing {
+        return (channels, proposals);
+    }
+    if !has_angle && !channels.contains(&ThetaE) {
+        channels.push(ThetaE);
+    }
+    let proposals = propose(&channels, heads, is_free);
+    (channels, proposals)
+}
+
 /// The best one; of equal ones the first: a second motor or sensor comes later.
 fn best<'a>(candidates: impl Iterator<Item = &'a Candidate>) -> Option<&'a Candidate> {
     candidates.reduce(|best, next| if next.fit.score > best.fit.score { next } else { best })
@@ -120,7 +150,7 @@ mod tests {
         assert_eq!(proposed(tritium), ["Time", "MotorVd", "MotorVq", "MotorId", "MotorIq", "MotorVelocity"]);
         let dyno = "Input voltage;Test motor q-axis current;Test motor d-axis current;Output Torque;Output Speed;Output Speed set-point;Absorber q-axis current";
         assert_eq!(proposed(dyno), ["-", "-", "-", "Test motor d-axis current", "Test motor q-axis current", "Output Speed"]);
-        assert_eq!(proposed("tmie;omga;uds"), ["tmie", "-", "-", "-", "-", "omga"]);
+        assert_eq!(proposed("tmie;omga;udz"), ["tmie", "-", "-", "-", "-", "omga"]);
         assert_eq!(proposed("timestep;speed_step"), ["-"; 6]);
         assert_eq!(proposed("uq.Time;id.time"), ["uq.Time", "-", "-", "-", "-", "-"]);
     }
@@ -141,5 +171,22 @@ mod tests {
         assert_eq!(proposed("id_RMS_A;iq_RMS_A")[3..5], ["id_RMS_A", "iq_RMS_A"]);
         // A letter and a number are a temperature or a torque.
         assert_eq!(proposed("t1;n1")[0], "-");
+    }
+
+    #[test]
+    fn signals_of_a_bus_and_of_the_stator_are_proposed() {
+        assert_eq!(proposed("time;isd_id;isq_id;usd_id;usq_id")[1..5], ["usd_id", "usq_id", "isd_id", "isq_id"]);
+        assert_eq!(proposed("iMeasDQ.D;iMeasDQ.Q;vRefDQ_D;vRefDQ_Q")[1..5], ["vRefDQ_D", "vRefDQ_Q", "iMeasDQ.D", "iMeasDQ.Q"]);
+        let heads = |names: &[&str]| -> Vec<ColumnHead> {
+            names.iter().map(|name| ColumnHead { name: (*name).to_owned(), ..ColumnHead::default() }).collect()
+        };
+        let of_stator = heads(&["t", "vRefAlpBet_Alpha", "vRefAlpBet_Beta", "iAlpBet_Alpha", "iAlpBet_Beta", "theta"]);
+        let (lacking, proposals) = propose_needed(&[Ud, Uq, Id, Iq], &of_stator, false, |index| index > 0);
+        assert_eq!(lacking, [UAlpha, UBeta, IAlpha, IBeta, ThetaE]);
+        assert_eq!(proposals.iter().map(|proposal| proposal.index).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
+        // Words that are not of the frame, per unit, one axis alone.
+        for names in [["vLoadAlpBet_Alpha", "vLoadAlpBet_Beta"], ["vPuAlpBet_Alpha", "vPuAlpBet_Beta"], ["vRef_Alpha", "x"]] {
+            assert_eq!(propose_needed(&[Ud, Uq], &heads(&names), true, |_| true), (vec![Ud, Uq], Vec::new()), "{names:?}");
+        }
     }
 }

@@ -133,7 +133,52 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
         (similarity >= SIMILAR).then(fit)
     });
     // Of equal ones the first.
-    fits.reduce(|best, next| if next.score > best.score { next } else { best })
+    fits.chain(of_bus(channel, &words)).reduce(|best, next| if next.score > best.score { next } else { best })
+}
+
+/// Words between the quantity and the axis of a signal of a bus: its frame, and what it is.
+const OF_BUS: [&str; 20] = [
+    "ref",
+    "cmd",
+    "meas",
+    "act",
+    "fb",
+    "s",
+    "stator",
+    "motor",
+    "dq",
+    "ab",
+    "alp",
+    "bet",
+    "alpha",
+    "beta",
+    "alphabeta",
+    "alpbet",
+    "d",
+    "q",
+    "out",
+    "in",
+];
+
+/// How the name of a signal of a bus resembles a channel: the quantity first, the axis last, as in `vRefAlpBet_Alpha`, `iMeasDQ.Q`.
+fn of_bus(channel: Channel, words: &[String]) -> Option<Fit> {
+    let axis = match channel {
+        Channel::Ud | Channel::Id => "d",
+        Channel::Uq | Channel::Iq => "q",
+        Channel::UAlpha | Channel::IAlpha => "alpha",
+        Channel::UBeta | Channel::IBeta => "beta",
+        _ => return None,
+    };
+    let quantities: &[&str] = if channel.dimension() == Dimension::Voltage { &["v", "u", "voltage"] } else { &["i", "current"] };
+    let [first, middle @ .., last] = words else { return None };
+    let frame = quantities.iter().find_map(|quantity| first.strip_prefix(quantity))?;
+    let is_known = |word: &str| OF_BUS.contains(&word);
+    let is_signal = (frame.is_empty() || is_known(frame)) && middle.iter().all(|word| is_known(word)) && last == axis;
+    let letters: usize = words.iter().map(|word| word.chars().count()).sum();
+    let others = 1.0 - (STEPS * (first.len() + last.len()) as f64 / letters as f64).round() / STEPS;
+    // `id` of `i_d` is no bus.
+    let is_bus = is_signal && !(middle.is_empty() && frame.is_empty());
+    is_bus.then(|| Fit { score: 1.0 - OTHER_WORDS * others, around: format!("{first} {}||", middle.join(" ")) })
 }
 
 /// Whether a name ends in the unit of a flux density, `Bmax_T`: that letter is no time.

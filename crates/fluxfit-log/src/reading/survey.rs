@@ -5,7 +5,8 @@ use super::{
     finder::Finder,
     layout::{Layout, is_called},
     options::ResolvedOptions,
-    proposal::{propose, stated_unit},
+    proposal::{propose_needed, stated_unit},
+    resemblance::{fit, is_reference},
     rms,
     table::Table,
 };
@@ -101,7 +102,15 @@ pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &R
     let is_missing = |channel: &Channel| survey.taken.iter().all(|taken| taken.channel != *channel);
     let missing: Vec<Channel> = Channel::NEEDED.into_iter().filter(is_missing).collect();
     let is_free = |index: usize| survey.taken.iter().all(|taken| taken.index != index) && !without_numbers.contains(&index);
-    let resembling = propose(&missing, heads, is_free).into_iter();
+    // As where columns are missing: a reference is not proposed for a measured current.
+    let is_reference_of_current = |index: usize| {
+        let name = &heads[index].name;
+        let mut currents = Channel::all().filter(|channel| channel.dimension() == Dimension::Current);
+        is_reference(name) && currents.any(|channel| fit(channel, name).is_some())
+    };
+    let is_free = |index: usize| is_free(index) && !is_reference_of_current(index);
+    let has_angle = !is_missing(&Channel::ThetaE);
+    let resembling = propose_needed(&missing, heads, has_angle, is_free).1.into_iter();
     survey.resembling = resembling.map(|found| surveyed(found.channel, found.index, &heads[found.index], layout, options)).collect();
     survey
 }
