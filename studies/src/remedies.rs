@@ -173,7 +173,7 @@ fn kind(remedy: &Remedy) -> &'static str {
         Remedy::HoldLonger { .. } => "hold longer",
         Remedy::SpreadPoints { .. } => "spread the points (no width)",
         Remedy::StateVoltageTiming => "state the timing (no width)",
-        Remedy::CompensateDeadTime => "compensate dead time (no width)",
+        Remedy::CompensateDeadTime { .. } => "compensate dead time (no width)",
         Remedy::RemoveDisturbances => "stretch for the steady model (no width)",
         Remedy::CalibrateSensors => "calibrate the sensors (no width)",
         Remedy::SharperPrior => "sharper prior (no width)",

@@ -86,7 +86,7 @@ impl Case {
             Remedy::StateVoltageTiming if self.scenario.logging.rows == LoggedRows::Mean => {
                 case.request.voltage_timing = Some(VoltageTiming::Averaged);
             }
-            Remedy::CompensateDeadTime => {
+            Remedy::CompensateDeadTime { .. } => {
                 let inverter = &mut case.scenario.inverter;
                 (inverter.dead_time, inverter.switch_drop, inverter.diode_drop) = (0.0, 0.0, 0.0);
             }

@@ -31,7 +31,7 @@ impl Mending {
     /// Of a finding in a log with these columns, read with this number of pole pairs.
     fn of(finding: &ColumnFinding, read: &[ReadColumn], pole_pairs: Option<u32>) -> Self {
         match finding {
-            ColumnFinding::SpeedUnit { ratio } => speed_unit(*ratio, read, pole_pairs.unwrap_or(1)).unwrap_or_default(),
+            ColumnFinding::SpeedUnit { ratio } => speed_unit(*ratio, read, pole_pairs).unwrap_or_default(),
             ColumnFinding::SpeedScale { low, high } => speed_scale(*low..=*high, read, pole_pairs).unwrap_or_default(),
             ColumnFinding::AngleInDegrees => Self::option("--unit theta_e=deg".to_owned()),
             ColumnFinding::SpeedSign { wrong } => {
@@ -75,7 +75,9 @@ fn column<'a>(read: &'a [ReadColumn], channel: &str) -> Option<&'a ReadColumn> {
 }
 
 /// Unit and pole pairs with which the speed turns as fast as the angle; or the angle as fast as the speed.
-fn speed_unit(ratio: f64, read: &[ReadColumn], pole_pairs: u32) -> Option<Mending> {
+fn speed_unit(ratio: f64, read: &[ReadColumn], given: Option<u32>) -> Option<Mending> {
+    let pole_pairs = given.unwrap_or(1);
+    let unless_given = |needed: u32| if given == Some(needed) { String::new() } else { format!(" --pole-pairs {needed}") };
     let column = column(read, "omega_e")?;
     let now = size(column.unit, pole_pairs) * ratio;
     // The pole pairs that a mechanical unit would need.
@@ -101,14 +103,14 @@ fn speed_unit(ratio: f64, read: &[ReadColumn], pole_pairs: u32) -> Option<Mendin
     if let Some((unit, pole_pairs)) = mechanical.into_iter().find_map(|unit| pole_pairs_of(unit).map(|pairs| (unit, pairs))) {
         let cause =
             if size(unit, 1) == size(column.unit, 1) { "mechanical speed".to_owned() } else { format!("speed in {}", unit.prose()) };
-        let option = format!("--unit omega_e={} --pole-pairs {pole_pairs}", unit.name());
+        let option = format!("--unit omega_e={}{}", unit.name(), unless_given(pole_pairs));
         return Some(Mending { cause: Some(format!("{cause}, {}", named_pairs(pole_pairs))), ..Mending::option(option) });
     }
     let pairs = (1.0 / ratio).round();
     let is_mechanical_angle = (2.0..=f64::from(MOST_POLE_PAIRS)).contains(&pairs) && (ratio * pairs - 1.0).abs() < AGREES;
     is_mechanical_angle.then(|| Mending {
         cause: Some(format!("mechanical angle, {}", named_pairs(pairs as u32))),
-        ..Mending::option(format!("--unit theta_e=rad-mech --pole-pairs {pairs:.0}"))
+        ..Mending::option(format!("--unit theta_e=rad-mech{}", unless_given(pairs as u32)))
     })
 }
 
@@ -131,7 +133,7 @@ fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: O
     // r/min of a shaft are 9.5 times too high, less the number of pole pairs.
     (column.unit == Unit::RadianPerSecond).then(|| Mending {
         cause: Some("it may be in r/min of the shaft".to_owned()),
-        ..Mending::option("--unit omega_e=rpm-mech --pole-pairs N".to_owned())
+        ..Mending::option(format!("--unit omega_e=rpm-mech{}", if pole_pairs.is_some() { "" } else { " --pole-pairs N" }))
     })
 }
 
@@ -273,6 +275,9 @@ mod tests {
         assert_eq!(option(400.0 / 15.9155, Unit::RadianPerSecond, None), "--unit omega_e=Hz-mech --pole-pairs 4");
         assert_eq!(option(4.0, Unit::RpmElectrical, None), "--unit omega_e=rpm-mech --pole-pairs 4");
         assert_eq!(option(2.0, Unit::RpmMechanical, Some(2)), "--pole-pairs 4");
+        // What was given is not asked for again.
+        assert_eq!(option(4.0, Unit::RadianPerSecond, Some(4)), "--unit omega_e=rad/s-mech");
+        assert_eq!(option(0.25, Unit::RadianPerSecond, Some(4)), "--unit theta_e=rad-mech");
         // Electrical r/min that were read as mechanical ones with 4 pole pairs.
         assert_eq!(option(0.25, Unit::RpmMechanical, Some(4)), "--unit omega_e=rpm-elec");
         assert_eq!(option(0.25, Unit::RadianPerSecond, None), "--unit theta_e=rad-mech --pole-pairs 4");
@@ -288,6 +293,7 @@ mod tests {
         assert_eq!(option(3.0, 4.6, Unit::RpmMechanical, Some(4)), "--unit omega_e=rpm-elec");
         assert_eq!(option(7.7, 10.9, Unit::RadianPerSecond, None), "--unit omega_e=rpm-elec");
         assert_eq!(option(2.0, 2.6, Unit::RadianPerSecond, None), "--unit omega_e=rpm-mech --pole-pairs N");
+        assert_eq!(option(2.0, 2.6, Unit::RadianPerSecond, Some(4)), "--unit omega_e=rpm-mech");
         // That of the shaft with 4 pole pairs, or Hz with any.
         assert_eq!(option(0.15, 0.26, Unit::RadianPerSecond, None), "");
     }

@@ -1,16 +1,16 @@
 //! How this program does what the library proposes: the options behind remedies, warnings and errors.
 
-use fluxfit::{ErrorKind, Measurement, Remedy, Warning};
+use fluxfit::{Also, ErrorKind, Measurement, Remedy, Warning};
 
 /// The option that carries out a remedy.
 pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
     match remedy {
         Remedy::Measure(promised) => matches!(promised.measurement, Measurement::Resistance { .. }).then_some("--prior rs=VALUE±1%"),
-        Remedy::AddStretch { also: Some(_), .. } => Some("--fix rs=VALUE"),
+        Remedy::AddStretch { also: Some(Also::OrSecondPoint), .. } => Some("--fix rs=VALUE"),
         Remedy::HoldLonger { or, .. } => of_remedy(or),
         Remedy::SpreadPoints { parameter: fluxfit::Parameter::Rs } => Some("--prior rs=VALUE±1%"),
         Remedy::StateVoltageTiming => Some("--voltage-timing"),
-        Remedy::CompensateDeadTime | Remedy::FixOne => Some("--fix rs=VALUE"),
+        Remedy::CompensateDeadTime { or_resistance: true } | Remedy::FixOne => Some("--fix rs=VALUE"),
         Remedy::RemoveDisturbances => Some("--window T0:T1 --model steady"),
         Remedy::SimilarWindows => Some("--window T0:T1"),
         Remedy::SharperPrior => Some("--prior"),

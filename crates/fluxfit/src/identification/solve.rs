@@ -107,7 +107,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
     let half_widths = |log: &Log, request: &Request| half_widths(log, request, output.as_ref().or(outvoted.as_ref()));
     let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), &half_widths);
-    let parameters = explained(judged, finding, Some(trials));
+    let parameters = explained(judged, finding, request, Some(trials));
     let method = swarm::method(request, model.model);
     let search = method.map(|method| search(log, steady.as_ref(), output.as_ref(), method, request, progress)).transpose()?;
     let evidence = Evidence {

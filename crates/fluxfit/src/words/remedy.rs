@@ -23,6 +23,7 @@ impl Display for Remedy {
                 match also {
                     None => Ok(()),
                     Some(Also::OrSecondPoint) => write!(f, ", or a second speed or load, or give R_s"),
+                    Some(Also::OrSecondPointWithResistance) => write!(f, ", or a second speed or load"),
                     Some(Also::AndSecondPoint) => write!(f, ", and one at a clearly different speed and load"),
                 }
             }
@@ -32,8 +33,9 @@ impl Display for Remedy {
             }
             Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
-            Self::CompensateDeadTime => {
-                write!(f, "log with the drive's dead-time compensation on, or give R_s as measured at the terminals")
+            Self::CompensateDeadTime { or_resistance } => {
+                write!(f, "log with the drive's dead-time compensation on")?;
+                if *or_resistance { write!(f, ", or give R_s as measured at the terminals") } else { Ok(()) }
             }
             Self::TellFrameLag => write!(
                 f,

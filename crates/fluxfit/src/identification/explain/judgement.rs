@@ -7,6 +7,7 @@ use super::{
             reason::Reason,
             verdict::{Judged, Verdict},
         },
+        request::{Known, Request},
     },
     remedy::{self, Remedy},
     trial::Trials,
@@ -45,7 +46,13 @@ impl Judgement {
 }
 
 /// Adds the remedies. Measurements are tried on the log before they are proposed, if there is one to try them on.
-pub(crate) fn explained(judged: [Judged; PARAMETERS], finding: &Finding, mut trials: Option<Trials>) -> [Judgement; PARAMETERS] {
+pub(crate) fn explained(
+    judged: [Judged; PARAMETERS],
+    finding: &Finding,
+    request: &Request,
+    mut trials: Option<Trials>,
+) -> [Judgement; PARAMETERS] {
+    let knows_rs = request.known[Parameter::Rs as usize] != Known::Nothing;
     let mut remedy = |one: &Judged| {
         // What is wrong with one parameter of a fit is to be mended for all of them.
         let source = match one.reason {
@@ -56,7 +63,7 @@ pub(crate) fn explained(judged: [Judged; PARAMETERS], finding: &Finding, mut tri
         let of_gains = finding.uncertainty.parameters[parameter as usize].systematic.common_gains();
         let now = if source.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { source.relative_half_width() };
         let measure = || trials.as_mut().and_then(|trials| trials.best(of_gains, now, parameter));
-        source.reason.as_ref().and_then(|reason| remedy::of(reason, parameter, finding, measure))
+        source.reason.as_ref().and_then(|reason| remedy::of(reason, parameter, finding, knows_rs, measure))
     };
     let remedies: Vec<Option<Remedy>> = judged.iter().map(&mut remedy).collect();
     let mut remedies = remedies.into_iter();

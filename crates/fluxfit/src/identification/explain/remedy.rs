@@ -48,9 +48,11 @@ pub enum Remedy {
     },
     /// State the timing of the voltage columns: [`Request::voltage_timing`](crate::Request::voltage_timing).
     StateVoltageTiming,
-    /// Log with the drive's dead-time compensation on, or give R_s as measured at the terminals:
-    /// [`Request::known`](crate::Request::known).
-    CompensateDeadTime,
+    /// Log with the drive's dead-time compensation on.
+    CompensateDeadTime {
+        /// Or give R_s as measured at the terminals: [`Request::known`](crate::Request::known). Not where it is given.
+        or_resistance: bool,
+    },
     /// Log what tells a recorder's lag: different loads at one speed, or rows without current.
     TellFrameLag,
     /// Log each of the drive's periods.
@@ -88,6 +90,8 @@ pub enum Remedy {
 pub enum Also {
     /// Instead: a second speed or load, or R_s given.
     OrSecondPoint,
+    /// The same where R_s is given already.
+    OrSecondPointWithResistance,
     /// In addition: an operating point at a clearly different speed and load.
     AndSecondPoint,
 }
@@ -98,14 +102,24 @@ const MUCH_LONGER: f64 = 100.0;
 /// Most of the interval of an identified parameter that may be no noise where longer windows are to help.
 const MOST_REST: f64 = 0.9;
 
-/// What to do about a reason; nothing about a value that was given. `measure`: what to measure, where that is worth it.
-pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measure: impl FnOnce() -> Option<Promised>) -> Option<Remedy> {
+/// What to do about a reason; nothing about a value that was given. `knows_rs`: R_s is given, which then is no remedy. `measure`: what to
+/// measure, where that is worth it.
+pub(crate) fn of(
+    reason: &Reason,
+    parameter: Parameter,
+    finding: &Finding,
+    knows_rs: bool,
+    measure: impl FnOnce() -> Option<Promised>,
+) -> Option<Remedy> {
     let measure = || measure().map(Remedy::Measure);
     let or_stretch = |also: Option<Also>| Remedy::AddStretch { id: step(finding), also };
     Some(match reason {
         Reason::Given => return None,
         Reason::IdZero { .. } | Reason::IdConstant => measure().unwrap_or_else(|| or_stretch(None)),
-        Reason::OnePoint => measure().unwrap_or_else(|| or_stretch(Some(Also::OrSecondPoint))),
+        Reason::OnePoint => {
+            let also = if knows_rs { Also::OrSecondPointWithResistance } else { Also::OrSecondPoint };
+            measure().unwrap_or_else(|| or_stretch(Some(also)))
+        }
         Reason::TooSimilar { .. } => measure().unwrap_or_else(|| or_stretch(Some(Also::AndSecondPoint))),
         Reason::ShortCircuit => Remedy::FixOne,
         Reason::OtherImpossible { .. } if !is_any_negative(finding) => measure().unwrap_or_else(|| or_stretch(None)),
@@ -117,12 +131,12 @@ pub(crate) fn of(reason: &Reason, parameter: Parameter, finding: &Finding, measu
         Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Reason::Saturates => Remedy::SmallSteps,
-        Reason::Wide { part, .. } => narrower(*part, parameter, finding, measure),
+        Reason::Wide { part, .. } => narrower(*part, parameter, finding, knows_rs, measure),
     })
 }
 
 /// What makes a wide interval narrower; `measure` is what to measure for it.
-fn narrower(part: Part, parameter: Parameter, finding: &Finding, measure: impl FnOnce() -> Option<Remedy>) -> Remedy {
+fn narrower(part: Part, parameter: Parameter, finding: &Finding, knows_rs: bool, measure: impl FnOnce() -> Option<Remedy>) -> Remedy {
     match part {
         Part::Noise => {
             let or = measure().unwrap_or(Remedy::SpreadPoints { parameter });
@@ -133,7 +147,7 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, measure: impl F
         }
         Part::Accuracy | Part::Excitation | Part::FaultsInDoubt => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Part::Timing => Remedy::StateVoltageTiming,
-        Part::DeadTime => measure().unwrap_or(Remedy::CompensateDeadTime),
+        Part::DeadTime => measure().unwrap_or(Remedy::CompensateDeadTime { or_resistance: !knows_rs }),
         Part::FrameLag => Remedy::TellFrameLag,
         Part::WithinRows => Remedy::LogEachPeriod,
         // What disturbs the motor would disturb it in a further stretch too.
@@ -215,12 +229,25 @@ mod tests {
     #[test]
     fn a_sign_is_not_suspected_where_a_lag_explains_it() {
         let motor = Motor { rs: 0.03, ld: 0.0, lq: -100e-6, psi_f: 9e-3 };
-        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period), || None);
+        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period), false, || None);
         let Some(Remedy::CheckFrame { lag }) = remedy(motor, 1e-3) else { panic!("a lag explains it") };
         assert!((lag / 27.8e-6 - 1.0).abs() < 0.01, "{lag}");
         let signs = Some(Remedy::CheckSigns { units: false });
         assert_eq!(remedy(Motor { lq: -10e-3, ..motor }, 1e-3), signs);
         assert_eq!(remedy(Motor { rs: -0.03, ..motor }, 1e-3), signs);
         assert_eq!(remedy(motor, 0.1), signs);
+    }
+
+    /// What was given is not asked for again.
+    #[test]
+    fn a_resistance_that_is_given_is_no_remedy() {
+        let finding = finding(Motor { rs: 0.03, ld: 1e-4, lq: 1e-4, psi_f: 9e-3 }, 1e-4);
+        let wide = Reason::Wide { part: Part::DeadTime, half_width: 0.3 };
+        for knows_rs in [false, true] {
+            for reason in [&wide, &Reason::OnePoint] {
+                let sentence = of(reason, Parameter::PsiF, &finding, knows_rs, || None).unwrap().to_string();
+                assert_eq!(sentence.contains("give R_s"), !knows_rs, "{sentence}");
+            }
+        }
     }
 }
