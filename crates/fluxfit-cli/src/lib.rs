@@ -59,7 +59,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     match outcome {
-        Ok(_) if terminal::is_unread() => ExitCode::from(2),
+        Ok(_) if terminal::is_unread() => {
+            terminal::unwritten().into_iter().for_each(|error| terminal::print_error(&error.into()));
+            ExitCode::from(2)
+        }
         Ok(status) => interrupt::exit_status().map_or_else(|| status.into(), ExitCode::from),
         // Whoever closed the pipe of a stream has seen enough.
         Err(CommandError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,

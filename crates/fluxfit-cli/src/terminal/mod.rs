@@ -38,7 +38,11 @@ pub(crate) const HEADING: Style = Style::new().bold();
 /// Whether nobody reads the answer any more.
 static IS_UNREAD: AtomicBool = AtomicBool::new(false);
 
-/// Prints an answer. Whoever closes the pipe early, as `head` does, still gets the report and the other files.
+/// Why an answer could not be written, where that is not because nobody reads it: a full disk.
+static UNWRITTEN: Mutex<Option<std::io::Error>> = Mutex::new(None);
+
+/// Prints an answer. Whoever closes the pipe early, as `head` does, still gets the report and the other files, and so does whoever sends
+/// the answer to a full disk: the error is told at the end.
 pub(crate) fn print(text: &str) -> std::io::Result<()> {
     LIVE.store(0, Ordering::Relaxed);
     let mut out = anstream::stdout().lock();
@@ -47,8 +51,18 @@ pub(crate) fn print(text: &str) -> std::io::Result<()> {
             IS_UNREAD.store(true, Ordering::Relaxed);
             Ok(())
         }
-        printed => printed,
+        Err(error) => {
+            IS_UNREAD.store(true, Ordering::Relaxed);
+            UNWRITTEN.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            Ok(())
+        }
+        Ok(()) => Ok(()),
     }
+}
+
+/// Why an answer could not be written, once.
+pub(crate) fn unwritten() -> Option<std::io::Error> {
+    UNWRITTEN.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 /// Whether an answer was not read to its end.

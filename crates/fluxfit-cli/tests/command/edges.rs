@@ -98,7 +98,16 @@ fn a_closed_pipe_is_exit_status_2_and_the_report_is_written_all_the_same() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_exit_status_2() {
-    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_fluxfit")).arg("formats").stdout(full).output().unwrap();
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_fluxfit")).arg("formats").stdout(full()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
+    // What goes into other files is not lost with it.
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.html");
+    let identify = ["identify", "examples/logs/paper_rig_pwm_noise.csv", "--model", "steady", "--report"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fluxfit"));
+    let output = command.args(identify).arg(&page).current_dir(super::root()).stdout(full()).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), told.matches("could not be written").count()), (Some(2), 1), "{told}");
+    assert!(fs::read_to_string(page).is_ok_and(|page| page.contains("</html>")));
 }
