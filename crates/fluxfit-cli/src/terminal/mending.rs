@@ -8,7 +8,7 @@ use fluxfit::{
 use fluxfit_files::Advice;
 use fluxfit_log::ReadColumn;
 use fluxfit_units::{Dimension, Unit, significant};
-use std::ops::RangeInclusive;
+use std::{f64::consts::TAU, ops::RangeInclusive};
 
 /// How well a ratio must agree with that of two units.
 const AGREES: f64 = 0.005;
@@ -105,6 +105,10 @@ fn speed_unit(ratio: f64, read: &[ReadColumn], given: Option<u32>) -> Option<Men
             if size(unit, 1) == size(column.unit, 1) { "mechanical speed".to_owned() } else { format!("speed in {}", unit.prose()) };
         let option = format!("--unit omega_e={}{}", unit.name(), unless_given(pole_pairs));
         return Some(Mending { cause: Some(format!("{cause}, {}", named_pairs(pole_pairs))), ..Mending::option(option) });
+    }
+    if (ratio * TAU - 1.0).abs() < AGREES {
+        let lines = line(read, "theta_e", "theta_e", TAU).into_iter().collect();
+        return Some(Mending { cause: Some("the angle is in turns".to_owned()), lines, option: None });
     }
     let pairs = (1.0 / ratio).round();
     let is_mechanical_angle = (2.0..=f64::from(MOST_POLE_PAIRS)).contains(&pairs) && (ratio * pairs - 1.0).abs() < AGREES;

@@ -116,6 +116,22 @@ fn what_people_do_to_columns_is_found_and_what_is_proposed_mends_it() {
     }
 }
 
+/// Rows of one turn, in which an angle in turns does not wind around: it turns 1 / (2 pi) times as fast as the speed.
+#[test]
+fn an_angle_in_turns_is_found_before_it_winds_around() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("log.csv");
+    let rows = rows(LOGS[1]);
+    let winds: Vec<usize> = (1..rows.len()).filter(|row| rows[*row][6] < rows[row - 1][6] - 3.0).collect();
+    let turn: Vec<Row> = rows[winds[20]..winds[21]].to_vec();
+    write(&path, &turn, 7);
+    assert_eq!(finding(&path, &[]), None);
+    write(&path, &turn.iter().map(|row| with(row, 6, row[6] / std::f64::consts::TAU)).collect::<Vec<Row>>(), 7);
+    let (code, told) = finding(&path, &[]).unwrap();
+    assert!(code == "speed-unit" && told.contains("the angle is in turns"), "{told}");
+    assert_eq!(finding(&path, &proposed(&told, directory.path())), None);
+}
+
 /// Of three phases b and c are exchanged. The simulator's dq quantities become phases by the inverse transforms, written out here.
 #[test]
 fn exchanged_phases_are_found_and_mended() {

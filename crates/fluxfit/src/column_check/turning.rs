@@ -86,12 +86,13 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
             }
         }
     }
-    let turned: f64 = blocks.iter().map(|[angle, ..]| angle.abs()).sum::<f64>() * TAU / period;
+    // By the angle or by the speed: an angle in turns turns less than it says.
+    let turned: f64 = blocks.iter().map(|[angle, speed, _]| (angle.abs() * TAU / period).max(speed.abs())).sum();
     let of = |one: &dyn Fn(&[f64; 3]) -> f64, other: &dyn Fn(&[f64; 3]) -> f64| -> f64 { blocks.iter().map(|k| one(k) * other(k)).sum() };
     let (angle, speed, change) = (|k: &[f64; 3]| k[0], |k: &[f64; 3]| k[1], |k: &[f64; 3]| k[2]);
     let beyond = |k: &[f64; 3]| k[0] - k[1];
     let (of_angle, of_speed, of_both) = (of(&angle, &angle), of(&speed, &speed), of(&angle, &speed));
-    let is_told = rows >= LEAST_ROWS && far as f64 <= FEW * rows as f64 && turned >= LEAST_TURN && of_speed > 0.0;
+    let is_told = rows >= LEAST_ROWS && far as f64 <= FEW * rows as f64 && turned >= LEAST_TURN && of_angle > 0.0 && of_speed > 0.0;
     if !is_told || of_both * of_both < CORRELATION * of_angle * of_speed {
         return None;
     }
