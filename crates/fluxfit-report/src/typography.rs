@@ -38,17 +38,22 @@ pub(crate) fn prose(text: &str) -> Markup {
     html! {
         @for (k, word) in words.iter().enumerate() {
             @let number = k.checked_sub(1).and_then(|before| words.get(before)).filter(|before| before.ends_with(|c: char| c.is_ascii_digit()));
-            // A line does not break between a number and its unit.
+            // A line does not break between a number and its unit, nor within `i_q = 15 A` and `2 ± 1`.
             @if let Some(unit) = number.and_then(|_| set_unit(word)) { (NO_BREAK) (unit) } @else {
-                @if k > 0 { " " }
+                @if k > 0 { (space(words[k - 1], word)) }
                 (set_word(word))
             }
         }
     }
 }
 
+/// The space between two words: signs stay on the line of both their neighbours.
+fn space(before: &str, after: &str) -> &'static str {
+    if [before, after].iter().any(|word| matches!(*word, "=" | "±")) { NO_BREAK } else { " " }
+}
+
 /// A space at which no line breaks.
-const NO_BREAK: &str = "\u{a0}";
+pub(crate) const NO_BREAK: &str = "\u{a0}";
 
 /// A unit with what follows it; none if the word is no unit.
 fn set_unit(word: &str) -> Option<String> {
@@ -144,14 +149,14 @@ pub(crate) fn amperes(current: f64) -> String {
         c if c >= 1e-3 => (1e3, "mA"),
         _ => (1e6, "µA"),
     };
-    format!("{} {unit}", number(current, |current| significant(factor * current, 2)))
+    format!("{}{NO_BREAK}{unit}", number(current, |current| significant(factor * current, 2)))
 }
 
 /// The value of a fault of the drive with its 95 % interval and unit.
 pub(crate) fn fault(nuisance: &FaultEstimate) -> Markup {
     let [value, half_width, unit] = format_unknown(nuisance.unknown, nuisance.value, HALF_WIDTH * nuisance.standard_error);
     let unit = greek(&unit.replace("deg", "°"));
-    html! { (minus(value)) " ± " (half_width) @if !unit.is_empty() { (NO_BREAK) (unit) } }
+    html! { (minus(value)) (NO_BREAK) "±" (NO_BREAK) (half_width) @if !unit.is_empty() { (NO_BREAK) (unit) } }
 }
 
 /// A count, up to nine in words.
@@ -215,13 +220,17 @@ mod tests {
             prose("falls from 221 to 126 uH, by 45 %: it is late by 45.6 us (tell us).").into_string(),
             "falls from 221 to 126\u{a0}µH, by 45\u{a0}%: it is late by 45.6\u{a0}µs (tell us)."
         );
+        assert_eq!(
+            prose("between i_q = 15 and 45 A, 2 ± 1 V").into_string(),
+            "between <i>i</i><sub>q</sub>\u{a0}=\u{a0}15 and 45\u{a0}A, 2\u{a0}±\u{a0}1\u{a0}V"
+        );
         assert_eq!(prose("").into_string(), "");
         assert_eq!(prose("...").into_string(), "...");
     }
 
     #[test]
     fn currents_have_a_suitable_unit() {
-        assert_eq!([2.5, 0.0404, 1.9e-5].map(amperes), ["2.5 A", "40 mA", "19 µA"]);
+        assert_eq!([2.5, 0.0404, 1.9e-5].map(amperes), ["2.5\u{a0}A", "40\u{a0}mA", "19\u{a0}µA"]);
     }
 
     #[test]

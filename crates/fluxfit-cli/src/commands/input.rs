@@ -98,13 +98,15 @@ pub(crate) fn read_each(
         let read = read(path, &options)?;
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
-        let of_log = |sentence: &str| format!("{}: {sentence}", name(path));
+        let of_name = |sentence: &str| format!("{}: {sentence}", name(path));
         let columns = read.log.source().columns.clone();
         read_columns.push(read.columns);
-        let of_source = read.notes.iter().map(|note| of_log(&note.sentence)).collect();
-        logs.push(read.log.with_source(Source { columns, notes: of_source }));
         // The name of the only log is said already.
-        notes.extend(read.notes.into_iter().map(|note| if is_only { note } else { Note { sentence: of_log(&note.sentence), ..note } }));
+        let of_this = |note: Note| if is_only { note } else { Note { sentence: of_name(&note.sentence), ..note } };
+        let of_log: Vec<Note> = read.notes.into_iter().map(of_this).collect();
+        let of_source = of_log.iter().map(|note| note.sentence.clone()).collect();
+        logs.push(read.log.with_source(Source { columns, notes: of_source }));
+        notes.extend(of_log);
     }
     let log = Log::join(logs)?;
     let names: Vec<String> = arguments.logs.iter().map(|path| name(path)).collect();

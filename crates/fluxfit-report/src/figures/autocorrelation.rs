@@ -26,7 +26,7 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
     let fit = found.output.as_ref()?;
     let correlation = ResidualCorrelation::of(fit);
     let caption = html! {
-        "Autocorrelation of the residuals at " (correlation.lags()) " lags. Of the correlations of white noise, 95 % lie within the grey band, "
+        "Autocorrelation of the residuals at " (correlation.lags()) " lags. Of the correlations of white noise, 95\u{a0}% lie within the grey band, "
         "±2/√n = ±" (number(correlation.band, |band| significant(band, 2))) " for " (grouped((fit.residuals.len() / 2) as u64)) " rows. "
         "The two panels have different scales."
     };

@@ -41,7 +41,7 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
         draw: Box::new(move |size| draw(found, size)),
         data: None,
         caption: html! {
-            "Half-width of each 95 % interval relative to the value, on a logarithmic scale; smaller (farther left) is better. The background "
+            "Half-width of each 95\u{a0}% interval relative to the value, on a logarithmic scale; smaller (farther left) is better. The background "
             "shows the verdict that a width alone would have"
             @if found.parameters.iter().any(is_weak_though_narrow) { "; “weak” beside a number: for another reason than its width" }
             "."

@@ -47,9 +47,9 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
         draw: Box::new(move |size| draw(&pair, size)),
         data: None,
         caption: html! {
-            "The joint 95 % confidence region of " (list(&[symbol(pair.x.parameter), symbol(pair.y.parameter)])) ", whose errors are correlated "
+            "The joint 95\u{a0}% confidence region of " (list(&[symbol(pair.x.parameter), symbol(pair.y.parameter)])) ", whose errors are correlated "
             "most, about the estimate (dot), in percent of it, from the standard errors and their correlation, "
-            (minus(format!("{:.2}", pair.correlation))) " (that of noise, accuracy and priors). The box is made of the two 95 % intervals. Where "
+            (minus(format!("{:.2}", pair.correlation))) " (that of noise, accuracy and priors). The box is made of the two 95\u{a0}% intervals. Where "
             "the ellipse is narrow and slanted, values in a corner of the box are not plausible together, although each of them is plausible "
             "alone."
             @if let Some(remedy) = separated_by(&pair) { " " (prose(remedy)) }

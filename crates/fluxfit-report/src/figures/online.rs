@@ -53,7 +53,7 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
         draw: Box::new(move |size| courses.draw(size)),
         data: None,
         caption: html! {
-            "What each estimator tells in the course of the log, row by row. Green: identified (half of the 95 % interval, shaded, is at most 5 % "
+            "What each estimator tells in the course of the log, row by row. Green: identified (half of the 95\u{a0}% interval, shaded, is at most 5 % "
             "of the value); amber: weak; grey: held while nothing excites the parameters; black: an estimator without an error covariance, "
             "which cannot tell how wrong it is. No line: no value is told. "
             @if of.document.truth.is_some() { "Dashed: the true value. " }

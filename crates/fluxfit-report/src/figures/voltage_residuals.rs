@@ -57,7 +57,7 @@ pub(crate) fn figure<'a>(report: &Report<'a>) -> Option<Figure<'a>> {
 
 fn caption(fit: &SteadyFit) -> Markup {
     html! {
-        "Residuals of both voltage equations with error bars of two standard uncertainties (95 %), from the noise of the means and "
+        "Residuals of both voltage equations with error bars of two standard uncertainties (95\u{a0}%), from the noise of the means and "
         @if let Some(misfit) = fit.misfit {
             "the accuracy with which the operating points are consistent, " (percent(misfit.voltage_accuracy)) " % of the voltage. A pattern, such "
             "as a dependence on the current, shows what the model lacks."

@@ -367,7 +367,8 @@
     const table = document.querySelector("[data-values] table");
     if (!table) return null;
     const written = cell => [...cell.childNodes].filter(part => part.className !== "key").map(part => part.textContent).join("");
-    const cells = row => [...row.cells].map(cell => quoted(written(cell).trim().replaceAll(MINUS, "-"))).join(",");
+    /* A residual and its half-width are two values. */
+    const cells = row => [...row.cells].flatMap(cell => written(cell).split("±").map(value => quoted(value.trim().replaceAll(MINUS, "-")))).join(",");
     return table.dataset.header + "\n" + [...table.tBodies[0].rows].map(cells).join("\n") + "\n";
   };
 

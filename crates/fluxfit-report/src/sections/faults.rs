@@ -4,14 +4,13 @@ use crate::{
     report::Report,
     section::Section,
     table::{self, key},
-    typography::{DASH, capitalized, fault, number, power, prose},
+    typography::{DASH, capitalized, decimals, fault, number, power, prose},
 };
 use fluxfit::{
     Warning,
     evidence::{FaultOutcome, FaultTrial, OutputFit, Provenance, Resolved, TimingTrial, VERY_STRONG},
     faults::Fault,
 };
-use fluxfit_units::significant;
 use maud::{Markup, html};
 
 /// The section.
@@ -36,7 +35,7 @@ fn identified(fit: &OutputFit) -> Markup {
         } @else {
             (table::scrolling("Identified faults", &html! {
                 table.tried {
-                    thead { tr { th scope="col" { "Identified fault" } th scope="col" { "Value ± 95 %" } } }
+                    thead { tr { th scope="col" { "Identified fault" } th scope="col" { "Value ±\u{a0}95\u{a0}%" } } }
                     tbody { @for nuisance in &fit.fault_estimates { tr {
                         th scope="row" { (prose(&capitalized(nuisance.unknown.label()))) }
                         td { (fault(nuisance)) }
@@ -123,6 +122,20 @@ fn explained(tried: &FaultTrial) -> &'static str {
     }
 }
 
+/// A ratio: three digits, and as many as show that it is more than 1.
+fn relative_to_best(ratio: f64) -> String {
+    let more = ratio - 1.0;
+    if more >= LIKE { format!("{ratio:.0$}", decimals(more, 2).clamp(2, 4)) } else { "1.00".to_owned() }
+}
+
+/// Residuals that differ by less than this part are as large.
+const LIKE: f64 = 1e-3;
+
+/// Whether the timing is one that no usual drive has, and its residuals are as small as those of the best.
+fn is_unusual_but_fits(tried: &TimingTrial, best: f64) -> bool {
+    tried.timing.is_unusual() && (tried.mean_square() / best).sqrt() < 1.0 + LIKE
+}
+
 /// The voltage timings that were tried.
 fn voltage_timings(fit: &OutputFit) -> Markup {
     let Resolved { value: timing, provenance } = fit.voltage_timing;
@@ -135,6 +148,9 @@ fn voltage_timings(fit: &OutputFit) -> Markup {
         p {
             "The log does not state when its voltages act, so all voltage timings were fitted, with the identified faults. The one with the "
             "smallest residuals was taken: " (timing.label()) "."
+            @if fit.timings.iter().any(|tried| tried.timing != timing && is_unusual_but_fits(tried, best)) {
+                " Where an unusual timing fits as well, the usual one is taken."
+            }
             @if possible.len() > 1 {
                 " The log does not distinguish it from " (if possible.len() == 2 { "one other" } else { "some others" })
                 "; the differences of the parameters between them are part of the uncertainty, unless the voltage timing is stated."
@@ -150,10 +166,11 @@ fn voltage_timings(fit: &OutputFit) -> Markup {
                     tr {
                         th scope="row" { (tried.timing.label()) }
                         td { (key("residual ")) (power(tried.mean_square().sqrt())) (key(" A rms")) }
-                        td { (number((tried.mean_square() / best).sqrt(), |ratio| significant(ratio, 3))) (key(" of the best")) }
+                        td { (number((tried.mean_square() / best).sqrt(), relative_to_best)) (key(" of the best")) }
                         td.words {
                             @if tried.timing == timing { span.badge.identified { "taken" } }
                             @else if possible.contains(&tried.timing) { "possible" }
+                            @else if is_unusual_but_fits(tried, best) { "fits as well, but is unusual" }
                             @else { "ruled out" }
                         }
                     }

@@ -116,11 +116,11 @@ fn rate(log: &Log) -> String {
 fn windows(points: &[OperatingPoint]) -> Markup {
     html! {
         h3 { "Windows of the operating points" }
-        (table::scrolling("Windows of the operating points", &html! {
+        div.slim { (table::scrolling("Windows of the operating points", &html! {
             table {
                 thead { tr { th scope="col" { "Point" } th scope="col" { "From, s" } th scope="col" { "To, s" } th scope="col" { "Rows" } } }
                 tbody { @for (k, point) in points.iter().enumerate() { (span(k + 1, point.time, point.rows.len())) } }
             }
-        }))
+        })) }
     }
 }

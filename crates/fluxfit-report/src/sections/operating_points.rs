@@ -6,7 +6,7 @@ use crate::{
     report::Report,
     section::Section,
     table::{self, key, named},
-    typography::{decimals, number, percent, prose},
+    typography::{NO_BREAK, decimals, number, percent, prose},
 };
 use fluxfit::{
     Warning,
@@ -22,7 +22,7 @@ const DECIMALS: usize = 3;
 const BAR: f64 = 2.0;
 
 /// Names of the table's columns in a file of comma-separated values.
-const HEADER: &str = "point,id,iq,omega_e,ud,ud_fitted,ud_residual_mV,uq,uq_fitted,uq_residual_mV";
+const HEADER: &str = "point,id,iq,omega_e,ud,ud_fitted,ud_residual_mV,ud_residual_95_mV,uq,uq_fitted,uq_residual_mV,uq_residual_95_mV";
 
 /// Places of the currents and the speed among the channels of an operating point.
 const ID: usize = 2;
@@ -52,11 +52,13 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
 fn description(fit: &SteadyFit, found: &Identification) -> Markup {
     let redundancy = fit.estimate.redundancy;
     let is_widened = found.output.is_none() && found.parameters.iter().any(|judgement| judgement.uncertainty.systematic.misfit > 0.0);
+    let is_turned = found.warnings.iter().any(|warning| matches!(warning, Warning::FrameLag { .. }));
     let is_warned = found.warnings.iter().any(|warning| matches!(warning, Warning::Misfit { .. }));
     html! {
         p {
             "At each operating point the steady voltage equations hold for the means over a window. "
             "The fitted voltages are those of the parameters that fit all points best; the residual is measured less fitted."
+            @if is_turned { " Measured voltages are those of the log, turned by the lag of the warning “frame-lag”." }
             @if redundancy == 0 {
                 " " strong { "There are no more equations than unknown parameters" }
                 ", so the fit is perfect by construction and does not test the model."
@@ -93,7 +95,7 @@ fn points(found: &SteadyFit) -> Markup {
                         @for axis in ["u_d", "u_q"] { th scope="colgroup" colspan="3" { (prose(axis)) } }
                     }
                     tr { @for _ in 0..2 {
-                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual ± 95 %, mV" }
+                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual ±\u{a0}95\u{a0}%, mV" }
                     } }
                 }
                 tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, (residual, uncertainty), least)) } }
@@ -118,7 +120,7 @@ fn row(k: usize, point: &OperatingPoint, (residual, uncertainty): (&[f64; 2], [f
                 td.group { (named(name)) (fixed(measured, digits)) (key(" V")) }
                 td { (key("fitted ")) (fixed(measured - residual[axis], digits)) (key(" V")) }
                 td {
-                    (key("residual ")) (fixed(1e3 * residual[axis], tenths)) " ± " (fixed(1e3 * BAR * uncertainty[axis], tenths)) (key(" mV"))
+                    (key("residual ")) (fixed(1e3 * residual[axis], tenths)) (NO_BREAK) "±" (NO_BREAK) (fixed(1e3 * BAR * uncertainty[axis], tenths)) (key(" mV"))
                 }
             }
         }

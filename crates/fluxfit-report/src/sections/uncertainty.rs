@@ -5,11 +5,12 @@ use crate::{
     report::Report,
     section::Section,
     table,
-    typography::{DASH, fault, minus, number, prose, sentence, symbol},
+    typography::{DASH, list, minus, number, prose, sentence, symbol},
 };
 use fluxfit::{
     Judgement,
-    evidence::{Identification, ModelChoice, Part, Provenance},
+    evidence::{Identification, ModelChoice, OutputFit, Part, Provenance},
+    faults::Fault,
 };
 use fluxfit_units::significant;
 use maud::{Markup, html};
@@ -37,17 +38,19 @@ fn model(found: &Identification) -> Markup {
                 "The parameters minimize the difference between simulated and measured currents over all rows. The logged voltage of a row is taken "
                 "as "
                 (fit.voltage_timing.value.label()) @if fit.voltage_timing.provenance == Provenance::Found { ", determined from the currents" } ". "
-                @if fit.fault_estimates.is_empty() { "No fault of the drive was found" } @else {
-                    "Found beside the motor, and corrected: "
-                    @for (k, nuisance) in fit.fault_estimates.iter().enumerate() {
-                        @if k > 0 { "; " } (prose(nuisance.unknown.label())) " " (fault(nuisance))
-                    }
-                    "; ± is 95 %"
+                @let taken = taken(fit);
+                @if taken.is_empty() { "No fault of the drive was found" } @else {
+                    "Found beside the motor, and corrected: " (list(&taken))
                 }
                 " (" a href="#faults" { "details" } ")."
             } @else { "The steady voltage equations are fitted to the means over windows of constant currents and speed." }
         }
     }
+}
+
+/// The faults that are part of the fit.
+fn taken(fit: &OutputFit) -> Vec<Markup> {
+    Fault::ALL.into_iter().filter(|fault| fit.has(*fault)).map(|fault| prose(fault.label())).collect()
 }
 
 /// The parts of an uncertainty, noise first.
@@ -83,7 +86,7 @@ fn parts(found: &Identification) -> Markup {
                             @for judgement in &answered { td { (share(judgement, judgement.uncertainty.standard_error())) } }
                         }
                         tr {
-                            th scope="row" { "half of the 95 % interval" }
+                            th scope="row" { "half of the 95\u{a0}% interval" }
                             @for judgement in &answered { td { "±" (share(judgement, judgement.uncertainty.half_width)) } }
                         }
                     }
@@ -91,7 +94,7 @@ fn parts(found: &Identification) -> Markup {
             }))
             p.small {
                 "The parts are added in quadrature. Only the part from noise decreases with more rows. "
-                "Half of the 95 % interval is the combined standard error times Student’s t."
+                "Half of the 95\u{a0}% interval is the combined standard error times Student’s t."
             }
         }
     }

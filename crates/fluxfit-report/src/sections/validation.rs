@@ -56,7 +56,7 @@ pub(crate) fn parameters(found: &Validation) -> Markup {
             table {
                 thead { tr {
                     th scope="col" { "Parameter" } th scope="col" { "Given" } th scope="col" { "From this log" }
-                    th scope="col" { "Difference" } th scope="col" { "± 95 %" } th scope="col" { "In standard errors" } th scope="col" { "Verdict" }
+                    th scope="col" { "Difference" } th scope="col" { "±\u{a0}95\u{a0}%" } th scope="col" { "In standard errors" } th scope="col" { "Verdict" }
                 } }
                 tbody { @for difference in &found.parameters { (parameter(difference)) } }
             }

@@ -51,8 +51,8 @@ fn a_parameter_that_is_not_identifiable_has_no_number() {
     let ld = found.parameter(Parameter::Ld);
     assert_eq!(ld.verdict, Verdict::NotIdentifiable);
     let text = checked(&page);
-    assert!(text.contains("3 of 4 identified. Ld needs 0.2\u{a0}s at id = −2\u{a0}A: then about ±"));
-    assert!(text.contains("To do next: add 0.2\u{a0}s at id = −2\u{a0}A, same speed: Ld to about ±"), "{text}");
+    assert!(text.contains("3 of 4 identified. Ld needs 0.2\u{a0}s at id\u{a0}=\u{a0}−2\u{a0}A: then about ±"));
+    assert!(text.contains("To do next: add 0.2\u{a0}s at id\u{a0}=\u{a0}−2\u{a0}A, same speed: Ld to about ±"), "{text}");
     // A row of the answer, and none of any other table.
     assert_eq!(page.matches("<th scope=\"row\"><i>L</i><sub>d</sub></th>").count(), 1);
     assert!(page.contains("<th scope=\"row\"><i>L</i><sub>d</sub></th><td class=\"value\">–</td>"));
@@ -84,7 +84,7 @@ fn simulated_currents_have_their_own_sections() {
     let text = checked(&page("x", log, found, None));
     // Noise of 50 mA a phase is 50 mA times the root of two thirds, 40.8 mA, along each axis; its rms of 1601 rows is right to 0.7 mA.
     let (_, missed) = text.split_once("Simulated and measured currents differ by ").unwrap();
-    for mark in [" mA (d)", " mA (q)"] {
+    for mark in ["\u{a0}mA (d)", "\u{a0}mA (q)"] {
         let number = missed.split_once(mark).unwrap().0.rsplit(' ').next().unwrap();
         assert!((number.parse::<f64>().unwrap() - 40.8).abs() < 2.1, "{number}");
     }
@@ -145,7 +145,7 @@ fn faults_of_the_drive_are_shown_with_their_values() {
     // A third of the offset of phase b is common to all three and seen by nobody; Clarke makes of it -0.1 A and 0.3 / sqrt 3 = 0.173 A.
     let shown = |key: &str| {
         let (_, rest) = page.split_once(&format!("<th scope=\"row\">Current sensor offset, {key}</th><td>")).unwrap();
-        let (value, rest) = rest.split_once(" ± ").unwrap();
+        let (value, rest) = rest.split_once("\u{a0}±\u{a0}").unwrap();
         let (margin, _) = rest.split_once("\u{a0}mA").unwrap();
         (value.replace('\u{2212}', "-").parse::<f64>().unwrap(), margin.parse::<f64>().unwrap())
     };

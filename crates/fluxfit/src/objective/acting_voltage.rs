@@ -140,7 +140,7 @@ impl VoltageTiming {
     }
 
     /// Whether no inverter that logs each of its periods does so.
-    pub(crate) fn is_unusual(self) -> bool {
+    pub fn is_unusual(self) -> bool {
         self.held() != Held::InStator
     }
 }

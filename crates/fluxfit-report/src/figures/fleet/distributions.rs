@@ -57,10 +57,10 @@ pub(crate) fn figure(fleet: &FleetOverview) -> Option<Figure<'_>> {
         data: None,
         caption: html! {
             @if is_many {
-                "How many motors have which value. Above: the median with the 95 % interval of a typical motor; where it is as wide as the "
+                "How many motors have which value. Above: the median with the 95\u{a0}% interval of a typical motor; where it is as wide as the "
                 "bars, the motors differ by no more than they are known to."
             } @else {
-                "The value of each motor with its 95 % interval."
+                "The value of each motor with its 95\u{a0}% interval."
             }
             @if has_outliers { " Motors that stand apart are circles with their intervals; an arrow points to a value beyond the axis." }
         },

@@ -43,7 +43,7 @@ pub(crate) fn figure(fleet: &FleetOverview) -> Option<Figure<'_>> {
         draw: Box::new(move |size| draw(fleet, size)),
         data: None,
         caption: html! {
-            "The largest movements of each parameter, in percent of the motor's first window, over the time since then. Bars: 95 % intervals."
+            "The largest movements of each parameter, in percent of the motor's first window, over the time since then. Bars: 95\u{a0}% intervals."
         },
     })
 }
