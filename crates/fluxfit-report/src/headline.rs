@@ -27,7 +27,9 @@ pub(crate) fn headline(report: &Report) -> Markup {
 fn identification(found: &Identification) -> Markup {
     html! {
         strong { (prose(&Summary::of(&found.parameters).to_string())) }
-        @if found.is_complete() { " Nothing more is to be done." }
+        @if found.is_complete() {
+            " Nothing more is to be done" @if !found.warnings.is_empty() { ", but see the warnings" } "."
+        }
         @if let Some(saturation) = &found.saturation { (saturated(saturation)) }
         br;
         span.basis { (basis(found)) }

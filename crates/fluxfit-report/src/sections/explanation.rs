@@ -5,7 +5,7 @@ use crate::{
     section::Section,
     typography::{list, prose, sentence, symbol},
 };
-use fluxfit::{Judgement, Reason, Remedy, Summary, evidence::Identification};
+use fluxfit::{Judgement, NextStep, Reason, Remedy, Summary, evidence::Identification};
 use maud::{Markup, html};
 
 /// The section; `None` if there is nothing to do and nothing to warn of.
@@ -28,9 +28,9 @@ fn explanations(found: &Identification, options: &Options) -> Markup {
             None => shared.push((vec![judgement], reason)),
         }
     }
-    let next = Summary::of(&found.parameters).next.map(|next| next.remedy);
+    let next = Summary::of(&found.parameters).next;
     html! {
-        @if let Some(remedy) = &next { p.next { strong { "To do next: " } (to_do(remedy, options)) } }
+        @if let Some(next) = &next { p.next { strong { "To do next: " } (to_do(&next.remedy, options)) } }
         @if !shared.is_empty() {
             dl.reasons {
                 @for (judgements, reason) in &shared {
@@ -45,15 +45,23 @@ fn explanations(found: &Identification, options: &Options) -> Markup {
     }
 }
 
-/// The remedies of these parameters that are not the next step.
-fn remedies(judgements: &[&Judgement], next: Option<&Remedy>, options: &Options) -> Markup {
-    let mut told: Vec<&Remedy> = Vec::new();
-    for remedy in judgements.iter().filter_map(|judgement| judgement.remedy.as_ref()) {
-        if Some(remedy) != next && !told.contains(&remedy) {
-            told.push(remedy);
+/// The remedies of these parameters beside the next step: instead of it, where it helps them too.
+fn remedies(judgements: &[&Judgement], next: Option<&NextStep>, options: &Options) -> Markup {
+    let mut told: Vec<(&str, Markup)> = Vec::new();
+    let is_next = |remedy: &Remedy| next.is_some_and(|next| next.remedy == *remedy);
+    for judgement in judgements {
+        let Some(remedy) = judgement.remedy.as_ref().filter(|remedy| !is_next(remedy)) else { continue };
+        let label = if next.is_some_and(|next| next.parameters.contains(&judgement.parameter)) { "Or: " } else { "To do: " };
+        let step = match remedy {
+            // Its alternative stands above.
+            Remedy::HoldLonger { or, .. } if is_next(or) => html! { (prose(&format!("{remedy:#}"))) "." },
+            remedy => to_do(remedy, options),
+        };
+        if told.iter().all(|(_, other)| other.0 != step.0) {
+            told.push((label, step));
         }
     }
-    html! { @for remedy in told { p { strong { "To do: " } (to_do(remedy, options)) } } }
+    html! { @for (label, step) in told { p { strong { (label) } (step) } } }
 }
 
 /// A remedy, with the option that carries it out.
@@ -71,7 +79,7 @@ fn warnings(found: &Identification, options: &Options) -> Markup {
         @if !found.warnings.is_empty() {
             div.warnings role="note" aria-label="Warnings" {
                 @for warning in &found.warnings {
-                    p { strong { "Warning: " (warning.code()) } br; (prose(&sentence(&warning.to_string()))) (option((options.of_warning)(warning))) }
+                    p { strong { "Warning: " (warning.code()) } br; (prose(sentence(&warning.to_string()).trim_end_matches('.'))) (option((options.of_warning)(warning))) "." }
                 }
             }
         }

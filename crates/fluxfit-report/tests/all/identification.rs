@@ -33,7 +33,7 @@ fn an_identification_shows_values_verdicts_and_command() {
     assert!(found.is_complete());
     let text = checked(&page);
     for expected in [
-        "All 4 identified. Nothing more is to be done.",
+        "All 4 identified. Nothing more is to be done, but see the warnings.",
         "Warning: no-redundancy",
         "tGFPA",
         "'a log.csv'",

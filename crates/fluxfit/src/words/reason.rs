@@ -42,7 +42,9 @@ impl Display for Reason {
                 "the simulated currents jump at the least change of what was fitted, as those of a phase that switches around zero do, so the \
                  fit looks sharper than its noise allows, and nothing of it is to be trusted"
             ),
-            Self::Saturates => write!(f, "the motor saturates, and only a few terms of that were fitted: take the number as an estimate"),
+            Self::Saturates => {
+                write!(f, "the motor saturates, and the fitted saturation is only approximate: take the number as an estimate")
+            }
             Self::RunawayFault { fault } => write!(
                 f,
                 "the fault that was found beside the motor, {}, came out with values that no drive has: it took the place of something else, \
@@ -85,7 +87,10 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
             write!(f, "each row spans several of the drive's periods, and what the voltages do between them is not logged, which {leaves}")
         }
         Part::ProcessNoise => {
-            write!(f, "unknown voltages disturb the motor, and the answers with and without a model of them differ, which {leaves}")
+            write!(
+                f,
+                "voltages that are not logged disturb the motor, and the fits with and without a model of them differ, which {leaves}"
+            )
         }
         Part::FaultsInDoubt => {
             write!(f, "faults of the drive that the log neither proves nor rules out may be there, which {leaves}")
@@ -93,7 +98,7 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
         Part::Sensors => write!(f, "the current sensors differ, and it is not known which of them is right, which {leaves}"),
         Part::CurrentGain => write!(f, "the stated accuracy of the current sensors {leaves}"),
         Part::BusVoltage => write!(f, "the stated accuracy of the DC voltage {leaves}"),
-        Part::Saturation => write!(f, "the inductances depend on the current, and one number for all of the log {leaves}"),
+        Part::Saturation => write!(f, "the inductances depend on the current, and one number for all currents of the log {leaves}"),
         Part::Misfit => write!(
             f,
             "the operating points contradict each other beyond their noise, which {leaves}: no motor with constant parameters explains them"

@@ -10,6 +10,7 @@ use crate::{
 };
 use std::fmt::{Display, Formatter, Result};
 
+/// In the alternate form (`{:#}`) without the alternative of holding operating points longer.
 impl Display for Remedy {
     fn fmt(&self, f: &mut Formatter) -> Result {
         match self {
@@ -29,7 +30,8 @@ impl Display for Remedy {
             }
             Self::HoldLonger { times, parameter, half_width, or } => {
                 let (symbol, width) = (parameter.symbol(), percent(*half_width));
-                write!(f, "hold each operating point about {times:.0} times as long: {symbol} to about ±{width}; or {or}")
+                write!(f, "hold each operating point about {times:.0} times as long: {symbol} to about ±{width}")?;
+                if f.alternate() { Ok(()) } else { write!(f, "; or {or}") }
             }
             Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
@@ -45,8 +47,8 @@ impl Display for Remedy {
             Self::LogEachPeriod => write!(f, "log each control period of the drive, not every n-th one or means"),
             Self::RemoveDisturbances => write!(
                 f,
-                "log with the test bench at rest (no torque ripple, no supply ripple), or add stretches held still at two loads, two values \
-                 of i_d and two speeds, and identify with the steady model"
+                "log without torque ripple and supply ripple, or add stretches of constant currents and speed, at two loads, two values of i_d \
+                 and two speeds, and identify with the steady model"
             ),
             Self::CalibrateSensors => write!(f, "calibrate the current sensors"),
             Self::CalibrateBusVoltage => write!(f, "calibrate the measurement of the DC voltage"),
@@ -112,5 +114,19 @@ impl Display for Measurement {
                 Place::HalfSpeed => write!(f, "add {seconds} s at the same currents and half the speed"),
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_alternative_to_holding_points_longer_can_be_left_out() {
+        let or = Box::new(Remedy::SpreadPoints { parameter: Parameter::Ld });
+        let remedy = Remedy::HoldLonger { times: 5.0, parameter: Parameter::Ld, half_width: 0.05, or };
+        let longer = "hold each operating point about 5 times as long: L_d to about ±5.0 %";
+        assert_eq!(format!("{remedy:#}"), longer);
+        assert_eq!(remedy.to_string(), format!("{longer}; or make the step of i_d larger"));
     }
 }

@@ -26,8 +26,10 @@ impl Display for Summary {
         if !self.given.is_empty() {
             write!(f, ", {} given", symbols(&self.given))?;
         }
-        if !self.weak.is_empty() {
-            write!(f, ", {} weak", symbols(&self.weak))?;
+        match self.weak.len() {
+            0 => {}
+            count if count == asked && asked > 1 => write!(f, ", all weak")?,
+            _ => write!(f, ", {} weak", symbols(&self.weak))?,
         }
         write!(f, ".")?;
         self.next.as_ref().map_or(Ok(()), |next| write!(f, " {next}"))
@@ -82,5 +84,20 @@ fn need(remedy: &Remedy) -> String {
         Remedy::FixOne => "one parameter given".to_owned(),
         Remedy::CheckFrame { lag } => format!("voltages of the currents' instant (now {} us late)", three_digits(1e6 * lag)),
         Remedy::CheckSigns { .. } => "signs and order of the columns checked".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_that_are_all_weak_are_not_listed() {
+        let of_weak = |weak: &[Parameter]| {
+            let given = Vec::new();
+            Summary { identified: Vec::new(), given, weak: weak.to_vec(), next: None }.to_string()
+        };
+        assert_eq!(of_weak(&Parameter::ALL), "None of 4 identified, all weak.");
+        assert_eq!(of_weak(&[Parameter::Ld, Parameter::Lq]), "None of 4 identified, L_d and L_q weak.");
     }
 }

@@ -43,7 +43,7 @@ impl Warning {
                 None => "no constant inductances explain the log".to_owned(),
             },
             Self::LowSpeed { own, lost, .. } => {
-                format!("too slow: motor {} V, lost in the drive {} V", three_digits(*own), three_digits(*lost))
+                format!("slow: the drive loses {} V beside the motor's {} V", three_digits(*lost), three_digits(*own))
             }
             Self::VoltageLimit { rows, of } => format!("{rows} of {of} rows have |u| above u_dc / sqrt 3"),
             Self::OutsideBox { parameters } => {
