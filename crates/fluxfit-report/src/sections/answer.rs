@@ -10,7 +10,7 @@ use crate::{
 };
 use fluxfit::{
     Judgement, Verdict,
-    evidence::{IDENTIFIED, Identification, SaturationFinding, WEAK},
+    evidence::{IDENTIFIED, Identification, WEAK},
     motor::Parameter,
 };
 use fluxfit_units::{Scale, significant};
@@ -35,7 +35,7 @@ pub(super) fn badge(verdict: Verdict) -> Markup {
 /// What the verdicts mean.
 pub(super) fn thresholds() -> Markup {
     html! {
-        "Half-width of the 95 % interval: " (badge(Verdict::Identified)) " at most " (percent(IDENTIFIED)) " of the value; "
+        "Half-width of the 95\u{a0}% interval: " (badge(Verdict::Identified)) " at most " (percent(IDENTIFIED)) " of the value; "
         (badge(Verdict::Weak)) " at most " (percent(WEAK)) "; "
         (badge(Verdict::NotIdentifiable)) " more, or the value is not positive: no value is shown."
     }
@@ -56,12 +56,12 @@ fn parameters(found: &Identification) -> Markup {
         (table::scrolling("Parameters", &html! {
             table.parameters {
                 thead { tr {
-                    th scope="col" { "Parameter" } th scope="col" { "Value" } th scope="col" { "± 95 %" }
-                    th scope="col" { "95 % interval" } th.words scope="col" { "Main source of uncertainty" } th scope="col" { "Verdict" }
+                    th scope="col" { "Parameter" } th scope="col" { "Value" } th scope="col" { "±\u{a0}95\u{a0}%" }
+                    th scope="col" { "95\u{a0}% interval" } th.words scope="col" { "Main source of uncertainty" } th scope="col" { "Verdict" }
                 } }
                 tbody {
                     @for judgement in &found.parameters {
-                        (parameter(judgement, found.saturation.as_ref()))
+                        (parameter(judgement, found))
                         @if judgement.parameter == Parameter::Lq && let Some(saturation) = &found.saturation { (flux::apparent_row(saturation)) }
                     }
                     (not_counted(found))
@@ -71,7 +71,7 @@ fn parameters(found: &Identification) -> Markup {
     }
 }
 
-fn parameter(judgement: &Judgement, saturation: Option<&SaturationFinding>) -> Markup {
+fn parameter(judgement: &Judgement, found: &Identification) -> Markup {
     let heading = html! { th scope="row" { (symbol(judgement.parameter)) } };
     let (Some(value), Some([low, high])) = (judgement.value(), judgement.interval()) else {
         return html! {
@@ -90,7 +90,7 @@ fn parameter(judgement: &Judgement, saturation: Option<&SaturationFinding>) -> M
             (heading)
             td.value {
                 strong { (show(value)) } " " (unit)
-                @if saturation.is_some_and(|saturation| flux::is_of_small_currents(judgement, saturation)) { span.at { " at small currents" } }
+                @if let Some(when) = found.valid_at(judgement.parameter) { span.at { " " (when) } }
             }
             @if let Some(width) = width {
                 td { "±" (significant(100.0 * width, 2)) " %" }

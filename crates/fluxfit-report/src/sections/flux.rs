@@ -2,10 +2,9 @@
 
 use crate::{
     table::{self, key, named},
-    typography::{DASH, decimals, number, prose, unit},
+    typography::{DASH, NO_BREAK, decimals, number, prose, unit},
 };
 use fluxfit::{
-    Judgement,
     evidence::{Apparent, Flux, Identification, Incremental, SaturationFinding},
     motor::Parameter,
 };
@@ -33,7 +32,7 @@ pub(crate) fn apparent_row(found: &SaturationFinding) -> Markup {
         @if let Some([least, most]) = &ends {
             tr.flux {
                 th scope="row" { (prose("L_q")) "(" (prose("i_q")) ")" }
-                td colspan="4" { (apparent(least)) ", " (apparent(most)) }
+                td colspan="4" { (apparent(least, found)) ", " (apparent(most, found)) }
                 td { span.badge { "apparent" } }
             }
         }
@@ -51,24 +50,49 @@ pub(crate) fn apparent_row(found: &SaturationFinding) -> Markup {
 pub(crate) fn saturated(found: &SaturationFinding) -> Markup {
     html! {
         @if let Some([least, most]) = found.lq.as_ref().filter(|[least, most]| least.current != most.current) {
-            " The motor saturates: apparent " (prose("L_q")) " is " (apparent(least)) " and " (apparent(most)) "."
+            " The motor saturates: apparent " (prose("L_q")) " is " (apparent(least, found)) " and " (apparent(most, found)) " (95\u{a0}%)."
         }
     }
 }
 
-fn apparent(one: &Apparent) -> Markup {
+fn apparent(one: &Apparent, found: &SaturationFinding) -> Markup {
     let scale = scale(one.inductance);
-    // Three digits.
-    let value = number(one.inductance, |henries| scale.format(henries, 0.1 * henries.abs()));
-    html! { strong { (value) } " " (henry(&scale)) " at " (prose("i_q")) " = " (amperes(one.current)) " A" }
+    let of_point = found.fluxes.iter().flatten().find(|flux| flux.current.q == one.current);
+    let half_width = of_point.map(half_width_of_lq);
+    // Three digits, where no operating point tells how sure it is.
+    let show = |henries: f64| number(henries, |henries| scale.format(henries, half_width.unwrap_or(0.1 * one.inductance.abs())));
+    html! {
+        strong { (show(one.inductance)) } @if let Some(half_width) = half_width { (plus_minus(&show(half_width))) } (NO_BREAK) (henry(&scale))
+        " at " (equals("i_q", one.current))
+    }
+}
+
+/// Half of the 95 % interval of a point's apparent L_q, H.
+fn half_width_of_lq(flux: &Flux) -> f64 {
+    2.0 * (flux.uncertainty.q / flux.current.q).abs()
+}
+
+/// The same of its apparent L_d.
+fn half_width_of_ld(flux: &Flux) -> f64 {
+    2.0 * (flux.uncertainty.d / flux.current.d).abs()
+}
+
+/// A half-width, on the line of its value.
+fn plus_minus(half_width: &str) -> String {
+    format!("{NO_BREAK}±{NO_BREAK}{half_width}")
+}
+
+/// A current with its symbol, on one line.
+fn equals(symbol: &str, current: f64) -> Markup {
+    html! { (prose(symbol)) (NO_BREAK) "=" (NO_BREAK) (amperes(current)) (NO_BREAK) "A" }
 }
 
 fn incremental(one: &Incremental) -> Markup {
     let (scale, half_width) = (scale(one.inductance), 2.0 * one.uncertainty);
     let show = |henries: f64| number(henries, |henries| scale.format(henries, half_width));
     html! {
-        strong { (show(one.inductance)) } " ± " (show(half_width)) " " (henry(&scale)) " (95 %) at " (prose("i_d")) " = " (amperes(one.current.d))
-        " A, " (prose("i_q")) " = " (amperes(one.current.q)) " A, between operating points " (one.points[0] + 1) " and " (one.points[1] + 1)
+        strong { (show(one.inductance)) } (plus_minus(&show(half_width))) (NO_BREAK) (henry(&scale)) " (95\u{a0}%) at "
+        (equals("i_d", one.current.d)) ", " (equals("i_q", one.current.q)) ", between operating points " (one.points[0] + 1) " and " (one.points[1] + 1)
     }
 }
 
@@ -76,7 +100,7 @@ fn incremental(one: &Incremental) -> Markup {
 pub(crate) fn inductances(answer: &Identification, found: &SaturationFinding) -> Markup {
     let has_q = found.incremental().iter().any(|one| one.axis == 1);
     html! {
-        (beside_apparent(answer.parameter(Parameter::Lq), found))
+        (beside_apparent(answer, found))
         p {
             "The motor saturates, so no single number is its inductance. The apparent " (prose("L_q")) "(" (prose("i_q")) ") = " (prose("psi_q")) " / " (prose("i_q"))
             " says how much flux a current makes. A current controller needs the incremental d" (prose("psi_q")) " / d" (prose("i_q"))
@@ -90,7 +114,8 @@ pub(crate) fn inductances(answer: &Identification, found: &SaturationFinding) ->
 }
 
 /// Why the one L_q of the answer is another number than the apparent ones; nothing without both.
-fn beside_apparent(lq: &Judgement, found: &SaturationFinding) -> Markup {
+fn beside_apparent(answer: &Identification, found: &SaturationFinding) -> Markup {
+    let lq = answer.parameter(Parameter::Lq);
     let of_points = found.fluxes.iter().flatten().filter_map(|flux| flux.apparent_lq);
     let apparent = of_points.chain(found.lq.iter().flatten().map(|one| one.inductance));
     let [least, most] = apparent.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], lq| [least.min(lq), most.max(lq)]);
@@ -100,18 +125,13 @@ fn beside_apparent(lq: &Judgement, found: &SaturationFinding) -> Markup {
     html! {
         p {
             "The " (prose("L_q")) " of the table, " (show(value)) " " (henry(&scale)) ", is "
-            @if is_of_small_currents(lq, found) { "that at small currents; what iron takes away at larger ones is fitted beside it" }
+            @if answer.valid_at(Parameter::Lq).is_some() { "that at small currents; by how much it falls at larger currents is fitted too (saturation)" }
             @else { "the one number that fits all operating points best" }
             ". The apparent " (prose("L_q")) " at the currents of this log is " (show(least)) " … " (show(most)) " " (henry(&scale)) ". "
-            @if low <= least && most <= high { "The 95 % interval holds all of these." }
-            @else { strong { "The 95 % interval does not hold all of these" } ": take the apparent " (prose("L_q")) " at your current." }
+            @if low <= least && most <= high { "The 95\u{a0}% interval holds all of these." }
+            @else { strong { "The 95\u{a0}% interval does not hold all of these" } ": take the apparent " (prose("L_q")) " at your current." }
         }
     }
-}
-
-/// Whether a parameter of the answer is that at small currents, beside terms of saturation, and not one number for all currents.
-pub(super) fn is_of_small_currents(judgement: &Judgement, found: &SaturationFinding) -> bool {
-    matches!(judgement.parameter, Parameter::Ld | Parameter::Lq) && judgement.raw == found.small_currents.get(judgement.parameter)
 }
 
 /// The table, with an explanation.
@@ -122,22 +142,25 @@ pub(crate) fn table(found: &SaturationFinding) -> Markup {
     let inductances = fluxes().flat_map(|flux| [flux.apparent_ld, flux.apparent_lq]).flatten();
     let scale = scale(inductances.map(f64::abs).fold(0.0, f64::max));
     let unit = format!(" {}", henry(&scale));
+    // The same decimals down a column: those of its smallest half-width.
+    let of_ld = fluxes().filter(|flux| flux.apparent_ld.is_some()).map(half_width_of_ld).fold(f64::INFINITY, f64::min);
+    let of_lq = fluxes().filter(|flux| flux.apparent_lq.is_some()).map(half_width_of_lq).fold(f64::INFINITY, f64::min);
     let has_ld = fluxes().any(|flux| flux.apparent_ld.is_some());
     html! {
         h3 { "Flux linkage" }
         p {
             "The motor saturates: its inductances depend on the current. The flux linkages below follow from the voltage of each operating point "
             "with "
-            (prose("R_s")) " = " (resistance(found)) "; ± is 95 % (two standard uncertainties)."
+            (prose("R_s")) " = " (resistance(found)) "; ± is 95\u{a0}% (two standard uncertainties)."
         }
         (table::scrolling("Flux at the operating points", &html! {
             table.stacked {
                 thead { tr {
                     th scope="col" { "Point" }
                     th scope="col" { (prose("i_d")) ", A" } th scope="col" { (prose("i_q")) ", A" }
-                    th scope="col" { (prose("psi_d")) " ± 95 %, mWb" } th scope="col" { (prose("psi_q")) " ± 95 %, mWb" }
-                    @if has_ld { th scope="col" { "apparent " (prose("L_d")) ", " (henry(&scale)) } }
-                    th scope="col" { "apparent " (prose("L_q")) ", " (henry(&scale)) }
+                    th scope="col" { (prose("psi_d")) " ±\u{a0}95\u{a0}%, mWb" } th scope="col" { (prose("psi_q")) " ±\u{a0}95\u{a0}%, mWb" }
+                    @if has_ld { th scope="col" { "apparent " (prose("L_d")) " ±\u{a0}95\u{a0}%, " (henry(&scale)) } }
+                    th scope="col" { "apparent " (prose("L_q")) " ±\u{a0}95\u{a0}%, " (henry(&scale)) }
                 } }
                 tbody {
                     @for (k, flux) in found.fluxes.iter().enumerate() {
@@ -145,8 +168,8 @@ pub(crate) fn table(found: &SaturationFinding) -> Markup {
                             tr {
                                 th scope="row" { (key("Point ")) (k + 1) }
                                 (row(flux, digits))
-                                @if has_ld { td { (key("apparent ")) (named("L_d")) (quotient(flux.apparent_ld, &scale)) (key(&unit)) } }
-                                td { (key("apparent ")) (named("L_q")) (quotient(flux.apparent_lq, &scale)) (key(&unit)) }
+                                @if has_ld { td { (key("apparent ")) (named("L_d")) (quotient(flux.apparent_ld, (half_width_of_ld(flux), of_ld), &scale)) (key(&unit)) } }
+                                td { (key("apparent ")) (named("L_q")) (quotient(flux.apparent_lq, (half_width_of_lq(flux), of_lq), &scale)) (key(&unit)) }
                             }
                         }
                     }
@@ -175,7 +198,8 @@ fn row(flux: &Flux, digits: [usize; 2]) -> Markup {
     }
 }
 
-/// An apparent inductance in four digits, as the terminal prints it.
-fn quotient(henries: Option<f64>, scale: &Scale) -> String {
-    henries.map_or_else(|| DASH.to_owned(), |henries| number(henries, |henries| scale.format(henries, 0.0)))
+/// An apparent inductance with half of its 95 % interval, rounded to the least of its column.
+fn quotient(henries: Option<f64>, (half_width, least): (f64, f64), scale: &Scale) -> String {
+    let show = |henries: f64| number(henries, |henries| scale.format(henries, least));
+    henries.map_or_else(|| DASH.to_owned(), |henries| show(henries) + &plus_minus(&show(half_width)))
 }

@@ -157,6 +157,15 @@ fn faults_of_the_drive_are_shown_with_their_values() {
 }
 
 #[test]
+fn a_resistance_that_drifts_is_that_in_the_middle_of_the_log() {
+    let drifting = recorded(0.08, |scenario| scenario.motor.rs_drift = 0.2);
+    for (log, is_said) in [(&drifting, true), (&recorded(0.08, |_| ()), false)] {
+        let found = identify(log, &of_currents()).unwrap().identification;
+        assert_eq!(checked(&page("x", log, &found, None)).contains("in the middle of the log"), is_said);
+    }
+}
+
+#[test]
 fn gaps_are_not_bridged_and_missing_operating_points_are_reported() {
     let Found { log, mut found } = INTERRUPTED.clone();
     found.steady = None;

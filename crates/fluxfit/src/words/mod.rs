@@ -18,5 +18,6 @@ mod summary;
 mod temperature;
 mod unseen;
 mod validation;
+mod validity;
 mod warning;
 mod warning_line;

@@ -17,7 +17,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     terminal::print(&format!("{}{DIM}{}{DIM:#}\n", status(found), read.trim_end()))?;
     found.warnings.iter().for_each(terminal::warn);
     terminal::point_to_explanations(&found.warnings);
-    let mut text = format!("\n{}", parameters(found));
+    let mut text = format!("\n{}{}", parameters(found), validity(found));
     text += &explanations(found);
     text += &found.temperature.map(|temperature| format!("\n{}", wrapped("", &sentence(&temperature.to_string())))).unwrap_or_default();
     if let Some(saturation) = &found.saturation {
@@ -104,15 +104,11 @@ fn parameters(found: &Identification) -> String {
         let Some([value, unit, half_width, interval]) = value_cells(judgement) else {
             return [symbol, "-".to_owned(), String::new(), String::new(), String::new(), word, String::new()];
         };
-        [
-            symbol,
-            value,
-            unit,
-            half_width,
-            interval,
-            word,
-            if judgement.uncertainty.standard_error() > 0.0 { judgement.uncertainty.largest_part().label() } else { "given" }.to_owned(),
-        ]
+        if judgement.uncertainty.standard_error() == 0.0 {
+            // A number that was given has no interval, and no verdict of its own.
+            return [symbol, value, unit, String::new(), String::new(), "given".to_owned(), String::new()];
+        }
+        [symbol, value, unit, half_width, interval, word, judgement.uncertainty.largest_part().label().to_owned()]
     });
     let rows: Vec<[String; 7]> = rows.collect();
     let heading = ["", "value", "", "95 %", "interval", "verdict", "mostly from"];
@@ -125,6 +121,20 @@ fn parameters(found: &Identification) -> String {
         .replace(verdict(Verdict::NotIdentifiable).as_str(), &format!("{BAD}not identifiable{BAD:#}"))
         .replace(" weak", &format!(" {WARNING}weak{WARNING:#}"))
         .replace(" identified", &format!(" {GOOD}identified{GOOD:#}"))
+}
+
+/// For which currents or which time the values hold; nothing where they hold for the whole log.
+fn validity(found: &Identification) -> String {
+    let mut shared: Vec<(&str, Vec<&str>)> = Vec::new();
+    for parameter in Parameter::ALL {
+        let Some(when) = found.valid_at(parameter) else { continue };
+        match shared.iter_mut().find(|(other, _)| *other == when) {
+            Some((_, symbols)) => symbols.push(parameter.symbol()),
+            None => shared.push((when, vec![parameter.symbol()])),
+        }
+    }
+    let parts: Vec<String> = shared.iter().map(|(when, symbols)| format!("{} {when}", symbols.join(", "))).collect();
+    if parts.is_empty() { String::new() } else { format!("{DIM}{}{DIM:#}\n", wrapped("  ", &parts.join("; ")).trim_end()) }
 }
 
 /// Value, unit, relative half-width and interval of a parameter; none where it has no value.
@@ -285,9 +295,16 @@ fn fluxes(found: &SaturationFinding) -> String {
     let inductances = fluxes().flat_map(|flux| [flux.apparent_ld, flux.apparent_lq]).flatten();
     let inductance = Scale::for_value(Parameter::Lq, inductances.map(f64::abs).fold(0.0, f64::max));
     let has_ld = fluxes().any(|flux| flux.apparent_ld.is_some());
+    let half_width_of_ld = |flux: &Flux| 2.0 * (flux.uncertainty.d / flux.current.d).abs();
+    let half_width_of_lq = |flux: &Flux| 2.0 * (flux.uncertainty.q / flux.current.q).abs();
+    let least_of_ld = fluxes().filter(|flux| flux.apparent_ld.is_some()).map(half_width_of_ld).fold(f64::INFINITY, f64::min);
+    let least_of_lq = fluxes().filter(|flux| flux.apparent_lq.is_some()).map(half_width_of_lq).fold(f64::INFINITY, f64::min);
     let rows = fluxes().map(|flux| {
         let millis = |value: f64, decimals: usize| format!("{:.decimals$}", 1e3 * value);
-        let apparent = |henries: Option<f64>| henries.map_or("-".to_owned(), |henries| inductance.format(henries, 0.0));
+        let apparent = |henries: Option<f64>, half_width: f64, least: f64| match henries {
+            Some(henries) => [henries, half_width].map(|value| inductance.format(value, least)),
+            None => ["-".to_owned(), String::new()],
+        };
         let mut row = vec![
             format!("{:.3}", flux.current.d),
             format!("{:.3}", flux.current.q),
@@ -296,8 +313,10 @@ fn fluxes(found: &SaturationFinding) -> String {
             millis(flux.psi.q, of_q),
             millis(2.0 * flux.uncertainty.q, of_q),
         ];
-        row.extend(has_ld.then(|| apparent(flux.apparent_ld)));
-        row.push(apparent(flux.apparent_lq));
+        if has_ld {
+            row.extend(apparent(flux.apparent_ld, half_width_of_ld(flux), least_of_ld));
+        }
+        row.extend(apparent(flux.apparent_lq, half_width_of_lq(flux), least_of_lq));
         row
     });
     let rows: Vec<_> = rows.collect();
@@ -307,8 +326,10 @@ fn fluxes(found: &SaturationFinding) -> String {
     let unit = inductance.unit(Parameter::Lq.unit());
     let [of_ld, of_lq] = ["L_d", "L_q"].map(|symbol| format!("apparent\n{symbol} {unit}"));
     let mut heading = vec!["i_d\nA", "i_q\nA", "psi_d\nmWb", "\n±", "psi_q\nmWb", "\n±"];
-    heading.extend(has_ld.then_some(of_ld.as_str()));
-    heading.push(&of_lq);
+    if has_ld {
+        heading.extend([of_ld.as_str(), "\n±"]);
+    }
+    heading.extend([of_lq.as_str(), "\n±"]);
     format!("\n{DIM}Flux from voltage, with R_s = {}{DIM:#}\n{}", resistance(found), table(&heading, 0, rows))
 }
 
