@@ -32,7 +32,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                 "Simulated currents are not linear in the parameters, so the answer above was found iteratively (Levenberg-Marquardt), with a start "
                 "from the operating points or from differences of rows. "
             }
-            (method.label()) " searched " @if found.output.is_some() { "the whole search box " } "for the same minimum"
+            "The swarm method " (method.label()) " searched " @if found.output.is_some() { "the whole search box " } "for the same minimum"
             @if found.output.as_ref().is_some_and(|fit| !fit.fault_estimates.is_empty()) { ", with the values of the identified faults fixed," }
             " and ended after " (grouped(search.report.evaluations)) " evaluations with a cost " (distance(found, search)) " that of the answer ("
             (stop_reason(search.report.stop_reason)) "). "

@@ -97,7 +97,7 @@ const VOLTAGE: NumberDescription<DeadTime> = NumberDescription {
 };
 
 const WIDTH: NumberDescription<DeadTime> = NumberDescription {
-    names: Names { key: "dead_time_width", label: "phase current below which less is lost", unit: "A" },
+    names: Names { key: "dead_time_width", label: "phase current below which dead time takes less", unit: "A" },
     // Its sign means nothing: a fit that steps across zero comes back on the other side instead of losing its way where the loss is a step.
     get: |state| state.width.abs(),
     set: |state, value| state.width = value,
