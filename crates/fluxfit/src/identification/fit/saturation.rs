@@ -129,6 +129,20 @@ pub(super) const TOLD: f64 = 0.5;
 /// The normal distribution's two-sided 95 % quantile, rounded down: an interval of that many standard deviations or more covers a spread.
 const QUANTILE: f64 = 1.95;
 
+/// The apparent L_q at the smallest and the largest i_q. Points whose i_q lie as near together as `alike`, A, are of one load: the surest
+/// of them speaks.
+fn ends_of_lq(fluxes: &[Option<Flux>], alike: f64) -> Option<[Apparent; 2]> {
+    let told = || fluxes.iter().flatten().filter_map(|flux| Some((flux, flux.apparent_lq?)));
+    let sizes = || told().map(|(flux, _)| flux.current.q.abs());
+    let surest = |end: f64| {
+        let of_end = told().filter(|(flux, _)| (flux.current.q.abs() - end).abs() <= alike);
+        let error = |flux: &Flux| (flux.uncertainty.q / flux.current.q).abs();
+        let surest = of_end.min_by(|(one, _), (other, _)| error(one).total_cmp(&error(other)));
+        surest.map(|(flux, inductance)| Apparent { current: flux.current.q, inductance })
+    };
+    Some([surest(sizes().min_by(f64::total_cmp)?)?, surest(sizes().max_by(f64::total_cmp)?)?])
+}
+
 impl SaturationFinding {
     /// Looks for it among operating points that contradict each other.
     pub(crate) fn of_points(
@@ -171,6 +185,7 @@ impl SaturationFinding {
             for (flux, turned) in found.fluxes.iter_mut().zip(fluxes_at(&turned).fluxes) {
                 *flux = flux.zip(turned).map(|(flux, turned)| flux.or_as(&turned));
             }
+            found.lq = ends_of_lq(&found.fluxes, LEAST_CURRENT * peak(points));
         }
         let (mut least, mut most) = (Apparent { current: f64::INFINITY, inductance: 0.0 }, Apparent { current: 0.0, inductance: 0.0 });
         for row in stretches.iter().cloned().flatten() {
@@ -231,9 +246,7 @@ impl SaturationFinding {
             [psi.d, psi.q, flux.uncertainty.d, flux.uncertainty.q].iter().all(|value| value.is_finite()).then_some(flux)
         };
         let fluxes: Vec<Option<Flux>> = points.iter().zip(lost).map(flux).collect();
-        let told = || fluxes.iter().flatten().filter_map(|flux| Some(Apparent { current: flux.current.q, inductance: flux.apparent_lq? }));
-        let by_current = |one: &Apparent, other: &Apparent| one.current.abs().total_cmp(&other.current.abs());
-        let lq = told().min_by(by_current).zip(told().max_by(by_current)).map(|(least, most)| [least, most]);
+        let lq = ends_of_lq(&fluxes, least);
         Self { rs, rs_uncertainty, fluxes, lq, small_currents, over_rows: [0.0; PARAMETERS] }
     }
 
@@ -277,6 +290,25 @@ mod tests {
     use crate::{faults::Faults, log::Columns};
 
     const MOTOR: Motor = Motor { rs: 0.03, ld: 20e-6, lq: 30e-6, psi_f: 9e-3 };
+
+    /// Of three points at 15 A the one with the smallest error, not the one with the smallest current; of two at 35 A either way.
+    #[test]
+    fn of_points_at_one_load_the_surest_is_the_end() {
+        let flux = |current: f64, inductance: f64, error: f64| {
+            Some(Flux {
+                current: Dq { d: 0.0, q: current },
+                psi: Dq { d: 9e-3, q: inductance * current },
+                uncertainty: Dq { d: 0.0, q: error },
+                is_told: true,
+                apparent_lq: Some(inductance),
+                apparent_ld: None,
+            })
+        };
+        let fluxes = [flux(14.98, 135e-6, 2e-4), flux(-15.0, 123e-6, 6e-5), flux(15.2, 130e-6, 1e-4), flux(35.0, 120e-6, 1e-4), None];
+        let found = ends_of_lq(&fluxes, 1.75).unwrap().map(|end| (end.current, end.inductance));
+        assert_eq!(found, [(-15.0, 123e-6), (35.0, 120e-6)]);
+        assert!(ends_of_lq(&[None], 1.0).is_none());
+    }
 
     /// An angle late by 20 us turns 0.04 to 0.05 rad into 30 to 40 % of psi_q, and 10 mOhm of warming are 0.1 V at the ends: the fluxes'
     /// 95 % intervals hold the motor's, and those that know of neither do not.
