@@ -11,6 +11,7 @@ use super::{
             swarm::Search,
             warming::Warming,
         },
+        judge::verdict::Verdict,
         request::{Known, Request},
     },
     conventions::Convention,
@@ -297,7 +298,11 @@ impl Evidence<'_> {
                 (rows().fold(0.0, within), rows().map(|row| columns.ud[row].hypot(columns.uq[row])).fold(0.0, f64::max))
             }
         };
-        if self.log.is_at_rest() {
+        // A loss that was found limits nothing where the flux and the inductances are identified beside it.
+        let is_found = self.output.is_some_and(|fit| fit.has(Fault::DeadTime));
+        let limited = [Parameter::Ld, Parameter::Lq, Parameter::PsiF];
+        let is_limited = limited.iter().any(|limited| self.parameters[*limited as usize].verdict != Verdict::Identified);
+        if self.log.is_at_rest() || is_found && !is_limited {
             return None;
         }
         // A flux that is not known makes no more voltage than there is.
