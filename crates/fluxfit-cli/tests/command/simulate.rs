@@ -114,3 +114,34 @@ fn a_flux_map_has_no_constant_truth() {
     assert_eq!(run.status, 2);
     assert!(run.err.contains("because the motor of the simulation was a flux map") && run.err.lines().count() == 1, "{}", run.err);
 }
+
+/// The advice for a motor that saturates, carried out: steps of the current that are held, at two speeds. The slopes of the flux between
+/// them are those of the flux map's own points.
+#[test]
+fn held_steps_tell_the_incremental_inductances_of_a_flux_map() {
+    let (folder, scenarios) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let map = root().join("examples/scenarios/baldor_ecs101_flux_map.csv");
+    let map_text = fs::read_to_string(&map).unwrap();
+    let rows = map_text.lines().filter_map(|line| line.split(',').map(|cell| cell.parse::<f64>().ok()).collect::<Option<Vec<f64>>>());
+    let rows: Vec<Vec<f64>> = rows.collect();
+    let flux = |id: f64, iq: f64, axis: usize| rows.iter().find(|row| row[0] == id && row[1] == iq).unwrap()[2 + axis];
+    let example = fs::read_to_string(root().join("examples/scenarios/pm_syrm.toml")).unwrap();
+    let (motor, rest) = example.split_once("[schedule]").unwrap();
+    let (_, sensors) = rest.split_once("[sensors]").unwrap();
+    let motor = motor.replace("\"baldor_ecs101_flux_map.csv\"", &format!("{:?}", map.display().to_string()));
+    let schedule = "speed = [{ at = \"0 s\", to = \"900 rpm\" }, { at = \"1.2 s\", to = \"1200 rpm\", over = \"0.3 s\" }]\n\
+        id = [{ at = \"0 s\", to = \"-8 A\" }, { at = \"0.8 s\", to = \"-10 A\" }, { at = \"1.75 s\", to = \"-8 A\" }]\n\
+        iq = [{ at = \"0 s\", to = \"12 A\" }, { at = \"0.4 s\", to = \"14 A\" }]\n";
+    let scenario = scenarios.path().join("steps.toml");
+    fs::write(&scenario, format!("{motor}[schedule]\n{schedule}\n[sensors]{sensors}")).unwrap();
+    simulated(folder.path(), &[scenario.to_str().unwrap()]);
+    let run = fluxfit(&["identify", folder.path().join("rig.csv").to_str().unwrap(), "--model", "steady"]);
+    let (_, told) = run.out.split_once("Incremental inductances").unwrap_or_else(|| panic!("none: {}", run.out));
+    let slopes = [(flux(-8.0, 14.0, 0) - flux(-10.0, 14.0, 0)) / 2.0, (flux(-8.0, 14.0, 1) - flux(-8.0, 12.0, 1)) / 2.0];
+    for (axis, slope) in ["d", "q"].into_iter().zip(slopes) {
+        let line = told.lines().find(|line| line.contains(&format!("mH along {axis} "))).unwrap_or_else(|| panic!("{axis}: {told}"));
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [value, half_width] = [words[0], words[2]].map(|word| 1e-3 * word.parse::<f64>().unwrap());
+        assert!((value - slope).abs() < half_width && half_width < 0.1 * slope, "{axis}: {line}, {slope}");
+    }
+}

@@ -54,8 +54,9 @@ impl Display for Remedy {
             Self::CalibrateBusVoltage => write!(f, "calibrate the measurement of the DC voltage"),
             Self::SmallSteps => write!(
                 f,
-                "take the flux at your currents from the table of fluxes; or, for one L_d and L_q, log small steps of i_d and i_q around the \
-                 current that you need, at two speeds"
+                "take the flux at your currents from the table of fluxes; or, for what a current controller needs, the incremental L_d and \
+                 L_q at one current: step i_d, then i_q, by a tenth of the current, hold each step, at two speeds, and identify with the \
+                 steady model"
             ),
             Self::SimilarWindows => write!(
                 f,

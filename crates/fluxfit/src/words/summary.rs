@@ -78,7 +78,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::RemoveDisturbances => "a log without torque or supply ripple".to_owned(),
         Remedy::CalibrateSensors => "calibrated current sensors".to_owned(),
         Remedy::CalibrateBusVoltage => "a calibrated DC voltage".to_owned(),
-        Remedy::SmallSteps => "small steps around one current".to_owned(),
+        Remedy::SmallSteps => "the table of fluxes, or steps held around one current".to_owned(),
         Remedy::SimilarWindows => "three windows at nearly the same currents".to_owned(),
         Remedy::SharperPrior => "a sharper prior, or another operating point".to_owned(),
         Remedy::FixOne => "one parameter given".to_owned(),

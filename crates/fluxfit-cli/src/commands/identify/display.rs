@@ -330,7 +330,19 @@ fn fluxes(found: &SaturationFinding) -> String {
         heading.extend([of_ld.as_str(), "\n±"]);
     }
     heading.extend([of_lq.as_str(), "\n±"]);
-    format!("\n{DIM}Flux from voltage, with R_s = {}{DIM:#}\n{}", resistance(found), table(&heading, 0, rows))
+    format!("\n{DIM}Flux from voltage, with R_s = {}{DIM:#}\n{}{}", resistance(found), table(&heading, 0, rows), incremental(found))
+}
+
+/// The slopes of the flux between neighbouring points; nothing without such points.
+fn incremental(found: &SaturationFinding) -> String {
+    let lines = found.incremental().into_iter().map(|one| {
+        let (scale, half_width) = (Scale::for_value(Parameter::Lq, one.inductance.abs()), 2.0 * one.uncertainty);
+        let [value, margin] = [one.inductance, half_width].map(|henries| scale.format(henries, half_width));
+        let (axis, unit) = (["d", "q"][one.axis], scale.unit(Parameter::Lq.unit()));
+        format!("  {value} ± {margin} {unit} along {axis} at i_d = {:.2} A, i_q = {:.2} A\n", one.current.d, one.current.q)
+    });
+    let lines: String = lines.collect();
+    if lines.is_empty() { lines } else { format!("\n{DIM}Incremental inductances, for a current controller (± 95 %){DIM:#}\n{lines}") }
 }
 
 /// The resistance that the fluxes were computed with, and its 95 % half-width where it was not given.

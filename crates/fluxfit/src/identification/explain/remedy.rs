@@ -64,7 +64,7 @@ pub enum Remedy {
     CalibrateSensors,
     /// Calibrate the measurement of the DC voltage.
     CalibrateBusVoltage,
-    /// The motor saturates: log small steps around the current that matters, where the inductances are constants.
+    /// The motor saturates: take its fluxes, or hold steps around the current that matters, for the incremental inductances there.
     SmallSteps,
     /// Identify from three or more windows at nearly the same currents, so that saturation is alike in them.
     SimilarWindows,

@@ -33,7 +33,8 @@ const LEAST_STEP: f64 = 0.05;
 const ASIDE: f64 = 0.1;
 
 impl SaturationFinding {
-    /// The incremental inductances that points close to each other tell, each to half of its size; d first.
+    /// The incremental inductances that points close to each other tell, each to half of its size; d first. Of pairs at the same currents
+    /// the surest.
     pub fn incremental(&self) -> Vec<Incremental> {
         let told: Vec<(usize, &Flux)> = self.fluxes.iter().enumerate().filter_map(|(k, flux)| Some((k, flux.as_ref()?))).collect();
         let peak = told.iter().map(|(_, flux)| flux.current.magnitude()).fold(0.0, f64::max);
@@ -59,7 +60,12 @@ impl SaturationFinding {
                 }
             }
         }
-        found
+        let is_alike = |one: Dq, other: Dq| (one.d - other.d).hypot(one.q - other.q) < LEAST_STEP * peak;
+        let surer = |one: &Incremental| {
+            let of_load = |other: &&Incremental| other.axis == one.axis && is_alike(other.current, one.current);
+            !found.iter().filter(of_load).any(|other| other.uncertainty < one.uncertainty)
+        };
+        found.iter().filter(|one| surer(one)).copied().collect()
     }
 }
 
@@ -100,6 +106,17 @@ mod tests {
         }
         // The apparent inductance is another number: 7.9 mH against 5.9 mH.
         assert!(found[0].inductance < 0.8 * A * (9.0 / B).tanh() / 9.0);
+    }
+
+    /// Steps from 8 to 10 A and back, three times: the pair with the smallest errors stands for all.
+    #[test]
+    fn of_pairs_at_the_same_currents_the_surest_stands() {
+        let mut all = finding(&[(0.0, 8.0), (0.0, 10.0), (0.0, 8.01), (0.0, 10.01), (0.0, 7.99)], 1e-4);
+        for (k, error) in [(1, 5e-5), (2, 4e-5)] {
+            all.fluxes[k].as_mut().unwrap().uncertainty.q = error;
+        }
+        let found = all.incremental();
+        assert_eq!(found.iter().map(|one| (one.axis, one.points)).collect::<Vec<_>>(), [(1, [2, 1])]);
     }
 
     #[test]
