@@ -87,7 +87,7 @@ pub(super) fn propose_needed(
             channels.splice(place..place, stator);
         }
     }
-    if channels.len() == missing.len() && channels == missing {
+    if channels == missing {
         return (channels, proposals);
     }
     if !has_angle && !channels.contains(&ThetaE) {

@@ -63,8 +63,8 @@ pub(super) struct Parts {
 impl Lack {
     /// Of a number that tables of one current alone would tell: what a meter's noise makes of such rows is no value, however well it fits.
     pub(super) fn of_one_current(parameter: Parameter, rows: &Rows) -> Option<Self> {
-        let others = [(parameter, rows.shorted.len()), (Parameter::PsiF, rows.open.len()), (parameter, rows.duty.len())];
-        if others.into_iter().any(|(of, count)| of == parameter && count > 0) {
+        // Other tables tell it too.
+        if !rows.shorted.is_empty() || !rows.duty.is_empty() || parameter == Parameter::PsiF && !rows.open.is_empty() {
             return None;
         }
         match parameter {

@@ -61,11 +61,11 @@ impl SaturationFinding {
             }
         }
         let is_alike = |one: Dq, other: Dq| (one.d - other.d).hypot(one.q - other.q) < LEAST_STEP * peak;
-        let surer = |one: &Incremental| {
+        let is_surest = |one: &Incremental| {
             let of_load = |other: &&Incremental| other.axis == one.axis && is_alike(other.current, one.current);
             !found.iter().filter(of_load).any(|other| other.uncertainty < one.uncertainty)
         };
-        found.iter().filter(|one| surer(one)).copied().collect()
+        found.iter().filter(|one| is_surest(one)).copied().collect()
     }
 }
 
