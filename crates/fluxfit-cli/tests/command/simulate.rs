@@ -116,7 +116,7 @@ fn a_flux_map_has_no_constant_truth() {
 }
 
 /// The advice for a motor that saturates, carried out: steps of the current that are held, at two speeds. The slopes of the flux between
-/// them are those of the flux map's own points.
+/// them are those of the flux map's own points, and the two speeds tell R_s.
 #[test]
 fn held_steps_tell_the_incremental_inductances_of_a_flux_map() {
     let (folder, scenarios) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
@@ -138,6 +138,10 @@ fn held_steps_tell_the_incremental_inductances_of_a_flux_map() {
     let run = fluxfit(&["identify", folder.path().join("rig.csv").to_str().unwrap(), "--model", "steady"]);
     let (_, told) = run.out.split_once("Incremental inductances").unwrap_or_else(|| panic!("none: {}", run.out));
     let slopes = [(flux(-8.0, 14.0, 0) - flux(-10.0, 14.0, 0)) / 2.0, (flux(-8.0, 14.0, 1) - flux(-8.0, 12.0, 1)) / 2.0];
+    let line = run.out.lines().find(|line| line.trim_start().starts_with("R_s")).unwrap_or_else(|| panic!("no R_s: {}", run.out));
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let [rs, percent] = [words[1], words[3].trim_start_matches('±')].map(|word| word.parse::<f64>().unwrap());
+    assert!(line.contains("identified") && (rs - 0.63).abs() <= 0.01 * percent * rs, "{line}");
     for (axis, slope) in ["d", "q"].into_iter().zip(slopes) {
         let line = told.lines().find(|line| line.contains(&format!("mH along {axis} "))).unwrap_or_else(|| panic!("{axis}: {told}"));
         let words: Vec<&str> = line.split_whitespace().collect();

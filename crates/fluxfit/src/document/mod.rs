@@ -56,7 +56,7 @@ pub use identification::{FitEntry, IDENTIFICATION, IdentificationDocument, Param
 pub use log::{LogDocument, OperatingPointEntry, SpikeEntry, ValidatedLogEntry};
 pub use nuisance::{NuisanceEntries, NuisanceEntry, VoltageTimingEntry};
 pub use output_error::{OutputErrorEntry, TermEntry, TimingEntry};
-pub use saturation::{ApparentEntry, FluxEntry, SaturationEntry};
+pub use saturation::{ApparentEntry, FluxEntry, IncrementalEntry, SaturationEntry};
 #[cfg(feature = "schema")]
 pub use schema::schema_of;
 pub use steady::{ExcitationEntry, MisfitEntry, SteadyEntry};

@@ -178,6 +178,9 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
     let points_answer = by_excitation(log, &mut steady, output.as_mut(), request)?;
     let (model, mut output, outvoted) = if points_answer { (points_tell_more, None, output) } else { (model, output, None) };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
+    if let (Some(found), Some(points), None) = (saturation.as_ref().filter(|found| found.tells_rs), steady.as_mut(), &output) {
+        points.answer_rs(found.rs, found.rs_uncertainty);
+    }
     // Only now: what all sensors share decides neither the model nor the value.
     common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
     Ok(Fitted { model, steady, output, outvoted, saturation })

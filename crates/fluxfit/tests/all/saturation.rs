@@ -88,6 +88,75 @@ fn a_saturating_motor_is_named_with_its_range_and_its_flux() {
     }
 }
 
+/// A flux map that no terms of saturation describe: both axes saturate by the size of the current, as `L i / (1 + (|i| / i_s)^e)`.
+fn crossed(i: Dq, [saturates_at, exponent]: [f64; 2]) -> Dq {
+    let part = 1.0 / (1.0 + (i.d.hypot(i.q) / saturates_at).powf(exponent));
+    Dq { d: MOTOR.psi_f + MOTOR.ld * i.d * part.sqrt(), q: MOTOR.lq * i.q * part }
+}
+
+/// Logs that were drawn, of how many R_s is the answer, whose interval holds it, is below a tenth; fluxes, and how many hold.
+#[derive(Debug, Default)]
+struct Drawn {
+    told: usize,
+    held: usize,
+    within_a_tenth: usize,
+    fluxes: usize,
+    fluxes_held: usize,
+}
+
+/// 200 motors with such a map and an inverter that takes up to 1.5 V along the current, or none, at these currents, A, held to 30 mA, and
+/// speeds, rad/s.
+fn drawn(currents: &[(f64, f64)], speeds: &[f64]) -> Drawn {
+    let mut count = Drawn::default();
+    for seed in 0..200 {
+        let mut draws = Draws::seeded(1000 + seed, 0);
+        let map = [8.0 + 20.0 * draws.uniform(), 1.0 + draws.uniform()];
+        let loss = (2.0 * draws.uniform() - 0.5).max(0.0);
+        let at = speeds.iter().flat_map(|omega_e| currents.iter().map(move |i| (i, *omega_e)));
+        let points: Vec<_> = at.map(|((d, q), omega_e)| (d + 0.03 * draws.uniform(), q + 0.03 * draws.uniform(), omega_e)).collect();
+        let found = found(columns(&points, |i| crossed(i, map), loss, 0.1, seed), &settings());
+        let Some(saturation) = &found.saturation else { continue };
+        let rs = found.parameter(Parameter::Rs);
+        if saturation.tells_rs && rs.value().is_some() {
+            count.told += 1;
+            count.held += usize::from((rs.raw - MOTOR.rs).abs() <= rs.uncertainty.half_width);
+            count.within_a_tenth += usize::from(rs.uncertainty.half_width < 0.1 * MOTOR.rs);
+        }
+        for flux in saturation.fluxes.iter().flatten() {
+            let truth = crossed(flux.current, map);
+            let holds =
+                [(flux.psi.d - truth.d).abs() <= 2.0 * flux.uncertainty.d, (flux.psi.q - truth.q).abs() <= 2.0 * flux.uncertainty.q];
+            count.fluxes += holds.len();
+            count.fluxes_held += holds.iter().filter(|holds| **holds).count();
+        }
+    }
+    count
+}
+
+/// The least that 95 % of so many are, three standard deviations of a binomial count below.
+fn least_of(count: usize) -> usize {
+    (0.95 * count as f64 - 3.0 * (0.95 * 0.05 * count as f64).sqrt()) as usize
+}
+
+/// However the flux goes, its voltage grows with the speed and that of R_s does not.
+#[test]
+fn points_of_one_current_at_several_speeds_tell_rs_whatever_the_flux() {
+    let currents = [(0.0, 3.0), (-2.0, 8.0), (-5.0, 12.0)];
+    for speeds in [&[200.0, 400.0][..], &[150.0, 300.0, 500.0]] {
+        let Drawn { told, held, within_a_tenth, fluxes, fluxes_held } = drawn(&currents, speeds);
+        assert!(told >= 190 && within_a_tenth >= 190, "{told} told, {within_a_tenth} within a tenth");
+        assert!(held >= least_of(told) && fluxes_held >= least_of(fluxes), "{held} of {told}, {fluxes_held} of {fluxes}");
+    }
+}
+
+/// At one speed R_s and what the inverter takes stay unknown; the fluxes hold with what they may be, which the terms of saturation and the
+/// voltage along the current bend to together.
+#[test]
+fn fluxes_of_one_speed_hold_beside_what_the_inverter_takes() {
+    let Drawn { told, fluxes, fluxes_held, .. } = drawn(&[(0.0, 3.0), (-2.0, 8.0), (-5.0, 12.0), (-2.0, 4.0), (0.0, 9.0)], &[400.0]);
+    assert!(told == 0 && fluxes == 2000 && fluxes_held >= least_of(fluxes), "{told} told, {fluxes_held} of {fluxes}");
+}
+
 /// A voltage along the current follows the current as well: it is found beside the motor, and is no saturation.
 #[test]
 fn a_loss_along_the_current_is_found_and_is_not_called_saturation() {

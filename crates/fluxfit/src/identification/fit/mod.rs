@@ -22,6 +22,7 @@ pub(crate) mod output_excitation;
 mod output_start;
 pub(crate) mod part;
 pub(crate) mod readings;
+mod resistance_of_speeds;
 pub(crate) mod saturation;
 mod saturation_equations;
 pub(crate) mod steady;

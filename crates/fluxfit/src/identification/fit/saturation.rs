@@ -15,8 +15,8 @@
 use super::{
     super::request::{Known, Request},
     excitation::Excitation,
-    misfit::Misfit,
     output_errors::FaultEstimate,
+    resistance_of_speeds::Resistance,
     saturation_equations::{self, peak},
     voltage_loss::{self, Loss},
 };
@@ -27,7 +27,8 @@ use crate::{
     objective::adjustable::Adjustable,
     steady::OperatingPoint,
 };
-use std::ops::Range;
+use nalgebra::{DMatrix, DVector};
+use std::{iter, ops::Range};
 
 /// Saturation, and what the flux is instead of an inductance times the current.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +38,8 @@ pub struct SaturationFinding {
     pub rs: f64,
     /// Its standard uncertainty, ohm; zero where it was given.
     pub rs_uncertainty: f64,
+    /// Whether points of one current at several speeds tell it, however the flux depends on the current: then it is the answer.
+    pub tells_rs: bool,
     /// Flux per operating point, in their order; none at a point that stands still.
     pub fluxes: Vec<Option<Flux>>,
     /// The apparent L_q at the smallest and the largest i_q that tell one.
@@ -74,7 +77,7 @@ impl Flux {
     }
 }
 
-/// What an inverter and a warming winding take at an operating point, V.
+/// What R_s, an inverter and a warming winding take at an operating point, V.
 #[derive(Clone, Copy, Default)]
 struct Lost {
     volts: Dq,
@@ -82,21 +85,34 @@ struct Lost {
 }
 
 impl Lost {
-    /// What dead time and the drift of R_s take at current `i`, A, and at a `time` between -0.5 at the log's start and 0.5 at its end,
-    /// given the drive's fitted numbers with their errors. Correlations between these, and with R_s, are not counted: the standard error
-    /// is rather too large.
-    fn of_drive(drive: &Adjustable, beside: &[FaultEstimate], i: Dq, time: f64) -> Self {
+    /// What R_s, dead time and the drift of R_s take at current `i`, A, and at a `time` between -0.5 at the log's start and 0.5 at its end,
+    /// given the drive's fitted numbers with their errors. Correlations between these are not counted: the standard error is rather too
+    /// large.
+    fn of_drive(drive: &Adjustable, (rs_uncertainty, beside): (f64, &[FaultEstimate]), i: Dq, time: f64) -> Self {
         let lost = |drive: &Adjustable| {
             let dead_time = voltage_loss::fundamental(&drive.faults.dead_time, i);
-            let more = drive.faults.resistance_drift.change * time;
-            Dq { d: dead_time.d + more * i.d, q: dead_time.q + more * i.q }
+            let rs = drive.motor.rs + drive.faults.resistance_drift.change * time;
+            Dq { d: dead_time.d + rs * i.d, q: dead_time.q + rs * i.q }
         };
         let volts = lost(drive);
-        let standard_error = beside.iter().fold(Dq::default(), |sum, FaultEstimate { unknown, value, standard_error }| {
+        let of_rs = Dq { d: rs_uncertainty * i.d, q: rs_uncertainty * i.q };
+        let standard_error = beside.iter().fold(of_rs, |sum, FaultEstimate { unknown, value, standard_error }| {
             let moved = lost(&drive.with(*unknown, value + standard_error));
             Dq { d: sum.d.hypot(moved.d - volts.d), q: sum.q.hypot(moved.q - volts.q) }
         });
         Self { volts, standard_error }
+    }
+
+    /// What R_s and the unknowns of a drive take at operating point `w`.
+    fn of_unknowns(told: &Resistance, unknowns: &[Loss], (w, point): (usize, &OperatingPoint)) -> Self {
+        let i = point.current();
+        let [d, q] = [(i.d, 0), (i.q, 1)].map(|(i, axis)| {
+            let column: Vec<f64> = iter::once(i).chain(unknowns.iter().map(|unknown| unknown.voltages[w][axis])).collect();
+            let column = DVector::from_vec(column);
+            let volts = column.iter().zip(&told.values).map(|(column, value)| column * value).sum::<f64>();
+            (volts, column.dot(&(&told.covariance * &column)).max(0.0).sqrt())
+        });
+        Self { volts: Dq { d: d.0, q: q.0 }, standard_error: Dq { d: d.1, q: q.1 } }
     }
 }
 
@@ -144,19 +160,33 @@ fn ends_of_lq(fluxes: &[Option<Flux>], alike: f64) -> Option<[Apparent; 2]> {
 }
 
 impl SaturationFinding {
-    /// Looks for it among operating points that contradict each other.
+    /// Looks for it among operating points that contradict each other, beside what constants leave of the losses and all that is
+    /// `possible` of the drive; `of_speeds`: R_s and the latter, whatever the flux is.
     pub(crate) fn of_points(
-        (points, losses): (&[OperatingPoint], &[Loss]),
+        points: &[OperatingPoint],
+        (losses, possible): (&[Loss], &[Loss]),
         excitation: &Excitation,
         motor: &Motor,
-        misfit: Option<&Misfit>,
+        of_speeds: Option<&Resistance>,
         request: &Request,
     ) -> Option<Self> {
-        misfit?;
-        let best = saturation_equations::explain(points, losses, excitation, motor, request)?;
-        // A loss beside terms of saturation bends to what these cannot describe: no voltage is taken off the fluxes for it.
-        let none = vec![Lost::default(); points.len()];
-        Some(Self::at((points, &none), best.motor, (best.motor.rs.max(0.0), best.rs_uncertainty), request))
+        let best = saturation_equations::explain(points, (losses, possible), excitation, motor, request)?;
+        let is_told = |told: &&Resistance| {
+            let (rs, error) = told.rs();
+            2.0 * error <= TOLD * rs
+        };
+        let of_speeds = of_speeds.filter(is_told);
+        // A loss beside terms of saturation bends to what these cannot describe: no voltage is taken off the fluxes for it, but as much is
+        // in doubt.
+        let of_terms = || {
+            let errors = iter::once(best.rs_uncertainty).chain(best.losses.iter().map(|(value, error)| value.hypot(*error)));
+            let values = iter::once(best.motor.rs.max(0.0)).chain(best.losses.iter().map(|_| 0.0));
+            let covariance = DMatrix::from_diagonal(&DVector::from_vec(errors.map(|error| error * error).collect()));
+            Resistance { values: values.collect(), covariance }
+        };
+        let told = of_speeds.cloned().unwrap_or_else(of_terms);
+        let lost: Vec<Lost> = points.iter().enumerate().map(|point| Lost::of_unknowns(&told, possible, point)).collect();
+        Some(Self { tells_rs: of_speeds.is_some(), ..Self::at((points, &lost), best.motor, told.rs(), request) })
     }
 
     /// What simulated currents with terms of saturation say of it, over these rows and at these operating points, given the standard error
@@ -175,7 +205,8 @@ impl SaturationFinding {
         let (start, end) = (columns.t[0], columns.t[columns.t.len() - 1]);
         let fluxes_at = |points: &[OperatingPoint]| {
             let middle = |point: &OperatingPoint| (0.5 * (point.time.0 + point.time.1) - start) / (end - start) - 0.5;
-            let lost: Vec<Lost> = points.iter().map(|point| Lost::of_drive(drive, beside, point.current(), middle(point))).collect();
+            let lost: Vec<Lost> =
+                points.iter().map(|point| Lost::of_drive(drive, (rs_uncertainty, beside), point.current(), middle(point))).collect();
             Self::at((points, &lost), motor, (motor.rs, rs_uncertainty), request)
         };
         let mut found = fluxes_at(points);
@@ -209,7 +240,7 @@ impl SaturationFinding {
         self.over_rows != [0.0; PARAMETERS]
     }
 
-    /// The fluxes at the operating points, of whose voltages so much is lost, V.
+    /// The fluxes at the operating points, of whose voltages so much is lost, V, R_s (ohm) included.
     fn at(
         (points, lost): (&[OperatingPoint], &[Lost]),
         small_currents: Motor,
@@ -226,19 +257,15 @@ impl SaturationFinding {
             let noise = point.residual_covariance(&small_currents);
             let accuracy = request.voltage_accuracy * u.magnitude();
             let own = [0, 1].map(|axis: usize| noise[axis][axis].max(0.0).sqrt().hypot(accuracy) / omega_e.abs());
-            let of_rs = |i: f64| rs_uncertainty * i / omega_e;
             let psi = Dq {
-                d: (u.q - lost.volts.q - rs * i.q - small_currents.lq * point.drift.q) / omega_e,
-                q: (rs * i.d + small_currents.ld * point.drift.d - (u.d - lost.volts.d)) / omega_e,
+                d: (u.q - lost.volts.q - small_currents.lq * point.drift.q) / omega_e,
+                q: (small_currents.ld * point.drift.d - (u.d - lost.volts.d)) / omega_e,
             };
             let own = Dq { d: own[1], q: own[0] };
             let flux = Flux {
                 current: i,
                 psi,
-                uncertainty: Dq {
-                    d: own.d.hypot(of_rs(i.q)).hypot(lost.standard_error.q / omega_e),
-                    q: own.q.hypot(of_rs(i.d)).hypot(lost.standard_error.d / omega_e),
-                },
+                uncertainty: Dq { d: own.d.hypot(lost.standard_error.q / omega_e), q: own.q.hypot(lost.standard_error.d / omega_e) },
                 is_told: 2.0 * own.d <= TOLD * psi.d.abs() && 2.0 * own.q <= TOLD * psi.q.abs(),
                 apparent_lq: (i.q.abs() > least && 2.0 * own.q <= TOLD * psi.q.abs()).then_some(psi.q / i.q),
                 apparent_ld: psi_f.filter(|_| i.d.abs() > least).map(|psi_f| (psi.d - psi_f) / i.d),
@@ -247,13 +274,14 @@ impl SaturationFinding {
         };
         let fluxes: Vec<Option<Flux>> = points.iter().zip(lost).map(flux).collect();
         let lq = ends_of_lq(&fluxes, least);
-        Self { rs, rs_uncertainty, fluxes, lq, small_currents, over_rows: [0.0; PARAMETERS] }
+        Self { rs, rs_uncertainty, tells_rs: false, fluxes, lq, small_currents, over_rows: [0.0; PARAMETERS] }
     }
 
     /// A finding with these fluxes, for tests.
     #[cfg(test)]
     pub(super) fn with_fluxes(fluxes: Vec<Option<Flux>>, small_currents: Motor) -> Self {
-        Self { rs: small_currents.rs, rs_uncertainty: 0.0, fluxes, lq: None, small_currents, over_rows: [0.0; PARAMETERS] }
+        let rs = small_currents.rs;
+        Self { rs, rs_uncertainty: 0.0, tells_rs: false, fluxes, lq: None, small_currents, over_rows: [0.0; PARAMETERS] }
     }
 
     /// Standard uncertainty of an answer with constant parameters: so large that its 95 % intervals hold what every operating point, or
@@ -279,6 +307,9 @@ impl SaturationFinding {
             if i.magnitude() <= LIGHT * peak {
                 hold(Parameter::PsiF, psi.d - answer.ld * i.d - answer.psi_f, uncertainty.d);
             }
+        }
+        if self.tells_rs {
+            spread[Parameter::Rs as usize] = 0.0;
         }
         spread.map(|spread| spread / QUANTILE)
     }

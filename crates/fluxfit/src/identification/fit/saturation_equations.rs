@@ -29,10 +29,11 @@ const DISTINCT: f64 = 0.02;
 /// Least number of distinct currents: two make a straight line.
 const LEAST_CURRENTS: usize = 3;
 
-/// The constants beside the terms of saturation, if those explain the contradiction between the points.
+/// The constants beside the terms of saturation, if those explain the contradiction between the points beside `losses`; with all that is
+/// `possible` of the drive.
 pub(super) fn explain(
     points: &[OperatingPoint],
-    losses: &[Loss],
+    (losses, possible): (&[Loss], &[Loss]),
     excitation: &Excitation,
     motor: &Motor,
     request: &Request,
@@ -47,7 +48,9 @@ pub(super) fn explain(
         .map(|causes| equations.solve(causes))
         .filter(|solved| solved.takes_flux_away())
         .min_by(|one, other| one.criterion.total_cmp(&other.criterion))?;
-    (best.criterion < rival).then_some(best)
+    let causes: Vec<Cause> = best.causes.iter().map(|(cause, _)| *cause).collect();
+    let beside_all = || Equations { losses: possible, ..equations }.solve(&causes);
+    (best.criterion < rival).then(|| Solved { losses: beside_all().losses, ..best })
 }
 
 /// The largest current, A.
@@ -111,6 +114,8 @@ pub(super) struct Solved {
     /// Standard uncertainty of R_s, ohm.
     pub(super) rs_uncertainty: f64,
     causes: Vec<(Cause, f64)>,
+    /// What each loss comes out as, and its standard error.
+    pub(super) losses: Vec<(f64, f64)>,
     /// Schwarz's, lowest is best.
     criterion: f64,
 }
@@ -192,10 +197,12 @@ impl Equations<'_> {
             Known::Prior { standard_error, .. } => standard_error,
             Known::Nothing => range,
         };
+        let of_loss = directions.len() + causes.len()..unknowns;
         Solved {
             motor,
             rs_uncertainty,
             causes: causes.iter().copied().zip(x[directions.len()..].iter().copied()).collect(),
+            losses: of_loss.map(|k| (x[k], inverse.row(k).norm() / lengths[k])).collect(),
             // One is what noise alone leaves of each equation.
             criterion: count * (1.0 + chi_squared / count).ln() + unknowns as f64 * count.ln(),
         }

@@ -14,9 +14,10 @@ use super::{
     frame_lag::{self, FrameLag},
     misfit::{self, Misfit},
     open_loop,
+    resistance_of_speeds::{self, Resistance},
     saturation::SaturationFinding,
     swarm::{self, Search},
-    uncertainty::Uncertainty,
+    uncertainty::{NORMAL, ParameterUncertainty, Systematic, Uncertainty},
     voltage_loss::{Loss, LossPrior, is_control_rate, slowest_period},
     warming::Warming,
 };
@@ -63,6 +64,10 @@ pub struct SteadyFit {
     pub finding: Finding,
     /// What dead time and devices may take, as it was fitted beside the motor.
     pub(crate) losses: Vec<Loss>,
+    /// With what may be wrong beside a motor that saturates.
+    possible_losses: Vec<Loss>,
+    /// R_s and these, however the flux depends on the current; none where the points do not tell it, or agree on constants.
+    rs_of_speeds: Option<Resistance>,
     /// The operating points before any correction.
     pub(crate) as_measured: Vec<OperatingPoint>,
 }
@@ -100,7 +105,7 @@ impl SteadyFit {
             Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
             None => solve_at_angle(log, &unturned, angle, in_doubt, request),
         };
-        let Solved { points, excitation, harmonics, losses, estimate, misfit, lag, warming } = solved;
+        let Solved { points, excitation, harmonics, losses, possible_losses, estimate, misfit, lag, warming } = solved;
         let timing_doubt = match &other_timing {
             // Of a recorder's log it is one of the unknowns.
             Some(other) if lag.is_none() => timing_doubt(&unturned, other, request),
@@ -114,6 +119,19 @@ impl SteadyFit {
             lq.systematic.frame_lag = lq.systematic.frame_lag.hypot(FrameLag::spread(&points, estimate.motor.psi_f));
             *lq = lq.anew();
         }
+        let of_angle = angle.filter(|_| misfit.is_some()).map(|angle| angle.unknowns(&points, &estimate.motor));
+        let possible_losses: Vec<Loss> = possible_losses.into_iter().chain(of_angle.into_iter().flatten()).collect();
+        let rs_of_speeds = misfit.and_then(|_| {
+            let accuracy = |point: &OperatingPoint| (request.voltage_accuracy * point.voltage().magnitude()).hypot(in_doubt.loss);
+            let of =
+                |points: &[OperatingPoint]| resistance_of_speeds::resistance(points, &possible_losses, &estimate.motor, accuracy, request);
+            let found = of(&points)?;
+            // A recorder's timing is among the unknowns of its lag.
+            match other_timing.as_deref().filter(|_| lag.is_none()) {
+                Some(other) => Some(found.or_as(&of(other)?)),
+                None => Some(found),
+            }
+        });
         let finding = Finding {
             motor: estimate.motor,
             open: Parameter::ALL.map(|parameter| excitation.is_open(parameter)),
@@ -129,6 +147,8 @@ impl SteadyFit {
             misfit,
             voltage_losses: harmonics.iter().map(|harmonic| harmonic.filter(|one| one.stands_out).map_or(0.0, |one| one.loss)).collect(),
             losses,
+            possible_losses,
+            rs_of_speeds,
             frame_lag: lag,
             open_loop: frames.map_or_else(Vec::new, |frames| frames.open_loop),
             warming,
@@ -147,13 +167,21 @@ impl SteadyFit {
         if self.frame_lag.is_some() && !is_told(Parameter::Ld) && !is_told(Parameter::Lq) {
             return None;
         }
+        self.misfit?;
         SaturationFinding::of_points(
-            (&self.operating_points, &self.losses),
+            &self.operating_points,
+            (&self.losses, &self.possible_losses),
             &self.excitation,
             &self.estimate.motor,
-            self.misfit.as_ref(),
+            self.rs_of_speeds.as_ref(),
             request,
         )
+    }
+
+    /// Makes this R_s, ohm, the answer, with its standard uncertainty.
+    pub(crate) fn answer_rs(&mut self, rs: f64, uncertainty: f64) {
+        self.finding.motor.rs = rs;
+        self.finding.uncertainty.parameters[Parameter::Rs as usize] = ParameterUncertainty::of(uncertainty, NORMAL, Systematic::default());
     }
 
     /// Lets the swarm minimize the same weighted equations that least squares solved.
@@ -225,6 +253,8 @@ struct Solved {
     excitation: Excitation,
     harmonics: Vec<Option<Harmonic>>,
     losses: Vec<Loss>,
+    /// With those that constants bend to something else.
+    possible_losses: Vec<Loss>,
     estimate: Estimate,
     misfit: Option<Misfit>,
     lag: Option<FrameLag>,
@@ -282,6 +312,7 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_d
     let all = |losses: &[Loss]| losses.iter().chain(of_frames).cloned().collect::<Vec<_>>();
     let admit = |all: &[Loss]| misfit::admit(&points, &excitation, request, all, in_doubt.loss);
     let (mut estimate, mut misfit) = admit(&all(&losses));
+    let mut possible_losses = all(&losses);
     // A loss that leaves points which contradict each other, and takes more than the whole resistance, is no loss: it bends to
     // saturation.
     if misfit.is_some() && estimate.motor.rs < 0.0 && !losses.is_empty() {
@@ -291,10 +322,11 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_d
     let mut warming = Warming::expected(log, &points, &estimate.motor, in_doubt.angle_and_winding, request);
     if let Some(warming) = &mut warming {
         losses.push(warming.unknown(log, &points));
+        possible_losses.push(warming.unknown(log, &points));
         (estimate, misfit) = admit(&all(&losses));
         (warming.change, warming.standard_error) = estimate.found[losses.len() - 1];
     }
-    Solved { losses: all(&losses), excitation, harmonics, estimate, misfit, lag: None, warming, points }
+    Solved { losses: all(&losses), possible_losses, excitation, harmonics, estimate, misfit, lag: None, warming, points }
 }
 
 /// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.

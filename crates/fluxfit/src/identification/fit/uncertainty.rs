@@ -25,7 +25,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 const CONFIDENCE: f64 = 0.95;
 
 /// As many degrees of freedom as no end of them: Student's t is the normal distribution to 1e-6.
-const NORMAL: f64 = 1e6;
+pub(super) const NORMAL: f64 = 1e6;
 
 /// Systematic parts of a standard error (type B, what a longer log would not cure), in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
