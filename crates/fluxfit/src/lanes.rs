@@ -123,7 +123,7 @@ impl<S: Simd, const K: usize> Lanes<S, K> {
             for (lane, one) in numbers[..S::F64_LANES].iter_mut().enumerate() {
                 *one = number(k * S::F64_LANES + lane);
             }
-            *vector = set.partial_load_f64s(&numbers[..S::F64_LANES]);
+            *vector = S::as_simd_f64s(&numbers[..S::F64_LANES]).0[0];
         }
         Self { set, vectors }
     }
@@ -132,7 +132,7 @@ impl<S: Simd, const K: usize> Lanes<S, K> {
     #[inline(always)]
     pub(crate) fn lane(self, lane: usize) -> f64 {
         let mut numbers = [0.0; WIDEST];
-        self.set.partial_store_f64s(&mut numbers[..S::F64_LANES], self.vectors[lane / S::F64_LANES]);
+        S::as_mut_simd_f64s(&mut numbers[..S::F64_LANES]).0[0] = self.vectors[lane / S::F64_LANES];
         numbers[lane % S::F64_LANES]
     }
 }
@@ -201,14 +201,15 @@ impl<S: Simd, const K: usize> Number for Lanes<S, K> {
     #[inline(always)]
     fn store(self, numbers: &mut [f64]) {
         for k in 0..K {
-            self.set.partial_store_f64s(&mut numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES], self.vectors[k]);
+            // Whole vectors: what stores a part of one is not compiled in place.
+            S::as_mut_simd_f64s(&mut numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES]).0[0] = self.vectors[k];
         }
     }
 
     #[inline(always)]
     fn load(mut self, numbers: &[f64]) -> Self {
         for k in 0..K {
-            self.vectors[k] = self.set.partial_load_f64s(&numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES]);
+            self.vectors[k] = S::as_simd_f64s(&numbers[k * S::F64_LANES..(k + 1) * S::F64_LANES]).0[0];
         }
         self
     }

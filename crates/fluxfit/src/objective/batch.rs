@@ -189,8 +189,7 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
         let kinds = drives.iter().map(|drive| FaultKinds::of(&drive.faults)).fold(FaultKinds::default(), FaultKinds::or);
         let group: Drives<Lanes<S, K>, C> = lanes(set, rows, kinds, |lane| drives[lane.min(drives.len() - 1)]);
         let count = if residuals { 2 * rows.segments.iter().map(|segment| segment.measured.len()).sum::<usize>() } else { 0 };
-        let mut results: Vec<Simulated> = drives.iter().map(|_| Simulated { cost: 0.0, residuals: vec![0.0; count] }).collect();
-        let mut first = 0;
+        let mut results: Vec<Simulated> = drives.iter().map(|_| Simulated { cost: 0.0, residuals: Vec::with_capacity(count) }).collect();
         for segment in &rows.segments {
             let lanes = Lanes::<S, K>::COUNT;
             let mut trace = residuals.then(|| TRACE.take().again(segment, lanes));
@@ -224,12 +223,11 @@ impl<S: Simd, const K: usize, const C: usize> NullaryFnOnce for Group<'_, S, K, 
                 if cancelled(lane) {
                     result.cost += squares_of_lane(errors, lane, lanes);
                 }
-                if residuals {
-                    copy_lane(errors, lane, lanes, &mut result.residuals[first..]);
-                }
+            }
+            if residuals {
+                append(errors, lanes, &mut results);
             }
             TRACE.set(trace.kept());
-            first += 2 * segment.measured.len();
         }
         results
     }
@@ -240,11 +238,16 @@ fn squares_of_lane(errors: &[f64], lane: usize, lanes: usize) -> f64 {
     errors.chunks_exact(2 * lanes).map(|row| row[lane].powi(2) + row[lane + lanes].powi(2)).sum()
 }
 
-/// One lane alone: `d, q` of each row in turn.
-fn copy_lane(errors: &[f64], lane: usize, lanes: usize, to: &mut [f64]) {
-    let (to, _) = to.as_chunks_mut::<2>();
-    for (to, row) in to.iter_mut().zip(errors.chunks_exact(2 * lanes)) {
-        *to = [row[lane], row[lane + lanes]];
+/// Rows whose errors fit into the nearest memory, so that each lane may be read from there.
+const NEAR: usize = 128;
+
+/// Appends each lane's errors to its drive's residuals: `d, q` of each row in turn.
+fn append(errors: &[f64], lanes: usize, results: &mut [Simulated]) {
+    for rows in errors.chunks(NEAR * 2 * lanes) {
+        for (lane, result) in results.iter_mut().enumerate() {
+            let pairs = rows.chunks_exact(2 * lanes).map(|row| [row[lane], row[lane + lanes]]);
+            result.residuals.extend(pairs.flatten());
+        }
     }
 }
 

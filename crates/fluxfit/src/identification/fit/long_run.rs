@@ -8,7 +8,7 @@
 //! K. D. West, Econometrica 55 (1987) 703, doi:10.2307/1913610; D. W. K. Andrews, Econometrica 59 (1991) 817, doi:10.2307/2938229,
 //! equations (5.1), (6.2) and (6.4). No lag reaches across a gap.
 
-use crate::motor::PARAMETERS;
+use crate::{motor::PARAMETERS, normal_matrix::dot};
 use nalgebra::DMatrix;
 
 /// Beyond this correlation of neighbours the series is a trend, and no lag is long enough.
@@ -75,7 +75,7 @@ fn products(one: &[f64], other: &[f64], shift: usize, lengths: &[usize]) -> f64 
     for length in lengths {
         let rows = start..start + length;
         if *length > shift {
-            sum += one[rows.start + shift..rows.end].iter().zip(&other[rows.start..rows.end - shift]).map(|(a, b)| a * b).sum::<f64>();
+            sum += dot(&one[rows.start + shift..rows.end], &other[rows.start..rows.end - shift]);
         }
         start += length;
     }

@@ -45,9 +45,18 @@ pub(crate) fn covariance(
         most_speed = most_speed.max(omega_e.abs());
     }
     let cell = |i: Dq, omega_e: f64| [i.d / most_current, i.q / most_current, omega_e / most_speed].map(|x| (x / CELL).round() as i32);
+    let of_periods: Vec<([i32; 3], f64)> = objective
+        .periods()
+        .map(|(u, i, omega_e)| {
+            (cell(i, omega_e), ((accuracy.fraction * u.d).powi(2) + (accuracy.fraction * u.q).powi(2) + accuracy.volts.powi(2)).sqrt())
+        })
+        .collect();
+    let mut numbers: BTreeMap<[i32; 3], usize> = of_periods.iter().map(|(cell, _)| (*cell, 0)).collect();
+    numbers.values_mut().enumerate().for_each(|(number, place)| *place = number);
+    let places: Vec<(usize, f64)> = of_periods.iter().map(|(cell, volts)| (numbers[cell], *volts)).collect();
     // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents
     // have the opposite sign.
-    let mut cells: BTreeMap<[i32; 3], Vec<Dq>> = BTreeMap::new();
+    let mut cells: Vec<([i32; 3], Vec<Dq>)> = numbers.into_keys().map(|cell| (cell, vec![Dq::default(); size])).collect();
     let weights = (0..size).map(|p| {
         let mut weights = vec![0.0; slopes[0].len()];
         for (q, slope) in slopes.iter().enumerate() {
@@ -56,15 +65,13 @@ pub(crate) fn covariance(
         weights
     });
     for (p, effects) in objective.by_voltage(drive, &weights.collect::<Vec<_>>()).into_iter().enumerate() {
-        for ((u, i, omega_e), effect) in objective.periods().zip(effects) {
-            let sums = cells.entry(cell(i, omega_e)).or_insert_with(|| vec![Dq::default(); size]);
-            let volts = (accuracy.fraction * u.magnitude()).hypot(accuracy.volts);
-            sums[p].d += volts * effect.d;
-            sums[p].q += volts * effect.q;
+        for ((place, volts), effect) in places.iter().zip(effects) {
+            let sum = &mut cells[*place].1[p];
+            sum.d += volts * effect.d;
+            sum.q += volts * effect.q;
         }
     }
     let mut covariance = DMatrix::zeros(size, size);
-    let cells: Vec<_> = cells.into_iter().collect();
     for (one, effects) in &cells {
         for (other, others) in &cells {
             let distance: f64 = one.iter().zip(other).map(|(a, b)| (f64::from(a - b) * CELL / SMOOTH).powi(2)).sum();
