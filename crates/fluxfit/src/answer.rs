@@ -170,7 +170,7 @@ fn suspect_units(log: &Log, request: &Request) -> Option<Warning> {
 fn compare_with_nameplate(log: &Log, found: &Identification, request: &Request) -> Convention {
     let of_points = found.steady.as_ref().filter(|_| found.output.is_some());
     let judged = |fit: &SteadyFit| judge(&fit.finding, fit.saturation(request).as_ref(), request, log.is_short_circuit());
-    let of_points = of_points.map(|fit| explained(judged(fit), &fit.finding, request, None));
+    let of_points = of_points.map(|fit| explained(judged(fit), &fit.finding, None, request, None));
     conventions::compare_with_nameplate(log, Some((of_points.as_ref().unwrap_or(&found.parameters), &request.known)), &request.nameplate)
 }
 

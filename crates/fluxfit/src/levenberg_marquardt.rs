@@ -63,6 +63,14 @@ pub struct PriorResidual {
     pub weight: f64,
 }
 
+/// Derivatives of the residuals by each unknown, with a residual more for each prior.
+pub(crate) fn with_priors(mut slopes: Vec<Vec<f64>>, unknowns: &[Unknown], priors: &[PriorResidual]) -> Vec<Vec<f64>> {
+    for (column, unknown) in slopes.iter_mut().zip(unknowns) {
+        column.extend(priors.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
+    }
+    slopes
+}
+
 /// Where a polish ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polished {

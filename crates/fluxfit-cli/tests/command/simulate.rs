@@ -135,13 +135,26 @@ fn held_steps_tell_the_incremental_inductances_of_a_flux_map() {
     let scenario = scenarios.path().join("steps.toml");
     fs::write(&scenario, format!("{motor}[schedule]\n{schedule}\n[sensors]{sensors}")).unwrap();
     simulated(folder.path(), &[scenario.to_str().unwrap()]);
-    let run = fluxfit(&["identify", folder.path().join("rig.csv").to_str().unwrap(), "--model", "steady"]);
-    let (_, told) = run.out.split_once("Incremental inductances").unwrap_or_else(|| panic!("none: {}", run.out));
     let slopes = [(flux(-8.0, 14.0, 0) - flux(-10.0, 14.0, 0)) / 2.0, (flux(-8.0, 14.0, 1) - flux(-8.0, 12.0, 1)) / 2.0];
-    let line = run.out.lines().find(|line| line.trim_start().starts_with("R_s")).unwrap_or_else(|| panic!("no R_s: {}", run.out));
-    let words: Vec<&str> = line.split_whitespace().collect();
-    let [rs, percent] = [words[1], words[3].trim_start_matches('±')].map(|word| word.parse::<f64>().unwrap());
-    assert!(line.contains("identified") && (rs - 0.63).abs() <= 0.01 * percent * rs, "{line}");
+    let log = folder.path().join("rig.csv").display().to_string();
+    for (model, widest) in [(&["--model", "steady"][..], 5.0), (&[], 10.0)] {
+        let run = fluxfit(&[&["identify", &log], model].concat());
+        let line = run.out.lines().find(|line| line.trim_start().starts_with("R_s")).unwrap_or_else(|| panic!("no R_s: {}", run.out));
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [rs, percent] = [words[1], words[3].trim_start_matches('±')].map(|word| word.parse::<f64>().unwrap());
+        assert!((rs - 0.63).abs() <= 0.01 * percent * rs && percent <= widest, "{model:?}: {line}");
+        slopes_are_told(&run.out, slopes);
+    }
+    // A prior of R_s leaves it no less sure than it was given: 1 % is ±2 %.
+    let run = fluxfit(&["identify", &log, "--prior", "rs=0.63±1%", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    let [low, high] = [0, 1].map(|end| document["parameters"]["rs"]["ci95"][end].as_f64().unwrap());
+    assert!(high - low < 0.041 * 0.63 && low < 0.63 && 0.63 < high, "{low} {high}");
+}
+
+/// That both axes' incremental inductances, H, lie within their intervals, which are below a tenth.
+fn slopes_are_told(out: &str, slopes: [f64; 2]) {
+    let (_, told) = out.split_once("Incremental inductances").unwrap_or_else(|| panic!("none: {out}"));
     for (axis, slope) in ["d", "q"].into_iter().zip(slopes) {
         let line = told.lines().find(|line| line.contains(&format!("mH along {axis} "))).unwrap_or_else(|| panic!("{axis}: {told}"));
         let words: Vec<&str> = line.split_whitespace().collect();

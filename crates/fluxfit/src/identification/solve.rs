@@ -21,14 +21,14 @@ use super::{
     },
     judge::{
         points_tell_more::{Points, is_narrower, points_tell_more},
-        verdict::{Verdict, judge},
+        verdict::{Judged, Verdict, judge},
     },
     prepare::{
         model::{self, Model, ModelChoice, ModelReason},
         search_box, standstill, stretches,
     },
     progress::{Progress, Step, silent},
-    request::Request,
+    request::{Known, Request},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -105,9 +105,10 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let finding = finding(steady.as_ref(), output.as_ref())?;
     let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
     let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
-    let half_widths = |log: &Log, request: &Request| half_widths(log, request, output.as_ref().or(outvoted.as_ref()));
+    let known = output.as_ref().or(outvoted.as_ref());
+    let half_widths = |log: &Log, request: &Request| judged_again(log, request, known).map(half_widths);
     let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), &half_widths);
-    let parameters = explained(judged, finding, request, Some(trials));
+    let parameters = explained(judged, finding, saturation.as_ref(), request, Some(trials));
     let method = swarm::method(request, model.model);
     let search = method.map(|method| search(log, steady.as_ref(), output.as_ref(), method, request, progress)).transpose()?;
     let evidence = Evidence {
@@ -118,6 +119,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
         output: output.as_ref(),
         saturation: saturation.as_ref(),
         search: search.as_ref(),
+        without_priors: Parameter::ALL.map(|parameter| without_prior(log, request, known, parameter)),
     };
     let warnings = warning::all(&evidence);
     let correlation = finding.uncertainty.correlation;
@@ -178,21 +180,35 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
     let points_answer = by_excitation(log, &mut steady, output.as_mut(), request)?;
     let (model, mut output, outvoted) = if points_answer { (points_tell_more, None, output) } else { (model, output, None) };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
-    if let (Some(found), Some(points), None) = (saturation.as_ref().filter(|found| found.tells_rs), steady.as_mut(), &output) {
-        points.answer_rs(found.rs, found.rs_uncertainty);
+    let finding = output.as_mut().map(|fit| &mut fit.finding).or(steady.as_mut().map(|fit| &mut fit.finding));
+    if let (Some(finding), Some(found)) = (finding, saturation.as_ref().filter(|found| found.tells_rs)) {
+        finding.answer_rs(found.rs, found.rs_uncertainty);
     }
     // Only now: what all sensors share decides neither the model nor the value.
     common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
     Ok(Fitted { model, steady, output, outvoted, saturation })
 }
 
-/// Half-widths of a log's parameters as fractions of their values, infinite where there is no value; nothing if it has no answer. Of a
-/// drive that is `known`.
-fn half_widths(log: &Log, request: &Request, known: Option<&OutputFit>) -> Option<[f64; PARAMETERS]> {
+/// The parameters that another log, or another request, comes to, of a drive that is `known`; nothing if there is no answer.
+fn judged_again(log: &Log, request: &Request, known: Option<&OutputFit>) -> Option<[Judged; PARAMETERS]> {
     let Fitted { steady, output, saturation, .. } = fitted(log, request, known, &silent).ok()?;
     let finding = finding(steady.as_ref(), output.as_ref()).ok()?;
-    let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
-    Some(judged.map(|one| if one.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { one.relative_half_width() }))
+    Some(judge(finding, saturation.as_ref(), request, log.is_short_circuit()))
+}
+
+/// Half-widths of parameters as fractions of their values, infinite where there is no value.
+fn half_widths(judged: [Judged; PARAMETERS]) -> [f64; PARAMETERS] {
+    judged.map(|one| if one.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { one.relative_half_width() })
+}
+
+/// Of a parameter with a prior the value that the log alone tells, with its standard uncertainty, SI; nothing where it tells none.
+fn without_prior(log: &Log, request: &Request, known: Option<&OutputFit>, parameter: Parameter) -> Option<(f64, f64)> {
+    let Known::Prior { .. } = request.known[parameter as usize] else { return None };
+    let mut request = request.clone();
+    request.known[parameter as usize] = Known::Nothing;
+    let judged = judged_again(log, &request, known)?;
+    let alone = &judged[parameter as usize];
+    (alone.verdict != Verdict::NotIdentifiable).then_some((alone.raw, alone.uncertainty.standard_error()))
 }
 
 /// What stands between the log and its motor, by the model that answers.
@@ -247,9 +263,15 @@ fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>,
         // The simulated currents know the drive's faults, which the points may take for saturation; where they leave noise, there is none.
         return if fit.is_explained() { None } else { of_points() };
     }
-    let rs_uncertainty = fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
+    let of_currents = (fit.drive.motor.rs, fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error());
+    // Points of one current at several speeds may tell R_s better than a few terms of saturation do.
+    let in_doubt = SteadyFit::with_drive_in_doubt(log, request, fit.unexplained_loss).ok();
+    let of_speeds = in_doubt.and_then(|points| points.rs_of_speeds(request)).filter(|of_speeds| of_speeds.1 < of_currents.1);
     let points = steady.map_or(&[][..], |fit| &fit.operating_points);
-    Some(SaturationFinding::of_currents(log, &fit.drive, (rs_uncertainty, &fit.fault_estimates), &fit.stretches, points, request))
+    let (rs, tells_rs) = (of_speeds.unwrap_or(of_currents), of_speeds.is_some());
+    let mut found = SaturationFinding::of_currents(log, &fit.drive, (rs, &fit.fault_estimates), &fit.stretches, points, request);
+    found.tells_rs = tells_rs;
+    Some(found)
 }
 
 /// The swarm's search of the same cost that the answering model minimized.

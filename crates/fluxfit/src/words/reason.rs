@@ -74,10 +74,7 @@ fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
             write!(f, "the voltages' accuracy {leaves}: the operating points are too similar for this parameter")
         }
         Part::Timing => write!(f, "the timing of the voltage columns is not known, which {leaves}"),
-        Part::DeadTime => write!(
-            f,
-            "how much voltage dead time and device drops take is not known well enough, and it looks like resistance, which {leaves}"
-        ),
+        Part::DeadTime => write!(f, "how much voltage dead time and device drops take is not known well enough, which {leaves}"),
         Part::FrameLag => write!(
             f,
             "how far the angle is off, and how far apart the instants of voltages and currents are, is not known well enough; either acts \

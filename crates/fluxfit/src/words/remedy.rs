@@ -2,9 +2,13 @@
 
 use super::digits::{one_digit, percent, three_digits};
 use crate::{
-    identification::explain::{
-        measurement::{Measurement, Place, Promised},
-        remedy::{Also, Remedy},
+    frames::Dq,
+    identification::{
+        explain::{
+            measurement::{Measurement, Place, Promised},
+            remedy::{Also, Remedy},
+        },
+        fit::incremental::Incremental,
     },
     motor::Parameter,
 };
@@ -58,6 +62,9 @@ impl Display for Remedy {
                  L_q at one current: step i_d, then i_q, by a tenth of the current, hold each step, at two speeds, and identify with the \
                  steady model"
             ),
+            Self::TakeIncremental { of_axes } => {
+                write!(f, "for a current controller take {}; for the flux at other currents, the table of fluxes", incremental(of_axes))
+            }
             Self::SimilarWindows => write!(
                 f,
                 "identify from three or more windows in time at nearly the same currents, so that the motor saturates alike in them and a \
@@ -84,14 +91,27 @@ impl Display for Remedy {
     }
 }
 
+/// Incremental inductances of both axes: `the incremental L_d = 17.4 ± 0.63 mH at i_d = -9.0 A, i_q = 14 A, and L_q = ..`.
+pub(super) fn incremental(of_axes: &[Incremental; 2]) -> String {
+    let one = |one: &Incremental| {
+        let (scale, unit) = if one.inductance < 1e-3 { (1e6, "uH") } else { (1e3, "mH") };
+        let half_width = scale * 2.0 * one.uncertainty;
+        let decimals = (1.0 - half_width.log10().floor()).clamp(0.0, 9.0) as usize;
+        let Dq { d, q } = one.current;
+        format!("{:.decimals$} ± {half_width:.decimals$} {unit} at i_d = {d:.1} A, i_q = {q:.1} A", scale * one.inductance)
+    };
+    let [d, q] = of_axes.each_ref().map(one);
+    format!("the incremental L_d = {d}, and L_q = {q}")
+}
+
 /// How to make operating points tell a parameter.
 fn spread(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Rs => {
             "add operating points with more current at low speed, or a larger step of i_d, or give R_s to 1 % as a prior, from a multimeter"
         }
-        Parameter::Ld => "make the step of i_d larger",
-        Parameter::Lq => "add operating points with more i_q",
+        Parameter::Ld => "make the step of i_d larger, or log it at a higher speed",
+        Parameter::Lq => "add operating points with more i_q, or at a higher speed",
         Parameter::PsiF => "add operating points at a higher speed, or at a second speed",
     }
 }
@@ -128,6 +148,6 @@ mod tests {
         let remedy = Remedy::HoldLonger { times: 5.0, parameter: Parameter::Ld, half_width: 0.05, or };
         let longer = "hold each operating point about 5 times as long: L_d to about ±5.0 %";
         assert_eq!(format!("{remedy:#}"), longer);
-        assert_eq!(remedy.to_string(), format!("{longer}; or make the step of i_d larger"));
+        assert_eq!(remedy.to_string(), format!("{longer}; or make the step of i_d larger, or log it at a higher speed"));
     }
 }

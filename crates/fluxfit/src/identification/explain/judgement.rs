@@ -2,14 +2,14 @@
 
 use super::{
     super::{
-        fit::{finding::Finding, uncertainty::ParameterUncertainty},
+        fit::{finding::Finding, saturation::SaturationFinding, uncertainty::ParameterUncertainty},
         judge::{
             reason::Reason,
             verdict::{Judged, Verdict},
         },
         request::{Known, Request},
     },
-    remedy::{self, Remedy},
+    remedy::{self, Beside, Remedy},
     trial::Trials,
 };
 use crate::motor::{PARAMETERS, Parameter};
@@ -49,10 +49,11 @@ impl Judgement {
 pub(crate) fn explained(
     judged: [Judged; PARAMETERS],
     finding: &Finding,
+    saturation: Option<&SaturationFinding>,
     request: &Request,
     mut trials: Option<Trials>,
 ) -> [Judgement; PARAMETERS] {
-    let knows_rs = request.known[Parameter::Rs as usize] != Known::Nothing;
+    let beside = Beside { knows_rs: request.known[Parameter::Rs as usize] != Known::Nothing, saturation };
     let mut remedy = |one: &Judged| {
         // What is wrong with one parameter of a fit is to be mended for all of them.
         let source = match one.reason {
@@ -63,7 +64,7 @@ pub(crate) fn explained(
         let of_gains = finding.uncertainty.parameters[parameter as usize].systematic.common_gains();
         let now = if source.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { source.relative_half_width() };
         let measure = || trials.as_mut().and_then(|trials| trials.best(of_gains, now, parameter));
-        source.reason.as_ref().and_then(|reason| remedy::of(reason, parameter, finding, knows_rs, measure))
+        source.reason.as_ref().and_then(|reason| remedy::of(reason, parameter, finding, beside, measure))
     };
     let remedies: Vec<Option<Remedy>> = judged.iter().map(&mut remedy).collect();
     let mut remedies = remedies.into_iter();

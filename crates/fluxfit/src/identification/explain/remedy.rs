@@ -2,7 +2,7 @@
 
 use super::{
     super::{
-        fit::{finding::Finding, output_errors::CORRELATED, part::Part},
+        fit::{finding::Finding, incremental::Incremental, output_errors::CORRELATED, part::Part, saturation::SaturationFinding},
         judge::{
             reason::{Common, Reason},
             verdict::IDENTIFIED,
@@ -66,6 +66,11 @@ pub enum Remedy {
     CalibrateBusVoltage,
     /// The motor saturates: take its fluxes, or hold steps around the current that matters, for the incremental inductances there.
     SmallSteps,
+    /// The motor saturates, and operating points tell its incremental inductances: take those, or its fluxes. The surest of each axis.
+    TakeIncremental {
+        /// Of d and of q.
+        of_axes: [Incremental; 2],
+    },
     /// Identify from three or more windows at nearly the same currents, so that saturation is alike in them.
     SimilarWindows,
     /// Give a sharper prior, or log another operating point.
@@ -102,15 +107,23 @@ const MUCH_LONGER: f64 = 100.0;
 /// Most of the interval of an identified parameter that may be no noise where longer windows are to help.
 const MOST_REST: f64 = 0.9;
 
-/// What to do about a reason; nothing about a value that was given. `knows_rs`: R_s is given, which then is no remedy. `measure`: what to
-/// measure, where that is worth it.
-pub(crate) fn of(
+/// What is known beside a finding.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beside<'a> {
+    /// Whether R_s is given, which then is no remedy.
+    pub(super) knows_rs: bool,
+    pub(super) saturation: Option<&'a SaturationFinding>,
+}
+
+/// What to do about a reason; nothing about a value that was given. `measure`: what to measure, where that is worth it.
+pub(super) fn of(
     reason: &Reason,
     parameter: Parameter,
     finding: &Finding,
-    knows_rs: bool,
+    beside: Beside,
     measure: impl FnOnce() -> Option<Promised>,
 ) -> Option<Remedy> {
+    let Beside { knows_rs, saturation } = beside;
     let measure = || measure().map(Remedy::Measure);
     let or_stretch = |also: Option<Also>| Remedy::AddStretch { id: step(finding), also };
     Some(match reason {
@@ -130,9 +143,26 @@ pub(crate) fn of(
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
         Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
+        // Beside saturation, what disturbs the motor or makes its points contradict each other is what a few terms lack of it.
+        Reason::Saturates | Reason::Wide { part: Part::Saturation | Part::ProcessNoise | Part::Misfit, .. } if saturation.is_some() => {
+            let incremental = || saturation.and_then(surest_of_axes).map(|of_axes| Remedy::TakeIncremental { of_axes });
+            let at_once = if parameter == Parameter::Rs { measure() } else { incremental() };
+            at_once.unwrap_or(Remedy::SmallSteps)
+        }
         Reason::Saturates => Remedy::SmallSteps,
         Reason::Wide { part, .. } => narrower(*part, parameter, finding, knows_rs, measure),
     })
+}
+
+/// The surest incremental inductance of each axis; none where either axis has none.
+fn surest_of_axes(saturation: &SaturationFinding) -> Option<[Incremental; 2]> {
+    let found = saturation.incremental();
+    let error = |one: &Incremental| one.uncertainty / one.inductance.abs();
+    let surest = |axis: usize| {
+        let of_axis = found.iter().filter(|one| one.axis == axis);
+        of_axis.min_by(|one, other| error(one).total_cmp(&error(other))).copied()
+    };
+    Some([surest(0)?, surest(1)?])
 }
 
 /// What makes a wide interval narrower; `measure` is what to measure for it.
@@ -147,7 +177,9 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, knows_rs: bool,
         }
         Part::Accuracy | Part::Excitation | Part::FaultsInDoubt => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         Part::Timing => Remedy::StateVoltageTiming,
-        Part::DeadTime => measure().unwrap_or(Remedy::CompensateDeadTime { or_resistance: !knows_rs }),
+        // Beside dead time a resistance that is given tells psi_f, and inductances hardly.
+        Part::DeadTime => measure()
+            .unwrap_or(Remedy::CompensateDeadTime { or_resistance: !knows_rs && matches!(parameter, Parameter::Rs | Parameter::PsiF) }),
         Part::FrameLag => Remedy::TellFrameLag,
         Part::WithinRows => Remedy::LogEachPeriod,
         // What disturbs the motor would disturb it in a further stretch too.
@@ -210,6 +242,8 @@ mod tests {
         },
     };
 
+    const NOTHING: Beside = Beside { knows_rs: false, saturation: None };
+
     fn finding(motor: Motor, sample_period: f64) -> Finding {
         let bench = Bench {
             motor,
@@ -229,7 +263,7 @@ mod tests {
     #[test]
     fn a_sign_is_not_suspected_where_a_lag_explains_it() {
         let motor = Motor { rs: 0.03, ld: 0.0, lq: -100e-6, psi_f: 9e-3 };
-        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period), false, || None);
+        let remedy = |motor, sample_period| of(&Reason::Negative, Parameter::Lq, &finding(motor, sample_period), NOTHING, || None);
         let Some(Remedy::CheckFrame { lag }) = remedy(motor, 1e-3) else { panic!("a lag explains it") };
         assert!((lag / 27.8e-6 - 1.0).abs() < 0.01, "{lag}");
         let signs = Some(Remedy::CheckSigns { units: false });
@@ -245,7 +279,7 @@ mod tests {
         let wide = Reason::Wide { part: Part::DeadTime, half_width: 0.3 };
         for knows_rs in [false, true] {
             for reason in [&wide, &Reason::OnePoint] {
-                let sentence = of(reason, Parameter::PsiF, &finding, knows_rs, || None).unwrap().to_string();
+                let sentence = of(reason, Parameter::PsiF, &finding, Beside { knows_rs, ..NOTHING }, || None).unwrap().to_string();
                 assert_eq!(sentence.contains("give R_s"), !knows_rs, "{sentence}");
             }
         }

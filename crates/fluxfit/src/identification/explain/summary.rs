@@ -14,7 +14,11 @@ pub struct Summary {
     pub identified: Vec<Parameter>,
     /// Parameters whose value was given.
     pub given: Vec<Parameter>,
-    /// Parameters whose verdict is [`Verdict::Weak`].
+    /// Parameters whose verdict is [`Verdict::Weak`] only because the motor [saturates](Reason::Saturates).
+    pub estimated: Vec<Parameter>,
+    /// The widest of their 95 % intervals to either side, as a fraction of the value.
+    pub estimated_to: f64,
+    /// Other parameters whose verdict is [`Verdict::Weak`].
     pub weak: Vec<Parameter>,
     /// The one thing to do next; `None` where nothing is to be done, or nothing is known that would help.
     pub next: Option<NextStep>,
@@ -39,8 +43,16 @@ impl Summary {
         let with = |is: &dyn Fn(&Judgement) -> bool| -> Vec<Parameter> {
             parameters.iter().filter(|judgement| is(judgement)).map(|judgement| judgement.parameter).collect()
         };
-        let of = |verdict: Verdict| with(&|judgement| judgement.verdict == verdict && !is_given(judgement));
-        Self { identified: of(Verdict::Identified), given: with(&is_given), weak: of(Verdict::Weak), next: next_step(parameters) }
+        let is_estimate = |judgement: &Judgement| judgement.verdict == Verdict::Weak && judgement.reason == Some(Reason::Saturates);
+        let width = |judgement: &Judgement| judgement.uncertainty.half_width / judgement.raw.abs();
+        Self {
+            identified: with(&|judgement| judgement.verdict == Verdict::Identified && !is_given(judgement)),
+            given: with(&is_given),
+            estimated: with(&is_estimate),
+            estimated_to: parameters.iter().filter(|judgement| is_estimate(judgement)).map(width).fold(0.0, f64::max),
+            weak: with(&|judgement| judgement.verdict == Verdict::Weak && !is_estimate(judgement)),
+            next: next_step(parameters),
+        }
     }
 }
 

@@ -33,6 +33,9 @@ const MOST_TRIED: usize = 3;
 /// What leaves more than this part of the interval that there is now is not worth proposing.
 const WORTH: f64 = 0.5;
 
+/// The same of what makes the parameter identified: then it is worth more.
+const WORTH_IF_IDENTIFIED: f64 = 0.8;
+
 /// Most rows of a log that is identified again: twice the time of an answer that takes a second.
 const MOST_ROWS: usize = 100_000;
 
@@ -91,7 +94,11 @@ impl<'a> Trials<'a> {
                 break;
             }
         }
-        best.filter(|best| best.half_width < (WORTH * now).min(WEAK))
+        let is_worth_it = |best: &Promised| {
+            let part = if best.half_width <= IDENTIFIED { WORTH_IF_IDENTIFIED } else { WORTH };
+            best.half_width < (part * now).min(WEAK)
+        };
+        best.filter(is_worth_it)
     }
 
     /// From which length to which a stretch fits the log's own operating points, s: a shorter one would count as a pause between them, and

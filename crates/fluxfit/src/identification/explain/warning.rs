@@ -209,6 +209,8 @@ pub(crate) struct Evidence<'a> {
     pub(crate) output: Option<&'a OutputFit>,
     pub(crate) saturation: Option<&'a SaturationFinding>,
     pub(crate) search: Option<&'a Search>,
+    /// Of each parameter with a prior the value that the log alone tells, with its standard uncertainty, SI.
+    pub(crate) without_priors: [Option<(f64, f64)>; PARAMETERS],
 }
 
 /// Everything there is to warn of.
@@ -231,34 +233,19 @@ pub(crate) fn all(evidence: &Evidence) -> Vec<Warning> {
     });
     let of_currents = evidence.output.map(|fit| [process_noise(fit), angle(log, fit)]);
     let of_either = [evidence.saturation.map(saturated), evidence.low_speed(), voltage_limit(log), evidence.outside_box()];
-    let of_priors = evidence.parameters.iter().map(|judgement| contradicted_prior(judgement, request));
+    let of_priors = Parameter::ALL.map(|parameter| contradicted_prior(parameter, evidence.without_priors[parameter as usize], request));
     of_points.into_iter().flatten().chain(of_currents.into_iter().flatten()).chain(of_either).chain(of_priors).flatten().collect()
 }
 
 /// Standard errors of both together by which a log contradicts a prior.
 const CONTRADICTION: f64 = 3.0;
 
-/// Least part that the log must have in the answer: with less, the log's own value is lost in rounding.
-const LEAST_PART: f64 = 1e-3;
-
-/// The answer is the prior and the value by the log alone, weighted; so that value follows from the answer and the prior's weight. What
-/// else is uncertain of the answer comes from the log.
-fn contradicted_prior(judgement: &Judgement, request: &Request) -> Option<Warning> {
-    let Known::Prior { value: prior, standard_error } = request.known[judgement.parameter as usize] else { return None };
-    let total = judgement.uncertainty.standard_error();
-    let of_prior = judgement.uncertainty.systematic.prior;
-    let part_of_log = 1.0 - of_prior / standard_error;
-    if part_of_log < LEAST_PART || !total.is_finite() {
-        return None;
-    }
-    let value = prior + (judgement.raw - prior) / part_of_log;
-    let error = (total * total - of_prior * of_prior).max(0.0).sqrt() / part_of_log;
-    let contradicts = (value - prior).abs() > CONTRADICTION * standard_error.hypot(error);
-    contradicts.then_some(Warning::PriorContradicted {
-        parameter: judgement.parameter,
-        prior: (prior, standard_error),
-        log: (value, error),
-    })
+/// What the log alone tells of a parameter with a prior, against that.
+fn contradicted_prior(parameter: Parameter, alone: Option<(f64, f64)>, request: &Request) -> Option<Warning> {
+    let Known::Prior { value, standard_error } = request.known[parameter as usize] else { return None };
+    let log = alone?;
+    let contradicts = (log.0 - value).abs() > CONTRADICTION * standard_error.hypot(log.1);
+    contradicts.then_some(Warning::PriorContradicted { parameter, prior: (value, standard_error), log })
 }
 
 /// Part of the rows used that is worth calling a transient.

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     faults::{AngleNeed, Fault, Faults},
-    levenberg_marquardt::{Linearized, Polished, PriorResidual, linearized, linearized_one, polish_to_choose, step},
+    levenberg_marquardt::{Linearized, Polished, PriorResidual, linearized, linearized_one, polish_to_choose, step, with_priors},
     motor::{PARAMETERS, Parameter},
     normal_matrix::{NormalMatrix, dot},
     objective::{
@@ -463,11 +463,14 @@ struct ScoreTest {
 
 impl ScoreTest {
     fn of(search: &FaultSearch, faults: &[Fault]) -> Self {
-        let FaultSearch { drive, unknowns, cost, .. } = search;
+        let FaultSearch { drive, unknowns, cost, priors, .. } = search;
         let objective = search.objective();
-        let Linearized { residuals, slopes: jacobian } = linearized_one(objective, drive, unknowns);
+        let Linearized { mut residuals, slopes } = linearized_one(objective, drive, unknowns);
         // An observer takes away the correlation of the residuals: where it is judged, every row counts.
         let independent = if faults.contains(&Fault::Disturbance) { residuals.len() as f64 } else { effective_sample_size(&residuals) };
+        // What priors hold a fault does not move.
+        let jacobian = with_priors(slopes, unknowns, priors);
+        residuals.extend(priors.iter().map(|belief| belief.weight * (belief.value - drive.get(belief.unknown))));
         let normal = NormalMatrix::of(&jacobian);
         let inverse = normal.inverse();
         let accuracy = VoltageAccuracy { fraction: search.voltage_accuracy, volts: 0.0 };
@@ -488,7 +491,10 @@ impl ScoreTest {
         for starts in starts.chunks(SIDE_BY_SIDE) {
             let drives: Vec<(Adjustable, Vec<Unknown>)> =
                 starts.iter().map(|(place, start)| (*start, Unknown::of_fault(faults[*place]).collect())).collect();
-            let expected = parallel::map(&linearized(search.objective(), &drives), |start| self.expected_from(search, start));
+            let linearized = linearized(search.objective(), &drives).into_iter().zip(&drives);
+            let linearized: Vec<Linearized> =
+                linearized.map(|(start, (_, own))| Linearized { slopes: with_priors(start.slopes, own, search.priors), ..start }).collect();
+            let expected = parallel::map(&linearized, |start| self.expected_from(search, start));
             starts.iter().zip(expected).for_each(|((place, start), expected)| each[*place].push((expected, *start)));
         }
         let best_first = |mut each: Vec<(FromStart, Adjustable)>| {

@@ -1,6 +1,6 @@
 //! A finding: what a fit found, whichever model made it, as judgement and explanation need it.
 
-use super::uncertainty::Uncertainty;
+use super::uncertainty::{NORMAL, ParameterUncertainty, Systematic, Uncertainty};
 use crate::{
     faults::Fault,
     frames::Dq,
@@ -33,6 +33,13 @@ impl Finding {
             uncertainty.systematic.excitation = uncertainty.systematic.excitation.max(reach[p] / 3.0_f64.sqrt());
             *uncertainty = uncertainty.anew();
         }
+    }
+
+    /// Makes this R_s, ohm, the answer, with its standard uncertainty.
+    pub(crate) fn answer_rs(&mut self, rs: f64, standard_error: f64) {
+        self.motor.rs = rs;
+        self.open[Parameter::Rs as usize] = false;
+        self.uncertainty.parameters[Parameter::Rs as usize] = ParameterUncertainty::of(standard_error, NORMAL, Systematic::default());
     }
 }
 

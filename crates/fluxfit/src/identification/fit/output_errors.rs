@@ -12,7 +12,7 @@ use super::{
 use crate::{
     faults::{Fault, Faults, disturbance::Disturbance},
     frames::Dq,
-    levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_to_choose},
+    levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_to_choose, with_priors},
     motor::{Motor, PARAMETERS},
     normal_matrix::NormalMatrix,
     objective::{
@@ -90,14 +90,6 @@ fn larger(one: DMatrix<f64>, other: DMatrix<f64>) -> DMatrix<f64> {
     let scale: Vec<f64> =
         (0..one.nrows()).map(|k| if one[(k, k)] > 0.0 { (other[(k, k)] / one[(k, k)]).sqrt().max(1.0) } else { 1.0 }).collect();
     DMatrix::from_fn(one.nrows(), one.ncols(), |p, q| one[(p, q)] * scale[p] * scale[q])
-}
-
-/// The currents' derivatives, with a residual more for each prior.
-fn with_priors(mut slopes: Vec<Vec<f64>>, unknowns: &[Unknown], priors: &[PriorResidual]) -> Vec<Vec<f64>> {
-    for (column, unknown) in slopes.iter_mut().zip(unknowns) {
-        column.extend(priors.iter().map(|belief| if belief.unknown == *unknown { -belief.weight } else { 0.0 }));
-    }
-    slopes
 }
 
 /// Errors of everything that was fitted.

@@ -189,25 +189,26 @@ impl SaturationFinding {
         Some(Self { tells_rs: of_speeds.is_some(), ..Self::at((points, &lost), best.motor, told.rs(), request) })
     }
 
-    /// What simulated currents with terms of saturation say of it, over these rows and at these operating points, given the standard error
-    /// of R_s, ohm, and the drive's other numbers that were fitted.
+    /// What simulated currents with terms of saturation say of it, over these rows and at these operating points, given R_s with its
+    /// standard error, ohm, and the drive's other numbers that were fitted.
     pub(crate) fn of_currents(
         log: &Log,
         drive: &Adjustable,
-        (rs_uncertainty, beside): (f64, &[FaultEstimate]),
+        (rs, beside): ((f64, f64), &[FaultEstimate]),
         stretches: &[Range<usize>],
         points: &[OperatingPoint],
         request: &Request,
     ) -> Self {
-        let (motor, terms) = (drive.motor, drive.faults.saturation);
+        let (motor, terms) = (Motor { rs: rs.0, ..drive.motor }, drive.faults.saturation);
+        let drive = &Adjustable { motor, ..*drive };
         // The fluxes are those of the resistance that is the answer, and of voltages less what dead time takes, which points know less of.
         let columns = log.columns();
         let (start, end) = (columns.t[0], columns.t[columns.t.len() - 1]);
         let fluxes_at = |points: &[OperatingPoint]| {
             let middle = |point: &OperatingPoint| (0.5 * (point.time.0 + point.time.1) - start) / (end - start) - 0.5;
             let lost: Vec<Lost> =
-                points.iter().map(|point| Lost::of_drive(drive, (rs_uncertainty, beside), point.current(), middle(point))).collect();
-            Self::at((points, &lost), motor, (motor.rs, rs_uncertainty), request)
+                points.iter().map(|point| Lost::of_drive(drive, (rs.1, beside), point.current(), middle(point))).collect();
+            Self::at((points, &lost), motor, rs, request)
         };
         let mut found = fluxes_at(points);
         // The frame stays the log's: an angle beside terms of saturation may stand for what these cannot describe. What it would move is
@@ -380,7 +381,7 @@ mod tests {
         // Voltages to 1e-5 of themselves, which leaves the warming in sight.
         let request = Request { voltage_accuracy: 1e-5, ..Request::default() };
         let drive = Adjustable { motor: MOTOR, faults };
-        let found = SaturationFinding::of_currents(&log, &drive, (1e-5, &[]), &[], &points, &request);
+        let found = SaturationFinding::of_currents(&log, &drive, ((MOTOR.rs, 1e-5), &[]), &[], &points, &request);
         let is_held = |(flux, &(d, q, _)): (&Option<Flux>, &(f64, f64, f64))| {
             let Flux { psi, uncertainty, .. } = flux.unwrap();
             let off = [psi.d - MOTOR.psi_f - MOTOR.ld * d, psi.q - MOTOR.lq * q];

@@ -17,7 +17,7 @@ use super::{
     resistance_of_speeds::{self, Resistance},
     saturation::SaturationFinding,
     swarm::{self, Search},
-    uncertainty::{NORMAL, ParameterUncertainty, Systematic, Uncertainty},
+    uncertainty::Uncertainty,
     voltage_loss::{Loss, LossPrior, is_control_rate, slowest_period},
     warming::Warming,
 };
@@ -178,10 +178,9 @@ impl SteadyFit {
         )
     }
 
-    /// Makes this R_s, ohm, the answer, with its standard uncertainty.
-    pub(crate) fn answer_rs(&mut self, rs: f64, uncertainty: f64) {
-        self.finding.motor.rs = rs;
-        self.finding.uncertainty.parameters[Parameter::Rs as usize] = ParameterUncertainty::of(uncertainty, NORMAL, Systematic::default());
+    /// R_s and its standard uncertainty, ohm, of a motor that saturates, where points of one current at several speeds tell it.
+    pub(crate) fn rs_of_speeds(&self, request: &Request) -> Option<(f64, f64)> {
+        self.saturation(request).filter(|found| found.tells_rs).map(|found| (found.rs, found.rs_uncertainty))
     }
 
     /// Lets the swarm minimize the same weighted equations that least squares solved.

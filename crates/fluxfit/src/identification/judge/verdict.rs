@@ -102,8 +102,12 @@ pub(crate) fn judge(
     let mut judged = Parameter::ALL
         .map(|parameter| by_interval(parameter, finding, uncertainty.parameters[parameter as usize], request.known[parameter as usize]));
     if saturation.is_some_and(SaturationFinding::is_of_currents) {
-        // No constant describes such a motor, however narrow the interval of one is.
-        for one in judged.iter_mut().filter(|one| one.verdict == Verdict::Identified && one.reason.is_none()) {
+        // No constant describes such a motor, however narrow the interval of one is; what is known beforehand stands, and so does an R_s
+        // that asks for no form of the saturation.
+        let is_known = |one: &Judged| request.known[one.parameter as usize] != Known::Nothing;
+        let is_rs = |one: &Judged| one.parameter == Parameter::Rs && saturation.is_some_and(|saturation| saturation.tells_rs);
+        let is_narrow = |one: &Judged| one.verdict == Verdict::Identified && one.reason.is_none();
+        for one in judged.iter_mut().filter(|one| is_narrow(one) && !is_known(one) && !is_rs(one)) {
             (one.verdict, one.reason) = (Verdict::Weak, Some(Reason::Saturates));
         }
     }
