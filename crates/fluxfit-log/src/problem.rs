@@ -285,6 +285,7 @@ impl Problem {
             Self::SeveralLogs { first, .. } => {
                 vec![Advice::MapColumns(first.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect())]
             }
+            Self::Missing { missing, present, proposals, .. } if are_not_in_it(missing, present, proposals) => Vec::new(),
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
             Self::Missing { proposals, rms, .. } => {
                 let columns = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect();
@@ -352,10 +353,18 @@ fn object_remedy(name: &str, class: &str) -> String {
     }
 }
 
+/// Whether a file has fewer columns than it lacks, and none that resembles one of these.
+fn are_not_in_it(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> bool {
+    present.len() < missing.len() && proposals.is_empty()
+}
+
 fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> String {
     let (noun, are, they_have, names) =
         if missing.len() == 1 { ("column", "is", "it has", "another name") } else { ("columns", "are", "they have", "other names") };
     let what = format!("the {noun} {} {are} missing; the file has {}", list(missing), columns(present));
+    if are_not_in_it(missing, present, proposals) {
+        return format!("{what}: too few columns for them, so they are not in it; log them too");
+    }
     if proposals.is_empty() {
         let it = if missing.len() == 1 { "it" } else { "them" };
         return format!("{what}; map {it} if {they_have} {names}, else log {it} too");

@@ -74,7 +74,7 @@ pub struct CharacteristicEstimate {
     pub uncertainty: ParameterUncertainty,
     /// By the same limits as that of a log.
     pub verdict: Verdict,
-    /// Why it has no value, where it has none.
+    /// Why it has no value, or a weak one.
     pub lack: Option<Lack>,
 }
 
@@ -325,10 +325,12 @@ impl Fit {
         let uncertainty = ParameterUncertainty::of(standard_error, self.degrees_of_freedom, systematic);
         let half_width = uncertainty.half_width / raw;
         let verdict = Verdict::of_half_width(half_width);
-        if verdict == Verdict::NotIdentifiable {
-            let parts = Parts { scatter: relative * raw, few_rows: jackknife / pairs, alternatives: systematic.misfit };
-            return CharacteristicEstimate::unknown(parameter, Lack::of_wide(parameter, rows, half_width, &parts));
+        let parts = Parts { scatter: relative * raw, few_rows: jackknife / pairs, alternatives: systematic.misfit };
+        let lack = Lack::of_wide(parameter, rows, half_width, &parts);
+        match verdict {
+            Verdict::NotIdentifiable => CharacteristicEstimate::unknown(parameter, lack),
+            Verdict::Weak => CharacteristicEstimate { parameter, value: Some(raw), uncertainty, verdict, lack: Some(lack) },
+            Verdict::Identified => CharacteristicEstimate { parameter, value: Some(raw), uncertainty, verdict, lack: None },
         }
-        CharacteristicEstimate { parameter, value: Some(raw), uncertainty, verdict, lack: None }
     }
 }

@@ -1,9 +1,9 @@
-//! Why tables do not tell a number of the motor.
+//! Why tables do not tell a number of the motor, or only roughly.
 
 use super::rows::{Residual, Rows};
 use crate::motor::Parameter;
 
-/// Why a number has no value.
+/// Why a number has no value, or a weak one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Lack {
@@ -32,6 +32,8 @@ pub enum Lack {
         half_width: f64,
         /// What scatters.
         test: Residual,
+        /// Whether there is no open-circuit table, which would tell the flux and with it the rest.
+        without_open: bool,
     },
     /// It hangs on a few rows: without them it is another number.
     FewRows {
@@ -39,6 +41,8 @@ pub enum Lack {
         half_width: f64,
         /// What these rows hold.
         test: Residual,
+        /// Whether there is no open-circuit table.
+        without_open: bool,
     },
     /// A motor with another value, or another drag of the bench, fits about as well.
     Alternatives {
@@ -76,13 +80,13 @@ impl Lack {
 
     /// Of a number that the tables depend on and whose interval is too wide.
     pub(super) fn of_wide(parameter: Parameter, rows: &Rows, half_width: f64, parts: &Parts) -> Self {
-        let test = telling(parameter, rows);
+        let (test, without_open) = (telling(parameter, rows), rows.open.is_empty());
         if parts.alternatives > parts.scatter.max(parts.few_rows) {
             Self::Alternatives { half_width }
         } else if parts.few_rows > parts.scatter {
-            Self::FewRows { half_width, test }
+            Self::FewRows { half_width, test, without_open }
         } else {
-            Self::Scatter { half_width, test }
+            Self::Scatter { half_width, test, without_open }
         }
     }
 }

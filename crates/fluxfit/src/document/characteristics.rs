@@ -101,7 +101,7 @@ impl EstimateEntry {
 
     /// The entry of a number that is known but for the pole pairs, if it is known at all.
     fn without_pole_pairs(estimate: &CharacteristicEstimate) -> Self {
-        let lack = estimate.lack.unwrap_or(Lack::PolePairs);
+        let lack = estimate.lack.filter(|_| estimate.value.is_none()).unwrap_or(Lack::PolePairs);
         let unknown = CharacteristicEstimate { value: None, verdict: Verdict::NotIdentifiable, lack: Some(lack), ..*estimate };
         Self::of(&unknown, 1.0)
     }

@@ -23,10 +23,10 @@ impl Display for Lack {
                 "all i_q are about {} A, where the flux and a constant torque (drag, the zero of the sensor) act alike",
                 three_digits(*current)
             ),
-            Self::Scatter { half_width, test } => {
+            Self::Scatter { half_width, test, .. } => {
                 write!(f, "the {} scatter around those of any motor, which leaves {}", test.label(), width(*half_width))
             }
-            Self::FewRows { half_width, test } => {
+            Self::FewRows { half_width, test, .. } => {
                 write!(f, "it hangs on a few rows of the {}: what it is without them leaves {}", test.label(), width(*half_width))
             }
             Self::Alternatives { half_width } => {
@@ -51,6 +51,10 @@ impl Lack {
             Self::Voltages => "put 'll' or 'phase' into the name of the voltage's column".to_owned(),
             Self::OneDirectCurrent { current } => format!("measure at a second current too, such as {} A", three_digits(current / 2.0)),
             Self::OneTorqueCurrent { current } => format!("measure at a second i_q too, such as {} A", three_digits(current / 2.0)),
+            Self::Scatter { test: Residual::ShortCurrent, without_open: true, .. }
+            | Self::FewRows { test: Residual::ShortCurrent, without_open: true, .. } => {
+                format!("add the open-circuit table of the same motor, or {}", more(Residual::ShortCurrent))
+            }
             Self::Scatter { test, .. } | Self::FewRows { test, .. } => more(*test).to_owned(),
             Self::Alternatives { .. } => more(Residual::ShortCurrent).to_owned(),
         }

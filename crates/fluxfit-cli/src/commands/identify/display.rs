@@ -189,10 +189,11 @@ fn steps(found: &Identification) -> String {
         }
     }
     for (remedy, parameters) in others {
-        if terminal::is_verbose() {
-            text += &to_do("Or", remedy);
+        let is_instead = parameters.iter().all(|parameter| next.parameters.contains(parameter));
+        let symbols: Vec<&str> = parameters.iter().copied().map(Parameter::symbol).collect();
+        if is_instead && terminal::is_verbose() {
+            text += &to_do(&format!("Or for {}", symbols.join(", ")), remedy);
         } else if !is_of_columns && !parameters.iter().any(|parameter| next.parameters.contains(parameter)) {
-            let symbols: Vec<&str> = parameters.into_iter().map(Parameter::symbol).collect();
             text += &to_do(&format!("To do for {}", symbols.join(", ")), remedy);
         }
     }
