@@ -76,8 +76,8 @@ fn symbol(parameter: Parameter, answer: &CharacteristicsAnswer) -> String {
     }
 }
 
-/// What is said of the numbers without a value or with a weak one, each sentence once with the symbols that it is about. Voltages that are line to line or of
-/// a phase have a sentence of their own.
+/// What is said of the numbers without a value or with a weak one, each sentence once with the symbols that it is about. Voltages that are
+/// line to line or of a phase have a sentence of their own.
 fn lacking(answer: &CharacteristicsAnswer, say: impl Fn(&Lack) -> String) -> Vec<(String, String)> {
     let mut said: Vec<(String, String)> = Vec::new();
     for estimate in &answer.parameters {
