@@ -153,8 +153,12 @@ fn points_of_one_current_at_several_speeds_tell_rs_whatever_the_flux() {
 /// voltage along the current bend to together.
 #[test]
 fn fluxes_of_one_speed_hold_beside_what_the_inverter_takes() {
-    let Drawn { told, fluxes, fluxes_held, .. } = drawn(&[(0.0, 3.0), (-2.0, 8.0), (-5.0, 12.0), (-2.0, 4.0), (0.0, 9.0)], &[400.0]);
-    assert!(told == 0 && fluxes == 2000 && fluxes_held >= least_of(fluxes), "{told} told, {fluxes_held} of {fluxes}");
+    let currents = [(0.0, 3.0), (-2.0, 8.0), (-5.0, 12.0), (-2.0, 4.0), (0.0, 9.0)];
+    // The same points again tell no more.
+    for (currents, count) in [(currents.to_vec(), 2000), ([currents, currents].concat(), 4000)] {
+        let Drawn { told, fluxes, fluxes_held, .. } = drawn(&currents, &[400.0]);
+        assert!(told == 0 && fluxes == count && fluxes_held >= least_of(fluxes), "{told} told, {fluxes_held} of {fluxes}");
+    }
 }
 
 /// A voltage along the current follows the current as well: it is found beside the motor, and is no saturation.

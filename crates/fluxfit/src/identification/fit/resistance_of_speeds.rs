@@ -23,8 +23,12 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// Currents that differ by at most this part of the largest are one: a controller holds them better than that.
 const ONE_CURRENT: f64 = 0.01;
 
-/// Between them the flux follows the constant inductances to this part of them, one standard deviation: a saturated motor's slopes are
-/// often half of those, and rarely less than a quarter.
+/// Speeds that differ by less than this part of the largest are one: what their noise makes of R_s is nothing, and speeds that are exactly
+/// alike leave R_s and the fluxes one unknown.
+const ONE_SPEED: f64 = 0.02;
+
+/// Between such currents the flux follows the constant inductances to this part of them, one standard deviation: a saturated motor's slopes
+/// are often half of those, and rarely less than a quarter.
 const SLOPE: f64 = 0.5;
 
 /// Points that would contradict each other so much by chance in one log of a thousand have something else in them: as for
@@ -148,6 +152,10 @@ fn of_several_speeds(points: &[OperatingPoint]) -> Vec<Vec<usize>> {
             None => currents.push(vec![w]),
         }
     }
-    currents.retain(|members| members.len() > 1);
+    currents.retain(|members| {
+        let speeds = || members.iter().map(|&w| points[w].omega_e());
+        let (least, most) = (speeds().fold(f64::INFINITY, f64::min), speeds().fold(f64::NEG_INFINITY, f64::max));
+        most - least > ONE_SPEED * most.abs().max(least.abs())
+    });
     currents
 }
