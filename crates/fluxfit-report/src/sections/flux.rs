@@ -92,7 +92,7 @@ fn incremental(one: &Incremental) -> Markup {
     let show = |henries: f64| number(henries, |henries| scale.format(henries, half_width));
     html! {
         strong { (show(one.inductance)) } (plus_minus(&show(half_width))) (NO_BREAK) (henry(&scale)) " (95\u{a0}%) at "
-        (equals("i_d", one.current.d)) ", " (equals("i_q", one.current.q)) ", between operating points " (one.points[0] + 1) " and " (one.points[1] + 1)
+        (equals("i_d", one.current.d)) ", " (equals("i_q", one.current.q))
     }
 }
 
