@@ -17,7 +17,7 @@ use crate::steady::OperatingPoint;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// Probability at which contradiction between points counts as proven.
-const SIGNIFICANCE: f64 = 1e-3;
+pub(super) const SIGNIFICANCE: f64 = 1e-3;
 
 /// Bisections of the logarithm of the fraction: 60 halve any range to rounding.
 const BISECTIONS: usize = 60;

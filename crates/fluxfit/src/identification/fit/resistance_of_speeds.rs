@@ -9,6 +9,8 @@
 
 use super::{
     super::request::{Known, Request},
+    misfit::SIGNIFICANCE,
+    saturation_equations::LEAST_ACCURACY,
     voltage_loss::Loss,
 };
 use crate::{
@@ -30,13 +32,6 @@ const ONE_SPEED: f64 = 0.02;
 /// Between such currents the flux follows the constant inductances to this part of them, one standard deviation: a saturated motor's slopes
 /// are often half of those, and rarely less than a quarter.
 const SLOPE: f64 = 0.5;
-
-/// Points that would contradict each other so much by chance in one log of a thousand have something else in them: as for
-/// [constant parameters](super::misfit).
-const SIGNIFICANCE: f64 = 1e-3;
-
-/// Voltages are never trusted beyond this fraction, so that noise-free windows have finite weights.
-const LEAST_ACCURACY: f64 = 1e-9;
 
 /// R_s and the drive's unknowns.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,17 +105,10 @@ pub(super) fn resistance(
         }
     }
     for (place, (expected, standard_error)) in places {
-        for (p, column) in columns.iter_mut().enumerate() {
-            column.push(
-                if p == place {
-                    1.0
-                } else if p == count {
-                    expected
-                } else {
-                    0.0
-                } / standard_error,
-            );
-        }
+        columns.iter_mut().for_each(|column| column.push(0.0));
+        let last = columns[place].len() - 1;
+        columns[place][last] = 1.0 / standard_error;
+        columns[count][last] = expected / standard_error;
     }
     let voltages = columns.pop()?;
     let covariance = NormalMatrix::of(&columns).inverse();

@@ -210,4 +210,4 @@ impl Equations<'_> {
 }
 
 /// Voltages are never trusted beyond this fraction, so that noise-free windows have finite weights.
-const LEAST_ACCURACY: f64 = 1e-9;
+pub(super) const LEAST_ACCURACY: f64 = 1e-9;
