@@ -14,7 +14,7 @@ use super::{
 use crate::{
     error::{Error, ErrorKind},
     faults::Fault,
-    levenberg_marquardt::{Polished, polish_with_progress},
+    levenberg_marquardt::{Polished, polish_to_choose, polish_with_progress},
     log::Log,
     objective::{
         adjustable::{Adjustable, Unknown},
@@ -35,7 +35,7 @@ pub(super) struct AllRows {
 }
 
 impl AllRows {
-    /// Of a log whose speed was advanced by a lag, s, or by zero.
+    /// Of a log whose speed was advanced by a lag, s, or by zero. `to_compare` ends where only a comparison with other fits is asked for.
     ///
     /// # Errors
     /// If no stretch is long enough, or nothing finite fits.
@@ -44,15 +44,16 @@ impl AllRows {
         stretches: &[Range<usize>],
         chosen: Chosen,
         request: &Request,
-        fitting: &dyn Fn(usize),
+        (to_compare, fitting): (bool, &dyn Fn(usize)),
     ) -> Result<Self, Error> {
-        let mut fit = Self::polished(log, stretches, chosen, fitting)?;
+        let polished = |chosen| Self::polished(log, stretches, chosen, (to_compare, fitting));
+        let mut fit = polished(chosen)?;
         if !fit.cost.is_finite() {
             return Err(ErrorKind::NoFiniteFit.into());
         }
         while let Some(fault) = fit.unphysical(lag) {
             let chosen = fit.chosen.without(fault, &fit.drive).again(log, stretches, &readings::asked(request))?;
-            let without = Self::polished(log, stretches, chosen, fitting)?;
+            let without = polished(chosen)?;
             let further = fit.chosen.unknowns.len() - without.chosen.unknowns.len();
             if schwarz(without.cost, fit.cost, further, long_run::effective_sample_size(&fit.residuals)) > VERY_STRONG {
                 fit.runaway = Some(fault);
@@ -63,9 +64,19 @@ impl AllRows {
         Ok(fit)
     }
 
-    fn polished(log: &Log, stretches: &[Range<usize>], chosen: Chosen, fitting: &dyn Fn(usize)) -> Result<Self, Error> {
+    fn polished(
+        log: &Log,
+        stretches: &[Range<usize>],
+        chosen: Chosen,
+        (to_compare, fitting): (bool, &dyn Fn(usize)),
+    ) -> Result<Self, Error> {
         let objective = OutputError::of_rows(log, stretches, chosen.reading)?;
-        let Polished { drive, cost, .. } = polish_with_progress(&objective, &chosen.drive, &chosen.unknowns, &chosen.priors, fitting);
+        let (start, unknowns, priors) = (&chosen.drive, &chosen.unknowns, &chosen.priors);
+        let Polished { drive, cost, .. } = if to_compare {
+            polish_to_choose(&objective, start, unknowns, priors)
+        } else {
+            polish_with_progress(&objective, start, unknowns, priors, fitting)
+        };
         let residuals = objective.residuals(&drive);
         Ok(Self { chosen, objective, drive, cost, residuals, runaway: None })
     }

@@ -14,7 +14,7 @@
 
 use super::{
     long_run::effective_sample_size,
-    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest, readings},
+    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest, in_the_running},
     voltage_accuracy::{self, VoltageAccuracy},
 };
 use crate::{
@@ -108,6 +108,8 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) objectives: &'a [(VoltageTiming, OutputError)],
     /// The reading that fits best now, by its place among them.
     pub(crate) reading: usize,
+    /// Those that are still in the running.
+    pub(crate) open: Vec<usize>,
     pub(crate) priors: &'a [PriorResidual],
     pub(crate) drive: Adjustable,
     pub(crate) unknowns: Vec<Unknown>,
@@ -214,9 +216,11 @@ impl FaultSearch<'_> {
 
     /// Chooses the reading of the voltages again: with the faults found, another one may fit better.
     fn choose_reading(&mut self) {
-        self.compared = readings(self.objectives, &self.drive, &self.unknowns, self.priors, HOPELESS_AFTER_A_FIT);
+        let starts = self.open.iter().map(|place| (*place, self.drive)).collect();
+        self.compared = contest(self.objectives, starts, &self.unknowns, self.priors, &Rules::all(HOPELESS_AFTER_A_FIT));
         if let Some((place, best)) = self.compared.first() {
             (self.reading, self.drive, self.cost) = (*place, best.polished.drive, best.polished.cost);
+            self.open = in_the_running(&self.compared);
         }
     }
 
@@ -240,7 +244,7 @@ impl FaultSearch<'_> {
         let peak = self.objective().peak_current();
         let kinds: Vec<Faults> = taken.iter().flat_map(|trial| trial.fault.kinds(&drive.faults, peak)).collect();
         let with = |reading: usize| kinds.iter().map(move |faults| (reading, Adjustable { faults: *faults, ..*drive }));
-        (0..self.objectives.len()).flat_map(with).collect()
+        self.open.iter().copied().flat_map(with).collect()
     }
 
     /// A filter of the voltages, with a reading that suits it, may stand in for an angle that is late: the search goes back to before it,
@@ -279,7 +283,7 @@ impl FaultSearch<'_> {
         let trial = |gain, outcome| FaultTrial { gain, ..FaultTrial::not_judged(Fault::Disturbance, outcome) };
         let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect();
         let alone = self.drive.without_observer();
-        let as_found = (0..self.objectives.len()).map(|reading| (reading, alone));
+        let as_found = self.open.iter().map(|reading| (*reading, alone));
         let starts = as_found.chain(self.kinds(taken, &alone)).collect();
         let mut compared = contest(self.objectives, starts, &unknowns, self.priors, &WITHOUT_OBSERVER);
         // The best of each reading.

@@ -83,7 +83,7 @@ const USUAL_STEPS: usize = 3;
 
 impl OutputFit {
     /// Fits the rows of the log, or of the windows that are named. Of a drive that is `known` from another log neither the reading of the
-    /// voltages nor faults are looked for.
+    /// voltages nor faults are looked for, and the fit is only as near to its end as a comparison with that other one needs.
     ///
     /// # Errors
     /// If a window is not in the log, or no stretch is long enough.
@@ -112,7 +112,7 @@ impl OutputFit {
             let _ = progress(Step::Fit { simulations, usual });
         };
         let AllRows { chosen, objective, drive, cost, residuals, runaway } =
-            AllRows::of((log, lag), &stretches, chosen, request, &fitting)?;
+            AllRows::of((log, lag), &stretches, chosen, request, (known.is_some(), &fitting))?;
         let Chosen { reading, unknowns, priors, readings, terms, independent, .. } = chosen;
         let objective = &objective;
         let _ = progress(Step::Uncertainty);

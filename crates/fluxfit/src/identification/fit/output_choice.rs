@@ -134,6 +134,7 @@ pub(super) fn choose(
         let mut search = FaultSearch {
             objectives,
             reading: place,
+            open: (0..objectives.len()).collect(),
             priors: &priors,
             drive,
             unknowns,

@@ -68,6 +68,16 @@ pub(crate) const HOPELESS: f64 = 10.0;
 /// The same where the start is a fit of one of the readings: what others miss is the reading's own.
 pub(crate) const HOPELESS_AFTER_A_FIT: f64 = 3.0;
 
+/// Mean square over that of the best reading beyond which a reading is out of the running: no fault that is found later makes up for it,
+/// because as long as it is not found all readings miss what it does.
+const OUT_OF_THE_RUNNING: f64 = 100.0;
+
+/// The places of the readings that are not out of the running, given what was tried.
+pub(crate) fn in_the_running(tried: &[(usize, TimingTrial)]) -> Vec<usize> {
+    let least = tried.iter().map(|(_, trial)| trial.mean_square()).fold(f64::INFINITY, f64::min);
+    tried.iter().filter(|(_, trial)| trial.mean_square() <= OUT_OF_THE_RUNNING * least).map(|(place, _)| *place).collect()
+}
+
 /// Tries every reading from the same start. The best one first, with its place among the objectives.
 pub(crate) fn readings(
     objectives: &[(VoltageTiming, OutputError)],
