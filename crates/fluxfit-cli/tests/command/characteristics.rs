@@ -315,6 +315,24 @@ fn torque_direct_current_and_duty_cycle_tell_their_parts_within_their_intervals(
     assert!(drawn == 60 && held >= 52, "{held} of {drawn}");
 }
 
+/// u_dc / 2 is sqrt 3 / 2 of u_dc / sqrt 3: by so much all voltages, and all parameters with them, are smaller, 13.4 %.
+#[test]
+fn what_a_duty_of_1_may_stand_for_is_told_below_the_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = duty_cycle(folder.path(), &mut Noise(1));
+    let (_, document) = json(&["identify", &table, "--pole-pairs", "3"]);
+    let unseen = document["unseen"].as_array().unwrap();
+    let of_duty = unseen.iter().find(|one| one["instrument"] == "duty-scale").unwrap();
+    let change = of_duty["changes"]["psi_f"].as_f64().unwrap();
+    assert!((change + 0.134).abs() < 1e-3, "{change}");
+    let shown = fluxfit(&["identify", &table, "--pole-pairs", "3"]).out;
+    let below = shown.split("  psi_f").nth(1).unwrap().lines().nth(2).unwrap();
+    assert!(
+        below.starts_with("Not in the intervals") && shown.contains("a duty of 1 that is u_dc / 2") && shown.contains("-13.4 %"),
+        "{shown}"
+    );
+}
+
 #[test]
 fn tables_of_several_kinds_are_one_identification() {
     let folder = tempfile::tempdir().unwrap();

@@ -195,10 +195,7 @@ fn duty_cycle(
         return Ok(None);
     }
     let duty_name = quote(heads[duty].name.trim());
-    notes.push(
-        format!("a duty {duty_name} of 1 is read as a phase amplitude of u_dc / sqrt 3, as VESC counts it; where it is u_dc / 2, all values are 0.866 times these")
-            .into(),
-    );
+    notes.push(format!("a duty {duty_name} of 1 is read as a phase amplitude of u_dc / sqrt 3, as VESC counts it").into());
     let named = [("duty", Some(duty)), ("input voltage", Some(input)), ("speed", Some(speed.index)), ("current", current)];
     let used = named.into_iter().filter_map(|(what, index)| Some((what, heads[index?].name.trim().to_owned())));
     let used = used.collect();

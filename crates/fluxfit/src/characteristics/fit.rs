@@ -47,7 +47,7 @@ pub struct CharacteristicsAnswer {
     /// Where the voltages are [ambiguous](VoltageReading::Ambiguous): what the parameters would be if these are line to line. Of a phase,
     /// all would be `sqrt 3` times as large.
     pub if_line_to_line: [Option<f64>; PARAMETERS],
-    /// Relative change of each parameter that has a value where an instrument reads 1 % too much, which no table shows.
+    /// Relative change of each parameter that has a value by the [error](Instrument) of an instrument, which no table shows.
     pub unseen: Vec<(Instrument, [f64; PARAMETERS])>,
 }
 
@@ -141,7 +141,7 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
     }
     let told = parameters.map(|estimate| estimate.value.is_some());
     let change = |instrument: Instrument| {
-        let changes = fit.change_to(&Fit::of(&rows.read_too_large(instrument), rows.has_torque())?);
+        let changes = fit.change_to(&Fit::of(&rows.with_error_of(instrument), rows.has_torque())?);
         Ok((instrument, std::array::from_fn(|p| if told[p] { changes[p] } else { 0.0 })))
     };
     let unseen = Instrument::ALL.into_iter().filter(|instrument| rows.has(*instrument)).map(change).collect::<Result<_, Error>>()?;

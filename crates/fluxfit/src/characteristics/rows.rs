@@ -4,7 +4,7 @@ use super::{
     characteristic::Characteristic,
     direct_current::DirectCurrentRow,
     duty_cycle::DutyCycleRow,
-    open_circuit::{Across, OpenCircuitRow},
+    open_circuit::{Across, OpenCircuitRow, SQRT_3},
     short_circuit::ShortCircuitRow,
     torque_of_current::TorqueOfCurrentRow,
 };
@@ -14,9 +14,12 @@ use crate::{
 };
 use std::ops::Range;
 
-/// What measured a column.
+/// What measured a column, or counted it. It prints as the error that no table shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Instrument {
+    /// The drive, of its duty cycle: whether 1 is the largest circle of space vector modulation, or half the DC voltage.
+    DutyScale,
     /// Of voltages.
     Voltage,
     /// Of currents.
@@ -26,7 +29,7 @@ pub enum Instrument {
 }
 
 impl Instrument {
-    pub(super) const ALL: [Self; 3] = [Self::Voltage, Self::Current, Self::Torque];
+    pub(super) const ALL: [Self; 4] = [Self::DutyScale, Self::Voltage, Self::Current, Self::Torque];
 }
 
 /// What is compared with the model; rows of one kind err alike.
@@ -204,6 +207,7 @@ impl Rows {
 
     pub(super) fn has(&self, instrument: Instrument) -> bool {
         match instrument {
+            Instrument::DutyScale => !self.duty.is_empty(),
             Instrument::Voltage => !(self.open.is_empty() && self.direct.is_empty() && self.duty.is_empty()),
             Instrument::Current => {
                 !(self.shorted.is_empty() && self.torque.is_empty() && self.direct.is_empty()) || self.has_current_of_duty()
@@ -212,11 +216,14 @@ impl Rows {
         }
     }
 
-    /// The same as an instrument would have read it that reads 1 % too much.
-    pub(super) fn read_too_large(&self, instrument: Instrument) -> Self {
+    /// The same with the error of an instrument: it reads 1 % too much, or a duty of 1 is not what it was taken for.
+    pub(super) fn with_error_of(&self, instrument: Instrument) -> Self {
         const TOO_LARGE: f64 = 1.01;
+        /// `u_dc / 2` in place of `u_dc / sqrt 3`.
+        const HALF_OF_BUS: f64 = SQRT_3 / 2.0;
         let mut rows = self.clone();
         match instrument {
+            Instrument::DutyScale => rows.duty.iter_mut().for_each(|row| row.duty *= HALF_OF_BUS),
             Instrument::Voltage => {
                 rows.open.iter_mut().for_each(|row| row.voltage *= TOO_LARGE);
                 rows.direct.iter_mut().for_each(|row| row.voltage *= TOO_LARGE);

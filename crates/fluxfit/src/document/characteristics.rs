@@ -49,7 +49,7 @@ pub struct CharacteristicsDocument {
     pub residual_direct_voltage: Option<f64>,
     /// What is left of the voltages of duty cycles, V, amplitude of a phase, root mean square.
     pub residual_duty_voltage: Option<f64>,
-    /// Relative change of each parameter where an instrument reads 1 % too much, which the intervals do not count.
+    /// Relative change of each parameter by the error of an instrument, which the intervals do not count.
     pub unseen: Vec<InstrumentEntry>,
 }
 
@@ -107,12 +107,12 @@ impl EstimateEntry {
     }
 }
 
-/// An instrument that reads 1 % too much, and what that does to each parameter.
+/// The error of an instrument, and what that does to each parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct InstrumentEntry {
-    /// `voltage`, `current` or `torque`.
+    /// `voltage`, `current` or `torque`, which reads 1 % too much; or `duty-scale`: a duty of 1 is `u_dc / 2`, not `u_dc / sqrt 3`.
     pub instrument: &'static str,
     /// Relative changes.
     pub changes: ByParameter<f64>,
@@ -126,6 +126,7 @@ impl CharacteristicsDocument {
         let table = |table: &Characteristic| TableEntry { kind: table.key(), rows: table.rows() };
         let instrument = |(instrument, changes): &(Instrument, [f64; 4])| InstrumentEntry {
             instrument: match instrument {
+                Instrument::DutyScale => "duty-scale",
                 Instrument::Voltage => "voltage",
                 Instrument::Current => "current",
                 Instrument::Torque => "torque",

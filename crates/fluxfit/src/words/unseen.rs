@@ -2,6 +2,7 @@
 
 use super::digits::{list, percent};
 use crate::{
+    characteristics::Instrument,
     identification::explain::unseen::{Counted, Unseen, UnseenError},
     motor::Parameter,
 };
@@ -14,6 +15,17 @@ impl Display for UnseenError {
             Self::BusVoltage => "the DC voltage read 1 % too large",
             Self::AngleWithLoad => "an angle 1 degree too large at full load, in proportion to it",
             Self::Temperature => "a winding 10 K warmer in the log than in use",
+        })
+    }
+}
+
+impl Display for Instrument {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        f.pad(match self {
+            Self::DutyScale => "a duty of 1 that is u_dc / 2, not u_dc / sqrt 3",
+            Self::Voltage => "all voltages read 1 % too large",
+            Self::Current => "all currents read 1 % too large",
+            Self::Torque => "all torques read 1 % too large",
         })
     }
 }

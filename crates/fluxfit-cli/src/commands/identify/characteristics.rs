@@ -2,7 +2,7 @@
 
 use crate::{
     arguments::LogArguments,
-    commands::{input, status::Status},
+    commands::{input, not_a_log, status::Status},
     error::CommandError,
     json,
     terminal::{self, BAD, DIM, GOOD, WARNING, table, wrapped},
@@ -10,8 +10,8 @@ use crate::{
 use fluxfit::{
     Verdict,
     characteristics::{
-        Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Instrument, Lack, Residual, VoltageReading,
-        identify_characteristics, identify_electrical_characteristics,
+        Across, Characteristic, CharacteristicEstimate, CharacteristicsAnswer, Lack, Residual, VoltageReading, identify_characteristics,
+        identify_electrical_characteristics,
     },
     document::CharacteristicsDocument,
     motor::Parameter,
@@ -24,7 +24,8 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], options: &LogOption
     let (logs, pole_pairs) = (&arguments.logs, options.pole_pairs);
     let mut read = Vec::new();
     for path in logs {
-        read.extend(read_characteristic(path, options)?.map(|read| (input::name(path), read)));
+        let table = not_a_log::or_what_it_is(read_characteristic(path, options), path)?;
+        read.extend(table.map(|read| (input::name(path), read)));
     }
     if read.is_empty() {
         return Ok(None);
@@ -143,6 +144,7 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     }
     let rows = answer.parameters.iter().map(|estimate| cells(estimate, answer));
     text += &format!("\n{}", table(&["", "value", "", "95 %", "interval", "verdict"], 1, rows));
+    text += &format!("\n{DIM}{}{DIM:#}\n", unseen(answer).trim_end());
     let reasons = lacking(answer, ToString::to_string);
     if !reasons.is_empty() {
         let lines = reasons.iter().map(|(symbols, reason)| wrapped("", &format!("{symbols}: {reason}.")).trim_end().to_owned() + "\n");
@@ -157,29 +159,26 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
         Some(format!("{} by {} {unit}", residual.label(), significant(factor * rms?, 2)))
     });
     text += &format!("\n{}", wrapped("", &format!("Model: steady tests; misses {} rms.", left.collect::<Vec<_>>().join(", "))));
-    let unseen = answer.unseen.iter().filter_map(|(instrument, changes)| {
-        let what = match instrument {
-            Instrument::Voltage => "all voltages",
-            Instrument::Current => "all currents",
-            Instrument::Torque => "all torques",
-        };
-        let moved = Parameter::ALL.iter().zip(changes).filter(|(_, change)| change.abs() >= LEAST_CHANGE);
-        let moved: Vec<String> =
-            moved.map(|(parameter, change)| format!("{} {:+.1} %", symbol(*parameter, answer), 100.0 * change)).collect();
-        (!moved.is_empty()).then(|| format!("{what} read 1 % too large: {}", moved.join(", ")))
-    });
-    let temperature = "the temperature: R_s +0.4 %, flux about -0.1 % for each K".to_owned();
-    let unseen = unseen.chain([temperature]).collect::<Vec<_>>().join("; ");
-    let saturation = if answer.residual_rms[Residual::ShortCurrent as usize].is_some() {
-        " Inductances are those at the currents of the short circuit."
-    } else {
-        ""
-    };
-    let unseen = format!("Not in the intervals, because no table shows it: {unseen}.{saturation}");
-    text += &format!("\n{DIM}{}{DIM:#}\n", wrapped("", &unseen).trim_end());
     terminal::print(&text)?;
     terminal::release_notes();
     Ok(())
+}
+
+/// What the intervals above do not count, because no table shows it.
+fn unseen(answer: &CharacteristicsAnswer) -> String {
+    let errors = answer.unseen.iter().filter_map(|(instrument, changes)| {
+        let moved = Parameter::ALL.iter().zip(changes).filter(|(_, change)| change.abs() >= LEAST_CHANGE);
+        let moved: Vec<String> =
+            moved.map(|(parameter, change)| format!("{} {:+.1} %", symbol(*parameter, answer), 100.0 * change)).collect();
+        (!moved.is_empty()).then(|| format!("{instrument}: {}", moved.join(", ")))
+    });
+    let temperature = "the temperature: R_s +0.4 %, flux about -0.1 % for each K".to_owned();
+    let mut text = "Not in the intervals, because no table shows it:\n".to_owned();
+    errors.chain([temperature]).for_each(|error| text += &wrapped("  ", &error));
+    if answer.residual_rms[Residual::ShortCurrent as usize].is_some() {
+        text += &wrapped("", "Inductances are those at the currents of the short circuit.");
+    }
+    text
 }
 
 /// Changes below this part are not worth a word.
