@@ -2,7 +2,6 @@
 
 use crate::{
     report::Report,
-    sections::saturated,
     typography::{amperes, capitalized, count, grouped, power, prose},
 };
 use fluxfit::{
@@ -30,7 +29,6 @@ fn identification(found: &Identification) -> Markup {
         @if found.is_complete() {
             " Nothing more is to be done" @if !found.warnings.is_empty() { ", but see the warnings" } "."
         }
-        @if let Some(saturation) = &found.saturation { (saturated(saturation)) }
         br;
         span.basis { (basis(found)) }
     }

@@ -60,6 +60,11 @@ impl Case {
         match remedy {
             Remedy::Measure(promised) => match promised.measurement {
                 Measurement::Resistance { accuracy } => case.give_rs(accuracy),
+                Measurement::AllPoints { times } => {
+                    for point in answer.identification.operating_points() {
+                        case.hold(point.current(), times * point.omega_e(), point.time.1 - point.time.0);
+                    }
+                }
                 Measurement::Stretch { seconds, place } => match place {
                     Place::Id(id) => case.hold(step(id), omega_e, seconds),
                     Place::HalfLoad { iq } => case.hold(Dq { q: iq, ..at }, omega_e, seconds),

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
-    ErrorKind, Known, Parameter, Request, Verdict, identify,
+    ErrorKind, Known, Parameter, Reason, Remedy, Request, Verdict, identify,
     log::{Columns, Log},
     optimizer::Draws,
 };
@@ -63,7 +63,8 @@ fn steps_of_several_sizes_tell_resistance_and_inductances_beside_dead_time() {
                 );
                 assert!(off < 1.5 * half_width, "{dead_time} s, {parameter:?}: off by {off:.5} ± {half_width:.5}");
             }
-            assert_eq!(found.parameter(Parameter::PsiF).value(), None);
+            let psi_f = found.parameter(Parameter::PsiF);
+            assert_eq!((psi_f.value(), &psi_f.reason, &psi_f.remedy), (None, &Some(Reason::AtRest), &Some(Remedy::Turn)));
         }
     }
 }

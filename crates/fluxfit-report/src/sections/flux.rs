@@ -46,15 +46,6 @@ pub(crate) fn apparent_row(found: &SaturationFinding) -> Markup {
     }
 }
 
-/// The same as a sentence; nothing if there is no such row.
-pub(crate) fn saturated(found: &SaturationFinding) -> Markup {
-    html! {
-        @if let Some([least, most]) = found.lq.as_ref().filter(|[least, most]| least.current != most.current) {
-            " The motor saturates: apparent " (prose("L_q")) " is " (apparent(least, found)) " and " (apparent(most, found)) " (95\u{a0}%)."
-        }
-    }
-}
-
 fn apparent(one: &Apparent, found: &SaturationFinding) -> Markup {
     let scale = scale(one.inductance);
     let of_point = found.fluxes.iter().flatten().find(|flux| flux.current.q == one.current);

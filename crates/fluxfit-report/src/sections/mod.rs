@@ -20,7 +20,6 @@ mod study;
 mod uncertainty;
 mod validation;
 
-pub(crate) use flux::saturated;
 pub(crate) use validation::badge;
 
 use crate::{

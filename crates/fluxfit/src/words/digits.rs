@@ -24,6 +24,15 @@ pub(super) fn three_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// The prefix with which a value is easily read, and how many of it one has.
+pub(super) fn prefix(value: f64) -> (f64, &'static str) {
+    match value.abs() {
+        large if large >= 1.0 => (1.0, ""),
+        small if small >= 1e-3 => (1e3, "m"),
+        _ => (1e6, "u"),
+    }
+}
+
 /// A fraction in percent, with two digits.
 pub(super) fn percent(fraction: f64) -> String {
     let value = 100.0 * fraction;

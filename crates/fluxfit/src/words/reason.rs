@@ -16,6 +16,11 @@ impl Display for Reason {
                 "i_d stays at zero (at most {} A, no more than its noise and accuracy), so L_d is absent from the equations",
                 one_digit(*largest)
             ),
+            Self::AtRest => write!(f, "the rotor stands throughout, and psi_f shows only where it turns"),
+            Self::NoStep { parameter } => {
+                let axis = if *parameter == Parameter::Ld { 'd' } else { 'q' };
+                write!(f, "at rest it shows only in changes of i_{axis}, and there are none to speak of")
+            }
             Self::OnePoint => write!(f, "there is one speed and one load, where R_s i_q and omega_e psi_f act alike"),
             Self::IdConstant => write!(f, "i_d is the same at every operating point, where L_d i_d and psi_f act alike"),
             Self::TooSimilar { open } => {

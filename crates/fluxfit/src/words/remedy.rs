@@ -1,6 +1,6 @@
 //! What to do about a verdict.
 
-use super::digits::{one_digit, percent, three_digits};
+use super::digits::{one_digit, percent, prefix, three_digits};
 use crate::{
     frames::Dq,
     identification::{
@@ -38,6 +38,9 @@ impl Display for Remedy {
                 if f.alternate() { Ok(()) } else { write!(f, "; or {or}") }
             }
             Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
+            Self::Turn => write!(f, "log the motor where it turns, too"),
+            Self::StepCurrent { parameter: Parameter::Ld } => write!(f, "log steps of i_d, too"),
+            Self::StepCurrent { .. } => write!(f, "log steps of i_q, too"),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
             Self::CompensateDeadTime { or_resistance } => {
                 write!(f, "log with the drive's dead-time compensation on")?;
@@ -92,13 +95,13 @@ impl Display for Remedy {
 }
 
 /// Incremental inductances of both axes: `the incremental L_d = 17.4 ± 0.63 mH at i_d = -9.0 A, i_q = 14 A, and L_q = ..`.
-pub(super) fn incremental(of_axes: &[Incremental; 2]) -> String {
+fn incremental(of_axes: &[Incremental; 2]) -> String {
     let one = |one: &Incremental| {
-        let (scale, unit) = if one.inductance < 1e-3 { (1e6, "uH") } else { (1e3, "mH") };
+        let (scale, prefix) = prefix(one.inductance);
         let half_width = scale * 2.0 * one.uncertainty;
         let decimals = (1.0 - half_width.log10().floor()).clamp(0.0, 9.0) as usize;
         let Dq { d, q } = one.current;
-        format!("{:.decimals$} ± {half_width:.decimals$} {unit} at i_d = {d:.1} A, i_q = {q:.1} A", scale * one.inductance)
+        format!("{:.decimals$} ± {half_width:.decimals$} {prefix}H at i_d = {d:.1} A, i_q = {q:.1} A", scale * one.inductance)
     };
     let [d, q] = of_axes.each_ref().map(one);
     format!("the incremental L_d = {d}, and L_q = {q}")
@@ -116,6 +119,11 @@ fn spread(parameter: Parameter) -> &'static str {
     }
 }
 
+/// So many times the speed.
+pub(super) fn of_speed(times: f64) -> String {
+    if times == 2.0 { "twice the speed".to_owned() } else { format!("{times} times the speed") }
+}
+
 impl Display for Promised {
     fn fmt(&self, f: &mut Formatter) -> Result {
         write!(f, "{}: {} to about ±{}", self.measurement, self.parameter.symbol(), percent(self.half_width))
@@ -125,6 +133,7 @@ impl Display for Promised {
 impl Display for Measurement {
     fn fmt(&self, f: &mut Formatter) -> Result {
         match self {
+            Self::AllPoints { times } => write!(f, "add the same operating points at {}", of_speed(*times)),
             Self::Resistance { accuracy } => {
                 write!(f, "measure R_s at the terminals to {:.0} % and give it as a prior", 100.0 * accuracy)
             }

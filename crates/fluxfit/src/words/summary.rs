@@ -2,7 +2,7 @@
 
 use super::{
     digits::{list, one_digit, percent, three_digits},
-    remedy::incremental,
+    remedy::of_speed,
 };
 use crate::{
     identification::explain::{
@@ -18,6 +18,11 @@ fn symbols(parameters: &[Parameter]) -> String {
     list(&parameters.iter().copied().map(Parameter::symbol).collect::<Vec<_>>())
 }
 
+/// Whether a remedy is to take what describes a motor that saturates.
+fn is_of_saturation(remedy: &Remedy) -> bool {
+    matches!(remedy, Remedy::SmallSteps | Remedy::TakeIncremental { .. })
+}
+
 impl Display for Summary {
     fn fmt(&self, f: &mut Formatter) -> Result {
         let asked = PARAMETERS - self.given.len();
@@ -26,16 +31,21 @@ impl Display for Summary {
             (0, asked) => write!(f, "None of {asked} identified")?,
             (count, asked) => write!(f, "{count} of {asked} identified")?,
         }
-        if !self.given.is_empty() {
-            write!(f, ", {} given", symbols(&self.given))?;
-        }
-        if !self.estimated.is_empty() {
-            write!(f, ", {} estimated to ±{}", symbols(&self.estimated), percent(self.estimated_to))?;
-        }
-        match self.weak.len() {
+        // Where the next step is that of a motor that saturates, it says why an estimate is no more than that.
+        let is_told = self.next.as_ref().is_some_and(|next| is_of_saturation(&next.remedy));
+        let is_weak = |parameter: &Parameter| self.weak.contains(parameter) || is_told && self.estimated.contains(parameter);
+        let weak: Vec<Parameter> = Parameter::ALL.into_iter().filter(is_weak).collect();
+        match weak.len() {
             0 => {}
             count if count == asked && asked > 1 => write!(f, ", all weak")?,
-            _ => write!(f, ", {} weak", symbols(&self.weak))?,
+            _ => write!(f, ", {} weak", symbols(&weak))?,
+        }
+        if !self.estimated.is_empty() && !is_told {
+            write!(f, ", {} estimated to ±{}", symbols(&self.estimated), percent(self.estimated_to))?;
+        }
+        if !self.given.is_empty() {
+            let beside = if weak.is_empty() && self.estimated.is_empty() { "," } else { ";" };
+            write!(f, "{beside} {} given", symbols(&self.given))?;
         }
         write!(f, ".")?;
         self.next.as_ref().map_or(Ok(()), |next| write!(f, " {next}"))
@@ -44,8 +54,8 @@ impl Display for Summary {
 
 impl Display for NextStep {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        if let Remedy::TakeIncremental { of_axes } = &self.remedy {
-            return write!(f, "The motor saturates: a current controller takes {}.", incremental(of_axes));
+        if is_of_saturation(&self.remedy) {
+            return write!(f, "The motor saturates: take {}.", need(&self.remedy));
         }
         let verb = if self.parameters.len() == 1 { "needs" } else { "need" };
         let need = match &self.remedy {
@@ -62,10 +72,11 @@ impl Display for NextStep {
     }
 }
 
-/// What the log lacks, in a few words.
+/// What the log lacks, in a few words; of a motor that saturates, what to take of it.
 fn need(remedy: &Remedy) -> String {
     match remedy {
         Remedy::Measure(promised) => match promised.measurement {
+            Measurement::AllPoints { times } => format!("the same operating points at {}", of_speed(times)),
             Measurement::Resistance { accuracy } => format!("R_s measured at the terminals to {:.0} %", 100.0 * accuracy),
             Measurement::Stretch { seconds, place } => match place {
                 Place::Id(id) => format!("{seconds} s at i_d = {} A", one_digit(id)),
@@ -79,6 +90,9 @@ fn need(remedy: &Remedy) -> String {
         Remedy::SpreadPoints { parameter: Parameter::Ld } => "a larger step of i_d, or more speed".to_owned(),
         Remedy::SpreadPoints { parameter: Parameter::Lq } => "operating points with more i_q, or more speed".to_owned(),
         Remedy::SpreadPoints { parameter: Parameter::PsiF } => "a second, higher speed".to_owned(),
+        Remedy::Turn => "a motor that turns".to_owned(),
+        Remedy::StepCurrent { parameter: Parameter::Ld } => "steps of i_d".to_owned(),
+        Remedy::StepCurrent { .. } => "steps of i_q".to_owned(),
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: true } => "dead time compensated, or R_s given".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: false } => "dead time compensated".to_owned(),
@@ -87,8 +101,8 @@ fn need(remedy: &Remedy) -> String {
         Remedy::RemoveDisturbances => "a log without torque or supply ripple".to_owned(),
         Remedy::CalibrateSensors => "calibrated current sensors".to_owned(),
         Remedy::CalibrateBusVoltage => "a calibrated DC voltage".to_owned(),
-        Remedy::SmallSteps => "steps held around one current at two speeds, or the table of fluxes".to_owned(),
-        Remedy::TakeIncremental { of_axes } => incremental(of_axes),
+        Remedy::SmallSteps => "its fluxes at your currents".to_owned(),
+        Remedy::TakeIncremental { .. } => "its incremental inductances".to_owned(),
         Remedy::SimilarWindows => "three windows at nearly the same currents".to_owned(),
         Remedy::SharperPrior => "a sharper prior, or another operating point".to_owned(),
         Remedy::FixOne => "one parameter given".to_owned(),
@@ -101,13 +115,27 @@ fn need(remedy: &Remedy) -> String {
 mod tests {
     use super::*;
 
+    const NOTHING: Summary =
+        Summary { identified: Vec::new(), given: Vec::new(), estimated: Vec::new(), estimated_to: 0.0, weak: Vec::new(), next: None };
+
     #[test]
     fn parameters_that_are_all_weak_are_not_listed() {
-        let of_weak = |weak: &[Parameter]| {
-            let given = Vec::new();
-            Summary { identified: Vec::new(), given, estimated: Vec::new(), estimated_to: 0.0, weak: weak.to_vec(), next: None }.to_string()
-        };
-        assert_eq!(of_weak(&Parameter::ALL), "None of 4 identified, all weak.");
-        assert_eq!(of_weak(&[Parameter::Ld, Parameter::Lq]), "None of 4 identified, L_d and L_q weak.");
+        let of_weak =
+            |weak: &[Parameter], given: &[Parameter]| Summary { weak: weak.to_vec(), given: given.to_vec(), ..NOTHING }.to_string();
+        let [rs, ld, lq, psi_f] = Parameter::ALL;
+        assert_eq!(of_weak(&Parameter::ALL, &[]), "None of 4 identified, all weak.");
+        assert_eq!(of_weak(&[ld, lq], &[]), "None of 4 identified, L_d and L_q weak.");
+        // What is weak is what was asked for, not what was given.
+        assert_eq!(of_weak(&[ld, lq, psi_f], &[rs]), "None of 3 identified, all weak; R_s given.");
+    }
+
+    #[test]
+    fn a_motor_that_saturates_is_told_in_few_words() {
+        let [rs, ld, lq, psi_f] = Parameter::ALL;
+        let next = NextStep { remedy: Remedy::SmallSteps, parameters: vec![ld, lq, psi_f], half_width: None };
+        let estimated = Summary { estimated: vec![psi_f], estimated_to: 0.014, weak: vec![rs, ld, lq], ..NOTHING };
+        assert_eq!(estimated.to_string(), "None of 4 identified, R_s, L_d and L_q weak, psi_f estimated to ±1.4 %.");
+        let told = Summary { next: Some(next), ..estimated };
+        assert_eq!(told.to_string(), "None of 4 identified, all weak. The motor saturates: take its fluxes at your currents.");
     }
 }

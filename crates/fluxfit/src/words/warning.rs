@@ -1,6 +1,6 @@
 //! What the reader should know of the whole.
 
-use super::digits::{one_digit, percent, three_digits};
+use super::digits::{one_digit, percent, prefix, three_digits};
 use crate::{
     current_loop::{DELAY_PERIODS, MIN_PHASE_MARGIN},
     identification::{explain::warning::Warning, fit::saturation::Apparent},
@@ -80,7 +80,7 @@ impl Display for Warning {
                 write!(
                     f,
                     "at {} s{more} the magnet's voltage is at right angles to the current: the drive turned the current without knowing the \
-                     rotor's angle (open loop), and its columns are not in the rotor's frame; these rows can tell nothing but the resistance",
+                     rotor's angle (open loop), and its columns are not in the rotor's frame; these rows are used for the resistance alone, which they may tell too little of",
                     named.join(", ")
                 )
             }
@@ -126,7 +126,12 @@ impl Display for Warning {
             ),
             Self::OutsideBox { parameters } => {
                 let symbols: Vec<&str> = parameters.iter().copied().map(Parameter::symbol).collect();
-                write!(f, "least squares lies outside the search box in {}: the swarm cannot reach it", symbols.join(", "))
+                write!(
+                    f,
+                    "the answer lies outside the swarm's search box in {}, so the swarm, which is a comparison, cannot reach it; the answer \
+                     does not come from the swarm and stands",
+                    symbols.join(", ")
+                )
             }
             Self::Convention(convention) => write!(f, "{convention}"),
             Self::PhaseMargin { bandwidth, margin, control_rate, rate_assumed, highest } => {
@@ -144,12 +149,13 @@ impl Display for Warning {
                 )
             }
             Self::PriorContradicted { parameter, prior, log } => {
-                let [prior, of_prior, log, of_log] = [prior.0, prior.1, log.0, log.1].map(|value| three_digits(1e3 * value));
-                let (symbol, unit) = (parameter.symbol(), parameter.unit());
+                let (scale, prefix) = prefix(prior.0.abs().max(log.0.abs()));
+                let [prior, of_prior, log, of_log] = [prior.0, prior.1, log.0, log.1].map(|value| three_digits(scale * value));
+                let (symbol, unit) = (parameter.symbol(), format!("{prefix}{}", parameter.unit()));
                 write!(
                     f,
-                    "the log contradicts the prior of {symbol}: {prior} ± {of_prior} m{unit} was given, the log alone says {log} ± {of_log} \
-                     m{unit} (standard errors); the answer is a compromise between two numbers of which one is wrong: check the prior \
+                    "the log contradicts the prior of {symbol}: {prior} ± {of_prior} {unit} was given, the log alone says {log} ± {of_log} \
+                     {unit} (standard errors); the answer is a compromise between two numbers of which one is wrong: check the prior \
                      (temperature, cable, line to line or per phase), and the columns"
                 )
             }
@@ -162,10 +168,10 @@ impl Display for Warning {
 
 /// How the apparent L_q depends on the current.
 fn apparent([least, most]: &[Apparent; 2]) -> String {
-    let (scale, unit) = if most.inductance.abs() < 1e-3 { (1e6, "uH") } else { (1e3, "mH") };
+    let (scale, prefix) = prefix(most.inductance);
     let verb = if most.inductance < least.inductance { "falls" } else { "moves" };
     format!(
-        ": apparent L_q {verb} from {} to {} {unit} between i_q = {} and {} A",
+        ": apparent L_q {verb} from {} to {} {prefix}H between i_q = {} and {} A",
         three_digits(scale * least.inductance),
         three_digits(scale * most.inductance),
         three_digits(least.current),

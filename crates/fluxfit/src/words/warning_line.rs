@@ -1,7 +1,7 @@
 //! Warnings in a few words, for a line of their own above an answer. The whole sentence is the warning's
 //! [`Display`](std::fmt::Display).
 
-use super::digits::{list, percent, three_digits};
+use super::digits::{list, percent, prefix, three_digits};
 use crate::{identification::explain::warning::Warning, motor::Parameter};
 
 impl Warning {
@@ -24,7 +24,7 @@ impl Warning {
                 format!("the voltages' frame is {} us {late}: fitted beside the motor", three_digits(1e6 * seconds.abs()))
             }
             Self::OpenLoop { times } => {
-                format!("open loop in {} stretch{}: such rows tell nothing but R_s", times.len(), if times.len() == 1 { "" } else { "es" })
+                format!("open loop in {} stretch{}: not used for more than R_s", times.len(), if times.len() == 1 { "" } else { "es" })
             }
             Self::Warming { change, rs, .. } => {
                 format!("R_s {} by {} while the log is taken", if *change > 0.0 { "grows" } else { "falls" }, percent((change / rs).abs()))
@@ -33,9 +33,9 @@ impl Warning {
             Self::Angle => "theta_e does not turn with omega_e: not used".to_owned(),
             Self::Saturation { lq } => match lq {
                 Some([least, most]) => {
-                    let (scale, unit) = if most.inductance.abs() < 1e-3 { (1e6, "uH") } else { (1e3, "mH") };
+                    let (scale, prefix) = prefix(most.inductance);
                     format!(
-                        "apparent L_q goes from {} to {} {unit}",
+                        "apparent L_q goes from {} to {} {prefix}H",
                         three_digits(scale * least.inductance),
                         three_digits(scale * most.inductance)
                     )
@@ -48,7 +48,7 @@ impl Warning {
             Self::VoltageLimit { rows, of } => format!("{rows} of {of} rows have |u| above u_dc / sqrt 3"),
             Self::OutsideBox { parameters } => {
                 let symbols: Vec<&str> = parameters.iter().copied().map(Parameter::symbol).collect();
-                format!("{}: outside the swarm's search box", list(&symbols))
+                format!("{} outside the swarm's search box; the answer stands", list(&symbols))
             }
             Self::Convention(convention) => match convention.deviating().next() {
                 Some(off) => format!("{} is {} times the nameplate's", off.parameter.symbol(), three_digits(off.ratio)),

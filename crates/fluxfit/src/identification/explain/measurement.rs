@@ -13,6 +13,11 @@ pub enum Measurement {
         /// At which currents and speed.
         place: Place,
     },
+    /// The operating points of the log once more, each for as long, at another speed.
+    AllPoints {
+        /// How many times as fast.
+        times: f64,
+    },
     /// R_s measured at the terminals, given as a [prior](crate::Known::Prior).
     Resistance {
         /// Standard error of that measurement as a fraction of R_s.

@@ -33,6 +33,9 @@ const QUICKLY: f64 = 0.2;
 /// Fewest rows of a stretch that is to be found as one.
 const MIN_ROWS: f64 = 50.0;
 
+/// By which all points may be faster: twice the speed doubles what inductances and flux take of the voltage.
+const FASTER: f64 = 2.0;
+
 /// What a good multimeter and a warm winding leave of R_s.
 const MULTIMETER: f64 = 0.01;
 
@@ -41,7 +44,13 @@ pub(super) const HALF_WIDTH: f64 = 1.96;
 
 /// A measurement that is considered, with the currents (A) and speed (electrical rad/s) of a stretch.
 enum Proposal {
-    Hold { i: Dq, omega_e: f64, place: Place },
+    Hold {
+        i: Dq,
+        omega_e: f64,
+        place: Place,
+    },
+    /// All that were held, faster.
+    AllPoints,
     Multimeter,
 }
 
@@ -83,6 +92,12 @@ fn outcomes(
             let measurement = Measurement::Resistance { accuracy: MULTIMETER };
             vec![Promised { measurement, parameter, half_width: width(&after) }]
         }
+        Proposal::AllPoints => {
+            // Each as long as the shortest that stretches may be.
+            let all =
+                bench.held.iter().fold(bench.covariance, |after, (i, omega_e)| after_hold(bench, after, *i, FASTER * omega_e, lengths.0));
+            vec![Promised { measurement: Measurement::AllPoints { times: FASTER }, parameter, half_width: width(&all) }]
+        }
         Proposal::Hold { i, omega_e, place } => {
             let fits = |length: &f64| (lengths.0..=lengths.1).contains(length) && length / bench.sample_period >= MIN_ROWS;
             let mut fitting: Vec<f64> = LENGTHS.into_iter().filter(fits).collect();
@@ -91,19 +106,20 @@ fn outcomes(
             let promised = fitting.into_iter().map(|seconds| Promised {
                 measurement: Measurement::Stretch { seconds, place: *place },
                 parameter,
-                half_width: width(&after_hold(bench, *i, *omega_e, seconds)),
+                half_width: width(&after_hold(bench, bench.covariance, *i, *omega_e, seconds)),
             });
             promised.collect()
         }
     }
 }
 
-fn after_hold(bench: &Bench, i: Dq, omega_e: f64, length: f64) -> Matrix4<f64> {
+/// A covariance after a stretch at some currents and speed.
+fn after_hold(bench: &Bench, covariance: Matrix4<f64>, i: Dq, omega_e: f64, length: f64) -> Matrix4<f64> {
     let accuracy = bench.voltage_accuracy * bench.voltage;
     let variance = bench.row_variance * bench.sample_period / length + accuracy * accuracy;
     let d = Vector4::new(i.d, 0.0, -omega_e * i.q, 0.0);
     let q = Vector4::new(i.q, omega_e * i.d, 0.0, omega_e);
-    shrunk(shrunk(bench.covariance, &d, variance), &q, variance)
+    shrunk(shrunk(covariance, &d, variance), &q, variance)
 }
 
 /// What could be measured, the easiest first.
@@ -119,6 +135,7 @@ fn proposals(bench: &Bench, parameter: Parameter) -> Vec<Proposal> {
     let half = Dq { d: at.d, q: 0.5 * at.q };
     proposals.push(Proposal::Hold { i: half, omega_e, place: Place::HalfLoad { iq: half.q } });
     proposals.push(Proposal::Hold { i: at, omega_e: 0.5 * omega_e, place: Place::HalfSpeed });
+    proposals.push(Proposal::AllPoints);
     // The last resort for R_s itself; for what hides behind it the easiest way.
     if parameter == Parameter::Rs {
         proposals.push(Proposal::Multimeter);
@@ -144,7 +161,7 @@ mod tests {
 
     fn bench(covariance: Matrix4<f64>, iq: f64, row_variance: f64, voltage_accuracy: f64) -> Bench {
         let held = vec![(Dq { d: 0.0, q: iq }, 400.0)];
-        Bench { motor: MOTOR, covariance, held, row_variance, sample_period: 1e-4, voltage: 80.0, voltage_accuracy }
+        Bench { motor: MOTOR, covariance, held, row_variance, sample_period: 1e-4, voltage: 80.0, voltage_accuracy, is_at_rest: false }
     }
 
     /// L_d wholly unknown, the rest exact: one stretch at i_d = -2 A tells it by u_q = .. + omega L_d i_d, so its error is that of u_q

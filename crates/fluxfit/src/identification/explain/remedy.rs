@@ -46,6 +46,13 @@ pub enum Remedy {
         /// The parameter to be told.
         parameter: Parameter,
     },
+    /// Log the motor where it turns, too.
+    Turn,
+    /// Log steps of the current along the axis of this inductance, as long as the rotor stands.
+    StepCurrent {
+        /// Which inductance.
+        parameter: Parameter,
+    },
     /// State the timing of the voltage columns: [`Request::voltage_timing`](crate::Request::voltage_timing).
     StateVoltageTiming,
     /// Log with the drive's dead-time compensation on.
@@ -129,6 +136,8 @@ pub(super) fn of(
     Some(match reason {
         Reason::Given => return None,
         Reason::IdZero { .. } | Reason::IdConstant => measure().unwrap_or_else(|| or_stretch(None)),
+        Reason::AtRest => Remedy::Turn,
+        Reason::NoStep { parameter } => Remedy::StepCurrent { parameter: *parameter },
         Reason::OnePoint => {
             let also = if knows_rs { Also::OrSecondPointWithResistance } else { Also::OrSecondPoint };
             measure().unwrap_or_else(|| or_stretch(Some(also)))
@@ -253,6 +262,7 @@ mod tests {
             sample_period,
             voltage: 20.0,
             voltage_accuracy: 1e-4,
+            is_at_rest: false,
         };
         let uncertainty = Uncertainty { parameters: Default::default(), correlation: [[0.0; 4]; 4] };
         Finding { motor, uncertainty, open: [false, true, false, false], trust: Trust::default(), bench }

@@ -129,14 +129,20 @@ impl<'a> Trials<'a> {
                 (self.identify)(self.log, &request)
             }
             Measurement::Stretch { seconds, place } => {
-                let stretches = self.stretches(seconds, place)?;
-                if !request.windows.is_empty() {
-                    request.windows.extend(stretches.iter().filter_map(times));
-                }
-                let joined = Log::join(std::iter::once(self.log.clone()).chain(stretches)).ok()?;
-                (self.identify)(&joined, &request)
+                let at = self.points.iter().max_by(|one, other| one.current().magnitude().total_cmp(&other.current().magnitude()))?;
+                self.with(&mut request, &self.stretches(seconds, at, place)?)
             }
+            Measurement::AllPoints { times } => self.with(&mut request, &self.all_points(times)?),
         }
+    }
+
+    /// Half-widths after these stretches were added.
+    fn with(&self, request: &mut Request, stretches: &[Log]) -> Option<[f64; PARAMETERS]> {
+        if !request.windows.is_empty() {
+            request.windows.extend(stretches.iter().filter_map(times));
+        }
+        let joined = Log::join(std::iter::once(self.log).chain(stretches).cloned()).ok()?;
+        (self.identify)(&joined, request)
     }
 
     /// R_s, ohm: what came out, or a guess.
@@ -146,9 +152,14 @@ impl<'a> Trials<'a> {
     }
 
     /// Stretches that last so long together, s, each as long as the operating point of largest current or shorter.
-    fn stretches(&self, seconds: f64, place: Place) -> Option<Vec<Log>> {
-        let at = self.points.iter().max_by(|one, other| one.current().magnitude().total_cmp(&other.current().magnitude()))?;
-        let moved = self.moved(at, place)?;
+    fn stretches(&self, seconds: f64, at: &OperatingPoint, place: Place) -> Option<Vec<Log>> {
+        let from = at.current();
+        let (to, times) = match place {
+            Place::Id(id) => (Dq { d: id, ..from }, 1.0),
+            Place::HalfLoad { iq } => (Dq { q: iq, ..from }, 1.0),
+            Place::HalfSpeed => (from, 0.5),
+        };
+        let moved = self.moved(at, to, times)?;
         let rows = (seconds / self.bench.sample_period).round() as usize;
         let period = self.bench.sample_period;
         let mut begin = self.log.columns().t.last()? + GAP * period;
@@ -164,46 +175,64 @@ impl<'a> Trials<'a> {
         (!logs.is_empty()).then_some(logs)
     }
 
-    /// The rows of an operating point, moved.
-    fn moved(&self, at: &OperatingPoint, place: Place) -> Option<Columns> {
+    /// Each operating point once more, so many times as fast.
+    fn all_points(&self, times: f64) -> Option<Vec<Log>> {
+        let gap = GAP * self.bench.sample_period;
+        let mut begin = self.log.columns().t.last()? + gap;
+        let mut logs = Vec::new();
+        for point in self.points {
+            let part = part(&self.moved(point, point.current(), times)?, point.rows.len(), begin);
+            begin = part.t.last()? + gap;
+            logs.push(Log::new(part).ok()?);
+        }
+        (!logs.is_empty()).then_some(logs)
+    }
+
+    /// The rows of an operating point, moved to other currents, and to so many times its speed.
+    fn moved(&self, at: &OperatingPoint, to: Dq, times: f64) -> Option<Columns> {
         let (from, omega_e) = (at.current(), at.omega_e());
-        let (to, slower) = match place {
-            Place::Id(id) => (Dq { d: id, ..from }, 1.0),
-            Place::HalfLoad { iq } => (Dq { q: iq, ..from }, 1.0),
-            Place::HalfSpeed => (from, 0.5),
-        };
         let motor = Motor { rs: self.rs(), ..self.bench.motor };
         // At the same speed the flux induces the same.
-        let motor = if slower == 1.0 { Motor { psi_f: 0.0, ..motor } } else { motor };
+        let motor = if times == 1.0 { Motor { psi_f: 0.0, ..motor } } else { motor };
         let Faults { angle_offset, angle_delay, .. } = self.losses.faults;
         let too_large = |omega_e: f64| angle_offset.angle - omega_e * angle_delay.time;
         let voltage = |i: Dq, omega_e: f64| {
             let error = too_large(omega_e);
             motor.steady_voltage(i.turned(error), omega_e).turned(-error)
         };
-        let (before, after) = (voltage(from, omega_e), voltage(to, slower * omega_e));
+        let (before, after) = (voltage(from, omega_e), voltage(to, times * omega_e));
         let step = Dq { d: after.d - before.d, q: after.q - before.q };
         if !(step.d.is_finite() && step.q.is_finite()) {
             return None;
         }
         let mut columns = self.log.columns().of_rows(at.rows.clone());
+        let u = at.voltage();
+        if times > 1.0 && !self.can_make((u.d + step.d).hypot(u.q + step.q), columns.u_dc.as_deref()) {
+            return None;
+        }
         let begin = columns.t[0];
         let first = columns.theta_e.as_ref().map(|theta_e| theta_e[0]);
         for k in 0..columns.t.len() {
             let theta_e = columns.theta_e.as_ref().map(|theta_e| theta_e[k]);
-            let slow = first.filter(|_| slower != 1.0).map(|first| first + slower * omega_e * (columns.t[k] - begin)).or(theta_e);
+            let turned_to = first.filter(|_| times != 1.0).map(|first| first + times * omega_e * (columns.t[k] - begin)).or(theta_e);
             let i = Dq { d: columns.id[k], q: columns.iq[k] };
             let other = Dq { d: i.d + to.d - from.d, q: i.q + to.q - from.q };
-            let (lost, loses) = (self.loss(i, theta_e), self.loss(other, slow));
+            let (lost, loses) = (self.loss(i, theta_e), self.loss(other, turned_to));
             columns.ud[k] += step.d + loses.d - lost.d;
             columns.uq[k] += step.q + loses.q - lost.q;
             (columns.id[k], columns.iq[k]) = (other.d, other.q);
-            columns.omega_e[k] *= slower;
-            if let (Some(column), Some(slow)) = (columns.theta_e.as_mut(), slow) {
-                column[k] = slow;
+            columns.omega_e[k] *= times;
+            if let (Some(column), Some(turned_to)) = (columns.theta_e.as_mut(), turned_to) {
+                column[k] = turned_to;
             }
         }
         Some(columns)
+    }
+
+    /// Whether the inverter can make this voltage, V, of its DC voltage; where that is not logged, it is sure of the log's own voltages.
+    fn can_make(&self, voltage: f64, u_dc: Option<&[f64]>) -> bool {
+        let most = u_dc.map_or(self.bench.voltage, |u_dc| u_dc.iter().sum::<f64>() / u_dc.len() as f64 / 3.0_f64.sqrt());
+        voltage <= most
     }
 
     /// What dead time and devices take at a current, V; of an unknown angle its mean over a turn. Ripple is left out: only the difference
@@ -288,11 +317,24 @@ pub(super) mod tests {
     fn bench() -> Bench {
         let held = vec![(Dq { d: 0.0, q: 10.0 }, OMEGA)];
         let covariance = nalgebra::Matrix4::identity();
-        Bench { motor: MOTOR, covariance, held, row_variance: 0.0, sample_period: 1e-4, voltage: 40.0, voltage_accuracy: 0.0 }
+        Bench {
+            motor: MOTOR,
+            covariance,
+            held,
+            row_variance: 0.0,
+            sample_period: 1e-4,
+            voltage: 40.0,
+            voltage_accuracy: 0.0,
+            is_at_rest: false,
+        }
     }
 
-    /// The log that is identified after 0.01 s at a place.
-    fn tried(log: &Log, losses: Losses, place: Place) -> Log {
+    /// The log that is identified after 0.01 s at a place; nothing if it cannot be held there.
+    fn tried(log: &Log, losses: Losses, place: Place) -> Option<Log> {
+        tried_measurement(log, losses, Measurement::Stretch { seconds: 0.01, place })
+    }
+
+    fn tried_measurement(log: &Log, losses: Losses, measurement: Measurement) -> Option<Log> {
         let seen = RefCell::new(None);
         let identify = |log: &Log, _: &Request| {
             *seen.borrow_mut() = Some(log.clone());
@@ -301,16 +343,20 @@ pub(super) mod tests {
         let (request, bench) = (Request::default(), bench());
         let points = [OperatingPoint::measure(log, 0..ROWS, None)];
         let mut trials = Trials::new((log, &request), &bench, &points, losses, &identify);
-        let measurement = Measurement::Stretch { seconds: 0.01, place };
-        assert_eq!(trials.half_width(measurement, Parameter::Ld), Some(0.1));
-        seen.into_inner().unwrap()
+        let half_width = trials.half_width(measurement, Parameter::Ld);
+        assert_eq!(half_width, seen.borrow().as_ref().map(|_| 0.1));
+        seen.into_inner()
     }
 
     /// The rows that were added are what the motor's own equations, and what is lost beside them, say there.
     fn assert_added(log: &Log, i: Dq, omega_e: f64, u: impl Fn(f64) -> Dq) {
-        let columns = log.columns();
         assert_eq!((log.rows(), log.segments().len()), (ROWS + 100, 2));
-        for row in ROWS..ROWS + 100 {
+        assert_held(log, i, omega_e, u);
+    }
+
+    fn assert_held(log: &Log, i: Dq, omega_e: f64, u: impl Fn(f64) -> Dq) {
+        let columns = log.columns();
+        for row in ROWS..log.rows() {
             let expected = u(columns.theta_e.as_ref().unwrap()[row]);
             assert!((columns.ud[row] - expected.d).hypot(columns.uq[row] - expected.q) < 1e-9, "{row}: {expected:?}");
             assert!((columns.id[row] - i.d).hypot(columns.iq[row] - i.q) < 1e-12 && columns.omega_e[row] == omega_e, "{row}");
@@ -325,8 +371,23 @@ pub(super) mod tests {
             (Place::HalfLoad { iq: 5.0 }, Dq { d: 0.0, q: 5.0 }, OMEGA),
             (Place::HalfSpeed, Dq { d: 0.0, q: 10.0 }, 0.5 * OMEGA),
         ] {
-            assert_added(&tried(&log, none(), place), i, omega_e, |_| MOTOR.steady_voltage(i, omega_e));
+            assert_added(&tried(&log, none(), place).unwrap(), i, omega_e, |_| MOTOR.steady_voltage(i, omega_e));
         }
+    }
+
+    /// By hand: at 600 rad/s and 10 A along q are u_d = -42 V and u_q = 65 V, 77.4 V together; of 150 V the inverter makes 86.6 V, of 130 V
+    /// 75.1 V, and without a DC voltage it is sure of the 40 V of the log.
+    #[test]
+    fn a_faster_motor_is_tried_where_the_inverter_has_the_voltage() {
+        let i = Dq { d: 0.0, q: 10.0 };
+        let log = held(&MOTOR, i, OMEGA);
+        let with = |u_dc: f64| Log::new(Columns { u_dc: Some(vec![u_dc; ROWS]), ..log.columns().clone() }).unwrap();
+        let tried = |log: &Log| tried_measurement(log, none(), Measurement::AllPoints { times: 2.0 });
+        let faster = tried(&with(150.0)).unwrap();
+        // The one point of the log, whole.
+        assert_eq!(faster.rows(), 2 * ROWS);
+        assert_held(&faster, i, 2.0 * OMEGA, |_| MOTOR.steady_voltage(i, 2.0 * OMEGA));
+        assert_eq!((tried(&with(130.0)), tried(&log)), (None, None));
     }
 
     /// Dead time of 2 V a phase, all of it from the least current on, and an angle that is read 0.1 rad too large: the motor's own frame
@@ -346,7 +407,7 @@ pub(super) mod tests {
         let log = log_of(from, OMEGA, |theta_e| voltage(from, theta_e));
         let dead_time = DeadTime { voltage: 2.0, ..DeadTime::default() };
         let losses = Losses { faults: Faults { dead_time, angle_offset: AngleOffset { angle: 0.1 }, ..Faults::default() }, ..none() };
-        assert_added(&tried(&log, losses, Place::Id(-3.0)), to, OMEGA, |theta_e| voltage(to, theta_e));
+        assert_added(&tried(&log, losses, Place::Id(-3.0)).unwrap(), to, OMEGA, |theta_e| voltage(to, theta_e));
     }
 
     /// By noise alone a multimeter would leave 0.2 % of psi_f. What is left when it is tried is promised; and if that is no half of what

@@ -6,7 +6,7 @@ use super::super::{
         finding::Finding,
     },
     judge::verdict::Verdict,
-    request::Request,
+    request::{Known, Request},
 };
 use super::temperature::COPPER;
 use crate::{
@@ -80,6 +80,8 @@ pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS],
     // Along q the flux seems smaller by what of psi_f is turned there; in proportion to the current, that is an inductance.
     let is_found = |parameter: Parameter| verdicts[parameter as usize] != Verdict::NotIdentifiable;
     let of_angle = if is_found(Parameter::Lq) && is_found(Parameter::PsiF) && iq * lq != 0.0 { -DEGREE * psi_f / (lq * iq) } else { 0.0 };
+    // What was given is not of the log, and no error of the log moves it.
+    let of_log = request.known.map(|known| !matches!(known, Known::Fixed(_)));
     let unseen = [
         Unseen { error: UnseenError::CurrentGain, moves: BY_CURRENTS.map(|sign| PERCENT * sign) },
         Unseen { error: UnseenError::BusVoltage, moves: BY_VOLTAGES.map(|sign| PERCENT * sign) },
@@ -87,10 +89,8 @@ pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS],
         Unseen { error: UnseenError::Temperature, moves: [KELVIN * COPPER, 0.0, 0.0, 0.0] },
     ];
     let is_logged = |error| error == UnseenError::Temperature && log.columns().temperature.is_some();
-    let is_left = |unseen: &Unseen| {
-        unseen.moves.iter().any(|moves| *moves != 0.0) && unseen.error.accuracy(request).is_none() && !is_logged(unseen.error)
-    };
-    unseen.into_iter().filter(is_left).collect()
+    let is_left = |unseen: &Unseen| unseen.error.accuracy(request).is_none() && !is_logged(unseen.error);
+    unseen.into_iter().filter_map(|unseen| unseen.of(of_log)).filter(is_left).collect()
 }
 
 impl Unseen {

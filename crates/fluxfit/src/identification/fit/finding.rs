@@ -84,6 +84,8 @@ pub(crate) struct Bench {
     pub(crate) voltage: f64,
     /// Systematic uncertainty of the voltages, as a fraction.
     pub(crate) voltage_accuracy: f64,
+    /// Whether the rotor stands throughout.
+    pub(crate) is_at_rest: bool,
 }
 
 impl Bench {

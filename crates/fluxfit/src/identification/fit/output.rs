@@ -337,5 +337,6 @@ fn bench(
         sample_period: log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max),
         voltage: points.iter().map(|point| point.voltage().magnitude()).fold(0.0, f64::max),
         voltage_accuracy: request.voltage_accuracy,
+        is_at_rest: log.is_at_rest(),
     }
 }

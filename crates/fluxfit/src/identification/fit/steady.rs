@@ -136,7 +136,7 @@ impl SteadyFit {
             motor: estimate.motor,
             open: Parameter::ALL.map(|parameter| excitation.is_open(parameter)),
             trust: Trust::default(),
-            bench: bench(&points, &excitation, &estimate, &uncertainty, request),
+            bench: bench(log, &points, &excitation, &estimate, &uncertainty, request),
             uncertainty,
         };
         Ok(Self {
@@ -353,7 +353,14 @@ fn losses(points: &[OperatingPoint], excitation: &Excitation, prior: &LossPrior,
 }
 
 /// What is known from noise, accuracy and excitation: what more operating points would improve.
-fn bench(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate, uncertainty: &Uncertainty, request: &Request) -> Bench {
+fn bench(
+    log: &Log,
+    points: &[OperatingPoint],
+    excitation: &Excitation,
+    estimate: &Estimate,
+    uncertainty: &Uncertainty,
+    request: &Request,
+) -> Bench {
     let standard_errors = uncertainty.parameters.map(|parameter| parameter.statistical.hypot(parameter.systematic.accuracy));
     let row_variance = points.iter().map(|point| {
         let noise = point.residual_covariance(&estimate.motor);
@@ -368,6 +375,7 @@ fn bench(points: &[OperatingPoint], excitation: &Excitation, estimate: &Estimate
         sample_period: mean_period.fold(0.0, f64::max),
         voltage: points.iter().map(|point| point.voltage().magnitude()).fold(0.0, f64::max),
         voltage_accuracy: request.voltage_accuracy,
+        is_at_rest: log.is_at_rest(),
     }
 }
 

@@ -24,6 +24,13 @@ pub enum Reason {
         /// Largest magnitude of i_d, A.
         largest: f64,
     },
+    /// The rotor stands throughout, where psi_f induces nothing.
+    AtRest,
+    /// The rotor stands throughout, where an inductance shows in changes of its current alone, and there are none to speak of.
+    NoStep {
+        /// Which inductance.
+        parameter: Parameter,
+    },
     /// There is one speed and one load at i_d = 0, where R_s i_q and omega_e psi_f act alike.
     OnePoint,
     /// The current i_d is the same at every operating point, where L_d i_d and psi_f act alike.
@@ -100,6 +107,8 @@ pub(super) fn of(parameter: Parameter, finding: &Finding, uncertainty: &Paramete
 fn open(parameter: Parameter, bench: &Bench, open: &[bool; PARAMETERS]) -> Reason {
     let (current, held) = (bench.current(), Common::of(bench));
     match parameter {
+        Parameter::PsiF if bench.is_at_rest => Reason::AtRest,
+        Parameter::Ld | Parameter::Lq if bench.is_at_rest => Reason::NoStep { parameter },
         Parameter::Ld if held.id_is_zero(current) => Reason::IdZero { largest: held.id_most },
         Parameter::Rs | Parameter::PsiF if held.id_is_zero(current) && held.is_one_point(current) => Reason::OnePoint,
         Parameter::Ld | Parameter::PsiF if held.id_is_constant(current) && !open[Parameter::Rs as usize] => Reason::IdConstant,

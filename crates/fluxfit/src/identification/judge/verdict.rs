@@ -199,6 +199,7 @@ mod tests {
             sample_period: 1e-4,
             voltage: 20.0,
             voltage_accuracy: 1e-4,
+            is_at_rest: false,
         };
         let uncertainty = Uncertainty { parameters, correlation: [[0.0; PARAMETERS]; PARAMETERS] };
         let finding = Finding { motor, uncertainty, open: [false; PARAMETERS], trust, bench };
