@@ -41,8 +41,9 @@ impl Scale {
 }
 
 /// A fitted quantity of the drive (dead time, angle offset, ..) with its margin: value, margin and unit as texts. Angles are in degrees,
-/// ratios in percent, everything else has the prefix that fits.
+/// ratios in percent, everything else has the prefix that fits. Of an interval that reaches beyond what is possible, the possible part.
 pub fn format_unknown(unknown: Unknown, value: f64, margin: f64) -> [String; 3] {
+    let (value, margin) = within(unknown.possible(), value, margin);
     let (factor, unit) = match (unknown.fault(), unknown.unit()) {
         (Some(Fault::Disturbance), _) => (1.0, String::new()),
         (_, "rad") => (1.0_f64.to_radians(), "deg".to_owned()),
@@ -58,6 +59,16 @@ pub fn format_unknown(unknown: Unknown, value: f64, margin: f64) -> [String; 3] 
     let digit = if margin > 0.0 && margin.is_finite() { margin } else { value.abs() * 1e-2 };
     let decimals = if digit > 0.0 { (1 - digit.log10().floor() as i32).clamp(0, 12) as usize } else { 0 };
     [format!("{value:.decimals$}"), format!("{margin:.decimals$}"), unit]
+}
+
+/// The part of an interval that lies within limits, as its middle and half its width.
+fn within([least, most]: [f64; 2], value: f64, margin: f64) -> (f64, f64) {
+    let (low, high) = (value - margin, value + margin);
+    let (low_possible, high_possible) = (low.clamp(least, most), high.clamp(least, most));
+    if (low, high) == (low_possible, high_possible) || !margin.is_finite() {
+        return (value, margin);
+    }
+    (0.5 * (low_possible + high_possible), 0.5 * (high_possible - low_possible))
 }
 
 /// A number in three digits, or as 1.2e-8 where it is smaller than 0.01 or larger than 10 000.
@@ -106,6 +117,9 @@ mod tests {
         assert_eq!(show("saturation_d", -2.5e-5, 4e-6), "-25.0 4.0 uH/A");
         assert_eq!(show("observer_gain_q", 0.25, 0.013), "0.250 0.013 ");
         assert_eq!(show("dead_time_voltage", 0.0, 0.0), "0 0 V");
+        // Of 42 to 180 % only 42 to 100 % are possible of a part.
+        assert_eq!(show("noise_before_filter", 1.11, 0.69), "71 29 %");
+        assert_eq!(show("noise_before_filter", 0.5, 0.1), "50 10 %");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::{
     },
     figure::Figure,
     interactive::{DeltaColumn, Panel, PanelKind, PlotData, Series, XAxis},
-    operating_point_uncertainty::residual_uncertainties,
+    operating_point_uncertainty::{residual_uncertainties, residual_unit},
     report::Report,
     typography::{decimals, decimals_of_span, number, prose},
 };
@@ -97,10 +97,11 @@ fn kinds(found: &SteadyFit) -> Vec<usize> {
 /// The data of the interactive plot, with a description of each point.
 fn data(found: &SteadyFit) -> PlotData {
     let all = found.operating_points.iter().zip(&found.estimate.residuals).zip(residual_uncertainties(found));
+    let unit = residual_unit(found);
     let mut points: Vec<(&OperatingPoint, String, usize)> = (1..)
         .zip(all)
         .zip(kinds(found))
-        .map(|((number, ((point, residual), uncertainty)), kind)| (point, description(number, point, *residual, uncertainty), kind))
+        .map(|((number, ((point, residual), uncertainty)), kind)| (point, description(number, point, (*residual, uncertainty), unit), kind))
         .filter(|(point, ..)| point.current().d.is_finite() && point.current().q.is_finite())
         .collect();
     points.sort_by(|(one, ..), (other, ..)| one.current().d.total_cmp(&other.current().d));
@@ -128,13 +129,18 @@ fn data(found: &SteadyFit) -> PlotData {
 }
 
 /// Time, currents, speed and residuals of a point, the latter with two standard uncertainties (95 %).
-fn description(number_of_point: usize, point: &OperatingPoint, residual: [f64; 2], uncertainty: [f64; 2]) -> String {
+fn description(
+    number_of_point: usize,
+    point: &OperatingPoint,
+    (residual, uncertainty): ([f64; 2], [f64; 2]),
+    (unit, per_volt): (&str, f64),
+) -> String {
     let (start, end) = point.time;
     let of_time = decimals_of_span(end - start);
     let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
     let [d, q] = [0, 1].map(|axis| {
-        let tenths = decimals(1e3 * uncertainty[axis], 1);
-        format!("{} ± {} mV", fixed(1e3 * residual[axis], tenths), fixed(1e3 * AGREES * uncertainty[axis], tenths))
+        let tenths = decimals(per_volt * uncertainty[axis], 1);
+        format!("{} ± {} {unit}", fixed(per_volt * residual[axis], tenths), fixed(per_volt * AGREES * uncertainty[axis], tenths))
     });
     let (current, omega_e) = (point.current(), fixed(point.omega_e(), 1));
     format!(

@@ -23,10 +23,16 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                 "currents are not fed back; only the initial currents of each stretch are fitted. "
             }
             "The root-mean-square residuals are " (amperes(rms.d)) " (" (prose("i_d")) ") and " (amperes(rms.q)) " (" (prose("i_q")) "), "
-            (percent(rms.d.max(rms.q) / peak_current(report.log, fit))) " % of the largest current."
+            (percent(part_of_current(report.log, fit))) " % of the largest current."
         }
     };
     Some(Section { anchor: "currents", heading: "Measured against simulated", content })
+}
+
+/// The larger residual, root mean square, as a part of the largest current.
+pub(super) fn part_of_current(log: &Log, fit: &OutputFit) -> f64 {
+    let rms = fit.residual_rms();
+    rms.d.max(rms.q) / peak_current(log, fit)
 }
 
 /// The largest measured current of the rows that were fitted, A; never zero.

@@ -2,7 +2,7 @@
 
 use super::flux;
 use crate::{
-    operating_point_uncertainty::residual_uncertainties,
+    operating_point_uncertainty::{residual_uncertainties, residual_unit},
     report::Report,
     section::Section,
     table::{self, key, named},
@@ -21,8 +21,11 @@ const DECIMALS: usize = 3;
 /// Half of a 95 % interval, in standard uncertainties; the bars of the figure are as long.
 const BAR: f64 = 2.0;
 
-/// Names of the table's columns in a file of comma-separated values.
-const HEADER: &str = "point,id,iq,omega_e,ud,ud_fitted,ud_residual_mV,ud_residual_95_mV,uq,uq_fitted,uq_residual_mV,uq_residual_95_mV";
+/// Names of the table's columns in a file of comma-separated values, with residuals in this unit.
+fn header(unit: &str) -> String {
+    let of_axis = ["ud", "uq"].map(|u| format!("{u},{u}_fitted,{u}_residual_{unit},{u}_residual_95_{unit}"));
+    format!("point,id,iq,omega_e,{}", of_axis.join(","))
+}
 
 /// Places of the currents and the speed among the channels of an operating point.
 const ID: usize = 2;
@@ -84,9 +87,10 @@ fn points(found: &SteadyFit) -> Markup {
     // All values of a column have the decimals of its smallest uncertainty.
     let least: [f64; 2] = [0, 1].map(|axis| uncertainties.iter().map(|both| both[axis]).fold(f64::INFINITY, f64::min));
     let rows = found.operating_points.iter().zip(&found.estimate.residuals).zip(uncertainties);
+    let unit = residual_unit(found);
     html! {
         div data-values { (table::scrolling("Operating points, measured and fitted", &html! {
-            table.stacked data-header=(HEADER) {
+            table.stacked data-header=(header(unit.0)) {
                 thead {
                     tr {
                         th scope="col" rowspan="2" { "Point" }
@@ -95,32 +99,38 @@ fn points(found: &SteadyFit) -> Markup {
                         @for axis in ["u_d", "u_q"] { th scope="colgroup" colspan="3" { (prose(axis)) } }
                     }
                     tr { @for _ in 0..2 {
-                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual ±\u{a0}95\u{a0}%, mV" }
+                        th scope="col" { "measured, V" } th scope="col" { "fitted, V" } th scope="col" { "residual ±\u{a0}95\u{a0}%, " (unit.0) }
                     } }
                 }
-                tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, (residual, uncertainty), least)) } }
+                tbody { @for (k, ((point, residual), uncertainty)) in rows.enumerate() { (row(k + 1, point, (residual, uncertainty), least, unit)) } }
             }
         })) }
     }
 }
 
-fn row(k: usize, point: &OperatingPoint, (residual, uncertainty): (&[f64; 2], [f64; 2]), least: [f64; 2]) -> Markup {
+fn row(
+    k: usize,
+    point: &OperatingPoint,
+    (residual, uncertainty): (&[f64; 2], [f64; 2]),
+    least: [f64; 2],
+    (unit, per_volt): (&str, f64),
+) -> Markup {
     let (u, i) = (point.voltage(), point.current());
     let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
     html! {
         tr {
             th scope="row" { (key("Point ")) (k) }
-            @for (name, value, channel, unit) in [("i_d", i.d, ID, " A"), ("i_q", i.q, IQ, " A"), ("omega_e", point.omega_e(), OMEGA, " rad/s")] {
+            @for (name, value, channel, of_value) in [("i_d", i.d, ID, " A"), ("i_q", i.q, IQ, " A"), ("omega_e", point.omega_e(), OMEGA, " rad/s")] {
                 @let digits = decimals(point.covariance[channel][channel].sqrt(), DECIMALS).min(DECIMALS);
-                td { (named(name)) (fixed(value, digits)) (key(unit)) }
+                td { (named(name)) (fixed(value, digits)) (key(of_value)) }
             }
             @for (axis, (name, measured)) in [("u_d", u.d), ("u_q", u.q)].into_iter().enumerate() {
                 @let digits = decimals(least[axis], DECIMALS);
-                @let tenths = decimals(1e3 * least[axis], 1);
+                @let tenths = decimals(per_volt * least[axis], 1);
                 td.group { (named(name)) (fixed(measured, digits)) (key(" V")) }
                 td { (key("fitted ")) (fixed(measured - residual[axis], digits)) (key(" V")) }
                 td {
-                    (key("residual ")) (fixed(1e3 * residual[axis], tenths)) (NO_BREAK) "±" (NO_BREAK) (fixed(1e3 * BAR * uncertainty[axis], tenths)) (key(" mV"))
+                    (key("residual ")) (fixed(per_volt * residual[axis], tenths)) (NO_BREAK) "±" (NO_BREAK) (fixed(per_volt * BAR * uncertainty[axis], tenths)) (key(&format!(" {unit}")))
                 }
             }
         }

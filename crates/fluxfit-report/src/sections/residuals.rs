@@ -1,10 +1,11 @@
 //! Are the residuals of the simulated currents white noise?
 
+use super::currents::part_of_current;
 use crate::{
     report::Report,
     residual_correlation::ResidualCorrelation,
     section::Section,
-    typography::{number, prose},
+    typography::{number, percent, prose},
 };
 use fluxfit::faults::Fault;
 use fluxfit_units::significant;
@@ -19,6 +20,9 @@ const EXCESS: f64 = 3.0;
 /// Smaller correlations explain less than a hundredth of a residual's variance.
 const SLIGHT: f64 = 0.1;
 
+/// Residuals below this part of the largest current matter to no verdict: a fiftieth of what an identified parameter may be off by.
+const SMALL: f64 = 1e-3;
+
 /// The section.
 pub(crate) fn section(report: &Report) -> Option<Section> {
     let (found, _) = report.identification?;
@@ -30,14 +34,14 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                 "Each row is predicted from the row before, which removes the correlation that unknown voltages make over many rows (warning "
                 "“process-noise”). What is tested here is what that leaves. "
             }
-            (verdict(&correlation, fit.leaves_something()))
+            (verdict(&correlation, fit.leaves_something(), part_of_current(report.log, fit)))
         }
     };
     Some(Section { anchor: "residuals", heading: "Are the residuals white noise?", content })
 }
 
 /// The result of the test.
-fn verdict(correlation: &ResidualCorrelation, is_relevant: bool) -> Markup {
+fn verdict(correlation: &ResidualCorrelation, is_relevant: bool, part: f64) -> Markup {
     let ResidualCorrelation { axes, band } = correlation;
     let lags = correlation.lags() as f64;
     let allowed = OUTSIDE * lags + EXCESS * (lags * OUTSIDE * (1.0 - OUTSIDE)).sqrt();
@@ -59,10 +63,15 @@ fn verdict(correlation: &ResidualCorrelation, is_relevant: bool) -> Markup {
             strong { "Almost white: " }
             (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, but none is farther from "
             "zero than " (largest.trim_start_matches('\u{2212}')) ". The error of the model is small compared with the noise; the intervals account for it."
+        } @else if part < SMALL {
+            strong { "Not white, but too small to change a verdict: " }
+            (residuals_of(white)) " are correlated from row to row (largest correlation " (largest) "), but they are only " (percent(part))
+            "\u{a0}% of the largest current, and an identified parameter may be off by 5\u{a0}%."
         } @else {
             strong { "Not white: " }
             (residuals_of(white)) " are correlated from row to row; the largest correlation is " (largest)
-            ". The model lacks an effect that lasts longer than a row, such as a fault of the drive, saturation or heating. "
+            ", and they are " (percent(part)) "\u{a0}% of the largest current. "
+            "The model lacks an effect that lasts longer than a row, such as a fault of the drive, saturation or heating. "
             "The intervals account for the correlation, but not for a bias from that effect."
         }
     }
@@ -84,10 +93,13 @@ mod tests {
     #[test]
     fn each_kind_of_residual_has_its_verdict() {
         let with = |outside: usize, value: f64| -> Vec<f64> { (0..50).map(|lag| if lag < outside { value } else { 0.01 }).collect() };
-        let of = |d: Vec<f64>, q: Vec<f64>| verdict(&ResidualCorrelation { axes: [d, q], band: 0.02 }, true).into_string();
+        let small = |d: Vec<f64>, q: Vec<f64>, part| verdict(&ResidualCorrelation { axes: [d, q], band: 0.02 }, true, part).into_string();
+        let of = |d: Vec<f64>, q: Vec<f64>| small(d, q, 0.01);
         assert!(of(with(6, 0.9), with(0, 0.0)).contains("White: "));
         assert!(of(with(7, -0.05), with(0, 0.0)).contains("none is farther from zero than 0.050"));
         let text = of(with(0, 0.0), with(7, 0.9));
         assert!(text.contains("Not white: ") && text.contains("<i>i</i><sub>q</sub>") && text.contains("is 0.90"), "{text}");
+        let text = small(with(0, 0.0), with(7, 0.9), 1.8e-4);
+        assert!(text.contains("too small to change a verdict") && text.contains("only 0.018"), "{text}");
     }
 }

@@ -63,6 +63,11 @@ const NOISE: NumberDescription<Filter> = NumberDescription {
     usual_size: one,
 };
 
+/// Whether a number with this name is a part, of the whole noise.
+pub(super) fn is_part(key: &str) -> bool {
+    key == NOISE.names.key
+}
+
 /// The family of filters of currents: there is one.
 const FAMILY: &str = "current filter";
 

@@ -305,6 +305,11 @@ impl FaultNumber {
         self.names().unit
     }
 
+    /// The values that are possible, SI: a part of something is from 0 to 1. A fit may pass these limits by its uncertainty.
+    pub fn possible(self) -> [f64; 2] {
+        if filter::is_part(self.key()) { [0.0, 1.0] } else { [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
     fn names(self) -> Names {
         (self.fault.row().names)(self.place)
     }

@@ -54,6 +54,14 @@ impl Unknown {
         }
     }
 
+    /// The values that are possible, SI.
+    pub fn possible(self) -> [f64; 2] {
+        match self {
+            Self::Motor(_) => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Fault(number) => number.possible(),
+        }
+    }
+
     /// The fault that it belongs to; none for a parameter of the motor.
     pub fn fault(self) -> Option<Fault> {
         match self {

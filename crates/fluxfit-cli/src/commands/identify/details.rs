@@ -51,15 +51,17 @@ fn not_taken(fit: &OutputFit, needs_angle: bool) -> Vec<&'static str> {
 }
 
 fn operating_points(found: &SteadyFit) -> String {
+    let in_millivolts = found.estimate.residuals.iter().flatten().all(|residual| residual.abs() < LARGE);
     let rows = found.operating_points.iter().zip(&found.estimate.residuals).map(|(point, residual)| {
         let (u, i) = (point.voltage(), point.current());
         let [from, length] = times(point.time);
         let mut row = vec![from, length, point.rows.len().to_string()];
         row.extend([i.d, i.q, point.omega_e(), u.d, u.q].map(short));
-        row.extend(residual.map(millivolts));
+        row.extend(residual.map(|volts| if in_millivolts { millivolts(volts) } else { short(volts) }));
         row
     });
-    table(&["t\ns", "for\ns", "rows", "i_d\nA", "i_q\nA", "omega_e\nrad/s", "u_d\nV", "u_q\nV", "off by\nd mV", "\nq mV"], 0, rows)
+    let off_by = if in_millivolts { ["off by\nd mV", "\nq mV"] } else { ["off by\nd V", "\nq V"] };
+    table(&[&["t\ns", "for\ns", "rows", "i_d\nA", "i_q\nA", "omega_e\nrad/s", "u_d\nV", "u_q\nV"][..], &off_by].concat(), 0, rows)
 }
 
 /// Start and length, with digits that tell the length to a hundredth of it.
@@ -74,10 +76,12 @@ fn short(value: f64) -> String {
     format!("{value:.*}", 5_usize.saturating_sub(whole).min(3))
 }
 
-/// Without the sign of a zero; from a volt on without decimals.
+/// From here on, V, residuals are in V.
+const LARGE: f64 = 1.0;
+
+/// Without the sign of a zero.
 fn millivolts(volts: f64) -> String {
-    let millivolts = 1e3 * volts;
-    let text = if millivolts.abs() < 1e3 { format!("{millivolts:.1}") } else { format!("{millivolts:.0}") };
+    let text = format!("{:.1}", 1e3 * volts);
     if text == "-0.0" { "0.0".to_owned() } else { text }
 }
 

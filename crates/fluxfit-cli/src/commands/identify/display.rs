@@ -7,6 +7,7 @@ use fluxfit::{
     Answer, HeldOut, Judgement, Log, Parameter, Reason, Remedy, Request, Summary, Verdict,
     evidence::{Flux, Identification, OutputFit, Provenance, SaturationFinding},
     identify,
+    steady::OperatingPoint,
 };
 use fluxfit_units::{Scale, format_unknown, significant};
 
@@ -21,7 +22,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     text += &explanations(found);
     text += &found.temperature.map(|temperature| format!("\n{}", wrapped("", &sentence(&temperature.to_string())))).unwrap_or_default();
     if let Some(saturation) = &found.saturation {
-        text += &fluxes(saturation);
+        text += &fluxes(saturation, found.operating_points());
     }
     text += &format!("\n{}", model(found));
     text += &unseen(found);
@@ -284,8 +285,24 @@ fn beside(fit: &OutputFit) -> String {
         .collect()
 }
 
-/// Flux per operating point, where inductances depend on the current.
-fn fluxes(found: &SaturationFinding) -> String {
+/// Currents closer than this part of the largest are those of one point, held at several speeds perhaps.
+const SAME: f64 = 0.05;
+
+/// Whether some points have one current and several speeds.
+fn have_several_speeds(points: &[OperatingPoint]) -> bool {
+    let differ = |one: f64, other: f64, largest: f64| (one - other).abs() > SAME * largest;
+    let largest = |value: fn(&OperatingPoint) -> f64| points.iter().map(value).fold(0.0, f64::max);
+    let (current, speed) = (largest(|point| point.current().magnitude()), largest(|point| point.omega_e().abs()));
+    let is_repeated = |one: &OperatingPoint, other: &OperatingPoint| {
+        let (i, j) = (one.current(), other.current());
+        !differ(i.d, j.d, current) && !differ(i.q, j.q, current) && differ(one.omega_e(), other.omega_e(), speed)
+    };
+    points.iter().enumerate().any(|(k, one)| points[k + 1..].iter().any(|other| is_repeated(one, other)))
+}
+
+/// Flux per operating point, where inductances depend on the current; with the speed, where that alone tells points apart.
+fn fluxes(found: &SaturationFinding, points: &[OperatingPoint]) -> String {
+    let has_speed = found.fluxes.len() == points.len() && have_several_speeds(points);
     // The same digits down a column: two of its best error.
     let decimals = |error: fn(&Flux) -> f64| {
         let least = found.fluxes.iter().flatten().map(error).fold(f64::INFINITY, f64::min);
@@ -300,20 +317,22 @@ fn fluxes(found: &SaturationFinding) -> String {
     let half_width_of_lq = |flux: &Flux| 2.0 * (flux.uncertainty.q / flux.current.q).abs();
     let least_of_ld = fluxes().filter(|flux| flux.apparent_ld.is_some()).map(half_width_of_ld).fold(f64::INFINITY, f64::min);
     let least_of_lq = fluxes().filter(|flux| flux.apparent_lq.is_some()).map(half_width_of_lq).fold(f64::INFINITY, f64::min);
-    let rows = fluxes().map(|flux| {
+    let of_points = found.fluxes.iter().enumerate().filter_map(|(k, flux)| Some((points.get(k), flux.as_ref()?)));
+    let rows = of_points.map(|(point, flux)| {
         let millis = |value: f64, decimals: usize| format!("{:.decimals$}", 1e3 * value);
         let apparent = |henries: Option<f64>, half_width: f64, least: f64| match henries {
             Some(henries) => [henries, half_width].map(|value| inductance.format(value, least)),
             None => ["-".to_owned(), String::new()],
         };
-        let mut row = vec![
-            format!("{:.3}", flux.current.d),
-            format!("{:.3}", flux.current.q),
+        let speed = point.filter(|_| has_speed).map(|point| format!("{:.1}", point.omega_e()));
+        let mut row = vec![format!("{:.3}", flux.current.d), format!("{:.3}", flux.current.q)];
+        row.extend(speed);
+        row.extend([
             millis(flux.psi.d, of_d),
             millis(2.0 * flux.uncertainty.d, of_d),
             millis(flux.psi.q, of_q),
             millis(2.0 * flux.uncertainty.q, of_q),
-        ];
+        ]);
         if has_ld {
             row.extend(apparent(flux.apparent_ld, half_width_of_ld(flux), least_of_ld));
         }
@@ -326,7 +345,9 @@ fn fluxes(found: &SaturationFinding) -> String {
     }
     let unit = inductance.unit(Parameter::Lq.unit());
     let [of_ld, of_lq] = ["L_d", "L_q"].map(|symbol| format!("apparent\n{symbol} {unit}"));
-    let mut heading = vec!["i_d\nA", "i_q\nA", "psi_d\nmWb", "\n±", "psi_q\nmWb", "\n±"];
+    let mut heading = vec!["i_d\nA", "i_q\nA"];
+    heading.extend(has_speed.then_some("omega_e\nrad/s"));
+    heading.extend(["psi_d\nmWb", "\n±", "psi_q\nmWb", "\n±"]);
     if has_ld {
         heading.extend([of_ld.as_str(), "\n±"]);
     }
