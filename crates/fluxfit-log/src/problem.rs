@@ -353,20 +353,34 @@ fn object_remedy(name: &str, class: &str) -> String {
     }
 }
 
-/// Whether a file has fewer columns than it lacks, and none that resembles one of these.
+/// Channels that every log has.
+const NEEDED: usize = 6;
+
+/// Whether a file has fewer columns than it lacks, or none beside those that were found, and none that resembles one of the missing.
 fn are_not_in_it(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> bool {
-    present.len() < missing.len() && proposals.is_empty()
+    let found = NEEDED.saturating_sub(missing.len());
+    (present.len() < missing.len() || present.len() <= found) && proposals.is_empty()
+}
+
+/// Whether a file has the d axis and nothing of q, as a test at standstill.
+fn has_d_alone(missing: &[&str]) -> bool {
+    ["uq", "iq"].iter().all(|channel| missing.contains(channel)) && !["ud", "id"].iter().any(|channel| missing.contains(channel))
 }
 
 fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> String {
     let (noun, are, they_have, names) =
         if missing.len() == 1 { ("column", "is", "it has", "another name") } else { ("columns", "are", "they have", "other names") };
     let what = format!("the {noun} {} {are} missing; the file has {}", list(missing), columns(present));
+    if has_d_alone(missing) && are_not_in_it(missing, present, proposals) {
+        return format!(
+            "{what}; of a rotor at rest with current along d alone they are zero: add them as columns of zeros; else log them too"
+        );
+    }
+    let it = if missing.len() == 1 { "it" } else { "them" };
     if are_not_in_it(missing, present, proposals) {
-        return format!("{what}: too few columns for them, so they are not in it; log them too");
+        return format!("{what}, too few other columns for {it} to be in it; log {it} too");
     }
     if proposals.is_empty() {
-        let it = if missing.len() == 1 { "it" } else { "them" };
         return format!("{what}; map {it} if {they_have} {names}, else log {it} too");
     }
     let pairs: Vec<String> = proposals.iter().map(|(channel, header)| format!("'{}' may be {channel}", shorten(header))).collect();

@@ -311,8 +311,9 @@ fn stem(channel: Channel, name: &str) -> (&str, HeaderUnit<'_>) {
         // Of a unit of the field alone: `log.ms_today`.
         _ => split_header(field(name), dimension),
     };
-    // `i_a` is the current of a phase, not one in A; `I [A]` is in A.
-    if stem.len() == 1 && Channel::PHASES.contains(&channel) && !name.contains(['[', '(']) {
+    // `i_a` is the current of a phase, not one in A, and so is `iabc_a`; `I [A]` is in A. `u_uvw_v` is of the phase v, not in V.
+    let is_whole = stem.len() == 1 || ALL_PHASES.iter().any(|all| words(stem).concat().ends_with(all));
+    if is_whole && Channel::PHASES.contains(&channel) && !name.contains(['[', '(']) {
         (field(name), HeaderUnit::None)
     } else {
         (stem, unit)
@@ -400,14 +401,19 @@ fn is_of_named_phase(channel: Channel, name: &str) -> bool {
     places.into_iter().find_map(letter) == Some(place)
 }
 
-/// Whether a name is that of a phase: by its letter, or of a current by u, v, w, where no line voltage can be meant.
+/// What the vector of the three phases is called, beside its quantity.
+const ALL_PHASES: [&str; 2] = ["abc", "uvw"];
+
+/// Whether a name is that of a phase: by its letter, or of a current by u, v, w, where no line voltage can be meant; or by its letter in
+/// the vector of all three, `iabc_a`.
 fn is_of_phase(channel: Channel, name: &str, quantity: &str) -> bool {
     let (letter, other) = match channel {
         Channel::IA | Channel::UA => ("a", "u"),
         Channel::IB | Channel::UB => ("b", "v"),
         _ => ("c", "w"),
     };
-    name == format!("{quantity}{letter}") || quantity == "i" && name == format!("i{other}")
+    let of_vector = || ALL_PHASES.iter().zip([letter, other]).any(|(all, phase)| name == format!("{quantity}{all}{phase}"));
+    name == format!("{quantity}{letter}") || quantity == "i" && name == format!("i{other}") || of_vector()
 }
 
 #[cfg(test)]
@@ -476,9 +482,24 @@ mod tests {
                     "I phase U",
                     "phase_current_a",
                     "Strom Phase 1 [A]",
+                    "iabc_a",
+                    "i_abc_a [A]",
+                    "Iuvw_u",
                 ],
             ),
-            (Channel::UB, &["u_b", "Voltage(PhaseB) [V]", "U phase V", "phase_b_voltage_V", "Motor Phase B Voltage", "V_phase_b"]),
+            (
+                Channel::UB,
+                &[
+                    "u_b",
+                    "Voltage(PhaseB) [V]",
+                    "U phase V",
+                    "phase_b_voltage_V",
+                    "Motor Phase B Voltage",
+                    "V_phase_b",
+                    "vabc_b",
+                    "u_uvw_v",
+                ],
+            ),
         ] {
             names.iter().for_each(|name| assert!(is(channel, name), "{name} is {}", channel.name()));
         }
@@ -529,7 +550,18 @@ mod tests {
             (Channel::Id, &["vesc_id", "id_set", "run_id", "DC current", "direct current", "target.id", "d", "motor 3/id_ref"]),
             (
                 Channel::IA,
-                &["I [A]", "I (A)", "Phase A", "Phase AB current", "Phase A RMS Current", "Phase A current ref", "phase a to b current"],
+                &[
+                    "I [A]",
+                    "I (A)",
+                    "Phase A",
+                    "iabc",
+                    "iabc_b",
+                    "iabc_ref_a",
+                    "Phase AB current",
+                    "Phase A RMS Current",
+                    "Phase A current ref",
+                    "phase a to b current",
+                ],
             ),
             (Channel::UA, &["Phase A Current", "U phase V", "Voltage phase A phase B", "phase angle u"]),
             (Channel::OmegaE, &["speed_step", "speed setpoint", "speed_meters_per_sec", "Velocity (m/s)", "wind speed", "SO_N_SOLL"]),

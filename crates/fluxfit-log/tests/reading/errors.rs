@@ -42,8 +42,18 @@ fn headers_are_refused_in_one_sentence() {
         ),
         (
             format!("t,ud,id,iq,omega_e\n{ROWS}"),
-            "drive.csv, line 1: the column uq is missing; the file has 't', 'ud', 'id', 'iq' and 'omega_e'; \
+            "drive.csv, line 1: the column uq is missing; the file has 't', 'ud', 'id', 'iq' and 'omega_e', \
+             too few other columns for it to be in it; log it too",
+        ),
+        (
+            format!("t,ud,id,iq,omega_e,x\n{ROWS}"),
+            "drive.csv, line 1: the column uq is missing; the file has 't', 'ud', 'id', 'iq', 'omega_e' and 'x'; \
              map it if it has another name, else log it too",
+        ),
+        (
+            "t,ud,id\n0,1,2\n1,1,2\n".into(),
+            "drive.csv, line 1: the columns uq, iq and omega_e are missing; the file has 't', 'ud' and 'id'; of a rotor at rest with current \
+             along d alone they are zero: add them as columns of zeros; else log them too",
         ),
         (
             format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
