@@ -4,7 +4,7 @@
 use crate::{
     commands::{
         compare, fleet, fleet::motors::Motors, fleet::page::Page, fleet::work::Onlooker, identify, identify::export, input, inspect,
-        report, track, validate,
+        not_a_log, report, track, validate,
     },
     error::CommandError,
     explanations, json,
@@ -213,7 +213,8 @@ pub fn document(answer: &Answer) -> Result<String, Refusal> {
 pub fn inspection(words: &[OsString]) -> Result<String, Refusal> {
     let arguments: inspect::Inspect = parse(words)?;
     let inspect::Inspect { log, columns, .. } = &arguments;
-    Ok(json::text(&InspectionDocument::of(&inspect_log(log, &input::options(columns, None)?)?))?)
+    let inspection = not_a_log::or_what_it_is(inspect_log(log, &input::options(columns, None)?), log)?;
+    Ok(json::text(&InspectionDocument::of(&inspection))?)
 }
 
 /// The document of `fluxfit validate`; `motor` is the content of a motor file in place of the one that the words name.

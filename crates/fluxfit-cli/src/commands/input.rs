@@ -1,5 +1,6 @@
 //! What both verbs read: the logs as one, the motor file, the search box.
 
+use super::not_a_log;
 use crate::{
     arguments::{ColumnArguments, LogArguments, by_parameter},
     error::CommandError,
@@ -95,7 +96,7 @@ pub(crate) fn read_each(
     let mut read_columns = Vec::new();
     let is_only = arguments.logs.len() == 1;
     for path in &arguments.logs {
-        let read = read(path, &options)?;
+        let read = not_a_log::or_what_it_is(read(path, &options), path)?;
         let (rows, segments) = (read.log.rows(), read.log.segments().len());
         terminal::detail(|| format!("read {}: {rows} rows, segments without a gap: {segments}", name(path)));
         let of_name = |sentence: &str| format!("{}: {sentence}", name(path));

@@ -2,7 +2,7 @@
 
 mod display;
 
-use super::{Status, input};
+use super::{Status, input, not_a_log};
 use crate::{
     arguments::ColumnArguments,
     error::CommandError,
@@ -39,7 +39,8 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
         check_output(path, arguments)?;
     }
     let options = input::options(&arguments.columns, None)?;
-    let inspection = terminal::working("reading".to_owned(), || inspect(&arguments.log, &options))?;
+    let inspection = terminal::working("reading".to_owned(), || inspect(&arguments.log, &options));
+    let inspection = not_a_log::or_what_it_is(inspection, &arguments.log)?;
     if inspection.is_table && arguments.output.is_some() {
         // With one that names columns of a log, the table would be read as a log.
         let name = input::name(&arguments.log);

@@ -8,6 +8,7 @@ pub(crate) mod identify;
 pub(crate) mod input;
 pub(crate) mod inspect;
 mod manual;
+pub(crate) mod not_a_log;
 pub(crate) mod report;
 mod simulate;
 mod status;

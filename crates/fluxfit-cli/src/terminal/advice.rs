@@ -1,5 +1,6 @@
 //! How this program states what resolves an error or a note of a reader: the options behind each [`Advice`].
 
+use super::given;
 use crate::shell;
 use fluxfit_files::Advice;
 use fluxfit_units::wording::one_line;
@@ -10,6 +11,7 @@ pub(crate) fn with_options(sentence: &str, advice: &[Advice]) -> String {
         Some(units) => vec![units],
         None => advice.iter().filter_map(option).collect(),
     };
+    let options: Vec<String> = options.iter().map(|option| given::in_place(option)).collect();
     if options.is_empty() { sentence.to_owned() } else { format!("{sentence} ({})", options.join(", or ")) }
 }
 

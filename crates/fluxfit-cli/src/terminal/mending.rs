@@ -1,6 +1,6 @@
 //! What mends a finding of the columns: the likely cause, and the option or the lines of a mapping file to paste.
 
-use super::{advice, told::Told};
+use super::{advice, given, told::Told};
 use fluxfit::{
     ColumnFinding,
     column_check::{Change, Turning},
@@ -54,7 +54,7 @@ impl Mending {
     fn tell(&self, finding: &ColumnFinding) -> (String, String) {
         let cause = self.cause.as_ref().map(|cause| format!(": {cause}")).unwrap_or_default();
         let way = match (&self.option, self.lines.is_empty()) {
-            (Some(option), _) => format!("; add {option}"),
+            (Some(option), _) => format!("; {}", given::instruction(option)),
             (None, false) => "; put into a mapping file (--mapping FILE), under [columns]:".to_owned(),
             (None, true) => String::new(),
         };

@@ -3,6 +3,7 @@
 
 pub(crate) mod advice;
 mod excerpt;
+mod given;
 mod lines;
 pub(crate) mod mending;
 pub(crate) mod options;

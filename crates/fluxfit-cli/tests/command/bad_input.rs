@@ -142,3 +142,19 @@ fn refused(name: &str, run: &super::Run, expected: &[&str]) {
         assert!(sentence.contains(expected), "{name}: {expected} is not in {sentence}");
     }
 }
+
+#[test]
+fn files_of_its_own_that_are_no_logs_are_told_with_what_they_are_for() {
+    for (file, what) in [
+        (
+            "examples/scenarios/id_zero.toml",
+            "is a scenario, not a log; simulate it first (fluxfit simulate examples/scenarios/id_zero.toml -o",
+        ),
+        ("examples/paper_motor.toml", "is a motor file, not a log; name it beside the log: --motor examples/paper_motor.toml"),
+    ] {
+        for verb in ["identify", "inspect"] {
+            let run = fluxfit(&[verb, file]);
+            assert!(run.status == 2 && run.err.contains(what) && run.err.lines().count() == 1, "{verb}: {}", run.err);
+        }
+    }
+}

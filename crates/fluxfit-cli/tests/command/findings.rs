@@ -182,6 +182,10 @@ fn identify_refuses_what_means_nothing_unless_a_model_is_stated() {
     let sentence =
         "theta_e turns 4.000 times as fast as omega_e: mechanical speed, 4 pole pairs; add --unit omega_e=rad/s-mech --pole-pairs 4";
     assert!(run.err.lines().next().unwrap().contains(sentence), "{}", run.err);
+    // What the command gives already is replaced: given twice, it would be refused.
+    let run = fluxfit(&["identify", path, "--unit", "omega=rad/s", "--unit", "id=A"]);
+    let sentence = "replace --unit omega=rad/s by --unit omega_e=rad/s-mech --pole-pairs 4";
+    assert!(run.status == 2 && run.err.contains(sentence), "{}", run.err);
     let mended = fluxfit(&["identify", path, "--unit", "omega_e=rad/s-mech", "--pole-pairs", "4"]);
     assert!(mended.status == 0 && mended.out.starts_with("All 4 identified."), "{}{}", mended.out, mended.err);
     let all_the_same = fluxfit(&["identify", path, "--model", "steady"]);

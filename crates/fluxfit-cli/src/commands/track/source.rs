@@ -1,6 +1,6 @@
 //! Where rows come from: a finished log, standard input, a file that is being written, a socket.
 
-use super::super::input;
+use super::super::{input, not_a_log};
 use crate::{error::CommandError, interrupt, terminal};
 use fluxfit::log::Row;
 use fluxfit_files::{FileError, input as files};
@@ -37,7 +37,8 @@ const LONGEST_LINE: usize = 1 << 20;
 /// Reads a finished log of any format.
 pub(super) fn file(path: &Path, options: &LogOptions, take: &mut Take) -> Result<(), CommandError> {
     let progress = terminal::reading(&format!("reading {}", input::name(path)), fs::metadata(path).map_or(0, |metadata| metadata.len()));
-    let read = read_log_with_progress(path, &LogOptions { all_rows: true, ..options.clone() }, progress.teller())?;
+    let read = read_log_with_progress(path, &LogOptions { all_rows: true, ..options.clone() }, progress.teller());
+    let read = not_a_log::or_what_it_is(read, path)?;
     drop(progress);
     read.notes.iter().for_each(|note| terminal::note(&terminal::advice::with_options(&note.sentence, &note.advice)));
     if read.log.is_interpolated() {
