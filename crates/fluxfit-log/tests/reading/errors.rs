@@ -219,8 +219,11 @@ fn errors_and_notes_carry_the_advice_as_facts() {
     let several = error(&format!("{}\n{}\n", header.join(","), vec!["1"; 14].join(",")), &LogOptions::default());
     let first = ["t", "ud", "uq", "id", "iq", "omega_e"].into_iter().zip(header.iter().map(|name| Some(name.as_str())));
     assert_eq!(several.advice(), [map_to(&first.collect::<Vec<_>>())], "{several}");
-    let absent = error("t,uq,id,iq,omega_e\n0,2,3,4,5\n", &LogOptions::default());
+    let absent = error("t,uq,id,iq,omega_e,x\n0,2,3,4,5,6\n", &LogOptions::default());
     assert_eq!(absent.advice(), [map_to(&[("ud", None)])]);
+    // Where no column is left, there is none to map.
+    let absent = error("t,uq,id,iq,omega_e\n0,2,3,4,5\n", &LogOptions::default());
+    assert_eq!(absent.advice(), []);
     let unknown_unit = error("t [h],ud,uq,id,iq,omega_e\n0,1,2,3,4,5\n", &map(&["t=t [h]"]));
     assert_eq!((unknown_unit.kind(), unknown_unit.advice()), (FileErrorKind::Unit, &[Advice::StateUnit { channel: "t", unit: None }][..]));
     let mechanical = error("t,ud,uq,id,iq,speed_rpm\n0,1,2,3,4,5\n", &map(&["omega=speed_rpm"]));

@@ -94,7 +94,9 @@ pub(crate) const SAME: f64 = 0.05;
 pub(super) fn of(parameter: Parameter, finding: &Finding, uncertainty: &ParameterUncertainty, weak: f64) -> Reason {
     let raw = finding.motor.get(parameter);
     let half_width = if raw == 0.0 { f64::INFINITY } else { uncertainty.half_width / raw.abs() };
-    if finding.open[parameter as usize] {
+    if parameter == Parameter::PsiF && finding.bench.is_at_rest {
+        Reason::AtRest
+    } else if finding.open[parameter as usize] {
         open(parameter, &finding.bench, &finding.open)
     } else if raw <= 0.0 && half_width < weak {
         Reason::Negative
@@ -107,7 +109,6 @@ pub(super) fn of(parameter: Parameter, finding: &Finding, uncertainty: &Paramete
 fn open(parameter: Parameter, bench: &Bench, open: &[bool; PARAMETERS]) -> Reason {
     let (current, held) = (bench.current(), Common::of(bench));
     match parameter {
-        Parameter::PsiF if bench.is_at_rest => Reason::AtRest,
         Parameter::Ld | Parameter::Lq if bench.is_at_rest => Reason::NoStep { parameter },
         Parameter::Ld if held.id_is_zero(current) => Reason::IdZero { largest: held.id_most },
         Parameter::Rs | Parameter::PsiF if held.id_is_zero(current) && held.is_one_point(current) => Reason::OnePoint,
