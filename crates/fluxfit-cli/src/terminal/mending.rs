@@ -122,6 +122,20 @@ fn speed_unit(ratio: f64, read: &[ReadColumn], given: Option<u32>) -> Option<Men
 fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: Option<u32>) -> Option<Mending> {
     let column = column(read, "omega_e")?;
     let now = size(column.unit, pole_pairs.unwrap_or(1));
+    if let Some(stated) = pole_pairs.filter(|_| column.unit.is_mechanical()) {
+        let [fewest, most] = [too_high.end(), too_high.start()].map(|factor| f64::from(stated) / factor);
+        let fitting: Vec<u32> = (fewest.ceil() as u32..=most.floor() as u32).collect();
+        return match fitting[..] {
+            [] => None,
+            [pairs] => Some(Mending {
+                cause: Some(format!("{} would suit it", named_pairs(pairs))),
+                ..Mending::option(format!("--pole-pairs {pairs}"))
+            }),
+            [fewest, .., most] => {
+                Some(Mending { cause: Some(format!("{fewest} to {most} pole pairs would suit it")), ..Mending::default() })
+            }
+        };
+    }
     if *too_high.end() < 1.0 {
         // Which of the two it is the voltages do not tell.
         return Some(Mending {

@@ -192,6 +192,32 @@ fn identify_refuses_what_means_nothing_unless_a_model_is_stated() {
     assert!(all_the_same.status < 2 && all_the_same.err.starts_with("warning [speed-unit]: theta_e turns"), "{}", all_the_same.err);
 }
 
+/// A speed that is a little off, as by another number of pole pairs, suits the operating points as well: inductances and flux are as much
+/// too small or too large. The slopes of the currents and the simulated currents do not follow it.
+#[test]
+fn a_speed_of_other_pole_pairs_is_told_and_gives_no_numbers() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("log.csv");
+    let identified = |rows: &[Row], options: &[&str]| {
+        write(&path, rows, 6);
+        fluxfit(&[&["identify", path.to_str().unwrap()], options].concat())
+    };
+    assert!(identified(&rows(LOGS[1]), &[]).out.starts_with("All 4 identified."));
+    for (log, factor) in [(LOGS[0], 0.75), (LOGS[0], 1.25), (LOGS[1], 0.5), (LOGS[2], 1.5)] {
+        let scaled: Vec<Row> = rows(log).iter().map(|row| with(row, 5, factor * row[5])).collect();
+        let run = identified(&scaled, &[]);
+        let told = run.out.replace("\n  ", " ");
+        let way = if factor > 1.0 { "high" } else { "low" };
+        assert!(run.status == 1 && told.starts_with("None of 4 identified."), "{log}, {factor}: {told}");
+        assert!(told.contains(&format!("times too {way} for the slopes of the currents")), "{log}, {factor}: {told}");
+    }
+    // In r/min of the shaft, three times too high: the number of pole pairs that the rig's motor has is proposed.
+    let of_shaft = |row: &Row| with(row, 5, row[5] / 4.0 * 30.0 / std::f64::consts::PI);
+    let of_shaft: Vec<Row> = rows(LOGS[0]).iter().map(of_shaft).collect();
+    let run = identified(&of_shaft, &["--unit", "omega_e=rpm-mech", "--pole-pairs", "12"]);
+    assert!(run.err.contains("4 pole pairs would suit it; replace --pole-pairs 12 by --pole-pairs 4"), "{}", run.err);
+}
+
 /// Names of columns that a motor may have, but no time: there is no log, and a plot all the same.
 #[test]
 fn a_file_that_is_no_log_yet_is_plotted_too() {

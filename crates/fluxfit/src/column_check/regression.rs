@@ -256,9 +256,31 @@ const TOO_HIGH: f64 = 1.65;
 /// high 4 to 11 times.
 const TOO_LOW: f64 = 4.0;
 
-/// By which factor the speed is too high, or too low, for inductances that are those of the slopes of the currents. Where the log has an
-/// angle, that tells it better.
+/// By which factor the speed is too high, or too low, for inductances that are those of the slopes of the currents, for certain.
 pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
+    let SpeedOfSlopes { too_high: [low, high], excess } = speed_of_slopes(log)?;
+    let is_too_high = low > LEAST_SCALE && excess > TOO_HIGH;
+    let is_too_low = high < 1.0 / LEAST_SCALE && excess > TOO_LOW;
+    (is_too_high || is_too_low).then_some(ColumnFinding::SpeedScale { low, high })
+}
+
+/// Factors by which the speed may be too high for inductances that are those of the slopes of the currents, the least and the largest,
+/// where the speed as it is is none of them. By themselves they prove nothing: noise and saturation change the inductances of the slopes.
+pub(crate) fn speed_in_doubt(log: &Log) -> Option<[f64; 2]> {
+    let SpeedOfSlopes { too_high: [low, high], .. } = speed_of_slopes(log)?;
+    (low > 1.0 || high < 1.0).then_some([low, high])
+}
+
+/// Which speed suits the slopes of the currents.
+struct SpeedOfSlopes {
+    /// By which factors the speed may be too high, the least and the largest.
+    too_high: [f64; 2],
+    /// What the speed as it is leaves of the voltages, over what the best of these leaves.
+    excess: f64,
+}
+
+/// Nothing where the slopes do not tell, or the log has an angle, which tells it better.
+fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
     if log.columns().theta_e.is_some() || log.is_interpolated() {
         return None;
     }
@@ -284,10 +306,7 @@ pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
     let inductance = ld.min(lq) * (low * high).sqrt();
     let block = BLOCK.min(log.rows() / ENOUGH).max(1) as f64;
     let is_seen = log.segments().iter().all(|segment| block * segment.sample_period * resistance < inductance);
-    let now = left(1.0);
-    let is_too_high = low > LEAST_SCALE && now > TOO_HIGH * best;
-    let is_too_low = high < 1.0 / LEAST_SCALE && now > TOO_LOW * best;
-    (is_seen && best < WELL_EXPLAINED && (is_too_high || is_too_low)).then_some(ColumnFinding::SpeedScale { low, high })
+    (is_seen && best < WELL_EXPLAINED).then(|| SpeedOfSlopes { too_high: [low, high], excess: left(1.0) / best })
 }
 
 /// The equations in which the inductances of the slopes are those of the speed, times a factor.

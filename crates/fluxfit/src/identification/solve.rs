@@ -31,6 +31,7 @@ use super::{
     request::{Known, Request},
 };
 use crate::{
+    column_check::speed_in_doubt,
     error::{Error, ErrorKind},
     faults::{Fault, Faults},
     log::Log,
@@ -177,12 +178,17 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
             }
         }
     };
+    let is_simulated = model.model == Model::OutputError;
     let points_answer = by_excitation(log, &mut steady, output.as_mut(), request)?;
     let (model, mut output, outvoted) = if points_answer { (points_tell_more, None, output) } else { (model, output, None) };
     let saturation = saturation(log, steady.as_ref(), output.as_ref(), request);
     let finding = output.as_mut().map(|fit| &mut fit.finding).or(steady.as_mut().map(|fit| &mut fit.finding));
     if let (Some(finding), Some(found)) = (finding, saturation.as_ref().filter(|found| found.tells_rs)) {
         finding.answer_rs(found.rs, found.rs_uncertainty);
+    }
+    if let Some(too_high) = (is_simulated && request.model.is_none()).then(|| speed_too_high(log, output.as_ref())).flatten() {
+        let finding = output.as_mut().map(|fit| &mut fit.finding).or(steady.as_mut().map(|fit| &mut fit.finding));
+        finding.into_iter().for_each(|finding| finding.trust.speed_too_high = Some(too_high));
     }
     // Only now: what all sensors share decides neither the model nor the value.
     common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
@@ -248,6 +254,16 @@ fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut 
     }
     output.finding.leave_open(&open, &output_excitation::reach(log, output, request));
     Ok(false)
+}
+
+/// By which factors the speed may be too high, the least and the largest, where the slopes of the currents ask for another one and the
+/// simulated currents do not follow the measured ones without an observer, which makes them follow whatever it is; or only beside
+/// saturation, which makes the inductances of slopes smaller than those of the speed and never larger.
+fn speed_too_high(log: &Log, output: Option<&OutputFit>) -> Option<[f64; 2]> {
+    let follows = output.is_some_and(|fit| fit.is_explained() && fit.drive.faults.disturbance.is_small());
+    let saturates = output.is_some_and(|fit| fit.has(Fault::Saturation));
+    let in_doubt = if is_control_rate(log) && (!follows || saturates) { speed_in_doubt(log) } else { None };
+    in_doubt.filter(|[least, _]| !follows || *least > 1.0)
 }
 
 /// The finding of the model that answers.

@@ -2,6 +2,7 @@
 
 use super::digits::{one_digit, percent, three_digits};
 use crate::{
+    column_check::ColumnFinding,
     identification::{fit::part::Part, judge::reason::Reason},
     motor::Parameter,
 };
@@ -55,6 +56,12 @@ impl Display for Reason {
                 "the fault that was found beside the motor, {}, came out with values that no drive has: it took the place of something else, \
                  and nothing of this fit is to be trusted",
                 fault.label()
+            ),
+            Self::SpeedInDoubt { too_high: [low, high] } => write!(
+                f,
+                "{}, and the simulated currents do not follow the measured ones: its unit or the number of pole pairs seems to be wrong, and \
+                 inductances and flux are wrong by the same factor",
+                ColumnFinding::SpeedScale { low: *low, high: *high }
             ),
             Self::CurrentsMissed { fraction } => write!(
                 f,

@@ -39,6 +39,12 @@ impl Display for Remedy {
             }
             Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
             Self::Turn => write!(f, "log the motor where it turns, too"),
+            Self::CheckSpeed => {
+                write!(
+                    f,
+                    "check the unit of the speed and the number of pole pairs; if both are right, state the model, and identify again"
+                )
+            }
             Self::StepCurrent { parameter: Parameter::Ld } => write!(f, "log steps of i_d, too"),
             Self::StepCurrent { .. } => write!(f, "log steps of i_q, too"),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),

@@ -91,6 +91,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::SpreadPoints { parameter: Parameter::Lq } => "operating points with more i_q, or more speed".to_owned(),
         Remedy::SpreadPoints { parameter: Parameter::PsiF } => "a second, higher speed".to_owned(),
         Remedy::Turn => "a motor that turns".to_owned(),
+        Remedy::CheckSpeed => "the unit of the speed and the number of pole pairs checked".to_owned(),
         Remedy::StepCurrent { parameter: Parameter::Ld } => "steps of i_d".to_owned(),
         Remedy::StepCurrent { .. } => "steps of i_q".to_owned(),
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),

@@ -48,6 +48,8 @@ pub enum Remedy {
     },
     /// Log the motor where it turns, too.
     Turn,
+    /// Check the unit of the speed and the number of pole pairs, or state the [model](crate::Request::model).
+    CheckSpeed,
     /// Log steps of the current along the axis of this inductance, as long as the rotor stands.
     StepCurrent {
         /// Which inductance.
@@ -150,6 +152,7 @@ pub(super) fn of(
             None => Remedy::CheckSigns { units: false },
         },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
+        Reason::SpeedInDoubt { .. } => Remedy::CheckSpeed,
         Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         // Beside saturation, what disturbs the motor or makes its points contradict each other is what a few terms lack of it.

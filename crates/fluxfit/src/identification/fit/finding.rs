@@ -56,6 +56,9 @@ pub struct Trust {
     pub misses: f64,
     /// A fault of the drive that was found with values that no drive has: it took the place of something else, with the motor beside it.
     pub runaway: Option<Fault>,
+    /// By which factors the speed may be too high, the least and the largest, where simulated currents do not follow the measured ones and
+    /// the slopes of the currents ask for another speed.
+    pub speed_too_high: Option<[f64; 2]>,
     /// An inductance below this, H, does nothing from row to row that a simulation could follow.
     pub least_inductance: f64,
 }
@@ -63,7 +66,7 @@ pub struct Trust {
 impl Trust {
     /// Whether nothing of the fit is an answer.
     pub(crate) fn is_none(&self) -> bool {
-        self.too_sharp || self.runaway.is_some()
+        self.too_sharp || self.runaway.is_some() || self.speed_too_high.is_some()
     }
 }
 

@@ -145,6 +145,7 @@ impl OutputFit {
                 too_sharp: !is_rounding && errors.are_too_small(objective, &drive, &unknowns, &priors, &residuals),
                 misses: missed(objective, &drive) / objective.peak_current(),
                 runaway,
+                speed_too_high: None,
                 least_inductance: if is_control_rate(log) { LEAST_PERIODS * slowest_period(log) * drive.motor.rs } else { 0.0 },
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),

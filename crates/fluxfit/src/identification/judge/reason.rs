@@ -68,6 +68,12 @@ pub enum Reason {
         /// Which.
         fault: Fault,
     },
+    /// The simulated currents do not follow the measured ones, and the slopes of the currents ask for another speed: the unit of the speed
+    /// or the number of pole pairs is wrong.
+    SpeedInDoubt {
+        /// By which factors the speed may be too high, the least and the largest.
+        too_high: [f64; 2],
+    },
     /// The interval is narrow, but the motor saturates, and a fit describes that by a few terms.
     Saturates,
     /// The simulated currents differ from the measured ones by far more than noise: voltages and currents do not belong together.

@@ -120,6 +120,9 @@ pub(crate) fn judge(
     if let Some(fault) = finding.trust.runaway {
         distrust_all(&mut judged, request, &Reason::RunawayFault { fault });
     }
+    if let Some(too_high) = finding.trust.speed_too_high {
+        distrust_all(&mut judged, request, &Reason::SpeedInDoubt { too_high });
+    }
     distrust_if_impossible(&mut judged, finding.trust.least_inductance, request);
     // Where nothing is told anyway, the reason there says more.
     let is_told = |one: &Judged| one.verdict != Verdict::NotIdentifiable && one.reason != Some(Reason::Given);
