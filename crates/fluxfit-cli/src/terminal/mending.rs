@@ -122,25 +122,12 @@ fn speed_unit(ratio: f64, read: &[ReadColumn], given: Option<u32>) -> Option<Men
 fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: Option<u32>) -> Option<Mending> {
     let column = column(read, "omega_e")?;
     let now = size(column.unit, pole_pairs.unwrap_or(1));
-    if let Some(stated) = pole_pairs.filter(|_| column.unit.is_mechanical()) {
-        let [fewest, most] = [too_high.end(), too_high.start()].map(|factor| f64::from(stated) / factor);
-        let fitting: Vec<u32> = (fewest.ceil() as u32..=most.floor() as u32).collect();
-        return match fitting[..] {
-            [] => None,
-            [pairs] => Some(Mending {
-                cause: Some(format!("{} would suit it", named_pairs(pairs))),
-                ..Mending::option(format!("--pole-pairs {pairs}"))
-            }),
-            [fewest, .., most] => {
-                Some(Mending { cause: Some(format!("{fewest} to {most} pole pairs would suit it")), ..Mending::default() })
-            }
-        };
-    }
+    let of_shaft = || pole_pairs.filter(|_| column.unit.is_mechanical()).and_then(|stated| suiting_pairs(stated, &too_high));
     if *too_high.end() < 1.0 {
         // Which of the two it is the voltages do not tell.
-        return Some(Mending {
-            cause: Some("it may be that of the shaft (rad/s-mech), or in Hz; state its unit".to_owned()),
-            ..Mending::default()
+        return of_shaft().or_else(|| {
+            let cause = "it may be that of the shaft (rad/s-mech), or in Hz; state its unit".to_owned();
+            Some(Mending { cause: Some(cause), ..Mending::default() })
         });
     }
     let fits = |unit: &Unit| *unit != column.unit && !unit.is_mechanical() && too_high.contains(&(now / size(*unit, 1)));
@@ -149,10 +136,25 @@ fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: O
         return Some(Mending { cause: Some(cause), ..Mending::option(format!("--unit omega_e={}", unit.name())) });
     }
     // r/min of a shaft are 9.5 times too high, less the number of pole pairs.
-    (column.unit == Unit::RadianPerSecond).then(|| Mending {
+    let of_rpm = (column.unit == Unit::RadianPerSecond).then(|| Mending {
         cause: Some("it may be in r/min of the shaft".to_owned()),
         ..Mending::option(format!("--unit omega_e=rpm-mech{}", if pole_pairs.is_some() { "" } else { " --pole-pairs N" }))
-    })
+    });
+    of_rpm.or_else(of_shaft)
+}
+
+/// The numbers of pole pairs that suit a speed of the shaft, where the stated number makes it too high by such factors.
+fn suiting_pairs(stated: u32, too_high: &RangeInclusive<f64>) -> Option<Mending> {
+    let [fewest, most] = [too_high.end(), too_high.start()].map(|factor| f64::from(stated) / factor);
+    let fitting: Vec<u32> = (fewest.ceil() as u32..=most.floor() as u32).collect();
+    match fitting[..] {
+        [] => None,
+        [pairs] => Some(Mending {
+            cause: Some(format!("{} would suit it", named_pairs(pairs))),
+            ..Mending::option(format!("--pole-pairs {pairs}"))
+        }),
+        [fewest, .., most] => Some(Mending { cause: Some(format!("{fewest} to {most} pole pairs would suit it")), ..Mending::default() }),
+    }
 }
 
 fn named_pairs(pole_pairs: u32) -> String {
@@ -312,6 +314,10 @@ mod tests {
         assert_eq!(option(7.7, 10.9, Unit::RadianPerSecond, None), "--unit omega_e=rpm-elec");
         assert_eq!(option(2.0, 2.6, Unit::RadianPerSecond, None), "--unit omega_e=rpm-mech --pole-pairs N");
         assert_eq!(option(2.0, 2.6, Unit::RadianPerSecond, Some(4)), "--unit omega_e=rpm-mech");
+        // 12 pole pairs are three times as many as 4; a motor of 3 to 5 suits a range that is wider.
+        assert_eq!(option(2.8, 3.3, Unit::RpmMechanical, Some(12)), "--pole-pairs 4");
+        assert_eq!(option(0.23, 0.27, Unit::RpmMechanical, Some(1)), "--pole-pairs 4");
+        assert_eq!(option(2.2, 4.2, Unit::RpmMechanical, Some(12)), "");
         // That of the shaft with 4 pole pairs, or Hz with any.
         assert_eq!(option(0.15, 0.26, Unit::RadianPerSecond, None), "");
     }
