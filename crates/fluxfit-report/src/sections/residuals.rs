@@ -20,7 +20,7 @@ const EXCESS: f64 = 3.0;
 /// Smaller correlations explain less than a hundredth of a residual's variance.
 const SLIGHT: f64 = 0.1;
 
-/// Residuals below this part of the largest current matter to no verdict: a fiftieth of what an identified parameter may be off by.
+/// Residuals below this part of the largest current are called small: a fiftieth of what an identified parameter may be off by.
 const SMALL: f64 = 1e-3;
 
 /// The section.
@@ -64,9 +64,9 @@ fn verdict(correlation: &ResidualCorrelation, is_relevant: bool, part: f64) -> M
             (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, but none is farther from "
             "zero than " (largest.trim_start_matches('\u{2212}')) ". The error of the model is small compared with the noise; the intervals account for it."
         } @else if part < SMALL {
-            strong { "Not white, but too small to change a verdict: " }
+            strong { "Not white, but small: " }
             (residuals_of(white)) " are correlated from row to row (largest correlation " (largest) "), but they are only " (percent(part))
-            "\u{a0}% of the largest current, and an identified parameter may be off by 5\u{a0}%."
+            "\u{a0}% of the largest current. The intervals account for the correlation."
         } @else {
             strong { "Not white: " }
             (residuals_of(white)) " are correlated from row to row; the largest correlation is " (largest)
@@ -100,6 +100,6 @@ mod tests {
         let text = of(with(0, 0.0), with(7, 0.9));
         assert!(text.contains("Not white: ") && text.contains("<i>i</i><sub>q</sub>") && text.contains("is 0.90"), "{text}");
         let text = small(with(0, 0.0), with(7, 0.9), 1.8e-4);
-        assert!(text.contains("too small to change a verdict") && text.contains("only 0.018"), "{text}");
+        assert!(text.contains("Not white, but small") && text.contains("only 0.018"), "{text}");
     }
 }

@@ -258,7 +258,7 @@ fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut 
 
 /// By which factors the speed may be too high, the least and the largest, where the slopes of the currents ask for another one and the
 /// simulated currents do not follow the measured ones without an observer, which makes them follow whatever it is; or only beside
-/// saturation, which makes the inductances of slopes smaller than those of the speed and never larger.
+/// saturation, which makes inductances of slopes smaller than those of the speed: such terms may stand in for a speed that is too high.
 fn speed_too_high(log: &Log, output: Option<&OutputFit>) -> Option<[f64; 2]> {
     let follows = output.is_some_and(|fit| fit.is_explained() && fit.drive.faults.disturbance.is_small());
     let saturates = output.is_some_and(|fit| fit.has(Fault::Saturation));

@@ -57,6 +57,9 @@ impl Display for NextStep {
         if is_of_saturation(&self.remedy) {
             return write!(f, "The motor saturates: take {}.", need(&self.remedy));
         }
+        if self.remedy == Remedy::CheckSpeed {
+            return write!(f, "Check {}.", need(&self.remedy));
+        }
         let verb = if self.parameters.len() == 1 { "needs" } else { "need" };
         let need = match &self.remedy {
             Remedy::Measure(Promised { measurement: Measurement::Resistance { accuracy }, .. }) if self.parameters == [Parameter::Rs] => {
@@ -72,7 +75,7 @@ impl Display for NextStep {
     }
 }
 
-/// What the log lacks, in a few words; of a motor that saturates, what to take of it.
+/// What the log lacks, in a few words; of a motor that saturates, what to take of it; of a speed in doubt, what to check.
 fn need(remedy: &Remedy) -> String {
     match remedy {
         Remedy::Measure(promised) => match promised.measurement {
@@ -91,7 +94,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::SpreadPoints { parameter: Parameter::Lq } => "operating points with more i_q, or more speed".to_owned(),
         Remedy::SpreadPoints { parameter: Parameter::PsiF } => "a second, higher speed".to_owned(),
         Remedy::Turn => "a motor that turns".to_owned(),
-        Remedy::CheckSpeed => "the unit of the speed and the number of pole pairs checked".to_owned(),
+        Remedy::CheckSpeed => "the unit of the speed and the number of pole pairs".to_owned(),
         Remedy::StepCurrent { parameter: Parameter::Ld } => "steps of i_d".to_owned(),
         Remedy::StepCurrent { .. } => "steps of i_q".to_owned(),
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),
