@@ -30,7 +30,7 @@ fn explanations(found: &Identification, options: &Options) -> Markup {
     }
     let next = Summary::of(&found.parameters).next;
     html! {
-        @if let Some(next) = &next { p.next { strong { "To do next: " } (to_do(&next.remedy, options)) } }
+        @if let Some(next) = &next { p.next { strong { "To do next: " } (to_do(&next.instruction(), &next.remedy, options)) } }
         @if !shared.is_empty() {
             dl.reasons {
                 @for (judgements, reason) in &shared {
@@ -48,14 +48,14 @@ fn explanations(found: &Identification, options: &Options) -> Markup {
 /// The remedies of these parameters beside the next step: instead of it, where it helps them too.
 fn remedies(judgements: &[&Judgement], next: Option<&NextStep>, options: &Options) -> Markup {
     let mut told: Vec<(&str, Markup)> = Vec::new();
-    let is_next = |remedy: &Remedy| next.is_some_and(|next| next.remedy == *remedy);
+    let is_next = |remedy: &Remedy| next.is_some_and(|next| next.is_same(remedy));
     for judgement in judgements {
         let Some(remedy) = judgement.remedy.as_ref().filter(|remedy| !is_next(remedy)) else { continue };
         let label = if next.is_some_and(|next| next.parameters.contains(&judgement.parameter)) { "Or: " } else { "To do: " };
         let step = match remedy {
             // Its alternative stands above.
             Remedy::HoldLonger { or, .. } if is_next(or) => html! { (prose(&format!("{remedy:#}"))) "." },
-            remedy => to_do(remedy, options),
+            remedy => to_do(&remedy.to_string(), remedy, options),
         };
         if told.iter().all(|(_, other)| other.0 != step.0) {
             told.push((label, step));
@@ -64,9 +64,9 @@ fn remedies(judgements: &[&Judgement], next: Option<&NextStep>, options: &Option
     html! { @for (label, step) in told { p { strong { (label) } (step) } } }
 }
 
-/// A remedy, with the option that carries it out.
-fn to_do(remedy: &Remedy, options: &Options) -> Markup {
-    html! { (prose(&remedy.to_string())) (option((options.of_remedy)(remedy))) "." }
+/// A remedy in these words, with the option that carries it out.
+fn to_do(instruction: &str, remedy: &Remedy, options: &Options) -> Markup {
+    html! { (prose(instruction)) (option((options.of_remedy)(remedy))) "." }
 }
 
 /// An option in brackets.

@@ -34,7 +34,7 @@ impl Display for Remedy {
             }
             Self::HoldLonger { times, parameter, half_width, or } => {
                 let (symbol, width) = (parameter.symbol(), percent(*half_width));
-                write!(f, "hold each operating point about {times:.0} times as long: {symbol} to about ±{width}")?;
+                write!(f, "{}: {symbol} to about ±{width}", hold_longer(*times))?;
                 if f.alternate() { Ok(()) } else { write!(f, "; or {or}") }
             }
             Self::SpreadPoints { parameter } => write!(f, "{}", spread(*parameter)),
@@ -123,6 +123,11 @@ fn spread(parameter: Parameter) -> &'static str {
         Parameter::Lq => "add operating points with more i_q, or at a higher speed",
         Parameter::PsiF => "add operating points at a higher speed, or at a second speed",
     }
+}
+
+/// So many times as long.
+pub(super) fn hold_longer(times: f64) -> String {
+    format!("hold each operating point about {times:.0} times as long")
 }
 
 /// So many times the speed.

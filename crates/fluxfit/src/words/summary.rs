@@ -2,7 +2,7 @@
 
 use super::{
     digits::{list, one_digit, percent, three_digits},
-    remedy::of_speed,
+    remedy::{hold_longer, of_speed},
 };
 use crate::{
     identification::explain::{
@@ -48,7 +48,31 @@ impl Display for Summary {
             write!(f, "{beside} {} given", symbols(&self.given))?;
         }
         write!(f, ".")?;
-        self.next.as_ref().map_or(Ok(()), |next| write!(f, " {next}"))
+        match &self.next {
+            None => Ok(()),
+            // All that was asked for has one step.
+            Some(NextStep { remedy: Remedy::Measure(promised), parameters, half_width: Some(width) })
+                if parameters.len() == asked && asked > 1 =>
+            {
+                write!(f, " One step does all: {}, then about ±{} or less.", promised.measurement, percent(*width))
+            }
+            Some(next) => write!(f, " {next}"),
+        }
+    }
+}
+
+impl NextStep {
+    /// What to do, with the interval to expect for all parameters that it helps: an instruction without a capital and a full stop.
+    pub fn instruction(&self) -> String {
+        match (&self.remedy, self.half_width) {
+            (Remedy::Measure(promised), Some(width)) if self.parameters.len() > 1 => {
+                format!("{}: {} to about ±{} or less", promised.measurement, symbols(&self.parameters), percent(width))
+            }
+            (Remedy::HoldLonger { times, .. }, Some(width)) if self.parameters.len() > 1 => {
+                format!("{}: {} to about ±{} or less", hold_longer(*times), symbols(&self.parameters), percent(width))
+            }
+            (remedy, _) => remedy.to_string(),
+        }
     }
 }
 
@@ -69,7 +93,7 @@ impl Display for NextStep {
         };
         write!(f, "{} {verb} {need}", symbols(&self.parameters))?;
         match self.half_width {
-            Some(width) => write!(f, ": then about ±{}.", percent(width)),
+            Some(width) => write!(f, ": then about ±{}{}.", percent(width), if self.parameters.len() > 1 { " or less" } else { "" }),
             None => write!(f, "."),
         }
     }
@@ -131,6 +155,18 @@ mod tests {
         assert_eq!(of_weak(&[ld, lq], &[]), "None of 4 identified, L_d and L_q weak.");
         // What is weak is what was asked for, not what was given.
         assert_eq!(of_weak(&[ld, lq, psi_f], &[rs]), "None of 3 identified, all weak; R_s given.");
+    }
+
+    #[test]
+    fn one_step_for_several_parameters_names_them_all() {
+        let [rs, ld, lq, psi_f] = Parameter::ALL;
+        let measurement = Measurement::Stretch { seconds: 0.5, place: Place::Id(-3.0) };
+        let remedy = Remedy::Measure(Promised { measurement, parameter: rs, half_width: 0.01 });
+        let next = |parameters: &[Parameter]| NextStep { remedy: remedy.clone(), parameters: parameters.to_vec(), half_width: Some(0.02) };
+        assert_eq!(next(&[rs, ld]).instruction(), "add 0.5 s at i_d = -3 A, same speed: R_s and L_d to about ±2.0 % or less");
+        assert_eq!(next(&[rs, ld]).to_string(), "R_s and L_d need 0.5 s at i_d = -3 A: then about ±2.0 % or less.");
+        let all = Summary { next: Some(next(&[rs, ld, lq, psi_f])), ..NOTHING }.to_string();
+        assert_eq!(all, "None of 4 identified. One step does all: add 0.5 s at i_d = -3 A, same speed, then about ±2.0 % or less.");
     }
 
     #[test]

@@ -178,12 +178,12 @@ fn explanations(found: &Identification) -> String {
 /// The step that helps most, and what else helps the parameters that it leaves as they are; everything that helps, where all is to be told.
 fn steps(found: &Identification) -> String {
     let Some(next) = Summary::of(&found.parameters).next else { return String::new() };
-    let mut text = to_do("To do", &next.remedy);
+    let mut text = to_do("To do", &next.instruction(), &next.remedy);
     // Columns in doubt may be behind everything else: they come first, alone.
     let is_of_columns = matches!(next.remedy, Remedy::CheckSigns { .. } | Remedy::CheckFrame { .. });
     let mut others: Vec<(&Remedy, Vec<Parameter>)> = Vec::new();
     for judgement in &found.parameters {
-        let Some(remedy) = judgement.remedy.as_ref().filter(|remedy| **remedy != next.remedy) else { continue };
+        let Some(remedy) = judgement.remedy.as_ref().filter(|remedy| !next.is_same(remedy)) else { continue };
         match others.iter_mut().find(|(other, _)| *other == remedy) {
             Some((_, parameters)) => parameters.push(judgement.parameter),
             None => others.push((remedy, vec![judgement.parameter])),
@@ -193,16 +193,21 @@ fn steps(found: &Identification) -> String {
         let is_instead = parameters.iter().all(|parameter| next.parameters.contains(parameter));
         let symbols: Vec<&str> = parameters.iter().copied().map(Parameter::symbol).collect();
         if is_instead && terminal::is_verbose() {
-            text += &to_do(&format!("Or for {}", symbols.join(", ")), remedy);
+            let instruction = match remedy {
+                // Its alternative stands above.
+                Remedy::HoldLonger { or, .. } if next.is_same(or) => format!("{remedy:#}"),
+                remedy => remedy.to_string(),
+            };
+            text += &to_do(&format!("Or for {}", symbols.join(", ")), &instruction, remedy);
         } else if !is_of_columns && !parameters.iter().any(|parameter| next.parameters.contains(parameter)) {
-            text += &to_do(&format!("To do for {}", symbols.join(", ")), remedy);
+            text += &to_do(&format!("To do for {}", symbols.join(", ")), &remedy.to_string(), remedy);
         }
     }
     text
 }
 
-fn to_do(what: &str, remedy: &Remedy) -> String {
-    let lines = wrapped("", &format!("{what}: {}.", options::with_option(&remedy.to_string(), options::of_remedy(remedy))));
+fn to_do(what: &str, instruction: &str, remedy: &Remedy) -> String {
+    let lines = wrapped("", &format!("{what}: {}.", options::with_option(instruction, options::of_remedy(remedy))));
     format!("{HEADING}{what}{HEADING:#}{}", lines.strip_prefix(what).unwrap_or(&lines))
 }
 

@@ -10,6 +10,7 @@ use super::{
         request::{Known, Request},
     },
     remedy::{self, Beside, Remedy},
+    shared_step,
     trial::Trials,
 };
 use crate::motor::{PARAMETERS, Parameter};
@@ -66,7 +67,9 @@ pub(crate) fn explained(
         let measure = || trials.as_mut().and_then(|trials| trials.best(of_gains, now, parameter));
         source.reason.as_ref().and_then(|reason| remedy::of(reason, parameter, finding, beside, measure))
     };
-    let remedies: Vec<Option<Remedy>> = judged.iter().map(&mut remedy).collect();
+    let mut remedies: Vec<Option<Remedy>> = judged.iter().map(&mut remedy).collect();
+    let tried: Vec<_> = trials.iter().flat_map(Trials::outcomes).collect();
+    shared_step::share(&mut remedies, &tried);
     let mut remedies = remedies.into_iter();
     judged.map(|Judged { parameter, raw, uncertainty, verdict, reason }| Judgement {
         parameter,

@@ -25,6 +25,18 @@ pub enum Measurement {
     },
 }
 
+impl Measurement {
+    /// What it takes, to be compared: the kind, then the time, s. A multimeter takes no time of a log, one stretch less than all operating
+    /// points once more.
+    pub(super) fn effort(&self) -> (u8, f64) {
+        match self {
+            Self::Resistance { .. } => (0, 0.0),
+            Self::Stretch { seconds, .. } => (1, *seconds),
+            Self::AllPoints { .. } => (2, 0.0),
+        }
+    }
+}
+
 /// Where to hold the motor, relative to the log's operating point of largest current.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]

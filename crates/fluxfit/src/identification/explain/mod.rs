@@ -7,6 +7,7 @@ pub(crate) mod left_out;
 pub(crate) mod measurement;
 mod promising;
 pub(crate) mod remedy;
+mod shared_step;
 pub(crate) mod summary;
 pub(crate) mod temperature;
 pub(crate) mod trial;

@@ -5,6 +5,7 @@ use crate::{
     identification::judge::{reason::Reason, verdict::Verdict},
     motor::{PARAMETERS, Parameter},
 };
+use std::cmp::Ordering;
 
 /// How many parameters are identified, and what to do next. It prints as one or two sentences.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,12 +29,22 @@ pub struct Summary {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct NextStep {
-    /// What to do. Of several parameters that it helps, the remedy of the first.
+    /// What to do. Of several parameters that it helps, the remedy of the first, or that which does for all of them.
     pub remedy: Remedy,
     /// The parameters that it helps, in the order of [`Parameter::ALL`].
     pub parameters: Vec<Parameter>,
     /// The interval to expect, where it was computed: the widest of these parameters, as a fraction of the value.
     pub half_width: Option<f64>,
+}
+
+impl NextStep {
+    /// Whether it is this remedy, for whatever parameter.
+    pub fn is_same(&self, remedy: &Remedy) -> bool {
+        match (&self.remedy, remedy) {
+            (Remedy::Measure(next), Remedy::Measure(other)) => next.measurement == other.measurement,
+            (next, other) => next == other,
+        }
+    }
 }
 
 impl Summary {
@@ -57,7 +68,8 @@ impl Summary {
 }
 
 /// The remedy that helps most: what is wrong with the columns comes before any measurement, since it may be behind everything else;
-/// then what was computed to identify most parameters; then what helps most of them. Of equals, that of the first parameter.
+/// then what was computed to identify most parameters; then what helps most of them; then what takes least of a log. Of equals, that of
+/// the first parameter.
 fn next_step(parameters: &[Judgement; PARAMETERS]) -> Option<NextStep> {
     let mut steps: Vec<NextStep> = Vec::new();
     for judgement in parameters {
@@ -67,12 +79,14 @@ fn next_step(parameters: &[Judgement; PARAMETERS]) -> Option<NextStep> {
             Some(step) => {
                 step.parameters.push(judgement.parameter);
                 step.half_width = step.half_width.zip(half_width).map(|(one, other)| one.max(other));
+                if remedy.demands_more_than(&step.remedy) {
+                    step.remedy = remedy.clone();
+                }
             }
             None => steps.push(NextStep { remedy: remedy.clone(), parameters: vec![judgement.parameter], half_width }),
         }
     }
-    // The last of equals is what `max_by_key` takes: from the back, the first.
-    steps.into_iter().rev().max_by_key(|step| {
+    let rank = |step: &NextStep| {
         let identifies = step.half_width.is_some_and(|width| width <= IDENTIFIED);
         (
             step.remedy.questions_columns(),
@@ -80,14 +94,23 @@ fn next_step(parameters: &[Judgement; PARAMETERS]) -> Option<NextStep> {
             step.half_width.is_some(),
             step.parameters.len(),
         )
+    };
+    // The last of equals is what `max_by` takes: from the back, the first.
+    steps.into_iter().rev().max_by(|one, other| {
+        let by_effort = other.remedy.effort().partial_cmp(&one.remedy.effort()).unwrap_or(Ordering::Equal);
+        rank(one).cmp(&rank(other)).then(by_effort)
     })
 }
 
+/// Promises that differ by less than this factor are equal: each is computed from one record of the noise.
+const LIKE: f64 = 1.1;
+
 impl Remedy {
-    /// Of a remedy with an alternative the one that promises more: holding every operating point longer is seldom the shorter way.
+    /// Of a remedy with an alternative the alternative, where it promises about as much: it takes as long as the log at most, and holding
+    /// every operating point longer takes a multiple of that.
     fn quickest(&self) -> &Self {
         match self {
-            Self::HoldLonger { half_width, or, .. } if or.promised().is_some_and(|promised| promised <= *half_width) => or,
+            Self::HoldLonger { half_width, or, .. } if or.promised().is_some_and(|promised| promised <= LIKE * half_width) => or,
             _ => self,
         }
     }
@@ -100,17 +123,85 @@ impl Remedy {
         }
     }
 
+    /// What it takes of a log, to be compared; the same of all that no time was computed for.
+    fn effort(&self) -> (u8, f64) {
+        match self {
+            Self::Measure(Promised { measurement, .. }) => measurement.effort(),
+            Self::HoldLonger { times, .. } => (u8::MAX, *times),
+            _ => (u8::MAX, 0.0),
+        }
+    }
+
     /// Whether it doubts the columns themselves.
     fn questions_columns(&self) -> bool {
         matches!(self, Self::CheckSigns { .. } | Self::CheckFrame { .. })
     }
 
-    /// Whether doing one does the other.
+    /// Whether doing one does the other, or doing the more [demanding](Self::demands_more_than) one does both.
     fn is_same_step(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Measure(one), Self::Measure(other)) => one.measurement == other.measurement,
-            (Self::HoldLonger { or: one, .. }, Self::HoldLonger { or: other, .. }) => one.is_same_step(other),
+            (Self::HoldLonger { .. }, Self::HoldLonger { .. }) => true,
+            (Self::CompensateDeadTime { .. }, Self::CompensateDeadTime { .. }) => true,
             _ => self == other,
         }
+    }
+
+    /// Whether of two remedies that are the same step this one does what the other does, and more.
+    fn demands_more_than(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::HoldLonger { times, .. }, Self::HoldLonger { times: others, .. }) => times > others,
+            // A resistance that is given does not do for all.
+            (Self::CompensateDeadTime { or_resistance: false }, Self::CompensateDeadTime { or_resistance: true }) => true,
+            _ => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::measurement::Measurement, *};
+    use crate::identification::fit::uncertainty::ParameterUncertainty;
+
+    /// The step that follows from the remedies of the four parameters.
+    fn next(remedies: [Option<Remedy>; PARAMETERS]) -> NextStep {
+        let mut remedies = remedies.into_iter();
+        let judgements = Parameter::ALL.map(|parameter| {
+            let uncertainty = ParameterUncertainty::default();
+            let remedy = remedies.next().flatten();
+            Judgement { parameter, raw: 1.0, uncertainty, verdict: Verdict::Weak, reason: None, remedy }
+        });
+        next_step(&judgements).unwrap()
+    }
+
+    fn measure(measurement: Measurement, half_width: f64) -> Remedy {
+        Remedy::Measure(Promised { measurement, parameter: Parameter::Ld, half_width })
+    }
+
+    #[test]
+    fn points_are_not_held_many_times_as_long_where_something_else_is_about_as_good() {
+        let faster = |half_width| measure(Measurement::AllPoints { times: 2.0 }, half_width);
+        let longer = |of_faster| {
+            let or = Box::new(faster(of_faster));
+            Remedy::HoldLonger { times: 50.0, parameter: Parameter::Ld, half_width: 0.05, or }
+        };
+        assert_eq!(next([None, Some(longer(0.051)), None, None]).remedy, faster(0.051));
+        assert_eq!(next([None, Some(longer(0.08)), None, None]).remedy, longer(0.08));
+    }
+
+    #[test]
+    fn of_steps_that_help_as_many_parameters_the_one_that_takes_least_is_next() {
+        let faster = measure(Measurement::AllPoints { times: 2.0 }, 0.01);
+        let multimeter = measure(Measurement::Resistance { accuracy: 0.01 }, 0.03);
+        assert_eq!(next([None, Some(faster.clone()), None, Some(multimeter.clone())]).remedy, multimeter);
+        let both = next([None, Some(faster.clone()), Some(faster.clone()), Some(multimeter)]);
+        assert_eq!((both.remedy, both.parameters), (faster, vec![Parameter::Ld, Parameter::Lq]));
+    }
+
+    #[test]
+    fn the_more_demanding_of_two_remedies_does_for_both() {
+        let compensate = |or_resistance| Remedy::CompensateDeadTime { or_resistance };
+        let step = next([Some(compensate(true)), Some(compensate(false)), None, None]);
+        assert_eq!((step.remedy, step.parameters), (compensate(false), vec![Parameter::Rs, Parameter::Ld]));
     }
 }

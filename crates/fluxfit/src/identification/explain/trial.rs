@@ -120,6 +120,11 @@ impl<'a> Trials<'a> {
         widths.map(|widths| widths[parameter as usize])
     }
 
+    /// The measurements that were tried, with the half-widths of all parameters after each, as fractions.
+    pub(super) fn outcomes(&self) -> impl Iterator<Item = (Measurement, [f64; PARAMETERS])> {
+        self.done.iter().filter_map(|(measurement, widths)| Some((*measurement, (*widths)?)))
+    }
+
     fn tried(&self, measurement: Measurement) -> Option<[f64; PARAMETERS]> {
         let mut request = Request { voltage_timing: self.request.voltage_timing.or(self.losses.timing), ..self.request.clone() };
         match measurement {
