@@ -33,8 +33,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let matches = match matches {
         Ok(matches) => matches,
         Err(error) => {
-            if let Some(log) = log_in_place_of_verb(&error) {
-                terminal::print_error(&CommandError::Usage(log));
+            let words = invocation::words();
+            if let Some(hint) = log_in_place_of_verb(&error).or_else(|| output_in_place_of_report(&error, words)) {
+                terminal::print_error(&CommandError::Usage(hint));
                 return ExitCode::from(2);
             }
             error.exit()
@@ -85,6 +86,18 @@ fn log_in_place_of_verb(error: &clap::Error) -> Option<String> {
         let argument = shell::word(path.as_os_str());
         format!("{} is no command; to identify a motor from this log: fluxfit identify {}", one_line(word), one_line(&argument))
     })
+}
+
+/// What to say to somebody who names a page with `-o` to a verb that has no such option.
+fn output_in_place_of_report(error: &clap::Error, words: &[OsString]) -> Option<String> {
+    let option = match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(option)) if error.kind() == ErrorKind::UnknownArgument => option,
+        _ => return None,
+    };
+    let after = words.iter().skip_while(|word| *word != option.as_str()).nth(1);
+    let page = after.map(Path::new).filter(|path| path.extension().is_some_and(|extension| extension == "html"))?;
+    let is_output = matches!(option.as_str(), "-o" | "--output" | "--out");
+    is_output.then(|| format!("{option} is no option of this verb; to write a page: --report {}", one_line(&shell::word(page.as_os_str()))))
 }
 
 fn detail(telling: &command_line::Telling) -> Detail {

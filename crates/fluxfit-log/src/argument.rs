@@ -1,6 +1,6 @@
 //! Arguments of the form `channel=value`: `omega=rpm-mech`, `ud=motor_vd`.
 
-use crate::{channel::Channel, problem::Problem, quantity::Quantity};
+use crate::{channel::Channel, problem::Problem, quantity::Quantity, reading::channel_called};
 use fluxfit_files::FileError;
 use fluxfit_units::{Unit, key_value};
 
@@ -33,13 +33,14 @@ pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
     text.split(is_separator).map(parse_map).collect()
 }
 
-/// `omega=rpm-mech`: the canonical name of a channel, and its unit.
+/// `omega=rpm-mech`: the canonical name of a channel, and its unit. A name that columns of one channel alone have, such as `speed`, is
+/// that channel.
 ///
 /// # Errors
 /// As [`parse_map`], or if the unit is not one of that channel.
 pub fn parse_unit(text: &str) -> Result<(String, Unit), FileError> {
     let (name, unit) = key_value(text, "COLUMN=UNIT", "omega=rpm-mech")?;
-    let channel = Channel::from_name(name)?;
+    let channel = Channel::from_name(name).or_else(|unknown| channel_called(name).ok_or(unknown))?;
     let found = Unit::from_name(unit, channel.dimension()).filter(|found| channel.units().any(|allowed| allowed == *found));
     let found = found.ok_or_else(|| wrong_unit(channel, unit))?;
     Ok((channel.name().to_owned(), found))
@@ -62,6 +63,11 @@ mod tests {
         assert_eq!(parse_map("ud=a=b"), Ok(("ud".into(), "a=b".into())));
         assert_eq!(parse_unit("omega=rpm-mech"), Ok(("omega_e".into(), Unit::RpmMechanical)));
         assert_eq!(parse_unit("theta=deg"), Ok(("theta_e".into(), Unit::Degree)));
+        for (text, channel) in
+            [("speed=rpm-mech", "omega_e"), ("n=rpm-mech", "omega_e"), ("Zeit=ms", "t"), ("i_d=mA", "id"), ("vdc=mV", "u_dc")]
+        {
+            assert_eq!(parse_unit(text).map(|(channel, _)| channel), Ok(channel.into()), "{text}");
+        }
         let refusal = |text| parse_unit(text).unwrap_err().to_string();
         assert_eq!(
             refusal("omega=rpm"),
@@ -71,6 +77,7 @@ mod tests {
         assert_eq!(parse_unit("id=arms"), Ok(("id".into(), Unit::AmpereRms)));
         // An instantaneous value is no root mean square.
         assert_eq!(refusal("ia=Arms"), "\"Arms\" is not a unit of ia; it can be A or mA");
+        assert!(refusal("torque=Nm").starts_with("\"torque\" is not a channel of a log"), "{}", refusal("torque=Nm"));
         assert_eq!(refusal("ud"), "\"ud\" is not understood; write COLUMN=UNIT, as in omega=rpm-mech");
         assert_eq!(parse_map("ud=").unwrap_err().to_string(), "\"ud=\" is not understood; write COLUMN=HEADER, as in omega_e=motor_speed");
     }

@@ -89,7 +89,7 @@ pub(crate) enum Problem {
     #[error(
         "nothing states the unit of this speed, or whether it is the electrical one; state it: rad/s is electrical, rad/s-mech and rpm-mech are those of the shaft"
     )]
-    SpeedUnit,
+    SpeedUnit { has_pole_pairs: bool },
     #[error("this speed is in {}, and nothing states whether it is electrical or that of the shaft; state which", .electrical.prose().trim_start_matches("electrical "))]
     SpeedRotation { electrical: Unit, mechanical: Unit, has_pole_pairs: bool },
     #[error("the times are whole numbers in steps of {step}, and nothing states their unit; state it")]
@@ -258,9 +258,11 @@ impl Problem {
                 FileErrorKind::Columns
             }
             Self::UnclearTable { .. } | Self::LoadCurve => FileErrorKind::Columns,
-            Self::HeaderUnit { .. } | Self::PolePairs { .. } | Self::SpeedUnit | Self::SpeedRotation { .. } | Self::TimeUnit { .. } => {
-                FileErrorKind::Unit
-            }
+            Self::HeaderUnit { .. }
+            | Self::PolePairs { .. }
+            | Self::SpeedUnit { .. }
+            | Self::SpeedRotation { .. }
+            | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::Rms { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
@@ -314,7 +316,13 @@ impl Problem {
                 mechanical: mechanical.name(),
                 has_pole_pairs: *has_pole_pairs,
             }],
-            Self::SpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: None }],
+            // The usual unit of either.
+            Self::SpeedUnit { has_pole_pairs } => vec![Advice::StateRotation {
+                channel: "omega_e",
+                electrical: Unit::RadianPerSecond.name(),
+                mechanical: Unit::RpmMechanical.name(),
+                has_pole_pairs: *has_pole_pairs,
+            }],
             Self::Digits { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
             Self::HighVoltage { channel, .. } => vec![Advice::StateUnit { channel, unit: Some("mV") }],
             Self::Thousandths { channels, unit, .. } => {

@@ -24,12 +24,19 @@ pub(crate) fn width() -> usize {
 /// Columns that a line of words on standard error may have; none, where it is not read on a terminal: scripts read lines.
 pub(super) fn width_of_messages() -> Option<usize> {
     let stderr = std::io::stderr();
-    if stderr.is_terminal() { of_terminal(terminal_size_of(stderr)) } else { None }
+    stderr.is_terminal().then(|| of_terminal(terminal_size_of(stderr)).unwrap_or(USUAL))
 }
 
 fn of_terminal(size: Option<(Width, Height)>) -> Option<usize> {
     // A terminal that does not know its width says zero.
     size.map(|(Width(columns), _)| usize::from(columns)).filter(|columns| *columns > 0).map(|columns| columns.clamp(NARROWEST, WIDEST))
+}
+
+/// Lines of the terminal on standard output; none, where the answer goes elsewhere.
+pub(crate) fn height() -> Option<usize> {
+    let stdout = std::io::stdout();
+    let of_size = |(_, Height(lines))| Some(lines).filter(|lines| *lines > 0);
+    stdout.is_terminal().then(|| usize::from(terminal_size_of(stdout).and_then(of_size).unwrap_or(USUAL_LINES)))
 }
 
 /// Columns and lines of the terminal on standard error; those of the narrowest in use, where it does not know them.

@@ -16,7 +16,7 @@ use anstyle::{AnsiColor, Style};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use fluxfit::Warning;
 use fluxfit_units::{significant, wording::one_line};
-pub(crate) use lines::{columns, count, screen, width, wrapped};
+pub(crate) use lines::{columns, count, height, screen, width, wrapped};
 pub(crate) use progress::{Progress, counting, reading, unknown, working};
 use std::{
     io::{BufWriter, IsTerminal, Write},

@@ -23,6 +23,8 @@ const TICK: Duration = Duration::from_millis(100);
 
 const COUNTED: &str = "{msg} {wide_bar} {human_pos}/{human_len}, {rate}, {eta} left";
 const BYTES: &str = "{msg} {wide_bar} {decimal_bytes}/{decimal_total_bytes}, {decimal_bytes_per_sec}, {eta} left";
+/// Beyond as many steps as it usually takes.
+const LONGER: &str = "{spinner} {msg}, {human_pos} so far, {rate}, {elapsed}";
 const UNKNOWN: &str = "{spinner} {msg}, {elapsed}";
 
 /// A line that tells how far work is; it goes when this is dropped.
@@ -84,16 +86,29 @@ impl Progress {
         self.bar.set_message(what.to_owned());
     }
 
-    /// Is at `done` of `steps` steps; the first call goes over to such work.
+    /// Is at `done` of `steps` steps, or of as many as it usually takes: beyond them the bar would have to go back. The first call goes
+    /// over to such work.
     pub(crate) fn count(&self, what: &str, done: usize, steps: usize) {
-        if self.bar.message() != what {
+        let begins = self.bar.message() != what;
+        if begins {
             began(what);
-            self.bar.set_style(style(COUNTED));
-            self.bar.set_message(what.to_owned());
+        }
+        // Before the bar is drawn: it would begin with what the work before left.
+        if done <= steps {
+            self.bar.set_length(steps as u64);
+        }
+        self.bar.set_position(done as u64);
+        if begins {
             self.bar.reset_eta();
         }
-        self.bar.set_length(steps.max(done) as u64);
-        self.bar.set_position(done as u64);
+        if done > steps {
+            self.bar.set_style(style(LONGER));
+        } else if begins {
+            self.bar.set_style(style(COUNTED));
+        }
+        if begins {
+            self.bar.set_message(what.to_owned());
+        }
     }
 }
 

@@ -149,3 +149,11 @@ fn every_verb_has_a_page() {
     assert!(page.contains("fluxfit\\-identify(1)"), "{page}");
     assert_eq!(fluxfit(&["man", "no/such/directory"]).status, 2);
 }
+
+#[test]
+fn a_page_in_place_of_an_answer_is_a_report() {
+    let run = fluxfit(&["identify", LOG, "-o", "page.html"]);
+    assert_eq!((run.status, run.err.as_str()), (2, "error: -o is no option of this verb; to write a page: --report page.html\n"));
+    // Nothing of the kind is said where there is no page.
+    assert!(fluxfit(&["identify", LOG, "-o", "page.txt"]).err.starts_with("error: unexpected argument"));
+}

@@ -1,4 +1,5 @@
-//! `fluxfit track` on a terminal: the plots that are redrawn in place. `script` makes the terminal, `vt100` reads what it shows.
+//! On a terminal: the plots of `fluxfit track` that are redrawn in place, and long answers and messages. `script` makes the terminal,
+//! `vt100` reads what it shows.
 
 use super::root;
 use std::{
@@ -85,4 +86,25 @@ fn ctrl_c_leaves_the_last_plots_and_the_table() {
     assert!(status == 130 && has_cursor && screen.contains("interrupted:"), "{status}\n{screen}");
     assert_eq!(screen.matches("psi_f").count(), 2, "{screen}");
     assert!(screen.find("interrupted:") < screen.find("psi_f") && screen.contains("rows to t ="), "{screen}");
+}
+
+/// What stands at the top of an answer that is longer than the screen is said again below it; of a shorter one not.
+#[test]
+fn the_first_sentence_of_a_long_answer_is_its_last_too() {
+    let command = "identify examples/logs/id_zero_two_loads.csv --model steady";
+    for (lines, times) in [(12, 2), (60, 1)] {
+        let (_, bytes) = whole(on_terminal([80, lines], command));
+        let (screen, _) = shown(80, &bytes);
+        assert_eq!(screen.matches("3 of 4 identified.").count(), times, "{lines}:\n{screen}");
+        let last = screen.trim_end().lines().last().unwrap();
+        assert_eq!(last.starts_with("3 of 4 identified."), times == 2, "{lines}:\n{screen}");
+    }
+}
+
+/// `stty columns 0`: a terminal that does not know its width has that of the narrowest in use.
+#[test]
+fn messages_are_wrapped_on_a_terminal_that_does_not_know_its_width() {
+    let (_, bytes) = whole(on_terminal([0, 0], "inspect examples/logs/no_such_log_of_any_drive_at_all.csv"));
+    let (screen, _) = shown(200, &bytes);
+    assert!(screen.contains("error: ") && screen.lines().all(|line| line.trim_end().chars().count() <= 80), "{screen}");
 }

@@ -136,3 +136,15 @@ fn a_long_log_is_read_in_bounded_memory() {
     let numbers = 6 * u64::from(ROWS) * 8 / 1024;
     assert!(most > 0 && most < numbers / 2, "{most} kB");
 }
+
+/// A speed without a unit: both units that it mostly has, with the pole pairs that the second takes, and either is taken by the name that
+/// the column has.
+#[test]
+fn a_speed_without_a_unit_is_read_in_the_second_call() {
+    let log = fs::read_to_string(root().join("examples/logs/paper_rig_pwm_noise.csv")).unwrap().replacen("omega_e", "speed", 1);
+    let identify = |options: &[&str]| fluxfit_with_input(&[&["inspect", "-"], options].concat(), log.as_bytes());
+    let run = identify(&[]);
+    assert!(run.err.contains("(--unit omega_e=rad/s, or --unit omega_e=rpm-mech --pole-pairs N)"), "{}", run.err);
+    let run = identify(&["--unit", "speed=rpm-mech", "--pole-pairs", "4"]);
+    assert!(run.out.contains("mechanical r/min") && !run.err.contains("error"), "{} {}", run.out, run.err);
+}

@@ -419,7 +419,8 @@ impl Finder<'_> {
                 return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), units }.into());
             }
             _ if dimension == Dimension::Speed && self.is_alias(channel, name) && !states_electrical(name) => {
-                return Err(Problem::SpeedUnit.into());
+                let has_pole_pairs = self.options.pole_pairs.is_some();
+                return Err(Problem::SpeedUnit { has_pole_pairs }.into());
             }
             _ => {
                 unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));

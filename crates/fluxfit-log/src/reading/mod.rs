@@ -10,6 +10,7 @@ mod alias;
 mod align;
 mod back_emf;
 mod bench_columns;
+mod called;
 mod channels;
 mod characteristic;
 mod chosen;
@@ -40,6 +41,7 @@ mod survey;
 mod table;
 mod turning;
 
+pub(crate) use called::channel_called;
 pub use characteristic::{ReadCharacteristic, read_characteristic};
 pub use inspect::{InspectedColumn, Inspection, inspect};
 pub use layout::{LAYOUTS, Layout};

@@ -4,7 +4,7 @@ use crate::{
     report::Report,
     section::Section,
     table::{self, key},
-    typography::{DASH, capitalized, decimals, fault, number, power, prose},
+    typography::{DASH, capitalized, decimals, fault, number, power, prose, sentence},
 };
 use fluxfit::{
     Warning,
@@ -46,10 +46,7 @@ fn identified(fit: &OutputFit) -> Markup {
                 "They are part of the fit: what they do to voltages and currents is not mistaken for the motor, and what their own uncertainty "
                 "leaves open is part of the intervals."
                 @if fit.has(Fault::Saturation) { " Beside saturation, the inductances of the answer are those at small currents." }
-                @if fit.has(Fault::Disturbance) {
-                    " The observer gain is the share of the measured difference by which each prediction is corrected, row by row; 0 would be no "
-                    "correction."
-                }
+                @for meaning in Fault::ALL.into_iter().filter(|fault| fit.has(*fault)).filter_map(Fault::meaning) { " " (sentence(meaning)) }
             }
         }
     }

@@ -48,8 +48,7 @@ pub(crate) fn apparent_row(found: &SaturationFinding) -> Markup {
 
 fn apparent(one: &Apparent, found: &SaturationFinding) -> Markup {
     let scale = scale(one.inductance);
-    let of_point = found.fluxes.iter().flatten().find(|flux| flux.current.q == one.current);
-    let half_width = of_point.map(half_width_of_lq);
+    let half_width = found.half_width_of(one);
     // Three digits, where no operating point tells how sure it is.
     let show = |henries: f64| number(henries, |henries| scale.format(henries, half_width.unwrap_or(0.1 * one.inductance.abs())));
     html! {

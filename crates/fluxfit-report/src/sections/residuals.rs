@@ -31,8 +31,8 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     let content = html! {
         p {
             @if fit.has(Fault::Disturbance) {
-                "Each row is predicted from the row before, which removes the correlation that unknown voltages make over many rows (warning "
-                "“process-noise”). What is tested here is what that leaves. "
+                "Each row is predicted from the row before, which removes the correlation that unknown voltages (process noise) make over many rows. "
+                "What is tested here is what that leaves. "
             }
             (verdict(&correlation, fit.leaves_something(), part_of_current(report.log, fit)))
         }
@@ -50,19 +50,21 @@ fn verdict(correlation: &ResidualCorrelation, is_relevant: bool, part: f64) -> M
     let all = || axes.iter().flatten().copied();
     let largest = all().fold(0.0, |most: f64, value| if value.abs() > most.abs() { value } else { most });
     let largest = number(largest, |value| significant(value, 2));
+    let expected = format!("{:.0}", OUTSIDE * lags);
     let slight = all().all(|value| value.abs() < SLIGHT);
     html! {
         @if white == [true, true] {
             strong { "White: " }
             "of " (lags) " correlations for each axis, " (outside(0)) " (d) and " (outside(1)) " (q) are outside the band; about "
-            (format!("{:.0}", OUTSIDE * lags)) " are expected by chance. The model explains everything in the currents but noise."
+            (expected) " are expected by chance. The model explains everything in the currents but noise."
         } @else if !is_relevant {
             strong { "Too small to matter: " }
             (residuals_of(white)) " are correlated, but smaller than 0.01 % of the largest current, as the ripple of an inverter or rounding."
         } @else if slight {
-            strong { "Almost white: " }
-            (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, but none is farther from "
-            "zero than " (largest.trim_start_matches('\u{2212}')) ". The error of the model is small compared with the noise; the intervals account for it."
+            strong { "Not white, but hardly correlated: " }
+            (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, where " (expected) " are expected by "
+            "chance; none is farther from zero than " (largest.trim_start_matches('\u{2212}')) ". The error of the model is small compared with "
+            "the noise; the intervals account for it."
         } @else if part < SMALL {
             strong { "Not white, but small: " }
             (residuals_of(white)) " are correlated from row to row (largest correlation " (largest) "), but they are only " (percent(part))
@@ -96,7 +98,9 @@ mod tests {
         let small = |d: Vec<f64>, q: Vec<f64>, part| verdict(&ResidualCorrelation { axes: [d, q], band: 0.02 }, true, part).into_string();
         let of = |d: Vec<f64>, q: Vec<f64>| small(d, q, 0.01);
         assert!(of(with(6, 0.9), with(0, 0.0)).contains("White: "));
-        assert!(of(with(7, -0.05), with(0, 0.0)).contains("none is farther from zero than 0.050"));
+        let text = of(with(7, -0.05), with(0, 0.0));
+        assert!(text.contains("Not white, but hardly correlated: ") && text.contains("7 (d) and 0 (q) of 50"), "{text}");
+        assert!(text.contains("none is farther from zero than 0.050"), "{text}");
         let text = of(with(0, 0.0), with(7, 0.9));
         assert!(text.contains("Not white: ") && text.contains("<i>i</i><sub>q</sub>") && text.contains("is 0.90"), "{text}");
         let text = small(with(0, 0.0), with(7, 0.9), 1.8e-4);

@@ -3,6 +3,7 @@
 
 mod column_check;
 mod digits;
+mod fault;
 mod fleet;
 mod lack;
 mod left_out;

@@ -15,8 +15,7 @@ impl Display for ModelReason {
             }
             Self::PointsTellMore => write!(
                 f,
-                "simulated currents differ from the measured ones by more than noise, while the operating points agree with each other and \
-                 tell the parameters better"
+                "simulated currents differ from the measured ones by more than noise, and the operating points tell the parameters better"
             ),
             Self::FastRows { rate, turn } => {
                 write!(f, "rows come at {:.1} kHz and the rotor turns at most {turn:.3} rad between them", 1e-3 * rate)

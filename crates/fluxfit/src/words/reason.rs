@@ -1,6 +1,6 @@
 //! Why a parameter is not identified.
 
-use super::digits::{one_digit, percent, three_digits};
+use super::digits::{list, one_digit, percent, three_digits};
 use crate::{
     column_check::ColumnFinding,
     identification::{fit::part::Part, judge::reason::Reason},
@@ -36,7 +36,7 @@ impl Display for Reason {
             Self::OtherImpossible { parameter } => {
                 write!(f, "{} came out as no motor has it, so nothing else of this fit is to be trusted", parameter.symbol())
             }
-            Self::Wide { part, half_width } => wide(*part, *half_width, f),
+            Self::Wide { part, beside, half_width } => wide(*part, beside, *half_width, f),
             Self::BelowRows { least } => write!(
                 f,
                 "it came out below {} uH, with which the current would settle within half a row: something else, such as a filter or \
@@ -73,13 +73,16 @@ impl Display for Reason {
     }
 }
 
-/// The largest part of an interval, and how wide it is; in the alternate form (`{:#}`) without that number, for several parameters at once.
-fn wide(part: Part, half_width: f64, f: &mut Formatter) -> Result {
+/// The largest part of an interval, what else is most of it, and how wide it is; in the alternate form (`{:#}`) without that number, for
+/// several parameters at once.
+fn wide(part: Part, beside: &[Part], half_width: f64, f: &mut Formatter) -> Result {
     let leaves = match half_width {
         _ if f.alternate() => "leaves wide intervals".to_owned(),
         half_width if half_width < 10.0 => format!("leaves ±{}", percent(half_width)),
         _ => "leaves more than the value itself".to_owned(),
     };
+    let beside: Vec<&str> = beside.iter().map(|part| part.label()).collect();
+    let leaves = if beside.is_empty() { leaves } else { format!("{leaves} together with {}", list(&beside)) };
     match part {
         Part::Noise => write!(f, "noise {leaves}"),
         Part::Accuracy => {

@@ -12,7 +12,10 @@ use crate::{
     },
     motor::Parameter,
 };
-use std::fmt::{Display, Formatter, Result};
+use std::{
+    f64::consts::PI,
+    fmt::{Display, Formatter, Result},
+};
 
 /// In the alternate form (`{:#}`) without the alternative of holding operating points longer.
 impl Display for Remedy {
@@ -52,10 +55,10 @@ impl Display for Remedy {
                 write!(f, "log with the drive's dead-time compensation on")?;
                 if *or_resistance { write!(f, ", or give R_s as measured at the terminals") } else { Ok(()) }
             }
-            Self::TellFrameLag => write!(
+            Self::TellFrameLag { omega_e } => write!(
                 f,
-                "hold two clearly different loads at one high speed; coasting down from there helps too, if the drive measures its terminal \
-                 voltages"
+                "hold two clearly different loads at {}; coasting down from there helps too, if the drive measures its terminal voltages",
+                high_speed(*omega_e)
             ),
             Self::LogEachPeriod => write!(f, "log each control period of the drive, not every n-th one or means"),
             Self::RemoveDisturbances => write!(
@@ -130,6 +133,15 @@ pub(super) fn hold_longer(times: f64) -> String {
     format!("hold each operating point about {times:.0} times as long")
 }
 
+/// The speed at which a lag shows: the highest of the log, in both units that drives show, if there is one.
+pub(super) fn high_speed(omega_e: f64) -> String {
+    if omega_e > 0.0 {
+        format!("one speed of {} rad/s or more ({} r/min, both electrical)", three_digits(omega_e), three_digits(omega_e * 30.0 / PI))
+    } else {
+        "one high speed".to_owned()
+    }
+}
+
 /// So many times the speed.
 pub(super) fn of_speed(times: f64) -> String {
     if times == 2.0 { "twice the speed".to_owned() } else { format!("{times} times the speed") }
@@ -161,6 +173,12 @@ impl Display for Measurement {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_high_speed_is_that_of_the_log() {
+        assert_eq!(high_speed(2000.0), "one speed of 2000 rad/s or more (19100 r/min, both electrical)");
+        assert_eq!(high_speed(0.0), "one high speed");
+    }
 
     #[test]
     fn the_alternative_to_holding_points_longer_can_be_left_out() {

@@ -31,20 +31,16 @@ impl Display for Summary {
             (0, asked) => write!(f, "None of {asked} identified")?,
             (count, asked) => write!(f, "{count} of {asked} identified")?,
         }
-        // Where the next step is that of a motor that saturates, it says why an estimate is no more than that.
-        let is_told = self.next.as_ref().is_some_and(|next| is_of_saturation(&next.remedy));
-        let is_weak = |parameter: &Parameter| self.weak.contains(parameter) || is_told && self.estimated.contains(parameter);
-        let weak: Vec<Parameter> = Parameter::ALL.into_iter().filter(is_weak).collect();
-        match weak.len() {
+        match self.weak.len() {
             0 => {}
             count if count == asked && asked > 1 => write!(f, ", all weak")?,
-            _ => write!(f, ", {} weak", symbols(&weak))?,
+            _ => write!(f, ", {} weak", symbols(&self.weak))?,
         }
-        if !self.estimated.is_empty() && !is_told {
+        if !self.estimated.is_empty() {
             write!(f, ", {} estimated to ±{}", symbols(&self.estimated), percent(self.estimated_to))?;
         }
         if !self.given.is_empty() {
-            let beside = if weak.is_empty() && self.estimated.is_empty() { "," } else { ";" };
+            let beside = if self.weak.is_empty() && self.estimated.is_empty() { "," } else { ";" };
             write!(f, "{beside} {} given", symbols(&self.given))?;
         }
         write!(f, ".")?;
@@ -57,7 +53,8 @@ impl Display for Summary {
                 write!(f, " One step does all: {}, then about ±{} or less.", promised.measurement, percent(*width))
             }
             Some(next) => write!(f, " {next}"),
-        }
+        }?;
+        self.further.as_ref().map_or(Ok(()), |further| write!(f, " {further}"))
     }
 }
 
@@ -124,7 +121,8 @@ fn need(remedy: &Remedy) -> String {
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: true } => "dead time compensated, or R_s given".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: false } => "dead time compensated".to_owned(),
-        Remedy::TellFrameLag => "two loads at one high speed".to_owned(),
+        Remedy::TellFrameLag { omega_e } if *omega_e > 0.0 => format!("two loads at one speed of {} rad/s or more", three_digits(*omega_e)),
+        Remedy::TellFrameLag { .. } => "two loads at one high speed".to_owned(),
         Remedy::LogEachPeriod => "a log of each control period".to_owned(),
         Remedy::RemoveDisturbances => "a log without torque or supply ripple".to_owned(),
         Remedy::CalibrateSensors => "calibrated current sensors".to_owned(),
@@ -143,8 +141,15 @@ fn need(remedy: &Remedy) -> String {
 mod tests {
     use super::*;
 
-    const NOTHING: Summary =
-        Summary { identified: Vec::new(), given: Vec::new(), estimated: Vec::new(), estimated_to: 0.0, weak: Vec::new(), next: None };
+    const NOTHING: Summary = Summary {
+        identified: Vec::new(),
+        given: Vec::new(),
+        estimated: Vec::new(),
+        estimated_to: 0.0,
+        weak: Vec::new(),
+        next: None,
+        further: None,
+    };
 
     #[test]
     fn parameters_that_are_all_weak_are_not_listed() {
@@ -173,9 +178,12 @@ mod tests {
     fn a_motor_that_saturates_is_told_in_few_words() {
         let [rs, ld, lq, psi_f] = Parameter::ALL;
         let next = NextStep { remedy: Remedy::SmallSteps, parameters: vec![ld, lq, psi_f], half_width: None };
-        let estimated = Summary { estimated: vec![psi_f], estimated_to: 0.014, weak: vec![rs, ld, lq], ..NOTHING };
-        assert_eq!(estimated.to_string(), "None of 4 identified, R_s, L_d and L_q weak, psi_f estimated to ±1.4 %.");
-        let told = Summary { next: Some(next), ..estimated };
-        assert_eq!(told.to_string(), "None of 4 identified, all weak. The motor saturates: take its fluxes at your currents.");
+        let weak = Summary { weak: Parameter::ALL.to_vec(), next: Some(next), ..NOTHING };
+        assert_eq!(weak.to_string(), "None of 4 identified, all weak. The motor saturates: take its fluxes at your currents.");
+        let estimated = Summary { estimated: vec![psi_f], estimated_to: 0.014, weak: vec![rs, ld, lq], ..weak };
+        assert_eq!(
+            estimated.to_string(),
+            "None of 4 identified, R_s, L_d and L_q weak, psi_f estimated to ±1.4 %. The motor saturates: take its fluxes at your currents."
+        );
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::terminal::{self, DIM, HEADING, table};
 use fluxfit::{
-    Parameter,
+    Parameter, Warning,
     evidence::{FaultOutcome, Identification, OutputFit, SteadyFit},
+    faults::Fault,
     optimizer::Method,
 };
 use fluxfit_units::{Scale, small};
@@ -12,6 +13,9 @@ use fluxfit_units::{Scale, small};
 pub(super) fn text(found: &Identification) -> String {
     let mut text = String::new();
     if let Some(fit) = &found.output {
+        if fit.has(Fault::Disturbance) && !found.warnings.contains(&Warning::ProcessNoise) {
+            text += &format!("\n{}", terminal::wrapped("", &format!("Changes no verdict: {}.", Warning::ProcessNoise)));
+        }
         for (outcome, lines) in [("Not taken", not_taken(fit, false)), ("Not tried without theta_e", not_taken(fit, true))] {
             if !lines.is_empty() {
                 text += &format!("\n{}", terminal::wrapped("", &format!("{outcome}: {}.", lines.join(", "))));

@@ -6,6 +6,7 @@ use crate::terminal::{self, BAD, DIM, GOOD, HEADING, WARNING, frequency, options
 use fluxfit::{
     Answer, HeldOut, Judgement, Log, Parameter, Reason, Remedy, Request, Summary, Verdict,
     evidence::{Flux, Identification, OutputFit, Provenance, SaturationFinding},
+    faults::Fault,
     identify,
     steady::OperatingPoint,
 };
@@ -15,6 +16,7 @@ use fluxfit_units::{Scale, format_unknown, significant};
 pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     let found = &answer.identification;
     let read = terminal::wrapped("", &format!("{name}: {}", read(&answer.log, found)));
+    let above = status(found).lines().count() + read.lines().count() + found.warnings.len();
     terminal::print(&format!("{}{DIM}{}{DIM:#}\n", status(found), read.trim_end()))?;
     found.warnings.iter().for_each(terminal::warn);
     terminal::point_to_explanations(&found.warnings);
@@ -30,6 +32,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
         text += &details::text(found);
     }
     terminal::print(&text)?;
+    let is_scrolled = terminal::height().is_some_and(|height| above + text.lines().count() >= height);
     answer.current_loop.as_ref().map(super::current_loop::show).transpose()?;
     match &answer.held_out {
         Some(HeldOut { log, validation: Some(validation), .. }) => {
@@ -47,7 +50,8 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
         None => {}
     }
     terminal::release_notes();
-    Ok(())
+    // What stands at the top of a long answer is out of sight.
+    if is_scrolled { terminal::print(&format!("\n{}", status(found))) } else { Ok(()) }
 }
 
 /// Shows what the operating points alone say, where a signal has ended the identification before its answer: values, but no verdicts.
@@ -112,7 +116,7 @@ fn parameters(found: &Identification) -> String {
         [symbol, value, unit, half_width, interval, word, judgement.uncertainty.largest_part().label().to_owned()]
     });
     let rows: Vec<[String; 7]> = rows.collect();
-    let heading = ["", "value", "", "95 %", "interval", "verdict", "mostly from"];
+    let heading = ["", "value", "", "95 %", "interval", "verdict", "main source"];
     let of_columns = |count: usize| table(&heading[..count], 1, rows.iter().map(|row| row[..count].to_vec()));
     let whole = of_columns(heading.len());
     let fits = whole.lines().all(|line| terminal::columns(line) <= terminal::width());
@@ -251,10 +255,26 @@ fn model(found: &Identification) -> String {
     let mut text =
         of_model(&format!("{label}: the currents of {rows} rows are simulated and {misses}; voltages read as {timing} ({how})."));
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
-    if answered && !beside(fit).is_empty() {
-        text += &format!("\n{HEADING}Found beside the motor{HEADING:#} (± 95 %)\n{}", beside(fit));
+    if answered {
+        text += &beside_motor(fit);
     }
     text
+}
+
+/// Longer lists are shown with `-v` alone; without it their faults are named.
+const SHORT: usize = 4;
+
+/// What was found beside the motor.
+fn beside_motor(fit: &OutputFit) -> String {
+    let (lines, what) = (beside(fit), "Found beside the motor");
+    if lines.lines().count() > SHORT && !terminal::is_verbose() {
+        let faults: Vec<&str> = Fault::ALL.into_iter().filter(|fault| fit.has(*fault)).map(Fault::label).collect();
+        let named = wrapped("", &format!("{what} (values: -v): {}.", faults.join(", ")));
+        return format!("\n{HEADING}{what}{HEADING:#}{}", named.trim_start_matches(what));
+    }
+    let meanings = Fault::ALL.into_iter().filter(|fault| fit.has(*fault)).filter_map(Fault::meaning);
+    let meanings: String = meanings.map(|meaning| format!("{DIM}{}{DIM:#}\n", wrapped("  ", meaning).trim_end())).collect();
+    if lines.is_empty() { lines } else { format!("\n{HEADING}{what}{HEADING:#} (± 95 %)\n{lines}{meanings}") }
 }
 
 fn amperes(current: f64) -> String {
@@ -357,7 +377,14 @@ fn fluxes(found: &SaturationFinding, points: &[OperatingPoint]) -> String {
         heading.extend([of_ld.as_str(), "\n±"]);
     }
     heading.extend([of_lq.as_str(), "\n±"]);
-    format!("\n{DIM}Flux from voltage, with R_s = {}{DIM:#}\n{}{}", resistance(found), table(&heading, 0, rows), incremental(found))
+    let with = format!("with R_s = {}", resistance(found));
+    let table = if terminal::is_verbose() {
+        format!("{DIM}Flux from voltage, {with}{DIM:#}\n{}", table(&heading, 0, rows))
+    } else {
+        let points = terminal::count(rows.len(), "operating point");
+        format!("{DIM}{}{DIM:#}\n", wrapped("", &format!("Table of fluxes at {points}, {with}: -v")).trim_end())
+    };
+    format!("\n{table}{}", incremental(found))
 }
 
 /// The slopes of the flux between neighbouring points; nothing without such points.

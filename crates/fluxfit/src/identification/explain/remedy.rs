@@ -63,7 +63,10 @@ pub enum Remedy {
         or_resistance: bool,
     },
     /// Log what tells a recorder's lag: different loads at one speed, or rows without current.
-    TellFrameLag,
+    TellFrameLag {
+        /// The highest speed of the log's operating points, electrical rad/s.
+        omega_e: f64,
+    },
     /// Log each of the drive's periods.
     LogEachPeriod,
     /// Log without disturbances (torque ripple, supply ripple), or identify by the steady model from stretches of constant currents and
@@ -192,7 +195,7 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, knows_rs: bool,
         // Beside dead time a resistance that is given tells psi_f, and inductances hardly.
         Part::DeadTime => measure()
             .unwrap_or(Remedy::CompensateDeadTime { or_resistance: !knows_rs && matches!(parameter, Parameter::Rs | Parameter::PsiF) }),
-        Part::FrameLag => Remedy::TellFrameLag,
+        Part::FrameLag => Remedy::TellFrameLag { omega_e: Common::of(&finding.bench).speed() },
         Part::WithinRows => Remedy::LogEachPeriod,
         // What disturbs the motor would disturb it in a further stretch too.
         Part::ProcessNoise => Remedy::RemoveDisturbances,
@@ -289,7 +292,7 @@ mod tests {
     #[test]
     fn a_resistance_that_is_given_is_no_remedy() {
         let finding = finding(Motor { rs: 0.03, ld: 1e-4, lq: 1e-4, psi_f: 9e-3 }, 1e-4);
-        let wide = Reason::Wide { part: Part::DeadTime, half_width: 0.3 };
+        let wide = Reason::Wide { part: Part::DeadTime, beside: Vec::new(), half_width: 0.3 };
         for knows_rs in [false, true] {
             for reason in [&wide, &Reason::OnePoint] {
                 let sentence = of(reason, Parameter::PsiF, &finding, Beside { knows_rs, ..NOTHING }, || None).unwrap().to_string();

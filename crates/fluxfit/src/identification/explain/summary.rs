@@ -23,6 +23,9 @@ pub struct Summary {
     pub weak: Vec<Parameter>,
     /// The one thing to do next; `None` where nothing is to be done, or nothing is known that would help.
     pub next: Option<NextStep>,
+    /// The one thing to do next for the parameters that it leaves as they are; `None` beside columns in doubt, which may be behind
+    /// everything, and where a motor saturates, which no single measurement mends.
+    pub further: Option<NextStep>,
 }
 
 /// The remedy that helps most.
@@ -55,6 +58,11 @@ impl Summary {
             parameters.iter().filter(|judgement| is(judgement)).map(|judgement| judgement.parameter).collect()
         };
         let is_estimate = |judgement: &Judgement| judgement.verdict == Verdict::Weak && judgement.reason == Some(Reason::Saturates);
+        let next = next_step(parameters);
+        let further = next
+            .as_ref()
+            .filter(|next| !next.remedy.stands_alone())
+            .and_then(|next| next_step(parameters.iter().filter(|judgement| !next.parameters.contains(&judgement.parameter))));
         let width = |judgement: &Judgement| judgement.uncertainty.half_width / judgement.raw.abs();
         Self {
             identified: with(&|judgement| judgement.verdict == Verdict::Identified && !is_given(judgement)),
@@ -62,7 +70,8 @@ impl Summary {
             estimated: with(&is_estimate),
             estimated_to: parameters.iter().filter(|judgement| is_estimate(judgement)).map(width).fold(0.0, f64::max),
             weak: with(&|judgement| judgement.verdict == Verdict::Weak && !is_estimate(judgement)),
-            next: next_step(parameters),
+            next,
+            further,
         }
     }
 }
@@ -70,7 +79,7 @@ impl Summary {
 /// The remedy that helps most: what is wrong with the columns comes before any measurement, since it may be behind everything else;
 /// then what was computed to identify most parameters; then what helps most of them; then what takes least of a log. Of equals, that of
 /// the first parameter.
-fn next_step(parameters: &[Judgement; PARAMETERS]) -> Option<NextStep> {
+fn next_step<'a>(parameters: impl IntoIterator<Item = &'a Judgement>) -> Option<NextStep> {
     let mut steps: Vec<NextStep> = Vec::new();
     for judgement in parameters {
         let Some(remedy) = judgement.remedy.as_ref().map(Remedy::quickest) else { continue };
@@ -130,6 +139,11 @@ impl Remedy {
             Self::HoldLonger { times, .. } => (u8::MAX, *times),
             _ => (u8::MAX, 0.0),
         }
+    }
+
+    /// Whether nothing else is to be said beside it at first.
+    fn stands_alone(&self) -> bool {
+        self.questions_columns() || matches!(self, Self::CheckSpeed | Self::SmallSteps | Self::TakeIncremental { .. })
     }
 
     /// Whether it doubts the columns themselves.

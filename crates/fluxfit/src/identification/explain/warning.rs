@@ -86,7 +86,8 @@ pub enum Warning {
         /// R_s in the middle, ohm.
         rs: f64,
     },
-    /// Voltages that the log does not hold disturb the motor; an observer follows them in the fit.
+    /// Voltages that the log does not hold disturb the motor, and not everything is identified, or the residuals are correlated in spite of
+    /// the observer that follows these voltages in the fit.
     ProcessNoise,
     /// The logged angle does not turn with the speed, so it was not used.
     Angle,
@@ -231,7 +232,7 @@ pub(crate) fn all(evidence: &Evidence) -> Vec<Warning> {
             coarse_sampling(log, fit),
         ]
     });
-    let of_currents = evidence.output.map(|fit| [process_noise(fit), angle(log, fit)]);
+    let of_currents = evidence.output.map(|fit| [process_noise(fit, evidence.parameters), angle(log, fit)]);
     let of_either = [evidence.saturation.map(saturated), evidence.low_speed(), voltage_limit(log), evidence.outside_box()];
     let of_priors = Parameter::ALL.map(|parameter| contradicted_prior(parameter, evidence.without_priors[parameter as usize], request));
     of_points.into_iter().flatten().chain(of_currents.into_iter().flatten()).chain(of_either).chain(of_priors).flatten().collect()
@@ -341,12 +342,18 @@ fn dead_time(found: &SteadyFit) -> Option<Warning> {
 const VISIBLE: f64 = 0.01;
 
 fn saturated(saturation: &SaturationFinding) -> Warning {
-    let visible = |[least, most]: &[Apparent; 2]| (most.inductance / least.inductance - 1.0).abs() >= VISIBLE;
+    let half_width = |one: &Apparent| saturation.half_width_of(one).unwrap_or(0.0);
+    let visible = |[least, most]: &[Apparent; 2]| {
+        let change = (most.inductance - least.inductance).abs();
+        change >= VISIBLE * least.inductance && change > half_width(least).hypot(half_width(most))
+    };
     Warning::Saturation { lq: saturation.lq.filter(visible) }
 }
 
-fn process_noise(found: &OutputFit) -> Option<Warning> {
-    found.has(Fault::Disturbance).then_some(Warning::ProcessNoise)
+/// Not where everything is identified and the observer leaves noise: then it changed nothing, and the intervals count it.
+fn process_noise(found: &OutputFit, parameters: &[Judgement; PARAMETERS]) -> Option<Warning> {
+    let changed_nothing = found.is_explained() && parameters.iter().all(|judgement| judgement.verdict == Verdict::Identified);
+    (found.has(Fault::Disturbance) && !changed_nothing).then_some(Warning::ProcessNoise)
 }
 
 fn angle(log: &Log, found: &OutputFit) -> Option<Warning> {

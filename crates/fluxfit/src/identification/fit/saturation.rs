@@ -160,6 +160,12 @@ fn ends_of_lq(fluxes: &[Option<Flux>], alike: f64) -> Option<[Apparent; 2]> {
 }
 
 impl SaturationFinding {
+    /// Two standard uncertainties of an apparent L_q, H; nothing, where no operating point tells them.
+    pub fn half_width_of(&self, apparent: &Apparent) -> Option<f64> {
+        let of_point = self.fluxes.iter().flatten().find(|flux| flux.current.q == apparent.current);
+        of_point.map(|flux| 2.0 * (flux.uncertainty.q / flux.current.q).abs())
+    }
+
     /// Looks for it among operating points that contradict each other, beside what constants leave of the losses and all that is
     /// `possible` of the drive; `of_speeds`: R_s and the latter, whatever the flux is.
     pub(crate) fn of_points(

@@ -27,6 +27,9 @@ const CONFIDENCE: f64 = 0.95;
 /// As many degrees of freedom as no end of them: Student's t is the normal distribution to 1e-6.
 pub(super) const NORMAL: f64 = 1e6;
 
+/// Most of a variance: the rest makes an interval wider by a seventh at most.
+const MOST: f64 = 0.75;
+
 /// Systematic parts of a standard error (type B, what a longer log would not cure), in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
@@ -157,6 +160,20 @@ impl ParameterUncertainty {
     pub fn largest_part(&self) -> Part {
         let rest = self.systematic.parts();
         rest.into_iter().fold((self.statistical, Part::Noise), |largest, part| if part.0 > largest.0 { part } else { largest }).1
+    }
+
+    /// The parts that are [most](MOST) of the variance together, the largest first, so that it is the [largest](Self::largest_part).
+    pub fn main_parts(&self) -> Vec<Part> {
+        let mut parts: Vec<(f64, Part)> = std::iter::once((self.statistical, Part::Noise)).chain(self.systematic.parts()).collect();
+        parts.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        let most = MOST * parts.iter().map(|(size, _)| size * size).sum::<f64>();
+        let mut sum = 0.0;
+        let needed = parts.into_iter().take_while(|(size, _)| {
+            let is_needed = sum < most;
+            sum += size * size;
+            is_needed
+        });
+        needed.map(|(_, part)| part).collect()
     }
 }
 
@@ -300,6 +317,17 @@ mod tests {
         let spread = uncertainty.with_saturation([5.0; PARAMETERS]).parameters[0];
         assert!((spread.standard_error() - 13.0).abs() < 1e-12, "{spread:?}");
         assert!((spread.systematic.saturation - 4.0).abs() < 1e-12, "{spread:?}");
+    }
+
+    /// Noise of 3 beside dead time of 4 and a misfit of 1: dead time alone is 16 of 26, with noise 25.
+    #[test]
+    fn parts_that_are_most_of_the_variance_are_named_the_largest_first() {
+        let of = |noise, dead_time, misfit| {
+            ParameterUncertainty::of(noise, 1e6, Systematic { dead_time, misfit, ..Systematic::default() }).main_parts()
+        };
+        assert_eq!(of(3.0, 4.0, 1.0), [Part::DeadTime, Part::Noise]);
+        assert_eq!(of(3.0, 1.0, 1.0), [Part::Noise]);
+        assert_eq!(of(3.0, 3.0, 3.0), [Part::Noise, Part::DeadTime, Part::Misfit]);
     }
 
     /// Two parameters of noise 3 that a gain moves by 4 to opposite sides: 25 of variance each, -16 in common.

@@ -53,6 +53,8 @@ pub enum Reason {
     Wide {
         /// The largest contribution to it.
         part: Part,
+        /// What is most of it together with the largest; nothing where that is most of it alone.
+        beside: Vec<Part>,
         /// Half the interval as a fraction of the value: 0.2 is ±20 %; it may exceed 1 or be infinite.
         half_width: f64,
     },
@@ -87,7 +89,7 @@ impl Reason {
     /// Whether parameters with these reasons can be told in one sentence, as `{:#}`: their intervals are wide by the same cause.
     pub fn is_told_with(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Wide { part: one, .. }, Self::Wide { part: other, .. }) => one == other,
+            (Self::Wide { part, beside, .. }, Self::Wide { part: other, beside: others, .. }) => part == other && beside == others,
             _ => self == other,
         }
     }
@@ -107,7 +109,9 @@ pub(super) fn of(parameter: Parameter, finding: &Finding, uncertainty: &Paramete
     } else if raw <= 0.0 && half_width < weak {
         Reason::Negative
     } else {
-        Reason::Wide { part: uncertainty.largest_part(), half_width }
+        let part = uncertainty.largest_part();
+        let beside = uncertainty.main_parts().into_iter().filter(|other| *other != part).collect();
+        Reason::Wide { part, beside, half_width }
     }
 }
 
@@ -148,6 +152,11 @@ impl Common {
             omega_range: range(|(_, omega_e)| *omega_e),
             speed: bench.held.iter().map(|(_, omega_e)| omega_e.abs()).fold(0.0, f64::max),
         }
+    }
+
+    /// The highest speed, rad/s.
+    pub(crate) fn speed(&self) -> f64 {
+        self.speed
     }
 
     /// Whether i_d is zero everywhere, given the largest current, A.
