@@ -2,7 +2,7 @@
 //! already takes the place of that option.
 
 use crate::{invocation, shell};
-use fluxfit_log::parse_maps;
+use fluxfit_log::{parse_maps, parse_unit};
 use std::ffi::OsString;
 
 /// Options with a pair for each channel, and one with a number.
@@ -66,7 +66,10 @@ fn has(argument: &str, channel: &str) -> bool {
 
 /// Channels, by the names that the log has for them, and what is given for each.
 fn pairs(argument: &str) -> Vec<(String, String)> {
-    parse_maps(argument).unwrap_or_default()
+    // A unit may be given by the name of the column: `speed=rpm-mech`.
+    let unit = |pair: &str| Some((parse_unit(pair).ok()?.0, pair.split_once('=')?.1.trim().to_owned()));
+    let units: Option<Vec<_>> = argument.split(',').map(unit).collect();
+    units.unwrap_or_else(|| parse_maps(argument).unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -85,6 +88,7 @@ mod tests {
         assert_eq!(of(unit, "identify a.csv --unit omega=rad/s").unwrap(), "--unit omega=rad/s -> --unit omega_e=rpm-elec");
         assert_eq!(of("--map id=Iq,iq=Id", "--map=id=Id,iq=Iq,ud=a").unwrap(), "--map id=Id,iq=Iq,ud=a -> --map id=Iq,iq=Id,ud=a");
         assert_eq!(of("--map 'ud=u d'", "--map ud=ud").unwrap(), "--map ud=ud -> --map 'ud=u d'");
+        assert_eq!(of("--unit omega_e=rpm-elec", "--unit speed=rad/s").unwrap(), "--unit speed=rad/s -> --unit omega_e=rpm-elec");
         let both = "--unit omega_e=rpm-mech --pole-pairs 4";
         assert_eq!(of(both, "--pole-pairs 2").unwrap(), "--pole-pairs 2 -> --unit omega_e=rpm-mech --pole-pairs 4");
     }

@@ -162,7 +162,7 @@ impl ParameterUncertainty {
         rest.into_iter().fold((self.statistical, Part::Noise), |largest, part| if part.0 > largest.0 { part } else { largest }).1
     }
 
-    /// The parts that are [most](MOST) of the variance together, the largest first, so that it is the [largest](Self::largest_part).
+    /// The parts that are three quarters of the variance together, the largest first.
     pub fn main_parts(&self) -> Vec<Part> {
         let mut parts: Vec<(f64, Part)> = std::iter::once((self.statistical, Part::Noise)).chain(self.systematic.parts()).collect();
         parts.sort_by(|(one, _), (other, _)| other.total_cmp(one));
