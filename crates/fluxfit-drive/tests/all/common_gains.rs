@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use fluxfit::{
-    Answer, Known, Model, Parameter, Request, UnseenError, identify,
+    Answer, Known, Model, Parameter, Reason, Request, UnseenError, identify,
     log::{Columns, Log},
     motor::PARAMETERS,
 };
@@ -137,5 +137,29 @@ fn a_known_resistance_is_taken_into_account() {
         }
         // R_s drops a part of u_q: what it does not take, psi_f and the inductances do.
         assert!(by_i[Parameter::PsiF as usize].abs() > 5.0 * least * answer.psi_f().raw, "{model}: {by_i:?}");
+    }
+}
+
+/// The paper's rig without an angle, at its own speed and at that of other pole pairs: operating points suit any speed, simulated currents
+/// one. Where there are only points, the speed is told as what nothing confirms.
+#[test]
+fn a_speed_that_no_angle_confirms_is_confirmed_by_the_currents_or_told() {
+    let at = |factor: f64| {
+        let omega_e = COLUMNS.omega_e.iter().map(|omega_e| factor * omega_e).collect();
+        Log::new(Columns { omega_e, theta_e: None, ..COLUMNS.clone() }).unwrap()
+    };
+    let is_open = |answer: &Answer| answer.identification.unseen.iter().any(|unseen| unseen.error == UnseenError::SpeedScale);
+    let right = identify(&at(1.0), &Request::default()).unwrap();
+    assert!(right.identification.is_complete() && !is_open(&right));
+    assert!(is_open(&found(&at(1.0), Model::Steady, &Request::default())));
+    assert!(!is_open(&found(&log(1.0, 1.0), Model::Steady, &Request::default())), "the angle confirms it");
+    for factor in [0.75, 1.25] {
+        let answer = identify(&at(factor), &Request::default()).unwrap();
+        let told = answer.identification.parameters.iter().map(|judgement| judgement.reason.as_ref());
+        let too_high = told.map(|reason| match reason {
+            Some(Reason::SpeedInDoubt { too_high: [low, high] }) => (low * high).sqrt(),
+            other => panic!("{factor}: {other:?}"),
+        });
+        too_high.for_each(|too_high| assert!((too_high / factor - 1.0).abs() < 0.02, "{factor}: {too_high}"));
     }
 }

@@ -15,6 +15,7 @@ use super::{
         output::OutputFit,
         output_excitation,
         saturation::SaturationFinding,
+        speed_scale::SpeedScale,
         steady::SteadyFit,
         swarm::{self, Search},
         voltage_loss::is_control_rate,
@@ -102,7 +103,7 @@ impl Identification {
 /// the verdicts say so.
 pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<Identification, Error> {
     request.check()?;
-    let Fitted { model, steady, output, outvoted, saturation } = fitted(log, request, None, progress)?;
+    let Fitted { model, steady, output, outvoted, saturation, speed } = fitted(log, request, None, progress)?;
     let finding = finding(steady.as_ref(), output.as_ref())?;
     let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
     let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
@@ -125,7 +126,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let warnings = warning::all(&evidence);
     let correlation = finding.uncertainty.correlation;
     let verdicts = parameters.each_ref().map(|judgement| judgement.verdict);
-    let (unseen, counted) = (unseen::all(log, finding, verdicts, request), unseen::counted(verdicts, request));
+    let (unseen, counted) = (unseen::all(log, finding, verdicts, speed, request), unseen::counted(verdicts, request));
     let temperature = AtTemperature::of(log, &parameters, steady.as_ref(), output.as_ref(), request);
     let left_out = left_out::all(log, request, steady.as_ref(), output.as_ref());
     Ok(Identification {
@@ -153,6 +154,7 @@ struct Fitted {
     /// The simulated currents, where operating points tell more: what was found of the drive stands.
     outvoted: Option<OutputFit>,
     saturation: Option<SaturationFinding>,
+    speed: SpeedScale,
 }
 
 /// Prepares and fits; what is known of the drive from another log is not looked for.
@@ -186,13 +188,17 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
     if let (Some(finding), Some(found)) = (finding, saturation.as_ref().filter(|found| found.tells_rs)) {
         finding.answer_rs(found.rs, found.rs_uncertainty);
     }
-    if let Some(too_high) = (is_simulated && request.model.is_none()).then(|| speed_too_high(log, output.as_ref())).flatten() {
+    // Of a drive that is known the other log has told it.
+    let simulated = output.as_ref().or(outvoted.as_ref()).filter(|_| known.is_none());
+    let speed = simulated.map_or(SpeedScale::Untold, |fit| SpeedScale::of(log, fit, request));
+    let is_asked = is_simulated && request.model.is_none() && known.is_none();
+    if let Some(too_high) = is_asked.then(|| speed_too_high(log, speed, output.as_ref())).flatten() {
         let finding = output.as_mut().map(|fit| &mut fit.finding).or(steady.as_mut().map(|fit| &mut fit.finding));
         finding.into_iter().for_each(|finding| finding.trust.speed_too_high = Some(too_high));
     }
     // Only now: what all sensors share decides neither the model nor the value.
     common_gains::count(log, steady.as_mut(), output.as_mut(), request)?;
-    Ok(Fitted { model, steady, output, outvoted, saturation })
+    Ok(Fitted { model, steady, output, outvoted, saturation, speed })
 }
 
 /// The parameters that another log, or another request, comes to, of a drive that is `known`; nothing if there is no answer.
@@ -256,14 +262,16 @@ fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut 
     Ok(false)
 }
 
-/// By which factors the speed may be too high, the least and the largest, where the slopes of the currents ask for another one and the
-/// simulated currents do not follow the measured ones without an observer, which makes them follow whatever it is; or only beside
-/// saturation, which makes inductances of slopes smaller than those of the speed: such terms may stand in for a speed that is too high.
-fn speed_too_high(log: &Log, output: Option<&OutputFit>) -> Option<[f64; 2]> {
+/// By which factors the speed may be too high, the least and the largest: where the simulated currents follow with another speed alone; or
+/// where the slopes of the currents ask for another one and the simulated currents do not follow without an observer, which makes them
+/// follow whatever it is; or only beside saturation, which makes inductances of slopes smaller than those of the speed: such terms may
+/// stand in for a speed that is too high.
+fn speed_too_high(log: &Log, speed: SpeedScale, output: Option<&OutputFit>) -> Option<[f64; 2]> {
+    let by_currents = if let SpeedScale::TooHigh(too_high) = speed { Some(too_high) } else { None };
     let follows = output.is_some_and(|fit| fit.is_explained() && fit.drive.faults.disturbance.is_small());
     let saturates = output.is_some_and(|fit| fit.has(Fault::Saturation));
-    let in_doubt = if is_control_rate(log) && (!follows || saturates) { speed_in_doubt(log) } else { None };
-    in_doubt.filter(|[least, _]| !follows || *least > 1.0)
+    let by_slopes = || if is_control_rate(log) && (!follows || saturates) { speed_in_doubt(log) } else { None };
+    by_currents.or_else(|| by_slopes().filter(|[least, _]| !follows || *least > 1.0))
 }
 
 /// The finding of the model that answers.

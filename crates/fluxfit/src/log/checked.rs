@@ -103,7 +103,7 @@ impl Log {
     }
 
     /// The same log with another speed, electrical rad/s.
-    pub(super) fn with_speed(&self, omega_e: Vec<f64>) -> Self {
+    pub(crate) fn with_speed(&self, omega_e: Vec<f64>) -> Self {
         Self { columns: Columns { omega_e, ..self.columns.clone() }, ..self.clone() }
     }
 

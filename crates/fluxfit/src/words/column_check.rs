@@ -14,7 +14,12 @@ impl Display for ColumnFinding {
             Self::SpeedScale { low, high } => {
                 // The larger number first where the speed is too low.
                 let (least, most, way) = if *low > 1.0 { (*low, *high, "high") } else { (1.0 / high, 1.0 / low, "low") };
-                write!(f, "the speed is about {} to {} times too {way} for the slopes of the currents", two_digits(least), two_digits(most))
+                let factor = if most < ONE * least {
+                    three_digits((least * most).sqrt())
+                } else {
+                    format!("{} to {}", two_digits(least), two_digits(most))
+                };
+                write!(f, "the speed is about {factor} times too {way} for the slopes of the currents")
             }
             Self::AngleInDegrees => write!(f, "theta_e turns with omega_e only if it is in degrees"),
             Self::SpeedSign { wrong: None } => write!(f, "theta_e turns against omega_e: one of them has the wrong sign"),
@@ -50,6 +55,9 @@ impl Display for ColumnFinding {
 
 /// Ways that are named; more would only say that the log tells little.
 const NAMED: usize = 3;
+
+/// Factors this near to each other are one.
+const ONE: f64 = 1.05;
 
 fn two_digits(ratio: f64) -> String {
     if ratio < 10.0 { format!("{ratio:.1}") } else { format!("{ratio:.0}") }

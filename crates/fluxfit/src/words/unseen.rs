@@ -13,6 +13,7 @@ impl Display for UnseenError {
         f.pad(match self {
             Self::CurrentGain => "all currents read 1 % too large",
             Self::BusVoltage => "the DC voltage read 1 % too large",
+            Self::SpeedScale => "the speed read 1 % too large, with no angle to confirm it",
             Self::AngleWithLoad => "an angle 1 degree too large at full load, in proportion to it",
             Self::Temperature => "a winding 10 K warmer in the log than in use",
         })
@@ -53,7 +54,7 @@ impl Display for Counted {
         match self.error {
             UnseenError::CurrentGain => write!(f, "all currents read up to {accuracy} too large or too small"),
             UnseenError::BusVoltage => write!(f, "the DC voltage read up to {accuracy} too large or too small"),
-            UnseenError::AngleWithLoad | UnseenError::Temperature => write!(f, "{}", self.error),
+            UnseenError::SpeedScale | UnseenError::AngleWithLoad | UnseenError::Temperature => write!(f, "{}", self.error),
         }
     }
 }

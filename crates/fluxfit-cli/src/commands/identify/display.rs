@@ -264,6 +264,9 @@ fn model(found: &Identification) -> String {
 /// Longer lists are shown with `-v` alone; without it their faults are named.
 const SHORT: usize = 4;
 
+/// The table of fluxes, which is the answer of a motor that saturates, has at most this many points without `-v`.
+const MOST_POINTS: usize = 12;
+
 /// What was found beside the motor.
 fn beside_motor(fit: &OutputFit) -> String {
     let (lines, what) = (beside(fit), "Found beside the motor");
@@ -378,7 +381,7 @@ fn fluxes(found: &SaturationFinding, points: &[OperatingPoint]) -> String {
     }
     heading.extend([of_lq.as_str(), "\n±"]);
     let with = format!("with R_s = {}", resistance(found));
-    let table = if terminal::is_verbose() {
+    let table = if terminal::is_verbose() || rows.len() <= MOST_POINTS {
         format!("{DIM}Flux from voltage, {with}{DIM:#}\n{}", table(&heading, 0, rows))
     } else {
         let points = terminal::count(rows.len(), "operating point");

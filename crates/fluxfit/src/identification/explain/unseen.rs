@@ -4,6 +4,7 @@ use super::super::{
     fit::{
         common_gains::{BY_CURRENTS, BY_VOLTAGES},
         finding::Finding,
+        speed_scale::SpeedScale,
     },
     judge::verdict::Verdict,
     request::{Known, Request},
@@ -32,6 +33,9 @@ pub enum UnseenError {
     CurrentGain,
     /// The DC voltage: read 1 % too large, and with it all commanded voltages.
     BusVoltage,
+    /// The speed, where neither an angle nor the simulated currents confirm it: read 1 % too large. A wrong number of pole pairs is such an
+    /// error, of tens of percent.
+    SpeedScale,
     /// An angle that errs in proportion to the load: one electrical degree too large at the largest i_q.
     AngleWithLoad,
     /// The winding's temperature, where the log does not hold it: 10 K warmer than it was.
@@ -47,6 +51,10 @@ pub struct Counted {
     /// Its largest size, as a fraction, to either side.
     pub accuracy: f64,
 }
+
+/// By which power of a factor of the speed each parameter moves: at constant currents voltages of speed are `omega_e L i` and
+/// `omega_e psi_f`.
+const BY_SPEED: [f64; PARAMETERS] = [0.0, -1.0, -1.0, -1.0];
 
 /// The part of a percent.
 const PERCENT: f64 = 0.01;
@@ -71,7 +79,7 @@ fn nothing_found(verdicts: [Verdict; PARAMETERS]) -> bool {
 }
 
 /// All others, for the parameters that were found.
-pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS], request: &Request) -> Vec<Unseen> {
+pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS], speed: SpeedScale, request: &Request) -> Vec<Unseen> {
     if nothing_found(verdicts) {
         return Vec::new();
     }
@@ -85,11 +93,16 @@ pub(crate) fn all(log: &Log, finding: &Finding, verdicts: [Verdict; PARAMETERS],
     let unseen = [
         Unseen { error: UnseenError::CurrentGain, moves: BY_CURRENTS.map(|sign| PERCENT * sign) },
         Unseen { error: UnseenError::BusVoltage, moves: BY_VOLTAGES.map(|sign| PERCENT * sign) },
+        Unseen { error: UnseenError::SpeedScale, moves: BY_SPEED.map(|sign| PERCENT * sign) },
         Unseen { error: UnseenError::AngleWithLoad, moves: [0.0, 0.0, of_angle, 0.0] },
         Unseen { error: UnseenError::Temperature, moves: [KELVIN * COPPER, 0.0, 0.0, 0.0] },
     ];
-    let is_logged = |error| error == UnseenError::Temperature && log.columns().temperature.is_some();
-    let is_left = |unseen: &Unseen| unseen.error.accuracy(request).is_none() && !is_logged(unseen.error);
+    let is_seen = |error| match error {
+        UnseenError::Temperature => log.columns().temperature.is_some(),
+        UnseenError::SpeedScale => speed != SpeedScale::Untold || log.columns().theta_e.is_some() || log.is_at_rest(),
+        UnseenError::CurrentGain | UnseenError::BusVoltage | UnseenError::AngleWithLoad => false,
+    };
+    let is_left = |unseen: &Unseen| unseen.error.accuracy(request).is_none() && !is_seen(unseen.error);
     unseen.into_iter().filter_map(|unseen| unseen.of(of_log)).filter(is_left).collect()
 }
 
@@ -107,6 +120,7 @@ impl UnseenError {
         match self {
             Self::CurrentGain => "current-gain",
             Self::BusVoltage => "bus-voltage",
+            Self::SpeedScale => "speed-scale",
             Self::AngleWithLoad => "angle-with-load",
             Self::Temperature => "temperature",
         }
@@ -117,7 +131,7 @@ impl UnseenError {
         match self {
             Self::CurrentGain => request.current_accuracy,
             Self::BusVoltage => request.bus_accuracy,
-            Self::AngleWithLoad | Self::Temperature => None,
+            Self::SpeedScale | Self::AngleWithLoad | Self::Temperature => None,
         }
     }
 }

@@ -25,6 +25,7 @@ pub(crate) mod readings;
 mod resistance_of_speeds;
 pub(crate) mod saturation;
 mod saturation_equations;
+pub(crate) mod speed_scale;
 pub(crate) mod steady;
 pub(crate) mod swarm;
 pub(crate) mod uncertainty;

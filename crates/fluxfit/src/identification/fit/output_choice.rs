@@ -225,7 +225,7 @@ fn by_eulers_rule(
 }
 
 /// Whether what is left is noise, and next to no observer was needed to make it so, or rounding.
-fn is_explained(drive: &Adjustable, cost: f64, residuals: usize, independent: f64, objective: &OutputError) -> bool {
+pub(super) fn is_explained(drive: &Adjustable, cost: f64, residuals: usize, independent: f64, objective: &OutputError) -> bool {
     let count = residuals as f64;
     (cost / count).sqrt() <= LEAST_RESIDUAL * objective.peak_current()
         || drive.faults.disturbance.is_small() && independent > (1.0 - WHITE) / (1.0 + WHITE) * count
