@@ -80,19 +80,24 @@ impl SpeedScale {
         let Some(with_faults) = Speeds::new(log, fit, &faults, request) else { return Self::Untold };
         // What is found of faults at a wrong speed may stand in for it, and what is there of them may hide it.
         let alone = if faults.is_empty() { None } else { Speeds::new(log, fit, &[], request) };
-        let each: Vec<Speeds> = alone.into_iter().chain([with_faults]).collect();
-        too_high(&each)
-            .map_or_else(|| if each.iter().any(|speeds| speeds.are_told(fit)) { Self::Right } else { Self::Untold }, Self::TooHigh)
+        let each: Vec<(Speeds, Near)> =
+            alone.into_iter().chain([with_faults]).filter_map(|speeds| speeds.near().map(|near| (speeds, near))).collect();
+        match too_high(&each) {
+            Some(too_high) => Self::TooHigh(too_high),
+            None if each.iter().any(|(_, near)| near.rules_out_others(fit)) => Self::Right,
+            None => Self::Untold,
+        }
     }
 }
 
-fn too_high(each: &[Speeds]) -> Option<[f64; 2]> {
+fn too_high(each: &[(Speeds, Near)]) -> Option<[f64; 2]> {
     let mut now = None;
-    each.iter().find_map(|speeds| {
-        let found = speeds.best()?;
-        // Only now: of most logs no other speed is followed better.
+    each.iter().find_map(|(speeds, near)| {
+        let found = speeds.best(near.better()?)?;
+        // Only here: of most logs no other speed is followed better.
         let now = *now.get_or_insert_with(|| {
-            each.iter().filter_map(Speeds::at_its_own).map(|followed| followed.mean_square).fold(f64::INFINITY, f64::min)
+            let own = each.iter().filter_map(|(speeds, _)| speeds.at_its_own());
+            own.map(|followed| followed.mean_square).fold(f64::INFINITY, f64::min)
         });
         let is_better = schwarz(now, found.mean_square, 1, found.independent) > VERY_STRONG;
         let is_clear = is_better && (found.is_explained || found.mean_square < MUCH_LESS * now);
@@ -113,6 +118,7 @@ struct Speeds<'a> {
 }
 
 /// How far the currents are followed at a speed.
+#[derive(Clone, Copy)]
 struct Followed {
     /// The speed, as a factor of the log's.
     factor: f64,
@@ -178,9 +184,8 @@ impl<'a> Speeds<'a> {
         OutputError::under_readings(&log, &self.stretches, readings).ok()
     }
 
-    /// Where the currents are followed best; nothing where that is the log's own speed.
-    fn best(&self) -> Option<Best> {
-        let mut best = self.better()?;
+    /// Where the currents are followed best, beginning with a speed that is followed better than the log's own.
+    fn best(&self, mut best: Followed) -> Option<Best> {
         let towards = if best.factor > 1.0 { STEP } else { 1.0 / STEP };
         let mut steps = 0..STEPS;
         loop {
@@ -226,25 +231,30 @@ impl<'a> Speeds<'a> {
     }
 
     /// At the log's own speed, and a little higher and lower.
-    fn near(&self) -> Option<(Followed, [Followed; 2])> {
+    fn near(&self) -> Option<Near> {
         let at = |factor: f64| self.at(factor, (self.reading, scaled(self.drive, factor)), Effort::Step);
-        Some((at(1.0)?, [at(NEAR)?, at(1.0 / NEAR)?]))
+        Some(Near { now: at(1.0)?, nears: [at(NEAR)?, at(1.0 / NEAR)?] })
     }
+}
 
-    /// A speed near the log's that is followed better.
+/// How far the currents are followed at the log's own speed, and at speeds near it.
+struct Near {
+    now: Followed,
+    nears: [Followed; 2],
+}
+
+impl Near {
+    /// The nearby speed that is followed better, if one is.
     fn better(&self) -> Option<Followed> {
-        let (now, nears) = self.near()?;
-        let best = nears.into_iter().min_by(|one, other| one.mean_square.total_cmp(&other.mean_square))?;
-        (best.mean_square < now.mean_square).then_some(best)
+        let best = self.nears.iter().copied().min_by(|one, other| one.mean_square.total_cmp(&other.mean_square))?;
+        (best.mean_square < self.now.mean_square).then_some(best)
     }
 
-    /// Whether the currents tell the speed, to less than a little more or less of it, given what was fitted to them.
-    fn are_told(&self, fit: &OutputFit) -> bool {
+    /// Whether the nearby speeds are ruled out, given what was fitted to the currents.
+    fn rules_out_others(&self, fit: &OutputFit) -> bool {
         let independent = long_run::effective_sample_size(&fit.residuals);
-        let is_worse = |now: &Followed, near: &Followed| schwarz(near.mean_square, now.mean_square, 1, independent) > VERY_STRONG;
-        fit.is_explained()
-            && fit.drive.faults.disturbance.is_small()
-            && self.near().is_some_and(|(now, nears)| nears.iter().all(|near| is_worse(&now, near)))
+        let is_worse = |near: &Followed| schwarz(near.mean_square, self.now.mean_square, 1, independent) > VERY_STRONG;
+        fit.is_explained() && fit.drive.faults.disturbance.is_small() && self.nears.iter().all(is_worse)
     }
 }
 
