@@ -8,7 +8,11 @@ use fluxfit::{
     log::{Columns, Log},
     motor::PARAMETERS,
 };
-use fluxfit_drive::{Scenario, simulate};
+use fluxfit_drive::{
+    Scenario,
+    schedule::{Profile, Ramp},
+    simulate,
+};
 use std::sync::LazyLock;
 
 /// The paper's rig with 50 mA of noise.
@@ -140,21 +144,36 @@ fn a_known_resistance_is_taken_into_account() {
     }
 }
 
+/// The same motor with i_d = 0 at two speeds and loads: at a wrong speed its operating points outvote its currents.
+static OF_POINTS: LazyLock<Columns> = LazyLock::new(|| {
+    let ramps = |ramps: [(f64, f64, f64); 2]| Profile::new(ramps.map(|(at, to, over)| Ramp { at, to, over }).to_vec());
+    let mut scenario = Scenario { duration: 1.2, ..Scenario::paper() };
+    scenario.schedule.speed = ramps([(0.0, 104.7, 0.15), (0.7, 41.9, 0.1)]);
+    scenario.schedule.load = ramps([(0.2, 3.0, 0.0), (0.7, 12.0, 0.0)]);
+    scenario.schedule.id = Profile::default();
+    scenario.sensors.current_noise = 0.05;
+    simulate(&scenario, 0, || ()).unwrap().log().unwrap().columns().clone()
+});
+
+/// A log without its angle, at so many times its speed.
+fn at_speed(columns: &Columns, factor: f64) -> Log {
+    let omega_e = columns.omega_e.iter().map(|omega_e| factor * omega_e).collect();
+    Log::new(Columns { omega_e, theta_e: None, ..columns.clone() }).unwrap()
+}
+
 /// The paper's rig without an angle, at its own speed and at that of other pole pairs: operating points suit any speed, simulated currents
 /// one. Where there are only points, the speed is told as what nothing confirms.
 #[test]
 fn a_speed_that_no_angle_confirms_is_confirmed_by_the_currents_or_told() {
-    let at = |factor: f64| {
-        let omega_e = COLUMNS.omega_e.iter().map(|omega_e| factor * omega_e).collect();
-        Log::new(Columns { omega_e, theta_e: None, ..COLUMNS.clone() }).unwrap()
-    };
     let is_open = |answer: &Answer| answer.identification.unseen.iter().any(|unseen| unseen.error == UnseenError::SpeedScale);
-    let right = identify(&at(1.0), &Request::default()).unwrap();
+    let right = identify(&at_speed(&COLUMNS, 1.0), &Request::default()).unwrap();
     assert!(right.identification.is_complete() && !is_open(&right));
-    assert!(is_open(&found(&at(1.0), Model::Steady, &Request::default())));
+    assert!(is_open(&found(&at_speed(&COLUMNS, 1.0), Model::Steady, &Request::default())));
     assert!(!is_open(&found(&log(1.0, 1.0), Model::Steady, &Request::default())), "the angle confirms it");
-    for factor in [0.75, 1.25] {
-        let answer = identify(&at(factor), &Request::default()).unwrap();
+    assert!(identify(&at_speed(&OF_POINTS, 1.0), &Request::default()).unwrap().parameter(Parameter::Lq).value().is_some());
+    for (columns, factor) in [(&COLUMNS, 0.75), (&COLUMNS, 1.25), (&OF_POINTS, 0.75), (&OF_POINTS, 1.25)] {
+        let answer = identify(&at_speed(columns, factor), &Request::default()).unwrap();
+        assert!(std::ptr::eq(columns, &COLUMNS) || answer.identification.model.model == Model::Steady, "points outvote the currents");
         let told = answer.identification.parameters.iter().map(|judgement| judgement.reason.as_ref());
         let too_high = told.map(|reason| match reason {
             Some(Reason::SpeedInDoubt { too_high: [low, high] }) => (low * high).sqrt(),

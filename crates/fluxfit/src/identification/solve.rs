@@ -188,10 +188,9 @@ fn fitted(log: &Log, request: &Request, known: Option<&OutputFit>, progress: Pro
     if let (Some(finding), Some(found)) = (finding, saturation.as_ref().filter(|found| found.tells_rs)) {
         finding.answer_rs(found.rs, found.rs_uncertainty);
     }
-    // Of a drive that is known the other log has told it. Currents that points outvote say nothing: those of points that were logged one
-    // after the other jump, and are followed better with inductances that are smaller, whatever the speed is.
-    let simulated = output.as_ref().filter(|_| known.is_none());
-    let speed = simulated.map_or(SpeedScale::Untold, |fit| SpeedScale::of(log, fit, request));
+    // Of a drive that is known the other log has told it.
+    let simulated = output.as_ref().or(outvoted.as_ref()).filter(|_| known.is_none());
+    let speed = simulated.map_or(SpeedScale::Untold, |fit| SpeedScale::of(log, fit, points_answer, request));
     let is_asked = is_simulated && request.model.is_none() && known.is_none();
     if let Some(too_high) = is_asked.then(|| speed_too_high(log, speed, output.as_ref())).flatten() {
         let finding = output.as_mut().map(|fit| &mut fit.finding).or(steady.as_mut().map(|fit| &mut fit.finding));
