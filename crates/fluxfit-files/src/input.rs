@@ -1,7 +1,7 @@
 //! Bytes and text of a file, or of standard input, whose path is `-`.
 
 use crate::{error::FileError, problem::Problem};
-use fluxfit_units::wording::one_line;
+use fluxfit_units::wording::{nearest, one_line};
 use std::{
     fs,
     io::{self, Read},
@@ -70,7 +70,7 @@ pub fn open(path: &Path) -> Result<Bytes, FileError> {
     match file {
         Ok((file, true)) => Ok(Bytes::File(file, Box::new(|_| ()))),
         Ok((pipe, false)) => Ok(Bytes::Stream(Box::new(pipe))),
-        Err(error) => Err(FileError::from(io_problem("reading", &error)).in_file(&name(path))),
+        Err(error) => Err(FileError::from(opening_problem(path, &error)).in_file(&name(path))),
     }
 }
 
@@ -85,7 +85,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     } else {
         fs::read(path)
     };
-    bytes.map_err(|error| FileError::from(io_problem("reading", &error)).in_file(&name(path)))
+    bytes.map_err(|error| FileError::from(opening_problem(path, &error)).in_file(&name(path)))
 }
 
 /// The whole text, without a byte order mark. `wanted` names the expected format in the message.
@@ -113,10 +113,39 @@ pub fn line_at(bytes: &[u8], offset: usize) -> u64 {
     1 + ends.count() as u64
 }
 
+/// The problem of a file that could not be opened: where there is none, with a file of the same folder whose name is nearly that.
+fn opening_problem(path: &Path, error: &io::Error) -> Problem {
+    match io_problem("reading", error) {
+        Problem::NotFound { .. } => Problem::NotFound { nearest: neighbour(path) },
+        problem => problem,
+    }
+}
+
+/// Most names of a folder that are compared.
+const MOST_NAMES: usize = 10_000;
+
+/// A file of the folder with a similar name, as a path that can be pasted. Names are compared without their extensions, which are alike.
+fn neighbour(path: &Path) -> Option<String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let entries = fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?.take(MOST_NAMES).flatten();
+    let files = entries.filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_dir())).map(|entry| entry.file_name());
+    let mut names: Vec<String> = files.filter_map(|name| name.into_string().ok()).collect();
+    // Folders list their files in any order.
+    names.sort_unstable();
+    let stem = |name: &str| Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name).to_owned();
+    let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
+    let found = nearest(path.file_stem()?.to_str()?, stems.iter().map(String::as_str))?;
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let has_stem = || names.iter().zip(&stems).filter(|(_, stem)| *stem == found).map(|(name, _)| name);
+    let name = has_stem().find(|name| Path::new(name.as_str()).extension().and_then(|other| other.to_str()) == extension);
+    let name = name.or_else(|| has_stem().next())?;
+    Some(folder.map_or_else(|| name.clone(), |folder| folder.join(name).display().to_string()))
+}
+
 /// The problem behind an error of the operating system.
 pub fn io_problem(action: &'static str, error: &io::Error) -> Problem {
     match error.kind() {
-        io::ErrorKind::NotFound => Problem::NotFound,
+        io::ErrorKind::NotFound => Problem::NotFound { nearest: None },
         io::ErrorKind::PermissionDenied => Problem::NotPermitted,
         io::ErrorKind::IsADirectory => Problem::Directory,
         _ => Problem::Io { action, reason: error.to_string() },
@@ -143,6 +172,11 @@ mod tests {
         assert_eq!(refusal(path), format!("{path}: this is a directory; name a file in it"));
         assert_eq!(name(Path::new("-")), "standard input");
         assert_eq!(refusal(&format!("{path}/x.csv")), format!("{path}/x.csv: there is no such file; check the path"));
+        // Of files with a similar name, that with the same extension.
+        for name in ["x_1.csv", "x_1.json", "other.csv"] {
+            fs::write(directory.path().join(name), "").unwrap();
+        }
+        assert_eq!(refusal(&format!("{path}/x1.csv")), format!("{path}/x1.csv: there is no such file; did you mean {path}/x_1.csv?"));
         let problem = |kind: io::ErrorKind| io_problem("reading", &kind.into()).to_string();
         assert_eq!(problem(io::ErrorKind::PermissionDenied), "permission is denied; change the permissions, or name another file");
         assert_eq!(problem(io::ErrorKind::TimedOut), "reading failed: timed out; try again, or name another file");

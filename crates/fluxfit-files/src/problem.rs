@@ -1,7 +1,7 @@
 //! What can be wrong with a file of text, a table or a value in it: the problems that several readers share.
 
 use crate::error::{FileError, FileErrorKind};
-use fluxfit_units::wording::{choice, did_you_mean, list, quote};
+use fluxfit_units::wording::{choice, did_you_mean, list, one_line, quote};
 
 /// The problems and their sentences. Texts taken from files are quoted and shortened here and nowhere else.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -9,8 +9,8 @@ use fluxfit_units::wording::{choice, did_you_mean, list, quote};
 pub enum Problem {
     #[error("this is a directory; name a file in it")]
     Directory,
-    #[error("there is no such file; check the path")]
-    NotFound,
+    #[error("there is no such file; {}", nearest.as_ref().map_or_else(|| "check the path".to_owned(), |name| format!("did you mean {}?", one_line(name))))]
+    NotFound { nearest: Option<String> },
     #[error("permission is denied; change the permissions, or name another file")]
     NotPermitted,
     #[error("{action} failed: {reason}; try again, or name another file")]
@@ -58,7 +58,9 @@ pub enum Problem {
 impl Problem {
     fn kind(&self) -> FileErrorKind {
         match self {
-            Self::Directory | Self::NotFound | Self::NotPermitted | Self::Io { .. } | Self::NoDirectory { .. } => FileErrorKind::Access,
+            Self::Directory | Self::NotFound { .. } | Self::NotPermitted | Self::Io { .. } | Self::NoDirectory { .. } => {
+                FileErrorKind::Access
+            }
             Self::NotText { .. }
             | Self::Empty
             | Self::Syntax { .. }

@@ -12,6 +12,7 @@ pub(crate) fn of_remedy(remedy: &Remedy) -> Option<&'static str> {
         Remedy::StateVoltageTiming => Some("--voltage-timing"),
         Remedy::CompensateDeadTime { or_resistance: true } | Remedy::FixOne => Some("--fix rs=VALUE"),
         Remedy::RemoveDisturbances => Some("--window T0:T1 --model steady"),
+        Remedy::SmallSteps => Some("--model steady"),
         Remedy::SimilarWindows => Some("--window T0:T1"),
         Remedy::SharperPrior => Some("--prior"),
         _ => None,

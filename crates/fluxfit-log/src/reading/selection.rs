@@ -160,7 +160,7 @@ impl Selection {
         let note = (lines.rows() as u64) < self.rows;
         let note = note.then(|| {
             format!(
-                "of {} rows, {} are used, in the {stretches} stretches that differ most in current and speed: more rows would not improve the accuracy",
+                "of {} rows, {} are kept, in the {stretches} stretches that differ most in current and speed: more rows would not improve the accuracy",
                 self.rows,
                 lines.rows()
             )
@@ -252,6 +252,6 @@ mod tests {
         // The last stretch is always selected, with its own lines.
         let last = lines.locate(FileError::new(FileErrorKind::Value, ""), 4 * STRETCH - 1).line();
         assert_eq!(last, Some(20 * STRETCH as u64 + 1));
-        assert!(note.unwrap().starts_with("of 81920 rows, 16384 are used, in the 4 stretches"));
+        assert!(note.unwrap().starts_with("of 81920 rows, 16384 are kept, in the 4 stretches"));
     }
 }

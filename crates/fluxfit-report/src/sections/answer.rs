@@ -22,7 +22,10 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     let content = html! {
         (parameters(found))
         p.small { (thresholds()) (in_spite_of_width(found)) }
-        @if let Some(saturation) = &found.saturation { (flux::inductances(found, saturation)) }
+        @if let Some(saturation) = &found.saturation {
+            (flux::inductances(found, saturation))
+            (flux::table(saturation, found.operating_points()))
+        }
     };
     Some(Section { anchor: "answer", heading: "Parameters", content })
 }
@@ -101,7 +104,7 @@ fn parameter(judgement: &Judgement, found: &Identification) -> Markup {
                 @for _ in 0..2 { td.none { (DASH) } }
                 td.words.none { (DASH) }
             }
-            td { @if is_given(judgement) { span.badge { "given" } } @else { (badge(judgement.verdict)) } }
+            td { @if is_given(judgement) { span.badge { "given" } } @else if judgement.verdict == Verdict::Identified && judgement.is_as_prior() { span.badge { "as its prior" } } @else { (badge(judgement.verdict)) } }
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What to do next, and why: reasons and remedies of the parameters, and warnings.
 
+use super::flux;
 use crate::{
     report::{Options, Report},
     section::Section,
@@ -30,7 +31,7 @@ fn explanations(found: &Identification, options: &Options) -> Markup {
     }
     let next = Summary::of(&found.parameters).next;
     html! {
-        @if let Some(next) = &next { p.next { strong { "To do next: " } (to_do(&next.instruction(), &next.remedy, options)) } }
+        @if let Some(next) = &next { p.next { strong { "To do next: " } (to_do(&next.instruction(), &next.remedy, options)) (to_fluxes(found, &next.remedy)) } }
         @if !shared.is_empty() {
             dl.reasons {
                 @for (judgements, reason) in &shared {
@@ -67,6 +68,16 @@ fn remedies(judgements: &[&Judgement], next: Option<&NextStep>, options: &Option
 /// A remedy in these words, with the option that carries it out.
 fn to_do(instruction: &str, remedy: &Remedy, options: &Options) -> Markup {
     html! { (prose(instruction)) (option((options.of_remedy)(remedy))) "." }
+}
+
+/// The way to the table of fluxes, where a step is to take them from it.
+fn to_fluxes(found: &Identification, remedy: &Remedy) -> Markup {
+    let has_table = found.saturation.as_ref().is_some_and(|saturation| saturation.fluxes.iter().any(Option::is_some));
+    html! {
+        @if has_table && matches!(remedy, Remedy::SmallSteps | Remedy::TakeIncremental { .. }) {
+            " " a href={ "#" (flux::TABLE) } { "Table of fluxes" } "."
+        }
+    }
 }
 
 /// An option in brackets.

@@ -33,9 +33,9 @@ fn identified(fit: &OutputFit) -> Markup {
         @if fit.fault_estimates.is_empty() {
             p { "None of the faults below was found." }
         } @else {
-            (table::scrolling("Identified faults", &html! {
+            (table::scrolling("Found beside the motor", &html! {
                 table.tried {
-                    thead { tr { th scope="col" { "Identified fault" } th scope="col" { "Value ±\u{a0}95\u{a0}%" } } }
+                    thead { tr { th scope="col" { "Found beside the motor" } th scope="col" { "Value ±\u{a0}95\u{a0}%" } } }
                     tbody { @for nuisance in &fit.fault_estimates { tr {
                         th scope="row" { (prose(&capitalized(nuisance.unknown.label()))) }
                         td { (fault(nuisance)) }
@@ -43,7 +43,7 @@ fn identified(fit: &OutputFit) -> Markup {
                 }
             }))
             p.small {
-                "They are part of the fit: what they do to voltages and currents is not mistaken for the motor, and what their own uncertainty "
+                "These are part of the fit: what they do to voltages and currents is not mistaken for the motor, and what their own uncertainty "
                 "leaves open is part of the intervals."
                 @if fit.has(Fault::Saturation) { " Beside saturation, the inductances of the answer are those at small currents." }
                 @for meaning in Fault::ALL.into_iter().filter(|fault| fit.has(*fault)).filter_map(Fault::meaning) { " " (sentence(meaning)) }

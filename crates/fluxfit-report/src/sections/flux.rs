@@ -7,6 +7,7 @@ use crate::{
 use fluxfit::{
     evidence::{Apparent, Flux, Identification, Incremental, SaturationFinding},
     motor::Parameter,
+    steady::OperatingPoint,
 };
 use fluxfit_units::{Scale, significant};
 use maud::{Markup, html};
@@ -124,9 +125,17 @@ fn beside_apparent(answer: &Identification, found: &SaturationFinding) -> Markup
     }
 }
 
-/// The table, with an explanation.
-pub(crate) fn table(found: &SaturationFinding) -> Markup {
-    let fluxes = || found.fluxes.iter().flatten();
+/// Where the table stands on the page.
+pub(crate) const TABLE: &str = "fluxes";
+
+/// The table, with an explanation; with the speed of each point, as a current may be held at several.
+pub(crate) fn table(found: &SaturationFinding, points: &[OperatingPoint]) -> Markup {
+    if fluxes_of(found).next().is_none() {
+        return html! {};
+    }
+    let speed = |k: usize| points.get(k).filter(|_| points.len() == found.fluxes.len()).map(OperatingPoint::omega_e);
+    let has_speed = speed(0).is_some();
+    let fluxes = || fluxes_of(found);
     let least = |error: fn(&Flux) -> f64| 1e3 * fluxes().map(error).fold(f64::INFINITY, f64::min);
     let digits = [decimals(least(|flux| flux.uncertainty.d), 1), decimals(least(|flux| flux.uncertainty.q), 1)];
     let inductances = fluxes().flat_map(|flux| [flux.apparent_ld, flux.apparent_lq]).flatten();
@@ -137,9 +146,9 @@ pub(crate) fn table(found: &SaturationFinding) -> Markup {
     let of_lq = fluxes().filter(|flux| flux.apparent_lq.is_some()).map(half_width_of_lq).fold(f64::INFINITY, f64::min);
     let has_ld = fluxes().any(|flux| flux.apparent_ld.is_some());
     html! {
-        h3 { "Flux linkage" }
+        h3 id=(TABLE) { "Fluxes at the currents of the log" }
         p {
-            "The motor saturates: its inductances depend on the current. The flux linkages below follow from the voltage of each operating point "
+            "The motor saturates: its inductances depend on the current. The flux linkages of this table follow from the voltage of each operating point "
             "with "
             (prose("R_s")) " = " (resistance(found)) "; ± is 95\u{a0}% (two standard uncertainties)."
         }
@@ -148,6 +157,7 @@ pub(crate) fn table(found: &SaturationFinding) -> Markup {
                 thead { tr {
                     th scope="col" { "Point" }
                     th scope="col" { (prose("i_d")) ", A" } th scope="col" { (prose("i_q")) ", A" }
+                    @if has_speed { th scope="col" { (prose("omega_e")) ", rad/s" } }
                     th scope="col" { (prose("psi_d")) " ±\u{a0}95\u{a0}%, mWb" } th scope="col" { (prose("psi_q")) " ±\u{a0}95\u{a0}%, mWb" }
                     @if has_ld { th scope="col" { "apparent " (prose("L_d")) " ±\u{a0}95\u{a0}%, " (henry(&scale)) } }
                     th scope="col" { "apparent " (prose("L_q")) " ±\u{a0}95\u{a0}%, " (henry(&scale)) }
@@ -157,7 +167,7 @@ pub(crate) fn table(found: &SaturationFinding) -> Markup {
                         @if let Some(flux) = flux {
                             tr {
                                 th scope="row" { (key("Point ")) (k + 1) }
-                                (row(flux, digits))
+                                (row(flux, speed(k), digits))
                                 @if has_ld { td { (key("apparent ")) (named("L_d")) (quotient(flux.apparent_ld, (half_width_of_ld(flux), of_ld), &scale)) (key(&unit)) } }
                                 td { (key("apparent ")) (named("L_q")) (quotient(flux.apparent_lq, (half_width_of_lq(flux), of_lq), &scale)) (key(&unit)) }
                             }
@@ -178,11 +188,17 @@ fn resistance(found: &SaturationFinding) -> Markup {
     }
 }
 
-/// Currents and fluxes of a point.
-fn row(flux: &Flux, digits: [usize; 2]) -> Markup {
+/// The fluxes of the points that have one.
+fn fluxes_of(found: &SaturationFinding) -> impl Iterator<Item = &Flux> {
+    found.fluxes.iter().flatten()
+}
+
+/// Currents, speed and fluxes of a point.
+fn row(flux: &Flux, omega_e: Option<f64>, digits: [usize; 2]) -> Markup {
     let fixed = |value: f64, decimals: usize| number(value, |value| format!("{value:.decimals$}"));
     html! {
         td { (named("i_d")) (fixed(flux.current.d, 3)) (key(" A")) } td { (named("i_q")) (fixed(flux.current.q, 3)) (key(" A")) }
+        @if let Some(omega_e) = omega_e { td { (named("omega_e")) (fixed(omega_e, 1)) (key(" rad/s")) } }
         td { (named("psi_d")) (fixed(1e3 * flux.psi.d, digits[0])) " ± " (fixed(2e3 * flux.uncertainty.d, digits[0])) (key(" mWb")) }
         td { (named("psi_q")) (fixed(1e3 * flux.psi.q, digits[1])) " ± " (fixed(2e3 * flux.uncertainty.q, digits[1])) (key(" mWb")) }
     }

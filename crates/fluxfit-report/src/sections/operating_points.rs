@@ -1,6 +1,5 @@
 //! Operating points: measured against fitted voltages.
 
-use super::flux;
 use crate::{
     operating_point_uncertainty::{residual_uncertainties, residual_unit},
     report::Report,
@@ -10,7 +9,7 @@ use crate::{
 };
 use fluxfit::{
     Warning,
-    evidence::{Identification, SteadyFit},
+    evidence::{Identification, Part, SteadyFit},
     steady::OperatingPoint,
 };
 use maud::{Markup, html};
@@ -46,7 +45,6 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
         }
         (description(fit, found))
         (points(fit))
-        @if let Some(saturation) = &found.saturation { (flux::table(saturation)) }
     };
     let heading = if is_check { "Operating points, as a check" } else { "Operating points, measured against fitted" };
     Some(Section { anchor: "operating-points", heading, content })
@@ -55,6 +53,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
 fn description(fit: &SteadyFit, found: &Identification) -> Markup {
     let redundancy = fit.estimate.redundancy;
     let is_widened = found.output.is_none() && found.parameters.iter().any(|judgement| judgement.uncertainty.systematic.misfit > 0.0);
+    let terms: Vec<&str> = fit.terms().into_iter().map(Part::cause).collect();
     let is_turned = found.warnings.iter().any(|warning| matches!(warning, Warning::FrameLag { .. }));
     let is_warned = found.warnings.iter().any(|warning| matches!(warning, Warning::Misfit { .. }));
     html! {
@@ -62,6 +61,9 @@ fn description(fit: &SteadyFit, found: &Identification) -> Markup {
             "At each operating point the steady voltage equations hold for the means over a window. "
             "The fitted voltages are those of the parameters that fit all points best; the residual is measured less fitted."
             @if is_turned { " Measured voltages are those of the log, turned by the lag of the warning “frame-lag”." }
+            @if !terms.is_empty() {
+                " Beside the four parameters they contain " (terms.join("; ")) ", so the parameters alone give somewhat other voltages."
+            }
             @if redundancy == 0 {
                 " " strong { "There are no more equations than unknown parameters" }
                 ", so the fit is perfect by construction and does not test the model."
@@ -72,7 +74,7 @@ fn description(fit: &SteadyFit, found: &Identification) -> Markup {
                     ", and constant parameters do not fit all points: " strong { "they contradict each other" } " beyond noise and accuracy and "
                     "agree only to " (percent(misfit.voltage_accuracy)) " % of the voltage. The uncertainties of the residuals below are widened "
                     "to that, so a residual within them only says that its point fits as well as the others."
-                    @if found.saturation.is_some() { " The cause is saturation: see the flux linkages below." }
+                    @if found.saturation.is_some() { " The cause is saturation: see the fluxes at the currents of the log, above." }
                     @else if is_warned { " See the warning “misfit” above." }
                 } @else if is_widened {
                     ". The points scatter by more than their noise; what they contradict each other by is part of the intervals (misfit)."

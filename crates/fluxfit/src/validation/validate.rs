@@ -37,6 +37,9 @@ const DIFFERENT: f64 = 2.58;
 /// A ratio this close to a power of ten, in decades, is a matter of units: the parameters of one kind of motor do not differ more.
 const NEAR_A_DECADE: f64 = 0.1;
 
+/// What is missed by more than this many times the noise is not missed by noise.
+const MUCH_MORE: f64 = 3.0;
+
 /// A channel whose variance is less than this many times its noise's has no course of its own that could be explained.
 const COURSE: f64 = 2.0;
 
@@ -200,6 +203,11 @@ impl Channel {
     /// How many times the noise is missed; none where there is no noise.
     pub fn ratio(&self) -> Option<f64> {
         (self.noise > 0.0).then(|| self.rms / self.noise)
+    }
+
+    /// Whether far more than noise is missed, and it agrees nevertheless: because the intervals of the parameters allow as much.
+    pub fn is_within_intervals_alone(&self) -> bool {
+        self.outcome == Outcome::Agrees && self.rms > MUCH_MORE * self.noise
     }
 }
 

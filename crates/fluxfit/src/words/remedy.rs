@@ -58,7 +58,7 @@ impl Display for Remedy {
             Self::TellFrameLag { omega_e } => write!(
                 f,
                 "hold two clearly different loads at {}; coasting down from there helps too, if the drive measures its terminal voltages",
-                high_speed(*omega_e)
+                loaded_speed(*omega_e)
             ),
             Self::LogEachPeriod => write!(f, "log each control period of the drive, not every n-th one or means"),
             Self::RemoveDisturbances => write!(
@@ -116,6 +116,9 @@ fn incremental(of_axes: &[Incremental; 2]) -> String {
     format!("the incremental L_d = {d}, and L_q = {q}")
 }
 
+/// How to make operating points tell several parameters.
+pub(super) const SPREAD: &str = "add operating points that lie further apart in current and speed, each held steady";
+
 /// How to make operating points tell a parameter.
 fn spread(parameter: Parameter) -> &'static str {
     match parameter {
@@ -124,7 +127,7 @@ fn spread(parameter: Parameter) -> &'static str {
         }
         Parameter::Ld => "make the step of i_d larger, or log it at a higher speed",
         Parameter::Lq => "add operating points with more i_q, or at a higher speed",
-        Parameter::PsiF => "add operating points at a higher speed, or at a second speed",
+        Parameter::PsiF => "add operating points at speeds that lie further apart, each held steady",
     }
 }
 
@@ -133,10 +136,10 @@ pub(super) fn hold_longer(times: f64) -> String {
     format!("hold each operating point about {times:.0} times as long")
 }
 
-/// The speed at which a lag shows: the highest of the log, in both units that drives show, if there is one.
-pub(super) fn high_speed(omega_e: f64) -> String {
+/// The speed at which a lag shows, in both units that drives show, if the log has one to go by.
+fn loaded_speed(omega_e: f64) -> String {
     if omega_e > 0.0 {
-        format!("one speed of {} rad/s or more ({} r/min, both electrical)", three_digits(omega_e), three_digits(omega_e * 30.0 / PI))
+        format!("one speed near {} rad/s ({} r/min, both electrical)", three_digits(omega_e), three_digits(omega_e * 30.0 / PI))
     } else {
         "one high speed".to_owned()
     }
@@ -175,9 +178,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_high_speed_is_that_of_the_log() {
-        assert_eq!(high_speed(2000.0), "one speed of 2000 rad/s or more (19100 r/min, both electrical)");
-        assert_eq!(high_speed(0.0), "one high speed");
+    fn a_speed_is_told_in_both_units() {
+        assert_eq!(loaded_speed(2000.0), "one speed near 2000 rad/s (19100 r/min, both electrical)");
+        assert_eq!(loaded_speed(0.0), "one high speed");
     }
 
     #[test]

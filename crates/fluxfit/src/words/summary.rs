@@ -2,7 +2,7 @@
 
 use super::{
     digits::{list, one_digit, percent, three_digits},
-    remedy::{hold_longer, of_speed},
+    remedy::{SPREAD, hold_longer, of_speed},
 };
 use crate::{
     identification::explain::{
@@ -25,23 +25,29 @@ fn is_of_saturation(remedy: &Remedy) -> bool {
 
 impl Display for Summary {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        let asked = PARAMETERS - self.given.len();
+        let asked = PARAMETERS - self.given.len() - self.as_prior.len();
         match (self.identified.len(), asked) {
             (count, asked) if count == asked && asked > 1 => write!(f, "All {asked} identified")?,
             (0, asked) => write!(f, "None of {asked} identified")?,
             (count, asked) => write!(f, "{count} of {asked} identified")?,
         }
-        match self.weak.len() {
+        // An estimate is weak too, as in the table.
+        let is_weak = |parameter: &Parameter| self.weak.contains(parameter) || self.estimated.contains(parameter);
+        let weak: Vec<Parameter> = Parameter::ALL.into_iter().filter(is_weak).collect();
+        match weak.len() {
             0 => {}
             count if count == asked && asked > 1 => write!(f, ", all weak")?,
-            _ => write!(f, ", {} weak", symbols(&self.weak))?,
+            _ => write!(f, ", {} weak", symbols(&weak))?,
         }
         if !self.estimated.is_empty() {
-            write!(f, ", {} estimated to ±{}", symbols(&self.estimated), percent(self.estimated_to))?;
+            write!(f, " ({} to ±{})", symbols(&self.estimated), percent(self.estimated_to))?;
         }
-        if !self.given.is_empty() {
-            let beside = if self.weak.is_empty() && self.estimated.is_empty() { "," } else { ";" };
-            write!(f, "{beside} {} given", symbols(&self.given))?;
+        let mut beside = if weak.is_empty() { "," } else { ";" };
+        for (parameters, how) in [(&self.given, "given"), (&self.as_prior, "as its prior")] {
+            if !parameters.is_empty() {
+                write!(f, "{beside} {} {how}", symbols(parameters))?;
+                beside = ",";
+            }
         }
         write!(f, ".")?;
         match &self.next {
@@ -68,6 +74,7 @@ impl NextStep {
             (Remedy::HoldLonger { times, .. }, Some(width)) if self.parameters.len() > 1 => {
                 format!("{}: {} to about ±{} or less", hold_longer(*times), symbols(&self.parameters), percent(width))
             }
+            (Remedy::SpreadPoints { .. }, _) if self.parameters.len() > 1 => SPREAD.to_owned(),
             (remedy, _) => remedy.to_string(),
         }
     }
@@ -86,6 +93,7 @@ impl Display for NextStep {
             Remedy::Measure(Promised { measurement: Measurement::Resistance { accuracy }, .. }) if self.parameters == [Parameter::Rs] => {
                 format!("a measurement at the terminals to {:.0} %", 100.0 * accuracy)
             }
+            Remedy::SpreadPoints { .. } if self.parameters.len() > 1 => "steady points further apart in current and speed".to_owned(),
             remedy => need(remedy),
         };
         write!(f, "{} {verb} {need}", symbols(&self.parameters))?;
@@ -113,7 +121,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::SpreadPoints { parameter: Parameter::Rs } => "more current at low speed, or R_s given".to_owned(),
         Remedy::SpreadPoints { parameter: Parameter::Ld } => "a larger step of i_d, or more speed".to_owned(),
         Remedy::SpreadPoints { parameter: Parameter::Lq } => "operating points with more i_q, or more speed".to_owned(),
-        Remedy::SpreadPoints { parameter: Parameter::PsiF } => "a second, higher speed".to_owned(),
+        Remedy::SpreadPoints { parameter: Parameter::PsiF } => "speeds that lie further apart".to_owned(),
         Remedy::Turn => "a motor that turns".to_owned(),
         Remedy::CheckSpeed => "the unit of the speed and the number of pole pairs".to_owned(),
         Remedy::StepCurrent { parameter: Parameter::Ld } => "steps of i_d".to_owned(),
@@ -121,7 +129,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: true } => "dead time compensated, or R_s given".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: false } => "dead time compensated".to_owned(),
-        Remedy::TellFrameLag { omega_e } if *omega_e > 0.0 => format!("two loads at one speed of {} rad/s or more", three_digits(*omega_e)),
+        Remedy::TellFrameLag { omega_e } if *omega_e > 0.0 => format!("two loads at one speed near {} rad/s", three_digits(*omega_e)),
         Remedy::TellFrameLag { .. } => "two loads at one high speed".to_owned(),
         Remedy::LogEachPeriod => "a log of each control period".to_owned(),
         Remedy::RemoveDisturbances => "a log without torque or supply ripple".to_owned(),
@@ -144,6 +152,7 @@ mod tests {
     const NOTHING: Summary = Summary {
         identified: Vec::new(),
         given: Vec::new(),
+        as_prior: Vec::new(),
         estimated: Vec::new(),
         estimated_to: 0.0,
         weak: Vec::new(),
@@ -183,7 +192,18 @@ mod tests {
         let estimated = Summary { estimated: vec![psi_f], estimated_to: 0.014, weak: vec![rs, ld, lq], ..weak };
         assert_eq!(
             estimated.to_string(),
-            "None of 4 identified, R_s, L_d and L_q weak, psi_f estimated to ±1.4 %. The motor saturates: take its fluxes at your currents."
+            "None of 4 identified, all weak (psi_f to ±1.4 %). The motor saturates: take its fluxes at your currents."
         );
+    }
+
+    /// Such a value is not the log's.
+    #[test]
+    fn what_only_its_prior_tells_is_not_counted_as_identified() {
+        let [rs, ld, lq, psi_f] = Parameter::ALL;
+        let with = |identified: &[Parameter], weak: &[Parameter]| {
+            Summary { identified: identified.to_vec(), as_prior: vec![rs], weak: weak.to_vec(), ..NOTHING }.to_string()
+        };
+        assert_eq!(with(&[lq, psi_f], &[ld]), "2 of 3 identified, L_d weak; R_s as its prior.");
+        assert_eq!(with(&[ld, lq, psi_f], &[]), "All 3 identified, R_s as its prior.");
     }
 }

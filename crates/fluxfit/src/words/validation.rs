@@ -1,7 +1,7 @@
 //! The verdict of a validation in sentences: what it is, by how much, which parameters the log would have otherwise.
 
 use super::digits::{digits, list};
-use crate::validation::validate::{Difference, Outcome, Validation};
+use crate::validation::validate::{Channel, Difference, Outcome, Validation};
 
 impl Validation {
     /// The verdict in one or two sentences.
@@ -20,12 +20,27 @@ impl Validation {
             Outcome::Contradicts => format!("Contradicts: the prediction is off by {share} % of the {vector}. {}", self.asked_for()),
             Outcome::CannotTell => return "Cannot tell: this log tells none of the four parameters.".to_owned(),
         };
+        let verdict = verdict + &self.within_intervals_alone();
         let untested: Vec<&str> = self.untested().map(|difference| difference.parameter.symbol()).collect();
         if untested.is_empty() {
             return verdict;
         }
         let are = if untested.len() == 1 { "it is" } else { "they are" };
         format!("{verdict} This log cannot tell {}: {are} taken as given.", list(&untested))
+    }
+
+    /// What agrees although far more than noise is missed, as a sentence after the verdict; nothing where that is not so.
+    fn within_intervals_alone(&self) -> String {
+        let missed: Vec<&Channel> = self.channels.iter().filter(|channel| channel.is_within_intervals_alone()).collect();
+        if missed.is_empty() {
+            return String::new();
+        }
+        let one = |channel: &&Channel| {
+            let times = digits(channel.rms / channel.noise, 2);
+            format!("{} is missed by {} {}, {times} times its noise", channel.name, digits(channel.rms, 2), channel.unit)
+        };
+        let how_much: Vec<String> = missed.iter().map(one).collect();
+        format!(" {}: only the intervals of the parameters allow as much.", list(&how_much))
     }
 
     /// What the log would have instead: the parameters that differ, or the one that differs most.
@@ -36,6 +51,13 @@ impl Validation {
         let named = differing.iter().filter(|(difference, _)| difference.is_different()).count().max(1);
         let asked: Vec<String> = differing.iter().take(named).map(|(difference, errors)| asked(difference, *errors)).collect();
         format!("The log asks for {}.", asked.join("; "))
+    }
+}
+
+impl Channel {
+    /// The verdict in a few words: where only the intervals of the parameters allow what is missed, it is that, and not agreement.
+    pub fn verdict(&self) -> &'static str {
+        if self.is_within_intervals_alone() { "within intervals" } else { self.outcome.label() }
     }
 }
 

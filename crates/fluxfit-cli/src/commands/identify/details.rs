@@ -3,7 +3,7 @@
 use crate::terminal::{self, DIM, HEADING, table};
 use fluxfit::{
     Parameter, Warning,
-    evidence::{FaultOutcome, Identification, OutputFit, SteadyFit},
+    evidence::{FaultOutcome, Identification, OutputFit, Part, SteadyFit},
     faults::Fault,
     optimizer::Method,
 };
@@ -29,6 +29,11 @@ pub(super) fn text(found: &Identification) -> String {
             "Operating points (means)"
         };
         text += &format!("\n{DIM}{what}{DIM:#}\n{}", operating_points(fit));
+        let terms: Vec<&str> = fit.terms().into_iter().map(Part::cause).collect();
+        if !terms.is_empty() {
+            let what = format!("Fitted beside the four parameters, and part of the fitted voltages: {}.", terms.join("; "));
+            text += &terminal::wrapped("", &what);
+        }
     }
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
     if let Some(method) = found.method.as_ref().filter(|_| answered) {

@@ -26,7 +26,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     if let Some(saturation) = &found.saturation {
         text += &fluxes(saturation, found.operating_points());
     }
-    text += &format!("\n{}", model(found));
+    text += &format!("\n{}", model(found, answer.log.rows()));
     text += &unseen(found);
     if terminal::is_verbose() {
         text += &details::text(found);
@@ -51,7 +51,7 @@ pub(crate) fn show(name: &str, answer: &Answer) -> std::io::Result<()> {
     }
     terminal::release_notes();
     // What stands at the top of a long answer is out of sight.
-    if is_scrolled { terminal::print(&format!("\n{}", status(found))) } else { Ok(()) }
+    if is_scrolled { terminal::print(&format!("\n{}{}", status(found), values(found))) } else { Ok(()) }
 }
 
 /// Shows what the operating points alone say, where a signal has ended the identification before its answer: values, but no verdicts.
@@ -90,6 +90,17 @@ fn status(found: &Identification) -> String {
     format!("{style}{}{style:#}\n", wrapped("", &Summary::of(&found.parameters).to_string()).trim_end())
 }
 
+/// The values with their intervals in one line, as far as there are any.
+fn values(found: &Identification) -> String {
+    let values = found.parameters.iter().filter_map(|judgement| {
+        let [value, unit, half_width, _] = value_cells(judgement)?;
+        let half_width = if judgement.uncertainty.standard_error() == 0.0 { String::new() } else { format!(" {half_width}") };
+        Some(format!("{} {value} {unit}{half_width}", judgement.parameter.symbol()))
+    });
+    let values: Vec<String> = values.collect();
+    if values.is_empty() { String::new() } else { wrapped("", &values.join(", ")) }
+}
+
 /// What was read, in one line.
 fn read(log: &Log, found: &Identification) -> String {
     let periods: Vec<f64> = log.segments().iter().map(|segment| segment.sample_period).collect();
@@ -98,8 +109,12 @@ fn read(log: &Log, found: &Identification) -> String {
         if periods.iter().any(|other| (other / period - 1.0).abs() > 0.01) { "mixed rates".to_owned() } else { frequency(1.0 / period) };
     let segments = log.segments().len();
     let parts = if segments > 1 { format!(" in {segments} segments") } else { String::new() };
-    let points = terminal::count(found.operating_points().len(), "operating point");
-    format!("{} rows at {rate}, {} s{parts}, {points}", log.rows(), significant(log.duration(), 3))
+    let points = match found.operating_points().len() {
+        // Where currents are simulated, none is needed.
+        0 if found.output.is_some() => String::new(),
+        points => format!(", {}", terminal::count(points, "operating point")),
+    };
+    format!("{} rows at {rate}, {} s{parts}{points}", log.rows(), significant(log.duration(), 3))
 }
 
 /// The four parameters. What their intervals mostly come from, where there is room for it.
@@ -113,6 +128,8 @@ fn parameters(found: &Identification) -> String {
             // A number that was given has no interval, and no verdict of its own.
             return [symbol, value, unit, String::new(), String::new(), "given".to_owned(), String::new()];
         }
+        let is_as_prior = judgement.verdict == Verdict::Identified && judgement.is_as_prior();
+        let word = if is_as_prior { "as its prior".to_owned() } else { word };
         [symbol, value, unit, half_width, interval, word, judgement.uncertainty.largest_part().label().to_owned()]
     });
     let rows: Vec<[String; 7]> = rows.collect();
@@ -237,7 +254,7 @@ fn sentence(text: &str) -> String {
 }
 
 /// The model that answered, and what it found beside the motor.
-fn model(found: &Identification) -> String {
+fn model(found: &Identification, of_rows: usize) -> String {
     let label = found.model.model.label();
     let of_model = |text: &str| format!("{HEADING}Model{HEADING:#}{}", wrapped("", &format!("Model: {text}")).trim_start_matches("Model"));
     let Some(fit) = &found.output else {
@@ -252,14 +269,19 @@ fn model(found: &Identification) -> String {
         "run away from the measured ones".to_owned()
     };
     let (rows, timing) = (fit.residuals.len() / 2, fit.voltage_timing.value.label());
+    // The few that begin a stretch or were left out are not worth a number.
+    let of = if (rows as f64) < MOST_OF * of_rows as f64 { format!(" of {of_rows}") } else { String::new() };
     let mut text =
-        of_model(&format!("{label}: the currents of {rows} rows are simulated and {misses}; voltages read as {timing} ({how})."));
+        of_model(&format!("{label}: the currents of {rows}{of} rows are simulated and {misses}; voltages read as {timing} ({how})."));
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
     if answered {
         text += &beside_motor(fit);
     }
     text
 }
+
+/// Simulated rows are told beside all rows of the log where they are less than this part of them.
+const MOST_OF: f64 = 0.9;
 
 /// Longer lists are shown with `-v` alone; without it their faults are named.
 const SHORT: usize = 4;
@@ -382,7 +404,7 @@ fn fluxes(found: &SaturationFinding, points: &[OperatingPoint]) -> String {
     heading.extend([of_lq.as_str(), "\n±"]);
     let with = format!("with R_s = {}", resistance(found));
     let table = if terminal::is_verbose() || rows.len() <= MOST_POINTS {
-        format!("{DIM}Flux from voltage, {with}{DIM:#}\n{}", table(&heading, 0, rows))
+        format!("{DIM}Fluxes at the currents of the log, from voltage {with}{DIM:#}\n{}", table(&heading, 0, rows))
     } else {
         let points = terminal::count(rows.len(), "operating point");
         format!("{DIM}{}{DIM:#}\n", wrapped("", &format!("Table of fluxes at {points}, {with}: -v")).trim_end())

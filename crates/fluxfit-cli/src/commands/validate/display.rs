@@ -63,7 +63,7 @@ fn decimals(fraction: f64) -> usize {
 
 fn channels(found: &Validation) -> String {
     let rows = found.channels.iter().map(|channel| {
-        let Channel { name, unit, rms, noise, explained, share, outcome, .. } = *channel;
+        let Channel { name, unit, rms, noise, explained, share, .. } = *channel;
         vec![
             name.to_owned(),
             format!("{} {unit}", small(rms)),
@@ -71,7 +71,7 @@ fn channels(found: &Validation) -> String {
             channel.ratio().map_or("-".to_owned(), |ratio| significant(ratio, 3)),
             explained.map_or("-".to_owned(), |explained| format!("{} %", explained_percent(explained))),
             format!("{} %", small(100.0 * share)),
-            outcome.label().to_owned(),
+            channel.verdict().to_owned(),
         ]
     });
     table(&["", "missed by", "noise", "ratio", "explained", "differs by", ""], 1, rows)

@@ -32,6 +32,8 @@ pub struct Judgement {
     pub reason: Option<Reason>,
     /// What to do for a better one; `None` for a parameter that is identified or was given.
     pub remedy: Option<Remedy>,
+    /// Whether a prior was given for it.
+    pub has_prior: bool,
 }
 
 impl Judgement {
@@ -44,7 +46,17 @@ impl Judgement {
     pub fn interval(&self) -> Option<[f64; 2]> {
         self.value().map(|value| [value - self.uncertainty.half_width, value + self.uncertainty.half_width])
     }
+
+    /// Whether the log tells next to nothing of the parameter beyond the prior that was given.
+    pub fn is_as_prior(&self) -> bool {
+        let of_prior = self.uncertainty.systematic.prior.abs();
+        self.has_prior && of_prior >= AS_PRIOR * self.uncertainty.standard_error()
+    }
 }
+
+/// A prior's part of the standard error from which on a value is only its prior: that part squared is the variance that is left, as a
+/// fraction of the prior's. At 0.95 the interval is that of the prior within 5 %.
+const AS_PRIOR: f64 = 0.95;
 
 /// Adds the remedies. Measurements are tried on the log before they are proposed, if there is one to try them on.
 pub(crate) fn explained(
@@ -78,5 +90,6 @@ pub(crate) fn explained(
         verdict,
         reason,
         remedy: remedies.next().flatten(),
+        has_prior: matches!(request.known[parameter as usize], Known::Prior { .. }),
     })
 }

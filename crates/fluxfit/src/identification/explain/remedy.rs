@@ -64,7 +64,8 @@ pub enum Remedy {
     },
     /// Log what tells a recorder's lag: different loads at one speed, or rows without current.
     TellFrameLag {
-        /// The highest speed of the log's operating points, electrical rad/s.
+        /// A speed that a loaded motor holds, electrical rad/s: below the highest one of the log's operating points, which may be all that
+        /// the DC voltage allows. Zero where the log has none.
         omega_e: f64,
     },
     /// Log each of the drive's periods.
@@ -112,6 +113,10 @@ pub enum Also {
     /// In addition: an operating point at a clearly different speed and load.
     AndSecondPoint,
 }
+
+/// Part of the highest speed of a log at which two loads are asked for: at the highest itself a drive often has no voltage left for a load.
+/// A lag shows there nearly as well, as its angle is in proportion to the speed.
+const LOADED_SPEED: f64 = 0.7;
 
 /// Beyond this, longer windows are no remedy.
 const MUCH_LONGER: f64 = 100.0;
@@ -195,7 +200,7 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, knows_rs: bool,
         // Beside dead time a resistance that is given tells psi_f, and inductances hardly.
         Part::DeadTime => measure()
             .unwrap_or(Remedy::CompensateDeadTime { or_resistance: !knows_rs && matches!(parameter, Parameter::Rs | Parameter::PsiF) }),
-        Part::FrameLag => Remedy::TellFrameLag { omega_e: Common::of(&finding.bench).speed() },
+        Part::FrameLag => Remedy::TellFrameLag { omega_e: LOADED_SPEED * Common::of(&finding.bench).speed() },
         Part::WithinRows => Remedy::LogEachPeriod,
         // What disturbs the motor would disturb it in a further stretch too.
         Part::ProcessNoise => Remedy::RemoveDisturbances,

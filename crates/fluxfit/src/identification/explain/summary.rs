@@ -11,10 +11,12 @@ use std::cmp::Ordering;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Summary {
-    /// Parameters whose verdict is [`Verdict::Identified`] and that were not given.
+    /// Parameters whose verdict is [`Verdict::Identified`], and that were not given and are not [as their priors](Self::as_prior).
     pub identified: Vec<Parameter>,
     /// Parameters whose value was given.
     pub given: Vec<Parameter>,
+    /// Parameters whose verdict is [`Verdict::Identified`] by their [prior](Judgement::is_as_prior) alone.
+    pub as_prior: Vec<Parameter>,
     /// Parameters whose verdict is [`Verdict::Weak`] only because the motor [saturates](Reason::Saturates).
     pub estimated: Vec<Parameter>,
     /// The widest of their 95 % intervals to either side, as a fraction of the value.
@@ -54,6 +56,7 @@ impl Summary {
     /// The summary of these judgements.
     pub fn of(parameters: &[Judgement; PARAMETERS]) -> Self {
         let is_given = |judgement: &Judgement| judgement.reason == Some(Reason::Given);
+        let is_as_prior = |judgement: &Judgement| judgement.verdict == Verdict::Identified && judgement.is_as_prior();
         let with = |is: &dyn Fn(&Judgement) -> bool| -> Vec<Parameter> {
             parameters.iter().filter(|judgement| is(judgement)).map(|judgement| judgement.parameter).collect()
         };
@@ -65,8 +68,9 @@ impl Summary {
             .and_then(|next| next_step(parameters.iter().filter(|judgement| !next.parameters.contains(&judgement.parameter))));
         let width = |judgement: &Judgement| judgement.uncertainty.half_width / judgement.raw.abs();
         Self {
-            identified: with(&|judgement| judgement.verdict == Verdict::Identified && !is_given(judgement)),
+            identified: with(&|judgement| judgement.verdict == Verdict::Identified && !is_given(judgement) && !is_as_prior(judgement)),
             given: with(&is_given),
+            as_prior: with(&is_as_prior),
             estimated: with(&is_estimate),
             estimated_to: parameters.iter().filter(|judgement| is_estimate(judgement)).map(width).fold(0.0, f64::max),
             weak: with(&|judgement| judgement.verdict == Verdict::Weak && !is_estimate(judgement)),
@@ -155,7 +159,7 @@ impl Remedy {
     fn is_same_step(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Measure(one), Self::Measure(other)) => one.measurement == other.measurement,
-            (Self::HoldLonger { .. }, Self::HoldLonger { .. }) => true,
+            (Self::HoldLonger { .. }, Self::HoldLonger { .. }) | (Self::SpreadPoints { .. }, Self::SpreadPoints { .. }) => true,
             (Self::CompensateDeadTime { .. }, Self::CompensateDeadTime { .. }) => true,
             _ => self == other,
         }
@@ -165,7 +169,8 @@ impl Remedy {
     fn demands_more_than(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::HoldLonger { times, .. }, Self::HoldLonger { times: others, .. }) => times > others,
-            // A resistance that is given does not do for all.
+            // A resistance that is given does not do for all, here and where points are too similar.
+            (Self::SpreadPoints { parameter }, Self::SpreadPoints { parameter: Parameter::Rs }) => *parameter != Parameter::Rs,
             (Self::CompensateDeadTime { or_resistance: false }, Self::CompensateDeadTime { or_resistance: true }) => true,
             _ => false,
         }
@@ -183,7 +188,7 @@ mod tests {
         let judgements = Parameter::ALL.map(|parameter| {
             let uncertainty = ParameterUncertainty::default();
             let remedy = remedies.next().flatten();
-            Judgement { parameter, raw: 1.0, uncertainty, verdict: Verdict::Weak, reason: None, remedy }
+            Judgement { parameter, raw: 1.0, uncertainty, verdict: Verdict::Weak, reason: None, remedy, has_prior: false }
         });
         next_step(&judgements).unwrap()
     }

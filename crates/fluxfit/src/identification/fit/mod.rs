@@ -27,6 +27,7 @@ pub(crate) mod saturation;
 mod saturation_equations;
 pub(crate) mod speed_scale;
 pub(crate) mod steady;
+mod steady_terms;
 pub(crate) mod swarm;
 pub(crate) mod uncertainty;
 mod undetected_loss;
