@@ -5,7 +5,7 @@
 //!
 //! - Schwarz's criterion is very strong evidence for it, `N ln(cost before / cost after) > unknowns ln N + 10`, with `N` independent
 //!   residuals, fewer than there are rows where they are correlated (G. Schwarz, Ann. Stat. 6 (1978) 461, doi:10.1214/aos/1176344136);
-//! - its value is physical; a filter of rows that are means is no faster than they are;
+//! - its value is physical;
 //! - it moves a parameter by more than its standard error, or takes away a noticeable part of the residual, so that intervals become
 //!   narrower.
 //!
@@ -119,8 +119,6 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) voltage_accuracy: f64,
     /// Whether the rows may be the drive's own periods.
     pub(crate) every_period: bool,
-    /// The longest time from row to row, s.
-    pub(crate) row_period: f64,
     /// Every reading with this drive's faults, the best first; empty where they were not compared since it changed.
     pub(crate) compared: Vec<(usize, TimingTrial)>,
     /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
@@ -273,13 +271,6 @@ impl FaultSearch<'_> {
             taken[place] = found;
             self.choose_reading();
         }
-    }
-
-    /// Whether a filter is faster than the rows, of which only means are known: it stands in for what voltages and currents do within them,
-    /// and is found in logs without any filter.
-    fn is_within_rows(&self, fault: Fault, drive: &Adjustable) -> bool {
-        let is_faster = || Unknown::of_fault(fault).next().is_some_and(|time_constant| drive.get(time_constant) < self.row_period);
-        self.objectives[self.reading].0 == VoltageTiming::Averaged && fault.is_filter() && is_faster()
     }
 
     /// Mean square of a residual, A².
@@ -560,7 +551,7 @@ impl ScoreTest {
             .any(|parameter| moves[parameter as usize].abs() > RUNS_AWAY * search.drive.motor.get(parameter).abs());
         let outcome = if gain <= VERY_STRONG {
             FaultOutcome::NotNeeded
-        } else if !is_physical || runs_away || search.is_within_rows(fault, &drive) {
+        } else if !is_physical || runs_away {
             FaultOutcome::NotPhysical
         } else if (!is_moved || search.is_rough()) && cost > (1.0 - NOTICEABLE) * search.cost {
             FaultOutcome::NoMatter
