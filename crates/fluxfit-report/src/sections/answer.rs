@@ -104,7 +104,7 @@ fn parameter(judgement: &Judgement, found: &Identification) -> Markup {
                 @for _ in 0..2 { td.none { (DASH) } }
                 td.words.none { (DASH) }
             }
-            td { @if is_given(judgement) { span.badge { "given" } } @else if judgement.verdict == Verdict::Identified && judgement.is_as_prior() { span.badge { "as its prior" } } @else { (badge(judgement.verdict)) } }
+            td { @if is_given(judgement) { span.badge { "given" } } @else if judgement.is_as_prior() { span.badge { "as its prior" } } @else { (badge(judgement.verdict)) } }
         }
     }
 }

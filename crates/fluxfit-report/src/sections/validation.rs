@@ -170,7 +170,7 @@ fn row(channel: &Channel) -> Markup {
             td { (channel.ratio().map_or(DASH.to_owned(), |ratio| number(ratio, |ratio| significant(ratio, 3)))) }
             td { (explained.map_or(DASH.to_owned(), explained_percent)) }
             td { (power(100.0 * share)) " %" }
-            td { @if channel.verdict() == outcome.label() { (badge(outcome)) } @else { (channel.verdict()) } }
+            td { @if channel.is_within_intervals_alone() { (channel.verdict()) } @else { (badge(outcome)) } }
         }
     }
 }

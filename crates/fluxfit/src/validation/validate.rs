@@ -207,7 +207,7 @@ impl Channel {
 
     /// Whether far more than noise is missed, and it agrees nevertheless: because the intervals of the parameters allow as much.
     pub fn is_within_intervals_alone(&self) -> bool {
-        self.outcome == Outcome::Agrees && self.rms > MUCH_MORE * self.noise
+        self.outcome == Outcome::Agrees && self.ratio().is_some_and(|ratio| ratio > MUCH_MORE)
     }
 }
 

@@ -36,10 +36,10 @@ impl Validation {
             return String::new();
         }
         let one = |channel: &&Channel| {
-            let times = digits(channel.rms / channel.noise, 2);
-            format!("{} is missed by {} {}, {times} times its noise", channel.name, digits(channel.rms, 2), channel.unit)
+            let times = digits(channel.ratio()?, 2);
+            Some(format!("{} is missed by {} {}, {times} times its noise", channel.name, digits(channel.rms, 2), channel.unit))
         };
-        let how_much: Vec<String> = missed.iter().map(one).collect();
+        let how_much: Vec<String> = missed.iter().filter_map(one).collect();
         format!(" {}: only the intervals of the parameters allow as much.", list(&how_much))
     }
 

@@ -128,8 +128,7 @@ fn parameters(found: &Identification) -> String {
             // A number that was given has no interval, and no verdict of its own.
             return [symbol, value, unit, String::new(), String::new(), "given".to_owned(), String::new()];
         }
-        let is_as_prior = judgement.verdict == Verdict::Identified && judgement.is_as_prior();
-        let word = if is_as_prior { "as its prior".to_owned() } else { word };
+        let word = if judgement.is_as_prior() { "as its prior".to_owned() } else { word };
         [symbol, value, unit, half_width, interval, word, judgement.uncertainty.largest_part().label().to_owned()]
     });
     let rows: Vec<[String; 7]> = rows.collect();
@@ -270,7 +269,7 @@ fn model(found: &Identification, of_rows: usize) -> String {
     };
     let (rows, timing) = (fit.residuals.len() / 2, fit.voltage_timing.value.label());
     // The few that begin a stretch or were left out are not worth a number.
-    let of = if (rows as f64) < MOST_OF * of_rows as f64 { format!(" of {of_rows}") } else { String::new() };
+    let of = if (rows as f64) < NEARLY_ALL * of_rows as f64 { format!(" of {of_rows}") } else { String::new() };
     let mut text =
         of_model(&format!("{label}: the currents of {rows}{of} rows are simulated and {misses}; voltages read as {timing} ({how})."));
     let answered = found.parameters.iter().any(|judgement| judgement.value().is_some());
@@ -281,7 +280,7 @@ fn model(found: &Identification, of_rows: usize) -> String {
 }
 
 /// Simulated rows are told beside all rows of the log where they are less than this part of them.
-const MOST_OF: f64 = 0.9;
+const NEARLY_ALL: f64 = 0.9;
 
 /// Longer lists are shown with `-v` alone; without it their faults are named.
 const SHORT: usize = 4;

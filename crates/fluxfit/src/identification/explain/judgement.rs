@@ -47,10 +47,10 @@ impl Judgement {
         self.value().map(|value| [value - self.uncertainty.half_width, value + self.uncertainty.half_width])
     }
 
-    /// Whether the log tells next to nothing of the parameter beyond the prior that was given.
+    /// Whether it is identified by the prior that was given alone: the log tells next to nothing beyond it.
     pub fn is_as_prior(&self) -> bool {
         let of_prior = self.uncertainty.systematic.prior.abs();
-        self.has_prior && of_prior >= AS_PRIOR * self.uncertainty.standard_error()
+        self.verdict == Verdict::Identified && self.has_prior && of_prior >= AS_PRIOR * self.uncertainty.standard_error()
     }
 }
 

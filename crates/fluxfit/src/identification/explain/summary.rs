@@ -56,7 +56,6 @@ impl Summary {
     /// The summary of these judgements.
     pub fn of(parameters: &[Judgement; PARAMETERS]) -> Self {
         let is_given = |judgement: &Judgement| judgement.reason == Some(Reason::Given);
-        let is_as_prior = |judgement: &Judgement| judgement.verdict == Verdict::Identified && judgement.is_as_prior();
         let with = |is: &dyn Fn(&Judgement) -> bool| -> Vec<Parameter> {
             parameters.iter().filter(|judgement| is(judgement)).map(|judgement| judgement.parameter).collect()
         };
@@ -68,9 +67,9 @@ impl Summary {
             .and_then(|next| next_step(parameters.iter().filter(|judgement| !next.parameters.contains(&judgement.parameter))));
         let width = |judgement: &Judgement| judgement.uncertainty.half_width / judgement.raw.abs();
         Self {
-            identified: with(&|judgement| judgement.verdict == Verdict::Identified && !is_given(judgement) && !is_as_prior(judgement)),
+            identified: with(&|judgement| judgement.verdict == Verdict::Identified && !is_given(judgement) && !judgement.is_as_prior()),
             given: with(&is_given),
-            as_prior: with(&is_as_prior),
+            as_prior: with(&Judgement::is_as_prior),
             estimated: with(&is_estimate),
             estimated_to: parameters.iter().filter(|judgement| is_estimate(judgement)).map(width).fold(0.0, f64::max),
             weak: with(&|judgement| judgement.verdict == Verdict::Weak && !is_estimate(judgement)),
