@@ -92,6 +92,10 @@ impl FaultOutcome {
 /// Least part of the residual's power that a fault must explain to be taken when no parameter moves, or beside rough saturation.
 const NOTICEABLE: f64 = 0.02;
 
+/// The same of a filter that is faster than rows that are means: it takes some hundredths of what voltages do within these rows, which is
+/// not in the log, and stands in for it in logs without any filter.
+const WITHIN_ROWS: f64 = 0.1;
+
 /// A fault is not fitted where the score test expects less than this part of what would matter: it is not more wrong than that.
 const LEAST_EXPECTED: f64 = 0.25;
 
@@ -119,6 +123,8 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) voltage_accuracy: f64,
     /// Whether the rows may be the drive's own periods.
     pub(crate) every_period: bool,
+    /// The longest time from row to row, s.
+    pub(crate) row_period: f64,
     /// Every reading with this drive's faults, the best first; empty where they were not compared since it changed.
     pub(crate) compared: Vec<(usize, TimingTrial)>,
     /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
@@ -271,6 +277,12 @@ impl FaultSearch<'_> {
             taken[place] = found;
             self.choose_reading();
         }
+    }
+
+    /// Whether it is a filter, and faster than rows that are means.
+    fn is_within_rows(&self, fault: Fault, drive: &Adjustable) -> bool {
+        let is_faster = || Unknown::of_fault(fault).next().is_some_and(|time_constant| drive.get(time_constant) < self.row_period);
+        self.objectives[self.reading].0 == VoltageTiming::Averaged && fault.is_filter() && is_faster()
     }
 
     /// Mean square of a residual, A².
@@ -549,9 +561,10 @@ impl ScoreTest {
         let runs_away = Parameter::ALL
             .into_iter()
             .any(|parameter| moves[parameter as usize].abs() > RUNS_AWAY * search.drive.motor.get(parameter).abs());
+        let stands_in = search.is_within_rows(fault, &drive) && cost > (1.0 - WITHIN_ROWS) * search.cost;
         let outcome = if gain <= VERY_STRONG {
             FaultOutcome::NotNeeded
-        } else if !is_physical || runs_away {
+        } else if !is_physical || runs_away || stands_in {
             FaultOutcome::NotPhysical
         } else if (!is_moved || search.is_rough()) && cost > (1.0 - NOTICEABLE) * search.cost {
             FaultOutcome::NoMatter

@@ -10,7 +10,7 @@ use super::{
     long_run,
     output_start::{self, Start, free},
     readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest},
-    voltage_loss::is_control_rate,
+    voltage_loss::{is_control_rate, slowest_period},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -142,6 +142,7 @@ pub(super) fn choose(
             cost,
             voltage_accuracy,
             every_period,
+            row_period: slowest_period(log),
             compared: Vec::new(),
             ruled_out: Vec::new(),
             contested: None,
