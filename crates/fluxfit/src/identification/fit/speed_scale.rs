@@ -71,9 +71,8 @@ impl SpeedScale {
         if log.columns().theta_e.is_some() {
             return Self::Right;
         }
-        // Between rows that are picked out voltages are unknown, and a wrong speed may make up for it.
-        let is_seen = is_control_rate(log) || !is_outvoted && fit.voltage_timing.value == VoltageTiming::Averaged;
-        if !is_seen || log.is_interpolated() || log.is_at_rest() {
+        // Between rows further apart than the drive's periods voltages are not logged, and a wrong speed may make up for them.
+        if !is_control_rate(log) || log.is_interpolated() || log.is_at_rest() {
             return Self::Untold;
         }
         let of_faults = fit.fault_estimates.iter().map(|estimate| estimate.unknown);
