@@ -118,43 +118,50 @@ fn speed_unit(ratio: f64, read: &[ReadColumn], given: Option<u32>) -> Option<Men
     })
 }
 
-/// The unit with which the speed is within a range of factors of what it is now, where the voltages know it no better.
+/// The units and numbers of pole pairs with which the speed is within a range of factors of what it is now: the voltages know it no better.
+/// Where more than one suits, none is proposed.
 fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: Option<u32>) -> Option<Mending> {
     let column = column(read, "omega_e")?;
+    let is_mechanical = column.unit.is_mechanical();
     let now = size(column.unit, pole_pairs.unwrap_or(1));
-    let of_shaft = || pole_pairs.filter(|_| column.unit.is_mechanical()).and_then(|stated| suiting_pairs(stated, &too_high));
-    if *too_high.end() < 1.0 {
-        // Which of the two it is the voltages do not tell.
-        return of_shaft().or_else(|| {
-            let cause = "it may be that of the shaft (rad/s-mech), or in Hz; state its unit".to_owned();
-            Some(Mending { cause: Some(cause), ..Mending::default() })
-        });
-    }
     let fits = |unit: &Unit| *unit != column.unit && !unit.is_mechanical() && too_high.contains(&(now / size(*unit, 1)));
-    if let Some(unit) = Unit::of(Dimension::Speed).find(fits) {
-        let cause = format!("the speed may be in {}", unit.prose());
-        return Some(Mending { cause: Some(cause), ..Mending::option(format!("--unit omega_e={}", unit.name())) });
+    let units: Vec<Unit> = Unit::of(Dimension::Speed).filter(fits).collect();
+    // One pole pair is an electrical unit by another name.
+    let mut pairs = pole_pairs.filter(|_| is_mechanical).map_or_else(Vec::new, |stated| suiting_pairs(stated, &too_high));
+    pairs.retain(|pairs| *pairs > 1 || units.is_empty());
+    match (&units[..], &pairs[..]) {
+        (&[unit], []) if is_mechanical || *too_high.start() > 1.0 => {
+            let cause = format!("the speed may be in {}", unit.prose());
+            Some(Mending { cause: Some(cause), ..Mending::option(format!("--unit omega_e={}", unit.name())) })
+        }
+        ([], &[pairs]) => {
+            let cause = format!("{} would suit it", named_pairs(pairs));
+            Some(Mending { cause: Some(cause), ..Mending::option(format!("--pole-pairs {pairs}")) })
+        }
+        // r/min of a shaft are 9.5 times too high, less the number of pole pairs.
+        ([], []) if *too_high.start() > 1.0 => (column.unit == Unit::RadianPerSecond).then(|| Mending {
+            cause: Some("it may be in r/min of the shaft".to_owned()),
+            ..Mending::option(format!("--unit omega_e=rpm-mech{}", if pole_pairs.is_some() { "" } else { " --pole-pairs N" }))
+        }),
+        _ => {
+            let units = units.iter().map(|unit| format!("in {}", unit.prose()));
+            let of_shaft = (!is_mechanical).then(|| "that of the shaft (as rad/s-mech)".to_owned());
+            let by_pairs = match pairs[..] {
+                [] => None,
+                [pairs] => Some(format!("of a motor with {}", named_pairs(pairs))),
+                [fewest, .., most] => Some(format!("of a motor with {fewest} to {most} pole pairs")),
+            };
+            let possible: Vec<String> = units.chain(of_shaft).chain(by_pairs).collect();
+            let cause = format!("it may be {}; state which", possible.join(", or "));
+            (!possible.is_empty()).then(|| Mending { cause: Some(cause), ..Mending::default() })
+        }
     }
-    // r/min of a shaft are 9.5 times too high, less the number of pole pairs.
-    let of_rpm = (column.unit == Unit::RadianPerSecond).then(|| Mending {
-        cause: Some("it may be in r/min of the shaft".to_owned()),
-        ..Mending::option(format!("--unit omega_e=rpm-mech{}", if pole_pairs.is_some() { "" } else { " --pole-pairs N" }))
-    });
-    of_rpm.or_else(of_shaft)
 }
 
 /// The numbers of pole pairs that suit a speed of the shaft, where the stated number makes it too high by such factors.
-fn suiting_pairs(stated: u32, too_high: &RangeInclusive<f64>) -> Option<Mending> {
+fn suiting_pairs(stated: u32, too_high: &RangeInclusive<f64>) -> Vec<u32> {
     let [fewest, most] = [too_high.end(), too_high.start()].map(|factor| f64::from(stated) / factor);
-    let fitting: Vec<u32> = (fewest.ceil() as u32..=most.floor() as u32).collect();
-    match fitting[..] {
-        [] => None,
-        [pairs] => Some(Mending {
-            cause: Some(format!("{} would suit it", named_pairs(pairs))),
-            ..Mending::option(format!("--pole-pairs {pairs}"))
-        }),
-        [fewest, .., most] => Some(Mending { cause: Some(format!("{fewest} to {most} pole pairs would suit it")), ..Mending::default() }),
-    }
+    (fewest.ceil() as u32..=most.floor() as u32).collect()
 }
 
 fn named_pairs(pole_pairs: u32) -> String {
@@ -320,6 +327,15 @@ mod tests {
         assert_eq!(option(2.2, 4.2, Unit::RpmMechanical, Some(12)), "");
         // That of the shaft with 4 pole pairs, or Hz with any.
         assert_eq!(option(0.15, 0.26, Unit::RadianPerSecond, None), "");
+        // Electrical rad/s, as r/min 9.55 times too low, with 4 pole pairs 2.39 times; of the shaft with 9 or 10 pole pairs, 8 to 10.
+        let cause = |low: f64, high: f64, unit: Unit, pole_pairs: Option<u32>| {
+            let finding = ColumnFinding::SpeedScale { low, high };
+            Mending::of(&finding, &[read("omega_e", "n", unit)], pole_pairs).cause.unwrap_or_default()
+        };
+        let of_electrical = cause(0.10, 0.12, Unit::RpmElectrical, None);
+        assert_eq!(of_electrical, "it may be in electrical rad/s, or that of the shaft (as rad/s-mech); state which");
+        let of_shaft = cause(0.38, 0.49, Unit::RpmMechanical, Some(4));
+        assert_eq!(of_shaft, "it may be in electrical rad/s, or of a motor with 9 to 10 pole pairs; state which");
     }
 
     #[test]
