@@ -202,6 +202,8 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, knows_rs: bool,
             .unwrap_or(Remedy::CompensateDeadTime { or_resistance: !knows_rs && matches!(parameter, Parameter::Rs | Parameter::PsiF) }),
         Part::FrameLag => Remedy::TellFrameLag { omega_e: LOADED_SPEED * Common::of(&finding.bench).speed() },
         Part::WithinRows => Remedy::LogEachPeriod,
+        // Between rows that are not the drive's own periods, its voltages are what disturbs the motor.
+        Part::ProcessNoise if finding.uncertainty.parameters[parameter as usize].systematic.within_rows > 0.0 => Remedy::LogEachPeriod,
         // What disturbs the motor would disturb it in a further stretch too.
         Part::ProcessNoise => Remedy::RemoveDisturbances,
         Part::Sensors | Part::CurrentGain => Remedy::CalibrateSensors,
