@@ -65,7 +65,7 @@ impl Case {
                         case.hold(point.current(), times * point.omega_e(), point.time.1 - point.time.0);
                     }
                 }
-                Measurement::Stretch { seconds, place } => match place {
+                Measurement::Stretch { seconds, place, .. } => match place {
                     Place::Id(id) => case.hold(step(id), omega_e, seconds),
                     Place::HalfLoad { iq } => case.hold(Dq { q: iq, ..at }, omega_e, seconds),
                     Place::HalfSpeed => case.hold(at, 0.5 * omega_e, seconds),
@@ -106,6 +106,7 @@ impl Case {
                 case.hold(at, 0.5 * omega_e, HOLD);
                 case.request.model = Some(Model::Steady);
             }
+            Remedy::LogEachPeriod => (case.scenario.logging.every, case.scenario.logging.rows) = (1, LoggedRows::First),
             Remedy::SharperPrior => case.give_rs(MULTIMETER),
             _ => return None,
         }

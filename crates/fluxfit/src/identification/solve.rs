@@ -109,7 +109,8 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
     let known = output.as_ref().or(outvoted.as_ref());
     let half_widths = |log: &Log, request: &Request| judged_again(log, request, known).map(half_widths);
-    let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), &half_widths);
+    let rs_error = finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
+    let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), rs_error, &half_widths);
     let parameters = explained(judged, finding, saturation.as_ref(), request, Some(trials));
     let method = swarm::method(request, model.model);
     let search = method.map(|method| search(log, steady.as_ref(), output.as_ref(), method, request, progress)).transpose()?;

@@ -123,7 +123,8 @@ pub(super) const SPREAD: &str = "add operating points that lie further apart in 
 fn spread(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Rs => {
-            "add operating points with more current at low speed, or a larger step of i_d, or give R_s to 1 % as a prior, from a multimeter"
+            "add operating points with more current at low speed, or a larger step of i_d, or give R_s as measured at the terminals to 1 % as a \
+             prior"
         }
         Parameter::Ld => "make the step of i_d larger, or log it at a higher speed",
         Parameter::Lq => "add operating points with more i_q, or at a higher speed",
@@ -138,11 +139,16 @@ pub(super) fn hold_longer(times: f64) -> String {
 
 /// The speed at which a lag shows, in both units that drives show, if the log has one to go by.
 fn loaded_speed(omega_e: f64) -> String {
-    if omega_e > 0.0 {
-        format!("one speed near {} rad/s ({} r/min, both electrical)", three_digits(omega_e), three_digits(omega_e * 30.0 / PI))
-    } else {
-        "one high speed".to_owned()
-    }
+    if omega_e > 0.0 { format!("one speed near {}", in_both_units(omega_e)) } else { "one high speed".to_owned() }
+}
+
+/// The speed of the log, or which of them.
+fn same_speed(omega_e: Option<f64>) -> String {
+    omega_e.map_or_else(|| "same speed".to_owned(), |omega_e| format!("at {}", in_both_units(omega_e)))
+}
+
+fn in_both_units(omega_e: f64) -> String {
+    format!("{} rad/s ({} r/min, both electrical)", three_digits(omega_e), three_digits(omega_e * 30.0 / PI))
 }
 
 /// So many times the speed.
@@ -163,10 +169,12 @@ impl Display for Measurement {
             Self::Resistance { accuracy } => {
                 write!(f, "measure R_s at the terminals to {:.0} % and give it as a prior", 100.0 * accuracy)
             }
-            Self::Stretch { seconds, place } => match place {
-                Place::Id(0.0) => write!(f, "add {seconds} s at i_d = 0, same speed"),
-                Place::Id(id) => write!(f, "add {seconds} s at i_d = {} A, same speed", one_digit(*id)),
-                Place::HalfLoad { iq } => write!(f, "add {seconds} s at half the load (i_q = {} A), same speed", one_digit(*iq)),
+            Self::Stretch { seconds, place, omega_e } => match place {
+                Place::Id(0.0) => write!(f, "add {seconds} s at i_d = 0, {}", same_speed(*omega_e)),
+                Place::Id(id) => write!(f, "add {seconds} s at i_d = {} A, {}", one_digit(*id), same_speed(*omega_e)),
+                Place::HalfLoad { iq } => {
+                    write!(f, "add {seconds} s at half the load (i_q = {} A), {}", one_digit(*iq), same_speed(*omega_e))
+                }
                 Place::HalfSpeed => write!(f, "add {seconds} s at the same currents and half the speed"),
             },
         }
@@ -181,6 +189,10 @@ mod tests {
     fn a_speed_is_told_in_both_units() {
         assert_eq!(loaded_speed(2000.0), "one speed near 2000 rad/s (19100 r/min, both electrical)");
         assert_eq!(loaded_speed(0.0), "one high speed");
+        // A log of one speed has no other.
+        let stretch = |omega_e| Measurement::Stretch { seconds: 0.2, place: Place::Id(-5.0), omega_e }.to_string();
+        assert_eq!(stretch(None), "add 0.2 s at i_d = -5.0 A, same speed");
+        assert_eq!(stretch(Some(613.0)), "add 0.2 s at i_d = -5.0 A, at 613 rad/s (5850 r/min, both electrical)");
     }
 
     #[test]

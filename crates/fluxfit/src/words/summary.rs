@@ -60,7 +60,20 @@ impl Display for Summary {
             }
             Some(next) => write!(f, " {next}"),
         }?;
-        self.further.as_ref().map_or(Ok(()), |further| write!(f, " {further}"))
+        if let Some(further) = &self.further {
+            write!(f, " {further}")?;
+        }
+        let rest = self.rest();
+        if self.next.is_some() && !rest.is_empty() { write!(f, " For {} see below.", symbols(&rest)) } else { Ok(()) }
+    }
+}
+
+impl Summary {
+    /// What has no answer, and none of the steps that are told.
+    fn rest(&self) -> Vec<Parameter> {
+        let is_done = |parameter: &Parameter| [&self.identified, &self.given, &self.as_prior].iter().any(|done| done.contains(parameter));
+        let has_step = |parameter: &Parameter| self.next.iter().chain(&self.further).any(|step| step.parameters.contains(parameter));
+        Parameter::ALL.into_iter().filter(|parameter| !is_done(parameter) && !has_step(parameter)).collect()
     }
 }
 
@@ -104,15 +117,20 @@ impl Display for NextStep {
     }
 }
 
+/// Which of its speeds, where a log has several.
+fn at_speed(omega_e: Option<f64>) -> String {
+    omega_e.map_or_else(String::new, |omega_e| format!(", {} rad/s", three_digits(omega_e)))
+}
+
 /// What the log lacks, in a few words; of a motor that saturates, what to take of it; of a speed in doubt, what to check.
 fn need(remedy: &Remedy) -> String {
     match remedy {
         Remedy::Measure(promised) => match promised.measurement {
             Measurement::AllPoints { times } => format!("the same operating points at {}", of_speed(times)),
             Measurement::Resistance { accuracy } => format!("R_s measured at the terminals to {:.0} %", 100.0 * accuracy),
-            Measurement::Stretch { seconds, place } => match place {
-                Place::Id(id) => format!("{seconds} s at i_d = {} A", one_digit(id)),
-                Place::HalfLoad { iq } => format!("{seconds} s at half the load (i_q = {} A)", one_digit(iq)),
+            Measurement::Stretch { seconds, place, omega_e } => match place {
+                Place::Id(id) => format!("{seconds} s at i_d = {} A{}", one_digit(id), at_speed(omega_e)),
+                Place::HalfLoad { iq } => format!("{seconds} s at half the load (i_q = {} A{})", one_digit(iq), at_speed(omega_e)),
                 Place::HalfSpeed => format!("{seconds} s at half the speed"),
             },
         },
@@ -174,7 +192,7 @@ mod tests {
     #[test]
     fn one_step_for_several_parameters_names_them_all() {
         let [rs, ld, lq, psi_f] = Parameter::ALL;
-        let measurement = Measurement::Stretch { seconds: 0.5, place: Place::Id(-3.0) };
+        let measurement = Measurement::Stretch { seconds: 0.5, place: Place::Id(-3.0), omega_e: None };
         let remedy = Remedy::Measure(Promised { measurement, parameter: rs, half_width: 0.01 });
         let next = |parameters: &[Parameter]| NextStep { remedy: remedy.clone(), parameters: parameters.to_vec(), half_width: Some(0.02) };
         assert_eq!(next(&[rs, ld]).instruction(), "add 0.5 s at i_d = -3 A, same speed: R_s and L_d to about ±2.0 % or less");
@@ -188,12 +206,10 @@ mod tests {
         let [rs, ld, lq, psi_f] = Parameter::ALL;
         let next = NextStep { remedy: Remedy::SmallSteps, parameters: vec![ld, lq, psi_f], half_width: None };
         let weak = Summary { weak: Parameter::ALL.to_vec(), next: Some(next), ..NOTHING };
-        assert_eq!(weak.to_string(), "None of 4 identified, all weak. The motor saturates: take its fluxes at your currents.");
+        let (told, rest) = ("The motor saturates: take its fluxes at your currents.", "For R_s see below.");
+        assert_eq!(weak.to_string(), format!("None of 4 identified, all weak. {told} {rest}"));
         let estimated = Summary { estimated: vec![psi_f], estimated_to: 0.014, weak: vec![rs, ld, lq], ..weak };
-        assert_eq!(
-            estimated.to_string(),
-            "None of 4 identified, all weak (psi_f to ±1.4 %). The motor saturates: take its fluxes at your currents."
-        );
+        assert_eq!(estimated.to_string(), format!("None of 4 identified, all weak (psi_f to ±1.4 %). {told} {rest}"));
     }
 
     /// Such a value is not the log's.

@@ -154,7 +154,7 @@ impl Display for Warning {
                 let (symbol, unit) = (parameter.symbol(), format!("{prefix}{}", parameter.unit()));
                 write!(
                     f,
-                    "the log contradicts the prior of {symbol}: {prior} ± {of_prior} {unit} was given, the log alone says {log} ± {of_log} \
+                    "the log contradicts the prior of {symbol}: {prior} ± {of_prior} {unit} was given, the log says {log} ± {of_log} \
                      {unit} (standard errors); the answer is a compromise between two numbers of which one is wrong: check the prior \
                      (temperature, cable, line to line or per phase), and the columns"
                 )

@@ -12,6 +12,8 @@ pub enum Measurement {
         seconds: f64,
         /// At which currents and speed.
         place: Place,
+        /// That speed, electrical rad/s, where the log has others too.
+        omega_e: Option<f64>,
     },
     /// The operating points of the log once more, each for as long, at another speed.
     AllPoints {

@@ -103,8 +103,11 @@ fn outcomes(
             let mut fitting: Vec<f64> = LENGTHS.into_iter().filter(fits).collect();
             let short = fitting.iter().take_while(|length| **length < QUICKLY).count();
             fitting.drain(..short.min(fitting.len().saturating_sub(1)));
+            let is_other = |speed: f64| (speed - omega_e).abs() > SAME * omega_e.abs();
+            let is_named = *place != Place::HalfSpeed && bench.held.iter().any(|(_, speed)| is_other(*speed));
+            let named = is_named.then_some(*omega_e);
             let promised = fitting.into_iter().map(|seconds| Promised {
-                measurement: Measurement::Stretch { seconds, place: *place },
+                measurement: Measurement::Stretch { seconds, place: *place, omega_e: named },
                 parameter,
                 half_width: width(&after_hold(bench, bench.covariance, *i, *omega_e, seconds)),
             });
@@ -171,7 +174,7 @@ mod tests {
     fn the_estimate_is_what_the_equations_say() {
         let bench = bench(Matrix4::from_diagonal(&Vector4::new(0.0, 1.0, 0.0, 0.0)), 10.0, 1.0, 0.0);
         let promising = promising(&bench, (0.0, 0.01), 0.0, Parameter::Ld);
-        assert_eq!(promising[0].measurement, Measurement::Stretch { seconds: 0.01, place: Place::Id(-2.0) });
+        assert_eq!(promising[0].measurement, Measurement::Stretch { seconds: 0.01, place: Place::Id(-2.0), omega_e: None });
         assert!((promising[0].half_width - 0.049).abs() < 0.0005, "{promising:?}");
         assert_eq!(promising[0].to_string(), "add 0.01 s at i_d = -2 A, same speed: L_d to about ±4.9 %");
         let multimeter = promising.iter().find(|one| matches!(one.measurement, Measurement::Resistance { .. })).unwrap();

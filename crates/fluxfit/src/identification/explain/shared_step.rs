@@ -39,8 +39,8 @@ fn most(tried: &[(Measurement, [f64; PARAMETERS])], open: &[Parameter]) -> Optio
 mod tests {
     use super::{super::measurement::Place, *};
 
-    const SHORT: Measurement = Measurement::Stretch { seconds: 0.05, place: Place::Id(-3.0) };
-    const LONG: Measurement = Measurement::Stretch { seconds: 0.5, place: Place::Id(-3.0) };
+    const SHORT: Measurement = Measurement::Stretch { seconds: 0.05, place: Place::Id(-3.0), omega_e: None };
+    const LONG: Measurement = Measurement::Stretch { seconds: 0.5, place: Place::Id(-3.0), omega_e: None };
 
     fn of(parameter: Parameter, measurement: Measurement, half_width: f64) -> Option<Remedy> {
         Some(Remedy::Measure(Promised { measurement, parameter, half_width }))

@@ -1,9 +1,10 @@
 //! Trying a measurement before it is promised: the log with what the measurement would add is identified as the log itself was.
 //!
-//! So the promise has the misfit, the terms and the doubts that are left after it. A prior is given with the value that came out. A stretch
-//! is made of rows that the log has: those of the operating point of largest current, with their noise and ripple, moved to other currents
-//! or another speed. At the same speed the equations of the motor are linear, so that such rows are as good a solution as those that were
-//! measured; what dead time takes is moved with the currents.
+//! So the promise has the misfit, the terms and the doubts that are left after it. A prior is given with the value that came out, and,
+//! where that is uncertain, with a smaller one as well: what dead time and devices take looks like resistance. A stretch is made of rows
+//! that the log has: those of the operating point of largest current, with their noise and ripple, moved to other currents or another
+//! speed. At the same speed the equations of the motor are linear, so that such rows are as good a solution as those that were measured;
+//! what dead time takes is moved with the currents.
 
 use super::{
     super::{
@@ -45,6 +46,12 @@ const MOST_TRIALS: usize = 4;
 /// R_s of which nothing is known takes this part of the voltage along q: as much as there may be, so that a promise is not too good.
 const LARGEST_PART: f64 = 0.3;
 
+/// R_s with a larger standard error than this part of it may come out much smaller when it is measured.
+const UNCERTAIN: f64 = 0.2;
+
+/// But not below this part of what came out.
+const SMALLEST_PART: f64 = 0.5;
+
 /// What stands between the log and its motor, as far as a moved stretch needs it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Losses {
@@ -64,6 +71,8 @@ pub(crate) struct Trials<'a> {
     /// In the log.
     pub(crate) points: &'a [OperatingPoint],
     pub(crate) losses: Losses,
+    /// Standard error of R_s, ohm, of all that is counted.
+    rs_error: f64,
     /// Half-widths of another log's parameters as fractions of their values; infinite where there is none.
     pub(crate) identify: &'a dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]>,
     done: Vec<(Measurement, Option<[f64; PARAMETERS]>)>,
@@ -75,9 +84,10 @@ impl<'a> Trials<'a> {
         bench: &'a Bench,
         points: &'a [OperatingPoint],
         losses: Losses,
+        rs_error: f64,
         identify: &'a dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]>,
     ) -> Self {
-        Self { log, request, bench, points, losses, identify, done: Vec::new() }
+        Self { log, request, bench, points, losses, rs_error, identify, done: Vec::new() }
     }
 
     /// What to measure for a parameter, and what it would bring; nothing, where nothing proposed would help. Of what makes the parameter
@@ -129,11 +139,19 @@ impl<'a> Trials<'a> {
         let mut request = Request { voltage_timing: self.request.voltage_timing.or(self.losses.timing), ..self.request.clone() };
         match measurement {
             Measurement::Resistance { accuracy } => {
+                let mut with = |rs: f64| {
+                    request.known[Parameter::Rs as usize] = Known::Prior { value: rs, standard_error: accuracy * rs };
+                    (self.identify)(self.log, &request)
+                };
                 let rs = self.rs();
-                request.known[Parameter::Rs as usize] = Known::Prior { value: rs, standard_error: accuracy * rs };
-                (self.identify)(self.log, &request)
+                let widths = with(rs)?;
+                if self.rs_error <= UNCERTAIN * rs {
+                    return Some(widths);
+                }
+                let with_smaller = with((rs - self.rs_error).max(SMALLEST_PART * rs))?;
+                Some(std::array::from_fn(|p| widths[p].max(with_smaller[p])))
             }
-            Measurement::Stretch { seconds, place } => {
+            Measurement::Stretch { seconds, place, .. } => {
                 let at = self.points.iter().max_by(|one, other| one.current().magnitude().total_cmp(&other.current().magnitude()))?;
                 self.with(&mut request, &self.stretches(seconds, at, place)?)
             }
@@ -336,7 +354,7 @@ pub(super) mod tests {
 
     /// The log that is identified after 0.01 s at a place; nothing if it cannot be held there.
     fn tried(log: &Log, losses: Losses, place: Place) -> Option<Log> {
-        tried_measurement(log, losses, Measurement::Stretch { seconds: 0.01, place })
+        tried_measurement(log, losses, Measurement::Stretch { seconds: 0.01, place, omega_e: None })
     }
 
     fn tried_measurement(log: &Log, losses: Losses, measurement: Measurement) -> Option<Log> {
@@ -347,7 +365,7 @@ pub(super) mod tests {
         };
         let (request, bench) = (Request::default(), bench());
         let points = [OperatingPoint::measure(log, 0..ROWS, None)];
-        let mut trials = Trials::new((log, &request), &bench, &points, losses, &identify);
+        let mut trials = Trials::new((log, &request), &bench, &points, losses, 0.0, &identify);
         let half_width = trials.half_width(measurement, Parameter::Ld);
         assert_eq!(half_width, seen.borrow().as_ref().map(|_| 0.1));
         seen.into_inner()
@@ -429,12 +447,14 @@ pub(super) mod tests {
             let is_prior = request.known[0] == Known::Prior { value: 1.0, standard_error: 0.01 };
             Some(if is_prior && log.rows() == ROWS { [0.02, 1.0, 1.0, 0.19] } else { [0.5; 4] })
         };
-        let promised = |now: f64| {
-            let mut trials = Trials::new((&log, &request), &bench, &[], none(), &tried);
+        let promised = |now: f64, rs_error: f64| {
+            let mut trials = Trials::new((&log, &request), &bench, &[], none(), rs_error, &tried);
             trials.best(0.0, now, Parameter::PsiF)
         };
         let measurement = Measurement::Resistance { accuracy: 0.01 };
-        assert_eq!(promised(0.5), Some(Promised { measurement, parameter: Parameter::PsiF, half_width: 0.19 }));
-        assert_eq!(promised(0.3), None);
+        assert_eq!(promised(0.5, 0.0), Some(Promised { measurement, parameter: Parameter::PsiF, half_width: 0.19 }));
+        assert_eq!(promised(0.3, 0.0), None);
+        // A resistance that may be smaller does not keep what this one promises.
+        assert_eq!(promised(0.5, 0.3), None);
     }
 }

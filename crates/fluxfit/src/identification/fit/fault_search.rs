@@ -64,6 +64,8 @@ pub enum FaultOutcome {
     NotNeeded,
     /// What fits has no physical meaning.
     NotPhysical,
+    /// It stands in for what voltages do within rows that are means.
+    WithinRows,
     /// It explains something, but nothing that matters to a parameter.
     NoMatter,
     /// Another fault explains the same.
@@ -81,6 +83,7 @@ impl FaultOutcome {
             Self::Taken => "taken",
             Self::NotNeeded => "explains too little of the residual",
             Self::NotPhysical => "what fits has no physical meaning",
+            Self::WithinRows => "is faster than the rows, of which only means are known, and explains little",
             Self::NoMatter => "moves no parameter by more than its standard error",
             Self::Covered => "another term explains the same",
             Self::NeedsAngle => "needs the electrical angle, theta_e",
@@ -564,8 +567,10 @@ impl ScoreTest {
         let stands_in = search.is_within_rows(fault, &drive) && cost > (1.0 - WITHIN_ROWS) * search.cost;
         let outcome = if gain <= VERY_STRONG {
             FaultOutcome::NotNeeded
-        } else if !is_physical || runs_away || stands_in {
+        } else if !is_physical || runs_away {
             FaultOutcome::NotPhysical
+        } else if stands_in {
+            FaultOutcome::WithinRows
         } else if (!is_moved || search.is_rough()) && cost > (1.0 - NOTICEABLE) * search.cost {
             FaultOutcome::NoMatter
         } else {

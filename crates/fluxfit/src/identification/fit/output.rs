@@ -198,9 +198,10 @@ impl OutputFit {
         is_taken(&self.fault_trials, fault)
     }
 
-    /// Whether a filter of what is logged is part of the answer.
+    /// Whether a filter of what is logged is part of the answer, or would be if it did not stand in for what voltages do within rows.
     pub(crate) fn is_filtered(&self) -> bool {
-        Fault::ALL.into_iter().any(|fault| fault.is_filter() && self.has(fault))
+        let is_found = |trial: &FaultTrial| matches!(trial.outcome, FaultOutcome::Taken | FaultOutcome::WithinRows);
+        self.fault_trials.iter().any(|trial| trial.fault.is_filter() && is_found(trial))
     }
 
     /// Whether the residuals are more than rounding and the last digits of an inverter's ripple, so that their correlation means something.

@@ -15,6 +15,7 @@
 use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, voltage_loss::is_control_rate};
 use crate::{
     error::Error,
+    faults::Fault,
     identification::{
         prepare::stretches,
         request::{Known, Request},
@@ -55,7 +56,7 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let mut drive = fit.drive;
     let logged = log.columns();
     let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
-    let hidden = averaged || !is_control_rate(log) || fit.is_filtered();
+    let hidden = averaged || !is_control_rate(log) || fit.is_filtered() || fit.has(Fault::Disturbance);
     let hidden_and_held = |current: &[f64]| hidden && root_mean_square(current) < HELD * objective.peak_current();
     let mut held = None;
     match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
