@@ -190,11 +190,11 @@ fn a_person_sees_values_verdicts_reasons_and_remedies() {
         "identified",
         "not identifiable",
         "L_d: i_d stays at zero",
-        "To do: add 0.2 s at i_d = -2 A, same speed: L_d to about ±",
+        "To do: add 0.2 s at i_d = -2 A, at 419 rad/s (4000 r/min, both electrical): L_d\n  to about ±",
     ] {
         assert!(run.out.contains(expected), "{expected} is not in\n{}", run.out);
     }
-    assert!(run.out.starts_with("3 of 4 identified. L_d needs 0.2 s at i_d = -2 A: then about ±"), "{}", run.out);
+    assert!(run.out.starts_with("3 of 4 identified. L_d needs 0.2 s at i_d = -2 A, 419 rad/s: then about ±"), "{}", run.out);
     assert!(!run.out.contains('\u{1b}'), "no colour in a pipe");
     assert!(fluxfit(&["identify", "examples/logs/paper_rig_ideal.csv", "--model", "steady"]).err.contains("warning [no-redundancy]"));
 }

@@ -191,8 +191,8 @@ mod tests {
         assert_eq!(loaded_speed(0.0), "one high speed");
         // A log of one speed has no other.
         let stretch = |omega_e| Measurement::Stretch { seconds: 0.2, place: Place::Id(-5.0), omega_e }.to_string();
-        assert_eq!(stretch(None), "add 0.2 s at i_d = -5.0 A, same speed");
-        assert_eq!(stretch(Some(613.0)), "add 0.2 s at i_d = -5.0 A, at 613 rad/s (5850 r/min, both electrical)");
+        assert_eq!(stretch(None), "add 0.2 s at i_d = -5 A, same speed");
+        assert_eq!(stretch(Some(613.0)), "add 0.2 s at i_d = -5 A, at 613 rad/s (5850 r/min, both electrical)");
     }
 
     #[test]
