@@ -15,7 +15,7 @@
 use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, voltage_loss::is_control_rate};
 use crate::{
     error::Error,
-    faults::Fault,
+    frames::Dq,
     identification::{
         prepare::stretches,
         request::{Known, Request},
@@ -56,17 +56,20 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let mut drive = fit.drive;
     let logged = log.columns();
     let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
-    let hidden = averaged || !is_control_rate(log) || fit.is_filtered() || fit.has(Fault::Disturbance);
-    let hidden_and_held = |current: &[f64]| hidden && root_mean_square(current) < HELD * objective.peak_current();
+    let hidden = averaged || !is_control_rate(log) || fit.is_filtered();
+    // An observer that corrects away from what was measured: neighbouring rows share what they average, as means of a faster drive do.
+    let Dq { d: gain_d, q: gain_q } = drive.faults.disturbance.gain;
+    let hidden_and_held =
+        |current: &[f64], gain: f64| (hidden || gain < 0.0) && root_mean_square(current) < HELD * objective.peak_current();
     let mut held = None;
     match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
         [true, false] => {
             drive.motor.ld = drive.motor.lq;
-            held = Some(Parameter::Ld).filter(|_| hidden_and_held(&logged.id));
+            held = Some(Parameter::Ld).filter(|_| hidden_and_held(&logged.id, gain_d));
         }
         [false, true] => {
             drive.motor.lq = drive.motor.ld;
-            held = Some(Parameter::Lq).filter(|_| hidden_and_held(&logged.iq));
+            held = Some(Parameter::Lq).filter(|_| hidden_and_held(&logged.iq, gain_q));
         }
         _ => {}
     }
