@@ -218,6 +218,56 @@ fn a_speed_of_other_pole_pairs_is_told_and_gives_no_numbers() {
     assert!(run.err.contains("4 pole pairs would suit it; replace --pole-pairs 12 by --pole-pairs 4"), "{}", run.err);
 }
 
+/// Every tenth sample of a motor that is held at three points, the last of them at half the load: what the drive does between the rows is
+/// not logged, and the currents are followed better at a lower speed. The speed of the scenario is right, and so are its numbers.
+const DECIMATED: &str = r#"
+duration = "3.39 s"
+seed = 1
+[motor]
+rs = "0.51228 ohm"
+ld = "1.83023 mH"
+lq = "1.83023 mH"
+psi_f = "86.338 mWb"
+pole_pairs = 3
+[mechanics]
+kind = "dyno"
+[inverter]
+u_dc = "572 V"
+carrier = "6.925 kHz"
+[control]
+current_bandwidth = "165 Hz"
+max_current = "13 A"
+[schedule]
+speed = [{ at = "0 s", to = "152.13 rad/s" }]
+iq = [{ at = "0.05 s", to = "3.735 A" }, { at = "2.89 s", to = "1.87 A" }]
+id = [{ at = "1.445 s", to = "-2.988 A" }, { at = "2.89 s", to = "0 A" }]
+[sensors]
+current_noise = "60 mA"
+adc_bits = 12
+adc_range = "18 A"
+angle_offset = "0.5 deg"
+[log]
+every = 10
+theta_e = false
+"#;
+
+#[test]
+fn a_right_speed_of_a_decimated_log_is_not_called_wrong() {
+    let directory = tempfile::tempdir().unwrap();
+    let [scenario, log] = ["decimated.toml", "decimated.csv"].map(|name| directory.path().join(name).to_str().unwrap().to_owned());
+    fs::write(&scenario, DECIMATED).unwrap();
+    assert_eq!(fluxfit(&["simulate", &scenario, "-o", &log]).status, 0);
+    let run = fluxfit(&["identify", &log, "--json"]);
+    let answer: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    for (parameter, truth) in [("rs", 0.51228), ("ld", 1.83023e-3), ("lq", 1.83023e-3), ("psi_f", 86.338e-3)] {
+        let interval = &answer["parameters"][parameter]["ci95"];
+        let [low, high] = [0, 1].map(|end| interval[end].as_f64().unwrap_or(f64::NAN));
+        // A number is wrong from one and a half half-widths on.
+        let [middle, half] = [0.5 * (low + high), 0.5 * (high - low)];
+        assert!((truth - middle).abs() < 1.5 * half && half < 0.1 * truth, "{parameter}: {interval}");
+    }
+}
+
 /// Names of columns that a motor may have, but no time: there is no log, and a plot all the same.
 #[test]
 fn a_file_that_is_no_log_yet_is_plotted_too() {
