@@ -145,7 +145,9 @@ fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: O
         }),
         _ => {
             let units = units.iter().map(|unit| format!("in {}", unit.prose()));
-            let of_shaft = (!is_mechanical).then(|| "that of the shaft (as rad/s-mech)".to_owned());
+            let counterpart = |unit: &Unit| unit.is_mechanical() && size(*unit, 1) == size(column.unit, 1);
+            let of_shaft = Unit::of(Dimension::Speed).find(counterpart).filter(|_| !is_mechanical);
+            let of_shaft = of_shaft.map(|unit| format!("that of the shaft ({})", unit.name()));
             let by_pairs = match pairs[..] {
                 [] => None,
                 [pairs] => Some(format!("of a motor with {}", named_pairs(pairs))),
@@ -333,7 +335,7 @@ mod tests {
             Mending::of(&finding, &[read("omega_e", "n", unit)], pole_pairs).cause.unwrap_or_default()
         };
         let of_electrical = cause(0.10, 0.12, Unit::RpmElectrical, None);
-        assert_eq!(of_electrical, "it may be in electrical rad/s, or that of the shaft (as rad/s-mech); state which");
+        assert_eq!(of_electrical, "it may be in electrical rad/s, or that of the shaft (rpm-mech); state which");
         let of_shaft = cause(0.38, 0.49, Unit::RpmMechanical, Some(4));
         assert_eq!(of_shaft, "it may be in electrical rad/s, or of a motor with 9 to 10 pole pairs; state which");
     }
