@@ -99,8 +99,9 @@ fn one_operating_point_tells_only_lq() {
 }
 
 /// A real dynamometer log at 34 Hz. Without a lag its loads seem to have an L_q from 327 to 187 uH; 100 us of it leave a tenth of the
-/// residuals and the nameplate's 180 uH. So no saturation is claimed. The drive's own back-EMF constant is 55.15 mWb; while it coasts, its
-/// voltages are 11 % below that, and not used.
+/// residuals and the nameplate's 180 uH. So no saturation is claimed. In one stretch the speed is repeated for 2 s while the voltages rise
+/// from 33 V to 92 V: taken for an operating point, it left nothing of any number. The drive's own back-EMF constant is 55.15 mWb; while it
+/// coasts, its voltages are 11 % below that, and not used.
 #[test]
 fn real_log_of_a_dynamometer_takes_no_lag_for_saturation() {
     let Some(log) = shared("emrax228hv_coastdown_dyno.csv") else { return };
@@ -116,6 +117,8 @@ fn real_log_of_a_dynamometer_takes_no_lag_for_saturation() {
     for (key, truth) in [("lq", 180e-6), ("psi_f", 55.15e-3)] {
         let raw = document["diagnostics"]["raw"][key].as_f64().unwrap();
         assert!((raw / truth - 1.0).abs() < 0.1, "{key}: {raw}");
+        let [low, high] = [0, 1].map(|end| document["parameters"][key]["ci95"][end].as_f64().unwrap());
+        assert!(low < truth && truth < high, "{key}: {low} .. {high}");
     }
     for point in document["log"]["operating_points"].as_array().unwrap() {
         assert!(point["iq"].as_f64().unwrap() < -10.0, "a coasting drive: {point}");

@@ -7,7 +7,7 @@ use super::{
     spikes::Spikes,
 };
 use crate::error::{Error, ErrorKind};
-use std::{f64::consts::FRAC_PI_3, ops::Range};
+use std::{f64::consts::FRAC_PI_3, ops::Range, sync::Arc};
 
 /// A checked log: [`Log::new`] makes one of [`Columns`], [`LogBuilder`](super::LogBuilder) of rows as they arrive, and [`Log::join`] of
 /// several logs of one motor.
@@ -15,7 +15,8 @@ use std::{f64::consts::FRAC_PI_3, ops::Range};
 /// Two logs are equal if their rows and segments are, wherever they come from.
 #[derive(Debug, Clone)]
 pub struct Log {
-    columns: Columns,
+    /// Shared by the log's copies: an answer has one, and a long log's rows are most of the memory.
+    columns: Arc<Columns>,
     segments: Vec<Segment>,
     interpolated: bool,
     spikes: Spikes,
@@ -40,7 +41,7 @@ impl PartialEq for Log {
 impl Log {
     /// A log of columns that were checked.
     pub(super) fn checked(columns: Columns, segments: Vec<Segment>, spikes: Spikes) -> Self {
-        Self { columns, segments, interpolated: false, spikes, source: Source::default() }
+        Self { columns: Arc::new(columns), segments, interpolated: false, spikes, source: Source::default() }
     }
 
     /// Several logs of one motor as one; no segment reaches from one into the next. Their sources are joined too.
@@ -61,7 +62,7 @@ impl Log {
             joined.spikes.append(log.spikes, number);
             joined.source.columns.extend(log.source.columns);
             joined.source.notes.extend(log.source.notes);
-            joined.columns.append(log.columns);
+            Arc::make_mut(&mut joined.columns).append(Arc::unwrap_or_clone(log.columns));
         }
         Ok(joined)
     }
@@ -76,7 +77,7 @@ impl Log {
         let row = self.segments[at].rows.start;
         let (first, rest) = self.segments.split_at(at);
         let rest = rest.iter().map(|segment| Segment { rows: segment.rows.start - row..segment.rows.end - row, log: 0, ..segment.clone() });
-        let of = |columns: Columns, segments: Vec<Segment>| Self { columns, segments, ..self.without_rows() };
+        let of = |columns: Columns, segments: Vec<Segment>| Self { columns: Arc::new(columns), segments, ..self.without_rows() };
         Some((of(self.columns.of_rows(0..row), first.to_vec()), of(self.columns.of_rows(row..self.rows()), rest.collect())))
     }
 
@@ -104,13 +105,13 @@ impl Log {
 
     /// The same log with another speed, electrical rad/s.
     pub(crate) fn with_speed(&self, omega_e: Vec<f64>) -> Self {
-        Self { columns: Columns { omega_e, ..self.columns.clone() }, ..self.clone() }
+        Self { columns: Arc::new(Columns { omega_e, ..Columns::clone(&self.columns) }), ..self.clone() }
     }
 
     /// The same log without its rows.
     fn without_rows(&self) -> Self {
         Self {
-            columns: Columns::default(),
+            columns: Arc::default(),
             segments: Vec::new(),
             interpolated: self.interpolated,
             spikes: self.spikes.clone(),
@@ -136,7 +137,7 @@ impl Log {
     /// Whether the rotor stands throughout, so that nothing tells the magnets' flux: the speed is none, or noise to either side of zero
     /// that turns it less than a sixth of a turn.
     pub(crate) fn is_at_rest(&self) -> bool {
-        let Columns { t, omega_e, .. } = &self.columns;
+        let Columns { t, omega_e, .. } = &*self.columns;
         let swings = || omega_e.iter().any(|speed| *speed > 0.0) && omega_e.iter().any(|speed| *speed < 0.0);
         let turned = |rows: &Range<usize>| {
             let steps = rows.clone().skip(1).map(|row| omega_e[row] * (t[row] - t[row - 1]));

@@ -24,7 +24,6 @@ use crate::{
     log::Log,
     motor::{Motor, PARAMETERS},
     optimizer::Objective,
-    parallel,
 };
 use std::ops::Range;
 
@@ -77,10 +76,9 @@ impl OutputError {
             return Err(ErrorKind::Interpolated.into());
         }
         let long_enough: Vec<Range<usize>> = stretches.iter().filter(|rows| rows.len() >= MIN_ROWS).cloned().collect();
-        let angles = parallel::map(&long_enough, |rows| Angles::of(log, rows));
-        let stretches: Vec<(Range<usize>, Angles)> = long_enough.into_iter().zip(angles).collect();
-        let under = |reading: &VoltageTiming| Ok((*reading, Self::under_reading(log, &stretches, *reading)?));
-        parallel::map(readings, under).into_iter().collect()
+        let stretches: Vec<(Range<usize>, Angles)> = long_enough.into_iter().map(|rows| (rows.clone(), Angles::of(log, &rows))).collect();
+        // One after the other: in the memory of one thread, what one fit leaves is room for the next.
+        readings.iter().map(|reading| Ok((*reading, Self::under_reading(log, &stretches, *reading)?))).collect()
     }
 
     fn under_reading(log: &Log, stretches: &[(Range<usize>, Angles)], timing: VoltageTiming) -> Result<Self, Error> {

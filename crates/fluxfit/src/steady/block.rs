@@ -14,7 +14,7 @@ pub(super) const TOLERANCE: f64 = 0.01;
 pub(super) const HALVES_TOLERANCE: f64 = 0.005;
 
 /// Means agree within this many standard deviations of their difference.
-const NOISE_FACTOR: f64 = 4.0;
+pub(super) const NOISE_FACTOR: f64 = 4.0;
 
 /// Currents below this fraction of the log's largest carry no information, and may belong to a drive that is not switching.
 pub(super) const MIN_CURRENT: f64 = 0.01;

@@ -5,7 +5,7 @@
 
 use super::{
     CHANNELS, OperatingPoint,
-    block::{Block, MIN_CURRENT, Scale, TOLERANCE},
+    block::{Block, MIN_CURRENT, NOISE_FACTOR, Scale, TOLERANCE},
     stale::StaleSamples,
     windows::{self, MIN_ROWS},
 };
@@ -27,6 +27,10 @@ const ENOUGH_KINDS: usize = 4;
 
 /// Currents and speed of the other windows stay within this part of the log's largest: what means of products lose by it is its square.
 const LOOSE: f64 = 0.05;
+
+/// Voltages of a window whose halves differ by more than this part of them are of other currents or speeds than its rows say: a value that
+/// the recorder repeats looks steady. What steady currents and speeds move them by is less, even if they are steady to [`LOOSE`].
+const VOLTAGES_MOVE: f64 = 0.1;
 
 /// Windows whose means differ by less than this part of the log's largest current and speed are of one kind.
 const SAME_KIND: f64 = 0.05;
@@ -50,20 +54,26 @@ pub(crate) fn is_period_of_recorder(sample_period: f64) -> bool {
     sample_period * FASTEST >= 1.0
 }
 
+/// Whether the rows repeat the values of rows before them, as those of a recorder that writes faster than the drive reports.
+pub(crate) fn repeats_values(log: &Log) -> bool {
+    StaleSamples::of(log, log.segments()).are_present()
+}
+
 /// The windows with current, in order.
 ///
 /// # Errors
 /// If there is none.
 pub(crate) fn loaded(log: &Log) -> Result<Vec<Range<usize>>, Error> {
     let (mut found, _) = windows::find_all(log);
+    found.retain(|rows| voltages_stand(log, rows));
     // Repeated samples are rows without news: a few of them are no window.
-    let are_stale = StaleSamples::of(log, log.segments()).are_present();
+    let are_stale = repeats_values(log);
     if !are_stale {
         let scale = Scale::of(log);
         for tolerance in [TOLERANCE, LOOSE] {
             if kinds(log, &found, &scale).len() < ENOUGH_KINDS {
                 let more = free(log, &found).into_iter().flat_map(|rows| steady_runs(log, rows, tolerance, &scale));
-                found.extend(more.collect::<Vec<_>>());
+                found.extend(more.filter(|rows| voltages_stand(log, rows)).collect::<Vec<_>>());
             }
         }
         found = different(kinds(log, &found, &scale));
@@ -112,6 +122,21 @@ pub(crate) fn pool_noise(points: &mut [OperatingPoint], least_current: f64) {
             (point.drift_variance, point.degrees_of_freedom) = (of_a_slope, degrees);
         }
     }
+}
+
+/// Whether the voltages' means of both halves of a window agree, within [`VOLTAGES_MOVE`] and their noise.
+fn voltages_stand(log: &Log, rows: &Range<usize>) -> bool {
+    let middle = rows.start.midpoint(rows.end);
+    let [d, q] = [&log.columns().ud, &log.columns().uq].map(|column| {
+        let mean = |rows: Range<usize>| column[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        let (first, second) = (mean(rows.start..middle), mean(middle..rows.end));
+        // From differences of neighbours: what moves does not count as noise.
+        let steps = column[rows.clone()].windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>();
+        let variance = steps / (2 * (rows.len() - 1)) as f64 * 4.0 / rows.len() as f64;
+        ((second - first).powi(2), ((first + second) / 2.0).powi(2), variance)
+    });
+    let [moved, voltage, noise] = [d.0 + q.0, d.1 + q.1, d.2 + q.2].map(f64::sqrt);
+    moved <= VOLTAGES_MOVE * voltage + NOISE_FACTOR * noise
 }
 
 /// The rows of each segment that no window has.
@@ -195,8 +220,8 @@ mod tests {
             columns.iq.push(iq);
             columns.omega_e.push(omega_e);
             // A voltage that changes from row to row, as no stale sample's does.
-            columns.ud.push(k as f64);
-            columns.uq.push(1.0);
+            columns.ud.push((k % 2) as f64);
+            columns.uq.push(omega_e / 10.0);
         }
         Log::new(columns).unwrap()
     }
@@ -218,6 +243,17 @@ mod tests {
         assert_eq!(loaded(&log(two.chain(ramp()))).unwrap(), [0..5, 5..10, 10..21]);
         let four = [(5, 5.0), (5, 20.0), (5, 15.0), (5, 7.0)].into_iter().flat_map(|(rows, iq)| vec![(iq, 300.0); rows]);
         assert_eq!(loaded(&log(four.chain(ramp()))).unwrap(), [0..5, 5..10, 10..15, 15..20]);
+    }
+
+    /// The fourth load is written down for as long as the others, while the voltage of another one, 45 V in place of 30, already acts.
+    #[test]
+    fn repeated_currents_under_other_voltages_are_no_window() {
+        let log = log([10.0, 4.0, 20.0, 15.0, 7.0].into_iter().flat_map(|iq| vec![(iq, 300.0); 12]));
+        let of_all: Vec<_> = (0..5).map(|load| 12 * load..12 * (load + 1)).collect();
+        assert_eq!(loaded(&log).unwrap(), of_all);
+        let mut columns = log.columns().clone();
+        columns.uq[42..48].fill(45.0);
+        assert_eq!(loaded(&Log::new(columns).unwrap()).unwrap(), [&of_all[..3], &of_all[4..]].concat());
     }
 
     /// Twelve rows without current at speed are two pieces; three rows are none, nor are those at less than a tenth of the speed.

@@ -82,6 +82,11 @@ impl Display for Remedy {
                 "identify from three or more windows in time at nearly the same currents, so that the motor saturates alike in them and a \
                  contradiction would still show, and only where the drive switches"
             ),
+            Self::HoldThroughRepeats => write!(
+                f,
+                "hold each operating point for many times as long as the recorder repeats a value, because its rows hold values of different \
+                 instants; or log voltages, currents and speed of one instant"
+            ),
             Self::SharperPrior => write!(f, "give a sharper prior, or log another operating point"),
             Self::FixOne => write!(
                 f,

@@ -147,7 +147,9 @@ fn need(remedy: &Remedy) -> String {
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: true } => "dead time compensated, or R_s given".to_owned(),
         Remedy::CompensateDeadTime { or_resistance: false } => "dead time compensated".to_owned(),
-        Remedy::TellFrameLag { omega_e } if *omega_e > 0.0 => format!("two loads at one speed near {} rad/s", three_digits(*omega_e)),
+        Remedy::TellFrameLag { omega_e } if *omega_e > 0.0 => {
+            format!("two loads at one speed near {} electrical rad/s", three_digits(*omega_e))
+        }
         Remedy::TellFrameLag { .. } => "two loads at one high speed".to_owned(),
         Remedy::LogEachPeriod => "a log of each control period".to_owned(),
         Remedy::RemoveDisturbances => "a log without torque or supply ripple".to_owned(),
@@ -156,6 +158,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::SmallSteps => "its fluxes at your currents".to_owned(),
         Remedy::TakeIncremental { .. } => "its incremental inductances".to_owned(),
         Remedy::SimilarWindows => "three windows at nearly the same currents".to_owned(),
+        Remedy::HoldThroughRepeats => "points held for longer than the recorder repeats values".to_owned(),
         Remedy::SharperPrior => "a sharper prior, or another operating point".to_owned(),
         Remedy::FixOne => "one parameter given".to_owned(),
         Remedy::CheckFrame { lag } => format!("voltages of the currents' instant (now {} us late)", three_digits(1e6 * lag)),

@@ -86,6 +86,8 @@ pub enum Remedy {
     },
     /// Identify from three or more windows at nearly the same currents, so that saturation is alike in them.
     SimilarWindows,
+    /// The recorder repeats values: hold each operating point until all of them are its own, or log them as they arrive.
+    HoldThroughRepeats,
     /// Give a sharper prior, or log another operating point.
     SharperPrior,
     /// Fix one parameter ([`Known::Fixed`](crate::Known::Fixed)), for example R_s as measured at the terminals.
@@ -209,6 +211,7 @@ fn narrower(part: Part, parameter: Parameter, finding: &Finding, knows_rs: bool,
         Part::Sensors | Part::CurrentGain => Remedy::CalibrateSensors,
         Part::BusVoltage => Remedy::CalibrateBusVoltage,
         Part::Saturation => Remedy::SmallSteps,
+        Part::Misfit if finding.trust.repeated_values => Remedy::HoldThroughRepeats,
         Part::Misfit => Remedy::SimilarWindows,
         Part::Prior => measure().unwrap_or(Remedy::SharperPrior),
     }

@@ -61,6 +61,9 @@ pub struct Trust {
     pub speed_too_high: Option<[f64; 2]>,
     /// An inductance below this, H, does nothing from row to row that a simulation could follow.
     pub least_inductance: f64,
+    /// Whether the recorder repeats values: those of one row are of different instants, and operating points may contradict each other by
+    /// that alone.
+    pub repeated_values: bool,
 }
 
 impl Trust {

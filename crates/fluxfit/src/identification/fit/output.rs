@@ -147,6 +147,7 @@ impl OutputFit {
                 runaway,
                 speed_too_high: None,
                 least_inductance: if is_control_rate(log) { LEAST_PERIODS * slowest_period(log) * drive.motor.rs } else { 0.0 },
+                repeated_values: false,
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),
             uncertainty,

@@ -135,7 +135,7 @@ impl SteadyFit {
         let finding = Finding {
             motor: estimate.motor,
             open: Parameter::ALL.map(|parameter| excitation.is_open(parameter)),
-            trust: Trust::default(),
+            trust: Trust { repeated_values: recorder::is_recorders(log) && recorder::repeats_values(log), ..Trust::default() },
             bench: bench(log, &points, &excitation, &estimate, &uncertainty, request),
             uncertainty,
         };
@@ -168,6 +168,10 @@ impl SteadyFit {
             return None;
         }
         self.misfit?;
+        // Currents, speeds and voltages of different instants bend to anything.
+        if self.finding.trust.repeated_values {
+            return None;
+        }
         SaturationFinding::of_points(
             &self.operating_points,
             (&self.losses, &self.possible_losses),
