@@ -25,7 +25,7 @@ pub(crate) fn headline(report: &Report) -> Markup {
 /// How many parameters are identified and what to do next, in the library's words; then the data behind it.
 fn identification(found: &Identification) -> Markup {
     html! {
-        strong { (prose(&Summary::of(&found.parameters).to_string())) }
+        strong { (prose(&Summary::of(&found.parameters, &found.warnings).to_string())) }
         @if found.is_complete() {
             " Nothing more is to be done" @if !found.warnings.is_empty() { ", but see the warnings" } "."
         }

@@ -29,7 +29,7 @@ fn explanations(found: &Identification, options: &Options) -> Markup {
             None => shared.push((vec![judgement], reason)),
         }
     }
-    let next = Summary::of(&found.parameters).next;
+    let next = Summary::of(&found.parameters, &found.warnings).next;
     html! {
         @if let Some(next) = &next { p.next { strong { "To do next: " } (to_do(&next.instruction(), &next.remedy, options)) (to_fluxes(found, &next.remedy)) } }
         @if !shared.is_empty() {

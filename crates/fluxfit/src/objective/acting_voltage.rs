@@ -139,6 +139,11 @@ impl VoltageTiming {
         }
     }
 
+    /// Whether the voltage of a row acts from that row on, as no drive does that computes it from what it samples there.
+    pub(crate) fn acts_at_once(self) -> bool {
+        matches!(self, Self::Delayed { delay: 0, .. } | Self::Euler { .. })
+    }
+
     /// Whether no inverter that logs each of its periods does so.
     pub fn is_unusual(self) -> bool {
         self.held() != Held::InStator

@@ -33,6 +33,12 @@ pub(super) fn prefix(value: f64) -> (f64, &'static str) {
     }
 }
 
+/// Two inductances, H, in one unit: `from 119 to 104 uH`.
+pub(super) fn from_to([one, other]: [f64; 2]) -> String {
+    let (scale, prefix) = prefix(other);
+    format!("from {} to {} {prefix}H", three_digits(scale * one), three_digits(scale * other))
+}
+
 /// A fraction in percent, with two digits.
 pub(super) fn percent(fraction: f64) -> String {
     let value = 100.0 * fraction;

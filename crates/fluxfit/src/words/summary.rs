@@ -1,7 +1,7 @@
 //! An answer in one or two sentences: `3 of 4 identified. L_d needs 0.2 s at i_d = -2 A: then about ±0.29 %.`
 
 use super::{
-    digits::{list, one_digit, percent, three_digits},
+    digits::{from_to, list, one_digit, percent, three_digits},
     remedy::{SPREAD, hold_longer, of_speed},
 };
 use crate::{
@@ -57,6 +57,10 @@ impl Display for Summary {
                 if parameters.len() == asked && asked > 1 =>
             {
                 write!(f, " One step does all: {}, then about ±{} or less.", promised.measurement, percent(*width))
+            }
+            Some(next) if is_of_saturation(&next.remedy) => {
+                let apparent = self.apparent_lq.map_or_else(String::new, |ends| format!(", apparent L_q {}", from_to(ends)));
+                write!(f, " The motor saturates{apparent}: take {}.", need(&next.remedy))
             }
             Some(next) => write!(f, " {next}"),
         }?;
@@ -177,6 +181,7 @@ mod tests {
         estimated: Vec::new(),
         estimated_to: 0.0,
         weak: Vec::new(),
+        apparent_lq: None,
         next: None,
         further: None,
     };
@@ -213,6 +218,8 @@ mod tests {
         assert_eq!(weak.to_string(), format!("None of 4 identified, all weak. {told} {rest}"));
         let estimated = Summary { estimated: vec![psi_f], estimated_to: 0.014, weak: vec![rs, ld, lq], ..weak };
         assert_eq!(estimated.to_string(), format!("None of 4 identified, all weak (psi_f to ±1.4 %). {told} {rest}"));
+        let with_ends = Summary { apparent_lq: Some([1.185e-4, 1.043e-4]), ..estimated };
+        assert!(with_ends.to_string().contains("The motor saturates, apparent L_q from 119 to 104 uH: take its fluxes"), "{with_ends}");
     }
 
     /// Such a value is not the log's.

@@ -1,6 +1,6 @@
 //! What the reader should know of the whole.
 
-use super::digits::{one_digit, percent, prefix, three_digits};
+use super::digits::{from_to, one_digit, percent, prefix, three_digits};
 use crate::{
     current_loop::{DELAY_PERIODS, MIN_PHASE_MARGIN},
     identification::{explain::warning::Warning, fit::saturation::Apparent},
@@ -168,12 +168,10 @@ impl Display for Warning {
 
 /// How the apparent L_q depends on the current.
 fn apparent([least, most]: &[Apparent; 2]) -> String {
-    let (scale, prefix) = prefix(most.inductance);
     let verb = if most.inductance < least.inductance { "falls" } else { "moves" };
     format!(
-        ": apparent L_q {verb} from {} to {} {prefix}H between i_q = {} and {} A",
-        three_digits(scale * least.inductance),
-        three_digits(scale * most.inductance),
+        ": apparent L_q {verb} {} between i_q = {} and {} A",
+        from_to([least.inductance, most.inductance]),
         three_digits(least.current),
         three_digits(most.current),
     )

@@ -1,7 +1,7 @@
 //! Warnings in a few words, for a line of their own above an answer. The whole sentence is the warning's
 //! [`Display`](std::fmt::Display).
 
-use super::digits::{list, percent, prefix, three_digits};
+use super::digits::{from_to, list, percent, three_digits};
 use crate::{identification::explain::warning::Warning, motor::Parameter};
 
 impl Warning {
@@ -32,14 +32,7 @@ impl Warning {
             Self::ProcessNoise => "voltages that are not logged disturb the motor".to_owned(),
             Self::Angle => "theta_e does not turn with omega_e: not used".to_owned(),
             Self::Saturation { lq } => match lq {
-                Some([least, most]) => {
-                    let (scale, prefix) = prefix(most.inductance);
-                    format!(
-                        "apparent L_q goes from {} to {} {prefix}H",
-                        three_digits(scale * least.inductance),
-                        three_digits(scale * most.inductance)
-                    )
-                }
+                Some(ends) => format!("apparent L_q goes {}", from_to(ends.each_ref().map(|end| end.inductance))),
                 None => "no constant inductances explain the log".to_owned(),
             },
             Self::LowSpeed { own, lost, .. } => {

@@ -5,7 +5,7 @@ use super::details;
 use crate::terminal::{self, BAD, DIM, GOOD, HEADING, WARNING, frequency, options, table, wrapped};
 use fluxfit::{
     Answer, HeldOut, Judgement, Log, Parameter, Reason, Remedy, Request, Summary, Verdict,
-    evidence::{Flux, Identification, OutputFit, Provenance, SaturationFinding},
+    evidence::{FaultEstimate, Flux, Identification, OutputFit, Provenance, SaturationFinding},
     faults::Fault,
     identify,
     steady::OperatingPoint,
@@ -87,7 +87,7 @@ fn status(found: &Identification) -> String {
         BAD
     };
     let style = style.bold();
-    format!("{style}{}{style:#}\n", wrapped("", &Summary::of(&found.parameters).to_string()).trim_end())
+    format!("{style}{}{style:#}\n", wrapped("", &Summary::of(&found.parameters, &found.warnings).to_string()).trim_end())
 }
 
 /// The values with their intervals in one line, as far as there are any.
@@ -197,7 +197,7 @@ fn explanations(found: &Identification) -> String {
 
 /// The step that helps most, and what else helps the parameters that it leaves as they are; everything that helps, where all is to be told.
 fn steps(found: &Identification) -> String {
-    let Some(next) = Summary::of(&found.parameters).next else { return String::new() };
+    let Some(next) = Summary::of(&found.parameters, &found.warnings).next else { return String::new() };
     let mut text = to_do("To do", &next.instruction(), &next.remedy);
     // Columns in doubt may be behind everything else: they come first, alone.
     let is_of_columns = matches!(next.remedy, Remedy::CheckSigns { .. } | Remedy::CheckFrame { .. });
@@ -291,13 +291,14 @@ const MOST_POINTS: usize = 12;
 /// What was found beside the motor.
 fn beside_motor(fit: &OutputFit) -> String {
     let (lines, what) = (beside(fit), "Found beside the motor");
+    let faults = || Fault::ALL.into_iter().filter(|fault| told_beside(fit).any(|found| found.unknown.fault() == Some(*fault)));
     if lines.lines().count() > SHORT && !terminal::is_verbose() {
-        let faults: Vec<&str> = Fault::ALL.into_iter().filter(|fault| fit.has(*fault)).map(Fault::label).collect();
-        let named = wrapped("", &format!("{what} (values: -v): {}.", faults.join(", ")));
+        let labels: Vec<&str> = faults().map(Fault::label).collect();
+        let named = wrapped("", &format!("{what} (values: -v): {}.", labels.join(", ")));
         return format!("\n{HEADING}{what}{HEADING:#}{}", named.trim_start_matches(what));
     }
-    let meanings = Fault::ALL.into_iter().filter(|fault| fit.has(*fault)).filter_map(Fault::meaning);
-    let meanings: String = meanings.map(|meaning| format!("{DIM}{}{DIM:#}\n", wrapped("  ", meaning).trim_end())).collect();
+    let meanings: String =
+        faults().filter_map(Fault::meaning).map(|meaning| format!("{DIM}{}{DIM:#}\n", wrapped("  ", meaning).trim_end())).collect();
     if lines.is_empty() { lines } else { format!("\n{HEADING}{what}{HEADING:#} (± 95 %)\n{lines}{meanings}") }
 }
 
@@ -319,9 +320,13 @@ const RUNAWAY: f64 = 1e6;
 const INTERVAL: f64 = 1.959_964;
 
 /// Numbers that may as well be zero say nothing.
+fn told_beside(fit: &OutputFit) -> impl Iterator<Item = &FaultEstimate> {
+    fit.fault_estimates.iter().filter(|nuisance| nuisance.value.abs() > INTERVAL * nuisance.standard_error)
+}
+
+/// A line for each of the others.
 fn beside(fit: &OutputFit) -> String {
-    let found = fit.fault_estimates.iter().filter(|nuisance| nuisance.value.abs() > INTERVAL * nuisance.standard_error);
-    let rows = found.map(|nuisance| {
+    let rows = told_beside(fit).map(|nuisance| {
         let [value, margin, unit] = format_unknown(nuisance.unknown, nuisance.value, INTERVAL * nuisance.standard_error);
         // Units stand at the left of their column.
         (nuisance.unknown.label(), value, margin, unit)

@@ -1,6 +1,6 @@
 //! The answer in one sentence: how many parameters are identified, and the one thing to do next that helps most.
 
-use super::{super::judge::verdict::IDENTIFIED, judgement::Judgement, measurement::Promised, remedy::Remedy};
+use super::{super::judge::verdict::IDENTIFIED, judgement::Judgement, measurement::Promised, remedy::Remedy, warning::Warning};
 use crate::{
     identification::judge::{reason::Reason, verdict::Verdict},
     motor::{PARAMETERS, Parameter},
@@ -23,6 +23,9 @@ pub struct Summary {
     pub estimated_to: f64,
     /// Other parameters whose verdict is [`Verdict::Weak`].
     pub weak: Vec<Parameter>,
+    /// The apparent `L_q`, H, at the smallest and the largest i_q of a motor that saturates: what it has in place of one number. `None`
+    /// where it does not, or where the two do not differ by more than their uncertainty.
+    pub apparent_lq: Option<[f64; 2]>,
     /// The one thing to do next; `None` where nothing is to be done, or nothing is known that would help.
     pub next: Option<NextStep>,
     /// The one thing to do next for the parameters that it leaves as they are; `None` beside columns in doubt, which may be behind
@@ -53,8 +56,8 @@ impl NextStep {
 }
 
 impl Summary {
-    /// The summary of these judgements.
-    pub fn of(parameters: &[Judgement; PARAMETERS]) -> Self {
+    /// The summary of these judgements, with what the warnings beside them say of saturation.
+    pub fn of(parameters: &[Judgement; PARAMETERS], warnings: &[Warning]) -> Self {
         let is_given = |judgement: &Judgement| judgement.reason == Some(Reason::Given);
         let with = |is: &dyn Fn(&Judgement) -> bool| -> Vec<Parameter> {
             parameters.iter().filter(|judgement| is(judgement)).map(|judgement| judgement.parameter).collect()
@@ -73,6 +76,10 @@ impl Summary {
             estimated: with(&is_estimate),
             estimated_to: parameters.iter().filter(|judgement| is_estimate(judgement)).map(width).fold(0.0, f64::max),
             weak: with(&|judgement| judgement.verdict == Verdict::Weak && !is_estimate(judgement)),
+            apparent_lq: warnings.iter().find_map(|warning| match warning {
+                Warning::Saturation { lq } => lq.as_ref().map(|ends| ends.each_ref().map(|end| end.inductance)),
+                _ => None,
+            }),
             next,
             further,
         }

@@ -57,19 +57,25 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let logged = log.columns();
     let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
     let hidden = averaged || !is_control_rate(log) || fit.is_filtered();
-    // An observer that corrects away from what was measured: neighbouring rows share what they average, as means of a faster drive do.
+    // Where a row's voltage acts at once, the rows may as well be means of a faster drive, whose noise tells no inductance.
+    let may_be_means = fit.voltage_timing.value.acts_at_once();
     let Dq { d: gain_d, q: gain_q } = drive.faults.disturbance.gain;
-    let hidden_and_held =
-        |current: &[f64], gain: f64| (hidden || gain < 0.0) && root_mean_square(current) < HELD * objective.peak_current();
+    let Dq { d: missed_d, q: missed_q } = fit.residual_rms();
+    let hidden_and_held = |current: &[f64], gain: f64, missed: f64| {
+        let size = root_mean_square(current);
+        // An observer that corrects away from what was measured: neighbouring rows share what they average, as such means do.
+        let is_hidden = hidden || gain < 0.0 || (may_be_means && missed > NOISE_PART * size);
+        is_hidden && size < HELD * objective.peak_current()
+    };
     let mut held = None;
     match [of_points[Parameter::Ld as usize], of_points[Parameter::Lq as usize]] {
         [true, false] => {
             drive.motor.ld = drive.motor.lq;
-            held = Some(Parameter::Ld).filter(|_| hidden_and_held(&logged.id, gain_d));
+            held = Some(Parameter::Ld).filter(|_| hidden_and_held(&logged.id, gain_d, missed_d));
         }
         [false, true] => {
             drive.motor.lq = drive.motor.ld;
-            held = Some(Parameter::Lq).filter(|_| hidden_and_held(&logged.iq, gain_q));
+            held = Some(Parameter::Lq).filter(|_| hidden_and_held(&logged.iq, gain_q, missed_q));
         }
         _ => {}
     }
@@ -103,6 +109,10 @@ pub(crate) fn reach(log: &Log, fit: &OutputFit, request: &Request) -> [f64; PARA
 
 /// A current is held at zero if its root mean square is below this part of the largest current: noise and short transients.
 const HELD: f64 = 0.05;
+
+/// A current is noise if the simulated one misses more than this part of it, root mean square: what noise leaves of noise. Where every row
+/// is explained, as in a simulator's log without noise, it is far less.
+const NOISE_PART: f64 = 0.3;
 
 fn root_mean_square(current: &[f64]) -> f64 {
     (current.iter().map(|i| i * i).sum::<f64>() / current.len() as f64).sqrt()
