@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(weak.to_string(), format!("None of 4 identified, all weak. {told} {rest}"));
         let estimated = Summary { estimated: vec![psi_f], estimated_to: 0.014, weak: vec![rs, ld, lq], ..weak };
         assert_eq!(estimated.to_string(), format!("None of 4 identified, all weak (psi_f to ±1.4 %). {told} {rest}"));
-        let with_ends = Summary { apparent_lq: Some([1.185e-4, 1.043e-4]), ..estimated };
+        let with_ends = Summary { apparent_lq: Some([1.187e-4, 1.043e-4]), ..estimated };
         assert!(with_ends.to_string().contains("The motor saturates, apparent L_q from 119 to 104 uH: take its fluxes"), "{with_ends}");
     }
 
