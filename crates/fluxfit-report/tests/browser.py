@@ -207,7 +207,7 @@ def says(browser, pages, checks):
     """What a reader sees first: the answer and what to do next."""
     wanted = {
         "paper_rig": ["All 4 identified", "Nothing more is to be done"],
-        "pm_syrm": ["None of 4 identified", "The motor saturates: take its fluxes"],
+        "pm_syrm": ["None of 4 identified", "The motor saturates, apparent Lq from", "take its fluxes at your currents"],
         "id_zero": ["3 of 4 identified", "Ld needs"],
         "validation": ["contradicts"],
         "fleet": ["40 motors: 39 with all 4 parameters identified", "1 stands apart from the others: m05", "1 drifts: m12"],
