@@ -40,7 +40,7 @@ pub(crate) struct Identify {
     /// A parameter known exactly, e.g. rs=0.96 or ld=5.25mH; a bare number is SI
     #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE,..", value_delimiter = ',', value_parser = fluxfit_units::parse_fix, allow_hyphen_values = true)]
     fix: Vec<(Parameter, f64)>,
-    /// A parameter known with a standard error (half of ± at 95 %), e.g. rs=0.96±1% or rs=0.96+-0.01
+    /// A parameter known with a standard error (the ± of an answer is about twice that), e.g. rs=0.96±1% or rs=0.96+-0.01
     #[arg(long, help_heading = "Prior knowledge", value_name = "NAME=VALUE±ERROR,..", value_delimiter = ',', value_parser = fluxfit_units::parse_prior, allow_hyphen_values = true)]
     prior: Vec<(Parameter, f64, f64)>,
     /// Change of the magnets' flux with temperature, e.g. -0.12%/K, for psi_f at 20 degC

@@ -23,6 +23,12 @@ fn is_of_saturation(remedy: &Remedy) -> bool {
     matches!(remedy, Remedy::SmallSteps | Remedy::TakeIncremental { .. })
 }
 
+/// That the motor saturates, with its apparent L_q, H, if that is known, and what to take of it.
+fn saturates(apparent_lq: Option<[f64; 2]>, remedy: &Remedy) -> String {
+    let apparent = apparent_lq.map_or_else(String::new, |ends| format!(", apparent L_q {}", from_to(ends)));
+    format!("The motor saturates{apparent}: take {}.", need(remedy))
+}
+
 impl Display for Summary {
     fn fmt(&self, f: &mut Formatter) -> Result {
         let asked = PARAMETERS - self.given.len() - self.as_prior.len();
@@ -58,10 +64,7 @@ impl Display for Summary {
             {
                 write!(f, " One step does all: {}, then about ±{} or less.", promised.measurement, percent(*width))
             }
-            Some(next) if is_of_saturation(&next.remedy) => {
-                let apparent = self.apparent_lq.map_or_else(String::new, |ends| format!(", apparent L_q {}", from_to(ends)));
-                write!(f, " The motor saturates{apparent}: take {}.", need(&next.remedy))
-            }
+            Some(next) if is_of_saturation(&next.remedy) => write!(f, " {}", saturates(self.apparent_lq, &next.remedy)),
             Some(next) => write!(f, " {next}"),
         }?;
         if let Some(further) = &self.further {
@@ -100,7 +103,7 @@ impl NextStep {
 impl Display for NextStep {
     fn fmt(&self, f: &mut Formatter) -> Result {
         if is_of_saturation(&self.remedy) {
-            return write!(f, "The motor saturates: take {}.", need(&self.remedy));
+            return f.write_str(&saturates(None, &self.remedy));
         }
         if self.remedy == Remedy::CheckSpeed {
             return write!(f, "Check {}.", need(&self.remedy));

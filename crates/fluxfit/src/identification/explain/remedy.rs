@@ -86,7 +86,7 @@ pub enum Remedy {
     },
     /// Identify from three or more windows at nearly the same currents, so that saturation is alike in them.
     SimilarWindows,
-    /// The recorder repeats values: hold each operating point until all of them are its own, or log them as they arrive.
+    /// The recorder repeats values: hold each operating point for longer than that, or log all values of a row at one instant.
     HoldThroughRepeats,
     /// Give a sharper prior, or log another operating point.
     SharperPrior,

@@ -43,8 +43,8 @@ impl Finding {
     }
 }
 
-/// What speaks against a fit of simulated currents, whatever its intervals say. The default is nothing, as for operating points, whose
-/// contradictions are part of the uncertainty.
+/// What speaks against a fit, whatever its intervals say: of simulated currents all but the last, of operating points the last alone, whose
+/// contradictions are part of the uncertainty. The default is nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Trust {
@@ -61,8 +61,8 @@ pub struct Trust {
     pub speed_too_high: Option<[f64; 2]>,
     /// An inductance below this, H, does nothing from row to row that a simulation could follow.
     pub least_inductance: f64,
-    /// Whether the recorder repeats values: those of one row are of different instants, and operating points may contradict each other by
-    /// that alone.
+    /// Whether a recorder repeats values: those of one row are of different instants, which alone makes operating points contradict each
+    /// other.
     pub repeated_values: bool,
 }
 
