@@ -161,16 +161,17 @@ pub(super) fn is_better(other: &TimingTrial, tried: &[TimingTrial], independent:
     tried.first().is_some_and(|best| independent * (best.mean_square() / other.mean_square()).ln() > VERY_STRONG)
 }
 
-/// The readings that are not ruled out, given how many independent residuals there are. The best one first. Steps by Euler's rule are
-/// listed among those of a drive only if they fit better for certain, though not by enough to be taken.
+/// The readings that are not ruled out, given how many independent residuals there are. The best one first. Beside one of a drive that logs
+/// each of its periods no other kind is possible; voltages that act at once are of no such drive. Steps by Euler's rule are listed among
+/// those of a drive only if they fit better for certain, though not by enough to be taken.
 pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
     let least = tried.first().map_or(0.0, TimingTrial::mean_square);
-    let is_unusual = tried.first().is_some_and(|best| best.timing.is_unusual());
+    let any_kind = tried.first().is_some_and(|best| best.timing.is_unusual() || best.timing.acts_at_once());
     // Where the best is perfect, so is every other one that is possible.
     let is_possible =
         move |other: &TimingTrial| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG;
     let is_steps = |other: &TimingTrial| VoltageTiming::BY_EULERS_RULE.contains(&other.timing);
-    tried.iter().filter(move |other| is_possible(other) && (is_unusual || !other.timing.is_unusual() || is_steps(other)))
+    tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)))
 }
 
 /// How far each parameter moves between them.
