@@ -144,6 +144,11 @@ impl VoltageTiming {
         matches!(self, Self::Delayed { delay: 0, .. } | Self::Euler { .. })
     }
 
+    /// Whether the drive does not compensate its delay: as an angle that is late would have it.
+    pub(crate) fn is_in_frame_of_row(self) -> bool {
+        matches!(self, Self::Delayed { frame: VoltageFrame::Row, .. })
+    }
+
     /// Whether no inverter that logs each of its periods does so.
     pub fn is_unusual(self) -> bool {
         self.held() != Held::InStator

@@ -124,7 +124,8 @@ pub(super) fn choose(
         chosen.readings.extend(tried.iter().map(|(_, tried)| *tried));
         return Ok(vec![chosen]);
     }
-    let with_angle = if start.may_hide_an_angle { Begin::with_angle(&objectives, &start.drive, &free, &priors, &tried) } else { None };
+    let may_hide_an_angle = start.may_hide_an_angle || tried.first().is_some_and(|(_, best)| best.timing.is_in_frame_of_row());
+    let with_angle = if may_hide_an_angle { Begin::with_angle(&objectives, &start.drive, &free, &priors, &tried) } else { None };
     let _ = progress(Step::Faults);
     let every_period = is_control_rate(log);
     let most = if every_period { TRIED_READINGS } else { 1 };
