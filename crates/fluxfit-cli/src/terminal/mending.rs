@@ -32,7 +32,8 @@ impl Mending {
     fn of(finding: &ColumnFinding, read: &[ReadColumn], pole_pairs: Option<u32>) -> Self {
         match finding {
             ColumnFinding::SpeedUnit { ratio } => speed_unit(*ratio, read, pole_pairs).unwrap_or_default(),
-            ColumnFinding::SpeedScale { low, high } => speed_scale(*low..=*high, read, pole_pairs).unwrap_or_default(),
+            ColumnFinding::SpeedScale { low, high, angle: false } => speed_scale(*low..=*high, read, pole_pairs).unwrap_or_default(),
+            ColumnFinding::SpeedScale { low, high, angle: true } => speed_and_angle(*low..=*high, read, pole_pairs).unwrap_or_default(),
             ColumnFinding::AngleInDegrees => Self::option("--unit theta_e=deg".to_owned()),
             ColumnFinding::SpeedSign { wrong } => {
                 let channel = if *wrong == Some(Turning::Angle) { "theta_e" } else { "omega_e" };
@@ -158,6 +159,29 @@ fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: O
             (!possible.is_empty()).then(|| Mending { cause: Some(cause), ..Mending::default() })
         }
     }
+}
+
+/// The shaft's speed and angle that were taken for the electrical ones; or another number of pole pairs, where both are the shaft's.
+fn speed_and_angle(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: Option<u32>) -> Option<Mending> {
+    let (speed, angle) = (column(read, "omega_e")?, column(read, "theta_e")?);
+    let of_shaft = |unit: Unit, dimension| {
+        Unit::of(dimension).find(|other| other.is_mechanical() && !unit.is_mechanical() && size(*other, 1) == size(unit, 1))
+    };
+    let named = |pairs: &[u32]| match *pairs {
+        [pairs] => (format!(", {}", named_pairs(pairs)), pairs.to_string()),
+        [fewest, .., most] => (format!(", {fewest} to {most} pole pairs"), "N".to_owned()),
+        [] => (String::new(), "N".to_owned()),
+    };
+    if let (Some(speed), Some(angle)) = (of_shaft(speed.unit, Dimension::Speed), of_shaft(angle.unit, Dimension::Angle)) {
+        let (pairs, number) = named(&suiting_pairs(1, &too_high));
+        let given = pole_pairs.map_or_else(|| format!(" --pole-pairs {number}"), |_| String::new());
+        let option = format!("--unit omega_e={},theta_e={}{given}", speed.name(), angle.name());
+        return (*too_high.end() < 1.0)
+            .then(|| Mending { cause: Some(format!("both may be the shaft's{pairs}")), ..Mending::option(option) });
+    }
+    let (pairs, number) = named(&suiting_pairs(pole_pairs?, &too_high));
+    let cause = format!("the number of pole pairs may be wrong{pairs}");
+    Some(Mending { cause: Some(cause), ..Mending::option(format!("--pole-pairs {number}")) })
 }
 
 /// The numbers of pole pairs that suit a speed of the shaft, where the stated number makes it too high by such factors.
@@ -316,7 +340,7 @@ mod tests {
     #[test]
     fn a_range_of_factors_names_the_unit() {
         let option = |low: f64, high: f64, unit: Unit, pole_pairs: Option<u32>| {
-            let finding = ColumnFinding::SpeedScale { low, high };
+            let finding = ColumnFinding::SpeedScale { low, high, angle: false };
             Mending::of(&finding, &[read("omega_e", "n", unit)], pole_pairs).option.unwrap_or_default()
         };
         assert_eq!(option(3.0, 4.6, Unit::RpmMechanical, Some(4)), "--unit omega_e=rpm-elec");
@@ -331,7 +355,7 @@ mod tests {
         assert_eq!(option(0.15, 0.26, Unit::RadianPerSecond, None), "");
         // Electrical rad/s, as r/min 9.55 times too low, with 4 pole pairs 2.39 times; of the shaft with 9 or 10 pole pairs, 8 to 10.
         let cause = |low: f64, high: f64, unit: Unit, pole_pairs: Option<u32>| {
-            let finding = ColumnFinding::SpeedScale { low, high };
+            let finding = ColumnFinding::SpeedScale { low, high, angle: false };
             Mending::of(&finding, &[read("omega_e", "n", unit)], pole_pairs).cause.unwrap_or_default()
         };
         let of_electrical = cause(0.10, 0.12, Unit::RpmElectrical, None);

@@ -9,12 +9,14 @@ pub enum ColumnFinding {
         /// How many times as fast.
         ratio: f64,
     },
-    /// In a log without an angle: the inductances by which the currents change are not those that the speed shows.
+    /// The inductances by which the currents change are not those that the speed shows.
     SpeedScale {
         /// How many times too high the speed is, at least.
         low: f64,
         /// And at most.
         high: f64,
+        /// Whether an angle turns with it, which then has the same error.
+        angle: bool,
     },
     /// The angle is in degrees, not in radians.
     AngleInDegrees,

@@ -258,17 +258,27 @@ const TOO_LOW: f64 = 4.0;
 
 /// By which factor the speed is too high, or too low, for inductances that are those of the slopes of the currents, for certain.
 pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
-    let SpeedOfSlopes { too_high: [low, high], excess } = speed_of_slopes(log)?;
-    let is_too_high = low > LEAST_SCALE && excess > TOO_HIGH;
-    let is_too_low = high < 1.0 / LEAST_SCALE && excess > TOO_LOW;
-    (is_too_high || is_too_low).then_some(ColumnFinding::SpeedScale { low, high })
+    let [low, high] = speed_of_slopes(log).filter(SpeedOfSlopes::is_certain)?.too_high;
+    Some(ColumnFinding::SpeedScale { low, high, angle: log.columns().theta_e.is_some() })
 }
 
 /// Factors by which the speed may be too high for inductances that are those of the slopes of the currents, the least and the largest,
 /// where the speed as it is is none of them. By themselves they prove nothing: noise and saturation change the inductances of the slopes.
+/// A speed that an angle confirms is in doubt only where they are certain: then both are wrong.
 pub(crate) fn speed_in_doubt(log: &Log) -> Option<[f64; 2]> {
-    let SpeedOfSlopes { too_high: [low, high], .. } = speed_of_slopes(log)?;
-    (low > 1.0 || high < 1.0).then_some([low, high])
+    let slopes = speed_of_slopes(log)?;
+    let [low, high] = slopes.too_high;
+    let is_in_doubt = if log.columns().theta_e.is_some() { slopes.is_certain() } else { low > 1.0 || high < 1.0 };
+    is_in_doubt.then_some([low, high])
+}
+
+/// Whether the slopes of the currents suit the speed as it is, and one that is so many times lower no better. Simulated currents that follow
+/// at another speed do so for another reason then: a supply that ripples, or saturation.
+pub(crate) fn slopes_suit_the_speed(log: &Log, too_high: f64) -> bool {
+    speed_of_slopes(log).is_some_and(|slopes| {
+        let [low, high] = slopes.too_high;
+        (low..=high).contains(&1.0) && slopes.left_at(too_high) >= slopes.left_at(1.0)
+    })
 }
 
 /// Which speed suits the slopes of the currents.
@@ -277,11 +287,26 @@ struct SpeedOfSlopes {
     too_high: [f64; 2],
     /// What the speed as it is leaves of the voltages, over what the best of these leaves.
     excess: f64,
+    /// The equations of the voltages.
+    normal: DMatrix<f64>,
 }
 
-/// Nothing where the slopes do not tell, or the log has an angle, which tells it better.
+impl SpeedOfSlopes {
+    /// What a speed leaves of the voltages that is so many times lower, as a fraction.
+    fn left_at(&self, too_high: f64) -> f64 {
+        left(&self.normal, too_high)
+    }
+
+    /// Whether no log of the right speed looks like this.
+    fn is_certain(&self) -> bool {
+        let [low, high] = self.too_high;
+        low > LEAST_SCALE && self.excess > TOO_HIGH || high < 1.0 / LEAST_SCALE && self.excess > TOO_LOW
+    }
+}
+
+/// Nothing where the slopes do not tell.
 fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
-    if log.columns().theta_e.is_some() || log.is_interpolated() {
+    if log.is_interpolated() {
         return None;
     }
     let means = means(log);
@@ -289,10 +314,8 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
         return None;
     }
     let normal = normal(&means, &Frame::AS_IT_IS, true);
-    let with = |scale: f64| solved(&tied(&normal, scale));
-    let left = |scale: f64| with(scale).map_or(f64::INFINITY, |fit| fit.left);
     let steps = (MOST_SCALE.ln() / SCALE_STEP.ln()) as i32;
-    let tried: Vec<(f64, f64)> = (-steps..=steps).map(|step| SCALE_STEP.powi(step)).map(|scale| (scale, left(scale))).collect();
+    let tried: Vec<(f64, f64)> = (-steps..=steps).map(|step| SCALE_STEP.powi(step)).map(|scale| (scale, left(&normal, scale))).collect();
     let best = tried.iter().fold(f64::INFINITY, |best, (_, left)| best.min(*left));
     let mut possible = tried.iter().filter(|(_, left)| *left <= POSSIBLE * best).map(|(scale, _)| *scale);
     let low = possible.next()?;
@@ -302,11 +325,17 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
         return None;
     }
     // The currents have to be seen while they change, in less than the time constant of the winding.
-    let [resistance, ld, lq, ..] = with((low * high).sqrt())?.unknowns;
+    let [resistance, ld, lq, ..] = solved(&tied(&normal, (low * high).sqrt()))?.unknowns;
     let inductance = ld.min(lq) * (low * high).sqrt();
     let block = BLOCK.min(log.rows() / ENOUGH).max(1) as f64;
     let is_seen = log.segments().iter().all(|segment| block * segment.sample_period * resistance < inductance);
-    (is_seen && best < WELL_EXPLAINED).then(|| SpeedOfSlopes { too_high: [low, high], excess: left(1.0) / best })
+    let excess = left(&normal, 1.0) / best;
+    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess, normal })
+}
+
+/// What is left of the voltages, as a fraction, where the inductances of the slopes are those of the speed, times a factor.
+fn left(normal: &DMatrix<f64>, scale: f64) -> f64 {
+    solved(&tied(normal, scale)).map_or(f64::INFINITY, |fit| fit.left)
 }
 
 /// The equations in which the inductances of the slopes are those of the speed, times a factor.

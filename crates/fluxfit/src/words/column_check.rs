@@ -11,7 +11,7 @@ impl Display for ColumnFinding {
                 let (way, ratio) = if *ratio < 0.0 { (" and against it", -ratio) } else { ("", *ratio) };
                 write!(f, "theta_e turns {} times as fast as omega_e{way}", four_digits(ratio))
             }
-            Self::SpeedScale { low, high } => {
+            Self::SpeedScale { low, high, angle } => {
                 // The larger number first where the speed is too low.
                 let (least, most, way) = if *low > 1.0 { (*low, *high, "high") } else { (1.0 / high, 1.0 / low, "low") };
                 let factor = if most < ONE * least {
@@ -19,7 +19,8 @@ impl Display for ColumnFinding {
                 } else {
                     format!("{} to {}", two_digits(least), two_digits(most))
                 };
-                write!(f, "the speed is about {factor} times too {way} for the slopes of the currents")
+                let speed = if *angle { "the speed, and the angle with it, is" } else { "the speed is" };
+                write!(f, "{speed} about {factor} times too {way} for the slopes of the currents")
             }
             Self::AngleInDegrees => write!(f, "theta_e turns with omega_e only if it is in degrees"),
             Self::SpeedSign { wrong: None } => write!(f, "theta_e turns against omega_e: one of them has the wrong sign"),

@@ -61,7 +61,7 @@ impl Display for Reason {
                 f,
                 "{}, and the simulated currents do not follow the measured ones: its unit or the number of pole pairs seems to be wrong, and \
                  inductances and flux are wrong by the same factor",
-                ColumnFinding::SpeedScale { low: *low, high: *high }
+                ColumnFinding::SpeedScale { low: *low, high: *high, angle: false }
             ),
             Self::CurrentsMissed { fraction } => write!(
                 f,
