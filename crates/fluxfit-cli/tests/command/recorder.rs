@@ -65,6 +65,15 @@ fn late(rows: &[Row], lag: f64) -> Vec<Row> {
     rows.iter().map(turn).collect()
 }
 
+/// Voltages and currents seen in a frame ahead of the rotor's, by an angle, rad, and by a time, s.
+fn in_frame_ahead(rows: &[Row], angle: f64, time: f64) -> Vec<Row> {
+    let turn = |&[t, ud, uq, id, iq, omega_e]: &Row| {
+        let (sin, cos) = (angle + omega_e * time).sin_cos();
+        [t, cos * ud + sin * uq, cos * uq - sin * ud, cos * id + sin * iq, cos * iq - sin * id, omega_e]
+    };
+    rows.iter().map(turn).collect()
+}
+
 /// The rows with other voltages where there is no current.
 fn coasting(rows: Vec<Row>, voltage: impl Fn(f64, f64, f64) -> [f64; 2]) -> Vec<Row> {
     let change = |[t, ud, uq, id, iq, omega_e]: Row| {
@@ -180,6 +189,31 @@ fn a_lag_is_found_and_moves_no_parameter() {
                 assert!(is_right(&document, key, truth), "{name}, {seconds} s: {key} {}", document["parameters"][key]);
             }
             assert!(document["parameters"]["ld"]["value"].is_null());
+        }
+    }
+}
+
+/// An encoder that is off, or late, turns currents and voltages together: taken for voltages that turn alone, one degree moved R_s by 5 %.
+#[test]
+fn an_angle_that_is_off_or_late_moves_no_parameter() {
+    let schedule = r#"[schedule]
+speed = [{ at = "0 s", to = "800 rpm", over = "1 s" }, { at = "6 s", to = "1200 rpm", over = "0.5 s" }, { at = "12 s", to = "400 rpm", over = "1.5 s" }]
+iq = [{ at = "1.2 s", to = "10 A" }, { at = "2.5 s", to = "30 A" }, { at = "4 s", to = "45 A" }, { at = "6.6 s", to = "20 A" }, { at = "9 s", to = "40 A" }, { at = "14 s", to = "25 A" }]
+id = [{ at = "3.2 s", to = "-20 A" }, { at = "4 s", to = "0 A" }, { at = "8 s", to = "-30 A" }, { at = "10 s", to = "0 A" }, { at = "16 s", to = "-15 A" }]
+"#;
+    let (start, rest) = SCENARIO.split_once("[schedule]").unwrap();
+    let end = rest.split_once("[sensors]").unwrap().1;
+    let rows = simulated(&format!("{}{schedule}[sensors]{end}", start.replace("12 s", "18 s")));
+    let truths = [("rs", RS), ("ld", 90e-6), ("lq", LQ), ("psi_f", PSI_F)];
+    for (angle, time) in [(0.0, 0.0), (0.017, 0.0), (-0.03, 0.0), (0.0, 30e-6), (0.0, -30e-6), (0.02, -20e-6)] {
+        let document = identified(&in_frame_ahead(&rows, angle, time));
+        for (key, truth) in truths {
+            let parameter = &document["parameters"][key];
+            let [low, high] = [0, 1].map(|end| parameter["ci95"][end].as_f64().unwrap_or(f64::NAN));
+            assert!(low <= truth && truth <= high, "{angle} rad, {time} s: {key} {parameter}");
+        }
+        for key in ["lq", "psi_f"] {
+            assert_eq!(document["parameters"][key]["verdict"], "identified", "{angle} rad, {time} s: {key}");
         }
     }
 }

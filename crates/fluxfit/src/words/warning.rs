@@ -60,15 +60,15 @@ impl Display for Warning {
             ),
             Self::FrameLag { seconds, standard_error, angle, coasting_rows } => {
                 let (micro, error) = (1e6 * seconds.abs(), HALF_WIDTH * 1e6 * standard_error);
-                let (late, show) = (
-                    if *seconds > 0.0 { "late" } else { "early" },
+                let (way, show) = (
+                    if *seconds > 0.0 { "behind" } else { "ahead of" },
                     if *coasting_rows > 0 { format!(", as {coasting_rows} rows without current show too") } else { String::new() },
                 );
                 write!(
                     f,
-                    "the angle between voltages and currents grows with speed: the voltages' frame is {late} by {} ± {} us, {:.1} degrees at \
-                     the highest speed{show}; that lag is fitted beside the motor, and what stays open of \
-                     it counts as uncertainty; the wrong sign of a column is not the cause",
+                    "the voltages turn with speed against the rotor's frame: they lie {} ± {} us {way} it, {:.1} degrees at the highest \
+                     speed{show}, because they are of another instant, or the angle is late or early; that is fitted beside the motor, and \
+                     what stays open of it counts as uncertainty; the wrong sign of a column is not the cause",
                     three_digits(micro),
                     one_digit(error),
                     angle.abs().to_degrees()

@@ -20,8 +20,8 @@ impl Warning {
             }
             Self::CoarseSampling => "rows are far apart: taken as decimated".to_owned(),
             Self::FrameLag { seconds, .. } => {
-                let late = if *seconds > 0.0 { "late" } else { "early" };
-                format!("the voltages' frame is {} us {late}: fitted beside the motor", three_digits(1e6 * seconds.abs()))
+                let way = if *seconds > 0.0 { "behind" } else { "ahead of" };
+                format!("the voltages lie {} us {way} the rotor's frame: fitted beside the motor", three_digits(1e6 * seconds.abs()))
             }
             Self::OpenLoop { times } => {
                 format!("open loop in {} stretch{}: not used for more than R_s", times.len(), if times.len() == 1 { "" } else { "es" })

@@ -61,9 +61,9 @@ pub enum Warning {
     },
     /// The rotor turns too far between rows for the held voltage vector to be corrected.
     CoarseSampling,
-    /// A recorder's voltages turn with speed against the frame of its currents; that is solved for beside the motor.
+    /// A recorder's voltages turn with speed against the rotor's frame; that is solved for beside the motor.
     FrameLag {
-        /// The time by which they are late, s; negative: early.
+        /// The time by which they lie behind it, s; negative: ahead.
         seconds: f64,
         /// Its standard error, s.
         standard_error: f64,

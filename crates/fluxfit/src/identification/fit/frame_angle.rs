@@ -11,7 +11,7 @@
 //!
 //! and of an angle that stays unknown the cosine takes a part of the flux.
 
-use super::{super::request::Request, estimate::Estimate, part::Part, voltage_loss::Loss};
+use super::{super::request::Request, part::Part, voltage_loss::Loss};
 use crate::{frames::Dq, log::Log, motor::Motor, steady::OperatingPoint};
 
 /// Standard error of the angle, rad: 95 % of the drives within 6 degrees, as an alignment by current leaves it against friction and
@@ -36,11 +36,22 @@ pub(super) struct FrameAngle {
 }
 
 impl FrameAngle {
+    /// How many [unknowns](Self::unknowns) there are.
+    pub(super) const UNKNOWNS: usize = 3;
+
+    /// Of a drive of which nothing else is known.
+    pub(super) const UNKNOWN: Self = Self { offset: 0.0, delay: 0.0, errors: [USUAL_OFFSET, USUAL_DELAY] };
+
     /// Where it may be unknown; not where voltages are exact, and not for whoever states the steady model: that states its equations, the
     /// angle with them.
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
-        (!are_exact && request.model.is_none()).then_some(Self { offset: 0.0, delay: 0.0, errors: [USUAL_OFFSET, USUAL_DELAY] })
+        (!are_exact && request.model.is_none()).then_some(Self::UNKNOWN)
+    }
+
+    /// s.
+    pub(super) fn delay(&self) -> f64 {
+        self.delay
     }
 
     pub(super) fn turned_back(&self, points: &[OperatingPoint]) -> Vec<OperatingPoint> {
@@ -48,7 +59,7 @@ impl FrameAngle {
     }
 
     /// What is still unknown at points that are turned back by it, given the motor: the cosine, the offset, the delay.
-    pub(super) fn unknowns(&self, points: &[OperatingPoint], motor: &Motor) -> [Loss; 3] {
+    pub(super) fn unknowns(&self, points: &[OperatingPoint], motor: &Motor) -> [Loss; Self::UNKNOWNS] {
         let part = Part::FrameLag;
         let saliency = motor.lq - motor.ld;
         let off = |point: &OperatingPoint| {
@@ -67,9 +78,9 @@ impl FrameAngle {
         ]
     }
 
-    /// The same with what an estimate found missing: its last two unknowns are those of [`Self::unknowns`].
-    pub(super) fn with(&self, estimate: &Estimate) -> Self {
-        let [.., (offset, offset_error), (delay, delay_error)] = estimate.found[..] else { return *self };
+    /// The same with what an estimate found of the [unknowns](Self::unknowns).
+    pub(super) fn with(&self, found: [(f64, f64); Self::UNKNOWNS]) -> Self {
+        let [_, (offset, offset_error), (delay, delay_error)] = found;
         Self { offset: self.offset + offset, delay: self.delay + delay, errors: [offset_error, delay_error] }
     }
 }

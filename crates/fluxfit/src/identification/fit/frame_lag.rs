@@ -7,16 +7,18 @@
 //! terminals are measured; where nothing does, its doubt is `psi_f omega_e T / i_q` of `L_q`.
 //!
 //! ```text
-//! u exp(j omega_e T) = (steady equations) - j omega_e dT u - j theta u + j psi_f (domega_e/dt) tau
+//! u exp(j omega_e T) = (steady equations) - j omega_e dT u + j psi_f (domega_e/dt) tau
 //! ```
 //!
-//! `T` is what the voltages are turned back by already, `dT` what is still missing, `theta` an angle that is the same at all speeds, as an
-//! observer's may be off by a degree, `tau` the time by which the speed column is old. The
-//! means of a row are of the middle of its period, but many recorders write the speed of its end.
+//! `T` is what the voltages are turned back by already, `dT` what is still missing, `tau` the time by which the speed column is old. The
+//! means of a row are of the middle of its period, but many recorders write the speed of its end. The angle that voltages and currents
+//! share may be off and late beside it: [`FrameAngle`](super::frame_angle::FrameAngle). What the magnet shows is `T` and the lateness of
+//! the angle together, so `T` here is their sum, and of the angle's only that it turns the currents too is a further unknown.
 
-use super::{super::request::Request, estimate::Estimate, part::Part, voltage_loss::Loss, voltage_loss::slowest_period};
+use super::{super::request::Request, frame_angle::FrameAngle, part::Part, voltage_loss::Loss, voltage_loss::slowest_period};
 use crate::{
     log::Log,
+    motor::Motor,
     steady::{OperatingPoint, recorder, windows},
 };
 
@@ -28,8 +30,8 @@ const USUAL_LAG: f64 = 100e-6;
 /// of its dividers, and computes the others.
 const OTHER_LAG: f64 = 5e-6;
 
-/// Standard error of an angle, rad, by which the voltages may be turned at any speed: a degree, what an observer or a calibrated encoder is
-/// off by.
+/// Standard error of an angle, rad, by which the voltages seem to be turned at any speed before a motor is known: a degree, what an
+/// observer or a calibrated encoder is off by.
 const USUAL_OFFSET: f64 = 0.017;
 
 /// What the lag of one row differs from that of another, s, one standard deviation: in the log of a VESC it is 43 us at one speed and 46 us
@@ -42,11 +44,11 @@ pub(super) const ROUNDS: usize = 4;
 /// A lag is found if it is this many standard errors.
 const FOUND: f64 = 3.0;
 
-/// The time by which the voltages' frame lags the currents'.
+/// The time by which the voltages lie behind the rotor's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FrameLag {
-    /// s; positive: the voltages are turned backwards at positive speed.
+    /// s; positive: the voltages lie behind the rotor's frame at positive speed.
     pub seconds: f64,
     /// s.
     pub standard_error: f64,
@@ -55,8 +57,11 @@ pub struct FrameLag {
 }
 
 impl FrameLag {
-    /// The place of the other lag, that without current, among the [unknowns](Self::unknowns).
+    /// The place of the other lag, that without current, among the [rough unknowns](Self::rough_unknowns).
     pub(super) const OTHER: usize = 1;
+
+    /// How many [unknowns](Self::unknowns) there are.
+    pub(super) const UNKNOWNS: usize = 3;
 
     /// What is known of it beforehand; none of a log that is no recorder's, or whose voltages are exact. Which period of the drive the
     /// voltages are of, if that is stated, says nothing of the frame of a recorder's means.
@@ -65,37 +70,51 @@ impl FrameLag {
         (recorder::is_recorders(log) && !are_exact).then_some(Self { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 })
     }
 
-    /// Points whose voltages are turned back by it.
-    pub(super) fn turned_back(&self, points: &[OperatingPoint]) -> Vec<OperatingPoint> {
-        points.iter().map(|point| point.turned(point.omega_e() * self.seconds)).collect()
+    /// Points whose voltages are turned back by it, and whose voltages and currents are by an angle that accounts for a part of it.
+    pub(super) fn turned_back(&self, points: &[OperatingPoint], angle: &FrameAngle) -> Vec<OperatingPoint> {
+        let of_voltages = self.seconds - angle.delay();
+        let turned: Vec<OperatingPoint> = points.iter().map(|point| point.turned(point.omega_e() * of_voltages)).collect();
+        angle.turned_back(&turned)
     }
 
-    /// What is still unknown at points that are turned back by it, given the flux, Wb: an angle at any speed, rad, how much more the lag is
-    /// without current, what is missing of it, and the age of the speed, s.
-    pub(super) fn unknowns(&self, points: &[OperatingPoint], psi_f: f64, log: &Log) -> [Loss; 4] {
+    /// What is still unknown at points that are turned back by it, given the flux, Wb: how much more the lag is without current, what is
+    /// missing of it, and the age of the speed, s.
+    pub(super) fn unknowns(&self, points: &[OperatingPoint], psi_f: f64, log: &Log) -> [Loss; Self::UNKNOWNS] {
         let part = Part::FrameLag;
-        let turned = |point: &OperatingPoint| [point.voltage().q, -point.voltage().d];
         let missing = |point: &OperatingPoint| turned(point).map(|part| part * point.omega_e());
         let least_current = windows::least_current(log);
         let other = points.iter().map(|point| if point.current().magnitude() < least_current { missing(point) } else { [0.0; 2] });
         let old = points.iter().map(|point| [0.0, psi_f * point.acceleration]);
         [
-            Loss { voltages: points.iter().map(turned).collect(), expected: 0.0, standard_error: USUAL_OFFSET, part },
             Loss { voltages: other.collect(), expected: 0.0, standard_error: OTHER_LAG, part },
             Loss { voltages: points.iter().map(missing).collect(), expected: -self.seconds, standard_error: USUAL_LAG, part },
             Loss { voltages: old.collect(), expected: 0.0, standard_error: slowest_period(log), part },
         ]
     }
 
-    /// The same before any flux is known: that of the fastest point will do.
-    pub(super) fn rough_unknowns(&self, points: &[OperatingPoint], log: &Log) -> [Loss; 4] {
-        self.unknowns(points, rough_flux(points), log)
+    /// The unknowns of an angle at points that are turned back by both, given the motor: its delay turns only the currents, because what it
+    /// does to the voltages is in the lag.
+    pub(super) fn unknowns_of_angle(points: &[OperatingPoint], angle: &FrameAngle, motor: &Motor) -> [Loss; FrameAngle::UNKNOWNS] {
+        let [flux, off, mut late] = angle.unknowns(points, motor);
+        for (volts, point) in late.voltages.iter_mut().zip(points) {
+            let of_voltages = turned(point).map(|part| part * point.omega_e());
+            *volts = std::array::from_fn(|axis| volts[axis] - of_voltages[axis]);
+        }
+        [flux, off, late]
     }
 
-    /// The same with what an estimate found missing: its last two unknowns are those of [`Self::unknowns`].
-    pub(super) fn with(&self, estimate: &Estimate) -> Self {
-        let Some([.., (missing, standard_error), _]) = estimate.found.get(..) else { return *self };
-        Self { seconds: self.seconds + missing, standard_error: *standard_error, ..*self }
+    /// The same before any motor is known: the flux of the fastest point will do, and of an angle that is off, that it turns the voltages.
+    pub(super) fn rough_unknowns(&self, points: &[OperatingPoint], log: &Log) -> [Loss; 1 + Self::UNKNOWNS] {
+        let angle = points.iter().map(turned).collect();
+        let angle = Loss { voltages: angle, expected: 0.0, standard_error: USUAL_OFFSET, part: Part::FrameLag };
+        let [other, missing, old] = self.unknowns(points, rough_flux(points), log);
+        [angle, other, missing, old]
+    }
+
+    /// The same with what an estimate found of the [unknowns](Self::unknowns).
+    pub(super) fn with(&self, found: [(f64, f64); Self::UNKNOWNS]) -> Self {
+        let [_, (missing, standard_error), _] = found;
+        Self { seconds: self.seconds + missing, standard_error, ..*self }
     }
 
     /// Standard uncertainty of `L_q`, H, by a lag that is not the same at all loads.
@@ -109,6 +128,11 @@ impl FrameLag {
     pub fn is_found(&self) -> bool {
         self.seconds.abs() > FOUND * self.standard_error
     }
+}
+
+/// The voltage of a point, turned backwards by a right angle: what a small angle adds to it.
+fn turned(point: &OperatingPoint) -> [f64; 2] {
+    [point.voltage().q, -point.voltage().d]
 }
 
 /// The unknown part, in the `other` reading of the voltages by a drive that controls at a usual rate, of what it changes: none where the
@@ -158,7 +182,7 @@ mod tests {
     fn points_turned_back_obey_the_steady_equations() {
         let (_, late) = points(&MODES, 50e-6);
         let lag = FrameLag { seconds: 50e-6, standard_error: 0.0, coasting_rows: 0 };
-        for point in lag.turned_back(&late) {
+        for point in lag.turned_back(&late, &FrameAngle::UNKNOWN) {
             let [d, q] = point.equations().map(|equation| equation.residual(&MOTOR.to_array()));
             assert!(d.abs().max(q.abs()) < 1e-12 * point.voltage().magnitude(), "{d} {q}");
         }
@@ -169,7 +193,7 @@ mod tests {
     fn the_unknowns_are_the_derivatives_of_the_voltage() {
         let (log, exact) = points(&MODES, 0.0);
         let lag = FrameLag { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 };
-        let [angle, _, missing, _] = lag.unknowns(&exact, MOTOR.psi_f, &log);
+        let [angle, _, missing, _] = lag.rough_unknowns(&exact, &log);
         let (_, late) = points(&MODES, 1e-6);
         for (w, (one, other)) in exact.iter().zip(&late).enumerate() {
             let change = [other.voltage().d - one.voltage().d, other.voltage().q - one.voltage().q];

@@ -227,10 +227,15 @@ struct Frames {
 }
 
 impl Frames {
-    /// The unknowns beside the motor at points that are turned back by a lag, given the flux, Wb.
-    fn unknowns(&self, points: &[OperatingPoint], lag: &FrameLag, psi_f: f64, log: &Log) -> Vec<Loss> {
+    /// The unknowns beside the motor at points that are turned back by a lag and an angle, whose own come last.
+    fn unknowns(&self, points: &[OperatingPoint], lag: &FrameLag, angle: &FrameAngle, motor: &Motor, log: &Log) -> Vec<Loss> {
         let gain = (self.gain != 0.0).then(|| coasting::gain_unknown(points, |w| self.coasting.contains(&points[w].rows), self.gain.abs()));
-        open_loop::unknowns(points, &self.open_loop, psi_f).into_iter().chain(gain).chain(lag.unknowns(points, psi_f, log)).collect()
+        let open_loop = open_loop::unknowns(points, &self.open_loop, motor.psi_f).into_iter();
+        open_loop
+            .chain(gain)
+            .chain(lag.unknowns(points, motor.psi_f, log))
+            .chain(FrameLag::unknowns_of_angle(points, angle, motor))
+            .collect()
     }
 }
 
@@ -271,13 +276,15 @@ fn solve_at_lag(
     frames: &Frames,
     request: &Request,
 ) -> Solved {
-    let (mut lag, mut psi_f) = (frames.lag, frame_lag::rough_flux(unturned));
+    let (mut lag, mut angle, mut motor) = (frames.lag, FrameAngle::UNKNOWN, only_flux(frame_lag::rough_flux(unturned)));
     let mut round = |lag: &mut FrameLag| {
-        let points = lag.turned_back(unturned);
-        let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other)));
-        let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, lag, psi_f, log)).collect();
+        let points = lag.turned_back(unturned, &angle);
+        let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other, &angle)));
+        let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, lag, &angle, &motor, log)).collect();
         let solved = solve_beside(log, points, &unknowns, InDoubt { angle_and_winding: true, loss: 0.0 }, request);
-        (*lag, psi_f) = (lag.with(&solved.estimate), solved.estimate.motor.psi_f);
+        let (before, of_angle) = last(&solved.estimate.found);
+        let (_, of_lag) = last(before);
+        (*lag, angle, motor) = (lag.with(of_lag), angle.with(of_angle), solved.estimate.motor);
         solved
     };
     for _ in 1..frame_lag::ROUNDS {
@@ -287,17 +294,28 @@ fn solve_at_lag(
     Solved { lag: Some(lag), ..solved }
 }
 
+/// What was found of the last unknowns, and what was found of those before.
+fn last<const UNKNOWNS: usize>(found: &[(f64, f64)]) -> (&[(f64, f64)], [(f64, f64); UNKNOWNS]) {
+    let (before, last) = found.split_at(found.len() - UNKNOWNS);
+    (before, std::array::from_fn(|k| last[k]))
+}
+
+/// A motor of which only the flux is known, Wb.
+fn only_flux(psi_f: f64) -> Motor {
+    Motor { rs: 0.0, ld: 0.0, lq: 0.0, psi_f }
+}
+
 /// Solves points of a drive whose angle may be unknown; again with the points turned back by what was found of it. Points that contradict
 /// each other are left so: an angle bends to anything, and what makes them contradict each other may be something else.
 fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAngle>, in_doubt: InDoubt, request: &Request) -> Solved {
     let at_the_angle = solve_beside(log, unturned.to_vec(), &[], in_doubt, request);
     let Some(mut angle) = angle.filter(|_| at_the_angle.misfit.is_none()) else { return at_the_angle };
-    let mut motor = Motor { rs: 0.0, ld: 0.0, lq: 0.0, psi_f: frame_lag::rough_flux(unturned) };
+    let mut motor = only_flux(frame_lag::rough_flux(unturned));
     let mut round = |angle: &mut FrameAngle| {
         let points = angle.turned_back(unturned);
         let unknowns = angle.unknowns(&points, &motor);
         let solved = solve_beside(log, points, &unknowns, in_doubt, request);
-        (*angle, motor) = (angle.with(&solved.estimate), solved.estimate.motor);
+        (*angle, motor) = (angle.with(last(&solved.estimate.found).1), solved.estimate.motor);
         solved
     };
     for _ in 1..frame_angle::ROUNDS {
