@@ -272,8 +272,8 @@ pub(crate) fn speed_in_doubt(log: &Log) -> Option<[f64; 2]> {
     is_in_doubt.then_some([low, high])
 }
 
-/// Whether the slopes of the currents suit the speed as it is, and one that is so many times lower no better. Simulated currents that follow
-/// at another speed do so for another reason then: a supply that ripples, or saturation.
+/// Whether the slopes of the currents suit the speed as it is, and one that is so many times lower no better. Simulated currents that
+/// follow at another speed do so for another reason then: a supply that ripples, or saturation.
 pub(crate) fn slopes_suit_the_speed(log: &Log, too_high: f64) -> bool {
     speed_of_slopes(log).is_some_and(|slopes| {
         let [low, high] = slopes.too_high;

@@ -79,8 +79,8 @@ impl FrameAngle {
     }
 
     /// The same with what an estimate found of the [unknowns](Self::unknowns).
-    pub(super) fn with(&self, found: [(f64, f64); Self::UNKNOWNS]) -> Self {
-        let [_, (offset, offset_error), (delay, delay_error)] = found;
+    pub(super) fn with(&self, found: &[(f64, f64); Self::UNKNOWNS]) -> Self {
+        let [_, (offset, offset_error), (delay, delay_error)] = *found;
         Self { offset: self.offset + offset, delay: self.delay + delay, errors: [offset_error, delay_error] }
     }
 }

@@ -112,8 +112,8 @@ impl FrameLag {
     }
 
     /// The same with what an estimate found of the [unknowns](Self::unknowns).
-    pub(super) fn with(&self, found: [(f64, f64); Self::UNKNOWNS]) -> Self {
-        let [_, (missing, standard_error), _] = found;
+    pub(super) fn with(&self, found: &[(f64, f64); Self::UNKNOWNS]) -> Self {
+        let [_, (missing, standard_error), _] = *found;
         Self { seconds: self.seconds + missing, standard_error, ..*self }
     }
 

@@ -277,27 +277,24 @@ fn solve_at_lag(
     request: &Request,
 ) -> Solved {
     let (mut lag, mut angle, mut motor) = (frames.lag, FrameAngle::UNKNOWN, only_flux(frame_lag::rough_flux(unturned)));
-    let mut round = |lag: &mut FrameLag| {
+    let mut round = || {
         let points = lag.turned_back(unturned, &angle);
         let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other, &angle)));
-        let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, lag, &angle, &motor, log)).collect();
+        let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, &lag, &angle, &motor, log)).collect();
         let solved = solve_beside(log, points, &unknowns, InDoubt { angle_and_winding: true, loss: 0.0 }, request);
-        let (before, of_angle) = last(&solved.estimate.found);
-        let (_, of_lag) = last(before);
-        (*lag, angle, motor) = (lag.with(of_lag), angle.with(of_angle), solved.estimate.motor);
+        if let Some((before, of_angle)) = solved.estimate.found.split_last_chunk()
+            && let Some((_, of_lag)) = before.split_last_chunk()
+        {
+            (lag, angle) = (lag.with(of_lag), angle.with(of_angle));
+        }
+        motor = solved.estimate.motor;
         solved
     };
     for _ in 1..frame_lag::ROUNDS {
-        round(&mut lag);
+        round();
     }
-    let solved = round(&mut lag);
+    let solved = round();
     Solved { lag: Some(lag), ..solved }
-}
-
-/// What was found of the last unknowns, and what was found of those before.
-fn last<const UNKNOWNS: usize>(found: &[(f64, f64)]) -> (&[(f64, f64)], [(f64, f64); UNKNOWNS]) {
-    let (before, last) = found.split_at(found.len() - UNKNOWNS);
-    (before, std::array::from_fn(|k| last[k]))
 }
 
 /// A motor of which only the flux is known, Wb.
@@ -315,7 +312,10 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
         let points = angle.turned_back(unturned);
         let unknowns = angle.unknowns(&points, &motor);
         let solved = solve_beside(log, points, &unknowns, in_doubt, request);
-        (*angle, motor) = (angle.with(last(&solved.estimate.found).1), solved.estimate.motor);
+        if let Some((_, of_angle)) = solved.estimate.found.split_last_chunk() {
+            *angle = angle.with(of_angle);
+        }
+        motor = solved.estimate.motor;
         solved
     };
     for _ in 1..frame_angle::ROUNDS {
