@@ -20,6 +20,8 @@ pub struct Header {
     pub separator: u8,
     /// How the rows are written.
     pub rows: RowStyle,
+    /// A row may lack its last cells, where the channels that they are of ended before others.
+    pub may_end_early: bool,
     /// Offset of the first byte below.
     pub body: usize,
     /// Line of that byte.
@@ -73,7 +75,7 @@ fn of_scope(text: &str, export: Export, notes: &mut Vec<String>) -> Result<Heade
         return Err(FileError::from(Problem::SampleTimes { times: sample_times }).at_line(line));
     }
     notes.push("read as an export of TwinCAT Scope, whose times are milliseconds".to_owned());
-    Ok(Header { names, units, line, separator, rows: RowStyle::Plain, body, body_line: 0 })
+    Ok(Header { names, units, line, separator, rows: RowStyle::Plain, may_end_early: true, body, body_line: 0 })
 }
 
 /// Tektronix writes the labels of the channels above their names, `TIME,CH1`: what has a label has that name.
@@ -145,6 +147,7 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
             line: record::line_of(text, start),
             separator: b'\t',
             rows: RowStyle::Aligned,
+            may_end_early: false,
             body: start + first.len(),
             body_line: 0,
         },
@@ -168,7 +171,7 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
 fn at(text: &str, start: usize, separator: u8) -> Header {
     let (names, length) = record::first_record(&text[start..], separator);
     let (line, body) = (record::line_of(text, start), start + length);
-    Header { names, units: Vec::new(), line, separator, rows: RowStyle::Plain, body, body_line: 0 }
+    Header { names, units: Vec::new(), line, separator, rows: RowStyle::Plain, may_end_early: false, body, body_line: 0 }
 }
 
 /// Whether a line and the first row below it, or the line alone if it has numbers only, have as many words and no separator: their cells

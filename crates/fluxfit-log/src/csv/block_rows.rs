@@ -8,7 +8,10 @@ use crate::{
 use ::csv::ByteRecord;
 use fluxfit_files::{
     FileError, Problem as FileProblem,
-    csv::record::{begin, in_memory, next, number, offset, reader, text_of, trimmed},
+    csv::{
+        header::Header,
+        record::{begin, in_memory, next, number, offset, reader, text_of, trimmed},
+    },
     input::line_at,
 };
 use std::ops::Range;
@@ -18,6 +21,8 @@ pub(super) struct Rules<'a> {
     pub(super) separator: u8,
     /// Number of cells of a row.
     pub(super) expected: usize,
+    /// A row may have fewer.
+    may_end_early: bool,
     pub(super) wanted: &'a [WantedColumn],
     /// The wanted columns in the order of the file: the index of each, and its place among the wanted ones. None if two are the same
     /// column.
@@ -67,12 +72,13 @@ enum Reading {
 }
 
 impl<'a> Rules<'a> {
-    pub(super) fn new(separator: u8, expected: usize, wanted: &'a [WantedColumn]) -> Self {
+    pub(super) fn new(header: &Header, wanted: &'a [WantedColumn]) -> Self {
+        let (separator, expected, may_end_early) = (header.separator, header.names.len(), header.may_end_early);
         let mut order: Vec<(usize, usize)> = wanted.iter().enumerate().map(|(place, column)| (column.index, place)).collect();
         order.sort_unstable();
         // Cells that are no numbers are not those of a usual row.
         let is_distinct = order.windows(2).all(|pair| pair[0].0 != pair[1].0) && wanted.iter().all(|column| column.instants.is_none());
-        Self { separator, expected, wanted, order: is_distinct.then_some(order) }
+        Self { separator, expected, may_end_early, wanted, order: is_distinct.then_some(order) }
     }
 }
 
@@ -176,10 +182,10 @@ impl<'a> BlockRows<'a> {
 
     /// Appends the numbers of a row to the block.
     fn take(&mut self, row: &Row) -> Result<Reading, FileError> {
-        let Rules { separator, expected, wanted, .. } = *self.rules;
+        let Rules { separator, expected, may_end_early, wanted, .. } = *self.rules;
         let found = row.cells.len();
         // Empty cells beyond the names are trailing separators.
-        if found < expected || (expected..found).any(|index| !row.cell(index).is_empty()) {
+        if found < expected && (!may_end_early || row.is_cut_off) || (expected..found).any(|index| !row.cell(index).is_empty()) {
             if row.is_blank() {
                 return Ok(Reading::Blank);
             }

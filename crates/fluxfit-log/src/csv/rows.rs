@@ -25,7 +25,7 @@ pub(super) fn read(
     size: usize,
     take: &mut dyn FnMut(&mut Block) -> Result<(), FileError>,
 ) -> Result<Vec<String>, FileError> {
-    let rules = Rules::new(header.separator, header.names.len(), wanted);
+    let rules = Rules::new(header, wanted);
     let mut blocks = Blocks::new(text, header.body, header.body_line, header.separator, size);
     let mut carried = Carried::of(wanted.len());
     let mut notes = Vec::new();

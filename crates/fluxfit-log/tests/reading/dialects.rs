@@ -60,6 +60,29 @@ fn titles_and_a_row_of_units_are_recognized() {
     assert_eq!((read.log.columns().t[1], read.log.columns().id[0]), (0.001, 3.0));
 }
 
+/// The log above as TwinCAT Scope exports it where channels share a time; a slow channel has its own, and ends before them or after.
+#[test]
+fn channels_of_one_time_in_an_export_of_twincat_scope_are_read() {
+    let expected = log_of(LOG.as_bytes(), &LogOptions::default()).columns().clone();
+    let line = |property: &str, values: [&str; 6]| {
+        let [ud, uq, id, iq, omega_e, warm] = values;
+        format!("{property}\t{ud}\t{uq}\t{id}\t{iq}\t{omega_e}\t{property}\t{warm}\r\n")
+    };
+    let titles = "Name\tS\r\nFile\tC:\\S.svdx\r\nStarttime of export\t132959733843760000\tMontag, 2. Mai 2022\t15:56:24.376\r\n\r\n";
+    let head = line("Name", ["ud", "uq", "id", "iq", "omega_e", "warm"])
+        + &line("SymbolComment", [""; 6])
+        + &line("SampleTime[ms]", ["1", "1", "1", "1", "1", "2"])
+        + &line("Unit", ["V (Voltage)", "V (Voltage)", "A (Current)", "A (Current)", "(None)", "(None)"]);
+    let rows = ["0\t-1,5\t20,25\t0\t3\t400\t0\t25", "1\t-1,25\t20\t-0,5\t3,125\t401\t2\t25", "2\t0\t19\t1e-3\t3\t-4,5"];
+    let longer = " \t \t \t \t \t \t4\t26\r\n";
+    for above in [titles, ""] {
+        let text = format!("{above}{head}\r\n{}\r\n", rows.join("\r\n"));
+        assert_eq!(*log_of(text.as_bytes(), &LogOptions::default()).columns(), expected);
+        let text = format!("{above}{head}\r\n{}\t4\t26\r\n{longer}", rows.join("\r\n"));
+        assert_eq!(*log_of(text.as_bytes(), &LogOptions::default()).columns(), expected);
+    }
+}
+
 #[test]
 fn compression_and_encoding_do_not_change_the_log() {
     let expected = log_of(LOG.as_bytes(), &LogOptions::default());
