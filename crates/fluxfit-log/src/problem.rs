@@ -27,6 +27,10 @@ pub(crate) enum Problem {
     EmptyCell,
     #[error("{} has a comma and a point, so its decimal mark is ambiguous; write numbers without thousands separators", quote(.text))]
     Thousands { text: String },
+    #[error(
+        "the commas in its quoted numbers may be decimal marks or thousands separators; write numbers with decimal points and without thousands separators"
+    )]
+    UnclearComma,
     #[error("{} is a time that is not understood; write it as a number, in s, or as in 2016-02-12 10:31:00.123", quote(.text))]
     ClockTime { text: String },
     #[error("{} is no date and time as in the first rows; write all of them in one way", quote(.text))]
@@ -247,7 +251,7 @@ impl Problem {
                 FileErrorKind::Format
             }
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
-            Self::DecimalMarks { .. } | Self::OtherMark { .. } => FileErrorKind::Value,
+            Self::DecimalMarks { .. } | Self::OtherMark { .. } | Self::UnclearComma => FileErrorKind::Value,
             Self::Missing { .. }
             | Self::Reference { .. }
             | Self::NotALog { .. }

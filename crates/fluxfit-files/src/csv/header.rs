@@ -99,13 +99,13 @@ fn units(text: &str, header: &Header) -> Option<(Vec<String>, usize)> {
         Some((cells(line, header.separator, header.rows), from + start + line.len()))
     };
     let (row, end) = record(header.body)?;
-    let is_unit = |cell: &String| !is_number(cell, header.separator) && cell.chars().count() <= LONGEST_UNIT;
+    let is_unit = |cell: &String| !is_number(cell) && cell.chars().count() <= LONGEST_UNIT;
     let is_row = row.iter().all(is_unit) && row.iter().filter(|cell| !cell.is_empty()).count() > 1;
     if !is_row || row.len() > header.names.len() {
         return None;
     }
     let (below, _) = record(end)?;
-    below.iter().any(|cell| is_number(cell, header.separator)).then_some((row, end))
+    below.iter().any(|cell| is_number(cell)).then_some((row, end))
 }
 
 /// The cells of a line.
@@ -153,7 +153,7 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         },
         _ => at(text, start, stated_separator.unwrap_or_else(|| most_frequent_separator(first))),
     };
-    let is_value = |name: &String| is_number(name.trim_end_matches(';'), header.separator);
+    let is_value = |name: &String| is_number(name.trim_end_matches(';'));
     // Settings of an oscilloscope beside its first samples: columns may be called 1 and 2, but not 0.5.
     let fractions = header.names.iter().filter(|name| is_value(name) && name.contains(['.', ','])).count();
     if fractions > 1 && !header.names.iter().all(is_value) {
@@ -178,7 +178,7 @@ fn at(text: &str, start: usize, separator: u8) -> Header {
 /// are separated by spaces.
 fn is_aligned(text: &str, start: usize, line: &str) -> bool {
     let bare = |line: &str| !line.trim().contains([',', ';', '\t', '"']);
-    let are_numbers = |line: &str| line.split_whitespace().all(|word| is_number(word, b'\t'));
+    let are_numbers = |line: &str| line.split_whitespace().all(is_number);
     let words = line.split_whitespace().count();
     let fits = |row: &str| row.split_whitespace().count() == words && bare(row);
     words > 1
@@ -205,7 +205,7 @@ fn from_comments(text: &str, comments: &[(usize, &str)], body: usize, first: Hea
         cells(bare, b'\t', RowStyle::Aligned)
     };
     let mut fitting = comments.iter().rev().map(|(start, comment)| (*start, cells_of(comment))).filter(|(_, cells)| {
-        let are_names = !cells.iter().any(|cell| cell.is_empty() || is_number(cell, b'\t'));
+        let are_names = !cells.iter().any(|cell| cell.is_empty() || is_number(cell));
         cells.len() == first.names.len() && are_names
     });
     let Some((mut start, mut names)) = fitting.next() else {
@@ -231,12 +231,11 @@ fn from_comments(text: &str, comments: &[(usize, &str)], body: usize, first: Hea
 fn is_title(text: &str, start: usize, line: &str) -> bool {
     let header = at(text, start, most_frequent_separator(line));
     let cells = header.names.len();
-    let dated =
-        header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name, header.separator));
+    let dated = header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name));
     let below = || lines(&text[header.body..]).filter(|(_, line)| !line.trim().is_empty());
     let cells_of = |line: &str| record::first_record(line, most_frequent_separator(line)).0;
     if cells > 1 && !dated {
-        let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell, b';')).count() * 2 > cells.len();
+        let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell)).count() * 2 > cells.len();
         let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
         return row.is_some_and(|row| 2 * cells <= row.len())
             || header.names.iter().any(String::is_empty) && is_above_names(&header, text)
@@ -254,7 +253,7 @@ fn is_preamble(line: &Header, text: &str) -> bool {
         .take(TITLES)
         .map(|below| record::first_record(below, most_frequent_separator(below)).0)
         .collect();
-    let numbers = |cells: &[String]| cells.iter().filter(|cell| is_number(cell, b';')).count();
+    let numbers = |cells: &[String]| cells.iter().filter(|cell| is_number(cell)).count();
     let filled = |cells: &[String]| cells.iter().filter(|cell| !cell.is_empty()).count();
     let is_row = |cells: &[String]| numbers(cells) > 1 && numbers(cells) == filled(cells);
     let body = cells.windows(2).position(|pair| is_row(&pair[0]) && is_row(&pair[1]) && pair[0].len() == pair[1].len());
@@ -279,7 +278,7 @@ const UNITS: [&str; 16] = ["s", "ms", "us", "v", "mv", "a", "ma", "rpm", "1/min"
 /// Whether a line below a line with empty cells, and above the first row of numbers, has more names in it.
 fn is_above_names(line: &Header, text: &str) -> bool {
     let filled = |cells: &[String]| cells.iter().filter(|cell| !cell.is_empty()).count();
-    let numbers = |cells: &[String]| cells.iter().filter(|cell| is_number(cell, line.separator)).count();
+    let numbers = |cells: &[String]| cells.iter().filter(|cell| is_number(cell)).count();
     lines(&text[line.body..])
         .filter(|(_, line)| !line.trim().is_empty())
         .take(TITLES)
@@ -318,9 +317,9 @@ fn most_frequent_separator(line: &str) -> u8 {
     [b'\t', b',', b';'].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
 
-/// Whether a cell holds a number.
-pub fn is_number(cell: &str, separator: u8) -> bool {
-    record::number(cell.as_bytes(), separator, &mut String::new()).is_some()
+/// Whether a cell holds a number. A comma in it is a decimal comma: where commas separate, it was quoted.
+pub fn is_number(cell: &str) -> bool {
+    record::number(cell.as_bytes(), b';', &mut String::new()).is_some()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::{error::FileError, input::line_at, problem::Problem};
 use ::csv::{ByteRecord, Reader, ReaderBuilder};
 
 /// The number in a cell, if it is one. `nan` and `inf` count as numbers here: the log refuses them by row and column. A comma is a
-/// decimal comma unless it is the separator.
+/// decimal comma, unless the cells were split at commas without regard to quotation marks.
 #[inline]
 pub fn number(cell: &[u8], separator: u8, scratch: &mut String) -> Option<f64> {
     let cell = trimmed(cell);

@@ -182,7 +182,7 @@ impl<'a> BlockRows<'a> {
 
     /// Appends the numbers of a row to the block.
     fn take(&mut self, row: &Row) -> Result<Reading, FileError> {
-        let Rules { separator, expected, may_end_early, wanted, .. } = *self.rules;
+        let Rules { expected, may_end_early, wanted, .. } = *self.rules;
         let found = row.cells.len();
         // Empty cells beyond the names are trailing separators.
         if found < expected && (!may_end_early || row.is_cut_off) || (expected..found).any(|index| !row.cell(index).is_empty()) {
@@ -200,7 +200,8 @@ impl<'a> BlockRows<'a> {
             let cell = row.cell(column.index);
             let value = match &column.instants {
                 Some(instants) => instants.seconds(cell),
-                None => number(cell, separator, &mut self.scratch),
+                // A comma in a cell that commas separate was quoted: it is a decimal comma.
+                None => number(cell, b';', &mut self.scratch),
             };
             let value = match value {
                 Some(value) => {
@@ -251,9 +252,6 @@ impl<'a> BlockRows<'a> {
 
     /// Checks that the decimal mark of a cell is that of the others. An optional column is compared with itself only, and refused alone.
     pub(super) fn check_mark(&mut self, place: usize, cell: &[u8], line: u64) -> Result<(), FileError> {
-        if self.rules.separator == b',' {
-            return Ok(());
-        }
         let column = &self.rules.wanted[place];
         let own = if column.is_optional { &mut self.carried.optional[place] } else { &mut self.carried.marks };
         let Some(other) = own.conflicting(cell, line) else { return Ok(()) };

@@ -19,7 +19,7 @@ const ROWS_WITHOUT: usize = 100;
 pub(super) fn without_numbers(head: &str, header: &Header) -> Vec<usize> {
     let rows = head[header.body.min(head.len())..].split(['\r', '\n']).filter(|line| !line.trim().is_empty());
     let table: Vec<Vec<String>> = rows.take(ROWS_WITHOUT).map(|line| first_record(line, header.separator).0).collect();
-    let has_number = |place: usize| table.iter().filter_map(|row| row.get(place)).any(|cell| is_number(cell, header.separator));
+    let has_number = |place: usize| table.iter().filter_map(|row| row.get(place)).any(|cell| is_number(cell));
     (0..header.names.len()).filter(|place| !table.is_empty() && !has_number(*place)).collect()
 }
 
@@ -28,7 +28,7 @@ pub(super) fn instants(head: &str, header: &Header) -> Vec<Option<Instants>> {
     let mut rows = head[header.body.min(head.len())..].split(['\r', '\n']).filter(|line| !line.trim().is_empty());
     let cells = |line: &str| first_record(line, header.separator).0;
     let Some(first) = rows.next().map(cells) else { return Vec::new() };
-    let is_likely = |cell: &String| match is_number(cell, header.separator) {
+    let is_likely = |cell: &String| match is_number(cell) {
         true => cell.bytes().take_while(u8::is_ascii_digit).count() >= EPOCH_DIGITS,
         false => {
             let digits = cell.bytes().filter(u8::is_ascii_digit).count();

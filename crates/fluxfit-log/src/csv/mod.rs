@@ -6,7 +6,7 @@
 //!
 //! Recognized without options: comma, semicolon, tab or aligning spaces; a separator or a semicolon at the end of a line; quotes and
 //! spaces around names and values; gzip; UTF-8, UTF-16 and Windows-1252; titles above the header, `#` and `%` comments, and a header in
-//! them; a row of units below it; blank lines; a decimal comma, unless the comma is the separator; dates and times. Only the wanted cells
+//! them; a row of units below it; blank lines; a decimal comma, in quotes where the comma separates; dates and times. Only the wanted cells
 //! are converted to numbers, in blocks of rows on all cores.
 
 mod block_rows;

@@ -87,12 +87,14 @@ impl BlockRows<'_> {
     /// Takes the row whose values were appended.
     #[inline]
     fn accept(&mut self, line: &Line) -> Result<bool, FileError> {
-        if self.rules.separator != b',' {
-            for (place, cell) in line.cells.iter().enumerate() {
-                let cell = trimmed(&line.text[cell.clone()]);
-                if !cell.is_empty() && (!self.has_point(place) || cell.contains(&b',')) {
-                    self.check_mark(place, cell, line.number).map_err(|error| error.at_line(line.number))?;
-                }
+        let may_have_comma = self.rules.separator != b',';
+        for (place, cell) in line.cells.iter().enumerate() {
+            if self.has_point(place) && !may_have_comma {
+                continue;
+            }
+            let cell = trimmed(&line.text[cell.clone()]);
+            if !cell.is_empty() && (!self.has_point(place) || cell.contains(&b',')) {
+                self.check_mark(place, cell, line.number).map_err(|error| error.at_line(line.number))?;
             }
         }
         self.taken(line.number);

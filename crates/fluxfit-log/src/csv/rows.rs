@@ -53,6 +53,10 @@ pub(super) fn read(
     }
     let mut block = Block::of(wanted.len());
     carried.compare_marks(wanted, &mut block);
+    // Spreadsheets quote numbers with thousands separators where commas separate.
+    if let Some(line) = carried.marks.unclear_comma().filter(|_| header.separator == b',') {
+        return Err(FileError::from(Problem::UnclearComma).at_line(line));
+    }
     if carried.marks.comma.is_some() {
         notes.push("decimal commas were read as decimal points".to_owned());
     }

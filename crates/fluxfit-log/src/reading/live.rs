@@ -149,7 +149,7 @@ fn rows_below(head: &str, header: &Header) -> usize {
     let is_row = |line: &&str| {
         let tidied = header.rows.tidied(line.trim_end_matches(['\r', '\n']), 0);
         let (cells, _) = record::first_record(&tidied, header.separator);
-        line.ends_with('\n') && cells.iter().filter(|cell| header::is_number(cell, header.separator)).count() * 2 > cells.len()
+        line.ends_with('\n') && cells.iter().filter(|cell| header::is_number(cell)).count() * 2 > cells.len()
     };
     body.split_inclusive('\n').filter(is_row).count()
 }

@@ -1,6 +1,6 @@
 //! Every dialect of text gives the same log.
 
-use crate::fixtures::{LOG, log_of, map};
+use crate::fixtures::{HEADER, LOG, log_of, map, refusal};
 use fluxfit_log::{LogOptions, parse_log};
 use proptest::prelude::*;
 
@@ -33,6 +33,8 @@ fn every_dialect_gives_the_same_log() {
         extra,
         quoted.clone(),
         quoted.replace(',', ", "),
+        // A decimal comma in quotes, where commas separate, as spreadsheets write it.
+        quoted.replace("\",\"", ";").replace('.', ",").replace(';', "\",\""),
         format!("# drive 3\n% at noon\n\n{LOG}"),
         format!("# {LOG}"),
         format!("sep=;\r\n{}", LOG.replace(',', ";")),
@@ -102,6 +104,18 @@ fn a_last_line_that_is_cut_off_is_left_out_with_a_note() {
         assert_eq!(read.log, expected);
         assert_eq!(read.log.source().notes, ["the last line, 5, is cut off and left out"]);
     }
+}
+
+#[test]
+fn a_comma_in_quotes_that_may_separate_thousands_is_refused() {
+    let refused = |rows: &str| refusal(format!("{HEADER}{rows}").as_bytes(), &LogOptions::default());
+    let unclear = "drive.csv, line 3: the commas in its quoted numbers may be decimal marks or thousands separators; write numbers with \
+                   decimal points and without thousands separators";
+    assert_eq!(refused("0,1,2,3,4,999\n1,1,2,3,4,\"1,001\"\n2,1,2,3,4,\"1,002\"\n"), unclear);
+    let mixed = refused("0.5,1,2,3,4,999\n1.5,1,2,3,4,\"1,001\"\n");
+    assert!(mixed.contains("\"1,001\" has another decimal mark than line 2"), "{mixed}");
+    let several = refused("0,1,2,3,4,\"1,001,001\"\n1,1,2,3,4,5\n");
+    assert!(several.contains("\"1,001,001\" is not a number"), "{several}");
 }
 
 #[test]
