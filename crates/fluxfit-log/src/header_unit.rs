@@ -74,11 +74,10 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
         let at = header.strip_suffix(close)?.rfind(open)?;
         Some((&header[..at], &header[at + open.len_utf8()..header.len() - close.len_utf8()]))
     });
-    // The index of an element, `Idq_in_A.value[0]`, is no unit.
+    // The index of an element, `Idq_in_A.value[0]`, or of a column of a matrix, `udq(:,1)`, is no unit.
     if let Some((name, index)) = brackets
-        && !index.is_empty()
-        && index.bytes().all(|byte| byte.is_ascii_digit())
-        && !name.ends_with([' ', ']', ')'])
+        && is_index(index)
+        && (index.contains(':') || !name.ends_with([' ', ']', ')']))
     {
         return split_header(name.trim_end_matches(".value"), dimension);
     }
@@ -106,6 +105,11 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
         Some(unit) if header.len() > 1 => ("", HeaderUnit::Known(unit)),
         _ => (header, HeaderUnit::None),
     }
+}
+
+/// Whether a text in brackets is an index: `0`, or as MATLAB and numpy write that of a column or a row, `:,1`, `1,:`.
+fn is_index(text: &str) -> bool {
+    text.contains(|c: char| c.is_ascii_digit()) && text.chars().all(|c| c.is_ascii_digit() || ":, ".contains(c))
 }
 
 /// Units without brackets that would be read as SI if they were not known: thousands, shares of a base value, digits of a converter, root
@@ -204,6 +208,10 @@ mod tests {
             ("t/s", Time, ("t", HeaderUnit::Known(Unit::Second))),
             ("speed rad/s", Time, ("speed rad/s", HeaderUnit::None)),
             ("velocity [turns/s]", Speed, ("velocity", HeaderUnit::Known(Unit::HertzMechanical))),
+            ("out.vdq(:,1)", Voltage, ("out.vdq", HeaderUnit::None)),
+            ("vdq_mV(2,:)", Voltage, ("vdq", HeaderUnit::Known(Unit::Millivolt))),
+            ("vdq [mV](:,1)", Voltage, ("vdq", HeaderUnit::Known(Unit::Millivolt))),
+            ("ud (:)", Voltage, ("ud", HeaderUnit::Unknown(":"))),
             ("ü)", Speed, ("ü)", HeaderUnit::None)),
         ];
         for (header, dimension, expected) in cases {

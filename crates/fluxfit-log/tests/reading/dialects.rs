@@ -42,6 +42,9 @@ fn every_dialect_gives_the_same_log() {
     for dialect in dialects {
         assert_eq!(log_of(dialect.as_bytes(), &LogOptions::default()), expected, "{dialect}");
     }
+    // Columns of a matrix, as they are called of a MAT file.
+    let matrix = LOG.replacen("ud,uq,id,iq", "\"out.vdq(:,1)\",\"out.vdq(:,2)\",\"idq(1,:)\",\"idq(2,:)\"", 1);
+    assert_eq!(log_of(matrix.as_bytes(), &LogOptions::default()), expected);
     let renamed = LOG.replace("ud", "V d").replace("omega_e", "speed");
     assert_eq!(log_of(renamed.as_bytes(), &map(&["ud=V d", "omega=Speed"])), expected);
 }
