@@ -41,7 +41,7 @@ pub(crate) enum Problem {
     OtherMark { other: u64 },
 
     // Columns
-    #[error("{}{}{}", missing_columns(.missing, .present, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
+    #[error("{}{}{}{}", missing_columns(.missing, .present, .proposals), without_time(.missing, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
     Missing {
         missing: Vec<&'static str>,
         present: Vec<String>,
@@ -98,6 +98,10 @@ pub(crate) enum Problem {
     SpeedRotation { electrical: Unit, mechanical: Unit, has_pole_pairs: bool },
     #[error("the times are whole numbers in steps of {step}, and nothing states their unit; state it")]
     TimeUnit { step: u64 },
+    #[error(
+        "the times are rounded to {step}, and about {rows} rows have the same; do not remove them: write the time between rows into a mapping file, sample_period = \"{period}\""
+    )]
+    RoundedTime { rows: String, step: String, period: String },
     #[error("by its values this column is not the angle of the rotor; map theta_e to the angle, or log it")]
     NoAngle,
 
@@ -267,6 +271,7 @@ impl Problem {
             | Self::SpeedUnit { .. }
             | Self::SpeedRotation { .. }
             | Self::TimeUnit { .. } => FileErrorKind::Unit,
+            Self::RoundedTime { .. } => FileErrorKind::Data,
             Self::Rms { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
@@ -400,6 +405,20 @@ fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, Str
     let lacking = if rest.is_empty() { String::new() } else { format!("; no column resembles {}", list(&rest)) };
     let (by, if_so) = if pairs.len() == 1 { ("its name", "map it if it is") } else { ("their names", "map them if they are") };
     format!("{what}; by {by}, {}: {if_so}{lacking}", list(&pairs))
+}
+
+/// Of the columns that a log lacks beside the time at most so many may be open where the time between its rows would make it one.
+const OPEN_BESIDE_TIME: usize = 1;
+
+/// What to do where a log has no column of times.
+fn without_time(missing: &[&str], proposals: &[(&str, String)]) -> String {
+    let is_proposed = |channel: &str| proposals.iter().any(|(proposed, _)| *proposed == channel);
+    let open = missing.iter().filter(|channel| !is_proposed(channel)).count();
+    if !missing.contains(&"t") || is_proposed("t") || open > 1 + OPEN_BESIDE_TIME {
+        return String::new();
+    }
+    "; if no column is the time and all rows are equally far apart, write the time between them into a mapping file, as in sample_period = \"0.1 ms\""
+        .to_owned()
 }
 
 /// What has to be stated of a table of a test bench.

@@ -60,6 +60,9 @@ pub(super) fn choose(
         let sentence = format!("no header states these units, so SI is assumed: {}", list(&columns));
         notes.push(Note::with_advice(sentence, Advice::StateUnit { channel: channel.name(), unit: None }));
     }
+    if let Some(note) = finder.unused_time() {
+        notes.push(note.into());
+    }
     if let Some(pole_pairs) = options.pole_pairs.filter(|_| chosen.iter().all(|column| !column.unit.is_mechanical())) {
         notes.push(format!("the number of pole pairs, {pole_pairs}, is not needed to read this: the speed is electrical already").into());
     }

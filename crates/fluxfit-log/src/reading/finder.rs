@@ -80,9 +80,11 @@ impl Finder<'_> {
         };
         // An error about the angle counts only if the angle is needed.
         let theta = self.index(ThetaE);
-        match self.index(T)? {
-            None if self.sample_period().is_some() => {}
-            index => take(T, index),
+        if !self.options.counts_rows() {
+            match self.index(T)? {
+                None if self.sample_period().is_some() => {}
+                index => take(T, index),
+            }
         }
         let mut has_phases = false;
         for (dq, phases, stator) in [([Ud, Uq], [UA, UB, UC], [UAlpha, UBeta]), ([Id, Iq], [IA, IB, IC], [IAlpha, IBeta])] {
@@ -201,6 +203,16 @@ impl Finder<'_> {
     /// The time between rows, s, of a log without a time column, from the options or the layout.
     fn sample_period(&self) -> Option<f64> {
         self.options.sample_period.or(self.layout.and_then(|layout| layout.sample_period))
+    }
+
+    /// Of a log with a time column and a stated time between rows, which of the two is not used.
+    pub(super) fn unused_time(&self) -> Option<String> {
+        self.options.sample_period?;
+        let name = self.index(T).ok().flatten().map(|index| shorten(&self.heads[index].name))?;
+        Some(match self.options.counts_rows() {
+            true => format!("column '{name}' is not read: the mapping file states sample_period; map t to the column to use it instead"),
+            false => format!("sample_period is not used: t is mapped to column '{name}'"),
+        })
     }
 
     /// The column of a channel: the mapped one; else the layout's; else the one with the canonical name, or the time column of an MDF

@@ -169,7 +169,7 @@ fn one_group(
     channels.columns = names.zip(values).filter(|(channel, _)| *channel != Run).collect();
     channels.headers = columns.iter().map(|column| (column.channel, column.header.clone())).collect();
     if let Some(counted) = counted {
-        notes.push(format!("the rows have no time: one row every {} s is assumed", counted.period).into());
+        notes.push(format!("t counts the rows: one every {} s", counted.period).into());
     }
     hold_slow(&mut channels);
     drop_unreadable(&mut channels, columns, refused, &lines, notes);

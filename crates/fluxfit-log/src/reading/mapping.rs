@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! pole_pairs = 4
-//! sample_period = "0.1 ms"        # of a log without a time column
+//! sample_period = "0.1 ms"        # in place of a time column
 //! park = "amplitude-invariant"    # or "power-invariant", "rms": scaling of the dq vectors
 //!
 //! [columns]

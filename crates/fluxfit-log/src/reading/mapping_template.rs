@@ -19,7 +19,7 @@ impl Inspection {
         let period = options.mapping.sample_period.or(self.layout.and_then(|layout| layout.sample_period));
         match period {
             Some(period) => _ = writeln!(text, "sample_period = {period:?}       # s"),
-            None => text += "# sample_period = \"0.1 ms\"  # needed without a time column\n",
+            None => text += "# sample_period = \"0.1 ms\"  # in place of a time column\n",
         }
         let park = options.mapping.park;
         if park != Park::default() {

@@ -34,6 +34,7 @@ mod read;
 mod repair;
 mod resemblance;
 mod rms;
+mod rounded_time;
 mod runs;
 mod selection;
 mod steady_test;

@@ -102,6 +102,11 @@ impl ResolvedOptions {
         self.headers.iter().find(|(stated, _)| *stated == channel).map(|(_, header)| header.as_str())
     }
 
+    /// Whether the times are those of rows that are equally far apart: a stated period has priority over a time that is not mapped.
+    pub(super) fn counts_rows(&self) -> bool {
+        self.sample_period.is_some() && self.header(Channel::T).is_none()
+    }
+
     /// Whether any channel is mapped.
     pub(super) fn has_headers(&self) -> bool {
         !self.headers.is_empty()

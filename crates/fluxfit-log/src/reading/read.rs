@@ -13,7 +13,7 @@ use super::{
     layout::Layout,
     lines::Lines,
     options::{LogOptions, ResolvedOptions},
-    phases, plausibility, repair,
+    phases, plausibility, repair, rounded_time,
     table::Table,
     turning,
 };
@@ -168,6 +168,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let named = layout.filter(|layout| !layout.is_canonical());
     let chosen = columns::choose(&table, named, options, &mut notes).map_err(|error| back_emf::named(&mut table, options, error))?;
     let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
+    rounded_time::refuse(&chosen, &channels)?;
     let aligned = align::align(&mut channels, &lines)?;
     let gaps = gaps_of_file(&channels, &dropped_before);
     plausibility::refuse_duties(&chosen, &channels)?;

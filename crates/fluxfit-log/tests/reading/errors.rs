@@ -2,7 +2,7 @@
 
 use crate::fixtures::{HEADER, LOG, ROWS, map, refusal};
 use fluxfit_files::{Advice, FileErrorKind};
-use fluxfit_log::{LogOptions, parse_log, read_log};
+use fluxfit_log::{LogOptions, Mapping, parse_log, read_log};
 use fluxfit_units::Unit;
 use std::path::Path;
 
@@ -58,7 +58,8 @@ fn headers_are_refused_in_one_sentence() {
         (
             format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
             "drive.csv, line 1: the columns t and uq are missing; the file has 'u_d', 'motor_speed', 'i_d', 'i_q', 'torque' and \
-             'profile_id'; map them if they have other names, else log them too",
+             'profile_id'; map them if they have other names, else log them too; if no column is the time and all rows are equally far \
+             apart, write the time between them into a mapping file, as in sample_period = \"0.1 ms\"",
         ),
         (
             format!("tiem,a q-axis voltage,ud,id,iq,omega_e\n{ROWS}"),
@@ -251,5 +252,48 @@ fn files_that_can_be_no_log_are_named() {
     for text in ["psi_d,-50,0,50\n-50,1,2,3\n0,1,2,3\n", ",-50,0,50\n-50,1,2,3\n0,1,2,3\n"] {
         let sentence = refusal(text.as_bytes(), &LogOptions::default());
         assert!(sentence.contains("a matrix over two quantities") && sentence.contains("a row for each point"), "{sentence}");
+    }
+}
+
+/// Six rows of 10 kHz for each time, as a logger writes them with three digits.
+#[test]
+fn times_that_were_rounded_are_told_as_such_and_a_stated_period_replaces_them() {
+    let rows = |first: &dyn Fn(usize) -> String| -> String {
+        (0..60).map(|k| format!("{},1.{k},20.{},0.5,3.{k},40{}.5\n", first(k), k % 7, k % 3)).collect()
+    };
+    let rounded = |k: usize| format!("{:.3}", (k as f64 * 1e-4 - 4e-5).max(0.0));
+    let text = format!("{HEADER}{}", rows(&rounded));
+    assert_eq!(
+        refusal(text.as_bytes(), &LogOptions::default()),
+        "drive.csv, column 't': the times are rounded to 1 ms, and about 10 rows have the same; do not remove them: write the time between \
+         rows into a mapping file, sample_period = \"0.1 ms\""
+    );
+    let mapping = |text: &str| LogOptions { mapping: Mapping::parse("m.toml", text.as_bytes()).unwrap(), ..LogOptions::default() };
+    let stated = mapping("sample_period = \"0.1 ms\"\n");
+    let exact = parse_log("drive.csv", format!("{HEADER}{}", rows(&|k| format!("{}e-4", k))).as_bytes(), &LogOptions::default()).unwrap();
+    let read = parse_log("drive.csv", text.as_bytes(), &stated).unwrap();
+    assert!(read.log.columns().t.iter().zip(&exact.log.columns().t).all(|(t, expected)| (t - expected).abs() < 1e-12));
+    assert_eq!(read.log.columns().uq, exact.log.columns().uq);
+    let notes = &read.log.source().notes;
+    let expected = "column 't' is not read: the mapping file states sample_period; map t to the column to use it instead";
+    assert_eq!(notes[..], [expected, "t counts the rows: one every 0.0001 s"]);
+    // A time that is mapped has priority.
+    let both = mapping("sample_period = \"1 ms\"\n[columns]\nt = \"t\"\n");
+    let read = parse_log("drive.csv", format!("{HEADER}{}", rows(&|k| format!("{}e-4", k))).as_bytes(), &both).unwrap();
+    assert_eq!(read.log.columns().t, exact.log.columns().t);
+    assert_eq!(read.log.source().notes, ["sample_period is not used: t is mapped to column 't'"]);
+}
+
+#[test]
+fn a_log_that_lacks_only_the_time_is_told_how_to_state_the_period() {
+    let remedy = "if no column is the time and all rows are equally far apart, write the time between them into a mapping file, as in \
+                  sample_period = \"0.1 ms\"";
+    for header in ["x,ud,uq,id,iq,omega_e", "x,bench vd,bench vq,bench id,bench iq,speed_rpm", "ud,uq,id,iq,omega_e"] {
+        let text = format!("{header}\n{}", "1,2,3,4,5,6\n".repeat(3));
+        assert!(refusal(text.as_bytes(), &LogOptions::default()).contains(remedy), "{header}");
+    }
+    for header in ["time stamp,bench vd,bench vq,bench id,bench iq,speed_rpm", "x,y,z,id,iq,omega_e"] {
+        let text = format!("{header}\n{}", "1,2,3,4,5,6\n".repeat(3));
+        assert!(!refusal(text.as_bytes(), &LogOptions::default()).contains("sample_period"), "{header}");
     }
 }
