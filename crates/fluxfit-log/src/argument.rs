@@ -71,12 +71,12 @@ mod tests {
         let refusal = |text| parse_unit(text).unwrap_err().to_string();
         assert_eq!(
             refusal("omega=rpm"),
-            "\"rpm\" is not a unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech"
+            "\"rpm\" is not a unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec, Hz-mech, krpm-elec or krpm-mech"
         );
-        assert_eq!(refusal("ud=A"), "\"A\" is not a unit of ud; it can be V, mV or Vrms");
+        assert_eq!(refusal("ud=A"), "\"A\" is not a unit of ud; it can be V, mV, kV or Vrms");
         assert_eq!(parse_unit("id=arms"), Ok(("id".into(), Unit::AmpereRms)));
         // An instantaneous value is no root mean square.
-        assert_eq!(refusal("ia=Arms"), "\"Arms\" is not a unit of ia; it can be A or mA");
+        assert_eq!(refusal("ia=Arms"), "\"Arms\" is not a unit of ia; it can be A, mA or kA");
         assert!(refusal("torque=Nm").starts_with("\"torque\" is not a channel of a log"), "{}", refusal("torque=Nm"));
         assert_eq!(refusal("ud"), "\"ud\" is not understood; write COLUMN=UNIT, as in omega=rpm-mech");
         assert_eq!(parse_map("ud=").unwrap_err().to_string(), "\"ud=\" is not understood; write COLUMN=HEADER, as in omega_e=motor_speed");

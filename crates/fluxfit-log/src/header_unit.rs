@@ -1,6 +1,6 @@
 //! Units in the headers of columns: `speed_rpm`, `ud [mV]`, `time@s`.
 
-use fluxfit_units::{Dimension, Unit};
+use fluxfit_units::{Dimension, Unit, wording};
 
 /// Whether a header states an electrical or a mechanical speed or angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,13 +37,16 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         "ns" | "nsec" | "nanos" | "nanosecond" | "nanoseconds" => Unit::Nanosecond,
         "v" | "volt" | "volts" => Unit::Volt,
         "mv" => Unit::Millivolt,
+        "kv" => Unit::Kilovolt,
         "a" | "amp" | "amps" | "ampere" => Unit::Ampere,
         "ma" => Unit::Milliampere,
+        "ka" => Unit::Kiloampere,
         "erpm" => Unit::RpmElectrical,
         // Where neither is stated, revolutions are those of the shaft: electrical ones are usually marked as such.
         "rpm" | "r/min" | "1/min" | "min-1" | "min^-1" | "u/min" | "upm" | "rev/min" | "tr/min" | "giri/min" => {
             by_rotation(Unit::RpmElectrical, Unit::RpmMechanical, Unit::RpmMechanical)
         }
+        "krpm" | "1000 rpm" | "1000/min" | "10^3/min" => by_rotation(Unit::KrpmElectrical, Unit::KrpmMechanical, Unit::KrpmMechanical),
         "rad/s" | "rad_s" | "rad.s" | "rads" | "rad_per_s" | "radps" => {
             by_rotation(Unit::RadianPerSecond, Unit::RadianPerSecondMechanical, Unit::RadianPerSecond)
         }
@@ -112,10 +115,19 @@ fn is_index(text: &str) -> bool {
     text.contains(|c: char| c.is_ascii_digit()) && text.chars().all(|c| c.is_ascii_digit() || ":, ".contains(c))
 }
 
-/// Units without brackets that would be read as SI if they were not known: thousands, shares of a base value, digits of a converter, root
+/// Units without brackets that would be read as SI if they were not known: shares of a base value, digits of a converter, root
 /// mean squares where a dq value is a peak.
-const NO_SI: [&str; 16] =
-    ["rms", "arms", "vrms", "krpm", "kv", "ka", "pu", "mrad/s", "krad/s", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
+const NO_SI: [&str; 13] = ["rms", "arms", "vrms", "pu", "mrad/s", "krad/s", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
+
+/// Texts in the place of a unit for a share of a base value, and how many of them are the whole.
+const SHARES: [(&str, f64); 7] =
+    [("%", 100.0), ("pct", 100.0), ("percent", 100.0), ("prozent", 100.0), ("pu", 1.0), ("p.u.", 1.0), ("p.u", 1.0)];
+
+/// How many make the base value, if a text in the place of a unit says that the values are shares of one.
+pub(crate) fn share(text: &str) -> Option<f64> {
+    let text = text.trim().trim_matches(['[', ']', '(', ')']).to_lowercase();
+    SHARES.iter().find(|(share, _)| *share == text).map(|(_, whole)| *whole)
+}
 
 /// Units and counts that a unit of speed begins with.
 const NUMERATORS: [&str; 10] = ["rad", "r", "rev", "revs", "turn", "turns", "u", "1", "m", "km"];
@@ -145,6 +157,24 @@ pub(crate) fn states_electrical(header: &str) -> bool {
     rotation(header) == Rotation::Electrical
 }
 
+/// The unit that a header or a row of units states, in words, where the user's own one contradicts it. A root mean square does not
+/// contradict V or A, nor an electrical speed one that says r/min and no more.
+pub(crate) fn contradicted(named: HeaderUnit, header: &str, stated: Unit) -> Option<String> {
+    let of_peak = |unit: Unit| if unit.is_rms() { 1.0 } else { unit.in_si() };
+    match named {
+        HeaderUnit::None => None,
+        HeaderUnit::Unknown(text) => (!is_rms_text(text)).then(|| wording::shorten(text.trim())),
+        HeaderUnit::Known(unit) => {
+            let has_rotation = rotation(header) != Rotation::Unstated && unit.is_mechanical() != stated.is_mechanical();
+            (of_peak(unit) != of_peak(stated) || has_rotation).then(|| unit.prose().to_owned())
+        }
+    }
+}
+
+fn is_rms_text(text: &str) -> bool {
+    ["rms", "arms", "vrms", "aeff", "veff", "eff"].contains(&text.trim().to_lowercase().as_str())
+}
+
 fn rotation(header: &str) -> Rotation {
     let lower = header.to_lowercase();
     let words = || lower.split(|c: char| !c.is_alphanumeric());
@@ -170,12 +200,15 @@ mod tests {
             ("t (µs)", Time, ("t", HeaderUnit::Known(Unit::Microsecond))),
             ("ms_today", Time, ("", HeaderUnit::Known(Unit::Millisecond))),
             ("motor_ud_v", Voltage, ("motor_ud", HeaderUnit::Known(Unit::Volt))),
+            ("ud_kV", Voltage, ("ud", HeaderUnit::Known(Unit::Kilovolt))),
+            ("iq [kA]", Current, ("iq", HeaderUnit::Known(Unit::Kiloampere))),
+            ("n_el [krpm]", Speed, ("n_el", HeaderUnit::Known(Unit::KrpmElectrical))),
             ("UD_MV", Voltage, ("UD", HeaderUnit::Known(Unit::Millivolt))),
             ("uq [pu]", Voltage, ("uq", HeaderUnit::Unknown("pu"))),
             ("uq@mA", Voltage, ("uq", HeaderUnit::Unknown("mA"))),
             ("rpm_mech", Speed, ("", HeaderUnit::Known(Unit::RpmMechanical))),
             ("<speed wm (rad/s)>", Speed, ("speed wm", HeaderUnit::Known(Unit::RadianPerSecond))),
-            ("speed_krpm", Speed, ("speed", HeaderUnit::Unknown("krpm"))),
+            ("speed_krpm", Speed, ("speed", HeaderUnit::Known(Unit::KrpmMechanical))),
             ("Vd_pu", Voltage, ("Vd", HeaderUnit::Unknown("pu"))),
             ("pu", Voltage, ("pu", HeaderUnit::None)),
             ("id_rms", Current, ("id", HeaderUnit::Unknown("rms"))),

@@ -83,8 +83,16 @@ pub(crate) enum Problem {
         shorten(.header), columns(.present), did_you_mean(.nearest.as_ref().map(|name| format!("'{}'", shorten(name))).as_deref())
     )]
     MappedHeader { channel: &'static str, header: String, present: Vec<String>, nearest: Option<String> },
-    #[error("{} in the header is not a known unit of {channel}; state the unit: {}; of another one also the scale to it, in a mapping file", quote(.text), choice(.units))]
-    HeaderUnit { channel: &'static str, text: String, units: Vec<&'static str> },
+    #[error(
+        "{} in the header is not a known unit of {channel}; state the unit if it is {}; else write its scale into a mapping file: {channel} = {{ column = {header:?}, scale = .. }}",
+        quote(.text), choice(.units)
+    )]
+    HeaderUnit { channel: &'static str, text: String, header: String, units: Vec<&'static str> },
+    #[error(
+        "{} in the header is a share of a base value, which the log does not state; write into a mapping file {channel} = {{ column = {header:?}, scale = .. }}, where the scale is the base value in {si}{}",
+        quote(.text), if *.whole == 1.0 { "" } else { " divided by 100" }
+    )]
+    Share { channel: &'static str, text: String, header: String, si: &'static str, whole: f64 },
     #[error(
         "the {what} is in {unit}, and converting it takes the number of pole pairs; state it, or state that the unit is {electrical_unit}"
     )]
@@ -267,6 +275,7 @@ impl Problem {
             }
             Self::UnclearTable { .. } | Self::LoadCurve => FileErrorKind::Columns,
             Self::HeaderUnit { .. }
+            | Self::Share { .. }
             | Self::PolePairs { .. }
             | Self::SpeedUnit { .. }
             | Self::SpeedRotation { .. }

@@ -18,10 +18,14 @@ pub enum Unit {
     Volt,
     /// mV.
     Millivolt,
+    /// kV.
+    Kilovolt,
     /// A.
     Ampere,
     /// mA.
     Milliampere,
+    /// kA.
+    Kiloampere,
     /// Root mean square of a phase's voltage, where the voltage itself is its peak value.
     VoltRms,
     /// The same of a current.
@@ -32,6 +36,10 @@ pub enum Unit {
     RpmElectrical,
     /// Mechanical r/min.
     RpmMechanical,
+    /// A thousand electrical r/min.
+    KrpmElectrical,
+    /// A thousand mechanical r/min.
+    KrpmMechanical,
     /// Mechanical rad/s.
     RadianPerSecondMechanical,
     /// Electrical turns in a second.
@@ -54,16 +62,18 @@ pub enum Unit {
 
 impl Unit {
     /// All of them; of each dimension the SI unit first.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 26] = [
         Self::Second,
         Self::Millisecond,
         Self::Microsecond,
         Self::Nanosecond,
         Self::Volt,
         Self::Millivolt,
+        Self::Kilovolt,
         Self::VoltRms,
         Self::Ampere,
         Self::Milliampere,
+        Self::Kiloampere,
         Self::AmpereRms,
         Self::RadianPerSecond,
         Self::RpmElectrical,
@@ -71,6 +81,8 @@ impl Unit {
         Self::RadianPerSecondMechanical,
         Self::HertzElectrical,
         Self::HertzMechanical,
+        Self::KrpmElectrical,
+        Self::KrpmMechanical,
         Self::Radian,
         Self::Degree,
         Self::RadianMechanical,
@@ -88,13 +100,17 @@ impl Unit {
             Self::Nanosecond => ("ns", "ns", Dimension::Time, 1e-9),
             Self::Volt => ("V", "V", Dimension::Voltage, 1.0),
             Self::Millivolt => ("mV", "mV", Dimension::Voltage, 1e-3),
+            Self::Kilovolt => ("kV", "kV", Dimension::Voltage, 1e3),
             Self::VoltRms => ("Vrms", "V rms", Dimension::Voltage, SQRT_2),
             Self::Ampere => ("A", "A", Dimension::Current, 1.0),
             Self::Milliampere => ("mA", "mA", Dimension::Current, 1e-3),
+            Self::Kiloampere => ("kA", "kA", Dimension::Current, 1e3),
             Self::AmpereRms => ("Arms", "A rms", Dimension::Current, SQRT_2),
             Self::RadianPerSecond => ("rad/s", "electrical rad/s", Dimension::Speed, 1.0),
             Self::RpmElectrical => ("rpm-elec", "electrical r/min", Dimension::Speed, TAU / 60.0),
             Self::RpmMechanical => ("rpm-mech", "mechanical r/min", Dimension::Speed, TAU / 60.0),
+            Self::KrpmElectrical => ("krpm-elec", "thousand electrical r/min", Dimension::Speed, 1e3 * TAU / 60.0),
+            Self::KrpmMechanical => ("krpm-mech", "thousand mechanical r/min", Dimension::Speed, 1e3 * TAU / 60.0),
             Self::RadianPerSecondMechanical => ("rad/s-mech", "mechanical rad/s", Dimension::Speed, 1.0),
             Self::HertzElectrical => ("Hz-elec", "electrical Hz", Dimension::Speed, TAU),
             Self::HertzMechanical => ("Hz-mech", "mechanical Hz", Dimension::Speed, TAU),
@@ -174,6 +190,8 @@ mod tests {
         };
         assert_eq!(si(Unit::Millisecond), 0.3);
         assert_eq!(si(Unit::Volt), 300.0);
+        assert_eq!((si(Unit::Kilovolt), si(Unit::Kiloampere)), (300e3, 300e3));
+        assert!((si(Unit::KrpmMechanical) - 1e3 * si(Unit::RpmMechanical)).abs() < 1e-8);
         assert_eq!(si(Unit::AmpereRms), 300.0 * SQRT_2);
         assert_eq!(si(Unit::RpmElectrical), 300.0 * (TAU / 60.0));
         assert_eq!(si(Unit::RpmMechanical), 300.0 * (TAU / 60.0 * 4.0));

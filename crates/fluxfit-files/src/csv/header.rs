@@ -273,7 +273,8 @@ const NAMES_AND_UNITS: usize = 2;
 const SETTINGS: usize = 3;
 
 /// What a row above the names that holds their units has in most of its cells.
-const UNITS: [&str; 16] = ["s", "ms", "us", "v", "mv", "a", "ma", "rpm", "1/min", "min^-1", "rad/s", "rad", "deg", "°", "nm", "hz"];
+const UNITS: [&str; 19] =
+    ["s", "ms", "us", "v", "mv", "kv", "a", "ma", "ka", "rpm", "krpm", "1/min", "min^-1", "rad/s", "rad", "deg", "°", "nm", "hz"];
 
 /// Whether a line below a line with empty cells, and above the first row of numbers, has more names in it.
 fn is_above_names(line: &Header, text: &str) -> bool {

@@ -109,6 +109,42 @@ mod tests {
     }
 
     #[test]
+    fn a_stated_unit_that_contradicts_the_header_is_noted() {
+        let stated = |header: &str, name: &str, unit: Unit| {
+            let options = LogOptions { units: vec![(name.into(), unit)], pole_pairs: Some(1), ..map(&[(name, header)]) };
+            let columns = ["t", "ud", "uq", "id", "iq", "omega_e"].map(|column| if column == name { header } else { column });
+            notes(&columns.join(","), &options).into_iter().find(|note| note.contains("as you state"))
+        };
+        let expected = "ud: column 'ud [mV]' is read as V, as you state; the file says mV";
+        assert_eq!(stated("ud [mV]", "ud", Unit::Volt).as_deref(), Some(expected));
+        let expected = "iq: column 'iq_pu' is read as A, as you state; the file says pu";
+        assert_eq!(stated("iq_pu", "iq", Unit::Ampere).as_deref(), Some(expected));
+        let expected = "omega_e: column 'n_el [rpm]' is read as mechanical r/min, as you state; the file says electrical r/min";
+        assert_eq!(stated("n_el [rpm]", "omega_e", Unit::RpmMechanical).as_deref(), Some(expected));
+        assert!(stated("n [rpm]", "omega_e", Unit::RadianPerSecond).is_some_and(|note| note.ends_with("the file says mechanical r/min")));
+        for (header, name, unit) in [
+            ("n [rpm]", "omega_e", Unit::RpmElectrical),
+            ("id [A]", "id", Unit::AmpereRms),
+            ("id [Arms]", "id", Unit::AmpereRms),
+            ("ud", "ud", Unit::Millivolt),
+        ] {
+            assert_eq!(stated(header, name, unit), None, "{header}");
+        }
+    }
+
+    #[test]
+    fn shares_of_a_base_value_need_a_scale() {
+        let of = |header: &str, channel: &str| notes(&"t,ud,uq,id,iq,omega_e".replacen(channel, header, 1), &map(&[(channel, header)]));
+        assert_eq!(
+            of("ud [%]", "ud"),
+            ["a.csv, line 1, column 'ud [%]': \"%\" in the header is a share of a base value, which the log does not state; write into a \
+              mapping file ud = { column = \"ud [%]\", scale = .. }, where the scale is the base value in V divided by 100"]
+        );
+        let per_unit = of("speed_pu", "omega_e");
+        assert!(per_unit[0].ends_with("where the scale is the base value in electrical rad/s"), "{per_unit:?}");
+    }
+
+    #[test]
     fn everything_else_is_noted() {
         let options = LogOptions { pole_pairs: Some(1), ..map(&[("omega", "speed_rpm")]) };
         assert_eq!(
@@ -155,7 +191,8 @@ mod tests {
     #[test]
     fn a_stated_unit_overrides_the_header() {
         let options = LogOptions { units: vec![("t".into(), Unit::Second), ("ud".into(), Unit::Millivolt)], ..LogOptions::default() };
-        assert_eq!(notes("t_ms,ud,uq,id,iq,omega_e", &options), ["ud: column 'ud' read as mV"]);
+        let contradicted = "t: column 't_ms' is read as s, as you state; the file says ms";
+        assert_eq!(notes("t_ms,ud,uq,id,iq,omega_e", &options), [contradicted, "ud: column 'ud' read as mV"]);
     }
 
     #[test]

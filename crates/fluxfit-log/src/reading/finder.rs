@@ -12,7 +12,7 @@ use super::{
 use crate::{
     block::ColumnHead,
     channel::Channel,
-    header_unit::{HeaderUnit, split_header, states_electrical, unit_in_row},
+    header_unit::{HeaderUnit, contradicted, share, split_header, states_electrical, unit_in_row},
     instant::Instants,
     note::Note,
     problem::Problem,
@@ -417,6 +417,12 @@ impl Finder<'_> {
         let is_canonical = field.eq_ignore_ascii_case(canonical);
         let of_layout = self.layout.and_then(|layout| layout.column(channel)).filter(|column| is_called(name, column.header));
         let stated = self.options.unit(channel);
+        if let Some(unit) = stated.filter(|_| self.options.factor(channel).abs() == 1.0)
+            && let Some(of_header) = contradicted(named, name, unit)
+        {
+            let column = format!("{canonical}: column '{}'", shorten(name));
+            notes.push(format!("{column} is read as {}, as you state; the file says {of_header}", unit.prose()).into());
+        }
         let unit = match (stated, of_layout, named) {
             (Some(unit), ..) => unit,
             // A unit in the header is more reliable than the usual unit of a layout.
@@ -427,8 +433,13 @@ impl Finder<'_> {
             // The scale in a mapping file leads from there to SI.
             (None, _, HeaderUnit::Unknown(_)) if self.options.factor(channel).abs() != 1.0 => si,
             (None, _, HeaderUnit::Unknown(text)) => {
+                let header = name.to_owned();
+                if let Some(whole) = share(text) {
+                    let text = text.to_owned();
+                    return Err(Problem::Share { channel: canonical, text, header, si: si.prose(), whole }.into());
+                }
                 let units = channel.units().map(Unit::name).collect();
-                return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), units }.into());
+                return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), header, units }.into());
             }
             _ if dimension == Dimension::Speed && self.is_alias(channel, name) && !states_electrical(name) => {
                 let has_pole_pairs = self.options.pole_pairs.is_some();
@@ -481,6 +492,7 @@ fn needs_pole_pairs(channel: Channel, unit: Unit) -> Problem {
 fn electrical(mechanical: Unit) -> Unit {
     match mechanical {
         Unit::RpmMechanical => Unit::RpmElectrical,
+        Unit::KrpmMechanical => Unit::KrpmElectrical,
         Unit::HertzMechanical => Unit::HertzElectrical,
         Unit::RadianMechanical => Unit::Radian,
         Unit::DegreeMechanical => Unit::Degree,
@@ -492,6 +504,7 @@ fn electrical(mechanical: Unit) -> Unit {
 fn mechanical(electrical: Unit) -> Unit {
     match electrical {
         Unit::RpmElectrical => Unit::RpmMechanical,
+        Unit::KrpmElectrical => Unit::KrpmMechanical,
         Unit::HertzElectrical => Unit::HertzMechanical,
         Unit::Radian => Unit::RadianMechanical,
         Unit::Degree => Unit::DegreeMechanical,

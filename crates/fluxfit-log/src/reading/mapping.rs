@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn errors_name_line_and_key() {
         let cases = [
-            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is not a unit of ud; it can be V, mV or Vrms"),
+            ("[columns]\nud = { unit = \"A\" }", "line 2, key 'unit': \"A\" is not a unit of ud; it can be V, mV, kV or Vrms"),
             ("[columns]\nud = { scale = 0 }", "line 2, key 'scale': \"0\" is out of range; it must be a number other than zero"),
             ("sample_period = 0", "line 1, key 'sample_period': \"0\" is out of range; it must be a time above zero"),
             (

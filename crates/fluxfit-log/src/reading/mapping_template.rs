@@ -5,7 +5,10 @@ use super::{
     mapping::Park,
     options::LogOptions,
 };
-use crate::channel::Channel;
+use crate::{
+    channel::Channel,
+    header_unit::{HeaderUnit, share, split_header},
+};
 use fluxfit_files::{Advice, FileError};
 use std::fmt::Write;
 
@@ -110,6 +113,8 @@ fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> St
         }
         _ => "",
     };
+    let of_share = share_of(channel, &column.header);
+    let of_unit = of_share.as_deref().filter(|_| column.read_as.is_none() && column.share.is_none()).unwrap_or(of_unit);
     let remark = if by_name.is_empty() && of_unit.is_empty() { String::new() } else { format!("  # {by_name}{of_unit}") };
     let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default();
     let factor = factor(Some(column).filter(|_| is_taken), channel, options);
@@ -124,6 +129,13 @@ fn factor(column: Option<&InspectedColumn>, channel: Channel, options: &LogOptio
     let scale = if factor.abs() == 1.0 { String::new() } else { format!(", scale = {:?}", factor.abs()) };
     let times = if share.is_some() { ", times = \"u_dc\"" } else { "" };
     scale + if factor < 0.0 { ", sign = -1" } else { "" } + times
+}
+
+/// What to add for a column of shares of a base value.
+fn share_of(channel: Channel, header: &str) -> Option<String> {
+    let HeaderUnit::Unknown(text) = split_header(header, channel.dimension()).1 else { return None };
+    let divided = if share(text)? == 1.0 { "" } else { " divided by 100" };
+    Some(format!(", and add scale = .., the base value in {}{divided}", channel.unit().prose()))
 }
 
 /// A text in TOML's quotes.
@@ -154,6 +166,19 @@ mod tests {
         let again = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).expect(&mapping), ..LogOptions::default() };
         let second = inspected(&text, &again);
         assert_eq!(second.log.unwrap().log, first.log.unwrap().log, "{mapping}");
+    }
+
+    #[test]
+    fn a_share_of_a_base_value_is_asked_for_its_scale() {
+        let rows: String = (0..30).map(|row| format!("{row},3,4,1,2,{}\n", 500 + row)).collect();
+        let options = LogOptions::default();
+        let mapping = inspected(&format!("t,ud [%],uq [%],id_pu,iq_pu,omega_e\n{rows}"), &options).mapping(&options);
+        for line in [
+            "ud = { column = \"ud [%]\" }  # by its name; check it, and add scale = .., the base value in V divided by 100\n",
+            "iq = { column = \"iq_pu\" }  # by its name; check it, and add scale = .., the base value in A\n",
+        ] {
+            assert!(mapping.contains(line), "{mapping}");
+        }
     }
 
     #[test]

@@ -264,7 +264,7 @@ mod tests {
         let unknown = refusal(map(&[("uxx", "a")]));
         assert!(unknown.starts_with("\"uxx\" is not a channel of a log; the channels are t, ud, uq, id, iq and omega_e"), "{unknown}");
         let units = LogOptions { units: vec![("ud".into(), Unit::RpmMechanical)], ..LogOptions::default() };
-        assert_eq!(refusal(units), "\"rpm-mech\" is not a unit of ud; it can be V, mV or Vrms");
+        assert_eq!(refusal(units), "\"rpm-mech\" is not a unit of ud; it can be V, mV, kV or Vrms");
         let no_poles = LogOptions { pole_pairs: Some(0), ..LogOptions::default() };
         assert_eq!(refusal(no_poles), "the number of pole pairs is 0; it must be at least 1");
     }

@@ -3,7 +3,7 @@
 use crate::{
     block::ColumnHead,
     channel::Channel,
-    header_unit::{HeaderUnit, split_header, unit_in_row},
+    header_unit::{HeaderUnit, share, split_header, unit_in_row},
 };
 use fluxfit_units::Dimension;
 
@@ -79,6 +79,10 @@ pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
     let Some(text) = own.map(|text| text.trim().trim_matches(['[', ']', '(', ')']).to_lowercase()) else { return false };
     let is_of =
         |other: Channel| other.dimension() != dimension && matches!(unit_in_row(&text, "", other.dimension()), HeaderUnit::Known(_));
+    // Voltages, currents and speeds may be shares of base values.
+    if share(&text).is_some() && matches!(dimension, Dimension::Voltage | Dimension::Current | Dimension::Speed) {
+        return false;
+    }
     OTHER_UNITS.contains(&text.as_str()) || Channel::all().any(is_of)
 }
 

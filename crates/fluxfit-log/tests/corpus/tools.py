@@ -136,8 +136,8 @@ def names(make):
     make.put("preamble_paths.csv", "format,export\n\nunit,s,V,V,A,A,rad/s\n\npath,,Root/ud,Root/uq,Root/id,Root/iq,Root/omega\n\ntrace_values," + ",".join(fast) + "\n" + blank + "\n")
     make.read("preamble_paths.csv", "units and paths above the names, and a column without values", fast)
     thousand = with_names(mechanical / 1000.0, "t_s", "vd", "vq", "id", "iq", "speed_krpm")
-    make.refuse(make.put("unit_krpm.csv", make.table(thousand)), "thousands of r/min, mapped", "krpm", "not a known unit",
-                told={"map": ["omega_e=speed_krpm"], **poles})
+    make.put("unit_krpm.csv", make.table(thousand))
+    make.read("unit_krpm.csv", "thousands of r/min", fast, tolerances={"omega_e": 1e-9}, told=poles)
     per_unit = with_names(fast["omega_e"] / 800.0, "t", "ud_pu", "uq_pu", "id_pu", "iq_pu", "omega_pu")
     make.refuse(make.put("per_unit.csv", make.table(per_unit)), "per unit", "may be ud", line=1)
     make.refuse(make.put("settings_beside.csv", "Record Length,2500,,0.0,1.2\nSample Interval,4e-6,,0.1,1.3\nTrigger Point,1250,,0.2,1.3\n"),

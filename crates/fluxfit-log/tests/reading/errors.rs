@@ -105,7 +105,8 @@ fn maps_and_units_that_do_not_fit_the_file_are_refused() {
     assert_eq!(
         error("speed [km/h]", &map(&["omega=speed [km/h]"])),
         "drive.csv, line 1, column 'speed [km/h]': \"km/h\" in the header is not a known unit of omega_e; \
-         state the unit: rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec or Hz-mech; of another one also the scale to it, in a mapping file"
+         state the unit if it is rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec, Hz-mech, krpm-elec or krpm-mech; \
+         else write its scale into a mapping file: omega_e = { column = \"speed [km/h]\", scale = .. }"
     );
     let units = LogOptions { units: vec![("omega".into(), Unit::HertzMechanical)], ..LogOptions::default() };
     assert_eq!(
@@ -121,7 +122,8 @@ fn rows_are_refused_in_one_sentence() {
     let cases = [
         (
             below("a,b,c,d,e,f\n0,1,2,3,4,5\n1,1,2,3,4,5\n"),
-            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit: s, ms, us or ns; of another one also the scale to it, in a mapping file",
+            "drive.csv, line 1, column 't': \"a\" in the header is not a known unit of t; state the unit if it is s, ms, us or ns; else write \
+             its scale into a mapping file: t = { column = \"t\", scale = .. }",
         ),
         (
             below("0,1,2,3,4,5\n\n1,1,2,3,4\n"),
