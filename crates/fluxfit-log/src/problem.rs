@@ -3,6 +3,7 @@
 use fluxfit_files::{Advice, FileError, FileErrorKind};
 use fluxfit_units::wording::{choice, columns, did_you_mean, list, quote, shorten};
 use fluxfit_units::{Unit, significant};
+use std::fmt;
 
 /// Most columns that a sentence lists.
 const MOST_NAMES: usize = 20;
@@ -41,7 +42,7 @@ pub(crate) enum Problem {
     OtherMark { other: u64 },
 
     // Columns
-    #[error("{}{}{}{}", missing_columns(.missing, .present, .proposals), without_time(.missing, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
+    #[error("{}{}{}{}{}", missing_columns(.missing, .present, .proposals), .line_to_line, without_time(.missing, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
     Missing {
         missing: Vec<&'static str>,
         present: Vec<String>,
@@ -51,6 +52,7 @@ pub(crate) enum Problem {
         references: Vec<String>,
         unreadable: Vec<String>,
         lists: Vec<String>,
+        line_to_line: LineToLine,
     },
     #[error("by its name this column is a reference, not the measured current; map {channel} to the measured current, or log it")]
     Reference { channel: &'static str },
@@ -251,6 +253,47 @@ pub(crate) enum Problem {
     ZeroPolePairs,
 }
 
+/// Columns of line-to-line voltages in a file that lacks those of the phases.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct LineToLine {
+    /// Channels, and the columns that would be these but for the word.
+    pub(crate) scaled: Vec<(&'static str, String)>,
+    /// Voltages between two phases.
+    pub(crate) pairs: Vec<String>,
+}
+
+/// Scale of a line-to-line voltage to that of a phase, 1 over sqrt 3.
+const PHASE_OF_LINE: &str = "0.57735";
+
+impl fmt::Display for LineToLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.scaled.is_empty() {
+            let headers: Vec<String> = self.scaled.iter().map(|(_, header)| header.clone()).collect();
+            let entry = |(channel, header): &(&str, String)| format!("{channel} = {{ column = {header:?}, scale = {PHASE_OF_LINE} }}");
+            let entries: Vec<String> = self.scaled.iter().map(entry).collect();
+            let (are, they) = if headers.len() == 1 {
+                ("is a line-to-line voltage by its name", "it is")
+            } else {
+                ("are line-to-line voltages by their names", "they are")
+            };
+            write!(
+                f,
+                "; {} {are}: if {they} sqrt 3 times as large as of a phase, write into a mapping file {}",
+                columns(&headers),
+                list(&entries)
+            )?;
+        }
+        if !self.pairs.is_empty() {
+            write!(
+                f,
+                "; {} are line-to-line voltages by their names, and those of the phases are needed: compute ua = (2 uab + ubc) / 3, ub = (ubc - uab) / 3",
+                columns(&self.pairs)
+            )?;
+        }
+        Ok(())
+    }
+}
+
 impl Problem {
     fn kind(&self) -> FileErrorKind {
         match self {
@@ -306,6 +349,7 @@ impl Problem {
                 vec![Advice::MapColumns(first.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect())]
             }
             Self::Missing { missing, present, proposals, .. } if are_not_in_it(missing, present, proposals) => Vec::new(),
+            Self::Missing { proposals, line_to_line, .. } if proposals.is_empty() && *line_to_line != LineToLine::default() => Vec::new(),
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
             Self::Missing { proposals, rms, .. } => {
                 let columns = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect();

@@ -4,6 +4,7 @@ use super::{
     alias,
     chosen::ChosenColumn,
     layout::{Layout, NotALog, is_called},
+    line_to_line,
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
     proposal::propose_needed,
@@ -15,7 +16,7 @@ use crate::{
     header_unit::{HeaderUnit, contradicted, share, split_header, states_electrical, unit_in_row},
     instant::Instants,
     note::Note,
-    problem::Problem,
+    problem::{LineToLine, Problem},
 };
 use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, OmegaE, T, ThetaE, UA, UAlpha, UB, UBeta, UC, UDc, Ud, Uq};
 use fluxfit_files::{Advice, FileError};
@@ -390,8 +391,22 @@ impl Finder<'_> {
         let references = references.into_iter().map(|index| present[index].clone()).collect();
         let texts = without_numbers.iter().map(|index| &present[*index]);
         let unreadable = self.unreadable.iter().chain(texts).filter(|name| resembles(&missing, name)).cloned().collect();
+        let line_to_line = self.line_to_line(&missing);
         let missing = missing.iter().map(|channel| channel.name()).collect();
-        Problem::Missing { missing, present, proposals, rms, references, unreadable, lists: self.lists.to_vec() }.into()
+        Problem::Missing { missing, present, proposals, rms, references, unreadable, lists: self.lists.to_vec(), line_to_line }.into()
+    }
+
+    /// The columns of line-to-line voltages, where voltages are missing.
+    fn line_to_line(&self, missing: &[Channel]) -> LineToLine {
+        if missing.iter().all(|channel| channel.dimension() != Dimension::Voltage) {
+            return LineToLine::default();
+        }
+        let line_to_line::LineToLine { scaled, pairs } = line_to_line::find(self.heads);
+        let header = |index: usize| self.heads[index].name.clone();
+        LineToLine {
+            scaled: scaled.into_iter().map(|(channel, index)| (channel.name(), header(index))).collect(),
+            pairs: pairs.into_iter().map(header).collect(),
+        }
     }
 
     /// The unit of a column: the stated one; else the layout's; else the one in the header or the row of units; else SI.

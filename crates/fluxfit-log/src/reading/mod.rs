@@ -20,6 +20,7 @@ mod finder;
 mod gather;
 mod inspect;
 mod layout;
+mod line_to_line;
 mod lines;
 mod live;
 mod mapping;

@@ -1,6 +1,7 @@
 //! Which columns may be channels that no column is read as: by names that resemble theirs.
 
 use super::{
+    line_to_line,
     resemblance::{Fit, fit, has_other_unit},
     rms,
 };
@@ -45,7 +46,8 @@ struct Candidate {
 pub(super) fn propose(channels: &[Channel], heads: &[ColumnHead], is_free: impl Fn(usize) -> bool) -> Vec<Proposal> {
     let of = |channel: Channel| {
         let candidate = |(index, head): (usize, &ColumnHead)| {
-            let may_be = is_free(index) && !has_other_unit(channel, head);
+            let is_phase = channel.dimension() != Dimension::Voltage || !line_to_line::is_line_to_line(&head.name);
+            let may_be = is_free(index) && !has_other_unit(channel, head) && is_phase;
             let fit = may_be.then(|| fit(channel, &head.name)).flatten()?;
             let of_rms = if rms::is_rms(head) { OF_RMS } else { 0.0 };
             let of_unit = if channel == Channel::OmegaE && stated_unit(channel, head).is_some() { WITH_UNIT } else { 0.0 };

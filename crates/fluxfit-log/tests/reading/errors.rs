@@ -299,3 +299,25 @@ fn a_log_that_lacks_only_the_time_is_told_how_to_state_the_period() {
         assert!(!refusal(text.as_bytes(), &LogOptions::default()).contains("sample_period"), "{header}");
     }
 }
+
+#[test]
+fn line_to_line_voltages_are_not_proposed_for_those_of_the_phases() {
+    let of = |header: &str| refusal(format!("{header}\n{}", "1,2,3,4,5,6\n".repeat(3)).as_bytes(), &LogOptions::default());
+    let scaled = of("t,ud_ll,uq_ll,id,iq,omega_e");
+    assert!(!scaled.contains("may be ud"), "{scaled}");
+    assert!(
+        scaled.ends_with(
+            "; 'ud_ll' and 'uq_ll' are line-to-line voltages by their names: if they are sqrt 3 times as large as of a phase, write into a mapping \
+             file ud = { column = \"ud_ll\", scale = 0.57735 } and uq = { column = \"uq_ll\", scale = 0.57735 }"
+        ),
+        "{scaled}"
+    );
+    let pairs = of("t,ia,ib,Uab [V],Ubc [V],theta_e");
+    assert!(
+        pairs.ends_with(
+            "; 'Uab [V]' and 'Ubc [V]' are line-to-line voltages by their names, and those of the phases are needed: compute \
+             ua = (2 uab + ubc) / 3, ub = (ubc - uab) / 3"
+        ),
+        "{pairs}"
+    );
+}
