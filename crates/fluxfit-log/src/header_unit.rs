@@ -163,6 +163,8 @@ pub(crate) fn contradicted(named: HeaderUnit, header: &str, stated: Unit) -> Opt
     let of_peak = |unit: Unit| if unit.is_rms() { 1.0 } else { unit.in_si() };
     match named {
         HeaderUnit::None => None,
+        // Radians have no unit.
+        HeaderUnit::Unknown(text) if text.trim() == "1/s" && stated.dimension() == Dimension::Speed => None,
         HeaderUnit::Unknown(text) => (!is_rms_text(text)).then(|| wording::shorten(text.trim())),
         HeaderUnit::Known(unit) => {
             let has_rotation = rotation(header) != Rotation::Unstated && unit.is_mechanical() != stated.is_mechanical();

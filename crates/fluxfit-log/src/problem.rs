@@ -42,7 +42,7 @@ pub(crate) enum Problem {
     OtherMark { other: u64 },
 
     // Columns
-    #[error("{}{}{}{}{}", missing_columns(.missing, .present, .proposals), .line_to_line, without_time(.missing, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
+    #[error("{}{}{}{}{}{}", missing_columns(.missing, .present, .proposals), speed_by_name(.speed.as_ref().map(|(_, unit)| *unit)), .line_to_line, without_time(.missing, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
     Missing {
         missing: Vec<&'static str>,
         present: Vec<String>,
@@ -53,6 +53,8 @@ pub(crate) enum Problem {
         unreadable: Vec<String>,
         lists: Vec<String>,
         line_to_line: LineToLine,
+        /// The speed among the proposed channels, and its unit by its name.
+        speed: Option<(&'static str, Unit)>,
     },
     #[error("by its name this column is a reference, not the measured current; map {channel} to the measured current, or log it")]
     Reference { channel: &'static str },
@@ -351,9 +353,10 @@ impl Problem {
             Self::Missing { missing, present, proposals, .. } if are_not_in_it(missing, present, proposals) => Vec::new(),
             Self::Missing { proposals, line_to_line, .. } if proposals.is_empty() && *line_to_line != LineToLine::default() => Vec::new(),
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
-            Self::Missing { proposals, rms, .. } => {
+            Self::Missing { proposals, rms, speed, .. } => {
                 let columns = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect();
-                vec![if rms.is_empty() { Advice::MapColumns(columns) } else { Advice::MapInUnits { columns, units: rms.clone() } }]
+                let units: Vec<_> = rms.iter().copied().chain(speed.map(|(channel, unit)| (channel, unit.name()))).collect();
+                vec![if units.is_empty() { Advice::MapColumns(columns) } else { Advice::MapInUnits { columns, units } }]
             }
             Self::Rms { columns } => columns.iter().map(|(channel, _, unit)| Advice::StateUnit { channel, unit: Some(unit) }).collect(),
             Self::Reference { channel } | Self::Ambiguous { channel, .. } => map(&[channel]),
@@ -493,6 +496,11 @@ fn unclear(several: &[(&str, Vec<String>)], electrical: Option<&str>, direct_vol
         )
     });
     [map, of_shaft, points].into_iter().flatten().collect::<Vec<_>>().join("; and ")
+}
+
+/// What is to be said of a proposed speed whose name says its unit.
+fn speed_by_name(unit: Option<Unit>) -> String {
+    unit.map_or_else(String::new, |unit| format!("; a speed of this name is usually in {}: state its unit", unit.prose()))
 }
 
 /// What is to be said of proposed columns that hold root mean squares.

@@ -7,7 +7,7 @@ use super::{
     line_to_line,
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
-    proposal::propose_needed,
+    proposal::{propose_needed, unit_of_speed},
     resemblance::{fit, has_other_unit, is_reference},
 };
 use crate::{
@@ -387,13 +387,16 @@ impl Finder<'_> {
         let (missing, proposals) = propose_needed(missing, self.heads, has_angle, is_free);
         let rms = proposals.iter().filter(|proposal| proposal.is_rms());
         let rms = rms.filter_map(|proposal| Some((proposal.channel.name(), proposal.unit?.name()))).collect();
+        let speed = proposals.iter().find(|proposal| proposal.channel == OmegaE);
+        let speed = speed.and_then(|proposal| unit_of_speed(&self.heads[proposal.index])).map(|unit| (OmegaE.name(), unit));
         let proposals = proposals.into_iter().map(|proposal| (proposal.channel.name(), present[proposal.index].clone())).collect();
         let references = references.into_iter().map(|index| present[index].clone()).collect();
         let texts = without_numbers.iter().map(|index| &present[*index]);
         let unreadable = self.unreadable.iter().chain(texts).filter(|name| resembles(&missing, name)).cloned().collect();
         let line_to_line = self.line_to_line(&missing);
         let missing = missing.iter().map(|channel| channel.name()).collect();
-        Problem::Missing { missing, present, proposals, rms, references, unreadable, lists: self.lists.to_vec(), line_to_line }.into()
+        Problem::Missing { missing, present, proposals, rms, references, unreadable, lists: self.lists.to_vec(), line_to_line, speed }
+            .into()
     }
 
     /// The columns of line-to-line voltages, where voltages are missing.

@@ -2,7 +2,7 @@
 
 use super::{
     line_to_line,
-    resemblance::{Fit, fit, has_other_unit},
+    resemblance::{Fit, fit, has_other_unit, words},
     rms,
 };
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     channel::Channel,
     header_unit::{HeaderUnit, split_header, unit_in_row},
 };
-use Channel::{IAlpha, IBeta, Id, Iq, ThetaE, UAlpha, UBeta, Ud, Uq};
+use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, ThetaE, UA, UAlpha, UB, UBeta, UC, Ud, Uq};
 use fluxfit_units::{Dimension, Unit};
 
 /// A column that may be a channel.
@@ -70,8 +70,9 @@ pub(super) fn propose(channels: &[Channel], heads: &[ColumnHead], is_free: impl 
     proposals
 }
 
-/// The same for the channels that a log needs; where a dq pair lacks and no column resembles either, for that of the stator's frame, and
-/// then for the angle that turns it, if `has_angle` does not say that it is there. Returns the channels that the log lacks then, too.
+/// The same for the channels that a log needs; where a dq pair lacks and no column resembles either, for that of the stator's frame or the
+/// phases, and then for the angle that turns it, if `has_angle` does not say that it is there. Returns the channels that the log lacks
+/// then, too.
 pub(super) fn propose_needed(
     missing: &[Channel],
     heads: &[ColumnHead],
@@ -81,12 +82,19 @@ pub(super) fn propose_needed(
     let mut channels = missing.to_vec();
     let proposals = propose(&channels, heads, &is_free);
     let is_proposed = |proposals: &[Proposal], channel: Channel| proposals.iter().any(|proposal| proposal.channel == channel);
-    for (dq, stator) in [([Ud, Uq], [UAlpha, UBeta]), ([Id, Iq], [IAlpha, IBeta])] {
+    for (dq, stator, phases) in [([Ud, Uq], [UAlpha, UBeta], [UA, UB, UC]), ([Id, Iq], [IAlpha, IBeta], [IA, IB, IC])] {
         let are_open = dq.iter().all(|channel| missing.contains(channel) && !is_proposed(&proposals, *channel));
-        if are_open && propose(&stator, heads, &is_free).len() == 2 {
+        let of = |channels: &[Channel]| propose(channels, heads, &is_free).into_iter().map(|proposal| proposal.channel).collect::<Vec<_>>();
+        let others = match are_open {
+            true if of(&stator).len() == stator.len() => stator.to_vec(),
+            // The third phase may be missing.
+            true => of(&phases),
+            false => Vec::new(),
+        };
+        if others == stator || others.starts_with(&phases[..2]) {
             let place = channels.iter().position(|channel| *channel == dq[0]).unwrap_or(0);
             channels.retain(|channel| !dq.contains(channel));
-            channels.splice(place..place, stator);
+            channels.splice(place..place, others);
         }
     }
     if channels == missing {
@@ -97,6 +105,21 @@ pub(super) fn propose_needed(
     }
     let proposals = propose(&channels, heads, is_free);
     (channels, proposals)
+}
+
+/// The unit of a speed by its name, where none is stated: `f_e`, `w_el`, and `nm` of PSIM.
+pub(super) fn unit_of_speed(head: &ColumnHead) -> Option<Unit> {
+    let name = words(&head.name).concat();
+    // `1/s` is rad/s without the unit of the angle.
+    let has_unit = !matches!(split_header(&head.name, Dimension::Speed).1, HeaderUnit::None)
+        || head.unit.as_deref().is_some_and(|unit| unit.trim() != "1/s");
+    match name.as_str() {
+        _ if has_unit => None,
+        "fe" | "fel" | "felec" => Some(Unit::HertzElectrical),
+        "we" | "wel" | "welec" => Some(Unit::RadianPerSecond),
+        "nm" | "nmech" => Some(Unit::RpmMechanical),
+        _ => None,
+    }
 }
 
 /// The best one; of equal ones the first: a second motor or sensor comes later.

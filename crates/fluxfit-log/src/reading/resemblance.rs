@@ -119,7 +119,8 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     if channel.dimension() != Dimension::Time && name.to_lowercase().ends_with(".time") {
         return None;
     }
-    if channel == Channel::T && is_in_tesla(name) {
+    // `Nm` is the unit of a torque.
+    if channel == Channel::T && is_in_tesla(name) || channel == Channel::OmegaE && name.contains("Nm") {
         return None;
     }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();

@@ -321,3 +321,23 @@ fn line_to_line_voltages_are_not_proposed_for_those_of_the_phases() {
         "{pairs}"
     );
 }
+
+#[test]
+fn phases_and_usual_names_of_a_speed_are_proposed() {
+    let of = |header: &str| {
+        let text = format!("{header}\n{}", "1,2,3,4,5,6,7,8\n".repeat(3));
+        parse_log("drive.csv", text.as_bytes(), &LogOptions::default()).unwrap_err()
+    };
+    let columns = |pairs: &[(&'static str, &str)]| -> Vec<(&'static str, Option<String>)> {
+        pairs.iter().map(|(channel, header)| (*channel, Some((*header).to_owned()))).collect()
+    };
+    let phases = of("Time (us),Iu (A),Iv (A),Iw (A),Vu (V),Vv (V),Vw (V),Elec angle (deg)");
+    assert_eq!(phases.advice(), [Advice::MapColumns(columns(&[("ua", "Vu (V)"), ("ub", "Vv (V)"), ("uc", "Vw (V)")]))], "{phases}");
+    for (header, unit) in [("f_e", "Hz-elec"), ("nm", "rpm-mech")] {
+        let speed = of(&format!("t,ud,uq,id,iq,{header},x,y"));
+        let advice = Advice::MapInUnits { columns: columns(&[("omega_e", header)]), units: vec![("omega_e", unit)] };
+        assert_eq!(speed.advice(), [advice], "{speed}");
+    }
+    // A torque.
+    assert!(!of("t,ud,uq,id,iq,Nm,x,y").to_string().contains("may be omega_e"));
+}
