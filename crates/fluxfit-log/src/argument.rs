@@ -26,6 +26,8 @@ pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
             '"' => quoted = !quoted,
             '(' | '[' => depth += 1,
             ')' | ']' => depth -= 1,
+            // A name that a message cut may lack its closing bracket.
+            '…' => depth = 0,
             _ => {}
         }
         c == ',' && depth <= 0 && !quoted
@@ -87,6 +89,8 @@ mod tests {
         let pairs = |text| parse_maps(text).unwrap().into_iter().map(|(_, header)| header).collect::<Vec<_>>();
         assert_eq!(pairs("t=data(:,1),ud=data(:,2)"), ["data(:,1)", "data(:,2)"]);
         assert_eq!(pairs("id=i [A, peak],iq=q)"), ["i [A, peak]", "q)"]);
+        // As a message cuts it.
+        assert_eq!(pairs("id=i of the stator [A…,iq=q"), ["i of the stator [A…", "q"]);
         assert!(parse_maps("t=a,,ud=b").is_err() && parse_maps("").is_err());
     }
 

@@ -16,8 +16,12 @@ pub fn quote(text: &str) -> String {
 
 /// The first characters of `text`, on one line.
 pub fn shorten(text: &str) -> String {
-    let mut short: String = text.chars().take(QUOTATION).collect();
-    if text.chars().nth(QUOTATION).is_some() {
+    cut(text, QUOTATION)
+}
+
+fn cut(text: &str, most: usize) -> String {
+    let mut short: String = text.chars().take(most).collect();
+    if text.chars().nth(most).is_some() {
         short.push('…');
     }
     one_line(&short)
@@ -32,6 +36,9 @@ pub fn one_line(text: &str) -> String {
     };
     text.chars().flat_map(|c| if steers(c) { c.escape_default().collect() } else { vec![c] }).collect()
 }
+
+/// Characters of a name of a column in a list of them, which is there to be copied: paths of signals and names with numbers of parameters.
+const NAME: usize = 80;
 
 /// `a, b and c`.
 pub fn list<S: AsRef<str>>(items: &[S]) -> String {
@@ -55,7 +62,7 @@ fn join<S: AsRef<str>>(items: &[S], conjunction: &str) -> String {
 /// Names of columns, each in single quotes; of a wide file the first ones only.
 pub fn columns(names: &[String]) -> String {
     let named = names.iter().filter(|name| !name.is_empty());
-    let mut shown: Vec<String> = named.clone().take(LISTED).map(|name| format!("'{}'", shorten(name))).collect();
+    let mut shown: Vec<String> = named.clone().take(LISTED).map(|name| format!("'{}'", cut(name, NAME))).collect();
     let more = named.count().saturating_sub(LISTED);
     if more > 0 {
         shown.push(format!("{more} more"));
@@ -96,6 +103,9 @@ mod tests {
         assert_eq!(choice(&["a", "b", "c"]), "a, b or c");
         let names: Vec<String> = (0..23).map(|i| format!("c{i}")).collect();
         assert!(columns(&names).ends_with("'c18', 'c19' and 3 more"));
+        // Names are there to be copied.
+        let long = "SERVO_02.r1732[0] Spannungssollwert direkt [Veff]".to_owned();
+        assert_eq!(columns(&[long.clone(), "ü".repeat(81)]), format!("'{long}' and '{}…'", "ü".repeat(80)));
     }
 
     #[test]

@@ -21,7 +21,13 @@ const SHORTEST_MISSPELT: usize = 5;
 pub(super) fn mapped(channel: Channel, header: &str, heads: &[ColumnHead]) -> Result<usize, FileError> {
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
     let names = names.as_slice();
-    let tiers = [positions(names, |name| name == header), positions(names, |name| name.to_lowercase() == header.to_lowercase())];
+    // As a message has it, which cuts long names.
+    let is_cut = |name: &str| header.strip_suffix('…').is_some_and(|start| !start.is_empty() && name.starts_with(start));
+    let tiers = [
+        positions(names, |name| name == header),
+        positions(names, |name| name.to_lowercase() == header.to_lowercase()),
+        positions(names, is_cut),
+    ];
     if let Some(index) = only(channel, names, tiers)? {
         return Ok(index);
     }

@@ -1,6 +1,6 @@
 //! Logs that cannot be read are refused in one sentence that names the place and what to do.
 
-use crate::fixtures::{HEADER, LOG, ROWS, map, refusal};
+use crate::fixtures::{HEADER, LOG, ROWS, log_of, map, refusal};
 use fluxfit_files::{Advice, FileErrorKind};
 use fluxfit_log::{LogOptions, Mapping, parse_log, read_log};
 use fluxfit_units::Unit;
@@ -340,4 +340,15 @@ fn phases_and_usual_names_of_a_speed_are_proposed() {
     }
     // A torque.
     assert!(!of("t,ud,uq,id,iq,Nm,x,y").to_string().contains("may be omega_e"));
+}
+
+#[test]
+fn a_name_that_a_message_cut_can_be_mapped() {
+    let name = "SERVO_02.r1732[0] Spannungssollwert direkt, im System der Achse, mit Begrenzung [V]";
+    let text = format!("t,\"{name}\",uq,id,iq,omega_e\n{ROWS}");
+    let sentence = refusal(text.as_bytes(), &LogOptions::default());
+    let start = sentence.find("'SERVO").unwrap() + 1;
+    let cut = &sentence[start..start + sentence[start..].find("'").unwrap()];
+    assert!(cut.ends_with('…'), "{cut}");
+    assert_eq!(log_of(text.as_bytes(), &map(&[&format!("ud={cut}")])).columns().ud, [1.0, 1.0]);
 }
