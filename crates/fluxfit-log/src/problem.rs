@@ -159,9 +159,10 @@ pub(crate) enum Problem {
     #[error("by its values, {low} to {high}, this column is no duty cycle from 0 to 1; write into a mapping file {} = {{ column = {header:?}, scale = .., times = \"u_dc\" }}", .channel)]
     Duty { channel: &'static str, header: String, low: String, high: String },
     #[error(
-        "the angle winds around at {turn}, not at 2 pi; write into a mapping file theta_e = {{ column = {header:?}, scale = {} }}", .scale.as_deref().unwrap_or("6.28319 / TURN")
+        "the angle winds around at {turn}, not at 2 pi; write into a mapping file theta_e = {{ column = {header:?}, scale = {scale} }}{}",
+        if *.is_exact { "" } else { ", with 6.28319 divided by the exact turn as scale" }
     )]
-    AngleTurn { header: String, turn: String, scale: Option<String> },
+    AngleTurn { header: String, turn: String, scale: String, is_exact: bool },
     #[error(
         "phase quantities or the angle were sampled at different instants, and turn too far in between to be interpolated; log them at the same instants, or log dq quantities"
     )]
@@ -395,7 +396,7 @@ impl Problem {
                 channels.iter().map(|channel| Advice::StateUnit { channel, unit }).collect()
             }
             Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
-            Self::AngleTurn { scale: Some(scale), .. } => vec![Advice::ScaleInMapping { channel: "theta_e", scale: scale.clone() }],
+            Self::AngleTurn { scale, is_exact: true, .. } => vec![Advice::ScaleInMapping { channel: "theta_e", scale: scale.clone() }],
             Self::NoAngle => map(&["theta_e"]),
             Self::ZeroPolePairs => vec![Advice::StatePolePairs],
             _ => Vec::new(),

@@ -239,9 +239,11 @@ impl Finder<'_> {
         })
     }
 
-    /// Whether a column has not the channel's own name, nor one that the user or the layout gives it.
+    /// Whether a column has not the channel's own name, nor one that the user or the layout gives it. Who states the unit of an angle means
+    /// the column that has it.
     pub(super) fn is_alias(&self, channel: Channel, name: &str) -> bool {
-        !self.is_given(channel) && {
+        let is_meant = channel == ThetaE && self.options.unit(ThetaE).is_some();
+        !self.is_given(channel) && !is_meant && {
             let head = ColumnHead { name: name.to_owned(), ..ColumnHead::default() };
             !matches!(automatic(channel, &[head]), Ok(Some(_)))
         }

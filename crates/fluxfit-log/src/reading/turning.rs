@@ -43,9 +43,11 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
     let units: &[Unit] = if column.is_unit_stated { &[column.unit] } else { &[Unit::Radian, Unit::Degree] };
     // Values were converted already where the unit is stated.
     let size = |unit: &Unit| if column.is_unit_stated { 1.0 } else { unit.in_si() };
+    // An angle of the shaft may wind around after a turn of the shaft.
+    let of_shaft = if column.unit.is_mechanical() { f64::from(column.pole_pairs) } else { 1.0 };
     let fitting = units.iter().find(|unit| match channels.get(OmegaE) {
         Some(omega) => turns_with(theta, omega, channels.get(T).unwrap_or_default(), size(unit)),
-        None => winds(theta, size(unit)),
+        None => winds(theta, size(unit)) || winds(theta, size(unit) / of_shaft),
     });
     if let Some(unit) = fitting {
         let factor = size(unit);
@@ -87,9 +89,10 @@ fn leave_out(channels: &mut Channels, column: &ChosenColumn, turn: f64, notes: &
 /// The problem of an angle that spans this from the start of a turn to its end.
 fn other_turn(column: &ChosenColumn, span: f64) -> Problem {
     let round = round_turn(span);
-    let scale = round.map(|turn| significant(TAU / turn, 6));
+    let scale = significant(TAU / round.unwrap_or(span), if round.is_some() { 6 } else { 3 });
+    let is_exact = round.is_some();
     let turn = round.map_or_else(|| format!("about {}", significant(span, 3)), |turn| turn.to_string());
-    Problem::AngleTurn { header: column.header.clone(), turn, scale }
+    Problem::AngleTurn { header: column.header.clone(), turn, scale, is_exact }
 }
 
 /// Digits of a turn that encoders have besides powers of two, and the turn itself.

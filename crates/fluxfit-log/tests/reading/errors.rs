@@ -342,6 +342,34 @@ fn phases_and_usual_names_of_a_speed_are_proposed() {
     assert!(!of("t,ud,uq,id,iq,Nm,x,y").to_string().contains("may be omega_e"));
 }
 
+/// Phase quantities of four pole pairs, and an angle that winds around after a turn of the shaft.
+#[test]
+fn a_mechanical_angle_is_taken_where_its_unit_is_stated() {
+    let text = |theta: &str, turn: f64| {
+        let row = |k: usize| {
+            let electrical = 0.3 * k as f64;
+            let [ua, ub, ia, ib] =
+                [(20.0, 0.0), (20.0, 2.0944), (3.0, 0.5), (3.0, 2.5944)].map(|(size, phase)| size * (electrical - phase).cos());
+            format!("{}e-4,{ua:.5},{ub:.5},{ia:.5},{ib:.5},{:.6}\n", k, (electrical / 4.0 / std::f64::consts::TAU).fract() * turn)
+        };
+        format!("t,ua,ub,ia,ib,{theta}\n{}", (0..400).map(row).collect::<String>())
+    };
+    let turn = std::f64::consts::TAU;
+    let stated = LogOptions { units: vec![("theta_e".into(), Unit::RadianMechanical)], pole_pairs: Some(4), ..LogOptions::default() };
+    let named = LogOptions { pole_pairs: Some(4), ..LogOptions::default() };
+    for (theta, options) in [("theta", stated), ("theta_mech (rad)", named)] {
+        let log = log_of(text(theta, turn).as_bytes(), &options);
+        assert!((log.columns().omega_e[200] - 3000.0).abs() < 1.0, "{theta}: {}", log.columns().omega_e[200]);
+    }
+    // A resolver's voltage: the turn is not a round number.
+    let resolver = refusal(text("theta_e", 3.3).as_bytes(), &LogOptions::default());
+    assert!(
+        resolver.contains("theta_e = { column = \"theta_e\", scale = 1.9")
+            && resolver.ends_with(", with 6.28319 divided by the exact turn as scale"),
+        "{resolver}"
+    );
+}
+
 #[test]
 fn a_name_that_a_message_cut_can_be_mapped() {
     let name = "SERVO_02.r1732[0] Spannungssollwert direkt, im System der Achse, mit Begrenzung [V]";
