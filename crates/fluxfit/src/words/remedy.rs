@@ -53,7 +53,11 @@ impl Display for Remedy {
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
             Self::CompensateDeadTime { or_resistance } => {
                 write!(f, "log with the drive's dead-time compensation on")?;
-                if *or_resistance { write!(f, ", or give R_s as measured at the terminals") } else { Ok(()) }
+                if *or_resistance {
+                    write!(f, ", or give R_s as measured at the terminals (half of what is between two of them)")
+                } else {
+                    Ok(())
+                }
             }
             Self::TellFrameLag { omega_e } => write!(
                 f,
@@ -128,8 +132,8 @@ pub(super) const SPREAD: &str = "add operating points that lie further apart in 
 fn spread(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Rs => {
-            "add operating points with more current at low speed, or a larger step of i_d, or give R_s as measured at the terminals to 1 % as a \
-             prior"
+            "add operating points with more current at low speed, or a larger step of i_d, or give R_s as measured at the terminals (half of \
+             what is between two of them) to 1 % as a prior"
         }
         Parameter::Ld => "make the step of i_d larger, or log it at a higher speed",
         Parameter::Lq => "add operating points with more i_q, or at a higher speed",
@@ -172,7 +176,11 @@ impl Display for Measurement {
         match self {
             Self::AllPoints { times } => write!(f, "add the same operating points at {}", of_speed(*times)),
             Self::Resistance { accuracy } => {
-                write!(f, "measure R_s at the terminals to {:.0} % and give it as a prior", 100.0 * accuracy)
+                write!(
+                    f,
+                    "measure R_s at the terminals (half of what is between two of them) to {:.0} % and give it as a prior",
+                    100.0 * accuracy
+                )
             }
             Self::Stretch { seconds, place, omega_e } => match place {
                 Place::Id(0.0) => write!(f, "add {seconds} s at i_d = 0, {}", same_speed(*omega_e)),

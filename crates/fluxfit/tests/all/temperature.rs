@@ -29,8 +29,9 @@ fn columns(points: &[(f64, f64, f64)], temperature: Option<&[f64]>) -> Columns {
 
 const POINTS: [(f64, f64, f64); 3] = [(0.0, 9.0, 400.0), (-4.0, 6.0, 400.0), (-2.0, 3.0, 200.0)];
 
+/// By exact voltages: of a hundred rows a second, three points tell nothing of R_s beside an angle that may be off.
 fn answer(columns: Columns, request: &Request) -> Answer {
-    identify(&Log::new(columns).unwrap(), &Request { model: Some(Model::Steady), voltage_accuracy: 1e-4, ..request.clone() }).unwrap()
+    identify(&Log::new(columns).unwrap(), &Request { model: Some(Model::Steady), voltage_accuracy: 0.0, ..request.clone() }).unwrap()
 }
 
 fn of(points: &[(f64, f64, f64)], temperature: &[f64], request: &Request) -> AtTemperature {
