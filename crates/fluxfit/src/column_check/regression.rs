@@ -272,31 +272,15 @@ pub(crate) fn speed_in_doubt(log: &Log) -> Option<[f64; 2]> {
     is_in_doubt.then_some([low, high])
 }
 
-/// Whether the slopes of the currents suit the speed as it is, and one that is so many times lower no better. Simulated currents that
-/// follow at another speed do so for another reason then: a supply that ripples, or saturation.
-pub(crate) fn slopes_suit_the_speed(log: &Log, too_high: f64) -> bool {
-    speed_of_slopes(log).is_some_and(|slopes| {
-        let [low, high] = slopes.too_high;
-        (low..=high).contains(&1.0) && slopes.left_at(too_high) >= slopes.left_at(1.0)
-    })
-}
-
 /// Which speed suits the slopes of the currents.
 struct SpeedOfSlopes {
     /// By which factors the speed may be too high, the least and the largest.
     too_high: [f64; 2],
     /// What the speed as it is leaves of the voltages, over what the best of these leaves.
     excess: f64,
-    /// The equations of the voltages.
-    normal: DMatrix<f64>,
 }
 
 impl SpeedOfSlopes {
-    /// What a speed leaves of the voltages that is so many times lower, as a fraction.
-    fn left_at(&self, too_high: f64) -> f64 {
-        left(&self.normal, too_high)
-    }
-
     /// Whether no log of the right speed looks like this.
     fn is_certain(&self) -> bool {
         let [low, high] = self.too_high;
@@ -330,7 +314,7 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
     let block = BLOCK.min(log.rows() / ENOUGH).max(1) as f64;
     let is_seen = log.segments().iter().all(|segment| block * segment.sample_period * resistance < inductance);
     let excess = left(&normal, 1.0) / best;
-    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess, normal })
+    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess })
 }
 
 /// What is left of the voltages, as a fraction, where the inductances of the slopes are those of the speed, times a factor.

@@ -32,7 +32,7 @@ use super::{
     request::{Known, Request},
 };
 use crate::{
-    column_check::{slopes_suit_the_speed, speed_in_doubt},
+    column_check::speed_in_doubt,
     error::{Error, ErrorKind},
     faults::{Fault, Faults},
     log::Log,
@@ -263,13 +263,12 @@ fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut 
     Ok(false)
 }
 
-/// By which factors the speed may be too high, the least and the largest: where the simulated currents follow with another speed alone, and
-/// the slopes of the currents do not contradict it; or where these slopes ask for another one and the simulated currents do not follow
-/// without an observer, which makes them follow whatever it is; or only beside saturation, which makes inductances of slopes smaller than
-/// those of the speed: such terms may stand in for a speed that is too high.
+/// By which factors the speed may be too high, the least and the largest: where the simulated currents follow with another speed alone; or
+/// where the slopes of the currents ask for another one and the simulated currents do not follow without an observer, which makes them
+/// follow whatever it is; or only beside saturation, which makes inductances of slopes smaller than those of the speed: such terms may
+/// stand in for a speed that is too high.
 fn speed_too_high(log: &Log, speed: SpeedScale, output: Option<&OutputFit>) -> Option<[f64; 2]> {
     let by_currents = if let SpeedScale::TooHigh(too_high) = speed { Some(too_high) } else { None };
-    let by_currents = by_currents.filter(|[least, most]| !slopes_suit_the_speed(log, (least * most).sqrt()));
     let follows = output.is_some_and(|fit| fit.is_explained() && fit.drive.faults.disturbance.is_small());
     let saturates = output.is_some_and(|fit| fit.has(Fault::Saturation));
     let by_slopes = || if is_control_rate(log) && (!follows || saturates) { speed_in_doubt(log) } else { None };
