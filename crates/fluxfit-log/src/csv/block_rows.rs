@@ -50,6 +50,8 @@ pub(super) struct BlockRows<'a> {
     pub(super) note: Option<String>,
     pub(super) end: Result<(), FileError>,
     carried: Carried,
+    /// The decimal point of every wanted column was seen.
+    pub(super) has_all_points: bool,
     pub(super) scratch: String,
 }
 
@@ -134,7 +136,7 @@ impl<'a> BlockRows<'a> {
         let most = in_memory(text.lines + 1).min(text.bytes.len() / rules.expected.max(1) + 1);
         block.lines.reserve(most);
         block.values.iter_mut().for_each(|values| values.reserve(most));
-        let mut rows = Self { rules, block, note: None, end: Ok(()), carried, scratch: String::new() };
+        let mut rows = Self { rules, block, note: None, end: Ok(()), carried, has_all_points: false, scratch: String::new() };
         rows.end = if is_plain(&text.bytes) { rows.plain(text) } else { rows.records(text) };
         // Without the values of a refused row.
         let count = rows.block.lines.len();

@@ -87,15 +87,16 @@ impl BlockRows<'_> {
     /// Takes the row whose values were appended.
     #[inline]
     fn accept(&mut self, line: &Line) -> Result<bool, FileError> {
+        // No comma is left between commas: there only the first point of each column is of interest.
         let may_have_comma = self.rules.separator != b',';
-        for (place, cell) in line.cells.iter().enumerate() {
-            if self.has_point(place) && !may_have_comma {
-                continue;
+        if may_have_comma || !self.has_all_points {
+            for (place, cell) in line.cells.iter().enumerate() {
+                let cell = trimmed(&line.text[cell.clone()]);
+                if !cell.is_empty() && (!self.has_point(place) || cell.contains(&b',')) {
+                    self.check_mark(place, cell, line.number).map_err(|error| error.at_line(line.number))?;
+                }
             }
-            let cell = trimmed(&line.text[cell.clone()]);
-            if !cell.is_empty() && (!self.has_point(place) || cell.contains(&b',')) {
-                self.check_mark(place, cell, line.number).map_err(|error| error.at_line(line.number))?;
-            }
+            self.has_all_points = !may_have_comma && (0..line.cells.len()).all(|place| self.has_point(place));
         }
         self.taken(line.number);
         Ok(true)
