@@ -146,9 +146,7 @@ fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: O
         }),
         _ => {
             let units = units.iter().map(|unit| format!("in {}", unit.prose()));
-            let counterpart = |unit: &Unit| unit.is_mechanical() && size(*unit, 1) == size(column.unit, 1);
-            let of_shaft = Unit::of(Dimension::Speed).find(counterpart).filter(|_| !is_mechanical);
-            let of_shaft = of_shaft.map(|unit| format!("that of the shaft ({})", unit.name()));
+            let of_shaft = of_shaft(column.unit, Dimension::Speed).map(|unit| format!("that of the shaft ({})", unit.name()));
             let by_pairs = match pairs[..] {
                 [] => None,
                 [pairs] => Some(format!("of a motor with {}", named_pairs(pairs))),
@@ -161,12 +159,15 @@ fn speed_scale(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: O
     }
 }
 
+/// The unit of the shaft with the name of an electrical one: r/min for r/min.
+fn of_shaft(electrical: Unit, dimension: Dimension) -> Option<Unit> {
+    let is_counterpart = |unit: &Unit| unit.is_mechanical() && size(*unit, 1) == size(electrical, 1);
+    Unit::of(dimension).find(is_counterpart).filter(|_| !electrical.is_mechanical())
+}
+
 /// The shaft's speed and angle that were taken for the electrical ones; or another number of pole pairs, where both are the shaft's.
 fn speed_and_angle(too_high: RangeInclusive<f64>, read: &[ReadColumn], pole_pairs: Option<u32>) -> Option<Mending> {
     let (speed, angle) = (column(read, "omega_e")?, column(read, "theta_e")?);
-    let of_shaft = |unit: Unit, dimension| {
-        Unit::of(dimension).find(|other| other.is_mechanical() && !unit.is_mechanical() && size(*other, 1) == size(unit, 1))
-    };
     let named = |pairs: &[u32]| match *pairs {
         [pairs] => (format!(", {}", named_pairs(pairs)), pairs.to_string()),
         [fewest, .., most] => (format!(", {fewest} to {most} pole pairs"), "N".to_owned()),

@@ -54,7 +54,7 @@ impl Display for Remedy {
             Self::CompensateDeadTime { or_resistance } => {
                 write!(f, "log with the drive's dead-time compensation on")?;
                 if *or_resistance {
-                    write!(f, ", or give R_s as measured at the terminals (half of what is between two of them)")
+                    write!(f, ", or give R_s as measured at the terminals (half of what a meter shows between two)")
                 } else {
                     Ok(())
                 }
@@ -133,7 +133,7 @@ fn spread(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Rs => {
             "add operating points with more current at low speed, or a larger step of i_d, or give R_s as measured at the terminals (half of \
-             what is between two of them) to 1 % as a prior"
+             what a meter shows between two) to 1 % as a prior"
         }
         Parameter::Ld => "make the step of i_d larger, or log it at a higher speed",
         Parameter::Lq => "add operating points with more i_q, or at a higher speed",
@@ -178,7 +178,7 @@ impl Display for Measurement {
             Self::Resistance { accuracy } => {
                 write!(
                     f,
-                    "measure R_s at the terminals (half of what is between two of them) to {:.0} % and give it as a prior",
+                    "measure R_s at the terminals (half of what a meter shows between two) to {:.0} % and give it as a prior",
                     100.0 * accuracy
                 )
             }

@@ -40,16 +40,16 @@ impl FrameAngle {
     pub(super) const UNKNOWNS: usize = 3;
 
     /// Of a drive of which nothing else is known.
-    pub(super) const UNKNOWN: Self = Self { offset: 0.0, delay: 0.0, errors: [USUAL_OFFSET, USUAL_DELAY] };
+    pub(super) const USUAL: Self = Self { offset: 0.0, delay: 0.0, errors: [USUAL_OFFSET, USUAL_DELAY] };
 
     /// Where it may be unknown; not where voltages are exact, and not for whoever states the steady model: that states its equations, the
     /// angle with them.
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
-        (!are_exact && request.model.is_none()).then_some(Self::UNKNOWN)
+        (!are_exact && request.model.is_none()).then_some(Self::USUAL)
     }
 
-    /// s.
+    /// By how much it is late, s.
     pub(super) fn delay(&self) -> f64 {
         self.delay
     }

@@ -182,7 +182,7 @@ mod tests {
     fn points_turned_back_obey_the_steady_equations() {
         let (_, late) = points(&MODES, 50e-6);
         let lag = FrameLag { seconds: 50e-6, standard_error: 0.0, coasting_rows: 0 };
-        for point in lag.turned_back(&late, &FrameAngle::UNKNOWN) {
+        for point in lag.turned_back(&late, &FrameAngle::USUAL) {
             let [d, q] = point.equations().map(|equation| equation.residual(&MOTOR.to_array()));
             assert!(d.abs().max(q.abs()) < 1e-12 * point.voltage().magnitude(), "{d} {q}");
         }

@@ -276,7 +276,7 @@ fn solve_at_lag(
     frames: &Frames,
     request: &Request,
 ) -> Solved {
-    let (mut lag, mut angle, mut motor) = (frames.lag, FrameAngle::UNKNOWN, only_flux(frame_lag::rough_flux(unturned)));
+    let (mut lag, mut angle, mut motor) = (frames.lag, FrameAngle::USUAL, only_flux(frame_lag::rough_flux(unturned)));
     let mut round = || {
         let points = lag.turned_back(unturned, &angle);
         let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other, &angle)));
