@@ -1,14 +1,17 @@
 //! Logs as drives make them, identified, and how many of the numbers are wrong, as tables.
 //!
 //! `drives [LOGS | FIRST..END] [--motors MOTORS.csv]` draws logs over motors, faults, courses and kinds of logs; the first 200 and a dozen
-//! motors of our own unless told otherwise; with `--clean` first, of drives without a fault. `drives [--clean] --show N
-//! [--motors MOTORS.csv]` writes log number N as CSV, and its scenario to standard error.
+//! motors of our own unless told otherwise; with `--clean` first, of drives without a fault. With `--list` last, a line for each log comes
+//! first. `drives [--clean] --show N [--motors MOTORS.csv]` writes log number N as CSV, and its scenario to standard error.
 // Tables on standard output are what this program is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use fluxfit_setup::write_recording;
 use fluxfit_studies::{
-    drives::{Drawn, survey, table::tables},
+    drives::{
+        Drawn, survey,
+        table::{list, tables},
+    },
     rated::{Rated, read, typical},
 };
 use std::{error::Error, ops::Range, path::Path};
@@ -21,7 +24,8 @@ type Draw = fn(u64, &[Rated]) -> Option<Drawn>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let lists = arguments.iter().any(|word| word == "--list");
+    let words: Vec<&str> = arguments.iter().map(String::as_str).filter(|word| *word != "--list").collect();
     let (words, motors): (&[&str], Vec<Rated>) = match &words[..] {
         [rest @ .., "--motors", path] => (rest, read(Path::new(path))?),
         all => (all, typical()),
@@ -31,10 +35,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         all => (all, Drawn::new),
     };
     match words {
-        [] => print(0..LOGS, &motors, draw),
+        [] => print(0..LOGS, &motors, draw, lists),
         ["--show", index] => show(&draw(number(index)?, &motors).ok_or("the file has no motors")?)?,
-        [logs] => print(range(logs)?, &motors, draw),
-        _ => return Err("give a number of logs: drives [--clean] [LOGS | FIRST..END | --show N] [--motors MOTORS.csv]".into()),
+        [logs] => print(range(logs)?, &motors, draw, lists),
+        _ => return Err("give a number of logs: drives [--clean] [LOGS | FIRST..END | --show N] [--motors MOTORS.csv] [--list]".into()),
     }
     Ok(())
 }
@@ -51,9 +55,13 @@ fn range(word: &str) -> Result<Range<u64>, String> {
     }
 }
 
-fn print(logs: Range<u64>, motors: &[Rated], draw: Draw) {
+fn print(logs: Range<u64>, motors: &[Rated], draw: Draw, lists: bool) {
     println!("logs {} to before {} of {} motors", logs.start, logs.end, motors.len());
-    print!("{}", tables(&survey(logs, motors, draw)));
+    let found = survey(logs, motors, draw);
+    if lists {
+        print!("{}", list(&found));
+    }
+    print!("{}", tables(&found));
 }
 
 /// For a closer look at one log.

@@ -52,6 +52,30 @@ pub fn tables(found: &[Found]) -> String {
     text + &worst("the same without a fault", found, faults(0)) + &false_terms(found) + &refused(found)
 }
 
+/// A line for each log: what was drawn, what was found, and error and half-width of each parameter in %.
+pub fn list(found: &[Found]) -> String {
+    let mut text =
+        "| log | motor | course | kind | faults | terms | R_s, % | L_d | L_q | psi_f |\n|--:|--:|---|---|---|---|--:|--:|--:|--:|\n"
+            .to_owned();
+    for Found { drawn, numbers, terms, .. } in found {
+        let number = |number: &Number| match number.verdict {
+            Verdict::NotIdentifiable => "-".to_owned(),
+            verdict => format!("{:+.2} ± {:.2} {}", 100.0 * number.error, 100.0 * number.half_width, verdict.key()),
+        };
+        let numbers = numbers.each_ref().map(number).join(" | ");
+        let Drawn { index, rated, course, kind, .. } = drawn;
+        let (faults, terms) = (faults_of(drawn), terms.join(", "));
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "| {index} | {} | {} | {} | {faults} | {terms} | {numbers} |", rated.row, course.label(), kind.label());
+    }
+    text
+}
+
+/// The faults of a drive, in prose.
+fn faults_of(drawn: &Drawn) -> String {
+    if drawn.faults.is_empty() { "none".to_owned() } else { drawn.faults.iter().map(|fault| fault.label()).collect::<Vec<_>>().join(", ") }
+}
+
 fn head(title: &str) -> String {
     format!(
         "\n| {title} | logs | printed | of | wrong | wrong, % | intervals that hold, % | 95 % limits | half-width R_s, % | L_d | L_q | psi_f |\n\
@@ -86,9 +110,8 @@ fn worst(title: &str, found: &[Found], logs: impl Fn(&Drawn) -> bool) -> String 
         "\n| {title}: log | motor | course | kind | faults | | error, % | half-width, % | verdict |\n|--:|--:|---|---|---|---|--:|--:|---|\n"
     );
     for (log, number) in wrong.into_iter().take(WORST) {
-        let Drawn { index, rated, course, kind, faults, .. } = &log.drawn;
-        let faults =
-            if faults.is_empty() { "none".to_owned() } else { faults.iter().map(|fault| fault.label()).collect::<Vec<_>>().join(", ") };
+        let Drawn { index, rated, course, kind, .. } = &log.drawn;
+        let faults = faults_of(&log.drawn);
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,

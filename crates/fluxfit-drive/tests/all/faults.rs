@@ -9,6 +9,7 @@ use fluxfit::{
     evidence::Identification,
     evidence::OutputFit,
     faults::Fault,
+    frames::Dq,
     identify,
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageTiming},
@@ -226,6 +227,47 @@ fn a_speed_that_lags_in_an_acceleration() {
     let found = found(&recording);
     assert!(found.output.as_ref().unwrap().has(Fault::SpeedLag));
     holds("lagging speed", &found, &SCOOTER, [1.0, 0.5, 0.3, 0.1]);
+}
+
+/// Every eighth command of a small motor's drive at 16 kHz, written in the frame of its sample: it acts one and a half periods later,
+/// 94 us, and the log says neither how late nor how often. Voltages that are turned so contradict each other as those of a motor that
+/// saturates; beside the lag they agree.
+#[test]
+fn every_eighth_voltage_of_a_drive_that_does_not_turn_it_on() {
+    const SERVO: Motor = Motor { rs: 0.9, ld: 1.1e-3, lq: 1.4e-3, psi_f: 9e-3 };
+    const EVERY: u32 = 8;
+    const PERIOD: f64 = 62.5e-6;
+    let ramp = |at, to| Ramp { at, to, over: 0.02 };
+    let scenario = Scenario {
+        motor: SimulatedMotor::new(SERVO.rs, SERVO.into(), 7),
+        inverter: Inverter::ideal(48.0, 8e3),
+        mechanics: Mechanics::Dyno,
+        control: Control::new(500.0, 0.0, 15.0),
+        schedule: Schedule {
+            id: Profile::new((0..9).map(|k| ramp(0.15 * f64::from(k), -1.5 * f64::from(k / 3 % 3))).collect()),
+            iq: Profile::new((0..9).map(|k| ramp(0.15 * f64::from(k), 2.0 + 3.0 * f64::from(k % 3))).collect()),
+            speed: Profile::new((0..3).map(|k| ramp(0.45 * f64::from(k), 40.0 + 60.0 * f64::from(k))).collect()),
+            ..Schedule::default()
+        },
+        duration: 1.35,
+        sensors: Sensors { current_noise: 0.01, ..Sensors::IDEAL },
+        logging: Logging { every: EVERY, theta_e: false, u_dc: false, ..Logging::COMPLETE },
+        ..Scenario::paper()
+    };
+    let mut recording = simulate(&scenario, 1, || ()).unwrap();
+    let references: Vec<Dq> = recording.ud_ref.iter().zip(&recording.uq_ref).map(|(d, q)| Dq { d: *d, q: *q }).collect();
+    let columns = &mut recording.columns;
+    for (k, u) in references.iter().enumerate() {
+        // From the frame in the middle of the period in which it acts.
+        let angle = 1.5 * PERIOD * columns.omega_e[k];
+        columns.ud[k] = angle.cos() * u.d - angle.sin() * u.q;
+        columns.uq[k] = angle.sin() * u.d + angle.cos() * u.q;
+    }
+    let found = found(&recording);
+    let fit = found.output.as_ref().unwrap();
+    finds("lagging voltages", fit, Fault::VoltageLag, &[("voltage_lag", 1.5 * PERIOD)]);
+    holds("lagging voltages", &found, &SERVO, [1.0, 5.0, 5.0, 0.5]);
+    assert!(found.is_complete(), "{:?}", found.parameters);
 }
 
 /// Device drops in a log without the angle: their harmonics tell them, and R_s, which they would make 30 % too large, is right.

@@ -32,11 +32,14 @@ pub(crate) struct Acting<V> {
     angle: [V; 2],
     /// By which the angle is late, s.
     angle_delay: V,
+    /// By which the commanded voltages are, s: by the angle and by themselves.
+    voltage_delay: V,
     /// Weights over a period.
     current_filter: [V; 3],
     /// What of a change of the current within a period the filter passes on, inverted.
     before_filter: V,
     noise_before_filter: V,
+    /// Of a change of the logged voltages from a period to the next: what comes before its time, less what comes after.
     voltage_filter: V,
     speed_lag: V,
     /// `d cos, d sin, q cos, q sin`.
@@ -88,16 +91,17 @@ impl FaultKinds {
 
     pub(crate) fn of(faults: &Faults) -> Self {
         let none = Faults::default();
-        let delay = faults.angle_delay != none.angle_delay;
-        let turns = faults.angle_offset != none.angle_offset || delay;
+        let late = faults.angle_delay != none.angle_delay;
+        let turns = faults.angle_offset != none.angle_offset || late;
+        let lags = faults.voltage_lag != none.voltage_lag;
         Self {
             sensors: turns || faults.current_offset != none.current_offset || faults.current_gains != none.current_gains,
-            delay,
+            delay: late || lags,
             filter: faults.filter.phases != 0.0 || faults.filter.currents != 0.0,
-            voltages: turns || faults.speed_lag != none.speed_lag || faults.filter.voltages != 0.0,
+            voltages: turns || lags || faults.speed_lag != none.speed_lag || faults.filter.voltages != 0.0,
             loss: LossKinds::of(&faults.dead_time),
             phase: faults.dead_time.phase != 0.0,
-            beside: delay
+            beside: late
                 || faults.speed_lag != none.speed_lag
                 || faults.flux_harmonics != none.flux_harmonics
                 || faults.resistance_drift != none.resistance_drift,
@@ -147,6 +151,7 @@ impl<V> Acting<V> {
             ],
             angle: [lanes(&|f| f.angle_offset.angle.cos()), lanes(&|f| f.angle_offset.angle.sin())],
             angle_delay: lanes(&|f| f.angle_delay.time),
+            voltage_delay: lanes(&|f| f.angle_delay.time + f.voltage_lag.time),
             current_filter: [
                 lanes(&|f| f.filter.weights(period)[0]),
                 lanes(&|f| f.filter.weights(period)[1]),
@@ -154,7 +159,7 @@ impl<V> Acting<V> {
             ],
             noise_before_filter: lanes(&|f| f.filter.noise_before),
             before_filter: lanes(&|f| 1.0 / (1.0 - f.filter.weights(period)[1])),
-            voltage_filter: lanes(&|f| f.filter.advance(period)),
+            voltage_filter: lanes(&|f| f.filter.advance(period) - f.voltage_lag.periods(period)),
             speed_lag: lanes(&|f| f.speed_lag.time),
             flux_harmonics: [
                 lanes(&|f| f.flux_harmonics.d[0]),
@@ -194,16 +199,16 @@ impl<V: Number> Acting<V> {
         }
         let balanced = balanced(self.imbalance, removed(self.current_offset, logged, rotor), rotor);
         let [cos, sin] = self.current_turn;
-        self.undelayed(turned(balanced, cos, sin), late_by, false)
+        self.undelayed(turned(balanced, cos, sin), self.angle_delay, late_by)
     }
 
-    /// Turned by what the angle is late: into the magnet's frame, or `out` of it.
+    /// Turned on by what the rotor turns within a delay, s, at a speed: the magnet's frame lies ahead of one that is late.
     #[inline(always)]
-    fn undelayed(&self, vector: [V; 2], late_by: f64, out: bool) -> [V; 2] {
+    fn undelayed(&self, vector: [V; 2], delay: V, omega_e: f64) -> [V; 2] {
         if !self.kinds.delay {
             return vector;
         }
-        let [cos, sin] = angle_delay::turn(self.angle_delay, if out { -late_by } else { late_by });
+        let [cos, sin] = angle_delay::turn(delay, omega_e);
         turned(vector, cos, sin)
     }
 
@@ -221,7 +226,8 @@ impl<V: Number> Acting<V> {
             return logged;
         }
         let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_filter, logged, before), place);
-        self.in_magnets_frame(logged, place.late_by)
+        let [cos, sin] = self.angle;
+        self.undelayed(turned(logged, cos, sin), self.voltage_delay, place.late_by)
     }
 
     /// What the inverter loses of a commanded voltage, V, given the currents in the motor at the start of the period, and at its end if
@@ -245,14 +251,14 @@ impl<V: Number> Acting<V> {
     #[inline(always)]
     fn in_magnets_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, sin), late_by, false)
+        self.undelayed(turned(vector, cos, sin), self.angle_delay, late_by)
     }
 
     /// A vector of the magnet's frame, in that of an angle that is late.
     #[inline(always)]
     fn in_rotors_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
         let [cos, sin] = self.angle;
-        self.undelayed(turned(vector, cos, -sin), late_by, true)
+        self.undelayed(turned(vector, cos, -sin), self.angle_delay, -late_by)
     }
 
     /// The voltage `u`, V, less what a motor at current `i`, A, takes or induces beside its equation; `linear_flux` is `L i + psi_f`, Wb.

@@ -19,6 +19,7 @@ mod place;
 pub mod resistance_drift;
 pub mod saturation;
 pub mod speed_lag;
+pub mod voltage_lag;
 
 pub(crate) use acting::{Acting, FaultKinds};
 pub(crate) use dead_time::carrier_half;
@@ -38,6 +39,7 @@ use flux_harmonics::FluxHarmonics;
 use resistance_drift::ResistanceDrift;
 use saturation::Saturation;
 use speed_lag::SpeedLag;
+use voltage_lag::VoltageLag;
 
 /// The state of all faults. The default is a perfect drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -48,6 +50,8 @@ pub struct Faults {
     pub angle_offset: AngleOffset,
     /// Angle that is read late.
     pub angle_delay: AngleDelay,
+    /// Voltages that lag behind their frame.
+    pub voltage_lag: VoltageLag,
     /// What the current sensors read at zero.
     pub current_offset: CurrentOffset,
     /// Gains of the current sensors that differ.
@@ -80,6 +84,8 @@ pub enum Fault {
     AngleOffset,
     /// Angle that is read late.
     AngleDelay,
+    /// Voltages that lag behind their frame.
+    VoltageLag,
     /// What the current sensors read at zero.
     CurrentOffset,
     /// Gains of three current sensors that differ.
@@ -164,12 +170,13 @@ macro_rules! row {
 
 impl Fault {
     /// All of them, in the order in which they are tried where they promise alike.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::DeadTime,
         Self::DeadTimeWithoutAngle,
         Self::DeviceDrops,
         Self::AngleOffset,
         Self::AngleDelay,
+        Self::VoltageLag,
         Self::CurrentOffset,
         Self::ThreeSensors,
         Self::SensorsAb,
@@ -194,6 +201,7 @@ impl Fault {
             Self::DeviceDrops => row!(dead_time::DEVICE_DROPS, dead_time),
             Self::AngleOffset => row!(angle_offset::FAULT, angle_offset),
             Self::AngleDelay => row!(angle_delay::FAULT, angle_delay),
+            Self::VoltageLag => row!(voltage_lag::FAULT, voltage_lag),
             Self::CurrentOffset => row!(current_offset::FAULT, current_offset),
             Self::ThreeSensors => row!(current_gains::THREE_SENSORS, current_gains),
             Self::SensorsAb => row!(current_gains::SENSORS_A_B, current_gains),
@@ -231,10 +239,11 @@ impl Fault {
         matches!(self, Self::CurrentFilter | Self::DqCurrentFilter | Self::DqVoltageFilter | Self::DqFilter)
     }
 
-    /// Whether at most one of them can be part of an answer: they explain the same, or both are the filter of the voltages.
+    /// Whether at most one of them can be part of an answer: they explain the same, or both make the logged voltages other than those that
+    /// act at their time, as a filter of them does and a lag.
     pub(crate) fn excludes(self, other: Self) -> bool {
-        let filters_voltages = |fault: Self| matches!(fault, Self::DqFilter | Self::DqVoltageFilter);
-        self.family() == other.family() || filters_voltages(self) && filters_voltages(other)
+        let shifts_voltages = |fault: Self| matches!(fault, Self::DqFilter | Self::DqVoltageFilter | Self::VoltageLag);
+        self.family() == other.family() || shifts_voltages(self) && shifts_voltages(other)
     }
 
     /// Whether only a rotor that turns shows it: at rest it passes for other values of the motor's parameters, or for dead time.
@@ -243,6 +252,7 @@ impl Fault {
             self,
             Self::AngleOffset
                 | Self::AngleDelay
+                | Self::VoltageLag
                 | Self::CurrentOffset
                 | Self::SpeedLag
                 | Self::FluxHarmonics

@@ -149,6 +149,16 @@ impl VoltageTiming {
         matches!(self, Self::Delayed { frame: VoltageFrame::Row, .. })
     }
 
+    /// Whether it is that of a drive which logs each of its periods: then it says by how many of them the voltages lag.
+    pub(crate) fn tells_lag(self) -> bool {
+        !self.is_unusual() && !self.acts_at_once()
+    }
+
+    /// Whether its voltages may lag by any time; in the frame at the row they do by what the rotor turns.
+    pub(crate) fn may_lag(self) -> bool {
+        !self.tells_lag() && !self.is_in_frame_of_row()
+    }
+
     /// Whether no inverter that logs each of its periods does so.
     pub fn is_unusual(self) -> bool {
         self.held() != Held::InStator

@@ -82,6 +82,10 @@ impl From<Motor> for Adjustable {
     }
 }
 
+/// Largest gain of an observer that a fit starts with: above one it runs ahead of what a filter or a delay holds back, and leads away from
+/// them.
+const LARGEST_GAIN: f64 = 0.9;
+
 impl Adjustable {
     /// One number.
     pub fn get(&self, unknown: Unknown) -> f64 {
@@ -101,6 +105,13 @@ impl Adjustable {
             }
             Unknown::Fault(number) => self.faults.set(number, value),
         }
+        self
+    }
+
+    /// The drive with an observer that a fit can start with.
+    pub(crate) fn calmed(mut self) -> Self {
+        let gain = &mut self.faults.disturbance.gain;
+        (gain.d, gain.q) = (gain.d.min(LARGEST_GAIN), gain.q.min(LARGEST_GAIN));
         self
     }
 

@@ -322,7 +322,7 @@ mod tests {
         faults::{
             Faults, angle_delay::AngleDelay, angle_offset::AngleOffset, current_gains::CurrentGains, current_offset::CurrentOffset,
             dead_time::DeadTime, disturbance::Disturbance, filter::Filter, flux_harmonics::FluxHarmonics,
-            resistance_drift::ResistanceDrift, saturation::Saturation, speed_lag::SpeedLag,
+            resistance_drift::ResistanceDrift, saturation::Saturation, speed_lag::SpeedLag, voltage_lag::VoltageLag,
         },
         frames::AlphaBeta,
         log::{Columns, Log},
@@ -378,6 +378,7 @@ mod tests {
             current_offset: CurrentOffset { current: AlphaBeta { alpha: 0.1 * x, beta: -0.05 } },
             current_gains: CurrentGains { imbalance: AlphaBeta { alpha: 0.01, beta: 0.02 * x }, turn: 0.01 },
             angle_delay: AngleDelay { time: 1e-4 * x },
+            voltage_lag: VoltageLag { time: 5e-5 * x },
             filter: Filter { currents: 2e-4 * x, voltages: 1e-4, noise_before: 0.3 * x, ..Filter::default() },
             speed_lag: SpeedLag { time: 1e-3 * x },
             flux_harmonics: FluxHarmonics { d: [0.001, 0.002 * x], q: [0.003 * x, -0.001] },

@@ -217,11 +217,10 @@ impl<'a> Trials<'a> {
         let motor = Motor { rs: self.rs(), ..self.bench.motor };
         // At the same speed the flux induces the same.
         let motor = if times == 1.0 { Motor { psi_f: 0.0, ..motor } } else { motor };
-        let Faults { angle_offset, angle_delay, .. } = self.losses.faults;
-        let too_large = |omega_e: f64| angle_offset.angle - omega_e * angle_delay.time;
+        let Faults { angle_offset, angle_delay, voltage_lag, .. } = self.losses.faults;
         let voltage = |i: Dq, omega_e: f64| {
-            let error = too_large(omega_e);
-            motor.steady_voltage(i.turned(error), omega_e).turned(-error)
+            let too_large = angle_offset.angle - omega_e * angle_delay.time;
+            motor.steady_voltage(i.turned(too_large), omega_e).turned(omega_e * voltage_lag.time - too_large)
         };
         let (before, after) = (voltage(from, omega_e), voltage(to, times * omega_e));
         let step = Dq { d: after.d - before.d, q: after.q - before.q };

@@ -83,7 +83,7 @@ impl FaultOutcome {
             Self::Taken => "taken",
             Self::NotNeeded => "explains too little of the residual",
             Self::NotPhysical => "what fits has no physical meaning",
-            Self::WithinRows => "is faster than the rows, of which only means are known, and explains little",
+            Self::WithinRows => "is faster than the rows, within which nothing is logged, and explains little",
             Self::NoMatter => "moves no parameter by more than its standard error",
             Self::Covered => "another term explains the same",
             Self::NeedsAngle => "needs the electrical angle, theta_e",
@@ -93,11 +93,11 @@ impl FaultOutcome {
 }
 
 /// Least part of the residual's power that a fault must explain to be taken when no parameter moves, or beside rough saturation.
-const NOTICEABLE: f64 = 0.02;
+pub(super) const NOTICEABLE: f64 = 0.02;
 
-/// The same of a filter that is faster than rows that are means: it takes some hundredths of what voltages do within these rows, which is
-/// not in the log, and stands in for it in logs without any filter.
-const WITHIN_ROWS: f64 = 0.1;
+/// The same of a filter that is faster than rows that are means, and of voltages that lag: they take some hundredths of what voltages do
+/// within these rows, which is not in the log, and stand in for it in logs without either.
+pub(super) const WITHIN_ROWS: f64 = 0.1;
 
 /// A fault is not fitted where the score test expects less than this part of what would matter: it is not more wrong than that.
 const LEAST_EXPECTED: f64 = 0.25;
@@ -148,7 +148,7 @@ impl FaultSearch<'_> {
     }
 
     /// The output error under the reading that fits best now.
-    fn objective(&self) -> &OutputError {
+    pub(super) fn objective(&self) -> &OutputError {
         &self.objectives[self.reading].1
     }
 
@@ -193,7 +193,9 @@ impl FaultSearch<'_> {
             // An observer follows a part of what a fault does: without it, more of the fault shows.
             not_taken = self.add(&faults, &mut taken);
         }
-        let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(not_taken).collect();
+        let in_doubt = self.choose_delay(&mut taken);
+        not_taken.retain(|trial| !taken.iter().chain(&in_doubt).any(|other| other.fault == trial.fault));
+        let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(in_doubt).chain(not_taken).collect();
         all.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);
         all
     }
@@ -224,7 +226,9 @@ impl FaultSearch<'_> {
     }
 
     /// Chooses the reading of the voltages again: with the faults found, another one may fit better.
-    fn choose_reading(&mut self) {
+    pub(super) fn choose_reading(&mut self) {
+        let lags = self.unknowns.iter().any(|unknown| unknown.fault() == Some(Fault::VoltageLag));
+        self.open.retain(|place| !lags || self.objectives[*place].0.may_lag());
         let starts = self.open.iter().map(|place| (*place, self.drive)).collect();
         self.compared = contest(self.objectives, starts, &self.unknowns, self.priors, &Rules::all(HOPELESS_AFTER_A_FIT));
         if let Some((place, best)) = self.compared.first() {
@@ -289,7 +293,7 @@ impl FaultSearch<'_> {
     }
 
     /// Mean square of a residual, A².
-    fn mean_square(&self) -> f64 {
+    pub(super) fn mean_square(&self) -> f64 {
         self.cost / (2 * self.objective().rows()) as f64
     }
 
@@ -337,6 +341,8 @@ impl FaultSearch<'_> {
                 FaultOutcome::Covered
             } else if this.ruled_out.iter().any(|ruled_out| ruled_out.family() == fault.family()) {
                 FaultOutcome::NotPhysical
+            } else if *fault == Fault::VoltageLag && !this.objectives[this.reading].0.may_lag() {
+                FaultOutcome::Covered
             } else if !fault.angle_need().is_met(this.objective().angle_known(), this.objective().angle_traced()) {
                 FaultOutcome::NeedsAngle
             } else if fault.needs_turning() && !this.objective().turns() {
@@ -406,16 +412,6 @@ const SIDE_BY_SIDE: usize = 8;
 
 /// Starts of a fault that are fitted: the most promising of all.
 const FITTED_STARTS: usize = 2;
-
-/// Largest gain of an observer that a fit starts with: above one it runs ahead of what a filter or a delay holds back, and leads away from
-/// them.
-const LARGEST_GAIN: f64 = 0.9;
-
-fn calmed(mut drive: Adjustable) -> Adjustable {
-    let gain = &mut drive.faults.disturbance.gain;
-    (gain.d, gain.q) = (gain.d.min(LARGEST_GAIN), gain.q.min(LARGEST_GAIN));
-    drive
-}
 
 /// Costs of two searches that differ by less than this part are of the same fit: fits that choose end so near to a minimum.
 const ALIKE: f64 = 1e-3;
@@ -505,7 +501,7 @@ impl ScoreTest {
         let starts = |fault: &Fault| if nothing_left { Vec::new() } else { fault.starts(&search.drive.faults, self.peak) };
         let starts = faults.iter().enumerate().flat_map(|(place, fault)| starts(fault).into_iter().map(move |faults| (place, faults)));
         let starts: Vec<(usize, Adjustable)> =
-            starts.map(|(place, faults)| (place, calmed(Adjustable { faults, ..search.drive }))).collect();
+            starts.map(|(place, faults)| (place, Adjustable { faults, ..search.drive }.calmed())).collect();
         let mut each: Vec<Vec<(FromStart, Adjustable)>> = vec![Vec::new(); faults.len()];
         for starts in starts.chunks(SIDE_BY_SIDE) {
             let drives: Vec<(Adjustable, Vec<Unknown>)> =
@@ -564,7 +560,8 @@ impl ScoreTest {
         let runs_away = Parameter::ALL
             .into_iter()
             .any(|parameter| moves[parameter as usize].abs() > RUNS_AWAY * search.drive.motor.get(parameter).abs());
-        let stands_in = search.is_within_rows(fault, &drive) && cost > (1.0 - WITHIN_ROWS) * search.cost;
+        let may_stand_in = fault == Fault::VoltageLag || search.is_within_rows(fault, &drive);
+        let stands_in = may_stand_in && cost > (1.0 - WITHIN_ROWS) * search.cost;
         let outcome = if gain <= VERY_STRONG {
             FaultOutcome::NotNeeded
         } else if !is_physical || runs_away {

@@ -8,7 +8,10 @@
 //! doi:10.1080/01621459.1995.10476572; J. A. Hoeting et al., "Bayesian model averaging: a tutorial", Statistical Science 14 (1999) 382,
 //! doi:10.1214/ss/1009212519.
 
-use super::fault_search::{FaultOutcome, FaultTrial};
+use super::{
+    fault_search::{FaultOutcome, FaultTrial},
+    readings::VERY_STRONG,
+};
 use crate::{faults::Fault, motor::PARAMETERS};
 use std::collections::BTreeMap;
 
@@ -21,8 +24,13 @@ pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
     // What fits without a physical meaning says nothing of where the parameters are, and inductances beside saturation are those at no
     // current: other numbers.
     let counts = |trial: &&FaultTrial| {
-        let may_be_there = [FaultOutcome::NotNeeded, FaultOutcome::NoMatter].contains(&trial.outcome);
-        may_be_there && trial.gain > STRONG && trial.fault != Fault::Saturation
+        let may_be_there = match trial.outcome {
+            FaultOutcome::NotNeeded | FaultOutcome::NoMatter => trial.gain > STRONG,
+            // In the place of the one that was taken.
+            FaultOutcome::Covered => trial.gain > -VERY_STRONG,
+            _ => false,
+        };
+        may_be_there && trial.fault != Fault::Saturation
     };
     for trial in trials.iter().filter(counts) {
         let probability = 1.0 / (1.0 + (-0.5 * trial.gain).exp());
@@ -54,6 +62,10 @@ mod tests {
             trial(Fault::Saturation, 100.0, FaultOutcome::NotNeeded, 1.0),
         ];
         assert_eq!(doubt(&nothing), [0.0; PARAMETERS]);
+        // In the place of another that is 2 ln 24 better: its probability is 1 in 25.
+        let other = trial(Fault::VoltageLag, -gain, FaultOutcome::Covered, 2.0);
+        assert!((doubt(std::slice::from_ref(&other))[0] - 0.4).abs() < 1e-12);
+        assert_eq!(doubt(&[trial(Fault::VoltageLag, -20.0, FaultOutcome::Covered, 2.0)]), [0.0; PARAMETERS]);
         // Both filters say the same.
         let filters = [Fault::CurrentFilter, Fault::DqCurrentFilter].map(|filter| trial(filter, gain, FaultOutcome::NotNeeded, 2.0));
         assert_eq!(doubt(&filters), doubt(&[angle]));

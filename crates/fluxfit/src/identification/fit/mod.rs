@@ -3,6 +3,7 @@
 mod all_rows;
 mod coasting;
 pub(crate) mod common_gains;
+mod delays;
 pub(crate) mod estimate;
 pub(crate) mod excitation;
 pub(crate) mod fault_search;

@@ -6,7 +6,7 @@ use super::{
         progress::{Progress, Step},
         request::Request,
     },
-    fault_search::{FaultOutcome, FaultSearch, FaultTrial, LEAST_RESIDUAL, schwarz},
+    fault_search::{FaultOutcome, FaultSearch, FaultTrial, LEAST_RESIDUAL, WITHIN_ROWS, schwarz},
     long_run,
     output_start::{self, Start, free},
     readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest},
@@ -58,23 +58,28 @@ struct Begin {
 }
 
 impl Begin {
-    /// With an angle that is off or late, if the evidence for one is very strong beside what was `tried` without.
-    fn with_angle(
+    /// With one of these faults of the frame, if the evidence for one is very strong beside what was `tried` without.
+    fn with_frame(
+        faults: &[Fault],
         objectives: &[(VoltageTiming, OutputError)],
         start: &Adjustable,
-        free: &[Unknown],
-        priors: &[PriorResidual],
+        (free, priors): (&[Unknown], &[PriorResidual]),
         tried: &[(usize, TimingTrial)],
     ) -> Option<Self> {
         let (_, without) = tried.first()?;
-        let each = [Fault::AngleOffset, Fault::AngleDelay].into_iter().filter_map(|fault| {
+        let each = faults.iter().copied().filter_map(|fault| {
             let unknowns: Vec<Unknown> = free.iter().copied().chain(Unknown::of_fault(fault)).collect();
-            let (place, with) = *readings::readings(objectives, start, &unknowns, priors, HOPELESS).first()?;
+            let possible = (0..objectives.len()).filter(|place| fault != Fault::VoltageLag || objectives[*place].0.may_lag());
+            let starts = possible.map(|place| (place, *start)).collect();
+            let (place, with) = *contest(objectives, starts, &unknowns, priors, &Rules::all(HOPELESS)).first()?;
             let (objective, drive) = (&objectives[place].1, with.polished.drive);
             let independent = long_run::effective_sample_size(&objective.residuals(&drive));
             let gain = schwarz(without.mean_square(), with.mean_square(), unknowns.len() - free.len(), independent);
-            let is_there =
-                gain > VERY_STRONG && is_a_motor(&drive.motor) && fault.is_physical(&drive.faults, &drive.motor, objective.peak_current());
+            let stands_in = fault == Fault::VoltageLag && with.mean_square() > (1.0 - WITHIN_ROWS) * without.mean_square();
+            let is_there = gain > VERY_STRONG
+                && !stands_in
+                && is_a_motor(&drive.motor)
+                && fault.is_physical(&drive.faults, &drive.motor, objective.peak_current());
             let moves = Parameter::ALL.map(|parameter| drive.motor.get(parameter) - without.polished.drive.motor.get(parameter));
             let trial = FaultTrial { fault, gain, outcome: FaultOutcome::Taken, moves };
             is_there.then(|| Self { tried: (place, with), unknowns, faults: vec![trial] })
@@ -124,8 +129,13 @@ pub(super) fn choose(
         chosen.readings.extend(tried.iter().map(|(_, tried)| *tried));
         return Ok(vec![chosen]);
     }
-    let may_hide_an_angle = start.may_hide_an_angle || tried.first().is_some_and(|(_, best)| best.timing.is_in_frame_of_row());
-    let with_angle = if may_hide_an_angle { Begin::with_angle(&objectives, &start.drive, &free, &priors, &tried) } else { None };
+    let best_timing = tried.first().map(|(_, best)| best.timing);
+    let may_hide_an_angle = start.may_hide_an_angle || best_timing.is_some_and(VoltageTiming::is_in_frame_of_row);
+    let of_angle = if may_hide_an_angle { &[Fault::AngleOffset, Fault::AngleDelay][..] } else { &[] };
+    // Voltages that lag are of another reading than without.
+    let of_voltages = best_timing.filter(|timing| !timing.tells_lag()).map(|_| Fault::VoltageLag);
+    let of_frame: Vec<Fault> = of_angle.iter().copied().chain(of_voltages).collect();
+    let with_frame = Begin::with_frame(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
     let _ = progress(Step::Faults);
     let every_period = is_control_rate(log);
     let most = if every_period { TRIED_READINGS } else { 1 };
@@ -157,8 +167,8 @@ pub(super) fn choose(
         })
     };
     let without = |tried| Begin { tried, unknowns: free.clone(), faults: Vec::new() };
-    let first_plain = usize::from(with_angle.is_some());
-    for begin in with_angle.into_iter().chain(tried.iter().copied().take(most).map(without)) {
+    let first_plain = usize::from(with_frame.is_some());
+    for begin in with_frame.into_iter().chain(tried.iter().copied().take(most).map(without)) {
         // The search from the reading before has compared all of them, and ended with this one.
         if found.iter().skip(first_plain).any(|found| found.chosen.reading == begin.tried.1.timing) {
             break;

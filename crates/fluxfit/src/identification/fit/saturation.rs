@@ -116,11 +116,11 @@ impl Lost {
     }
 }
 
-/// Points that the drive's angle turns back into the magnet's frame; none where it has no angle that is off or late.
-fn in_magnets_frame(points: &[OperatingPoint], drive: &Adjustable) -> Option<Vec<OperatingPoint>> {
-    let (offset, delay) = (drive.faults.angle_offset.angle, drive.faults.angle_delay.time);
-    let turned = || points.iter().map(|point| point.in_frame_behind(offset - delay * point.omega_e())).collect();
-    (offset != 0.0 || delay != 0.0).then(turned)
+/// Points that are turned back into the magnet's frame; none of a drive whose angle is neither off nor late, and whose voltages do not lag.
+pub(super) fn in_magnets_frame(points: &[OperatingPoint], drive: &Adjustable) -> Option<Vec<OperatingPoint>> {
+    let (offset, delay, lag) = (drive.faults.angle_offset.angle, drive.faults.angle_delay.time, drive.faults.voltage_lag.time);
+    let in_frame = |point: &OperatingPoint| point.in_frame_behind(offset - delay * point.omega_e()).turned(-lag * point.omega_e());
+    (offset != 0.0 || delay != 0.0 || lag != 0.0).then(|| points.iter().map(in_frame).collect())
 }
 
 /// An apparent inductance, H, and the current, A, at which it is one.

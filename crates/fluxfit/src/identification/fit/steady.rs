@@ -15,7 +15,7 @@ use super::{
     misfit::{self, Misfit},
     open_loop,
     resistance_of_speeds::{self, Resistance},
-    saturation::SaturationFinding,
+    saturation::{SaturationFinding, in_magnets_frame},
     swarm::{self, Search},
     uncertainty::Uncertainty,
     voltage_loss::{Loss, LossPrior, is_control_rate, slowest_period},
@@ -27,6 +27,7 @@ use crate::{
     frames::Dq,
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
+    objective::adjustable::Adjustable,
     optimizer::{Bounds, Method},
     steady::{
         OperatingPoint, PreliminaryEstimate, recorder, windows,
@@ -180,6 +181,14 @@ impl SteadyFit {
             self.rs_of_speeds.as_ref(),
             request,
         )
+    }
+
+    /// Whether its points, which contradict each other, no longer do in the frame of a drive that simulated currents found: one whose angle
+    /// is off or late, or whose voltages lag.
+    pub(crate) fn agrees_in_frame_of(&self, log: &Log, drive: &Adjustable, request: &Request) -> bool {
+        let in_doubt = InDoubt { angle_and_winding: !is_control_rate(log), loss: 0.0 };
+        let turned = in_magnets_frame(&self.operating_points, drive).filter(|_| self.misfit.is_some());
+        turned.is_some_and(|points| solve_beside(log, points, &[], in_doubt, request).misfit.is_none())
     }
 
     /// R_s and its standard uncertainty, ohm, of a motor that saturates, where points of one current at several speeds tell it.
