@@ -66,8 +66,9 @@ impl Begin {
         (free, priors): (&[Unknown], &[PriorResidual]),
         tried: &[(usize, TimingTrial)],
     ) -> Option<Self> {
-        let (_, without) = tried.first()?;
-        let each = faults.iter().copied().filter_map(|fault| {
+        let (place, without) = tried.first()?;
+        let turns = objectives[*place].1.turns();
+        let each = faults.iter().copied().filter(|fault| turns || !fault.needs_turning()).filter_map(|fault| {
             let unknowns: Vec<Unknown> = free.iter().copied().chain(Unknown::of_fault(fault)).collect();
             let possible = (0..objectives.len()).filter(|place| fault != Fault::VoltageLag || objectives[*place].0.may_lag());
             let starts = possible.map(|place| (place, *start)).collect();
