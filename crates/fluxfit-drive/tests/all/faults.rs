@@ -265,7 +265,9 @@ fn every_eighth_voltage_of_a_drive_that_does_not_turn_it_on() {
     }
     let found = found(&recording);
     let fit = found.output.as_ref().unwrap();
-    finds("lagging voltages", fit, Fault::VoltageLag, &[("voltage_lag", 1.5 * PERIOD)]);
+    // Terms for what happens between such rows may be found beside it.
+    let lag = fit.fault_estimates.iter().find(|estimate| estimate.unknown.fault() == Some(Fault::VoltageLag)).unwrap();
+    assert!((lag.value - 1.5 * PERIOD).abs() < 3.0 * lag.standard_error && lag.standard_error < 0.05 * PERIOD, "{lag:?}");
     holds("lagging voltages", &found, &SERVO, [1.0, 5.0, 5.0, 0.5]);
     assert!(found.is_complete(), "{:?}", found.parameters);
 }
