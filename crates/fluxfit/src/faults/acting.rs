@@ -32,15 +32,15 @@ pub(crate) struct Acting<V> {
     angle: [V; 2],
     /// By which the angle is late, s.
     angle_delay: V,
-    /// By which the commanded voltages are, s: by the angle and by themselves.
+    /// By which the commanded voltages are late, s: by the angle and by themselves.
     voltage_delay: V,
     /// Weights over a period.
     current_filter: [V; 3],
     /// What of a change of the current within a period the filter passes on, inverted.
     before_filter: V,
     noise_before_filter: V,
-    /// Of a change of the logged voltages from a period to the next: what comes before its time, less what comes after.
-    voltage_filter: V,
+    /// By how many periods the logged voltages are moved ahead in time: what their filter holds back, less what they act later.
+    voltage_advance: V,
     speed_lag: V,
     /// `d cos, d sin, q cos, q sin`.
     flux_harmonics: [V; 4],
@@ -159,7 +159,7 @@ impl<V> Acting<V> {
             ],
             noise_before_filter: lanes(&|f| f.filter.noise_before),
             before_filter: lanes(&|f| 1.0 / (1.0 - f.filter.weights(period)[1])),
-            voltage_filter: lanes(&|f| f.filter.advance(period) - f.voltage_lag.periods(period)),
+            voltage_advance: lanes(&|f| f.filter.advance(period) - f.voltage_lag.time / period),
             speed_lag: lanes(&|f| f.speed_lag.time),
             flux_harmonics: [
                 lanes(&|f| f.flux_harmonics.d[0]),
@@ -202,7 +202,7 @@ impl<V: Number> Acting<V> {
         self.undelayed(turned(balanced, cos, sin), self.angle_delay, late_by)
     }
 
-    /// Turned on by what the rotor turns within a delay, s, at a speed: the magnet's frame lies ahead of one that is late.
+    /// From a frame that is late by a delay, s, into the magnet's, which has turned further at this speed.
     #[inline(always)]
     fn undelayed(&self, vector: [V; 2], delay: V, omega_e: f64) -> [V; 2] {
         if !self.kinds.delay {
@@ -225,7 +225,7 @@ impl<V: Number> Acting<V> {
         if !self.kinds.voltages {
             return logged;
         }
-        let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_filter, logged, before), place);
+        let logged = speed_lag::advanced(self.speed_lag, unfiltered(self.voltage_advance, logged, before), place);
         let [cos, sin] = self.angle;
         self.undelayed(turned(logged, cos, sin), self.voltage_delay, place.late_by)
     }

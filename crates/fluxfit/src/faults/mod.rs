@@ -239,8 +239,8 @@ impl Fault {
         matches!(self, Self::CurrentFilter | Self::DqCurrentFilter | Self::DqVoltageFilter | Self::DqFilter)
     }
 
-    /// Whether at most one of them can be part of an answer: they explain the same, or both make the logged voltages other than those that
-    /// act at their time, as a filter of them does and a lag.
+    /// Whether one is not looked for beside the other: they explain the same, or both hold the logged voltages back or bring them early, as
+    /// a filter of them does and a lag.
     pub(crate) fn excludes(self, other: Self) -> bool {
         let shifts_voltages = |fault: Self| matches!(fault, Self::DqFilter | Self::DqVoltageFilter | Self::VoltageLag);
         self.family() == other.family() || shifts_voltages(self) && shifts_voltages(other)

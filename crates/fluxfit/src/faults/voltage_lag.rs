@@ -1,4 +1,4 @@
-//! Voltage lag: the logged voltages act a fixed time after the instant of their frame, and the drive does not turn them on for it. The
+//! Voltage lag: the logged voltages act a fixed time after the instant of their row, and the drive does not turn them forward for it. The
 //! rotor has turned further by then: in its frame they lie behind by `omega_e` times that time, and the currents of the same row do not.
 //!
 //! Where a log holds each of a drive's periods the [reading](crate::objective::acting_voltage) of its voltages says so. Rows that come
@@ -17,18 +17,11 @@ pub struct VoltageLag {
 /// Longest lag, s: two periods of a drive that controls at 1 kHz.
 const LONGEST: f64 = 2e-3;
 
-/// Up to this time, s, one that is none may come out negative.
+/// What is no lag may come out below zero by this time, s.
 const LEAST: f64 = 5e-6;
 
 /// Usual lag, s: a period of a drive.
 const USUAL: f64 = 1e-4;
-
-impl VoltageLag {
-    /// In periods of this length, s.
-    pub(super) fn periods(self, period: f64) -> f64 {
-        self.time / period
-    }
-}
 
 pub(super) static FAULT: Description<VoltageLag> = Description {
     key: "voltage_lag",

@@ -154,7 +154,8 @@ impl VoltageTiming {
         !self.is_unusual() && !self.acts_at_once()
     }
 
-    /// Whether its voltages may lag by any time; in the frame at the row they do by what the rotor turns.
+    /// Whether a lag of any time can be found beside it: not where it says itself how late the voltages act, nor in the frame at the row,
+    /// which is a lag.
     pub(crate) fn may_lag(self) -> bool {
         !self.tells_lag() && !self.is_in_frame_of_row()
     }

@@ -1,17 +1,18 @@
 //! An angle that is late, or voltages that lag: both turn the voltages with the speed, and only the first turns the currents with them.
 //! Where little tells them apart, the one that was taken first stands in for the other, and inductances are off by tens of percent. So at
 //! the end of a search the one is tried in the place of the other, of both the one that is not needed goes, and what the one that is not
-//! part of the answer would do to it is in doubt.
+//! part of the answer would do to it is in doubt. A lag may come beside a filter of the voltages here, which shuts it out before.
 
 use super::{
-    fault_search::{FaultOutcome, FaultSearch, FaultTrial, NOTICEABLE},
+    fault_search::{FaultOutcome, FaultSearch, FaultTrial, NOTICEABLE, WITHIN_ROWS},
     long_run::effective_sample_size,
-    readings::{HOPELESS_AFTER_A_FIT, Rules, VERY_STRONG, contest},
+    readings::{HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest},
 };
 use crate::{
     faults::Fault,
-    motor::Parameter,
-    objective::adjustable::{Adjustable, Unknown},
+    levenberg_marquardt::Polished,
+    motor::{PARAMETERS, Parameter},
+    objective::adjustable::Unknown,
 };
 
 /// The two.
@@ -21,44 +22,83 @@ const DELAYS: [Fault; 2] = [Fault::AngleDelay, Fault::VoltageLag];
 struct WithOne {
     it: Fault,
     reading: usize,
-    drive: Adjustable,
-    cost: f64,
-    mean_square: f64,
+    trial: TimingTrial,
     unknowns: Vec<Unknown>,
 }
 
 impl FaultSearch<'_> {
-    /// Chooses between the two, if any of them was taken. Returns the trial of one that may be there and is not part of the answer.
-    pub(super) fn choose_delay(&mut self, taken: &mut Vec<FaultTrial>) -> Option<FaultTrial> {
+    /// Chooses between the two, if any of them was taken. Returns what the other, which may be there, would do.
+    pub(super) fn choose_delay(&mut self, taken: &mut Vec<FaultTrial>) -> Vec<FaultTrial> {
         let here: Vec<Fault> = DELAYS.into_iter().filter(|delay| taken.iter().any(|trial| trial.fault == *delay)).collect();
-        let are_both = here.len() == DELAYS.len();
-        let others = DELAYS.into_iter().filter(|delay| !here.is_empty() && (are_both || !here.contains(delay)));
-        let fits = others.filter_map(|it| self.with_only(it)).filter(|fit| self.is_physical(fit));
-        let fit = fits.min_by(|one, other| one.mean_square.total_cmp(&other.mean_square))?;
-        let other = DELAYS.into_iter().find(|delay| *delay != fit.it)?;
-        let independent = effective_sample_size(&self.objective().residuals(&self.drive));
-        let own = self.mean_square();
-        // How much better the present drive is by Schwarz's criterion; where both leave nothing, it is no worse.
-        let more = self.unknowns.len() as f64 - fit.unknowns.len() as f64;
-        let lead =
-            if fit.mean_square > 0.0 && own > 0.0 { independent * (fit.mean_square / own).ln() - more * independent.ln() } else { 0.0 };
-        let moves = Parameter::ALL.map(|parameter| fit.drive.motor.get(parameter) - self.drive.motor.get(parameter));
-        let stays = if are_both { lead > VERY_STRONG && fit.mean_square >= (1.0 + NOTICEABLE) * own } else { lead >= 0.0 };
-        if stays {
-            let covered = FaultTrial { fault: fit.it, gain: -lead, outcome: FaultOutcome::Covered, moves };
-            return (!are_both).then_some(covered);
+        match here[..] {
+            [] => Vec::new(),
+            [one] => self.in_its_place(one, taken).into_iter().collect(),
+            _ => self.without_the_lesser(taken),
         }
-        let outcome = if are_both { FaultOutcome::NotNeeded } else { FaultOutcome::Covered };
-        for trial in taken.iter_mut().filter(|trial| trial.fault == other && !are_both) {
-            (trial.fault, trial.gain) = (fit.it, trial.gain - lead);
-        }
-        taken.retain(|trial| trial.fault != other);
-        (self.reading, self.drive, self.cost, self.unknowns) = (fit.reading, fit.drive, fit.cost, fit.unknowns);
-        self.choose_reading();
-        Some(FaultTrial { fault: other, gain: lead, outcome, moves: moves.map(|by| -by) })
     }
 
-    /// A fit with only one of the two, which begins with the sum of both, under the reading that suits it.
+    /// Of both the lesser goes, if it explains little beside the other, or if one is early and the other late, as of no drive.
+    fn without_the_lesser(&mut self, taken: &mut Vec<FaultTrial>) -> Vec<FaultTrial> {
+        let fits = DELAYS.into_iter().filter_map(|it| self.with_only(it));
+        let Some(fit) = fits.min_by(|one, other| one.mean_square().total_cmp(&other.mean_square())) else { return Vec::new() };
+        let faults = &self.drive.faults;
+        let are_opposed = faults.angle_delay.time * faults.voltage_lag.time < 0.0;
+        let gain = self.lead(&fit) - self.independent().ln();
+        if !are_opposed && gain > VERY_STRONG && fit.mean_square() >= (1.0 + NOTICEABLE) * self.mean_square() {
+            return Vec::new();
+        }
+        let (left, moves) = (fit.it, self.moves_to(&fit).map(|by| -by));
+        let goes = |trial: &FaultTrial| DELAYS.contains(&trial.fault) && trial.fault != left;
+        let lesser = taken.iter().find(|trial| goes(trial)).map(|trial| trial.fault);
+        taken.retain(|trial| !goes(trial));
+        self.adopt(fit);
+        // What is as of no drive says nothing of where the parameters are.
+        let outcome = if are_opposed { FaultOutcome::NotPhysical } else { FaultOutcome::NotNeeded };
+        let lesser = lesser.map(|fault| FaultTrial { fault, gain, outcome, moves });
+        self.in_its_place(left, taken).into_iter().chain(lesser).collect()
+    }
+
+    /// The other one in the place of this one, if it fits better. Where they differ by less than what voltages do within rows, the log does
+    /// not tell which of them is there: each is as likely as the other.
+    fn in_its_place(&mut self, one: Fault, taken: &mut [FaultTrial]) -> Option<FaultTrial> {
+        let other = DELAYS.into_iter().find(|other| *other != one)?;
+        let fit = self.with_only(other)?;
+        let (lead, moves) = (self.lead(&fit), self.moves_to(&fit));
+        let (least, most) = (fit.mean_square().min(self.mean_square()), fit.mean_square().max(self.mean_square()));
+        let gain = if least > (1.0 - WITHIN_ROWS) * most { 0.0 } else { -lead.abs() };
+        let covered = |fault, moves| Some(FaultTrial { fault, gain, outcome: FaultOutcome::Covered, moves });
+        if lead >= 0.0 {
+            return covered(other, moves);
+        }
+        for trial in taken.iter_mut().filter(|trial| trial.fault == one) {
+            (trial.fault, trial.gain) = (other, trial.gain - lead);
+        }
+        self.adopt(fit);
+        covered(one, moves.map(|by| -by))
+    }
+
+    /// How much better the present drive is than this one, by Schwarz's criterion for as many unknowns; where neither leaves anything, not
+    /// at all.
+    fn lead(&self, fit: &WithOne) -> f64 {
+        let (other, own) = (fit.mean_square(), self.mean_square());
+        if other > 0.0 && own > 0.0 { self.independent() * (other / own).ln() } else { 0.0 }
+    }
+
+    fn independent(&self) -> f64 {
+        effective_sample_size(&self.objective().residuals(&self.drive))
+    }
+
+    fn moves_to(&self, fit: &WithOne) -> [f64; PARAMETERS] {
+        Parameter::ALL.map(|parameter| fit.trial.polished.drive.motor.get(parameter) - self.drive.motor.get(parameter))
+    }
+
+    fn adopt(&mut self, fit: WithOne) {
+        let Polished { drive, cost, .. } = fit.trial.polished;
+        (self.reading, self.drive, self.cost, self.unknowns) = (fit.reading, drive, cost, fit.unknowns);
+        self.choose_reading();
+    }
+
+    /// A fit with only one of the two, which begins with the sum of both, under the reading that suits it; nothing if no drive has it so.
     fn with_only(&self, it: Fault) -> Option<WithOne> {
         let of_both = || DELAYS.into_iter().flat_map(Unknown::of_fault);
         let sum = of_both().map(|unknown| self.drive.get(unknown)).sum();
@@ -69,12 +109,15 @@ impl FaultSearch<'_> {
         let may_be = |place: &&usize| it != Fault::VoltageLag || self.objectives[**place].0.may_lag();
         let starts = self.open.iter().filter(may_be).map(|place| (*place, start)).collect();
         let fitted = contest(self.objectives, starts, &unknowns, self.priors, &Rules::all(HOPELESS_AFTER_A_FIT));
-        let (reading, best) = fitted.first()?;
-        let (drive, cost) = (best.polished.drive, best.polished.cost);
-        Some(WithOne { it, reading: *reading, drive, cost, mean_square: best.mean_square(), unknowns })
+        let (reading, trial) = *fitted.first()?;
+        let Polished { drive, .. } = trial.polished;
+        let is_physical = it.is_physical(&drive.faults, &drive.motor, self.objective().peak_current());
+        is_physical.then_some(WithOne { it, reading, trial, unknowns })
     }
+}
 
-    fn is_physical(&self, fit: &WithOne) -> bool {
-        fit.it.is_physical(&fit.drive.faults, &fit.drive.motor, self.objective().peak_current())
+impl WithOne {
+    fn mean_square(&self) -> f64 {
+        self.trial.mean_square()
     }
 }

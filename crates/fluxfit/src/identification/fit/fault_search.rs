@@ -64,7 +64,7 @@ pub enum FaultOutcome {
     NotNeeded,
     /// What fits has no physical meaning.
     NotPhysical,
-    /// It stands in for what voltages do within rows that are means.
+    /// It stands in for what voltages do within rows that are not the drive's own periods.
     WithinRows,
     /// It explains something, but nothing that matters to a parameter.
     NoMatter,

@@ -65,9 +65,8 @@ pub(crate) enum SpeedScale {
 }
 
 impl SpeedScale {
-    /// Of a log and what was fitted to it. That noise alone is left with another speed counts only where more is left with the log's own.
-    /// Of currents that operating points outvote nothing else counts: between points that were logged one after the other they jump, and
-    /// are followed better with smaller inductances.
+    /// Of a log and what was fitted to it. Of currents that operating points outvote, only that noise alone is left with another speed
+    /// counts: between points that were logged one after the other they jump, and are followed better with smaller inductances.
     pub(crate) fn of(log: &Log, fit: &OutputFit, is_outvoted: bool, request: &Request) -> Self {
         if log.columns().theta_e.is_some() {
             return Self::Right;
@@ -83,8 +82,7 @@ impl SpeedScale {
         let alone = if faults.is_empty() { None } else { Speeds::new(log, fit, &[], request) };
         let each: Vec<(Speeds, Near)> =
             alone.into_iter().chain([with_faults]).filter_map(|speeds| speeds.near().map(|near| (speeds, near))).collect();
-        let is_explained = fit.is_explained() && fit.drive.faults.disturbance.is_small();
-        match too_high(&each, is_explained, is_outvoted) {
+        match too_high(&each, is_outvoted) {
             Some(too_high) => Self::TooHigh(too_high),
             None if each.iter().any(|(_, near)| near.rules_out_others(fit)) => Self::Right,
             None => Self::Untold,
@@ -92,7 +90,7 @@ impl SpeedScale {
     }
 }
 
-fn too_high(each: &[(Speeds, Near)], is_explained: bool, is_outvoted: bool) -> Option<[f64; 2]> {
+fn too_high(each: &[(Speeds, Near)], is_outvoted: bool) -> Option<[f64; 2]> {
     let mut now = None;
     each.iter().find_map(|(speeds, near)| {
         let found = speeds.best(near.better()?)?;
@@ -102,7 +100,7 @@ fn too_high(each: &[(Speeds, Near)], is_explained: bool, is_outvoted: bool) -> O
             own.map(|followed| followed.mean_square).fold(f64::INFINITY, f64::min)
         });
         let is_better = schwarz(now, found.mean_square, 1, found.independent) > VERY_STRONG;
-        let is_clear = is_better && (found.is_explained && !is_explained || !is_outvoted && found.mean_square < MUCH_LESS * now);
+        let is_clear = is_better && (found.is_explained || !is_outvoted && found.mean_square < MUCH_LESS * now);
         let [low, high] = found.factors;
         (is_clear && (low > LEAST || high < 1.0 / LEAST)).then_some([1.0 / high, 1.0 / low])
     })
