@@ -364,11 +364,43 @@ pub(super) fn axes(log: &Log) -> Option<ColumnFinding> {
     };
     let singles = CHANGES.iter().map(|change| vec![*change]);
     let pairs = || CHANGES.iter().enumerate().flat_map(|(k, one)| CHANGES[k + 1..].iter().map(|other| vec![*one, *other]));
-    best_of(singles, &left, now).or_else(|| best_of(pairs(), &left, now))
+    let (changes, left) = best_of(singles, &left, now).or_else(|| best_of(pairs(), &left, now))?;
+    // Voltages that act later than the instant of their row look alike, and are more usual than wrong columns.
+    (left_if_turned(&means) > (AS_GOOD * left).max(TURN)).then_some(ColumnFinding::Axes { changes, left, left_now: now })
 }
 
-/// The best of these changes, and those as good, if they leave much less than `now`.
-fn best_of(changes: impl Iterator<Item = Vec<Change>>, left: &impl Fn(&[Change]) -> Option<f64>, now: f64) -> Option<ColumnFinding> {
+/// Whether the voltages are explained far better turned with the speed, as those are that act later than the instant of their row.
+pub(crate) fn turn_with_speed(log: &Log) -> bool {
+    let means = means(log);
+    let now = fit(&means, &Frame::AS_IT_IS, true).map(|fit| fit.left).filter(|left| *left >= UNEXPLAINED);
+    now.is_some_and(|now| left_if_turned(&means) <= MUCH_LESS * now)
+}
+
+/// Largest angle, rad, by which voltages that lag are turned at the largest speed. Drives without compensation turn them by 0.1 to 0.25;
+/// beyond 0.4, exchanged axes look like a turn.
+const MOST_TURNED: f64 = 0.4;
+
+/// Step of the angles that are tried, rad; half of it leaves half as large a fraction of the voltages.
+const TURN: f64 = 0.01;
+
+/// What the best turn with the speed leaves of the voltages, as a fraction.
+fn left_if_turned(means: &[Mean]) -> f64 {
+    let fastest = means.iter().fold(0.0_f64, |most, mean| most.max(mean.omega.abs()));
+    let turned = |turn: i32| -> Vec<Mean> {
+        let per_speed = TURN * f64::from(turn) / fastest;
+        means.iter().map(|mean| Mean { u: mean.u.turned(per_speed * mean.omega), ..*mean }).collect()
+    };
+    let most = (MOST_TURNED / TURN) as i32;
+    let fits = (-most..=most).filter_map(|turn| fit(&turned(turn), &Frame::AS_IT_IS, true));
+    fits.fold(f64::INFINITY, |least, fit| least.min(fit.left))
+}
+
+/// The best of these changes, and those as good, with what the best leaves, if that is much less than `now`.
+fn best_of(
+    changes: impl Iterator<Item = Vec<Change>>,
+    left: &impl Fn(&[Change]) -> Option<f64>,
+    now: f64,
+) -> Option<(Vec<Vec<Change>>, f64)> {
     let mut tried: Vec<(Vec<Change>, f64)> = changes.filter_map(|changes| left(&changes).map(|left| (changes, left))).collect();
     // Stable: of those that are equal the more usual is named first.
     tried.sort_by(|one, other| one.1.total_cmp(&other.1));
@@ -378,5 +410,5 @@ fn best_of(changes: impl Iterator<Item = Vec<Change>>, left: &impl Fn(&[Change])
     }
     let as_good = |(_, left): &(Vec<Change>, f64)| *left <= AS_GOOD * best;
     let changes: Vec<Vec<Change>> = tried.into_iter().take_while(as_good).map(|(changes, _)| changes).collect();
-    Some(ColumnFinding::Axes { changes, left: best, left_now: now })
+    Some((changes, best))
 }

@@ -242,7 +242,7 @@ fn losses(steady: Option<&SteadyFit>, output: Option<&OutputFit>) -> Losses {
 /// out of their fit. Points that answer beside currents of an unknown fault do so with an angle that may be off.
 fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut OutputFit>, request: &Request) -> Result<bool, Error> {
     let Some(output) = output else { return Ok(false) };
-    let of_points = steady.as_ref().map_or([false; PARAMETERS], |points| points.finding.open);
+    let of_points = steady.as_ref().map_or([false; PARAMETERS], |points| points.left_open(request));
     // Operating points that tell all parameters excite the currents as well.
     let is_doubtful = steady.is_none() || of_points.contains(&true);
     let open = if is_doubtful { output_excitation::open(log, output, &of_points, request)? } else { [false; PARAMETERS] };

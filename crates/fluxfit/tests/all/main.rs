@@ -3,6 +3,7 @@
 mod any_log;
 mod current_loop;
 mod identify_laws;
+mod lagging_voltages;
 mod readings;
 mod request;
 mod saturation;

@@ -17,6 +17,7 @@
 
 use super::{super::request::Request, frame_angle::FrameAngle, part::Part, voltage_loss::Loss, voltage_loss::slowest_period};
 use crate::{
+    column_check::turn_with_speed,
     log::Log,
     motor::Motor,
     steady::{OperatingPoint, recorder, windows},
@@ -63,11 +64,13 @@ impl FrameLag {
     /// How many [unknowns](Self::unknowns) there are.
     pub(super) const UNKNOWNS: usize = 3;
 
-    /// What is known of it beforehand; none of a log that is no recorder's, or whose voltages are exact. Which period of the drive the
-    /// voltages are of, if that is stated, says nothing of the frame of a recorder's means.
+    /// What is known of it beforehand; none where voltages are exact, nor of a log that is no recorder's, unless its voltages make sense
+    /// only if they are turned with the speed. Which period of the drive the voltages are of, if that is stated, says nothing of the frame
+    /// of a recorder's means.
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
-        (recorder::is_recorders(log) && !are_exact).then_some(Self { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 })
+        let usual = Self { seconds: 0.0, standard_error: USUAL_LAG, coasting_rows: 0 };
+        (!are_exact && (recorder::is_recorders(log) || turn_with_speed(log))).then_some(usual)
     }
 
     /// Points whose voltages are turned back by it, and whose voltages and currents are by an angle that accounts for a part of it.

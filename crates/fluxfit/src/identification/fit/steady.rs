@@ -158,6 +158,14 @@ impl SteadyFit {
         })
     }
 
+    /// The parameters that its points leave open to simulated currents: a current that the drive holds at zero moves in none of them, even
+    /// if a frame's angle that was found here makes it another.
+    pub(crate) fn left_open(&self, request: &Request) -> [bool; PARAMETERS] {
+        let as_measured = self.frame_lag.map(|_| Excitation::of(&self.as_measured, &request.known));
+        let is_held = |parameter| as_measured.as_ref().is_some_and(|excitation| excitation.is_open(parameter));
+        Parameter::ALL.map(|parameter| self.finding.open[parameter as usize] || is_held(parameter))
+    }
+
     /// Saturation, if it explains a contradiction between the operating points.
     pub(crate) fn saturation(&self, request: &Request) -> Option<SaturationFinding> {
         // Where a recorder's lag and the age of its speed leave no inductance, none can be seen to change.
