@@ -22,6 +22,7 @@ use super::{
     },
     judge::{
         points_tell_more::{Points, is_narrower, points_tell_more},
+        priors::{self, Contradiction},
         verdict::{Judged, Verdict, judge},
     },
     prepare::{
@@ -105,9 +106,10 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
     request.check()?;
     let Fitted { model, steady, output, outvoted, saturation, speed } = fitted(log, request, None, progress)?;
     let finding = finding(steady.as_ref(), output.as_ref())?;
-    let judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
+    let mut judged = judge(finding, saturation.as_ref(), request, log.is_short_circuit());
     let points = steady.as_ref().map_or(&[][..], |fit| &fit.operating_points);
     let known = output.as_ref().or(outvoted.as_ref());
+    let contradictions = doubt_priors(&mut judged, log, request, known);
     let half_widths = |log: &Log, request: &Request| judged_again(log, request, known).map(half_widths);
     let rs_error = finding.uncertainty.parameters[Parameter::Rs as usize].standard_error();
     let trials = Trials::new((log, request), &finding.bench, points, losses(steady.as_ref(), output.as_ref()), rs_error, &half_widths);
@@ -122,7 +124,7 @@ pub(crate) fn solve(log: &Log, request: &Request, progress: Progress) -> Result<
         output: output.as_ref(),
         saturation: saturation.as_ref(),
         search: search.as_ref(),
-        without_priors: Parameter::ALL.map(|parameter| without_prior(log, request, known, parameter)),
+        contradictions: &contradictions,
     };
     let warnings = warning::all(&evidence);
     let correlation = finding.uncertainty.correlation;
@@ -214,14 +216,18 @@ fn half_widths(judged: [Judged; PARAMETERS]) -> [f64; PARAMETERS] {
     judged.map(|one| if one.verdict == Verdict::NotIdentifiable { f64::INFINITY } else { one.relative_half_width() })
 }
 
-/// Of a parameter with a prior the value that the log alone tells, with its standard uncertainty, SI; nothing where it tells none.
-fn without_prior(log: &Log, request: &Request, known: Option<&OutputFit>, parameter: Parameter) -> Option<(f64, f64)> {
-    let Known::Prior { .. } = request.known[parameter as usize] else { return None };
-    let mut request = request.clone();
-    request.known[parameter as usize] = Known::Nothing;
-    let judged = judged_again(log, &request, known)?;
-    let alone = &judged[parameter as usize];
-    (alone.verdict != Verdict::NotIdentifiable).then_some((alone.raw, alone.uncertainty.standard_error()))
+/// The priors that the log contradicts, which take the word "identified" back from what they move.
+fn doubt_priors(answers: &mut [Judged; PARAMETERS], log: &Log, request: &Request, known: Option<&OutputFit>) -> Vec<Contradiction> {
+    let is_prior = |parameter: &Parameter| matches!(request.known[*parameter as usize], Known::Prior { .. });
+    let found = Parameter::ALL.into_iter().filter(is_prior).filter_map(|parameter| {
+        let mut without = request.clone();
+        without.known[parameter as usize] = Known::Nothing;
+        let alone = judged_again(log, &without, known);
+        let found = priors::contradiction(&answers[parameter as usize], alone.as_ref(), request)?;
+        priors::doubt(answers, &found, alone.as_ref());
+        Some(found)
+    });
+    found.collect()
 }
 
 /// What stands between the log and its motor, by the model that answers.

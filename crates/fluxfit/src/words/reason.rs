@@ -48,6 +48,10 @@ impl Display for Reason {
                 "the simulated currents jump at the least change of what was fitted, as those of a phase that switches around zero do, so the \
                  fit looks sharper than its noise allows, and nothing of it is to be trusted"
             ),
+            Self::PriorContradicted { parameter } => {
+                let symbol = parameter.symbol();
+                write!(f, "the log contradicts the prior of {symbol}: the number is a compromise between the two, or follows from one")
+            }
             Self::Saturates => {
                 write!(f, "the motor saturates, and the fitted saturation is only approximate: take the number as an estimate")
             }

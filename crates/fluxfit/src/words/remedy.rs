@@ -48,6 +48,11 @@ impl Display for Remedy {
                     "check the unit of the speed and the number of pole pairs; if both are right, state the model, and identify again"
                 )
             }
+            Self::CheckPrior { parameter } => write!(
+                f,
+                "check the prior of {} (temperature, cable, line to line or per phase) and the columns, or identify without it",
+                parameter.symbol()
+            ),
             Self::StepCurrent { parameter: Parameter::Ld } => write!(f, "log steps of i_d, too"),
             Self::StepCurrent { .. } => write!(f, "log steps of i_q, too"),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),

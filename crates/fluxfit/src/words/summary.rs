@@ -105,7 +105,7 @@ impl Display for NextStep {
         if is_of_saturation(&self.remedy) {
             return f.write_str(&saturates(None, &self.remedy));
         }
-        if self.remedy == Remedy::CheckSpeed {
+        if matches!(self.remedy, Remedy::CheckSpeed | Remedy::CheckPrior { .. }) {
             return write!(f, "Check {}.", need(&self.remedy));
         }
         let verb = if self.parameters.len() == 1 { "needs" } else { "need" };
@@ -149,6 +149,7 @@ fn need(remedy: &Remedy) -> String {
         Remedy::SpreadPoints { parameter: Parameter::PsiF } => "speeds that lie further apart".to_owned(),
         Remedy::Turn => "a motor that turns".to_owned(),
         Remedy::CheckSpeed => "the unit of the speed and the number of pole pairs".to_owned(),
+        Remedy::CheckPrior { parameter } => format!("the prior of {}", parameter.symbol()),
         Remedy::StepCurrent { parameter: Parameter::Ld } => "steps of i_d".to_owned(),
         Remedy::StepCurrent { .. } => "steps of i_q".to_owned(),
         Remedy::StateVoltageTiming => "the timing of the voltage columns stated".to_owned(),

@@ -3,7 +3,9 @@
 // Helpers of tests fail as tests do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use fluxfit::{Columns, ErrorKind, Known, Log, Model, Motor, Nameplate, Parameter, Request, TimeWindow, Warning, frames::Dq, identify};
+use fluxfit::{
+    Columns, ErrorKind, Known, Log, Model, Motor, Nameplate, Parameter, Reason, Request, TimeWindow, Verdict, Warning, frames::Dq, identify,
+};
 
 const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
@@ -67,6 +69,9 @@ fn a_prior_that_the_log_contradicts_is_named_with_both_numbers() {
             _ => None,
         });
         assert_eq!(found.is_some(), contradicts, "{value}: {:?}", answer.warnings());
+        let judgement = answer.parameter(Parameter::Lq);
+        let is_the_reason = judgement.reason == Some(Reason::PriorContradicted { parameter: Parameter::Lq });
+        assert_eq!((judgement.verdict == Verdict::Weak, is_the_reason), (contradicts, contradicts), "{judgement:?}");
         if let Some((prior, (alone, error))) = found {
             assert_eq!(prior, (value, 0.01 * MOTOR.lq));
             assert!((alone - MOTOR.lq).abs() < 3.0 * error && error < 0.006 * MOTOR.lq, "{alone} ± {error}");

@@ -90,6 +90,11 @@ pub enum Remedy {
     HoldThroughRepeats,
     /// Give a sharper prior, or log another operating point.
     SharperPrior,
+    /// Check the prior of this parameter, which the log contradicts, or identify without it.
+    CheckPrior {
+        /// Whose.
+        parameter: Parameter,
+    },
     /// Fix one parameter ([`Known::Fixed`](crate::Known::Fixed)), for example R_s as measured at the terminals.
     FixOne,
     /// Check that voltages and currents are of one instant and one frame: a lag explains what else looks like a wrong sign.
@@ -163,6 +168,7 @@ pub(super) fn of(
         },
         Reason::CurrentsMissed { .. } => Remedy::CheckSigns { units: true },
         Reason::SpeedInDoubt { .. } => Remedy::CheckSpeed,
+        Reason::PriorContradicted { parameter } => Remedy::CheckPrior { parameter: *parameter },
         Reason::BelowRows { .. } | Reason::RunawayFault { .. } => measure().unwrap_or_else(|| or_stretch(None)),
         Reason::SharperThanNoise => measure().unwrap_or(Remedy::SpreadPoints { parameter }),
         // Beside saturation, what disturbs the motor or makes its points contradict each other is what a few terms lack of it.

@@ -153,7 +153,8 @@ impl Remedy {
 
     /// Whether nothing else is to be said beside it at first.
     fn stands_alone(&self) -> bool {
-        self.questions_columns() || matches!(self, Self::CheckSpeed | Self::SmallSteps | Self::TakeIncremental { .. })
+        self.questions_columns()
+            || matches!(self, Self::CheckSpeed | Self::CheckPrior { .. } | Self::SmallSteps | Self::TakeIncremental { .. })
     }
 
     /// Whether it doubts the columns themselves.

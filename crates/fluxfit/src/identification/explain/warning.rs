@@ -11,8 +11,8 @@ use super::{
             swarm::Search,
             warming::Warming,
         },
-        judge::verdict::Verdict,
-        request::{Known, Request},
+        judge::{priors::Contradiction, verdict::Verdict},
+        request::Request,
     },
     conventions::Convention,
     judgement::Judgement,
@@ -210,8 +210,7 @@ pub(crate) struct Evidence<'a> {
     pub(crate) output: Option<&'a OutputFit>,
     pub(crate) saturation: Option<&'a SaturationFinding>,
     pub(crate) search: Option<&'a Search>,
-    /// Of each parameter with a prior the value that the log alone tells, with its standard uncertainty, SI.
-    pub(crate) without_priors: [Option<(f64, f64)>; PARAMETERS],
+    pub(crate) contradictions: &'a [Contradiction],
 }
 
 /// Everything there is to warn of.
@@ -234,22 +233,11 @@ pub(crate) fn all(evidence: &Evidence) -> Vec<Warning> {
     });
     let of_currents = evidence.output.map(|fit| [process_noise(fit, evidence.parameters), angle(log, fit)]);
     let of_either = [evidence.saturation.map(saturated), evidence.low_speed(), voltage_limit(log), evidence.outside_box()];
-    let of_priors =
-        evidence.parameters.each_ref().map(|one| contradicted_prior(one, evidence.without_priors[one.parameter as usize], request));
+    let of_priors = evidence.contradictions.iter().map(|contradiction| {
+        let Contradiction { parameter, prior, log } = *contradiction;
+        Some(Warning::PriorContradicted { parameter, prior, log })
+    });
     of_points.into_iter().flatten().chain(of_currents.into_iter().flatten()).chain(of_either).chain(of_priors).flatten().collect()
-}
-
-/// Standard errors of both together by which a log contradicts a prior.
-const CONTRADICTION: f64 = 3.0;
-
-/// What the log alone tells of a parameter with a prior, against that; else the answer, if the prior did not hold it: what else was fitted
-/// beside it tells the parameter in its own way.
-fn contradicted_prior(answer: &Judgement, alone: Option<(f64, f64)>, request: &Request) -> Option<Warning> {
-    let parameter = answer.parameter;
-    let Known::Prior { value, standard_error } = request.known[parameter as usize] else { return None };
-    let contradicts = |log: &(f64, f64)| (log.0 - value).abs() > CONTRADICTION * standard_error.hypot(log.1);
-    let log = alone.into_iter().chain([(answer.raw, answer.uncertainty.standard_error())]).find(contradicts)?;
-    Some(Warning::PriorContradicted { parameter, prior: (value, standard_error), log })
 }
 
 /// Part of the rows used that is worth calling a transient.
@@ -418,29 +406,4 @@ fn coarse_sampling(log: &Log, found: &SteadyFit) -> Option<Warning> {
         within.is_some_and(|segment| fastest * segment.sample_period > MAX_ANGLE_PER_SAMPLE)
     });
     coarse.then_some(Warning::CoarseSampling)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::identification::fit::uncertainty::ParameterUncertainty;
-
-    /// 60 ± 0.6 was given. By itself the log says nothing, 60 ± 40, or 66 ± 1; the answer is 60 ± 0.6, or 66 ± 0.9.
-    #[test]
-    fn an_answer_that_leaves_its_prior_is_told() {
-        let request = Request::default().with_known(Parameter::Rs, Known::Prior { value: 60.0, standard_error: 0.6 });
-        let told = |answer: (f64, f64), alone: Option<(f64, f64)>| {
-            let uncertainty = ParameterUncertainty { statistical: answer.1, ..ParameterUncertainty::default() };
-            let (parameter, verdict) = (Parameter::Rs, Verdict::Identified);
-            let judgement = Judgement { parameter, raw: answer.0, uncertainty, verdict, reason: None, remedy: None, has_prior: true };
-            match contradicted_prior(&judgement, alone, &request) {
-                Some(Warning::PriorContradicted { log, .. }) => Some(log),
-                _ => None,
-            }
-        };
-        assert_eq!(told((60.0, 0.6), None), None);
-        assert_eq!(told((60.0, 0.6), Some((60.0, 40.0))), None);
-        assert_eq!(told((61.7, 0.5), Some((66.0, 1.0))), Some((66.0, 1.0)));
-        assert_eq!(told((66.0, 0.9), Some((60.0, 40.0))), Some((66.0, 0.9)));
-    }
 }

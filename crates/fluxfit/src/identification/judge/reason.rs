@@ -76,6 +76,11 @@ pub enum Reason {
         /// By which factors the speed may be too high, the least and the largest.
         too_high: [f64; 2],
     },
+    /// The interval is narrow, but it follows a prior that the log contradicts.
+    PriorContradicted {
+        /// Whose prior.
+        parameter: Parameter,
+    },
     /// The interval is narrow, but the motor saturates, and a fit describes that by a few terms.
     Saturates,
     /// The simulated currents differ from the measured ones by far more than noise: voltages and currents do not belong together.
