@@ -229,7 +229,10 @@ proptest! {
         let columns = columns(&drive, NOISE, seed);
         let free = found(columns.clone());
         prop_assume!(free.steady.as_ref().unwrap().excitation.excited().count() == PARAMETERS && free.steady.as_ref().unwrap().misfit.is_none());
-        let value = off * drive.motor.to_array()[p];
+        // The lag of a recorder's log bends to a value that contradicts it, the further the more it is turned back: there the law is of
+        // values that do not.
+        let is_recorders = free.steady.as_ref().unwrap().frame_lag.is_some();
+        let value = if is_recorders { values(&free)[p] } else { off * drive.motor.to_array()[p] };
         let with = |known: Known| {
             let mut settings = settings(&columns);
             settings.known[p] = known;

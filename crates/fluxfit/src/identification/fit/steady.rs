@@ -260,6 +260,10 @@ impl Frames {
 /// Those of another log as they are.
 fn frames(log: &Log, mut points: Vec<OperatingPoint>, request: &Request) -> (Vec<OperatingPoint>, Option<Frames>) {
     let Some(lag) = FrameLag::possible(log, request) else { return (points, None) };
+    // A faster log without current is one of a drive that holds its current at zero.
+    if !recorder::is_recorders(log) {
+        return (points, Some(Frames { lag, open_loop: Vec::new(), coasting: Vec::new(), gain: 0.0 }));
+    }
     let open_loop = open_loop::find(log, &points, &lag, request);
     let in_frame: Vec<OperatingPoint> = points.iter().filter(|point| !open_loop.contains(&point.rows)).cloned().collect();
     let terminals = coasting::at_terminals(log, &in_frame, &lag, request);
