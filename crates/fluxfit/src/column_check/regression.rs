@@ -365,7 +365,7 @@ pub(super) fn axes(log: &Log) -> Option<ColumnFinding> {
     let singles = CHANGES.iter().map(|change| vec![*change]);
     let pairs = || CHANGES.iter().enumerate().flat_map(|(k, one)| CHANGES[k + 1..].iter().map(|other| vec![*one, *other]));
     let (changes, left) = best_of(singles, &left, now).or_else(|| best_of(pairs(), &left, now))?;
-    // Voltages that act later than the instant of their row look alike, and are more usual than wrong columns.
+    // Voltages that act later than the instant of their row look like wrong columns, and are more usual.
     (left_if_turned(&means) > (AS_GOOD * left).max(TURN)).then_some(ColumnFinding::Axes { changes, left, left_now: now })
 }
 
@@ -380,7 +380,7 @@ pub(crate) fn turn_with_speed(log: &Log) -> bool {
 /// beyond 0.4, exchanged axes look like a turn.
 const MOST_TURNED: f64 = 0.4;
 
-/// Step of the angles that are tried, rad; half of it leaves half as large a fraction of the voltages.
+/// Step of the angles that are tried, rad. A turn that misses by an angle leaves at most that fraction of the voltages.
 const TURN: f64 = 0.01;
 
 /// What the best turn with the speed leaves of the voltages, as a fraction.

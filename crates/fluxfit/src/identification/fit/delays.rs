@@ -1,7 +1,7 @@
 //! An angle that is late, or voltages that lag: both turn the voltages with the speed, and only the first turns the currents with them.
 //! Where little tells them apart, the one that was taken first stands in for the other, and inductances are off by tens of percent. So at
 //! the end of a search the one is tried in the place of the other, of both the one that is not needed goes, and what the one that is not
-//! part of the answer would do to it is in doubt. A lag may come beside a filter of the voltages here, which shuts it out before.
+//! part of the answer would do to it is in doubt. Here a lag may stand beside a filter of the voltages, which is not tried before.
 
 use super::{
     fault_search::{FaultOutcome, FaultSearch, FaultTrial, NOTICEABLE, WITHIN_ROWS},

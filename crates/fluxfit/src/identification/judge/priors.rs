@@ -33,8 +33,8 @@ pub(crate) fn contradiction(answer: &Judged, alone: Option<&[Judged; PARAMETERS]
     Some(Contradiction { parameter, prior: (value, standard_error), log })
 }
 
-/// Takes the word "identified" back from what a contradicted prior moves: all that the log alone does not identify, too, as the same
-/// number within its interval.
+/// Takes the word "identified" back from the parameter of a contradicted prior, and from each other that the log alone does not identify
+/// or puts outside the interval.
 pub(crate) fn doubt(answers: &mut [Judged; PARAMETERS], contradiction: &Contradiction, alone: Option<&[Judged; PARAMETERS]>) {
     for answer in answers.iter_mut().filter(|answer| answer.verdict == Verdict::Identified && answer.reason != Some(Reason::Given)) {
         let stays = |alone: &[Judged; PARAMETERS]| {
