@@ -25,8 +25,8 @@ pub(crate) struct LogArguments {
     /// When the voltages ud, uq of a row are applied
     ///
     /// Either they are the mean of the two periods around the row (centered), or the vector of one period that begins 0, 1 or 2 periods
-    /// after the row.
-    #[arg(long, value_enum, default_value_t = Timing::Auto)]
+    /// after the row, half a period after it (0.5), or ended at it (-1).
+    #[arg(long, value_enum, default_value_t = Timing::Auto, allow_hyphen_values = true)]
     pub(crate) voltage_timing: Timing,
     /// Motor file: pole pairs, nameplate values, rating, accuracy of the sensors, magnets' coefficient
     ///
@@ -178,6 +178,12 @@ pub(crate) enum Timing {
     /// As 1, held in the rotor's frame
     #[value(name = "1-rotor")]
     OneRotor,
+    /// Vector of the period that ended at the row, as measured
+    #[value(name = "-1")]
+    MinusOne,
+    /// Vector that acts from half a period after the row on
+    #[value(name = "0.5")]
+    Half,
     /// Mean over the row's own span, as the currents
     Averaged,
     /// Of a simulator that goes from row to row by Euler's rule
@@ -203,6 +209,8 @@ impl Timing {
             Self::TwoRow => at_row(2),
             Self::ZeroRotor => in_rotor(0),
             Self::OneRotor => in_rotor(1),
+            Self::MinusOne => Some(VoltageTiming::Ended),
+            Self::Half => Some(VoltageTiming::HalfPeriodLater),
             Self::Averaged => Some(VoltageTiming::Averaged),
             Self::Euler => Some(VoltageTiming::Euler { after: false }),
             Self::EulerAfter => Some(VoltageTiming::Euler { after: true }),

@@ -29,8 +29,8 @@ impl Timing {
         Self::Delayed { delay: 2, at_row: false },
     ];
 
-    /// The same as the batch identification has it; none of voltages that stand still in the rotor's frame, which a stream does not
-    /// support.
+    /// The same as the batch identification has it; none of voltages that stand still in the rotor's frame, were
+    /// measured, or act half a period later, which a stream does not support.
     pub fn of(timing: VoltageTiming) -> Option<Self> {
         match timing {
             VoltageTiming::Centered => Some(Self::Centered),
@@ -40,7 +40,11 @@ impl Timing {
             VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } if delay <= LONGEST_DELAY => {
                 Some(Self::Delayed { delay, at_row: true })
             }
-            VoltageTiming::Delayed { .. } | VoltageTiming::Averaged | VoltageTiming::Euler { .. } => None,
+            VoltageTiming::Delayed { .. }
+            | VoltageTiming::Ended
+            | VoltageTiming::HalfPeriodLater
+            | VoltageTiming::Averaged
+            | VoltageTiming::Euler { .. } => None,
         }
     }
 

@@ -34,7 +34,7 @@ pub(crate) struct Track {
     #[command(flatten)]
     columns: ColumnArguments,
     /// When the voltages ud, uq of a row are applied [default: the stream decides between centered, 0, 1 and 2]
-    #[arg(long, help_heading = "Log", value_enum, default_value_t = TimingArgument::Auto)]
+    #[arg(long, help_heading = "Log", value_enum, default_value_t = TimingArgument::Auto, allow_hyphen_values = true)]
     voltage_timing: TimingArgument,
     /// Go on when the end of the file is reached: it is still being written
     ///
@@ -218,7 +218,7 @@ fn format_of(arguments: &Track) -> Format {
 fn timing(arguments: &Track) -> Result<Option<Timing>, CommandError> {
     let Some(stated) = arguments.voltage_timing.stated() else { return Ok(None) };
     let unsupported = || {
-        let sentence = "--voltage-timing of voltages that stand still in the rotor's frame is for fluxfit identify; track knows centered, 0, 1, 2 and 0-row to 2-row";
+        let sentence = "this --voltage-timing is for fluxfit identify; track knows centered, 0, 1, 2 and 0-row to 2-row";
         CommandError::Usage(sentence.to_owned())
     };
     Timing::of(stated).map(Some).ok_or_else(unsupported)

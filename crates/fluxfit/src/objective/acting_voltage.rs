@@ -2,7 +2,8 @@
 //!
 //! The columns hold either the commands of a drive, `delay` periods before they act, or *centred* voltages: the mean of the two periods
 //! around the row, in the frame at the row. Centred voltages are converted in the stator's frame, `V_k = 2 U_k - V_(k-1)`; the first
-//! vector is not in the log, and its error alternates in sign from period to period.
+//! vector is not in the log, and its error alternates in sign from period to period. Or the columns hold what was measured over the period
+//! before the row.
 //!
 //! An inverter holds its voltage in the stator. Some simulators, and logs whose rows lie many of the drive's periods apart, hold it in the
 //! rotor's frame. Rows that are means over their own span hold the means of the voltage as of the current: the moving mean of the current
@@ -31,6 +32,11 @@ pub enum VoltageTiming {
         /// The frame of its numbers.
         frame: VoltageFrame,
     },
+    /// What acted over the period that ended at the row, as a drive measures it; in the frame at the middle of that period.
+    Ended,
+    /// What acts from half a period after the row on, in the frame at the middle of the period in which it acts: the drive samples at the
+    /// middle of one period of its carrier, and its command takes effect with the next.
+    HalfPeriodLater,
     /// The mean over the row's own span, as the currents are.
     Averaged,
     /// By Euler's rule: the slope of the current at a row lasts until the next row.
@@ -66,8 +72,11 @@ impl VoltageTiming {
     /// Those of simulators that step by Euler's rule.
     pub(crate) const BY_EULERS_RULE: [Self; 2] = [Self::Euler { after: false }, Self::Euler { after: true }];
 
+    /// Those of few drives. A filter or a late angle in a usual log passes for one.
+    pub(crate) const RARE: [Self; 2] = [Self::Ended, Self::HalfPeriodLater];
+
     /// All timings that are known from drives and simulators.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
         Self::Delayed { delay: 1, frame: VoltageFrame::Middle },
@@ -75,6 +84,8 @@ impl VoltageTiming {
         Self::Delayed { delay: 0, frame: VoltageFrame::Row },
         Self::Delayed { delay: 1, frame: VoltageFrame::Row },
         Self::Delayed { delay: 2, frame: VoltageFrame::Row },
+        Self::Ended,
+        Self::HalfPeriodLater,
         Self::Delayed { delay: 0, frame: VoltageFrame::Rotor },
         Self::Delayed { delay: 1, frame: VoltageFrame::Rotor },
         Self::Averaged,
@@ -94,6 +105,8 @@ impl VoltageTiming {
             Self::Delayed { frame: VoltageFrame::Row, .. } => "2-row",
             Self::Delayed { delay: 0, frame: VoltageFrame::Rotor } => "0-rotor",
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "1-rotor",
+            Self::Ended => "-1",
+            Self::HalfPeriodLater => "0.5",
             Self::Averaged => "averaged",
             Self::Euler { after: false } => "euler",
             Self::Euler { after: true } => "euler-after",
@@ -116,6 +129,8 @@ impl VoltageTiming {
                 "what acts over the period that begins at the row, held in the rotor's frame"
             }
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "what acts one period later, held in the rotor's frame",
+            Self::Ended => "what acted over the period that ended at the row",
+            Self::HalfPeriodLater => "what acts half a period later",
             Self::Averaged => "the mean over the row's own span, as the currents",
             Self::Euler { after: false } => "a simulator's that goes from row to row by Euler's rule",
             Self::Euler { after: true } => "a simulator's that goes from row to row by Euler's rule, and logs the current after the step",
@@ -125,7 +140,8 @@ impl VoltageTiming {
     /// Rows at a segment's start whose acting voltage is not in the log.
     pub(super) fn lost_rows(self) -> usize {
         match self {
-            Self::Centered | Self::Averaged | Self::Euler { .. } => 0,
+            Self::Centered | Self::Ended | Self::Averaged | Self::Euler { .. } => 0,
+            Self::HalfPeriodLater => 1,
             Self::Delayed { delay, .. } => delay,
         }
     }
@@ -135,13 +151,13 @@ impl VoltageTiming {
         match self {
             Self::Averaged | Self::Delayed { frame: VoltageFrame::Rotor, .. } => Held::InRotor,
             Self::Euler { .. } => Held::WithSlope,
-            Self::Centered | Self::Delayed { .. } => Held::InStator,
+            Self::Centered | Self::Delayed { .. } | Self::Ended | Self::HalfPeriodLater => Held::InStator,
         }
     }
 
     /// Whether the voltage of a row acts from that row on, as no drive does that computes it from what it samples there.
     pub(crate) fn acts_at_once(self) -> bool {
-        matches!(self, Self::Delayed { delay: 0, .. } | Self::Euler { .. })
+        matches!(self, Self::Delayed { delay: 0, .. } | Self::Ended | Self::Euler { .. })
     }
 
     /// Whether the drive does not compensate its delay: as an angle that is late would have it.
@@ -175,6 +191,8 @@ pub(super) struct Period {
     pub(super) omega_e: f64,
     /// The voltage that acts, V, in the frame at its middle, or in the rotor's where it is held there.
     pub(super) u: Dq,
+    /// What that voltage is the mean of changes in the middle of the period by so much, V, in the same frame; zero if it stands still.
+    pub(super) change_within: Dq,
     /// The stator seen from the rotor at its middle: the electrical angle, rad.
     pub(super) theta_e: f64,
     /// What the speed gains in a second, electrical rad/s²; zero where it is from the angle.
@@ -199,6 +217,11 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
     let logged = |row: usize| Dq { d: columns.ud[row], q: columns.uq[row] };
     let in_stator = |row: usize| angles.logged_turns[row - rows.start].forward([columns.ud[row], columns.uq[row]]);
     let in_rotor_frame = |row: usize| logged(row).turned(frame(row) - angles.rotor[row - rows.start]);
+    // In the stator's frame, where the drive advanced the angle by its speed times so many periods.
+    let ahead = |row: usize, by: f64, length: f64| {
+        let AlphaBeta { alpha, beta } = logged(row).to_alpha_beta(frame(row) + columns.omega_e[row] * by * length);
+        [alpha, beta]
+    };
     // For centred columns: the voltage that acted over the period before, in the stator's frame. The first one is not in the log; the
     // mean at the first row stands in for it.
     let mut before = in_stator(rows.start);
@@ -215,17 +238,19 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 Dq { d, q }
             };
             let length = columns.t[row + 1] - columns.t[row];
+            let mut change_within = Dq { d: 0.0, q: 0.0 };
             let u = match reading {
                 VoltageTiming::Centered => {
                     let mean = in_stator(row);
                     before = [2.0 * mean[0] - before[0], 2.0 * mean[1] - before[1]];
                     at_middle(before)
                 }
-                VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => {
-                    // The drive advanced the angle by its speed times the delay.
-                    let ahead = columns.omega_e[row - delay] * (delay as f64 + 0.5) * length;
-                    let AlphaBeta { alpha, beta } = logged(row - delay).to_alpha_beta(frame(row - delay) + ahead);
-                    at_middle([alpha, beta])
+                VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => at_middle(ahead(row - delay, delay as f64 + 0.5, length)),
+                VoltageTiming::Ended => at_middle(ahead(row + 1, -0.5, length)),
+                VoltageTiming::HalfPeriodLater => {
+                    let (first, second) = (at_middle(ahead(row - 1, 1.0, length)), at_middle(ahead(row, 1.0, length)));
+                    change_within = Dq { d: second.d - first.d, q: second.q - first.q };
+                    Dq { d: 0.5 * (first.d + second.d), q: 0.5 * (first.q + second.q) }
                 }
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => at_middle(in_stator(row - delay)),
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Rotor } => in_rotor_frame(row - delay),
@@ -243,12 +268,15 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 length,
                 omega_e,
                 u,
+                change_within,
                 theta_e: middle,
                 acceleration: if angles.known { 0.0 } else { acceleration(row) },
                 late_by: 0.5 * (slower + faster),
                 angle_acceleration: if angles.known { (faster - slower) / length } else { 0.0 },
                 advance_per_lag: match reading {
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
+                    VoltageTiming::Ended => -0.5 * acceleration(row) * length,
+                    VoltageTiming::HalfPeriodLater => acceleration(row) * length,
                     VoltageTiming::Centered | VoltageTiming::Delayed { .. } | VoltageTiming::Averaged | VoltageTiming::Euler { .. } => 0.0,
                 },
                 time: (columns.t[row] + 0.5 * length - first_time) / (last_time - first_time) - 0.5,

@@ -108,6 +108,11 @@ impl OutputError {
         self.altered(|segment| segment.scale_voltages(&factor))
     }
 
+    /// The same rows, with the halves of periods in which the voltage changes weighed as this motor's currents do.
+    pub(crate) fn with_halves_weighed(&self, motor: &Motor) -> Self {
+        self.altered(|segment| segment.weigh_halves(motor))
+    }
+
     fn altered(&self, alter: impl Fn(&mut SimulatedSegment)) -> Self {
         let mut segments = self.simulated.segments.clone();
         segments.iter_mut().for_each(alter);

@@ -9,6 +9,7 @@ use crate::{
     faults::{Place, carrier_half},
     frames::{Dq, Turn},
     log::Log,
+    motor::Motor,
 };
 use std::ops::Range;
 
@@ -107,6 +108,15 @@ impl SimulatedSegment {
         for period in &mut self.periods {
             let factor = factor(period.omega_e * period.length);
             period.u = Dq { d: factor * period.u.d, q: factor * period.u.q };
+        }
+    }
+
+    /// Weighs the halves of periods in which the voltage changes: of the first half the winding of this motor forgets more until the end.
+    pub(super) fn weigh_halves(&mut self, motor: &Motor) {
+        for period in &mut self.periods {
+            let weight = |inductance: f64| 0.5 * (0.25 * motor.rs * period.length / inductance).tanh();
+            period.u.d += weight(motor.ld) * period.change_within.d;
+            period.u.q += weight(motor.lq) * period.change_within.q;
         }
     }
 

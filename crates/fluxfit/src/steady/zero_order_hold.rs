@@ -36,7 +36,11 @@ impl From<VoltageTiming> for SteadyVoltageTiming {
     fn from(timing: VoltageTiming) -> Self {
         match timing {
             VoltageTiming::Centered => Self::Centered,
-            VoltageTiming::Delayed { .. } | VoltageTiming::Averaged | VoltageTiming::Euler { .. } => Self::Compensated,
+            VoltageTiming::Delayed { .. }
+            | VoltageTiming::Ended
+            | VoltageTiming::HalfPeriodLater
+            | VoltageTiming::Averaged
+            | VoltageTiming::Euler { .. } => Self::Compensated,
         }
     }
 }

@@ -8,7 +8,7 @@ use super::{
     super::request::Request,
     fault_search::{FaultOutcome, schwarz, unphysical},
     long_run,
-    output_choice::Chosen,
+    output_choice::{Chosen, is_a_motor},
     readings::{self, VERY_STRONG},
 };
 use crate::{
@@ -17,6 +17,7 @@ use crate::{
     levenberg_marquardt::{Polished, polish_to_choose, polish_with_progress},
     log::Log,
     objective::{
+        acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
@@ -70,13 +71,21 @@ impl AllRows {
         chosen: Chosen,
         (to_compare, fitting): (bool, &dyn Fn(usize)),
     ) -> Result<Self, Error> {
-        let objective = OutputError::of_rows(log, stretches, chosen.reading)?;
-        let (start, unknowns, priors) = (&chosen.drive, &chosen.unknowns, &chosen.priors);
-        let Polished { drive, cost, .. } = if to_compare {
-            polish_to_choose(&objective, start, unknowns, priors)
-        } else {
-            polish_with_progress(&objective, start, unknowns, priors, fitting)
+        let mut objective = OutputError::of_rows(log, stretches, chosen.reading)?;
+        let (unknowns, priors) = (&chosen.unknowns, &chosen.priors);
+        let polish = |objective: &OutputError, start: &Adjustable| {
+            if to_compare {
+                polish_to_choose(objective, start, unknowns, priors)
+            } else {
+                polish_with_progress(objective, start, unknowns, priors, fitting)
+            }
         };
+        let mut polished = polish(&objective, &chosen.drive);
+        if chosen.reading == VoltageTiming::HalfPeriodLater && is_a_motor(&polished.drive.motor) {
+            objective = objective.with_halves_weighed(&polished.drive.motor);
+            polished = polish(&objective, &polished.drive);
+        }
+        let Polished { drive, cost, .. } = polished;
         let residuals = objective.residuals(&drive);
         Ok(Self { chosen, objective, drive, cost, residuals, runaway: None })
     }

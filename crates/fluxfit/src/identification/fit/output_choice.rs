@@ -27,6 +27,7 @@ use crate::{
 use std::ops::Range;
 
 /// What is to be fitted to all rows.
+#[derive(Clone)]
 pub(super) struct Chosen {
     pub(super) reading: VoltageTiming,
     pub(super) drive: Adjustable,
@@ -122,11 +123,20 @@ pub(super) fn choose(
         let ends = rough.iter().map(|(place, trial)| (*place, trial.polished.drive)).collect();
         contest(&objectives, ends, &free, &priors, &Rules::all(HOPELESS))
     };
-    let steps = by_eulers_rule(log, stretches, &start.drive, (&free, &priors), request)?;
-    let best_steps = steps.as_ref().and_then(|steps| steps.chosen.readings.first().copied());
-    if let (Some(Searched { mut chosen, explained: true }), Some(best), Some((_, tried_best))) = (steps, best_steps, tried.first())
-        && best.rank() < tried_best.rank()
-    {
+    let every_period = is_control_rate(log);
+    // Between rows that are not the drive's periods, means pass for rare readings.
+    let rare: &[_] = if every_period { &VoltageTiming::RARE } else { &[] };
+    let objectives_of = |readings: &[_]| match request.voltage_timing {
+        None => OutputError::under_readings(log, &stretches::spread(stretches), readings),
+        Some(_) => Ok(Vec::new()),
+    };
+    let (steps, rare) = (objectives_of(&VoltageTiming::BY_EULERS_RULE)?, objectives_of(rare)?);
+    let alone = |objectives: &Objectives| Alone::of(objectives, &start.drive, (&free, &priors));
+    let (as_steps, as_rare) = (alone(&steps), alone(&rare));
+    let is_ahead = |alone: &&Alone| tried.first().is_some_and(|(_, usual)| alone.best.1.rank() < usual.rank());
+    let explained = [&as_steps, &as_rare].into_iter().flatten().filter(|alone| alone.searched.explained).filter(is_ahead);
+    if let Some(alone) = explained.min_by(|one, other| one.best.1.rank().total_cmp(&other.best.1.rank())) {
+        let mut chosen = alone.searched.chosen.clone();
         chosen.readings.extend(tried.iter().map(|(_, tried)| *tried));
         return Ok(vec![chosen]);
     }
@@ -138,7 +148,6 @@ pub(super) fn choose(
     let of_frame: Vec<Fault> = of_angle.iter().copied().chain(of_voltages).collect();
     let with_frame = Begin::with_frame(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
     let _ = progress(Step::Faults);
-    let every_period = is_control_rate(log);
     let most = if every_period { TRIED_READINGS } else { 1 };
     let search_from = |begin: Begin, objectives, begun: &mut Vec<_>| {
         let Begin { tried: (place, tried), unknowns, faults } = begin;
@@ -189,6 +198,17 @@ pub(super) fn choose(
         let first = tried.iter().copied().find(|(place, _)| *place < usual.len());
         found.extend(first.and_then(|first| search_from(without(first), usual, &mut begun)));
     }
+    // A filter or a late angle of a usual log passes for a rare reading as long as it is not found: it must explain the log, without one.
+    if let (Some(alone), Some(usual)) = (as_rare.as_ref().filter(is_ahead), found.first())
+        && let Some(mut searched) = search_from(without(alone.best), &rare, &mut Vec::new())
+        && is_motor(&searched)
+        && searched.explained
+        && !searched.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(Fault::is_filter)
+        && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
+    {
+        searched.chosen.compare(&[&rare, &objectives]);
+        found.insert(0, searched);
+    }
     let mut found: Vec<Chosen> = found.into_iter().map(|found| found.chosen).collect();
     let best = found.first_mut().ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
     if best.readings.is_empty() {
@@ -197,7 +217,7 @@ pub(super) fn choose(
         let readings = if best.unknowns == free { tried } else { again() };
         best.readings = readings.into_iter().map(|(_, tried)| tried).collect();
     }
-    if let Some(steps) = best_steps
+    if let Some(Alone { best: (_, steps), .. }) = as_steps
         && readings::is_better(&steps, &best.readings, best.independent)
     {
         best.readings.push(steps);
@@ -205,36 +225,37 @@ pub(super) fn choose(
     Ok(found)
 }
 
-/// The motor alone, fitted as a simulator that steps by Euler's rule would have it: such a log has none of a drive's faults. Among the
-/// readings of a drive the rule could be taken for one of its faults.
-fn by_eulers_rule(
-    log: &Log,
-    stretches: &[Range<usize>],
-    start: &Adjustable,
-    (unknowns, priors): (&[Unknown], &[PriorResidual]),
-    request: &Request,
-) -> Result<Option<Searched>, Error> {
-    if request.voltage_timing.is_some() {
-        return Ok(None);
+/// A log under each of several readings.
+type Objectives = [(VoltageTiming, OutputError)];
+
+/// The motor without any fault of a drive, under readings that are set apart: among the usual ones they could be taken for a fault. A
+/// simulator that steps by Euler's rule has none.
+struct Alone {
+    /// The best reading, by its place.
+    best: (usize, TimingTrial),
+    searched: Searched,
+}
+
+impl Alone {
+    fn of(objectives: &Objectives, start: &Adjustable, (unknowns, priors): (&[Unknown], &[PriorResidual])) -> Option<Self> {
+        let tried = readings::readings(objectives, start, unknowns, priors, HOPELESS);
+        let (place, best) = tried.first().copied()?;
+        let objective = &objectives[place].1;
+        let residuals = objective.residuals(&best.polished.drive);
+        let independent = long_run::effective_sample_size(&residuals);
+        let chosen = Chosen {
+            reading: best.timing,
+            drive: best.polished.drive,
+            unknowns: unknowns.to_vec(),
+            priors: priors.to_vec(),
+            readings: tried.into_iter().map(|(_, tried)| tried).collect(),
+            terms: Vec::new(),
+            independent,
+            criterion: criterion(best.polished.cost, unknowns.len(), residuals.len()),
+        };
+        let explained = is_explained(&best.polished.drive, best.polished.cost, residuals.len(), independent, objective);
+        Some(Self { best: (place, best), searched: Searched { chosen, explained } })
     }
-    let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &VoltageTiming::BY_EULERS_RULE)?;
-    let tried = readings::readings(&objectives, start, unknowns, priors, HOPELESS);
-    let Some((place, best)) = tried.first().copied() else { return Ok(None) };
-    let objective = &objectives[place].1;
-    let residuals = objective.residuals(&best.polished.drive);
-    let independent = long_run::effective_sample_size(&residuals);
-    let chosen = Chosen {
-        reading: best.timing,
-        drive: best.polished.drive,
-        unknowns: unknowns.to_vec(),
-        priors: priors.to_vec(),
-        readings: tried.into_iter().map(|(_, tried)| tried).collect(),
-        terms: Vec::new(),
-        independent,
-        criterion: criterion(best.polished.cost, unknowns.len(), residuals.len()),
-    };
-    let explained = is_explained(&best.polished.drive, best.polished.cost, residuals.len(), independent, objective);
-    Ok(Some(Searched { chosen, explained }))
 }
 
 /// Whether what is left is noise, and next to no observer was needed to make it so, or rounding.
@@ -245,17 +266,31 @@ pub(super) fn is_explained(drive: &Adjustable, cost: f64, residuals: usize, inde
 }
 
 /// Whether all parameters are positive, as a motor's are; at rest the flux is zero, because it is not fitted.
-fn is_a_motor(motor: &Motor) -> bool {
+pub(super) fn is_a_motor(motor: &Motor) -> bool {
     let Motor { rs, ld, lq, psi_f } = *motor;
     [rs, ld, lq].iter().all(|value| *value > 0.0) && psi_f >= 0.0
 }
 
 impl Chosen {
+    /// Compares all of these readings with what was chosen, which stays the first one.
+    fn compare(&mut self, among: &[&Objectives]) {
+        let each =
+            |objectives: &&Objectives| readings::readings(objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);
+        let mut readings: Vec<TimingTrial> = among.iter().flat_map(each).map(|(_, tried)| tried).collect();
+        readings.sort_by(|one, other| one.rank().total_cmp(&other.rank()));
+        readings.sort_by_key(|trial| trial.timing != self.reading);
+        self.readings = readings;
+    }
+
     /// The same choice for a log that differs a little: its numbers are fitted again, and the reading is chosen from these.
     pub(super) fn again(self, log: &Log, stretches: &[Range<usize>], asked: &[VoltageTiming]) -> Result<Self, Error> {
-        let steps = &VoltageTiming::BY_EULERS_RULE;
-        let asked = if steps.contains(&self.reading) { steps } else { asked };
-        let objectives = OutputError::under_readings(log, &stretches::spread(stretches), asked)?;
+        let (steps, rare) = (VoltageTiming::BY_EULERS_RULE, VoltageTiming::RARE);
+        let asked = match self.reading {
+            reading if steps.contains(&reading) => steps.to_vec(),
+            reading if rare.contains(&reading) && !asked.contains(&reading) => [&rare, asked].concat(),
+            _ => asked.to_vec(),
+        };
+        let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &asked)?;
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);
         let readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
         let Some((place, best)) = tried.first() else { return Ok(self) };

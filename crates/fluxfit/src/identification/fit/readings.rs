@@ -41,24 +41,25 @@ impl TimingTrial {
     pub(super) fn rank(&self) -> f64 {
         let handicap = match self.timing {
             VoltageTiming::Averaged => AVERAGED,
-            timing if timing.is_unusual() => UNUSUAL,
+            timing if timing.is_unusual() || VoltageTiming::RARE.contains(&timing) => UNUSUAL,
             _ => 0.0,
         };
         self.mean_square() * (1.0 + handicap)
     }
 }
 
-/// By which part a reading that is no inverter's must fit better than all others: in a log that stands still it would fit as well, and
-/// scale all voltages by what a rotor that turns through a held voltage makes of it.
+/// By which part a reading that is rare, or no inverter's, must fit better than all others: in a log that stands still it would fit as
+/// well, and may scale all voltages by what a rotor that turns through a held voltage makes of it.
 const UNUSUAL: f64 = 0.01;
 
 /// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
 const AVERAGED: f64 = 0.1;
 
-/// Every reading of a drive's voltages, or the one that is stated.
+/// Every reading of a drive's voltages but the rare ones, or the one that is stated.
 pub(crate) fn asked(request: &Request) -> Vec<VoltageTiming> {
-    let of_drives = || VoltageTiming::ALL.into_iter().filter(|timing| !VoltageTiming::BY_EULERS_RULE.contains(timing)).collect();
-    request.voltage_timing.map_or_else(of_drives, |stated| vec![stated])
+    let set_apart = |timing: &VoltageTiming| VoltageTiming::BY_EULERS_RULE.contains(timing) || VoltageTiming::RARE.contains(timing);
+    let usual = || VoltageTiming::ALL.into_iter().filter(|timing| !set_apart(timing)).collect();
+    request.voltage_timing.map_or_else(usual, |stated| vec![stated])
 }
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
