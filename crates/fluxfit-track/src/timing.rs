@@ -29,8 +29,7 @@ impl Timing {
         Self::Delayed { delay: 2, at_row: false },
     ];
 
-    /// The same as the batch identification has it; none of voltages that stand still in the rotor's frame, were
-    /// measured, or act half a period later, which a stream does not support.
+    /// The same as the batch identification has it; none for a timing that a stream does not support.
     pub fn of(timing: VoltageTiming) -> Option<Self> {
         match timing {
             VoltageTiming::Centered => Some(Self::Centered),

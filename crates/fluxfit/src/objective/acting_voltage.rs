@@ -191,7 +191,7 @@ pub(super) struct Period {
     pub(super) omega_e: f64,
     /// The voltage that acts, V, in the frame at its middle, or in the rotor's where it is held there.
     pub(super) u: Dq,
-    /// What that voltage is the mean of changes in the middle of the period by so much, V, in the same frame; zero if it stands still.
+    /// By how much the voltage changes in the middle of the period, V, in the same frame; `u` is then the mean of both halves.
     pub(super) change_within: Dq,
     /// The stator seen from the rotor at its middle: the electrical angle, rad.
     pub(super) theta_e: f64,
@@ -217,7 +217,7 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
     let logged = |row: usize| Dq { d: columns.ud[row], q: columns.uq[row] };
     let in_stator = |row: usize| angles.logged_turns[row - rows.start].forward([columns.ud[row], columns.uq[row]]);
     let in_rotor_frame = |row: usize| logged(row).turned(frame(row) - angles.rotor[row - rows.start]);
-    // In the stator's frame, where the drive advanced the angle by its speed times so many periods.
+    // A row's voltage in the stator's frame. The drive advanced the angle by its speed times so many periods.
     let ahead = |row: usize, by: f64, length: f64| {
         let AlphaBeta { alpha, beta } = logged(row).to_alpha_beta(frame(row) + columns.omega_e[row] * by * length);
         [alpha, beta]

@@ -198,7 +198,8 @@ pub(super) fn choose(
         let first = tried.iter().copied().find(|(place, _)| *place < usual.len());
         found.extend(first.and_then(|first| search_from(without(first), usual, &mut begun)));
     }
-    // A filter or a late angle of a usual log passes for a rare reading as long as it is not found: it must explain the log, without one.
+    // A filter or a late angle in a usual log passes for a rare reading as long as it is not found. So what begins with a rare one must
+    // explain the log, and without a filter.
     if let (Some(alone), Some(usual)) = (as_rare.as_ref().filter(is_ahead), found.first())
         && let Some(mut searched) = search_from(without(alone.best), &rare, &mut Vec::new())
         && is_motor(&searched)

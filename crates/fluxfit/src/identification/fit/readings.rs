@@ -55,7 +55,7 @@ const UNUSUAL: f64 = 0.01;
 /// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
 const AVERAGED: f64 = 0.1;
 
-/// Every reading of a drive's voltages but the rare ones, or the one that is stated.
+/// Every usual reading of a drive's voltages, or the one that is stated.
 pub(crate) fn asked(request: &Request) -> Vec<VoltageTiming> {
     let set_apart = |timing: &VoltageTiming| VoltageTiming::BY_EULERS_RULE.contains(timing) || VoltageTiming::RARE.contains(timing);
     let usual = || VoltageTiming::ALL.into_iter().filter(|timing| !set_apart(timing)).collect();
