@@ -21,6 +21,7 @@ use crate::{
     log::{Columns, Log},
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::VoltageTiming,
+    parallel,
     steady::{
         OperatingPoint,
         windows::{MIN_ROWS, TimeWindow},
@@ -63,6 +64,12 @@ pub(crate) struct Losses {
     pub(crate) timing: Option<VoltageTiming>,
 }
 
+/// Half-widths of another log's parameters, or of another request's, as fractions of their values; infinite where there is none.
+pub(crate) type Identify<'a> = &'a (dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]> + Sync);
+
+/// A measurement that was tried, and the half-widths of all parameters after it; none if it cannot be tried.
+type Done = (Measurement, Option<[f64; PARAMETERS]>);
+
 /// A log on which measurements are tried.
 pub(crate) struct Trials<'a> {
     pub(crate) log: &'a Log,
@@ -73,9 +80,10 @@ pub(crate) struct Trials<'a> {
     pub(crate) losses: Losses,
     /// Standard error of R_s, ohm, of all that is counted.
     rs_error: f64,
-    /// Half-widths of another log's parameters as fractions of their values; infinite where there is none.
-    pub(crate) identify: &'a dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]>,
-    done: Vec<(Measurement, Option<[f64; PARAMETERS]>)>,
+    pub(crate) identify: Identify<'a>,
+    done: Vec<Done>,
+    /// Tried beside others, and not asked for yet.
+    ahead: Vec<Done>,
 }
 
 impl<'a> Trials<'a> {
@@ -85,9 +93,9 @@ impl<'a> Trials<'a> {
         points: &'a [OperatingPoint],
         losses: Losses,
         rs_error: f64,
-        identify: &'a dyn Fn(&Log, &Request) -> Option<[f64; PARAMETERS]>,
+        identify: Identify<'a>,
     ) -> Self {
-        Self { log, request, bench, points, losses, rs_error, identify, done: Vec::new() }
+        Self { log, request, bench, points, losses, rs_error, identify, done: Vec::new(), ahead: Vec::new() }
     }
 
     /// What to measure for a parameter, and what it would bring; nothing, where nothing proposed would help. Of what makes the parameter
@@ -95,10 +103,15 @@ impl<'a> Trials<'a> {
     /// `of_gains`: what remains whatever is measured, as a standard error, SI; `now`: its half-width now, as a fraction.
     pub(super) fn best(&mut self, of_gains: f64, now: f64, parameter: Parameter) -> Option<Promised> {
         let mut best: Option<Promised> = None;
-        for estimated in promising(self.bench, self.lengths(), of_gains, parameter).into_iter().take(MOST_TRIED) {
+        let estimates: Vec<Promised> = promising(self.bench, self.lengths(), of_gains, parameter).into_iter().take(MOST_TRIED).collect();
+        for (place, estimated) in estimates.iter().enumerate() {
+            // Mostly the first is enough. If not, the others are tried side by side.
+            if place == 1 {
+                self.try_ahead(estimates[1..].iter().map(|other| other.measurement));
+            }
             let Some(half_width) = self.half_width(estimated.measurement, parameter) else { continue };
             if best.is_none_or(|best| half_width < best.half_width) {
-                best = Some(Promised { half_width, ..estimated });
+                best = Some(Promised { half_width, ..*estimated });
             }
             if half_width <= IDENTIFIED {
                 break;
@@ -120,14 +133,26 @@ impl<'a> Trials<'a> {
 
     /// Half-width of a parameter after a measurement, as a fraction; `None` if it cannot be tried.
     pub(super) fn half_width(&mut self, measurement: Measurement, parameter: Parameter) -> Option<f64> {
-        let known = self.done.iter().find(|(other, _)| *other == measurement).map(|(_, widths)| *widths);
-        let widths = known.unwrap_or_else(|| {
-            let room = self.done.len() < MOST_TRIALS && self.log.rows() <= MOST_ROWS;
-            let widths = if room { self.tried(measurement) } else { None };
+        let widths = known(&self.done, measurement).unwrap_or_else(|| {
+            let room = self.room() > 0;
+            let widths = if room { known(&self.ahead, measurement).unwrap_or_else(|| self.tried(measurement)) } else { None };
             self.done.push((measurement, widths));
             widths
         });
         widths.map(|widths| widths[parameter as usize])
+    }
+
+    /// How many more measurements may be tried.
+    fn room(&self) -> usize {
+        if self.log.rows() <= MOST_ROWS { MOST_TRIALS.saturating_sub(self.done.len()) } else { 0 }
+    }
+
+    /// Tries the new ones of these measurements on all cores.
+    fn try_ahead(&mut self, measurements: impl Iterator<Item = Measurement>) {
+        let is_new = |measurement: &Measurement| known(&self.done, *measurement).or(known(&self.ahead, *measurement)).is_none();
+        let new: Vec<Measurement> = measurements.filter(is_new).take(self.room()).collect();
+        let widths = parallel::map(&new, |measurement| self.tried(*measurement));
+        self.ahead.extend(new.into_iter().zip(widths));
     }
 
     /// The measurements that were tried, with the half-widths of all parameters after each, as fractions.
@@ -139,17 +164,16 @@ impl<'a> Trials<'a> {
         let mut request = Request { voltage_timing: self.request.voltage_timing.or(self.losses.timing), ..self.request.clone() };
         match measurement {
             Measurement::Resistance { accuracy } => {
-                let mut with = |rs: f64| {
-                    request.known[Parameter::Rs as usize] = Known::Prior { value: rs, standard_error: accuracy * rs };
-                    (self.identify)(self.log, &request)
-                };
                 let rs = self.rs();
-                let widths = with(rs)?;
-                if self.rs_error <= UNCERTAIN * rs {
-                    return Some(widths);
-                }
-                let with_smaller = with((rs - self.rs_error).max(SMALLEST_PART * rs))?;
-                Some(std::array::from_fn(|p| widths[p].max(with_smaller[p])))
+                let smaller = (self.rs_error > UNCERTAIN * rs).then(|| (rs - self.rs_error).max(SMALLEST_PART * rs));
+                let each: Vec<f64> = std::iter::once(rs).chain(smaller).collect();
+                let widths = parallel::map(&each, |rs| {
+                    let mut request = request.clone();
+                    request.known[Parameter::Rs as usize] = Known::Prior { value: *rs, standard_error: accuracy * rs };
+                    (self.identify)(self.log, &request)
+                });
+                let widths: Vec<[f64; PARAMETERS]> = widths.into_iter().collect::<Option<_>>()?;
+                Some(std::array::from_fn(|p| widths.iter().map(|widths| widths[p]).fold(0.0, f64::max)))
             }
             Measurement::Stretch { seconds, place, .. } => {
                 let at = self.points.iter().max_by(|one, other| one.current().magnitude().total_cmp(&other.current().magnitude()))?;
@@ -277,6 +301,11 @@ impl<'a> Trials<'a> {
     }
 }
 
+/// What is known of a measurement.
+fn known(done: &[Done], measurement: Measurement) -> Option<Option<[f64; PARAMETERS]>> {
+    done.iter().find(|(other, _)| *other == measurement).map(|(_, widths)| *widths)
+}
+
 /// Sample periods between the log and a stretch, and between stretches: more than a lost row.
 const GAP: f64 = 100.0;
 
@@ -301,7 +330,7 @@ fn times(log: &Log) -> Option<TimeWindow> {
 pub(super) mod tests {
     use super::*;
     use crate::faults::{angle_offset::AngleOffset, dead_time::DeadTime};
-    use std::cell::RefCell;
+    use std::sync::Mutex;
 
     pub(crate) const ROWS: usize = 200;
 
@@ -357,17 +386,17 @@ pub(super) mod tests {
     }
 
     fn tried_measurement(log: &Log, losses: Losses, measurement: Measurement) -> Option<Log> {
-        let seen = RefCell::new(None);
+        let seen = Mutex::new(None);
         let identify = |log: &Log, _: &Request| {
-            *seen.borrow_mut() = Some(log.clone());
+            *seen.lock().unwrap() = Some(log.clone());
             Some([0.1; PARAMETERS])
         };
         let (request, bench) = (Request::default(), bench());
         let points = [OperatingPoint::measure(log, 0..ROWS, None)];
         let mut trials = Trials::new((log, &request), &bench, &points, losses, 0.0, &identify);
         let half_width = trials.half_width(measurement, Parameter::Ld);
-        assert_eq!(half_width, seen.borrow().as_ref().map(|_| 0.1));
-        seen.into_inner()
+        assert_eq!(half_width, seen.lock().unwrap().as_ref().map(|_| 0.1));
+        seen.into_inner().unwrap()
     }
 
     /// The rows that were added are what the motor's own equations, and what is lost beside them, say there.

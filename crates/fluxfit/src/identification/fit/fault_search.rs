@@ -489,7 +489,7 @@ impl ScoreTest {
         let normal = NormalMatrix::of(&jacobian);
         let inverse = normal.inverse();
         let accuracy = VoltageAccuracy { fraction: search.voltage_accuracy, volts: 0.0 };
-        let accuracy = voltage_accuracy::covariance(objective, drive, &inverse, &jacobian, accuracy);
+        let [accuracy] = voltage_accuracy::covariances(objective, drive, &inverse, &jacobian, [accuracy]);
         let noise = inverse.diagonal() * (cost / independent);
         let standard_errors = (noise + accuracy.diagonal()).iter().map(|variance| variance.max(0.0).sqrt()).collect();
         Self { residuals, jacobian, normal, standard_errors, independent, peak: objective.peak_current() }

@@ -115,7 +115,7 @@ impl Errors {
         unknowns: &[Unknown],
         priors: &[PriorResidual],
         residuals: &[f64],
-        [voltage_accuracy, of_loss]: [VoltageAccuracy; 2],
+        accuracies: [VoltageAccuracy; 2],
         scale: &[f64; PARAMETERS],
     ) -> Self {
         let slopes = jacobian(objective, drive, unknowns);
@@ -138,11 +138,12 @@ impl Errors {
             degrees_of_freedom = degrees_of_freedom.min(blocks.degrees_of_freedom);
             covariance = larger(covariance, &inverse * blocks.covariance * &inverse);
         }
+        let [accuracy, loss_shape] = voltage_accuracy::covariances(objective, drive, &inverse, &slopes, accuracies);
         Self {
             covariance,
             degrees_of_freedom,
-            accuracy: voltage_accuracy::covariance(objective, drive, &inverse, &slopes, voltage_accuracy),
-            loss_shape: voltage_accuracy::covariance(objective, drive, &inverse, &slopes, of_loss),
+            accuracy,
+            loss_shape,
             priors: priors
                 .iter()
                 .map(|belief| {

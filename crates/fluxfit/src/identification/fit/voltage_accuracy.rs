@@ -6,6 +6,7 @@
 use crate::{
     frames::Dq,
     objective::{adjustable::Adjustable, output_error::OutputError},
+    parallel,
 };
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
@@ -17,6 +18,9 @@ const SMOOTH: f64 = 0.1;
 /// Periods are gathered into cells of this size in the space of operating points, likewise: a few to that scale.
 const CELL: f64 = 0.04;
 
+/// Cells at least so far apart have less than 1e-13 of their errors in common.
+const FARTHEST: i32 = 20;
+
 /// How far the voltages are trusted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct VoltageAccuracy {
@@ -26,37 +30,22 @@ pub(crate) struct VoltageAccuracy {
     pub(crate) volts: f64,
 }
 
-/// Covariance of the unknowns from the voltages' accuracy. `slopes` are the derivatives of the residuals by each
-/// unknown, `inverse` is the inverse of their normal matrix.
-pub(crate) fn covariance(
+/// Covariances of the unknowns from the voltages' accuracy, one for each that is given. `slopes` are the derivatives of the residuals by
+/// each unknown, `inverse` is the inverse of their normal matrix.
+pub(crate) fn covariances<const COUNT: usize>(
     objective: &OutputError,
     drive: &Adjustable,
     inverse: &DMatrix<f64>,
     slopes: &[Vec<f64>],
-    accuracy: VoltageAccuracy,
-) -> DMatrix<f64> {
+    accuracies: [VoltageAccuracy; COUNT],
+) -> [DMatrix<f64>; COUNT] {
     let size = slopes.len();
-    if accuracy.fraction == 0.0 && accuracy.volts == 0.0 {
-        return DMatrix::zeros(size, size);
+    let is_exact = |accuracy: &VoltageAccuracy| accuracy.fraction == 0.0 && accuracy.volts == 0.0;
+    if accuracies.iter().all(is_exact) {
+        return accuracies.map(|_| DMatrix::zeros(size, size));
     }
-    let (mut most_current, mut most_speed) = (f64::MIN_POSITIVE, f64::MIN_POSITIVE);
-    for (_, i, omega_e) in objective.periods() {
-        most_current = most_current.max(i.magnitude());
-        most_speed = most_speed.max(omega_e.abs());
-    }
-    let cell = |i: Dq, omega_e: f64| [i.d / most_current, i.q / most_current, omega_e / most_speed].map(|x| (x / CELL).round() as i32);
-    let of_periods: Vec<([i32; 3], f64)> = objective
-        .periods()
-        .map(|(u, i, omega_e)| {
-            (cell(i, omega_e), ((accuracy.fraction * u.d).powi(2) + (accuracy.fraction * u.q).powi(2) + accuracy.volts.powi(2)).sqrt())
-        })
-        .collect();
-    let mut numbers: BTreeMap<[i32; 3], usize> = of_periods.iter().map(|(cell, _)| (*cell, 0)).collect();
-    numbers.values_mut().enumerate().for_each(|(number, place)| *place = number);
-    let places: Vec<(usize, f64)> = of_periods.iter().map(|(cell, volts)| (numbers[cell], *volts)).collect();
-    // Per cell and axis: what a volt there does to each unknown, weighted with its voltage. Of the residuals, simulated currents
-    // have the opposite sign.
-    let mut cells: Vec<([i32; 3], Vec<Dq>)> = numbers.into_keys().map(|cell| (cell, vec![Dq::default(); size])).collect();
+    let periods: Vec<(Dq, Dq, f64)> = objective.periods().collect();
+    let cells = Cells::of(&periods);
     let weights = (0..size).map(|p| {
         let mut weights = vec![0.0; slopes[0].len()];
         for (q, slope) in slopes.iter().enumerate() {
@@ -64,24 +53,71 @@ pub(crate) fn covariance(
         }
         weights
     });
-    for (p, effects) in objective.by_voltage(drive, &weights.collect::<Vec<_>>()).into_iter().enumerate() {
-        for ((place, volts), effect) in places.iter().zip(effects) {
-            let sum = &mut cells[*place].1[p];
-            sum.d += volts * effect.d;
-            sum.q += volts * effect.q;
+    let of_a_volt = objective.by_voltage(drive, &weights.collect::<Vec<_>>());
+    accuracies.map(|accuracy| {
+        if is_exact(&accuracy) {
+            return DMatrix::zeros(size, size);
         }
+        let VoltageAccuracy { fraction, volts } = accuracy;
+        let errors = periods.iter().map(|(u, ..)| ((fraction * u.d).powi(2) + (fraction * u.q).powi(2) + volts.powi(2)).sqrt());
+        cells.covariance(&errors.collect::<Vec<f64>>(), &of_a_volt)
+    })
+}
+
+/// Periods gathered by their operating points.
+struct Cells {
+    /// Where each cell lies, in multiples of its size: along i_d, i_q and speed.
+    places: Vec<[i32; 3]>,
+    /// The cell of each period.
+    of_periods: Vec<usize>,
+}
+
+impl Cells {
+    /// Of periods with these voltages (V), currents (A) and speeds (electrical rad/s).
+    fn of(periods: &[(Dq, Dq, f64)]) -> Self {
+        let largest = |size: &dyn Fn(&(Dq, Dq, f64)) -> f64| periods.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+        let (current, speed) = (largest(&|(_, i, _)| i.magnitude()), largest(&|(.., omega_e)| omega_e.abs()));
+        let place = |(_, i, omega_e): &(Dq, Dq, f64)| [i.d / current, i.q / current, omega_e / speed].map(|x| (x / CELL).round() as i32);
+        let of_periods: Vec<[i32; 3]> = periods.iter().map(place).collect();
+        let mut numbers: BTreeMap<[i32; 3], usize> = of_periods.iter().map(|place| (*place, 0)).collect();
+        numbers.values_mut().enumerate().for_each(|(number, cell)| *cell = number);
+        Self { of_periods: of_periods.iter().map(|place| numbers[place]).collect(), places: numbers.into_keys().collect() }
     }
-    let mut covariance = DMatrix::zeros(size, size);
-    for (one, effects) in &cells {
-        for (other, others) in &cells {
-            let distance: f64 = one.iter().zip(other).map(|(a, b)| (f64::from(a - b) * CELL / SMOOTH).powi(2)).sum();
-            let alike = (-0.5 * distance).exp();
+
+    /// Covariance of unknowns, given the standard error of each period's voltage, V, and what a volt there does to each unknown.
+    fn covariance(&self, errors: &[f64], of_a_volt: &[Vec<Dq>]) -> DMatrix<f64> {
+        let size = of_a_volt.len();
+        // Per cell a row: what its voltages' error does to each unknown, of d and then of q. Of the residuals, simulated currents have the
+        // opposite sign.
+        let mut effects = vec![0.0; self.places.len() * 2 * size];
+        for (p, effect) in of_a_volt.iter().enumerate() {
+            for ((cell, volts), effect) in self.of_periods.iter().zip(errors).zip(effect) {
+                effects[cell * 2 * size + p] += volts * effect.d;
+                effects[cell * 2 * size + size + p] += volts * effect.q;
+            }
+        }
+        let rows: Vec<&[f64]> = effects.chunks_exact(2 * size).collect();
+        // Errors of cells so far apart have nothing in common.
+        let alike: Vec<f64> = (0..FARTHEST * FARTHEST).map(|square| (-0.5 * f64::from(square) * (CELL / SMOOTH).powi(2)).exp()).collect();
+        let numbers: Vec<usize> = (0..rows.len()).collect();
+        // Each cell's own row and what others have in common with it, in whole: the sum does not depend on how work is shared.
+        let common = parallel::map(&numbers, |number| {
+            let mut common = vec![0.0; 2 * size];
+            for (place, row) in self.places.iter().zip(&rows) {
+                let square: i32 = place.iter().zip(&self.places[*number]).map(|(a, b)| (a - b).pow(2)).sum();
+                let Some(alike) = usize::try_from(square).ok().and_then(|square| alike.get(square)) else { continue };
+                common.iter_mut().zip(*row).for_each(|(common, effect)| *common += alike * effect);
+            }
+            common
+        });
+        let mut covariance = DMatrix::zeros(size, size);
+        for (own, common) in rows.iter().zip(&common) {
             for p in 0..size {
                 for q in 0..size {
-                    covariance[(p, q)] += alike * (effects[p].d * others[q].d + effects[p].q * others[q].q);
+                    covariance[(p, q)] += own[p] * common[q] + own[size + p] * common[size + q];
                 }
             }
         }
+        covariance
     }
-    covariance
 }
