@@ -59,7 +59,7 @@ fn verdict(correlation: &ResidualCorrelation, is_relevant: bool, part: f64) -> M
             (expected) " are expected by chance. The model explains everything in the currents but noise."
         } @else if !is_relevant {
             strong { "Too small to matter: " }
-            (residuals_of(white)) " are correlated, but smaller than 0.01 % of the largest current, as the ripple of an inverter or rounding."
+            (residuals_of(white)) " are correlated, but smaller than 0.1 % of the largest current, as the ripple of an inverter or rounding."
         } @else if slight {
             strong { "Not white, but hardly correlated: " }
             (outside(0)) " (d) and " (outside(1)) " (q) of " (lags) " correlations are outside the band, where " (expected) " are expected by "

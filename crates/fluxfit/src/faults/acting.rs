@@ -231,9 +231,9 @@ impl<V: Number> Acting<V> {
     }
 
     /// What the inverter loses of a commanded voltage, V, given the currents in the motor at the start of the period, and at its end if
-    /// nothing were lost, A; all in the frame of its magnet. `per_henry` are its inverse inductances.
+    /// nothing were lost, A; all in the frame of its magnet. `rs` is its resistance, ohm, `per_henry` are its inverse inductances.
     #[inline(always)]
-    pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
+    pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], (rs, per_henry): (V, [V; 2]), place: &Place) -> [V; 2] {
         let late_by = place.rotor_late_by;
         let [u, start, end] = [commanded, start, end].map(|vector| self.in_rotors_frame(vector, late_by));
         let lost = if self.kinds.phase {
@@ -244,7 +244,10 @@ impl<V: Number> Acting<V> {
         } else {
             self.dead_time.over(self.kinds.loss, u, [start, end], per_henry, place)
         };
-        self.in_magnets_frame(lost, late_by)
+        let lost = self.in_magnets_frame(lost, late_by);
+        let left = [commanded[0] - lost[0], commanded[1] - lost[1]];
+        let spared = self.dead_time.spared(left, rs, per_henry, place);
+        [lost[0] - spared[0], lost[1] - spared[1]]
     }
 
     /// A vector of the frame of an angle that is late by the speed times the delay, in the magnet's.

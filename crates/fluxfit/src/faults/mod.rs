@@ -435,7 +435,7 @@ mod tests {
             let acting = Acting::of(kinds, 1e-4, |number| number(&faults));
             assert_eq!(acting.motor_current(i, place.start, place.late_by), i);
             assert_eq!(acting.commanded_voltage(i, i, &place), i);
-            assert_eq!(acting.lost(i, [i, i], i, &place), [0.0; 2]);
+            assert_eq!(acting.lost(i, [i, i], (1.0, i), &place), [0.0; 2]);
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);
             assert_eq!(acting.filtered(i, [i, i], &Place { end: place.start, ..place }), i);
             assert_eq!(acting.extra_flux(i), [0.0; 2]);

@@ -293,7 +293,7 @@ fn saturation(log: &Log, steady: Option<&SteadyFit>, output: Option<&OutputFit>,
     if !fit.has(Fault::Saturation) {
         // The simulated currents know the drive's faults, which the points may take for saturation; where they leave noise, there is none.
         let agrees = || steady.is_some_and(|points| points.agrees_in_frame_of(log, &fit.drive, request));
-        return if fit.is_explained() || agrees() { None } else { of_points() };
+        return if fit.is_explained() || !fit.leaves_something() || agrees() { None } else { of_points() };
     }
     let of_currents = (fit.drive.motor.rs, fit.finding.uncertainty.parameters[Parameter::Rs as usize].standard_error());
     // Points of one current at several speeds may tell R_s better than a few terms of saturation do.

@@ -384,7 +384,7 @@ impl<V: Number> FaultyBlock<'_, V> {
                 let further = [0, 1].map(|axis| zero.constant(beyond) * (way[1][axis] - way[0][axis]));
                 way = [[way[0][0] - further[0], way[0][1] - further[1]], [way[1][0] + further[0], way[1][1] + further[1]]];
             }
-            let lost = self.faults.lost(commanded, way, self.per_henry, &acting);
+            let lost = self.faults.lost(commanded, way, (motors.rs, self.per_henry), &acting);
             u = [u[0] - lost[0], u[1] - lost[1]];
         }
         state.i = if self.faults.kinds.flux {

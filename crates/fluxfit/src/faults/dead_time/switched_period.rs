@@ -18,6 +18,9 @@
 //! What the other phases have lost until then, and not in equal parts, moves that current too. Device drops take their voltage all the
 //! time: `V` times the mean of the sign along the way from sample to edge to sample. Where a row is half a carrier period, each phase has
 //! one edge in it, up in one row and down in the next.
+//!
+//! One late edge of two makes the pulse late, too, by half the dead time: the mean current of the period lies below the way from sample to
+//! sample by `u (dead time) / (2 L)`, and the resistance takes so much less. It looks like less flux.
 
 use super::{super::Place, DeadTime};
 use crate::{
@@ -149,6 +152,16 @@ impl<V: Number> SwitchedLoss<V> {
         }
         let [d, q] = place.middle.backward(clarke(loss));
         [self.voltage * d, self.voltage * q]
+    }
+
+    /// The voltage, V, that the resistance, ohm, takes less in a period with the voltage `u`, V, because pulses come late. Of a
+    /// row that is half a carrier period nothing is said.
+    #[inline(always)]
+    pub(crate) fn spared(&self, u: [V; 2], rs: V, per_henry: [V; 2], place: &Place) -> [V; 2] {
+        let one = self.voltage.constant(1.0);
+        let at_edges = self.voltage * (one - self.lasting) * (one - self.halves.abs());
+        let late = at_edges * self.voltage.constant(0.5 * place.length * place.per_bus);
+        [0, 1].map(|axis| late * rs * per_henry[axis] * u[axis])
     }
 }
 
@@ -318,8 +331,18 @@ mod tests {
     impl Switched {
         /// Volt-seconds that each leg loses against its command over a carrier period of one second, from these currents on; in its first
         /// half and in its second.
-        fn loses(&self, mut i: [f64; 3]) -> [[f64; 3]; 2] {
+        fn loses(&self, i: [f64; 3]) -> [[f64; 3]; 2] {
+            self.run(i).0
+        }
+
+        /// By how much the mean currents lie below the straight way from those at the period's start to those at its end, A.
+        fn below_way(&self, i: [f64; 3]) -> [f64; 3] {
+            self.run(i).1
+        }
+
+        fn run(&self, mut i: [f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
             let Self { bus, dead_time, inductance, duty } = *self;
+            let (start, mut mean) = (i, [0.0; 3]);
             let (mut lost, mut high, mut late) = ([[0.0; 3]; 2], [false; 3], [0.0; 3]);
             let h = 1.0 / f64::from(STEPS);
             for step in 0..STEPS {
@@ -338,9 +361,34 @@ mod tests {
                     volts[leg] = bus * (f64::from(u8::from(output)) - duty[leg]);
                 }
                 let star = volts.iter().sum::<f64>() / 3.0;
-                (0..3).for_each(|leg| i[leg] += (volts[leg] - star) * h / inductance);
+                for leg in 0..3 {
+                    let grown = (volts[leg] - star) * h / inductance;
+                    mean[leg] += (i[leg] + 0.5 * grown) * h;
+                    i[leg] += grown;
+                }
             }
-            lost
+            (lost, std::array::from_fn(|leg| 0.5 * (start[leg] + i[leg]) - mean[leg]))
+        }
+    }
+
+    /// The mean current of a period lies below the way from sample to sample by what late pulses make of it.
+    #[test]
+    fn the_resistance_takes_less_where_pulses_are_late() {
+        let (bus, dead_time, inductance, rs) = (2.0, 0.02, 1.0, 0.3);
+        let v = modulated([0.7, -0.2, -0.5]);
+        let below = |dead_time: f64| {
+            let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus) };
+            alpha_beta(switched.below_way([5.0, -2.0, -3.0]))
+        };
+        let (with, without) = (below(dead_time), below(0.0));
+        let loss = SwitchedLoss { voltage: bus * dead_time, lasting: 0.0, width: 1e-9, ripple: 1.0, halves: 0.0 };
+        let place = Place { per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
+        // Each leg loses the dead time's voltage against its current.
+        let left = alpha_beta([v[0] - bus * dead_time, v[1] + bus * dead_time, v[2] + bus * dead_time]);
+        let spared = loss.spared(left, rs, [1.0 / inductance; 2], &place);
+        for axis in 0..2 {
+            let expected = rs * (with[axis] - without[axis]);
+            assert!((spared[axis] - expected).abs() < 0.02 * (spared[0].hypot(spared[1])), "{axis}: {spared:?}, not {expected}");
         }
     }
 

@@ -105,6 +105,11 @@ const LEAST_EXPECTED: f64 = 0.25;
 /// Residuals below this fraction of the largest current are rounding and the model's own discretization: nothing to explain.
 pub(crate) const LEAST_RESIDUAL: f64 = 1e-4;
 
+/// Residuals below this fraction of the largest current change no answer: by so much a current sampled between two pulses differs from the
+/// mean of its ripple, in a log without noise. Of 300 A and 110 uH at 350 V and 10 kHz they were 1e-4, of 25 A and 18 uH at 24 V and 24 kHz
+/// 6e-4.
+pub(crate) const RIPPLE: f64 = 1e-3;
+
 /// Faults that are taken at most: a drive with more is not what this log is about, and each costs as much as all before it.
 const MOST_TAKEN: usize = 6;
 
@@ -155,7 +160,7 @@ impl FaultSearch<'_> {
     /// Adds the observer of a disturbed motor, if it would help: beside it residuals are white, and faults are judged by their true worth.
     /// At rest nothing of the motor disturbs it, and an observer would take what dead time does.
     pub(crate) fn observe(&mut self) -> Option<FaultTrial> {
-        if !self.objective().turns() {
+        if !self.objective().turns() || self.mean_square().sqrt() <= RIPPLE * self.objective().peak_current() {
             return None;
         }
         let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == FaultOutcome::Taken)?;
@@ -193,7 +198,8 @@ impl FaultSearch<'_> {
             // An observer follows a part of what a fault does: without it, more of the fault shows.
             not_taken = self.add(&faults, &mut taken);
         }
-        let in_doubt = self.choose_delay(&mut taken);
+        let needless = self.drop_needless(&mut taken);
+        let in_doubt = [needless, self.choose_delay(&mut taken)].concat();
         not_taken.retain(|trial| !taken.iter().chain(&in_doubt).any(|other| other.fault == trial.fault));
         let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(in_doubt).chain(not_taken).collect();
         all.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);
@@ -311,7 +317,7 @@ impl FaultSearch<'_> {
         let Some(&(place, without)) = compared.first() else { return trial(0.0, FaultOutcome::Taken) };
         let (rows, peak) = (2.0 * self.objective().rows() as f64, self.objective().peak_current());
         let gain = schwarz(without.polished.cost, self.cost, self.unknowns.len() - unknowns.len(), rows);
-        let nothing_left = (without.polished.cost / rows).sqrt() <= LEAST_RESIDUAL * peak;
+        let nothing_left = (without.polished.cost / rows).sqrt() <= RIPPLE * peak;
         let outcome = if gain <= VERY_STRONG || nothing_left {
             FaultOutcome::NotNeeded
         } else if Fault::Disturbance.is_physical(&self.drive.faults, &self.drive.motor, peak) {

@@ -15,6 +15,7 @@ pub(crate) mod frame_lag;
 pub(crate) mod incremental;
 pub(crate) mod long_run;
 pub(crate) mod misfit;
+mod needless;
 mod open_loop;
 pub(crate) mod output;
 mod output_choice;

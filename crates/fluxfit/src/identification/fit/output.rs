@@ -12,7 +12,7 @@ use super::{
     },
     all_rows::AllRows,
     excitation::Excitation,
-    fault_search::{FaultOutcome, FaultTrial, LEAST_RESIDUAL},
+    fault_search::{FaultOutcome, FaultTrial, RIPPLE},
     faults_in_doubt,
     finding::{Bench, Finding, Trust, covariance},
     long_run,
@@ -135,8 +135,8 @@ impl OutputFit {
         let correlation = errors.correlation_of_neighbours;
         let points = steady.map_or(&whole[..], |fit| &fit.operating_points);
         let rms = (cost / residuals.len() as f64).sqrt();
-        // Below it, what is left is the rounding of the columns, whose correlation and sharpness mean nothing.
-        let is_rounding = rms <= LEAST_RESIDUAL * objective.peak_current();
+        // Below it, what is left is the rounding of the columns or what an inverter's ripple leaves, whose correlation means nothing.
+        let is_rounding = rms <= RIPPLE * objective.peak_current();
         let finding = Finding {
             motor: drive.motor,
             open: [false; 4],
