@@ -8,5 +8,6 @@ mod readings;
 mod request;
 mod saturation;
 mod short_circuit;
+mod standstill;
 mod steady_statistics;
 mod temperature;

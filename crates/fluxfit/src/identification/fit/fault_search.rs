@@ -198,8 +198,7 @@ impl FaultSearch<'_> {
             // An observer follows a part of what a fault does: without it, more of the fault shows.
             not_taken = self.add(&faults, &mut taken);
         }
-        let needless = self.drop_needless(&mut taken);
-        let in_doubt = [needless, self.choose_delay(&mut taken)].concat();
+        let in_doubt = [self.drop_needless(&mut taken), self.exchange_winding(&taken), self.choose_delay(&mut taken)].concat();
         not_taken.retain(|trial| !taken.iter().chain(&in_doubt).any(|other| other.fault == trial.fault));
         let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(in_doubt).chain(not_taken).collect();
         all.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);

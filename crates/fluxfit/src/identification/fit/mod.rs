@@ -36,4 +36,5 @@ mod undetected_loss;
 mod voltage_accuracy;
 pub(crate) mod voltage_loss;
 pub(crate) mod warming;
+mod winding_or_filter;
 mod within_rows;
