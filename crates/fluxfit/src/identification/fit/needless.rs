@@ -15,7 +15,7 @@ use crate::{
 };
 use nalgebra::{DMatrix, DVector};
 
-/// The evidence that a fault needs beside dead time: twice as much. The loss is right to some hundredths only, and of 60 simulated logs of
+/// The evidence that a fault needs beside dead time: twice as much. The loss is right to some hundredths only, and of ten simulated logs of
 /// two points a small offset or delay of the angle stood in for the rest in two, with L_q 1.6 % off.
 const BESIDE_LOSS: f64 = 2.0 * VERY_STRONG;
 

@@ -1,6 +1,7 @@
-//! While the rotor stands, the winding and a filter of its current are two lags one after the other, and nothing tells their order: a motor
-//! of the filter's time constant behind a filter of the motor's fits as well. Only two different inductances tell them apart, of which no
-//! filter has the time constants. So where a filter was found, the one in the place of the other is tried, and counts as doubt.
+//! While the rotor stands, the winding and a filter of its current are two lags one after the other, and next to nothing tells their
+//! order: a motor of the time constant of the filter behind a filter of the time constant of the motor fits nearly as well. Only two
+//! different inductances tell them apart, of which no filter has the time constants. So where a filter was found, the one in the place of
+//! the other is tried, and counts as doubt.
 
 use super::{
     fault_search::{FaultOutcome, FaultSearch, FaultTrial},
