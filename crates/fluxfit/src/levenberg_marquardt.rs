@@ -49,6 +49,13 @@ const FIRST_EVALUATIONS_IN_VAIN: usize = 6;
 /// The same for a fit that ends after its first step: any step is small beside it.
 const FIRST_STEP: f64 = 1.0;
 
+/// A fit whose derivatives promise less than this part of the cost that is left, after a step that kept what they promised, is near its
+/// end: where it ends above a cost that it would have to beat, the rest changes nothing.
+const NEAR_THE_END: f64 = 0.1;
+
+/// A fit that only tells how far unknowns move is at its end when so small a part of the way is left.
+const REST_OF_THE_WAY: f64 = 0.03;
+
 /// Evaluations per unknown after which a polish gives up. From near a minimum it takes five to ten steps.
 const PATIENCE: usize = 4;
 
@@ -98,7 +105,23 @@ pub fn polish_unknowns(objective: &OutputError, start: &Adjustable, unknowns: &[
 
 /// [`polish_unknowns`] as far as a comparison of costs needs it.
 pub(crate) fn polish_to_choose(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
-    minimize(objective, start, unknowns, priors, Purpose::Choice, &|_| ())
+    minimize(objective, start, unknowns, priors, Purpose::Choice { to_beat: 0.0 }, &|_| ())
+}
+
+/// The same where only a cost below one, A², changes anything: it ends as soon as it will clearly not get there.
+pub(crate) fn polish_to_beat(
+    cost: f64,
+    objective: &OutputError,
+    start: &Adjustable,
+    unknowns: &[Unknown],
+    priors: &[PriorResidual],
+) -> Polished {
+    minimize(objective, start, unknowns, priors, Purpose::Choice { to_beat: cost }, &|_| ())
+}
+
+/// The same to see how far the unknowns move from a start: within some hundredths of the way.
+pub(crate) fn polish_to_measure(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
+    minimize(objective, start, unknowns, priors, Purpose::Distance, &|_| ())
 }
 
 /// The first step of a polish alone.
@@ -118,12 +141,17 @@ pub fn polish_with_progress(
 }
 
 /// What a fit is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
     /// An answer.
     Answer,
     /// A comparison with other fits.
-    Choice,
+    Choice {
+        /// The cost that it has to come below to change anything, A²; zero if any cost matters.
+        to_beat: f64,
+    },
+    /// How far the unknowns move.
+    Distance,
     /// The same, after one step.
     FirstStep,
 }
@@ -132,7 +160,7 @@ impl Purpose {
     const fn no_step(self) -> f64 {
         match self {
             Self::Answer => NO_STEP,
-            Self::Choice => NO_STEP_OF_CHOICE,
+            Self::Choice { .. } | Self::Distance => NO_STEP_OF_CHOICE,
             Self::FirstStep => FIRST_STEP,
         }
     }
@@ -140,7 +168,7 @@ impl Purpose {
     const fn differences(self) -> Differences {
         match self {
             Self::Answer => Differences::Central,
-            Self::Choice | Self::FirstStep => Differences::Forward,
+            Self::Choice { .. } | Self::Distance | Self::FirstStep => Differences::Forward,
         }
     }
 }
@@ -156,8 +184,20 @@ fn minimize(
     let scale: Vec<f64> = unknowns.iter().map(|unknown| start.step_unit(*unknown, objective.peak_current())).collect();
     let units = DVector::from_fn(unknowns.len(), |k, _| start.get(unknowns[k]) / scale[k]);
     let in_vain = InVain { since: f64::INFINITY, evaluations: 0, gains: 0 };
-    let mut problem =
-        Problem { objective, start, unknowns, priors, scale, purpose, simulations: 0, progress, here: None, best: None, in_vain };
+    let mut problem = Problem {
+        objective,
+        start,
+        unknowns,
+        priors,
+        scale,
+        purpose,
+        first_cost: f64::INFINITY,
+        simulations: 0,
+        progress,
+        here: None,
+        best: None,
+        in_vain,
+    };
     problem.set_params(&units);
     // Beside faults, steps are counted by usual sizes and not by the lengths of the columns: an unknown that does nothing here, as the
     // width of a loss where another limit rules, could go as far as it likes, and when its steps fail, they would hold back all others.
@@ -267,6 +307,8 @@ struct Problem<'a> {
     priors: &'a [PriorResidual],
     scale: Vec<f64>,
     purpose: Purpose,
+    /// The cost where the fit begins, with that of priors, A².
+    first_cost: f64,
     simulations: usize,
     progress: &'a dyn Fn(usize),
     here: Option<Point>,
@@ -302,12 +344,34 @@ impl Problem<'_> {
     /// Whether the fit is good enough for what it is for.
     fn is_enough(&self) -> bool {
         let limit = if self.in_vain.gains > 1 { EVALUATIONS_IN_VAIN } else { FIRST_EVALUATIONS_IN_VAIN };
-        self.purpose == Purpose::Choice && (self.in_vain.evaluations >= limit || self.promises_little())
+        let is_there = match self.purpose {
+            Purpose::Answer | Purpose::FirstStep => return false,
+            Purpose::Choice { to_beat } => self.is_beaten(to_beat),
+            Purpose::Distance => self.has_gone_far(),
+        };
+        is_there || self.in_vain.evaluations >= limit || self.promises_little()
+    }
+
+    /// The best point so far that has derivatives.
+    fn derived(&self) -> Option<&Point> {
+        self.best.as_ref().filter(|best| best.jacobian.is_some())
+    }
+
+    /// Whether the fit ends above what it would have to beat: by its derivatives, after a step at least.
+    fn is_beaten(&self, to_beat: f64) -> bool {
+        let Some(best) = self.derived().filter(|_| to_beat > 0.0 && self.in_vain.gains > 1) else { return false };
+        best.left > (1.0 - NEAR_THE_END) * best.residuals.norm_squared() && (1.0 - NEAR_THE_END) * best.left > to_beat
+    }
+
+    /// Whether the way that is left is short beside the way that was gone: a cost grows with its square.
+    fn has_gone_far(&self) -> bool {
+        let rest = |best: &Point| best.residuals.norm_squared() - best.left;
+        self.derived().is_some_and(|best| rest(best) < REST_OF_THE_WAY.powi(2) * (self.first_cost - best.residuals.norm_squared()))
     }
 
     /// Whether the derivatives at the best point so far promise less than is worth a step.
     fn promises_little(&self) -> bool {
-        let Some(best) = self.best.as_ref().filter(|best| best.jacobian.is_some()) else { return false };
+        let Some(best) = self.derived() else { return false };
         best.left > best.residuals.norm_squared() * self.odds(-WORTH_A_STEP * WORTH_GOING_ON)
     }
 
@@ -367,6 +431,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         self.simulations += 1 + if self.purpose == Purpose::Answer { 2 } else { 1 } * self.unknowns.len();
         (self.progress)(self.simulations);
         let with_priors = point.residuals.norm_squared();
+        if self.first_cost.is_infinite() {
+            self.first_cost = with_priors;
+        }
         self.in_vain = if with_priors < self.in_vain.since * self.odds(-WORTH_GOING_ON) {
             InVain { since: with_priors, evaluations: 0, gains: self.in_vain.gains + 1 }
         } else {

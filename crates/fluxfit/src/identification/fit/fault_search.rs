@@ -14,12 +14,14 @@
 
 use super::{
     long_run::effective_sample_size,
-    readings::{HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest, in_the_running},
+    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest, in_the_running},
     voltage_accuracy::{self, VoltageAccuracy},
 };
 use crate::{
     faults::{AngleNeed, Fault, Faults},
-    levenberg_marquardt::{Linearized, Polished, PriorResidual, linearized, linearized_one, polish_to_choose, step, with_priors},
+    levenberg_marquardt::{
+        Linearized, Polished, PriorResidual, linearized, linearized_one, polish_to_beat, polish_to_choose, step, with_priors,
+    },
     motor::{PARAMETERS, Parameter},
     normal_matrix::{NormalMatrix, dot},
     objective::{
@@ -30,7 +32,6 @@ use crate::{
     parallel,
 };
 use nalgebra::DVector;
-use std::collections::BTreeSet;
 
 /// A fault that was tried.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +50,7 @@ pub struct FaultTrial {
 }
 
 impl FaultTrial {
-    fn not_judged(fault: Fault, outcome: FaultOutcome) -> Self {
+    pub(super) fn not_judged(fault: Fault, outcome: FaultOutcome) -> Self {
         Self { fault, gain: 0.0, outcome, moves: [0.0; PARAMETERS] }
     }
 }
@@ -157,17 +158,6 @@ impl FaultSearch<'_> {
         &self.objectives[self.reading].1
     }
 
-    /// Adds the observer of a disturbed motor, if it would help: beside it residuals are white, and faults are judged by their true worth.
-    /// At rest nothing of the motor disturbs it, and an observer would take what dead time does.
-    pub(crate) fn observe(&mut self) -> Option<FaultTrial> {
-        if !self.objective().turns() || self.mean_square().sqrt() <= RIPPLE * self.objective().peak_current() {
-            return None;
-        }
-        let observer = self.take_best(&[Fault::Disturbance], &[]).pop().filter(|trial| trial.outcome == FaultOutcome::Taken)?;
-        self.choose_reading();
-        Some(observer)
-    }
-
     /// Whether another search stands where this one does.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         self.reading == other.reading && self.unknowns == other.unknowns && (self.cost / other.cost - 1.0).abs() < ALIKE
@@ -232,10 +222,17 @@ impl FaultSearch<'_> {
 
     /// Chooses the reading of the voltages again: with the faults found, another one may fit better.
     pub(super) fn choose_reading(&mut self) {
+        let independent = effective_sample_size(&self.objective().residuals(&self.drive));
+        self.compare_readings(self.mean_square() * readings::ruled_out_above(independent));
+    }
+
+    /// The same, of those that may come below a mean square, A².
+    fn compare_readings(&mut self, to_beat: f64) {
         let lags = self.unknowns.iter().any(|unknown| unknown.fault() == Some(Fault::VoltageLag));
         self.open.retain(|place| !lags || self.objectives[*place].0.may_lag());
         let starts = self.open.iter().map(|place| (*place, self.drive)).collect();
-        self.compared = contest(self.objectives, starts, &self.unknowns, self.priors, &Rules::all(HOPELESS_AFTER_A_FIT));
+        let rules = Rules { to_beat, ..Rules::all(HOPELESS_AFTER_A_FIT) };
+        self.compared = contest(self.objectives, starts, &self.unknowns, self.priors, &rules);
         if let Some((place, best)) = self.compared.first() {
             (self.reading, self.drive, self.cost) = (*place, best.polished.drive, best.polished.cost);
             self.open = in_the_running(&self.compared);
@@ -247,10 +244,10 @@ impl FaultSearch<'_> {
     fn choose_kinds(&mut self, taken: &[FaultTrial], under_other_readings: bool) {
         let mut starts = self.kinds(taken, &self.drive);
         starts.retain(|(reading, _)| under_other_readings || *reading == self.reading);
-        let fitted = contest(self.objectives, starts, &self.unknowns, self.priors, &KINDS);
         let (timing, objective) = &self.objectives[self.reading];
         let now = Polished { drive: self.drive, cost: self.cost, converged: false };
         let now = TimingTrial { timing: *timing, polished: now, rows: objective.rows() };
+        let fitted = contest(self.objectives, starts, &self.unknowns, self.priors, &Rules { to_beat: now.rank(), ..KINDS });
         if let Some((reading, best)) = fitted.first().filter(|(_, best)| best.rank() < now.rank()) {
             (self.reading, self.drive, self.cost) = (*reading, best.polished.drive, best.polished.cost);
             self.compared.clear();
@@ -258,7 +255,7 @@ impl FaultSearch<'_> {
     }
 
     /// A drive with all kinds of its faults, under every reading.
-    fn kinds(&self, taken: &[FaultTrial], drive: &Adjustable) -> Vec<(usize, Adjustable)> {
+    pub(super) fn kinds(&self, taken: &[FaultTrial], drive: &Adjustable) -> Vec<(usize, Adjustable)> {
         let peak = self.objective().peak_current();
         let kinds: Vec<Faults> = taken.iter().flat_map(|trial| trial.fault.kinds(&drive.faults, peak)).collect();
         let with = |reading: usize| kinds.iter().map(move |faults| (reading, Adjustable { faults: *faults, ..*drive }));
@@ -274,7 +271,7 @@ impl FaultSearch<'_> {
         let drive = Unknown::of_fault(filter).fold(self.drive, |drive, unknown| drive.with(unknown, 0.0));
         let mut without = FaultSearch { drive, ..self.clone() };
         without.unknowns.retain(|unknown| unknown.fault() != Some(filter));
-        without.choose_reading();
+        without.compare_readings(0.0);
         let rest: Vec<FaultTrial> = taken.iter().filter(|trial| trial.fault != filter).cloned().collect();
         let candidates: Vec<Fault> = faults.iter().copied().filter(|fault| fault.family() != filter.family()).collect();
         let best = without.compared.iter().take(EXCHANGED_READINGS).filter_map(|(reading, trial)| {
@@ -302,42 +299,15 @@ impl FaultSearch<'_> {
         self.cost / (2 * self.objective().rows()) as f64
     }
 
-    /// Whether the observer is still worth its unknowns; if not, it goes.
-    fn drop_observer(&mut self, taken: &[FaultTrial]) -> FaultTrial {
-        let trial = |gain, outcome| FaultTrial { gain, ..FaultTrial::not_judged(Fault::Disturbance, outcome) };
-        let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| !unknown.is_observer_gain()).collect();
-        let alone = self.drive.without_observer();
-        let as_found = self.open.iter().map(|reading| (*reading, alone));
-        let starts = as_found.chain(self.kinds(taken, &alone)).collect();
-        let mut compared = contest(self.objectives, starts, &unknowns, self.priors, &WITHOUT_OBSERVER);
-        // The best of each reading.
-        let mut seen = BTreeSet::new();
-        compared.retain(|(reading, _)| seen.insert(*reading));
-        let Some(&(place, without)) = compared.first() else { return trial(0.0, FaultOutcome::Taken) };
-        let (rows, peak) = (2.0 * self.objective().rows() as f64, self.objective().peak_current());
-        let gain = schwarz(without.polished.cost, self.cost, self.unknowns.len() - unknowns.len(), rows);
-        let nothing_left = (without.polished.cost / rows).sqrt() <= RIPPLE * peak;
-        let outcome = if gain <= VERY_STRONG || nothing_left {
-            FaultOutcome::NotNeeded
-        } else if Fault::Disturbance.is_physical(&self.drive.faults, &self.drive.motor, peak) {
-            return trial(gain, FaultOutcome::Taken);
-        } else {
-            FaultOutcome::NotPhysical
-        };
-        (self.reading, self.drive, self.cost, self.unknowns) = (place, without.polished.drive, without.polished.cost, unknowns);
-        self.compared = compared;
-        trial(gain, outcome)
-    }
-
     /// Whether a drive fits better than the present one even without a fault that the present one has.
     fn explains_more_without(&self, lost: Fault, drive: &Adjustable, unknowns: &[Unknown]) -> bool {
         let start = Unknown::of_fault(lost).fold(*drive, |drive, unknown| drive.with(unknown, 0.0));
         let unknowns: Vec<Unknown> = unknowns.iter().copied().filter(|unknown| unknown.fault() != Some(lost)).collect();
-        polish_to_choose(self.objective(), &start, &unknowns, self.priors).cost < self.cost
+        polish_to_beat(self.cost, self.objective(), &start, &unknowns, self.priors).cost < self.cost
     }
 
     /// Judges faults; of those that deserve it the best is taken, and comes first.
-    fn take_best(&mut self, faults: &[Fault], taken: &[FaultTrial]) -> Vec<FaultTrial> {
+    pub(super) fn take_best(&mut self, faults: &[Fault], taken: &[FaultTrial]) -> Vec<FaultTrial> {
         let test = ScoreTest::of(self, faults);
         let left: Vec<Fault> = faults.iter().copied().filter(|fault| !taken.iter().any(|taken| taken.fault == *fault)).collect();
         let this = &*self;
@@ -403,10 +373,7 @@ pub(super) fn unphysical(trials: &[FaultTrial], drive: &Adjustable, peak: f64) -
 const EXCHANGED_READINGS: usize = 4;
 
 /// Of the kinds of a fault: as they stand, most are far from the best.
-const KINDS: Rules = Rules { stepped: 6, fitted: 3, hopeless: HOPELESS };
-
-/// Of all kinds and readings where an observer would stay: what it hides may be one of them, and its numbers far from those found here.
-const WITHOUT_OBSERVER: Rules = Rules { stepped: 30, fitted: 12, hopeless: HOPELESS };
+const KINDS: Rules = Rules { stepped: 6, fitted: 3, ..Rules::all(HOPELESS) };
 
 /// A parameter that a fault moves by so many times its value has run away, as where columns are exchanged or turned over: no fault of a
 /// drive hides a parameter to that degree.

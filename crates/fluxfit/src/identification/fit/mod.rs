@@ -16,6 +16,7 @@ pub(crate) mod incremental;
 pub(crate) mod long_run;
 pub(crate) mod misfit;
 mod needless;
+mod observer;
 mod open_loop;
 pub(crate) mod output;
 mod output_choice;

@@ -23,6 +23,7 @@ use crate::{
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
+    parallel,
 };
 use std::ops::Range;
 
@@ -50,6 +51,7 @@ struct Searched {
 }
 
 /// Where a search for faults begins.
+#[derive(Clone)]
 struct Begin {
     /// The reading, by its place, and what was fitted under it.
     tried: (usize, TimingTrial),
@@ -149,7 +151,7 @@ pub(super) fn choose(
     let with_frame = Begin::with_frame(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
     let _ = progress(Step::Faults);
     let most = if every_period { TRIED_READINGS } else { 1 };
-    let search_from = |begin: Begin, objectives, begun: &mut Vec<_>| {
+    let ready = |begin: Begin, objectives| {
         let Begin { tried: (place, tried), unknowns, faults } = begin;
         let (drive, cost, voltage_accuracy) = (tried.polished.drive, tried.polished.cost, request.voltage_accuracy);
         let mut search = FaultSearch {
@@ -169,6 +171,10 @@ pub(super) fn choose(
             contested: None,
         };
         let observer = search.observe();
+        (search, observer)
+    };
+    let search_from = |begin: Begin, objectives, begun: &mut Vec<_>| {
+        let (search, observer) = ready(begin, objectives);
         let is_new = !begun.iter().any(|other| search.is_like(other));
         is_new.then(|| {
             let found = with_faults(&search, observer.as_ref());
@@ -178,14 +184,29 @@ pub(super) fn choose(
     };
     let without = |tried| Begin { tried, unknowns: free.clone(), faults: Vec::new() };
     let first_plain = usize::from(with_frame.is_some());
-    for begin in with_frame.into_iter().chain(tried.iter().copied().take(most).map(without)) {
-        // The search from the reading before has compared all of them, and ended with this one.
-        if found.iter().skip(first_plain).any(|found| found.chosen.reading == begin.tried.1.timing) {
-            break;
+    let begins: Vec<Begin> = with_frame.into_iter().chain(tried.iter().copied().take(most).map(without)).collect();
+    if every_period {
+        for begin in begins {
+            // The search from the reading before has compared all of them, and ended with this one.
+            if found.iter().skip(first_plain).any(|found| found.chosen.reading == begin.tried.1.timing) {
+                break;
+            }
+            found.extend(search_from(begin, &objectives, &mut begun));
+            if found.last().is_some_and(|found| found.explained) {
+                break;
+            }
         }
-        found.extend(search_from(begin, &objectives, &mut begun));
-        if found.last().is_some_and(|found| found.explained) {
-            break;
+    } else {
+        // Here the first one hardly ever explains the log, so the second is begun beside it.
+        let mut searches = parallel::map(&begins, |begin| ready(begin.clone(), &objectives));
+        if let [(first, _), (second, _)] = &searches[..]
+            && second.is_like(first)
+        {
+            searches.truncate(1);
+        }
+        found = parallel::map(&searches, |(search, observer)| with_faults(search, observer.as_ref()));
+        if found.first().is_some_and(|found| found.explained) {
+            found.truncate(1);
         }
     }
     // What is no motor comes last, however well it fits.

@@ -5,7 +5,7 @@
 
 use super::super::request::Request;
 use crate::{
-    levenberg_marquardt::{Polished, PriorResidual, polish_to_choose, step},
+    levenberg_marquardt::{Polished, PriorResidual, polish_to_beat, step},
     motor::PARAMETERS,
     objective::{
         acting_voltage::VoltageTiming,
@@ -100,12 +100,14 @@ pub(crate) struct Rules {
     pub(crate) fitted: usize,
     /// But none whose mean square is so many times the least one then.
     pub(crate) hopeless: f64,
+    /// And none further than is needed to see that its mean square, A², does not come below this one; zero where any matters.
+    pub(crate) to_beat: f64,
 }
 
 impl Rules {
     /// All of them come to the end but the hopeless ones.
     pub(crate) const fn all(hopeless: f64) -> Self {
-        Self { stepped: usize::MAX, fitted: usize::MAX, hopeless }
+        Self { stepped: usize::MAX, fitted: usize::MAX, hopeless, to_beat: 0.0 }
     }
 }
 
@@ -134,7 +136,9 @@ pub(crate) fn contest(
         if *rank >= rules.fitted || is_hopeless(stepped) {
             return (*place, *stepped);
         }
-        trial(*place, polish_to_choose(&objectives[*place].1, &stepped.polished.drive, unknowns, priors))
+        let objective = &objectives[*place].1;
+        let to_beat = rules.to_beat * (2 * objective.rows()) as f64;
+        trial(*place, polish_to_beat(to_beat, objective, &stepped.polished.drive, unknowns, priors))
     });
     fitted.sort_by(|(_, one), (_, other)| one.rank().total_cmp(&other.rank()));
     fitted
@@ -155,6 +159,12 @@ fn best_as_they_stand(
     let mut standing: Vec<(f64, usize, Adjustable)> = standing.collect();
     standing.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
     standing.into_iter().take(count).map(|(_, place, drive)| (place, drive)).collect()
+}
+
+/// Mean square over that of a fit beyond which another reading neither takes its place nor is [possible] beside it, given how many
+/// independent residuals there are.
+pub(super) fn ruled_out_above(independent: f64) -> f64 {
+    (1.0 + AVERAGED) * (VERY_STRONG / independent).exp()
 }
 
 /// Whether a reading is better than the best of these for certain, given how many independent residuals there are.

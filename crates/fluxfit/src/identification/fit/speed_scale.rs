@@ -174,7 +174,7 @@ impl<'a> Speeds<'a> {
         };
         let objectives = self.objectives(factor, &asked)?;
         let starts = (0..objectives.len()).map(|place| (place, drive)).collect();
-        let rules = Rules { stepped: usize::MAX, fitted, hopeless: HOPELESS };
+        let rules = Rules { fitted, ..Rules::all(HOPELESS) };
         let (_, best) = *contest(&objectives, starts, &self.unknowns, &[], &rules).first()?;
         Some(Followed { factor, mean_square: best.mean_square(), reading: best.timing, drive: best.polished.drive })
     }
