@@ -232,7 +232,7 @@ fn much_ripple_moves_no_number() {
         for judgement in &found.parameters {
             assert_eq!(judgement.verdict, Verdict::Identified, "{dead_time}, {:?}", judgement.parameter);
         }
-        let lq = found.parameter(Parameter::Lq).raw;
-        assert!((lq / motor.lq - 1.0).abs() < 4e-4, "{dead_time}: {lq}");
+        let psi_f = found.parameter(Parameter::PsiF).raw;
+        assert!((psi_f / motor.psi_f - 1.0).abs() < 4e-4, "{dead_time}: {psi_f}");
     }
 }

@@ -5,7 +5,7 @@ use super::{
     Faults, Place, angle_delay,
     current_gains::balanced,
     current_offset::removed,
-    dead_time::switched_period::{LossKinds, SwitchedLoss},
+    dead_time::switched_period::{LossKinds, SwitchedLoss, Winding},
     disturbance::{corrected, remaining},
     filter::{filtered, unfiltered},
     flux_harmonics, resistance_drift,
@@ -135,13 +135,7 @@ impl<V> Acting<V> {
     #[inline(always)]
     pub(crate) fn of(kinds: FaultKinds, period: f64, lanes: impl Fn(&dyn Fn(&Faults) -> f64) -> V) -> Self {
         Self {
-            dead_time: SwitchedLoss {
-                voltage: lanes(&|f| f.dead_time.voltage),
-                lasting: lanes(&|f| f.dead_time.lasting),
-                width: lanes(&|f| f.dead_time.width.hypot(f.dead_time.least_width)),
-                ripple: lanes(&|f| f.dead_time.ripple),
-                halves: lanes(&|f| f.dead_time.halves),
-            },
+            dead_time: SwitchedLoss::of(|number| lanes(&|f| number(&f.dead_time))),
             phase: [lanes(&|f| f.dead_time.phase.cos()), lanes(&|f| f.dead_time.phase.sin())],
             current_offset: [lanes(&|f| f.current_offset.current.alpha), lanes(&|f| f.current_offset.current.beta)],
             imbalance: [lanes(&|f| f.current_gains.imbalance.alpha), lanes(&|f| f.current_gains.imbalance.beta)],
@@ -231,23 +225,14 @@ impl<V: Number> Acting<V> {
     }
 
     /// What the inverter loses of a commanded voltage, V, given the currents in the motor at the start of the period, and at its end if
-    /// nothing were lost, A; all in the frame of its magnet. `rs` is its resistance, ohm, `per_henry` are its inverse inductances.
+    /// nothing were lost, A; all in the frame of its magnet.
     #[inline(always)]
-    pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], (rs, per_henry): (V, [V; 2]), place: &Place) -> [V; 2] {
+    pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], winding: &Winding<V>, place: &Place) -> [V; 2] {
         let late_by = place.rotor_late_by;
         let [u, start, end] = [commanded, start, end].map(|vector| self.in_rotors_frame(vector, late_by));
-        let lost = if self.kinds.phase {
-            // In a stator that is turned by the phase's angle.
-            let [cos, sin] = self.phase;
-            let (u, i) = (turned(u, cos, sin), [turned(start, cos, sin), turned(end, cos, sin)]);
-            turned(self.dead_time.over(self.kinds.loss, u, i, per_henry, place), cos, -sin)
-        } else {
-            self.dead_time.over(self.kinds.loss, u, [start, end], per_henry, place)
-        };
-        let lost = self.in_magnets_frame(lost, late_by);
-        let left = [commanded[0] - lost[0], commanded[1] - lost[1]];
-        let spared = self.dead_time.spared(left, rs, per_henry, place);
-        [lost[0] - spared[0], lost[1] - spared[1]]
+        let phase = if self.kinds.phase { Some(self.phase) } else { None };
+        let lost = self.dead_time.over(self.kinds.loss, u, [start, end], winding, phase, place);
+        self.in_magnets_frame(lost, late_by)
     }
 
     /// A vector of the frame of an angle that is late by the speed times the delay, in the magnet's.

@@ -9,6 +9,7 @@
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, doi:10.1109/41.88903.
 
+mod ramp;
 pub mod ripple;
 pub(super) mod switched_period;
 
@@ -30,6 +31,11 @@ pub struct DeadTime {
     pub lasting: f64,
     /// Zero if a row is a whole carrier period; plus one if it is half of one, and even rows have the edges up; minus one if odd rows do.
     pub halves: f64,
+    /// One if a current that reaches zero within the dead time stays there, as in an inverter; zero if the current at the edge decides
+    /// alone, as in many simulators.
+    pub clamps: f64,
+    /// Where the DC voltage is not logged: what it is over what it is taken for, less one.
+    pub bus: f64,
     /// What the width is at least, A, in a fit: below it simulated currents near zero would go their own ways at the least change of
     /// anything.
     pub least_width: f64,
@@ -39,6 +45,13 @@ pub struct DeadTime {
 pub(crate) fn carrier_half(row: usize) -> f64 {
     if row.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
+
+/// The part of the DC voltage that a drive takes at most, where that is not logged: some voltage is left for its current loop.
+pub(crate) const USED_PART: f64 = 0.8;
+
+/// The DC voltage over what the largest voltages need of it: a drive in six-step operation has less than one, and one at a low speed many
+/// times that.
+const RATIOS: std::ops::RangeInclusive<f64> = 0.9..=100.0;
 
 /// The least width as a fraction of the largest current: half the narrowest one that a fit starts from.
 const LEAST_WIDTH: f64 = 0.005;
@@ -54,30 +67,36 @@ const SIXTH: f64 = std::f64::consts::FRAC_PI_3;
 struct Start {
     lasting: f64,
     halves: f64,
+    clamps: f64,
     /// As a fraction of the largest current.
     width: f64,
     ripple: f64,
 }
 
-/// Dead time where rows are carrier periods, or either half of one; device drops; and the mean over rows of other lengths, or where no
-/// ripple shows.
-const KINDS: [Start; 5] = [
-    Start { lasting: 0.0, halves: 0.0, width: 0.02, ripple: 1.0 },
-    Start { lasting: 0.0, halves: 1.0, width: 0.02, ripple: 1.0 },
-    Start { lasting: 0.0, halves: -1.0, width: 0.02, ripple: 1.0 },
-    Start { lasting: 1.0, halves: 0.0, width: 0.02, ripple: 1.0 },
-    Start { lasting: 1.0, halves: 0.0, width: 0.02, ripple: 0.0 },
+/// Dead time where rows are carrier periods, or either half of one, with currents that stay at zero and without; device drops; and the mean
+/// over rows of other lengths, or where no ripple shows.
+const KINDS: [Start; 8] = [
+    Start { lasting: 0.0, halves: 0.0, clamps: 1.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 0.0, halves: 1.0, clamps: 1.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 0.0, halves: -1.0, clamps: 1.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 0.0, halves: 0.0, clamps: 0.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 0.0, halves: 1.0, clamps: 0.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 0.0, halves: -1.0, clamps: 0.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 1.0, halves: 0.0, clamps: 0.0, width: 0.02, ripple: 1.0 },
+    Start { lasting: 1.0, halves: 0.0, clamps: 0.0, width: 0.02, ripple: 0.0 },
 ];
 
 /// The last of them with other widths: the cost has a kink wherever the ramp's end passes a measured current, so one start does not find
 /// them all.
-const WIDER: [Start; 2] =
-    [Start { lasting: 1.0, halves: 0.0, width: 0.1, ripple: 0.0 }, Start { lasting: 1.0, halves: 0.0, width: 0.4, ripple: 0.0 }];
+const WIDER: [Start; 2] = [
+    Start { lasting: 1.0, halves: 0.0, clamps: 0.0, width: 0.1, ripple: 0.0 },
+    Start { lasting: 1.0, halves: 0.0, clamps: 0.0, width: 0.4, ripple: 0.0 },
+];
 
 impl Start {
     fn of(&self, state: &DeadTime, peak: f64) -> DeadTime {
-        let Self { lasting, halves, width, ripple } = *self;
-        DeadTime { width: width * peak, ripple, lasting, halves, least_width: LEAST_WIDTH * peak, ..*state }
+        let Self { lasting, halves, clamps, width, ripple } = *self;
+        DeadTime { width: width * peak, ripple, lasting, halves, clamps, least_width: LEAST_WIDTH * peak, ..*state }
     }
 }
 
@@ -108,6 +127,13 @@ const LASTING: NumberDescription<DeadTime> = NumberDescription {
     names: Names { key: "device_drop_part", label: "part of the dead-time voltage that is lost all the time", unit: "1" },
     get: |state| state.lasting,
     set: |state, value| state.lasting = value,
+    usual_size: one,
+};
+
+const DC_VOLTAGE_EXCESS: NumberDescription<DeadTime> = NumberDescription {
+    names: Names { key: "dc_voltage_excess", label: "DC voltage above 1.25 times what the voltages need", unit: "1" },
+    get: |state| state.bus,
+    set: |state, value| state.bus = value,
     usual_size: one,
 };
 
@@ -156,6 +182,19 @@ pub(super) static DEVICE_DROPS: Description<DeadTime> = Description {
     starts: present_state,
     kinds: no_kinds,
     is_physical: |state, _, _| (0.0..=1.0).contains(&state.lasting),
+};
+
+/// The DC voltage, where it is not logged and dead time was found first: the ripple at the edges depends on it.
+pub(super) static DC_VOLTAGE: Description<DeadTime> = Description {
+    key: "dc_voltage",
+    label: "DC voltage",
+    family: "DC voltage",
+    angle: AngleNeed::Traced,
+    alters_measured_current: false,
+    numbers: &[DC_VOLTAGE_EXCESS],
+    starts: present_state,
+    kinds: no_kinds,
+    is_physical: |state, _, _| RATIOS.contains(&((1.0 + state.bus) / USED_PART)),
 };
 
 impl DeadTime {

@@ -22,7 +22,7 @@ pub mod speed_lag;
 pub mod voltage_lag;
 
 pub(crate) use acting::{Acting, FaultKinds};
-pub(crate) use dead_time::carrier_half;
+pub(crate) use dead_time::{USED_PART, carrier_half, switched_period::Winding};
 pub(crate) use place::Place;
 
 use crate::motor::Motor;
@@ -80,6 +80,8 @@ pub enum Fault {
     DeadTimeWithoutAngle,
     /// Device drops beside dead time.
     DeviceDrops,
+    /// A DC voltage that is not logged, beside dead time.
+    DcVoltage,
     /// Angle that is read too large.
     AngleOffset,
     /// Angle that is read late.
@@ -170,10 +172,11 @@ macro_rules! row {
 
 impl Fault {
     /// All of them, in the order in which they are tried where they promise alike.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::DeadTime,
         Self::DeadTimeWithoutAngle,
         Self::DeviceDrops,
+        Self::DcVoltage,
         Self::AngleOffset,
         Self::AngleDelay,
         Self::VoltageLag,
@@ -199,6 +202,7 @@ impl Fault {
             Self::DeadTime => row!(dead_time::FAULT, dead_time),
             Self::DeadTimeWithoutAngle => row!(dead_time::WITHOUT_ANGLE, dead_time),
             Self::DeviceDrops => row!(dead_time::DEVICE_DROPS, dead_time),
+            Self::DcVoltage => row!(dead_time::DC_VOLTAGE, dead_time),
             Self::AngleOffset => row!(angle_offset::FAULT, angle_offset),
             Self::AngleDelay => row!(angle_delay::FAULT, angle_delay),
             Self::VoltageLag => row!(voltage_lag::FAULT, voltage_lag),
@@ -435,7 +439,7 @@ mod tests {
             let acting = Acting::of(kinds, 1e-4, |number| number(&faults));
             assert_eq!(acting.motor_current(i, place.start, place.late_by), i);
             assert_eq!(acting.commanded_voltage(i, i, &place), i);
-            assert_eq!(acting.lost(i, [i, i], (1.0, i), &place), [0.0; 2]);
+            assert_eq!(acting.lost(i, [i, i], &Winding::of(1.0, i), &place), [0.0; 2]);
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);
             assert_eq!(acting.filtered(i, [i, i], &Place { end: place.start, ..place }), i);
             assert_eq!(acting.extra_flux(i), [0.0; 2]);

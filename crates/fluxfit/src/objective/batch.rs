@@ -373,7 +373,17 @@ mod tests {
     /// Drives with every fault, one more than the other.
     fn faulty(count: usize) -> Vec<Adjustable> {
         let faults = |x: f64| Faults {
-            dead_time: DeadTime { voltage: 2.0 * x, width: 0.5, ripple: x, phase: 0.1, lasting: 0.3 * x, halves: 1.0, least_width: 0.02 },
+            dead_time: DeadTime {
+                voltage: 2.0 * x,
+                width: 0.5,
+                ripple: x,
+                phase: 0.1,
+                lasting: 0.3 * x,
+                halves: 1.0,
+                clamps: 1.0,
+                bus: 0.2 * x,
+                least_width: 0.02,
+            },
             angle_offset: AngleOffset { angle: 0.05 * x },
             current_offset: CurrentOffset { current: AlphaBeta { alpha: 0.1 * x, beta: -0.05 } },
             current_gains: CurrentGains { imbalance: AlphaBeta { alpha: 0.01, beta: 0.02 * x }, turn: 0.01 },

@@ -140,6 +140,11 @@ impl OutputError {
         self.simulated.segments.iter().all(|segment| segment.angle_known)
     }
 
+    /// Whether the DC voltage is in the log.
+    pub(crate) fn bus_known(&self) -> bool {
+        self.simulated.segments.iter().all(|segment| segment.bus_known)
+    }
+
     /// Whether the angle is known up to a constant that is the same for all stretches: it is in the log, or no gap lies between them.
     pub fn angle_traced(&self) -> bool {
         let segments = &self.simulated.segments;

@@ -6,7 +6,7 @@ use super::{
     transition_polynomials::TransitionPlan,
 };
 use crate::{
-    faults::{Place, carrier_half},
+    faults::{Place, USED_PART, carrier_half},
     frames::{Dq, Turn},
     log::Log,
     motor::Motor,
@@ -55,6 +55,8 @@ pub(super) struct SimulatedSegment {
     pub(super) log_segment: Option<usize>,
     /// Whether the first vector is unknown, because the voltages are centred.
     pub(super) alternates: bool,
+    /// Whether the DC voltage is in the log.
+    pub(super) bus_known: bool,
     /// One over the DC voltage, 1/V.
     per_bus: f64,
     /// The rotor at both ends of the [span](SPAN_OF_MEANS) around each period, where what acts is averaged over that; else empty.
@@ -65,11 +67,7 @@ pub(super) struct SimulatedSegment {
 /// triangle over two periods, which has the second moment of a box that is so many periods long, the square root of two.
 const SPAN_OF_MEANS: f64 = std::f64::consts::SQRT_2;
 
-/// The part of the DC voltage that a drive takes at most, where that is not logged: some voltage is left for its current loop.
-const USED_PART: f64 = 0.8;
-
-/// The DC voltage, V: its mean, or what the largest vector of these rows asks for; infinite where there is none. Only the ripple's second
-/// order depends on it.
+/// The DC voltage, V: its mean, or what the largest vector of these rows asks for; infinite where there is none.
 fn bus_voltage(log: &Log, rows: &Range<usize>) -> f64 {
     let columns = log.columns();
     let largest = || rows.clone().map(|row| columns.ud[row].powi(2) + columns.uq[row].powi(2)).fold(0.0, f64::max).sqrt();
@@ -89,6 +87,7 @@ impl SimulatedSegment {
             middles: angles.middle_turns[lost..].to_vec(),
             angle_known: angles.known,
             log_segment: log.segments().iter().position(|segment| segment.rows.contains(&rows.start)),
+            bus_known: log.columns().u_dc.is_some(),
             per_bus: bus_voltage(log, &rows).recip(),
             alternates: timing == VoltageTiming::Centered,
             rows_of_periods: Vec::new(),

@@ -13,7 +13,10 @@ use super::{
     transition_lanes::{MotorLanes, TransitionLanes},
     transition_polynomials::{TransitionPlan, TransitionPolynomials},
 };
-use crate::{faults::Acting, lanes::Number};
+use crate::{
+    faults::{Acting, Winding},
+    lanes::Number,
+};
 use pulp::NullaryFnOnce;
 use std::ops::Range;
 
@@ -181,7 +184,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
                 segment,
                 first,
                 transitions: &transitions,
-                per_henry: [self.motors.rs.constant(1.0) / self.motors.ld, self.motors.rs.constant(1.0) / self.motors.lq],
+                winding: Winding::of(self.motors.rs, [self.motors.ld, self.motors.lq]),
                 state,
                 sums,
                 trace: trace.as_deref_mut(),
@@ -326,8 +329,7 @@ struct FaultyBlock<'a, V> {
     segment: &'a SimulatedSegment,
     first: usize,
     transitions: &'a [TransitionLanes<V>],
-    /// Inverse inductances, 1/H.
-    per_henry: [V; 2],
+    winding: Winding<V>,
     state: &'a mut State<V>,
     sums: &'a mut Sums<V>,
     trace: Option<&'a mut Trace>,
@@ -384,7 +386,7 @@ impl<V: Number> FaultyBlock<'_, V> {
                 let further = [0, 1].map(|axis| zero.constant(beyond) * (way[1][axis] - way[0][axis]));
                 way = [[way[0][0] - further[0], way[0][1] - further[1]], [way[1][0] + further[0], way[1][1] + further[1]]];
             }
-            let lost = self.faults.lost(commanded, way, (motors.rs, self.per_henry), &acting);
+            let lost = self.faults.lost(commanded, way, &self.winding, &acting);
             u = [u[0] - lost[0], u[1] - lost[1]];
         }
         state.i = if self.faults.kinds.flux {
@@ -420,7 +422,7 @@ impl<V: Number> FaultyBlock<'_, V> {
         let mut end = linear;
         for _ in 0..EXTRA_FLUX_ROUNDS {
             let grown = self.faults.extra_flux(end);
-            end = [0, 1].map(|axis| self.per_henry[axis].mul_add(flux[axis] - grown[axis], linear[axis]));
+            end = [0, 1].map(|axis| self.winding.per_henry[axis].mul_add(flux[axis] - grown[axis], linear[axis]));
         }
         end
     }

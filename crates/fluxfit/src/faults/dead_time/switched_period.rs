@@ -19,12 +19,34 @@
 //! time: `V` times the mean of the sign along the way from sample to edge to sample. Where a row is half a carrier period, each phase has
 //! one edge in it, up in one row and down in the next.
 //!
+//! A current that reaches zero within the dead time stays there until it is over, and the leg, which nothing drives, has the voltage that
+//! holds it: of the edge's loss a part is left, the smaller the earlier that is. From the current at which an edge loses nothing to that
+//! at which it loses all it goes in proportion, over
+//!
+//! ```text
+//! V A_xx,                        A_xy: amperes in phase x per volt on phase y over the period,
+//! ```
+//!
+//! and the middle of that way lies not at zero but at `-V (A_xx + 2 sum A_xy s_y - 2 sum A_xy v_y / U_dc) / 2`, with the part `s_y` of the
+//! dead time in which the other legs are up: the first leg to go up, by itself, has its current pulled down alone. J.-W. Choi and S.-K.
+//! Sul, IEEE Transactions on Industry Applications 31, 1995, doi:10.1109/28.464515, describe that clamping.
+//!
 //! One late edge of two makes the pulse late, too, by half the dead time: the mean current of the period lies below the way from sample to
-//! sample by `u (dead time) / (2 L)`, and the resistance takes so much less. It looks like less flux.
-
-use super::{super::Place, DeadTime};
+//! sample, and the resistance takes so much less. Of phase `x` these are
+//!
+//! ```text
+//! R sum A_xy late_y (U_dc/2 + v_y) (dead time) / (2 T)    V,
+//! ```
+//!
+//! with `late_y` one where a phase's current does not change its direction between its edges, zero where it is in at the edge up and out at
+//! the edge down. Where all phases are late it looks like less flux.
+use super::{
+    super::Place,
+    DeadTime,
+    ramp::{NARROWEST, Ramp},
+};
 use crate::{
-    frames::{clarke, inverse_clarke},
+    frames::{clarke, inverse_clarke, turned},
     lanes::Number,
 };
 
@@ -41,6 +63,30 @@ pub(crate) struct SwitchedLoss<V> {
     pub(crate) ripple: V,
     /// Zero if a row is a whole carrier period; plus one if it is half of one, and even rows have the edges up; minus one if odd rows do.
     pub(crate) halves: V,
+    /// What the DC voltage is taken for over what it is.
+    pub(crate) bus: V,
+    /// By how much a phase must be higher than another one to be ahead of it by the dead time: one over that, 1/V.
+    pub(crate) per_lead: V,
+    /// One if a current that reaches zero within the dead time stays there, else zero.
+    pub(crate) clamps: V,
+}
+
+/// What a loss depends on of the motor.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Winding<V> {
+    /// Resistance, ohm.
+    pub(crate) rs: V,
+    /// Inverse inductances of both axes, 1/H.
+    pub(crate) per_henry: [V; 2],
+}
+
+impl<V: Number> Winding<V> {
+    /// Of the resistance, ohm, and the inductances, H.
+    #[inline(always)]
+    pub(crate) fn of(rs: V, [ld, lq]: [V; 2]) -> Self {
+        let one = rs.constant(1.0);
+        Self { rs, per_henry: [one / ld, one / lq] }
+    }
 }
 
 /// Which losses any of several drives has.
@@ -68,24 +114,52 @@ impl LossKinds {
     }
 }
 
+impl<V> SwitchedLoss<V> {
+    /// The loss of a drive per lane.
+    #[inline(always)]
+    pub(crate) fn of(lanes: impl Fn(&dyn Fn(&DeadTime) -> f64) -> V) -> Self {
+        Self {
+            voltage: lanes(&|f| f.voltage),
+            lasting: lanes(&|f| f.lasting),
+            width: lanes(&|f| f.width.hypot(f.least_width)),
+            clamps: lanes(&|f| f.clamps),
+            ripple: lanes(&|f| f.ripple),
+            halves: lanes(&|f| f.halves),
+            bus: lanes(&|f| 1.0 / (1.0 + f.bus)),
+            per_lead: lanes(&|f| 0.5 / (f.voltage * (1.0 - f.lasting)).max(NARROWEST)),
+        }
+    }
+}
+
 impl<V: Number> SwitchedLoss<V> {
     /// The voltage, V, that is lost over a period, in the frame of the logged angle, given the commanded voltage `u`, V, the currents at
-    /// its start and at its end if nothing were lost, A, all `d, q` in that frame, and the inverse inductances of both axes, 1/H.
+    /// its start and at its end if nothing were lost, A, all `d, q` in that frame, and the winding. Where phase a is not at the angle's
+    /// zero, the cosine and sine by which all are further on in the stator.
     #[inline(always)]
-    pub(crate) fn over(&self, kinds: LossKinds, u: [V; 2], [start, end]: [[V; 2]; 2], per_henry: [V; 2], place: &Place) -> [V; 2] {
+    pub(crate) fn over(
+        &self,
+        kinds: LossKinds,
+        u: [V; 2],
+        [start, end]: [[V; 2]; 2],
+        winding: &Winding<V>,
+        phase: Option<[V; 2]>,
+        place: &Place,
+    ) -> [V; 2] {
+        let Winding { rs, per_henry } = *winding;
         let (zero, half, one) = (self.voltage.constant(0.0), self.voltage.constant(0.5), self.voltage.constant(1.0));
         // The rotor turns under a voltage that stands still: the way from sample to sample is bent.
         let turn = place.omega_e * place.length;
         let (pulled, pushed) = (zero.constant(0.5 * turn * turn), zero.constant(0.5 * turn * place.length));
         let bend = [pulled.mul_add(start[0], -(pushed * per_henry[0] * u[1])), pulled.mul_add(start[1], pushed * per_henry[1] * u[0])];
-        let bend = inverse_clarke(place.middle.forward(bend));
-        let (start, end) = (inverse_clarke(place.start.forward(start)), inverse_clarke(place.end.forward(end)));
-        let v = modulated(inverse_clarke(place.middle.forward(u)));
-        let per_bus = zero.constant(place.per_bus);
+        let bend = inverse_clarke(place.middle.forward(further(bend, phase)));
+        let start = inverse_clarke(place.start.forward(further(start, phase)));
+        let end = inverse_clarke(place.end.forward(further(end, phase)));
+        let v = modulated(inverse_clarke(place.middle.forward(further(u, phase))));
+        let per_bus = self.bus * zero.constant(place.per_bus);
         // The carrier's period over the row's.
         let carrier = one + self.halves.abs();
         let rising = half * (one + self.halves * zero.constant(place.half));
-        let amperes = by_volt_seconds(self.ripple * carrier * zero.constant(place.length), per_henry, place);
+        let amperes = by_volt_seconds(self.ripple * carrier * zero.constant(place.length), per_henry, phase, place);
         // By how much each phase is later than each other one, V: by that over the DC voltage, and half a period, it switches after it.
         let mut later = [[zero; 3]; 3];
         for x in 0..3 {
@@ -94,17 +168,17 @@ impl<V: Number> SwitchedLoss<V> {
             }
         }
         // The currents at the edges, but for what the others lose before.
-        let (mut low, mut up, mut down) = ([zero; 3], [zero; 3], [zero; 3]);
+        let (mut low, mut up, mut down, mut together) = ([zero; 3], [zero; 3], [zero; 3], [zero; 3]);
         for x in 0..3 {
             low[x] = (-v[x]).mul_add(per_bus, half);
-            let mut together = amperes[x][x] * v[x];
+            together[x] = amperes[x][x] * v[x];
             let mut ahead = zero;
             for y in [(x + 1) % 3, (x + 2) % 3] {
-                together = amperes[x][y].mul_add(v[y], together);
+                together[x] = amperes[x][y].mul_add(v[y], together[x]);
                 ahead = amperes[x][y].mul_add(later[x][y], ahead);
             }
             // What all phases have been driven by beyond their mean until `x` goes up, as a current in `x`.
-            let commanded = half * (-low[x]).mul_add(together, ahead);
+            let commanded = half * (-low[x]).mul_add(together[x], ahead);
             let (when, way) = (half * carrier * low[x], end[x] - start[x]);
             let bent = when * (one - when) * bend[x];
             up[x] = when.mul_add(way, start[x]) + bent + commanded;
@@ -113,6 +187,10 @@ impl<V: Number> SwitchedLoss<V> {
         // Edge by edge: what the phases that switch before have lost, as far as their dead time is over. What is up later is down earlier.
         let ramp = Ramp::of(self.width);
         let lost = self.voltage * (one - self.lasting);
+        let clamped = if kinds.edges { self.clamped(ramp.out(up), [v, together.map(|i| i * per_bus)], &amperes) } else { [zero; 3] };
+        for x in 0..3 {
+            (up[x], down[x]) = (up[x] + clamped[x], down[x] + clamped[x]);
+        }
         let (mut before_up, mut before_down) = ([[zero; 3]; 3], [[zero; 3]; 3]);
         for x in 0..3 {
             // A phase does not wait for itself.
@@ -134,15 +212,17 @@ impl<V: Number> SwitchedLoss<V> {
         }
         // An edge down gives where an edge up takes.
         let mirrored = after_others(mirrored, before_down, ramp);
-        let mut loss = [zero; 3];
+        let (mut loss, mut late) = ([zero; 3], [zero; 3]);
         for x in 0..3 {
             let (up, down) = (up[x], -mirrored[x]);
             if kinds.edges {
                 let (at_up, at_down) = (ramp.at(up), ramp.at(down));
                 let at_edges = rising.mul_add(at_up - at_down, at_down);
                 loss[x] = (one - self.lasting) * at_edges;
+                late[x] = half.mul_add(at_up - at_down, one);
             }
             if kinds.lasting {
+                let (up, down) = (up - clamped[x], down - clamped[x]);
                 let half_way = half * carrier * (end[x] - start[x]);
                 let (top, bottom) = (start[x] + half_way, end[x] - half_way);
                 let of_up = ramp.means([start[x], up, top], [low[x], one - low[x]]);
@@ -150,18 +230,61 @@ impl<V: Number> SwitchedLoss<V> {
                 loss[x] = loss[x] + self.lasting * of_up.times(rising).plus(of_down.times(one - rising)).value();
             }
         }
-        let [d, q] = place.middle.backward(clarke(loss));
-        [self.voltage * d, self.voltage * q]
+        let spared = if kinds.edges { self.spared(v, loss, late, place) } else { [zero; 2] };
+        let [spared, [d, q]] = [spared, clarke(loss)].map(|vector| back(place.middle.backward(vector), phase));
+        [self.voltage * d - rs * per_henry[0] * spared[0], self.voltage * q - rs * per_henry[1] * spared[1]]
     }
 
-    /// The voltage, V, that the resistance, ohm, takes less in a period with the voltage `u`, V, because pulses come late. Of a
-    /// row that is half a carrier period nothing is said.
+    /// How far the middle of each edge's way from no loss to all of it lies below zero, A, given out of which legs current flows, and the
+    /// phase voltages, V, and what they make together as a part of the DC voltage, A/V.
     #[inline(always)]
-    pub(crate) fn spared(&self, u: [V; 2], rs: V, per_henry: [V; 2], place: &Place) -> [V; 2] {
-        let one = self.voltage.constant(1.0);
+    fn clamped(&self, out: [V; 3], [v, together]: [[V; 3]; 2], amperes: &[[V; 3]; 3]) -> [V; 3] {
+        let (zero, half, one) = (self.voltage.constant(0.0), self.voltage.constant(0.5), self.voltage.constant(1.0));
+        let volts = self.clamps * self.voltage * (one - self.lasting);
+        let mut shift = [zero; 3];
+        for x in 0..3 {
+            let mut sum = half * amperes[x][x] - together[x];
+            for y in [(x + 1) % 3, (x + 2) % 3] {
+                let is_up = (v[y] - v[x]).mul_add(self.per_lead, one - out[y]).lower(one).higher(zero);
+                sum = amperes[x][y].mul_add(is_up, sum);
+            }
+            shift[x] = volts * sum;
+        }
+        shift
+    }
+
+    /// What pulses that come late take from the mean current times the inductance, V s in the stator, given the phase voltages, V, what
+    /// each phase loses, as a part of the voltage that is lost, and how late its pulse is. Of a row that is half a carrier period nothing
+    /// is said.
+    #[inline(always)]
+    fn spared(&self, v: [V; 3], loss: [V; 3], late: [V; 3], place: &Place) -> [V; 2] {
+        let (one, quarter) = (self.voltage.constant(1.0), self.voltage.constant(0.25 * place.length));
         let at_edges = self.voltage * (one - self.lasting) * (one - self.halves.abs());
-        let late = at_edges * self.voltage.constant(0.5 * place.length * place.per_bus);
-        [0, 1].map(|axis| late * rs * per_henry[axis] * u[axis])
+        let twice_per_bus = self.bus * self.voltage.constant(2.0 * place.per_bus);
+        let mut seconds = late;
+        for x in 0..3 {
+            let left = (-self.voltage).mul_add(loss[x], v[x]);
+            seconds[x] = quarter * at_edges * late[x] * left.mul_add(twice_per_bus, one);
+        }
+        clarke(seconds)
+    }
+}
+
+/// A vector that is further on by this cosine and sine.
+#[inline(always)]
+fn further<V: Number>(vector: [V; 2], phase: Option<[V; 2]>) -> [V; 2] {
+    match phase {
+        Some([cos, sin]) => turned(vector, cos, sin),
+        None => vector,
+    }
+}
+
+/// The way back.
+#[inline(always)]
+fn back<V: Number>(vector: [V; 2], phase: Option<[V; 2]>) -> [V; 2] {
+    match phase {
+        Some([cos, sin]) => turned(vector, cos, -sin),
+        None => vector,
     }
 }
 
@@ -192,11 +315,13 @@ fn modulated<V: Number>(u: [V; 3]) -> [V; 3] {
 
 /// Phase currents, A, that a volt over so many seconds on each phase makes: those of phase `x` by phase `y` at `[x][y]`.
 #[inline(always)]
-fn by_volt_seconds<V: Number>(seconds: V, [per_ld, per_lq]: [V; 2], place: &Place) -> [[V; 3]; 3] {
+fn by_volt_seconds<V: Number>(seconds: V, [per_ld, per_lq]: [V; 2], phase: Option<[V; 2]>, place: &Place) -> [[V; 3]; 3] {
     let third = seconds.constant(1.0 / 3.0) * seconds;
     let twice = place.middle.twice();
     let (mean, difference) = (third * (per_ld + per_lq), third * (per_ld - per_lq));
-    let (cos, sin) = (difference * seconds.constant(twice.cos), difference * seconds.constant(twice.sin));
+    // The axes lie further on, too, by twice that in twice the angle.
+    let axes = further(further([seconds.constant(twice.cos), seconds.constant(twice.sin)], phase), phase);
+    let (cos, sin) = (difference * axes[0], difference * axes[1]);
     // The stator's matrix of inverse inductances, two thirds of it.
     let (alpha, beta, both) = (mean + cos, mean - cos, seconds.constant(0.5 * 3.0_f64.sqrt()) * sin);
     let (half, quarter, three_quarters) = (seconds.constant(0.5), seconds.constant(0.25), seconds.constant(0.75));
@@ -208,113 +333,10 @@ fn by_volt_seconds<V: Number>(seconds: V, [per_ld, per_lq]: [V; 2], place: &Plac
     [[alpha, ab, ac], [ab, bb, bc], [ac, bc, cc]]
 }
 
-/// `i / width`, but at most one and at least minus one.
-#[derive(Clone, Copy)]
-struct Ramp<V> {
-    width: V,
-    per_width: V,
-}
-
-/// Width, A, of a ramp that has none: one over it is a number, and so is zero times that.
-const NARROWEST: f64 = 1e-100;
-
-/// A way this short, as a fraction of its ends, leaves no digits in a difference of integrals.
-const SHORT: f64 = 1e-6;
-
-/// The same, A: shorter than any current, and the product of four such ways is still a number.
-const SHORTEST: f64 = 1e-60;
-
-/// A quotient that is not yet divided: a division takes as long as many products, and a sum of quotients needs only one.
-#[derive(Clone, Copy)]
-struct Fraction<V> {
-    above: V,
-    below: V,
-}
-
-impl<V: Number> Fraction<V> {
-    #[inline(always)]
-    fn times(self, factor: V) -> Self {
-        Self { above: self.above * factor, ..self }
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        Self { above: self.above.mul_add(other.below, other.above * self.below), below: self.below * other.below }
-    }
-
-    #[inline(always)]
-    fn value(self) -> V {
-        self.above / self.below
-    }
-}
-
-impl<V: Number> Ramp<V> {
-    #[inline(always)]
-    fn of(width: V) -> Self {
-        let width = width.higher(width.constant(NARROWEST));
-        Self { width, per_width: width.constant(1.0) / width }
-    }
-
-    #[inline(always)]
-    fn at(self, i: V) -> V {
-        let one = i.constant(1.0);
-        (i * self.per_width).lower(one).higher(-one)
-    }
-
-    /// One where a current flows out of its leg, zero where it flows in.
-    #[inline(always)]
-    fn out(self, i: [V; 3]) -> [V; 3] {
-        let (zero, half, one) = (self.width.constant(0.0), self.width.constant(0.5), self.width.constant(1.0));
-        let slope = half * self.per_width;
-        let mut out = i;
-        for one_out in &mut out {
-            *one_out = slope.mul_add(*one_out, half).lower(one).higher(zero);
-        }
-        out
-    }
-
-    /// Its mean while its argument goes from one value to the next and on to the last, each way with a weight of its own.
-    #[inline(always)]
-    fn means(self, [from, between, to]: [V; 3], weights: [V; 2]) -> Fraction<V> {
-        self.mean(from, between).times(weights[0]).plus(self.mean(between, to).times(weights[1]))
-    }
-
-    /// Its mean while its argument goes from one value to another.
-    #[inline(always)]
-    fn mean(self, from: V, to: V) -> Fraction<V> {
-        // Over a short way the ramp is straight, or about to be.
-        let straight = self.at(from.constant(0.5) * (from + to));
-        let way = to - from;
-        let long = from.constant(SHORT).mul_add(from.abs() + to.abs(), from.constant(SHORTEST));
-        let integrals = self.integral(to) - self.integral(from);
-        Fraction { above: long.if_less(way.abs(), integrals, straight), below: long.if_less(way.abs(), way, way.constant(1.0)) }
-    }
-
-    /// Its integral: a parabola up to the width, straight from there on.
-    #[inline(always)]
-    fn integral(self, i: V) -> V {
-        // Half the square of the part that lies within the width, over the width, and all that lies beyond.
-        let (half, way) = (i.constant(0.5), i.abs());
-        let within = way.lower(self.width);
-        (half * self.per_width * within).mul_add(within, way - within)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::frames::{Abc, AlphaBeta, Turn};
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn the_mean_is_that_of_many_points(from in -3.0..3.0f64, to in -3.0..3.0f64, width in 0.01..2.0f64) {
-            const POINTS: u32 = 20_000;
-            let point = |k: u32| ((from + (to - from) * (f64::from(k) + 0.5) / f64::from(POINTS)) / width).clamp(-1.0, 1.0);
-            let expected = (0..POINTS).map(point).sum::<f64>() / f64::from(POINTS);
-            prop_assert!((Ramp::of(width).mean(from, to).value() - expected).abs() < 1e-4);
-        }
-    }
 
     /// An inverter of three ideal legs whose edges up come late while current flows out, and edges down while it flows in, and a motor at
     /// rest that is nothing but inductance, H. Time runs in fine steps.
@@ -324,6 +346,8 @@ mod tests {
         inductance: f64,
         /// Duty ratios of the legs.
         duty: [f64; 3],
+        /// Whether a current that reaches zero within the dead time stays there, as it does; else the sign at the edge decides.
+        clamps: bool,
     }
 
     const STEPS: u32 = 50_000;
@@ -341,9 +365,9 @@ mod tests {
         }
 
         fn run(&self, mut i: [f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
-            let Self { bus, dead_time, inductance, duty } = *self;
+            let Self { bus, dead_time, inductance, duty, clamps } = *self;
             let (start, mut mean) = (i, [0.0; 3]);
-            let (mut lost, mut high, mut late) = ([[0.0; 3]; 2], [false; 3], [0.0; 3]);
+            let (mut lost, mut high, mut late, mut dead) = ([[0.0; 3]; 2], [false; 3], [0.0; 3], [0.0; 3]);
             let h = 1.0 / f64::from(STEPS);
             for step in 0..STEPS {
                 let t = (f64::from(step) + 0.5) * h;
@@ -353,9 +377,11 @@ mod tests {
                     if commanded != high[leg] {
                         // Both switches open, and a diode holds what the current's direction asks for.
                         let waits = commanded == (i[leg] > 0.0);
-                        (high[leg], late[leg]) = (commanded, if waits { t + dead_time } else { 0.0 });
+                        (high[leg], late[leg], dead[leg]) = (commanded, if waits { t + dead_time } else { 0.0 }, t + dead_time);
                     }
-                    let output = if t < late[leg] { !commanded } else { commanded };
+                    // Near zero the diodes take turns, which holds the current there.
+                    let of_diode = i[leg] < 0.0;
+                    let output = if clamps && t < dead[leg] { of_diode } else { commanded != (t < late[leg]) };
                     lost[usize::from(t > 0.5)][leg] += bus * h * (f64::from(u8::from(commanded)) - f64::from(u8::from(output)));
                     // In the rotor's frame, the motor's voltage is what holds the current where it is, in the mean of the command.
                     volts[leg] = bus * (f64::from(u8::from(output)) - duty[leg]);
@@ -371,25 +397,34 @@ mod tests {
         }
     }
 
-    /// The mean current of a period lies below the way from sample to sample by what late pulses make of it.
+    /// The mean current of a period lies below the way from sample to sample by what late pulses make of it: of all phases, or with one
+    /// whose current changes its direction between its edges, and whose pulse is in time.
     #[test]
     fn the_resistance_takes_less_where_pulses_are_late() {
         let (bus, dead_time, inductance, rs) = (2.0, 0.02, 1.0, 0.3);
-        let v = modulated([0.7, -0.2, -0.5]);
-        let below = |dead_time: f64| {
-            let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus) };
-            alpha_beta(switched.below_way([5.0, -2.0, -3.0]))
-        };
-        let (with, without) = (below(dead_time), below(0.0));
-        let loss = SwitchedLoss { voltage: bus * dead_time, lasting: 0.0, width: 1e-9, ripple: 1.0, halves: 0.0 };
-        let place = Place { per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
-        // Each leg loses the dead time's voltage against its current.
-        let left = alpha_beta([v[0] - bus * dead_time, v[1] + bus * dead_time, v[2] + bus * dead_time]);
-        let spared = loss.spared(left, rs, [1.0 / inductance; 2], &place);
-        for axis in 0..2 {
-            let expected = rs * (with[axis] - without[axis]);
-            assert!((spared[axis] - expected).abs() < 0.02 * (spared[0].hypot(spared[1])), "{axis}: {spared:?}, not {expected}");
+        let v = modulated([0.5, -0.2, -0.3]);
+        for i in [[5.0, -2.0, -3.0], [0.5, -5.0, 4.5], [4.0, 0.0, -4.0], [0.01, 3.0, -3.01]] {
+            let below = |dead_time: f64| {
+                let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false };
+                alpha_beta(switched.below_way(i))
+            };
+            let (with, without) = (below(dead_time), below(0.0));
+            let loss = loss_of(bus * dead_time, 0.0, 1e-9, 1.0, 0.0, 0.0);
+            let place = Place { per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
+            let kinds = LossKinds { edges: true, lasting: false };
+            let over = |rs: f64| loss.over(kinds, alpha_beta(v), [alpha_beta(i); 2], &Winding::of(rs, [inductance; 2]), None, &place);
+            let (lost, resisted) = (over(0.0), over(rs));
+            let size = rs * bus * dead_time / (4.0 * inductance);
+            for axis in 0..2 {
+                let (expected, found) = (rs * (with[axis] - without[axis]), lost[axis] - resisted[axis]);
+                assert!((found - expected).abs() < 0.02 * size, "{i:?} {axis}: {found}, not {expected}");
+            }
         }
+    }
+
+    fn loss_of(voltage: f64, lasting: f64, width: f64, ripple: f64, halves: f64, clamps: f64) -> SwitchedLoss<f64> {
+        let state = DeadTime { voltage, lasting, width, ripple, halves, clamps, ..DeadTime::default() };
+        SwitchedLoss::of(|number| number(&state))
     }
 
     fn alpha_beta([a, b, c]: [f64; 3]) -> [f64; 2] {
@@ -419,25 +454,73 @@ mod tests {
             };
             let v = modulated(vector(modulation * bus / 3.0_f64.sqrt(), angle));
             let i = vector(current, at);
-            let lost = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus) }.loses(i);
+            let lost = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false }.loses(i);
             for (halves, length) in [(0.0, 1.0), (1.0, 0.5)] {
-                let loss = SwitchedLoss { voltage: bus * dead_time, lasting: 0.0, width: 1e-9, ripple: 1.0, halves };
+                let loss = loss_of(bus * dead_time, 0.0, 1e-9, 1.0, halves, 0.0);
                 for (half, in_half) in [1.0, -1.0].into_iter().zip(lost) {
                     let place = Place { half, length, per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
                     let kinds = LossKinds { edges: true, lasting: false };
-                    let found = loss.over(kinds, alpha_beta(v), [alpha_beta(i); 2], [1.0 / inductance; 2], &place);
+                    let found = loss.over(kinds, alpha_beta(v), [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
                     let expected = if halves == 0.0 { std::array::from_fn(|leg| lost[0][leg] + lost[1][leg]) } else { in_half };
                     let expected = alpha_beta(expected).map(|volt_seconds| volt_seconds / length);
                     let off = (found[0] - expected[0]).hypot(found[1] - expected[1]);
                     assert!(off < 0.02 * bus * dead_time, "{angle} {halves} {half}: {found:?}, not {expected:?}");
                     // Without the ripple it would be another loss, here and there.
-                    let plain = SwitchedLoss { ripple: 0.0, ..loss };
-                    let plain = plain.over(kinds, alpha_beta(v), [alpha_beta(i); 2], [1.0 / inductance; 2], &place);
+                    let plain = loss_of(bus * dead_time, 0.0, 1e-9, 0.0, halves, 0.0);
+                    let plain = plain.over(kinds, alpha_beta(v), [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
                     differ += usize::from((plain[0] - expected[0]).hypot(plain[1] - expected[1]) > 0.1 * bus * dead_time);
                 }
             }
         }
         assert!(differ > 5, "{differ}");
+    }
+
+    /// Currents of phase a through zero, at its edges too, with every order of the legs: the loss is that of an inverter whose currents
+    /// stay at zero within the dead time, and a ramp about zero would often be off.
+    #[test]
+    fn a_current_that_reaches_zero_in_the_dead_time_stays_there() {
+        let (bus, dead_time, inductance) = (2.0, 0.02, 1.0);
+        // Half of what the dead time can change a current by.
+        let width = bus * dead_time * (2.0 / 3.0) / inductance / 2.0;
+        let (mut squares, mut about_zero, mut count) = (0.0, 0.0, 0.0);
+        for order in [[0.5, -0.1, -0.4], [0.02, 0.3, -0.32], [-0.5, 0.3, 0.2], [0.03, 0.02, -0.05], [0.4, -0.21, -0.19]] {
+            let v = modulated(order);
+            let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: true };
+            for step in -30..=30 {
+                let a = 0.004 * f64::from(step);
+                let i = [a, 1.0 - 0.5 * a, -1.0 - 0.5 * a];
+                let [first, second] = switched.loses(i);
+                let expected = alpha_beta(std::array::from_fn(|leg| first[leg] + second[leg]));
+                let place = Place { per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
+                let off = |width: f64, clamps: f64| {
+                    let loss = loss_of(bus * dead_time, 0.0, width, 1.0, 0.0, clamps);
+                    let kinds = LossKinds { edges: true, lasting: false };
+                    let found = loss.over(kinds, alpha_beta(v), [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
+                    (found[0] - expected[0]).hypot(found[1] - expected[1]) / (bus * dead_time)
+                };
+                squares += off(width, 1.0).powi(2);
+                about_zero += off(1e-9, 0.0).powi(2);
+                count += 1.0;
+            }
+        }
+        let (off, about_zero) = ((squares / count).sqrt(), (about_zero / count).sqrt());
+        assert!(off < 0.05 && about_zero > 3.0 * off, "{off} {about_zero}");
+    }
+
+    /// A rotor seen from an angle's zero that is not at phase a: the same vectors and axes, of a motor with unequal axes, lose the same.
+    #[test]
+    fn where_phase_a_is_does_not_matter() {
+        let loss = loss_of(0.04, 0.3, 0.02, 1.0, 0.0, 1.0);
+        let kinds = LossKinds { edges: true, lasting: true };
+        for angle in [0.3, 1.1, 2.9, 4.0] {
+            let over = |phase: f64| {
+                let place = Place { per_bus: 0.5, omega_e: 0.1, ..Place::still(Turn::by(angle - phase)) };
+                let further = (phase != 0.0).then(|| [phase.cos(), phase.sin()]);
+                loss.over(kinds, [0.1, 0.5], [[-0.2, 0.1], [-0.1, 0.2]], &Winding::of(0.3, [1.0, 3.0]), further, &place)
+            };
+            let (expected, found) = (over(0.0), over(0.7));
+            assert!((found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-12, "{angle}: {found:?}, not {expected:?}");
+        }
     }
 
     /// A square wave's fundamental is 4/pi; along the current. Lost at edges and all the time it is the same, without ripple.
@@ -449,10 +532,10 @@ mod tests {
             [5.0 * cos, 5.0 * sin]
         };
         for (lasting, kinds) in [(0.0, LossKinds { edges: true, lasting: false }), (1.0, LossKinds { edges: false, lasting: true })] {
-            let loss = SwitchedLoss { voltage: 1.0, lasting, width: 0.0, ripple: 0.0, halves: 0.0 };
+            let loss = loss_of(1.0, lasting, 0.0, 0.0, 0.0, 0.0);
             let along = |k: u32| {
                 let (start, end) = (vector(k), vector(k + 1));
-                let lost = loss.over(kinds, [0.0; 2], [start, end], [1.0; 2], &Place::still(Turn::by(0.0)));
+                let lost = loss.over(kinds, [0.0; 2], [start, end], &Winding::of(0.0, [1.0; 2]), None, &Place::still(Turn::by(0.0)));
                 (lost[0] * (start[0] + end[0]) + lost[1] * (start[1] + end[1])) / 10.0
             };
             let mean = (0..STEPS).map(along).sum::<f64>() / f64::from(STEPS);

@@ -124,6 +124,11 @@ pub(crate) fn judge(
         distrust_all(&mut judged, request, &Reason::SpeedInDoubt { too_high });
     }
     distrust_if_impossible(&mut judged, finding.trust.least_inductance, request);
+    // An inductance that is faster than the rows, beside currents that are missed, is no motor's either.
+    let is_below_rows = |one: &Judged| matches!(one.reason, Some(Reason::BelowRows { .. }));
+    if correlation > CORRELATED && fraction > MISSES_AND_TELLS_NOTHING && judged.iter().any(is_below_rows) {
+        distrust_all(&mut judged, request, &Reason::CurrentsMissed { fraction });
+    }
     // Where nothing is told anyway, the reason there says more.
     let is_told = |one: &Judged| one.verdict != Verdict::NotIdentifiable && one.reason != Some(Reason::Given);
     if finding.trust.too_sharp && judged.iter().any(is_told) {
