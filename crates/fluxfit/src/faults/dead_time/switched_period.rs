@@ -40,6 +40,7 @@
 //!
 //! with `late_y` one where a phase's current does not change its direction between its edges, zero where it is in at the edge up and out at
 //! the edge down. Where all phases are late it looks like less flux.
+
 use super::{
     super::Place,
     DeadTime,
