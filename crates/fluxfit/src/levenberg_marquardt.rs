@@ -120,7 +120,7 @@ pub(crate) fn polish_to_beat(
 }
 
 /// The same to see how far the unknowns move from a start: within some hundredths of the way.
-pub(crate) fn polish_to_measure(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
+pub(crate) fn polish_for_distance(objective: &OutputError, start: &Adjustable, unknowns: &[Unknown], priors: &[PriorResidual]) -> Polished {
     minimize(objective, start, unknowns, priors, Purpose::Distance, &|_| ())
 }
 
@@ -347,7 +347,7 @@ impl Problem<'_> {
         let is_there = match self.purpose {
             Purpose::Answer | Purpose::FirstStep => return false,
             Purpose::Choice { to_beat } => self.is_beaten(to_beat),
-            Purpose::Distance => self.has_gone_far(),
+            Purpose::Distance => self.has_little_way_left(),
         };
         is_there || self.in_vain.evaluations >= limit || self.promises_little()
     }
@@ -364,7 +364,7 @@ impl Problem<'_> {
     }
 
     /// Whether the way that is left is short beside the way that was gone: a cost grows with its square.
-    fn has_gone_far(&self) -> bool {
+    fn has_little_way_left(&self) -> bool {
         let rest = |best: &Point| best.residuals.norm_squared() - best.left;
         self.derived().is_some_and(|best| rest(best) < REST_OF_THE_WAY.powi(2) * (self.first_cost - best.residuals.norm_squared()))
     }

@@ -28,8 +28,7 @@
 //! ```
 //!
 //! and the middle of that way lies not at zero but at `-V (A_xx + 2 sum A_xy s_y - 2 sum A_xy v_y / U_dc) / 2`, with the part `s_y` of the
-//! dead time in which the other legs are up: the first leg to go up, by itself, has its current pulled down alone. J.-W. Choi and S.-K.
-//! Sul, IEEE Transactions on Industry Applications 31, 1995, doi:10.1109/28.464515, describe that clamping.
+//! dead time in which the other legs are up.
 //!
 //! One late edge of two makes the pulse late, too, by half the dead time: the mean current of the period lies below the way from sample to
 //! sample, and the resistance takes so much less. Of phase `x` these are
@@ -135,7 +134,7 @@ impl<V> SwitchedLoss<V> {
 impl<V: Number> SwitchedLoss<V> {
     /// The voltage, V, that is lost over a period, in the frame of the logged angle, given the commanded voltage `u`, V, the currents at
     /// its start and at its end if nothing were lost, A, all `d, q` in that frame, and the winding. Where phase a is not at the angle's
-    /// zero, the cosine and sine by which all are further on in the stator.
+    /// zero, `phase` is the cosine and sine of its angle.
     #[inline(always)]
     pub(crate) fn over(
         &self,
@@ -152,10 +151,10 @@ impl<V: Number> SwitchedLoss<V> {
         let turn = place.omega_e * place.length;
         let (pulled, pushed) = (zero.constant(0.5 * turn * turn), zero.constant(0.5 * turn * place.length));
         let bend = [pulled.mul_add(start[0], -(pushed * per_henry[0] * u[1])), pulled.mul_add(start[1], pushed * per_henry[1] * u[0])];
-        let bend = inverse_clarke(place.middle.forward(further(bend, phase)));
-        let start = inverse_clarke(place.start.forward(further(start, phase)));
-        let end = inverse_clarke(place.end.forward(further(end, phase)));
-        let v = modulated(inverse_clarke(place.middle.forward(further(u, phase))));
+        let bend = inverse_clarke(place.middle.forward(by_phase(bend, phase)));
+        let start = inverse_clarke(place.start.forward(by_phase(start, phase)));
+        let end = inverse_clarke(place.end.forward(by_phase(end, phase)));
+        let v = modulated(inverse_clarke(place.middle.forward(by_phase(u, phase))));
         let per_bus = self.bus * zero.constant(place.per_bus);
         // The carrier's period over the row's.
         let carrier = one + self.halves.abs();
@@ -232,7 +231,7 @@ impl<V: Number> SwitchedLoss<V> {
             }
         }
         let spared = if kinds.edges { self.spared(v, loss, late, place) } else { [zero; 2] };
-        let [spared, [d, q]] = [spared, clarke(loss)].map(|vector| back(place.middle.backward(vector), phase));
+        let [spared, [d, q]] = [spared, clarke(loss)].map(|vector| back_by_phase(place.middle.backward(vector), phase));
         [self.voltage * d - rs * per_henry[0] * spared[0], self.voltage * q - rs * per_henry[1] * spared[1]]
     }
 
@@ -271,18 +270,18 @@ impl<V: Number> SwitchedLoss<V> {
     }
 }
 
-/// A vector that is further on by this cosine and sine.
+/// A vector of the rotor's frame, turned by the angle of phase a.
 #[inline(always)]
-fn further<V: Number>(vector: [V; 2], phase: Option<[V; 2]>) -> [V; 2] {
+fn by_phase<V: Number>(vector: [V; 2], phase: Option<[V; 2]>) -> [V; 2] {
     match phase {
         Some([cos, sin]) => turned(vector, cos, sin),
         None => vector,
     }
 }
 
-/// The way back.
+/// The same vector, turned back.
 #[inline(always)]
-fn back<V: Number>(vector: [V; 2], phase: Option<[V; 2]>) -> [V; 2] {
+fn back_by_phase<V: Number>(vector: [V; 2], phase: Option<[V; 2]>) -> [V; 2] {
     match phase {
         Some([cos, sin]) => turned(vector, cos, -sin),
         None => vector,
@@ -320,8 +319,8 @@ fn by_volt_seconds<V: Number>(seconds: V, [per_ld, per_lq]: [V; 2], phase: Optio
     let third = seconds.constant(1.0 / 3.0) * seconds;
     let twice = place.middle.twice();
     let (mean, difference) = (third * (per_ld + per_lq), third * (per_ld - per_lq));
-    // The axes lie further on, too, by twice that in twice the angle.
-    let axes = further(further([seconds.constant(twice.cos), seconds.constant(twice.sin)], phase), phase);
+    // The axes turn with the vectors, and twice the angle by twice as much.
+    let axes = by_phase(by_phase([seconds.constant(twice.cos), seconds.constant(twice.sin)], phase), phase);
     let (cos, sin) = (difference * axes[0], difference * axes[1]);
     // The stator's matrix of inverse inductances, two thirds of it.
     let (alpha, beta, both) = (mean + cos, mean - cos, seconds.constant(0.5 * 3.0_f64.sqrt()) * sin);
@@ -516,8 +515,8 @@ mod tests {
         for angle in [0.3, 1.1, 2.9, 4.0] {
             let over = |phase: f64| {
                 let place = Place { per_bus: 0.5, omega_e: 0.1, ..Place::still(Turn::by(angle - phase)) };
-                let further = (phase != 0.0).then(|| [phase.cos(), phase.sin()]);
-                loss.over(kinds, [0.1, 0.5], [[-0.2, 0.1], [-0.1, 0.2]], &Winding::of(0.3, [1.0, 3.0]), further, &place)
+                let turn = (phase != 0.0).then(|| [phase.cos(), phase.sin()]);
+                loss.over(kinds, [0.1, 0.5], [[-0.2, 0.1], [-0.1, 0.2]], &Winding::of(0.3, [1.0, 3.0]), turn, &place)
             };
             let (expected, found) = (over(0.0), over(0.7));
             assert!((found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-12, "{angle}: {found:?}, not {expected:?}");

@@ -101,8 +101,8 @@ pub(super) const NOTICEABLE: f64 = 0.02;
 /// within these rows, which is not in the log, and stand in for it in logs without either.
 pub(super) const WITHIN_ROWS: f64 = 0.1;
 
-/// A filter faster than this part of a row, beside dead time, must explain a noticeable part too: it shifts a current by as little as what
-/// the model of the loss lacks, and of five motors without a filter it stood in for that in three, with R_s 3 to 24 % off.
+/// Beside dead time, a filter faster than this part of a row must explain a noticeable part too: its effect is as small as the error of the
+/// loss model, and logs without a filter had one found, with R_s 3 to 24 % off.
 const FAST_FILTER: f64 = 0.03;
 
 /// A fault is not fitted where the score test expects less than this part of what would matter: it is not more wrong than that.
@@ -172,11 +172,11 @@ impl FaultSearch<'_> {
     /// returned, faults that were taken first.
     pub(crate) fn run(&mut self, observer: Option<&FaultTrial>) -> Vec<FaultTrial> {
         // What stands in for a fault without the angle is no candidate beside it.
+        let stands_in = |fault: Fault| fault.angle_need() == AngleNeed::OnlyTraced && self.objective().angle_known();
         let is_logged = |fault: Fault| fault == Fault::DcVoltage && self.objective().bus_known();
-        let stands_in = |fault: Fault| fault.angle_need() == AngleNeed::OnlyTraced && self.objective().angle_known() || is_logged(fault);
         let is_there = |fault: Fault| self.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
-        let faults = Fault::ALL.into_iter().filter(|fault| *fault != Fault::Disturbance && !stands_in(*fault) && !is_there(*fault));
-        let faults: Vec<Fault> = faults.collect();
+        let is_out = |fault: Fault| fault == Fault::Disturbance || stands_in(fault) || is_logged(fault) || is_there(fault);
+        let faults: Vec<Fault> = Fault::ALL.into_iter().filter(|fault| !is_out(*fault)).collect();
         let mut taken = self.begun_with.clone();
         let mut not_taken = self.add(&faults, &mut taken);
         if taken.len() > 1 {
@@ -299,8 +299,8 @@ impl FaultSearch<'_> {
         self.objectives[self.reading].0 == VoltageTiming::Averaged && self.is_faster(fault, drive, 1.0)
     }
 
-    /// Whether it is a filter that is faster than rows by so much that it may be what the loss beside it lacks.
-    fn is_beside_loss(&self, fault: Fault, drive: &Adjustable) -> bool {
+    /// Whether it is a filter so fast that it may be the error of the loss model beside it.
+    fn may_be_loss(&self, fault: Fault, drive: &Adjustable) -> bool {
         let family = Fault::DeadTime.family();
         let has_loss = || self.unknowns.iter().filter_map(|unknown| unknown.fault()).any(|fault| fault.family() == family);
         self.is_faster(fault, drive, FAST_FILTER) && has_loss()
@@ -560,7 +560,7 @@ impl ScoreTest {
             FaultOutcome::NotPhysical
         } else if stands_in {
             FaultOutcome::WithinRows
-        } else if (!is_moved || search.is_rough() || search.is_beside_loss(fault, &drive)) && cost > (1.0 - NOTICEABLE) * search.cost {
+        } else if (!is_moved || search.is_rough() || search.may_be_loss(fault, &drive)) && cost > (1.0 - NOTICEABLE) * search.cost {
             FaultOutcome::NoMatter
         } else {
             FaultOutcome::Taken

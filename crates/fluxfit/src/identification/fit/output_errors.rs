@@ -12,7 +12,7 @@ use super::{
 use crate::{
     faults::{Fault, Faults, disturbance::Disturbance},
     frames::Dq,
-    levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_to_measure, with_priors},
+    levenberg_marquardt::{MOTOR, PriorResidual, jacobian, polish_for_distance, with_priors},
     motor::{Motor, PARAMETERS},
     normal_matrix::NormalMatrix,
     objective::{
@@ -64,7 +64,7 @@ pub(super) fn other_kind_of_fit(
         (false, true) => return [0.0; PARAMETERS],
     };
     let start = Adjustable { faults: Faults { disturbance: Disturbance { gain }, ..drive.faults }, ..*drive };
-    let other = polish_to_measure(objective, &start, &unknowns, priors).drive.motor.to_array();
+    let other = polish_for_distance(objective, &start, &unknowns, priors).drive.motor.to_array();
     std::array::from_fn(|p| (drive.motor.to_array()[p] - other[p]).abs())
 }
 
