@@ -18,7 +18,6 @@ use super::{
         speed_scale::SpeedScale,
         steady::SteadyFit,
         swarm::{self, Search},
-        voltage_loss::is_control_rate,
     },
     judge::{
         points_tell_more::{Points, is_narrower, points_tell_more},
@@ -253,7 +252,7 @@ fn by_excitation(log: &Log, steady: &mut Option<SteadyFit>, output: Option<&mut 
     let is_doubtful = steady.is_none() || of_points.contains(&true);
     let open = if is_doubtful { output_excitation::open(log, output, &of_points, request)? } else { [false; PARAMETERS] };
     if let Some(points) = steady.as_mut().filter(|_| request.model.is_none()) {
-        match points_tell_more(points, output, &open, !is_control_rate(log), request) {
+        match points_tell_more(points, output, &open, !log.is_control_rate(), request) {
             Points::TellMore => return Ok(true),
             Points::AreNarrower => {
                 let in_doubt = SteadyFit::with_drive_in_doubt(log, request, output.unexplained_loss)?;
@@ -277,7 +276,7 @@ fn speed_too_high(log: &Log, speed: SpeedScale, output: Option<&OutputFit>) -> O
     let by_currents = if let SpeedScale::TooHigh(too_high) = speed { Some(too_high) } else { None };
     let follows = output.is_some_and(|fit| fit.is_explained() && fit.drive.faults.disturbance.is_small());
     let saturates = output.is_some_and(|fit| fit.has(Fault::Saturation));
-    let by_slopes = || if is_control_rate(log) && (!follows || saturates) { speed_in_doubt(log) } else { None };
+    let by_slopes = || if log.is_control_rate() && (!follows || saturates) { speed_in_doubt(log) } else { None };
     by_currents.or_else(|| by_slopes().filter(|[least, _]| !follows || *least > 1.0))
 }
 

@@ -19,5 +19,6 @@ mod standstill;
 pub use builder::{LogBuilder, check_values};
 pub use checked::{Log, Source};
 pub use columns::{Columns, Row};
+pub(crate) use segment::CONTROL_RATE;
 pub use segment::{Segment, without_gaps};
 pub use spikes::{Spike, Spikes};

@@ -5,13 +5,16 @@
 //! speed, backward and forward. The means of a window do not distinguish the fundamental from resistance, but its rows show the
 //! harmonics. So `V_1` is estimated from the backward one.
 //!
-//! The backward harmonic is looked for in the residual of equation (1) at every row; the power at frequencies between the harmonics is
-//! the noise that it is compared with.
+//! The backward harmonic is looked for in the residual of equation (1): in the parts of voltages and currents at that frequency, for which
+//! the derivative of a current is a product, however far apart the rows are. The power at frequencies between the harmonics is the noise
+//! that it is compared with.
 //!
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, doi:10.1109/41.88903, has the loss of the fundamental and the low harmonics.
 
-use crate::{frames::Dq, log::Log, motor::Motor, steady::OperatingPoint};
+use crate::{log::Log, motor::Motor, steady::OperatingPoint};
+use nalgebra::Complex;
+use std::f64::consts::TAU;
 
 /// The harmonic in the rotor's frame, as a multiple of its speed; the fifth of the stator.
 const HARMONIC: f64 = -6.0;
@@ -19,18 +22,22 @@ const HARMONIC: f64 = -6.0;
 /// The stator harmonic's part of the fundamental.
 const PART: f64 = 1.0 / 5.0;
 
-/// Multiples of the speed at which no drive has a harmonic: the power there is the noise's.
-const BETWEEN: [f64; 6] = [-7.4, -6.6, -5.4, -4.6, 4.6, 5.4];
+/// Distances from the harmonic and from its mirror image, as multiples of the speed, at which no drive has one: the power there is the noise's.
+const BESIDE: [f64; 4] = [-1.4, -0.6, 0.6, 1.4];
 
 /// The harmonic's power over the noise's at which it counts. Of white noise against six neighbours, F with 2 and 12 degrees of
 /// freedom, `(1 + 20 / 6)^-6`: one window in 6600; such an alarm only widens intervals, by an amplitude of noise.
 const STANDS_OUT: f64 = 20.0;
 
-/// Least electrical turns of a window: with fewer, the harmonic leaks into the frequencies between the harmonics.
-const MIN_TURNS: f64 = 5.0;
+/// Electrical turns of a window within which a frequency that is 0.6 times the speed away is two to a side of the harmonic's main lobe. In
+/// shorter windows the noise is looked for farther away.
+const TURNS: f64 = 3.0;
 
-/// Most rad per row at the harmonic: beyond, the difference of neighbouring rows is no derivative.
-const MAX_ANGLE: f64 = 1.0;
+/// Least electrical turns of a window, nine periods of the harmonic.
+const MIN_TURNS: f64 = 1.5;
+
+/// Most rad per row at the harmonic: at half a turn per row it and the forward one are the same in the rows.
+const MAX_ANGLE: f64 = 2.4;
 
 /// What the rows of a window say of the voltage that is lost along its current.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,39 +58,120 @@ pub(crate) fn harmonics(log: &Log, points: &[OperatingPoint], motor: &Motor, vol
 
 fn harmonic(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: f64) -> Option<Harmonic> {
     let columns = log.columns();
-    let rows = point.rows.start + 1..point.rows.end.saturating_sub(1);
+    let rows = point.rows.clone();
     let turn = |row: usize| 0.5 * (columns.omega_e[row] + columns.omega_e[row - 1]) * (columns.t[row] - columns.t[row - 1]);
-    let turns = rows.clone().map(turn).sum::<f64>().abs() / std::f64::consts::TAU;
-    let per_row = turns * std::f64::consts::TAU / rows.len().max(1) as f64;
+    let theta: Vec<f64> = std::iter::once(0.0)
+        .chain(rows.clone().skip(1).scan(0.0, |theta, row| {
+            *theta += turn(row);
+            Some(*theta)
+        }))
+        .collect();
+    let turned = theta.last()?.abs();
+    let turns = turned / TAU;
+    let per_row = turned / (rows.len() - 1).max(1) as f64;
     if !(turns >= MIN_TURNS && per_row * HARMONIC.abs() <= MAX_ANGLE && motor.ld.is_finite() && motor.lq.is_finite()) {
         return None;
     }
-    // The residual of equation (1).
-    let residual = |row: usize| {
-        let (i, span) = (Dq { d: columns.id[row], q: columns.iq[row] }, columns.t[row + 1] - columns.t[row - 1]);
-        let di_dt = Dq { d: (columns.id[row + 1] - columns.id[row - 1]) / span, q: (columns.iq[row + 1] - columns.iq[row - 1]) / span };
-        let u = motor.voltage(i, di_dt, columns.omega_e[row]);
-        Dq { d: columns.ud[row] - u.d, q: columns.uq[row] - u.q }
+    let channels = [&columns.ud, &columns.uq, &columns.id, &columns.iq].map(|column| &column[rows.clone()]);
+    let means = channels.map(|values| values.iter().sum::<f64>() / rows.len() as f64);
+    // The window's ends fade, so that neither a drift nor the rest of a transient leaks into the harmonic.
+    let fade = |row: usize| 1.0 - (TAU * (row as f64 + 0.5) / rows.len() as f64).cos();
+    // The amplitude of the residual at a multiple of the speed.
+    let amplitude = |multiple: f64| {
+        let mut parts = [Complex::<f64>::ZERO; 4];
+        for (k, theta) in theta.iter().enumerate() {
+            let turned_back = Complex::from_polar(fade(k) / rows.len() as f64, -multiple * theta);
+            for ((part, values), mean) in parts.iter_mut().zip(channels).zip(means) {
+                *part += turned_back * (values[k] - mean);
+            }
+        }
+        let [ud, uq, id, iq] = parts;
+        let omega_e = point.omega_e();
+        let Motor { rs, ld, lq, .. } = *motor;
+        let derivative = Complex::new(0.0, multiple * omega_e);
+        let residual_d = ud - id * rs - derivative * id * ld + iq * (omega_e * lq);
+        let residual_q = uq - iq * rs - derivative * iq * lq - id * (omega_e * ld);
+        (residual_d + residual_q * Complex::I).norm()
     };
-    let multiples = [&[HARMONIC][..], &BETWEEN].concat();
-    let mut sums = vec![Dq::default(); multiples.len()];
-    let mut theta = 0.0;
-    let mean = rows.clone().map(residual).fold(Dq::default(), |sum, e| Dq { d: sum.d + e.d, q: sum.q + e.q });
-    let count = rows.len() as f64;
-    for row in rows {
-        theta += turn(row);
-        let e = residual(row);
-        let e = Dq { d: e.d - mean.d / count, q: e.q - mean.q / count };
-        for (sum, multiple) in sums.iter_mut().zip(&multiples) {
-            // In a frame that turns with the harmonic, it is a constant.
-            let (sin, cos) = (multiple * theta).sin_cos();
-            sum.d += (cos * e.d + sin * e.q) / count;
-            sum.q += (cos * e.q - sin * e.d) / count;
+    let stretch = (TURNS / turns).max(1.0);
+    let beside =
+        BESIDE.map(|distance| HARMONIC + stretch * distance).into_iter().chain([-0.6, -1.4].map(|distance| stretch * distance - HARMONIC));
+    let noise = beside.map(|multiple| amplitude(multiple).powi(2)).sum::<f64>() / (BESIDE.len() + 2) as f64;
+    let found = amplitude(HARMONIC);
+    let stands_out = found.powi(2) > STANDS_OUT * noise && found > voltage_accuracy * point.voltage().magnitude();
+    Some(Harmonic { loss: found / PART, noise: noise.sqrt() / PART, stands_out })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Columns;
+    use std::f64::consts::PI;
+
+    const MOTOR: Motor = Motor { rs: 0.05, ld: 100e-6, lq: 100e-6, psi_f: 0.01 };
+    const OMEGA_E: f64 = 1000.0;
+
+    /// Voltages held constant while the loss, a square wave of fundamental `loss` in each phase, makes its fifth and seventh harmonic: in
+    /// the rotor's frame `V_m = V_1 / (m + 1)` at `m` times the speed, driven through `R + j (m + 1) omega L` of a motor with equal
+    /// inductances. Rows at this angle, rad, over so many turns.
+    fn log(loss: f64, per_row: f64, turns: f64) -> Log {
+        let rows = (turns * TAU / per_row).ceil() as usize + 1;
+        let held = Complex::new(-10.0, 40.0);
+        let along = held / held.norm();
+        let current = |theta: f64| {
+            let harmonics = [-6.0, 6.0].map(|m: f64| {
+                let voltage = along.powi(m as i32 + 1) * (-loss / (m + 1.0));
+                voltage / Complex::new(MOTOR.rs, (m + 1.0) * OMEGA_E * MOTOR.ld) * Complex::from_polar(1.0, m * theta)
+            });
+            held + harmonics[0] + harmonics[1]
+        };
+        let i: Vec<Complex<f64>> = (0..rows).map(|row| current(per_row * row as f64)).collect();
+        let each = |value: f64| vec![value; rows];
+        Log::new(Columns {
+            t: (0..rows).map(|row| per_row / OMEGA_E * row as f64).collect(),
+            ud: each(MOTOR.rs * held.re - OMEGA_E * MOTOR.lq * held.im + loss * along.re),
+            uq: each(MOTOR.rs * held.im + OMEGA_E * (MOTOR.ld * held.re + MOTOR.psi_f) + loss * along.im),
+            id: i.iter().map(|i| i.re).collect(),
+            iq: i.iter().map(|i| i.im).collect(),
+            omega_e: each(OMEGA_E),
+            ..Columns::default()
+        })
+        .unwrap()
+    }
+
+    fn said(log: &Log, motor: &Motor) -> Option<Harmonic> {
+        let whole = OperatingPoint::measure(log, 0..log.rows(), None);
+        harmonics(log, &[whole], motor, 0.0)[0]
+    }
+
+    #[test]
+    fn the_harmonic_says_the_loss_however_far_apart_rows_are() {
+        for (per_row, turns) in [(0.02, 8.0), (0.1, 20.0), (0.25, 20.0), (0.39, 40.0), (0.1, 1.7), (0.3, 2.4)] {
+            let harmonic = said(&log(2.0, per_row, turns), &MOTOR).unwrap();
+            assert!((harmonic.loss / 2.0 - 1.0).abs() < 0.02 && harmonic.stands_out, "{per_row} rad, {turns} turns: {harmonic:?}");
         }
     }
-    let power = |sum: &Dq| sum.d * sum.d + sum.q * sum.q;
-    let noise = sums[1..].iter().map(power).sum::<f64>() / BETWEEN.len() as f64;
-    let found = power(&sums[0]);
-    let stands_out = found > STANDS_OUT * noise && found.sqrt() > voltage_accuracy * point.voltage().magnitude();
-    Some(Harmonic { loss: found.sqrt() / PART, noise: noise.sqrt() / PART, stands_out })
+
+    #[test]
+    fn rows_that_cannot_show_it_say_nothing() {
+        for (per_row, turns) in [(0.1, 1.4), (0.41, 20.0), (PI / 6.0, 20.0)] {
+            assert_eq!(said(&log(2.0, per_row, turns), &MOTOR), None, "{per_row} rad, {turns} turns");
+        }
+        assert_eq!(said(&log(2.0, 0.1, 20.0), &Motor { lq: f64::INFINITY, ..MOTOR }), None);
+    }
+
+    /// Noise of 0.1 A is no harmonic, and bounds the loss by about what it makes of one: its part at one frequency through 0.5 ohm, times
+    /// five.
+    #[test]
+    fn noise_bounds_the_loss() {
+        let quiet = log(0.0, 0.2, 40.0);
+        let mut draws = crate::optimizer::Draws::seeded(7, 0);
+        let mut columns = quiet.columns().clone();
+        columns.id.iter_mut().chain(&mut columns.iq).for_each(|i| *i += 0.1 * draws.normal());
+        let harmonic = said(&Log::new(columns).unwrap(), &MOTOR).unwrap();
+        // Both axes, and a window that fades counts for two thirds of its rows.
+        let expected = 5.0 * 5.0 * OMEGA_E * MOTOR.ld * 0.1 * (2.0 * 1.5 / quiet.rows() as f64).sqrt();
+        assert!(!harmonic.stands_out && harmonic.noise > 0.5 * expected && harmonic.noise < 2.0 * expected, "{harmonic:?} {expected}");
+        assert!(harmonic.loss < 3.0 * expected, "{harmonic:?} {expected}");
+    }
 }

@@ -15,7 +15,7 @@
 //! share may be off and late beside it: [`FrameAngle`](super::frame_angle::FrameAngle). What the magnet shows is `T` and the lateness of
 //! the angle together, so `T` here is their sum, and of the angle's only that it turns the currents too is a further unknown.
 
-use super::{super::request::Request, frame_angle::FrameAngle, part::Part, voltage_loss::Loss, voltage_loss::slowest_period};
+use super::{super::request::Request, frame_angle::FrameAngle, part::Part, voltage_loss::Loss};
 use crate::{
     column_check::turn_with_speed,
     log::Log,
@@ -91,7 +91,7 @@ impl FrameLag {
         [
             Loss { voltages: other.collect(), expected: 0.0, standard_error: OTHER_LAG, part },
             Loss { voltages: points.iter().map(missing).collect(), expected: -self.seconds, standard_error: USUAL_LAG, part },
-            Loss { voltages: old.collect(), expected: 0.0, standard_error: slowest_period(log), part },
+            Loss { voltages: old.collect(), expected: 0.0, standard_error: log.slowest_period(), part },
         ]
     }
 

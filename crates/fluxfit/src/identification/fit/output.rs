@@ -25,7 +25,7 @@ use super::{
     uncertainty::{Systematic, Uncertainty},
     undetected_loss,
     voltage_accuracy::VoltageAccuracy,
-    voltage_loss::{self, is_control_rate, slowest_period},
+    voltage_loss::{self},
     within_rows,
 };
 use crate::{
@@ -146,7 +146,7 @@ impl OutputFit {
                 misses: missed(objective, &drive) / objective.peak_current(),
                 runaway,
                 speed_too_high: None,
-                least_inductance: if is_control_rate(log) { LEAST_PERIODS * slowest_period(log) * drive.motor.rs } else { 0.0 },
+                least_inductance: if log.is_control_rate() { LEAST_PERIODS * log.slowest_period() * drive.motor.rs } else { 0.0 },
                 repeated_values: false,
             },
             bench: bench(&drive.motor, &uncertainty, points, rms, correlation, log, request),

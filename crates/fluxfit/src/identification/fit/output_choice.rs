@@ -10,7 +10,6 @@ use super::{
     long_run,
     output_start::{self, Start, free},
     readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest},
-    voltage_loss::{is_control_rate, slowest_period},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -125,7 +124,7 @@ pub(super) fn choose(
         let ends = rough.iter().map(|(place, trial)| (*place, trial.polished.drive)).collect();
         contest(&objectives, ends, &free, &priors, &Rules::all(HOPELESS))
     };
-    let every_period = is_control_rate(log);
+    let every_period = log.is_control_rate();
     // Between rows that are not the drive's periods, means pass for rare readings.
     let rare: &[_] = if every_period { &VoltageTiming::RARE } else { &[] };
     let objectives_of = |readings: &[_]| match request.voltage_timing {
@@ -165,7 +164,7 @@ pub(super) fn choose(
             cost,
             voltage_accuracy,
             every_period,
-            row_period: slowest_period(log),
+            row_period: log.slowest_period(),
             compared: Vec::new(),
             ruled_out: Vec::new(),
             contested: None,

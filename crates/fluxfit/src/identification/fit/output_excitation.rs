@@ -12,7 +12,7 @@
 //! to steps of the other axis; where rows come slower than the drive controls, or are means, those are between the rows, and its
 //! inductance is open. So it is where a filter was found: rows that are means pass for filtered ones.
 
-use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, voltage_loss::is_control_rate};
+use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit};
 use crate::{
     error::Error,
     frames::Dq,
@@ -56,7 +56,7 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let mut drive = fit.drive;
     let logged = log.columns();
     let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
-    let hidden = averaged || !is_control_rate(log) || fit.is_filtered();
+    let hidden = averaged || !log.is_control_rate() || fit.is_filtered();
     // Where a row's voltage acts at once, the rows may as well be means of a faster drive, whose noise tells no inductance.
     let may_be_means = fit.voltage_timing.value.acts_at_once();
     let Dq { d: gain_d, q: gain_q } = drive.faults.disturbance.gain;

@@ -12,7 +12,6 @@ use super::{
     output_choice::is_explained,
     output_start,
     readings::{self, HOPELESS, Rules, VERY_STRONG, contest},
-    voltage_loss::is_control_rate,
 };
 use crate::{
     faults::Fault,
@@ -72,7 +71,7 @@ impl SpeedScale {
             return Self::Right;
         }
         // Between rows further apart than the drive's periods voltages are not logged, and a wrong speed may make up for them.
-        if !is_control_rate(log) || log.is_interpolated() || log.is_at_rest() {
+        if !log.is_control_rate() || log.is_interpolated() || log.is_at_rest() {
             return Self::Untold;
         }
         let of_faults = fit.fault_estimates.iter().map(|estimate| estimate.unknown);

@@ -18,7 +18,7 @@ use super::{
     saturation::{SaturationFinding, in_magnets_frame},
     swarm::{self, Search},
     uncertainty::Uncertainty,
-    voltage_loss::{Loss, LossPrior, is_control_rate, slowest_period},
+    voltage_loss::{Loss, LossPrior},
     warming::Warming,
 };
 use crate::{
@@ -63,6 +63,8 @@ pub struct SteadyFit {
     pub warming: Option<Warming>,
     /// What it comes to.
     pub finding: Finding,
+    /// What is known of the losses of dead time and devices before the points are solved.
+    pub(crate) loss_prior: LossPrior,
     /// What dead time and devices may take, as it was fitted beside the motor.
     pub(crate) losses: Vec<Loss>,
     /// With what may be wrong beside a motor that saturates.
@@ -80,7 +82,7 @@ impl SteadyFit {
     /// # Errors
     /// If there is none.
     pub fn of(log: &Log, request: &Request) -> Result<Self, Error> {
-        Self::solved(log, request, InDoubt { angle_and_winding: !is_control_rate(log), loss: 0.0 })
+        Self::solved(log, request, InDoubt { angle_and_winding: !log.is_control_rate(), loss: 0.0 })
     }
 
     /// The same of points that answer because simulated currents do not explain the log: its angle may be off, and its winding may warm, at
@@ -106,7 +108,7 @@ impl SteadyFit {
             Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
             None => solve_at_angle(log, &unturned, angle, in_doubt, request),
         };
-        let Solved { points, excitation, harmonics, losses, possible_losses, estimate, misfit, lag, warming } = solved;
+        let Solved { points, excitation, harmonics, loss_prior, losses, possible_losses, estimate, misfit, lag, warming } = solved;
         let timing_doubt = match &other_timing {
             // Of a recorder's log it is one of the unknowns.
             Some(other) if lag.is_none() => timing_doubt(&unturned, other, request),
@@ -147,6 +149,7 @@ impl SteadyFit {
             voltage_timing: voltage_timing(request),
             misfit,
             voltage_losses: harmonics.iter().map(|harmonic| harmonic.filter(|one| one.stands_out).map_or(0.0, |one| one.loss)).collect(),
+            loss_prior,
             losses,
             possible_losses,
             rs_of_speeds,
@@ -194,7 +197,7 @@ impl SteadyFit {
     /// Whether its points, which contradict each other, no longer do in the frame of a drive that simulated currents found: one whose angle
     /// is off or late, or whose voltages lag.
     pub(crate) fn agrees_in_frame_of(&self, log: &Log, drive: &Adjustable, request: &Request) -> bool {
-        let in_doubt = InDoubt { angle_and_winding: !is_control_rate(log), loss: 0.0 };
+        let in_doubt = InDoubt { angle_and_winding: !log.is_control_rate(), loss: 0.0 };
         let turned = in_magnets_frame(&self.operating_points, drive).filter(|_| self.misfit.is_some());
         turned.is_some_and(|points| solve_beside(log, points, &[], in_doubt, request).misfit.is_none())
     }
@@ -281,6 +284,7 @@ struct Solved {
     points: Vec<OperatingPoint>,
     excitation: Excitation,
     harmonics: Vec<Option<Harmonic>>,
+    loss_prior: LossPrior,
     losses: Vec<Loss>,
     /// With those that constants bend to something else.
     possible_losses: Vec<Loss>,
@@ -350,7 +354,8 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_d
     let excitation = Excitation::of(&points, &request.known);
     let possible = LossPrior::possible(log, request);
     let harmonics = harmonics(log, &points, &excitation, &possible, request);
-    let mut losses = losses(&points, &excitation, &possible.with_harmonics(&harmonics), request);
+    let loss_prior = possible.with_harmonics(&harmonics);
+    let mut losses = losses(&points, &excitation, &loss_prior, request);
     let all = |losses: &[Loss]| losses.iter().chain(of_frames).cloned().collect::<Vec<_>>();
     let admit = |all: &[Loss]| misfit::admit(&points, &excitation, request, all, in_doubt.loss);
     let (mut estimate, mut misfit) = admit(&all(&losses));
@@ -368,7 +373,7 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_d
         (estimate, misfit) = admit(&all(&losses));
         (warming.change, warming.standard_error) = estimate.found[losses.len() - 1];
     }
-    Solved { losses: all(&losses), possible_losses, excitation, harmonics, estimate, misfit, lag: None, warming, points }
+    Solved { losses: all(&losses), possible_losses, excitation, harmonics, loss_prior, estimate, misfit, lag: None, warming, points }
 }
 
 /// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.
@@ -381,7 +386,11 @@ fn harmonics(
 ) -> Vec<Option<Harmonic>> {
     let rough = Estimate::solve(points, excitation, request, &losses(points, excitation, possible, request)).motor;
     let Dq { d: ld, q: lq } = excitation.inductances(&rough);
-    ripple::harmonics(log, points, &Motor { ld, lq, ..rough }, VOLTAGE_ACCURACY)
+    let mut harmonics = ripple::harmonics(log, points, &Motor { ld, lq, ..rough }, VOLTAGE_ACCURACY);
+    for (harmonic, point) in harmonics.iter_mut().zip(points) {
+        *harmonic = harmonic.filter(|one| one.stands_out || possible.would_show(point, Dq { d: ld, q: lq }));
+    }
+    harmonics
 }
 
 /// The unknowns of the losses: how much the near-zero currents and the instant of the decision matter follows from the loss along the
@@ -461,8 +470,8 @@ fn measure(log: &Log, rough: &[OperatingPoint], request: &Request) -> (Vec<Opera
         return (with(stated.into(), &as_it_is), None);
     }
     let fastest = rough.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
-    let period = slowest_period(log);
-    let (points, other) = if is_control_rate(log) && fastest * period <= MAX_ANGLE_PER_SAMPLE {
+    let period = log.slowest_period();
+    let (points, other) = if log.is_control_rate() && fastest * period <= MAX_ANGLE_PER_SAMPLE {
         (with(SteadyVoltageTiming::Centered, &as_it_is), with(SteadyVoltageTiming::Compensated, &as_it_is))
     } else {
         let may_be_own = period * SLOWEST_PERIODS <= 1.0 && fastest * period <= MAX_ANGLE_PER_SAMPLE;

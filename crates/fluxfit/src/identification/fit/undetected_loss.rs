@@ -2,7 +2,7 @@
 //!
 //! Where rows are far apart, the rotor stands, the residuals are not noise, or harmonics of the flux were found, the harmonics of the
 //! loss cannot be seen, and its fundamental looks like resistance. That nothing was found then means little: the voltage of the loss is
-//! known no better than its physical limit and the rows say,
+//! known no better than its physical limit, the harmonics in operating points and the rows say,
 //!
 //! ```text
 //! s^-2 = V_possible^-2 + c'c / sigma²,     c: the currents' derivative by it, without what the unknowns explain
@@ -15,7 +15,7 @@ use super::{
     long_run::effective_sample_size,
     output_errors::{CORRELATED, correlation_of_neighbours},
     steady::SteadyFit,
-    voltage_loss::{LossPrior, is_control_rate, misshapen_if_fitted},
+    voltage_loss::{LossPrior, misshapen_if_fitted},
 };
 use crate::{
     faults::Fault,
@@ -45,10 +45,12 @@ pub(super) fn doubt(
     let was_found = has(Fault::DeadTime);
     let is_noise = correlation_of_neighbours(residuals, &objective.rows_per_segment()) <= CORRELATED;
     let is_disturbed = unknowns.iter().any(|unknown| unknown.is_observer_gain());
-    // A fundamental of 4/pi V per volt of each phase.
-    let possible = LossPrior::possible(log, request).standard_error * PI / 4.0;
+    // What the harmonics in operating points say of it, which no observer corrects; a fundamental of 4/pi V per volt of each phase.
+    let limit = LossPrior::possible(log, request).standard_error;
+    let known = steady.map_or(limit, |points| points.loss_prior.expected.hypot(points.loss_prior.standard_error));
+    let possible = known.min(limit) * PI / 4.0;
     // Harmonics of the flux take those of the loss as their own.
-    let would_show = is_control_rate(log) && objective.turns() && is_noise && !is_disturbed && !has(Fault::FluxHarmonics);
+    let would_show = log.is_control_rate() && objective.turns() && is_noise && !is_disturbed && !has(Fault::FluxHarmonics);
     if possible > 0.0
         && !objective.turns()
         && let Some(doubt) = steady.and_then(|points| at_rest(objective, drive, unknowns, points, possible, request))
@@ -58,7 +60,7 @@ pub(super) fn doubt(
     if was_found || possible == 0.0 || would_show {
         return [0.0; PARAMETERS];
     }
-    if let Some(points) = steady.filter(|_| !is_control_rate(log)) {
+    if let Some(points) = steady.filter(|_| !log.is_control_rate()) {
         return points.finding.uncertainty.parameters.map(|parameter| parameter.systematic.dead_time);
     }
     // A loss of nothing yet, whose ramp is that of the first start of a fit.

@@ -23,7 +23,7 @@ use crate::{
         dead_time::{DeadTime, ripple::Harmonic},
     },
     frames::Dq,
-    log::Log,
+    log::{CONTROL_RATE, Log},
     objective::{acting_voltage::VoltageTiming, adjustable::Adjustable},
     steady::OperatingPoint,
 };
@@ -36,9 +36,6 @@ const LONGEST_DEAD_TIME: f64 = 3e-6;
 /// higher voltages of IGBTs, and MOSFETs have almost none.
 const LARGEST_DROP: f64 = 0.02;
 
-/// Rows slower than this, Hz, need not be a drive's own periods: most drives control faster.
-const SLOWEST_CONTROL: f64 = 5e3;
-
 /// What such a log's drive is taken to switch at, Hz: faster ones have MOSFETs with short dead times.
 const USUAL_CARRIER: f64 = 20e3;
 
@@ -48,6 +45,10 @@ const BUS_OVER_VOLTAGE: f64 = 2.0;
 /// Ripple of a phase current to either side, as a part of `U_dc / (L f_carrier)`: an eighth at a duty of one half with the star point
 /// fixed, about that over a turn.
 const RIPPLE: f64 = 1.0 / 8.0;
+
+/// Currents beyond this many times the ripple make the loss's harmonic for certain. Of simulated drives, those from 1.2 times on make 0.7 to
+/// 1.6 times as much of it as a square wave.
+const BEYOND_RIPPLE: f64 = 2.0;
 
 /// The fundamental over what the harmonic says, and its uncertainty: where the current's sign changes gradually, or the inductance behind
 /// the harmonic is not known well, the harmonic says more than there is. Of simulated drives: 0.4 to 1.1.
@@ -96,7 +97,7 @@ impl LossPrior {
         let rated = request.nameplate.rating.map(|rating| BUS_OVER_VOLTAGE * rating.voltage);
         let seen = || largest(&mut columns.ud.iter().zip(&columns.uq).map(|(d, q)| d.hypot(*q))).map(|most| BUS_OVER_VOLTAGE * most);
         let bus = measured.or(rated).or_else(seen).unwrap_or(0.0);
-        let carrier = if is_control_rate(log) { 1.0 / slowest_period(log) } else { USUAL_CARRIER };
+        let carrier = if log.is_control_rate() { 1.0 / log.slowest_period() } else { USUAL_CARRIER };
         let largest = 4.0 / PI * bus * (LONGEST_DEAD_TIME * carrier + LARGEST_DROP);
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
         Self { expected: 0.0, standard_error: if are_exact { 0.0 } else { 0.5 * largest }, bus, carrier }
@@ -119,14 +120,23 @@ impl LossPrior {
         if standard_error < self.standard_error { Self { expected, standard_error, ..self } } else { self }
     }
 
+    /// Whether a loss at a point would make a harmonic: not while the ripple changes the current's sign in most of the periods.
+    pub(crate) fn would_show(&self, point: &OperatingPoint, inductance: Dq) -> bool {
+        point.current().magnitude() > BEYOND_RIPPLE * self.ripple(inductance)
+    }
+
+    /// The current, A, up to which a phase loses in proportion to it: the ripple to either side.
+    fn ripple(&self, inductance: Dq) -> f64 {
+        RIPPLE * self.bus / (0.5 * (inductance.d + inductance.q) * self.carrier)
+    }
+
     /// The unknowns of these points; `loss`: the size of V_1, V, as far as it is known.
     pub(crate) fn losses(&self, points: &[OperatingPoint], loss: f64, inductance: Dq) -> Vec<Loss> {
-        let Self { expected, standard_error, bus, carrier } = *self;
+        let Self { expected, standard_error, carrier, .. } = *self;
         if standard_error <= 0.0 {
             return Vec::new();
         }
-        let inductance = 0.5 * (inductance.d + inductance.q);
-        let width = RIPPLE * bus / (inductance * carrier);
+        let width = self.ripple(inductance);
         let largest = points.iter().map(|point| point.current().magnitude()).fold(0.0, f64::max);
         // Noise around no current has no direction along which a voltage could be lost.
         let direction = |i: Dq| if i.magnitude() < NO_CURRENT * largest { Dq::default() } else { along(i) };
@@ -156,7 +166,7 @@ impl LossPrior {
 /// By how many volts each row's loss may differ from what a fit of simulated currents makes of it, if each phase loses this voltage, V.
 pub(super) fn misshapen_in_rows(log: &Log, reading: VoltageTiming, voltage: f64) -> f64 {
     // In rows that are the drive's own periods, the loss is computed edge by edge.
-    if reading.is_unusual() || !is_control_rate(log) { misshapen_if_fitted(voltage) } else { 0.0 }
+    if reading.is_unusual() || !log.is_control_rate() { misshapen_if_fitted(voltage) } else { 0.0 }
 }
 
 /// By how many volts each operating point's loss may differ from its unknowns, if simulated currents found that each phase loses this
@@ -173,7 +183,7 @@ pub(super) fn corrected_by_observer(log: &Log, drive: &Adjustable, residual_rms:
         return 0.0;
     }
     let linkage = Dq { d: disturbance.gain.d * residual_rms.d * motor.ld, q: disturbance.gain.q * residual_rms.q * motor.lq };
-    FRAC_1_SQRT_2 * linkage.magnitude() / slowest_period(log)
+    FRAC_1_SQRT_2 * linkage.magnitude() / log.slowest_period()
 }
 
 /// By how many volts each point's loss may differ from these unknowns, where rows come slower than drives control; where they do not,
@@ -181,23 +191,12 @@ pub(super) fn corrected_by_observer(log: &Log, drive: &Adjustable, residual_rms:
 /// something else bends it.
 pub(super) fn misshapen(points: &[OperatingPoint], losses: &[Loss]) -> f64 {
     let periods = points.iter().map(|point| (point.time.1 - point.time.0) / point.rows.len().saturating_sub(1).max(1) as f64);
-    if periods.fold(0.0, f64::max) * SLOWEST_CONTROL <= 1.0 {
+    if periods.fold(0.0, f64::max) * CONTROL_RATE <= 1.0 {
         return 0.0;
     }
     let mut of_loss = losses.iter().filter(|loss| loss.part == Part::DeadTime);
     let largest = of_loss.next().map_or(0.0, |loss| loss.expected.abs() + 2.0 * loss.standard_error);
     MISSHAPEN * of_loss.next_back().map_or(0.0, |loss| loss.standard_error.min(largest))
-}
-
-/// Whether the rows of a log come as fast as most drives control.
-pub(crate) fn is_control_rate(log: &Log) -> bool {
-    let slowest = slowest_period(log);
-    slowest > 0.0 && slowest * SLOWEST_CONTROL <= 1.0
-}
-
-/// The longest sample period, s.
-pub(crate) fn slowest_period(log: &Log) -> f64 {
-    log.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max)
 }
 
 /// The direction of a current; no current has none.
