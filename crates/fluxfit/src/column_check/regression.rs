@@ -433,12 +433,15 @@ mod tests {
     use super::*;
     use crate::log::Columns;
 
-    /// Rows of 1 ms, each tenth of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps from 1 A to 2 A and back,
-    /// i_d from 0 to -1 A. The drive made each change in the period that begins at a row, with ten times the voltage of a row's change, so
+    /// Rows of 1 ms, every tenth of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps between 1 and 2 A, i_d
+    /// between 0 and -1 A. The drive made each change in the period that begins at a row, with ten times the voltage of a row's change, so
     /// slopes ask for ten times the inductance.
     fn jumps_between_rows(has_angle: bool) -> Log {
         let (rs, l, psi_f, omega_e, period, rows) = (6.0, 0.06, 0.3, 360.0, 1e-3, 900);
-        let current = |row: usize| Dq { d: if row / 40 % 2 == 0 { 0.0 } else { -1.0 }, q: if row / 20 % 2 == 0 { 1.0 } else { 2.0 } };
+        let current = |row: usize| Dq {
+            d: if (row / 40).is_multiple_of(2) { 0.0 } else { -1.0 },
+            q: if (row / 20).is_multiple_of(2) { 1.0 } else { 2.0 },
+        };
         let voltage = |row: usize| {
             let (i, next) = (current(row), current(row + 1));
             let kick = |from: f64, to: f64| l * (to - from) / (0.1 * period);

@@ -2,7 +2,7 @@
 
 use super::{
     columns::{Columns, MIN_ROWS},
-    segment::Segment,
+    segment::{CONTROL_RATE, Segment},
     short_circuit,
     spikes::Spikes,
 };
@@ -172,6 +172,17 @@ impl Log {
     /// Stretches without a gap, in order.
     pub fn segments(&self) -> &[Segment] {
         &self.segments
+    }
+
+    /// Whether the rows come as fast as most drives control.
+    pub(crate) fn is_control_rate(&self) -> bool {
+        let slowest = self.slowest_period();
+        slowest > 0.0 && slowest * CONTROL_RATE <= 1.0
+    }
+
+    /// The longest sample period, s.
+    pub(crate) fn slowest_period(&self) -> f64 {
+        self.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max)
     }
 
     /// The segment of a row.

@@ -1,6 +1,5 @@
 //! Segments: rows without a gap in time between them.
 
-use super::checked::Log;
 use std::ops::Range;
 
 /// Rows slower than this, Hz, need not be a drive's own periods: most drives control faster.
@@ -20,19 +19,6 @@ pub struct Segment {
     pub sample_period: f64,
     /// Quantization steps of that log's channels, in their units: `ud, uq, id, iq, omega_e`; zero for those that are not quantized.
     pub steps: [f64; 5],
-}
-
-impl Log {
-    /// Whether the rows come as fast as most drives control.
-    pub(crate) fn is_control_rate(&self) -> bool {
-        let slowest = self.slowest_period();
-        slowest > 0.0 && slowest * CONTROL_RATE <= 1.0
-    }
-
-    /// The longest sample period, s.
-    pub(crate) fn slowest_period(&self) -> f64 {
-        self.segments().iter().map(|segment| segment.sample_period).fold(0.0, f64::max)
-    }
 }
 
 /// The segments of a log with these times, s, and quantization steps. One also begins at each of `starts`, rows in order.

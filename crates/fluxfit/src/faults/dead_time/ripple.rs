@@ -22,7 +22,7 @@ const HARMONIC: f64 = -6.0;
 /// The stator harmonic's part of the fundamental.
 const PART: f64 = 1.0 / 5.0;
 
-/// Distances from the harmonic and from its mirror image, as multiples of the speed, at which no drive has one: the power there is the noise's.
+/// Distances from the harmonic and from its mirror image, as multiples of the speed, at which no drive has one: the power is the noise's.
 const BESIDE: [f64; 4] = [-1.4, -0.6, 0.6, 1.4];
 
 /// The harmonic's power over the noise's at which it counts. Of white noise against six neighbours, F with 2 and 12 degrees of

@@ -46,7 +46,7 @@ const BUS_OVER_VOLTAGE: f64 = 2.0;
 /// fixed, about that over a turn.
 const RIPPLE: f64 = 1.0 / 8.0;
 
-/// Currents beyond this many times the ripple make the loss's harmonic for certain. Of simulated drives, those from 1.2 times on make 0.7 to
+/// Currents beyond this many times the ripple make the loss's harmonic surely. Of simulated drives, those from 1.2 times on make 0.7 to
 /// 1.6 times as much of it as a square wave.
 const BEYOND_RIPPLE: f64 = 2.0;
 
