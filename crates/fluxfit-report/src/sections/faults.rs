@@ -80,7 +80,7 @@ fn sorted(trials: &[FaultTrial]) -> Vec<&FaultTrial> {
 
 /// Whether the trial has a gain.
 fn is_judged(trial: &FaultTrial) -> bool {
-    !matches!(trial.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle | FaultOutcome::NeedsTurning)
+    !matches!(trial.outcome, FaultOutcome::Covered | FaultOutcome::NeedsAngle | FaultOutcome::NeedsTurning | FaultOutcome::NeedsCloserRows)
 }
 
 /// The warning of the operating points of the same effect, which the simulated currents did not confirm.

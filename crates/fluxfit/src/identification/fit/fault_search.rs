@@ -33,6 +33,7 @@ use crate::{
     parallel,
 };
 use nalgebra::DVector;
+use std::f64::consts::PI;
 
 /// A fault that was tried.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +77,8 @@ pub enum FaultOutcome {
     NeedsAngle,
     /// It needs a rotor that turns.
     NeedsTurning,
+    /// It needs rows between which the rotor turns less.
+    NeedsCloserRows,
 }
 
 impl FaultOutcome {
@@ -90,9 +93,14 @@ impl FaultOutcome {
             Self::Covered => "another term explains the same",
             Self::NeedsAngle => "needs the electrical angle, theta_e",
             Self::NeedsTurning => "needs a rotor that turns",
+            Self::NeedsCloserRows => "needs rows between which the rotor turns less",
         }
     }
 }
+
+/// Largest angle from row to row, rad, at which harmonics of the flux are looked for: a quarter of a turn of the sixth, half of that where
+/// rows need not be the drive's periods. Beyond, they take what voltages held for a row lack of that frequency.
+const HARMONICS_WITHIN: f64 = PI / 12.0;
 
 /// Least part of the residual's power that a fault must explain to be taken when no parameter moves, or beside rough saturation.
 pub(super) const NOTICEABLE: f64 = 0.02;
@@ -139,6 +147,8 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) every_period: bool,
     /// The longest time from row to row, s.
     pub(crate) row_period: f64,
+    /// The largest angle from row to row, rad.
+    pub(crate) row_turn: f64,
     /// Every reading with this drive's faults, the best first; empty where they were not compared since it changed.
     pub(crate) compared: Vec<(usize, TimingTrial)>,
     /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
@@ -340,6 +350,8 @@ impl FaultSearch<'_> {
                 FaultOutcome::NeedsAngle
             } else if fault.needs_turning() && !this.objective().turns() {
                 FaultOutcome::NeedsTurning
+            } else if *fault == Fault::FluxHarmonics && this.row_turn > HARMONICS_WITHIN / if this.every_period { 1.0 } else { 2.0 } {
+                FaultOutcome::NeedsCloserRows
             } else {
                 FaultOutcome::NotNeeded
             }

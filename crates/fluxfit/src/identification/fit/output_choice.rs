@@ -2,7 +2,7 @@
 
 use super::{
     super::{
-        prepare::stretches,
+        prepare::{model::largest_turn, stretches},
         progress::{Progress, Step},
         request::Request,
     },
@@ -60,8 +60,8 @@ struct Begin {
 }
 
 impl Begin {
-    /// With one of these faults of the frame, if the evidence for one is very strong beside what was `tried` without.
-    fn with_frame(
+    /// With one of these faults, if the evidence for one is very strong beside what was `tried` without.
+    fn with_fault(
         faults: &[Fault],
         objectives: &[(VoltageTiming, OutputError)],
         start: &Adjustable,
@@ -73,7 +73,9 @@ impl Begin {
         let each = faults.iter().copied().filter(|fault| turns || !fault.needs_turning()).filter_map(|fault| {
             let unknowns: Vec<Unknown> = free.iter().copied().chain(Unknown::of_fault(fault)).collect();
             let possible = (0..objectives.len()).filter(|place| fault != Fault::VoltageLag || objectives[*place].0.may_lag());
-            let starts = possible.map(|place| (place, *start)).collect();
+            let faults = fault.starts(&start.faults, objectives[*place].1.peak_current());
+            let starts = possible.flat_map(|place| faults.iter().map(move |faults| (place, Adjustable { faults: *faults, ..*start })));
+            let starts = starts.collect();
             let (place, with) = *contest(objectives, starts, &unknowns, priors, &Rules::all(HOPELESS)).first()?;
             let (objective, drive) = (&objectives[place].1, with.polished.drive);
             let independent = long_run::effective_sample_size(&objective.residuals(&drive));
@@ -147,7 +149,7 @@ pub(super) fn choose(
     // Voltages that lag are of another reading than without.
     let of_voltages = best_timing.filter(|timing| !timing.tells_lag()).map(|_| Fault::VoltageLag);
     let of_frame: Vec<Fault> = of_angle.iter().copied().chain(of_voltages).collect();
-    let with_frame = Begin::with_frame(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
+    let with_frame = Begin::with_fault(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
     let _ = progress(Step::Faults);
     let most = if every_period { TRIED_READINGS } else { 1 };
     let ready = |begin: Begin, objectives| {
@@ -165,6 +167,7 @@ pub(super) fn choose(
             voltage_accuracy,
             every_period,
             row_period: log.slowest_period(),
+            row_turn: largest_turn(log),
             compared: Vec::new(),
             ruled_out: Vec::new(),
             contested: None,
@@ -211,7 +214,21 @@ pub(super) fn choose(
     // What is no motor comes last, however well it fits.
     let is_motor = |found: &Searched| is_a_motor(&found.chosen.drive.motor);
     let criterion = |found: &Searched| found.chosen.criterion;
-    found.sort_by(|one, other| is_motor(other).cmp(&is_motor(one)).then(criterion(one).total_cmp(&criterion(other))));
+    let sort = |found: &mut Vec<Searched>| {
+        found.sort_by(|one, other| is_motor(other).cmp(&is_motor(one)).then(criterion(one).total_cmp(&criterion(other))));
+    };
+    sort(&mut found);
+    // Something else may be taken first in the place of dead time that operating points show.
+    let is_loss = |fault: Fault| fault.family() == Fault::DeadTime.family();
+    let has_loss = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(is_loss);
+    let is_answer = |best: &Searched| best.explained && is_motor(best) || has_loss(best);
+    if start.shows_dead_time && !found.first().is_none_or(is_answer) {
+        let angle_known = objectives.iter().all(|(_, objective)| objective.angle_known());
+        let loss = if angle_known { Fault::DeadTime } else { Fault::DeadTimeWithoutAngle };
+        let with_loss = Begin::with_fault(&[loss], &objectives, &start.drive, (&free, &priors), &tried);
+        found.extend(with_loss.and_then(|begin| search_from(begin, &objectives, &mut begun)));
+        sort(&mut found);
+    }
     // A reading that is no inverter's may hide what a speed that lags does: it is looked for without them, too.
     if every_period && found.first().is_some_and(|best| best.chosen.reading.is_unusual() && !best.explained) {
         let usual = &objectives[..objectives.iter().take_while(|(reading, _)| !reading.is_unusual()).count()];

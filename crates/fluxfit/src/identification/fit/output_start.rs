@@ -50,6 +50,8 @@ pub(super) struct Start {
     /// Whether the operating points leave one inductance open. No fit leads from there to an angle that is off: without the angle, that
     /// inductance takes the voltage which does not belong to its axis, and grows without limit.
     pub(super) may_hide_an_angle: bool,
+    /// Whether the operating points show the harmonic of dead time.
+    pub(super) shows_dead_time: bool,
 }
 
 /// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations. Where the
@@ -85,7 +87,11 @@ pub(super) fn start(
             Known::Nothing => {}
         }
     }
-    Start { drive: Adjustable::from(Motor::from(values)), may_hide_an_angle: is_open(Parameter::Ld) != is_open(Parameter::Lq) }
+    Start {
+        drive: Adjustable::from(Motor::from(values)),
+        may_hide_an_angle: is_open(Parameter::Ld) != is_open(Parameter::Lq),
+        shows_dead_time: steady.is_some_and(|fit| fit.voltage_losses.iter().any(|volts| *volts > 0.0)),
+    }
 }
 
 /// Rows over which a difference of currents stands for their slope: enough to calm noise, few enough to follow a transient.

@@ -105,7 +105,7 @@ pub fn choose(log: &Log, stated: Option<Model>) -> ModelChoice {
 }
 
 /// Largest electrical angle from row to row, rad; the fastest hundredth of the rows does not count, being noise of the speed.
-fn largest_turn(log: &Log) -> f64 {
+pub(crate) fn largest_turn(log: &Log) -> f64 {
     let mut turns: Vec<f64> = log
         .segments()
         .iter()
