@@ -189,7 +189,7 @@ fn a_person_sees_values_verdicts_reasons_and_remedies() {
     for expected in [
         "R_s",
         "0.960",
-        "±3.8 %",
+        "±4.1 %",
         "identified",
         "not identifiable",
         "L_d: i_d stays at zero",

@@ -126,7 +126,7 @@ fn decimated(points: &[(f64, f64)], dead_time: f64) -> Log {
 const EBIKE: Motor = Motor { rs: 0.045, ld: 90e-6, lq: 120e-6, psi_f: 0.011 };
 
 /// 0.8 us take 4/pi 48 V 0.8 us 8 kHz, 0.39 V, which look like 11 mohm at 35 A. Holds at two magnitudes of current tell them from
-/// resistance; at one magnitude they do not, and R_s has no confident value.
+/// resistance; at one magnitude they do not, and R_s has no confident value. Where nothing is taken, the harmonic that is missing says so.
 #[test]
 fn dead_time_of_a_decimated_log_is_found_or_doubted() {
     for (points, is_told) in [(&[(0.0, 15.0), (-20.0, 15.0), (-20.0, 35.0), (0.0, 35.0)][..], true), (&[(0.0, 35.0), (-15.0, 31.6)], false)]
@@ -135,7 +135,7 @@ fn dead_time_of_a_decimated_log_is_found_or_doubted() {
             let request = Request { model: Some(Model::Steady), swarm: Swarm::Off, ..Request::default() };
             let found = identify(&decimated(points, dead_time), &request).unwrap().identification;
             let rs = found.parameter(Parameter::Rs).verdict;
-            assert_eq!(rs == Verdict::Identified, is_told, "{dead_time}: {rs:?}");
+            assert_eq!(rs == Verdict::Identified, is_told || dead_time == 0.0, "{dead_time}: {rs:?}");
             for judgement in &found.parameters {
                 let truth = EBIKE.get(judgement.parameter);
                 let half = judgement.uncertainty.half_width;

@@ -15,6 +15,7 @@ use fluxfit::{
     objective::acting_voltage::{VoltageFrame, VoltageTiming},
     optimizer::Draws,
 };
+use std::f64::consts::FRAC_PI_3;
 
 const MOTOR: Motor = Motor { rs: 0.958, ld: 5.25e-3, lq: 12e-3, psi_f: 0.1827 };
 
@@ -28,17 +29,22 @@ fn settings() -> Request {
     Request { model: Some(Model::Steady), voltage_timing: Some(timing), ..Request::default() }
 }
 
-/// Rows of a drive at these points; `flux` (Wb) at a current and `loss` (V) along it.
+/// Rows of a drive at these points; `flux` (Wb) at a current, and what its inverter takes: a constant voltage of each phase against its
+/// Rows of a drive at these points; `flux` (Wb) at a current, and what the inverter takes: a constant voltage of each phase against its
+/// current's angle in the stator.
 fn columns(points: &[(f64, f64, f64)], flux: impl Fn(Dq) -> Dq, loss: f64, noise: f64, seed: u64) -> Columns {
     let mut draws = Draws::seeded(seed, 0);
     let mut columns = Columns::default();
     for (w, &(d, q, omega_e)) in points.iter().enumerate() {
-        let (psi, i) = (flux(Dq { d, q }), d.hypot(q));
-        let u = Dq { d: MOTOR.rs * d - omega_e * psi.q + loss * d / i, q: MOTOR.rs * q + omega_e * psi.d + loss * q / i };
+        let psi = flux(Dq { d, q });
+        let u = Dq { d: MOTOR.rs * d - omega_e * psi.q, q: MOTOR.rs * q + omega_e * psi.d };
         for k in 0..ROWS {
-            columns.t.push((2 * w * ROWS + k) as f64 * 0.002);
-            columns.ud.push(u.d + noise * draws.normal());
-            columns.uq.push(u.q + noise * draws.normal());
+            let t = (2 * w * ROWS + k) as f64 * 0.002;
+            let in_stator = q.atan2(d) + omega_e * t;
+            let taken = (in_stator / FRAC_PI_3).round() * FRAC_PI_3 - omega_e * t;
+            columns.t.push(t);
+            columns.ud.push(u.d + FRAC_PI_3 * loss * taken.cos() + noise * draws.normal());
+            columns.uq.push(u.q + FRAC_PI_3 * loss * taken.sin() + noise * draws.normal());
             columns.id.push(d + 0.02 * noise * draws.normal());
             columns.iq.push(q + 0.02 * noise * draws.normal());
             columns.omega_e.push(omega_e);

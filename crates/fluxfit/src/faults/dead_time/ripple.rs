@@ -14,7 +14,7 @@
 
 use crate::{log::Log, motor::Motor, steady::OperatingPoint};
 use nalgebra::Complex;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// The harmonic in the rotor's frame, as a multiple of its speed; the fifth of the stator.
 const HARMONIC: f64 = -6.0;
@@ -29,8 +29,8 @@ const BESIDE: [f64; 4] = [-1.4, -0.6, 0.6, 1.4];
 /// freedom, `(1 + 20 / 6)^-6`: one window in 6600; such an alarm only widens intervals, by an amplitude of noise.
 const STANDS_OUT: f64 = 20.0;
 
-/// Electrical turns of a window within which a frequency that is 0.6 times the speed away is two to a side of the harmonic's main lobe. In
-/// shorter windows the noise is looked for farther away.
+/// Electrical turns of a window over which its ends fade; of one that is no longer, 0.6 times the speed lies at the end of the harmonic's
+/// main lobe. In shorter windows the noise is looked for farther away.
 const TURNS: f64 = 3.0;
 
 /// Least electrical turns of a window, nine periods of the harmonic.
@@ -75,12 +75,18 @@ fn harmonic(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: 
     let channels = [&columns.ud, &columns.uq, &columns.id, &columns.iq].map(|column| &column[rows.clone()]);
     let means = channels.map(|values| values.iter().sum::<f64>() / rows.len() as f64);
     // The window's ends fade, so that neither a drift nor the rest of a transient leaks into the harmonic.
-    let fade = |row: usize| 1.0 - (TAU * (row as f64 + 0.5) / rows.len() as f64).cos();
+    let fading = 0.5 * (TURNS / turns).min(1.0) * rows.len() as f64;
+    let fade = |row: usize| {
+        let from_end = row.min(rows.len() - 1 - row) as f64 + 0.5;
+        0.5 - 0.5 * (PI * (from_end / fading).min(1.0)).cos()
+    };
+    let weights: Vec<f64> = (0..rows.len()).map(fade).collect();
+    let whole: f64 = weights.iter().sum();
     // The amplitude of the residual at a multiple of the speed.
     let amplitude = |multiple: f64| {
         let mut parts = [Complex::<f64>::ZERO; 4];
-        for (k, theta) in theta.iter().enumerate() {
-            let turned_back = Complex::from_polar(fade(k) / rows.len() as f64, -multiple * theta);
+        for (k, (theta, weight)) in theta.iter().zip(&weights).enumerate() {
+            let turned_back = Complex::from_polar(weight / whole, -multiple * theta);
             for ((part, values), mean) in parts.iter_mut().zip(channels).zip(means) {
                 *part += turned_back * (values[k] - mean);
             }
@@ -106,7 +112,6 @@ fn harmonic(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: 
 mod tests {
     use super::*;
     use crate::log::Columns;
-    use std::f64::consts::PI;
 
     const MOTOR: Motor = Motor { rs: 0.05, ld: 100e-6, lq: 100e-6, psi_f: 0.01 };
     const OMEGA_E: f64 = 1000.0;
@@ -169,8 +174,8 @@ mod tests {
         let mut columns = quiet.columns().clone();
         columns.id.iter_mut().chain(&mut columns.iq).for_each(|i| *i += 0.1 * draws.normal());
         let harmonic = said(&Log::new(columns).unwrap(), &MOTOR).unwrap();
-        // Both axes, and a window that fades counts for two thirds of its rows.
-        let expected = 5.0 * 5.0 * OMEGA_E * MOTOR.ld * 0.1 * (2.0 * 1.5 / quiet.rows() as f64).sqrt();
+        // Both axes.
+        let expected = 5.0 * 5.0 * OMEGA_E * MOTOR.ld * 0.1 * (2.0 / quiet.rows() as f64).sqrt();
         assert!(!harmonic.stands_out && harmonic.noise > 0.5 * expected && harmonic.noise < 2.0 * expected, "{harmonic:?} {expected}");
         assert!(harmonic.loss < 3.0 * expected, "{harmonic:?} {expected}");
     }
