@@ -39,6 +39,15 @@ const MIN_TURNS: f64 = 1.5;
 /// Most rad per row at the harmonic: at half a turn per row it and the forward one are the same in the rows.
 const MAX_ANGLE: f64 = 2.4;
 
+/// The same two limits where rows may be filtered.
+const IF_FILTERED: (f64, f64) = (5.0, 1.0);
+
+/// A current that changes by this part of the largest from a row to the next,
+const STEP: f64 = 0.2;
+
+/// and by this part of the difference of its means over so many rows before and after, was not filtered much below the rate of the rows.
+const AT_ONCE: (f64, usize) = (0.7, 5);
+
 /// What the rows of a window say of the voltage that is lost along its current.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Harmonic {
@@ -53,10 +62,34 @@ pub(crate) struct Harmonic {
 /// The harmonic of each operating point; none where the rows cannot show it. Equation (1) takes the parameters of `motor`; an inductance
 /// that the points do not determine may be a guess, or infinite: then nothing is seen.
 pub(crate) fn harmonics(log: &Log, points: &[OperatingPoint], motor: &Motor, voltage_accuracy: f64) -> Vec<Option<Harmonic>> {
-    points.iter().map(|point| harmonic(log, point, motor, voltage_accuracy)).collect()
+    let limits = if shows_steps(log) { (MIN_TURNS, MAX_ANGLE) } else { IF_FILTERED };
+    points.iter().map(|point| harmonic(log, point, motor, voltage_accuracy, limits)).collect()
 }
 
-fn harmonic(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: f64) -> Option<Harmonic> {
+/// Whether a current somewhere changes at once. A filter of the columns, which would take the harmonic with it, lets nothing do so; neither
+/// does a slow controller, of whose log nobody can say whether it is filtered.
+fn shows_steps(log: &Log) -> bool {
+    let (id, iq) = (&log.columns().id, &log.columns().iq);
+    let (part, around) = AT_ONCE;
+    let least = STEP * log.peak_current();
+    let change = |mean: &dyn Fn(&[f64]) -> f64| mean(id).hypot(mean(iq));
+    log.segments().iter().any(|segment| {
+        let rows = segment.rows.start + around..segment.rows.end.saturating_sub(around);
+        rows.into_iter().any(|row| {
+            let at_once = change(&|i| i[row] - i[row - 1]);
+            let sum = |rows: &[f64]| rows.iter().sum::<f64>() / around as f64;
+            at_once > least && at_once > part * change(&|i| sum(&i[row..row + around]) - sum(&i[row - around..row]))
+        })
+    })
+}
+
+fn harmonic(
+    log: &Log,
+    point: &OperatingPoint,
+    motor: &Motor,
+    voltage_accuracy: f64,
+    (min_turns, max_angle): (f64, f64),
+) -> Option<Harmonic> {
     let columns = log.columns();
     let rows = point.rows.clone();
     let turn = |row: usize| 0.5 * (columns.omega_e[row] + columns.omega_e[row - 1]) * (columns.t[row] - columns.t[row - 1]);
@@ -69,7 +102,7 @@ fn harmonic(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: 
     let turned = theta.last()?.abs();
     let turns = turned / TAU;
     let per_row = turned / (rows.len() - 1).max(1) as f64;
-    if !(turns >= MIN_TURNS && per_row * HARMONIC.abs() <= MAX_ANGLE && motor.ld.is_finite() && motor.lq.is_finite()) {
+    if !(turns >= min_turns && per_row * HARMONIC.abs() <= max_angle && motor.ld.is_finite() && motor.lq.is_finite()) {
         return None;
     }
     let channels = [&columns.ud, &columns.uq, &columns.id, &columns.iq].map(|column| &column[rows.clone()]);
@@ -112,15 +145,18 @@ fn harmonic(log: &Log, point: &OperatingPoint, motor: &Motor, voltage_accuracy: 
 mod tests {
     use super::*;
     use crate::log::Columns;
+    use std::ops::Range;
 
     const MOTOR: Motor = Motor { rs: 0.05, ld: 100e-6, lq: 100e-6, psi_f: 0.01 };
     const OMEGA_E: f64 = 1000.0;
 
     /// Voltages held constant while the loss, a square wave of fundamental `loss` in each phase, makes its fifth and seventh harmonic: in
     /// the rotor's frame `V_m = V_1 / (m + 1)` at `m` times the speed, driven through `R + j (m + 1) omega L` of a motor with equal
-    /// inductances. Rows at this angle, rad, over so many turns.
-    fn log(loss: f64, per_row: f64, turns: f64) -> Log {
-        let rows = (turns * TAU / per_row).ceil() as usize + 1;
+    /// inductances. Rows at this angle, rad, over so many turns; then it goes to half the
+    /// current, at once or in twenty rows.
+    fn log(loss: f64, per_row: f64, turns: f64, at_once: bool) -> Log {
+        let window = window(per_row, turns).len();
+        let rows = window + 40;
         let held = Complex::new(-10.0, 40.0);
         let along = held / held.norm();
         let current = |theta: f64| {
@@ -130,7 +166,9 @@ mod tests {
             });
             held + harmonics[0] + harmonics[1]
         };
-        let i: Vec<Complex<f64>> = (0..rows).map(|row| current(per_row * row as f64)).collect();
+        let after = |row: usize| if at_once { 0.5 } else { 1.0 - 0.5 * ((row - window) as f64 / 20.0).min(1.0) };
+        let part = |row: usize| if row < window { 1.0 } else { after(row) };
+        let i: Vec<Complex<f64>> = (0..rows).map(|row| current(per_row * row as f64) * part(row)).collect();
         let each = |value: f64| vec![value; rows];
         Log::new(Columns {
             t: (0..rows).map(|row| per_row / OMEGA_E * row as f64).collect(),
@@ -144,15 +182,19 @@ mod tests {
         .unwrap()
     }
 
-    fn said(log: &Log, motor: &Motor) -> Option<Harmonic> {
-        let whole = OperatingPoint::measure(log, 0..log.rows(), None);
-        harmonics(log, &[whole], motor, 0.0)[0]
+    fn window(per_row: f64, turns: f64) -> Range<usize> {
+        0..(turns * TAU / per_row).ceil() as usize + 1
+    }
+
+    fn said(log: &Log, rows: Range<usize>, motor: &Motor) -> Option<Harmonic> {
+        let held = OperatingPoint::measure(log, rows, None);
+        harmonics(log, &[held], motor, 0.0)[0]
     }
 
     #[test]
     fn the_harmonic_says_the_loss_however_far_apart_rows_are() {
         for (per_row, turns) in [(0.02, 8.0), (0.1, 20.0), (0.25, 20.0), (0.39, 40.0), (0.1, 1.7), (0.3, 2.4)] {
-            let harmonic = said(&log(2.0, per_row, turns), &MOTOR).unwrap();
+            let harmonic = said(&log(2.0, per_row, turns, true), window(per_row, turns), &MOTOR).unwrap();
             assert!((harmonic.loss / 2.0 - 1.0).abs() < 0.02 && harmonic.stands_out, "{per_row} rad, {turns} turns: {harmonic:?}");
         }
     }
@@ -160,22 +202,27 @@ mod tests {
     #[test]
     fn rows_that_cannot_show_it_say_nothing() {
         for (per_row, turns) in [(0.1, 1.4), (0.41, 20.0), (PI / 6.0, 20.0)] {
-            assert_eq!(said(&log(2.0, per_row, turns), &MOTOR), None, "{per_row} rad, {turns} turns");
+            assert_eq!(said(&log(2.0, per_row, turns, true), window(per_row, turns), &MOTOR), None, "{per_row} rad, {turns} turns");
         }
-        assert_eq!(said(&log(2.0, 0.1, 20.0), &Motor { lq: f64::INFINITY, ..MOTOR }), None);
+        assert_eq!(said(&log(2.0, 0.1, 20.0, true), window(0.1, 20.0), &Motor { lq: f64::INFINITY, ..MOTOR }), None);
+        // Currents that change slowly may be filtered: rows are to be closer, and windows longer.
+        for (per_row, turns, tells) in [(0.2, 20.0, false), (0.1, 4.0, false), (0.1, 20.0, true)] {
+            let harmonic = said(&log(2.0, per_row, turns, false), window(per_row, turns), &MOTOR);
+            assert_eq!(harmonic.is_some(), tells, "{per_row} rad, {turns} turns");
+        }
     }
 
     /// Noise of 0.1 A is no harmonic, and bounds the loss by about what it makes of one: its part at one frequency through 0.5 ohm, times
     /// five.
     #[test]
     fn noise_bounds_the_loss() {
-        let quiet = log(0.0, 0.2, 40.0);
+        let (quiet, rows) = (log(0.0, 0.2, 40.0, true), window(0.2, 40.0));
         let mut draws = crate::optimizer::Draws::seeded(7, 0);
         let mut columns = quiet.columns().clone();
         columns.id.iter_mut().chain(&mut columns.iq).for_each(|i| *i += 0.1 * draws.normal());
-        let harmonic = said(&Log::new(columns).unwrap(), &MOTOR).unwrap();
+        let harmonic = said(&Log::new(columns).unwrap(), rows.clone(), &MOTOR).unwrap();
         // Both axes.
-        let expected = 5.0 * 5.0 * OMEGA_E * MOTOR.ld * 0.1 * (2.0 / quiet.rows() as f64).sqrt();
+        let expected = 5.0 * 5.0 * OMEGA_E * MOTOR.ld * 0.1 * (2.0 / rows.len() as f64).sqrt();
         assert!(!harmonic.stands_out && harmonic.noise > 0.5 * expected && harmonic.noise < 2.0 * expected, "{harmonic:?} {expected}");
         assert!(harmonic.loss < 3.0 * expected, "{harmonic:?} {expected}");
     }
