@@ -42,11 +42,14 @@ const MAX_ANGLE: f64 = 2.4;
 /// The same two limits where rows may be filtered.
 const IF_FILTERED: (f64, f64) = (5.0, 1.0);
 
-/// A current that changes by this part of the largest from a row to the next,
+/// Least step of a current, as a part of the largest: the difference of its means over some rows before and after.
 const STEP: f64 = 0.2;
 
-/// and by this part of the difference of its means over so many rows before and after, was not filtered much below the rate of the rows.
-const AT_ONCE: (f64, usize) = (0.7, 5);
+/// Rows of each of these means.
+const STEP_ROWS: usize = 5;
+
+/// A current that makes this part of a step from one row to the next was not filtered much below the rate of the rows.
+const AT_ONCE: f64 = 0.7;
 
 /// What the rows of a window say of the voltage that is lost along its current.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,15 +73,15 @@ pub(crate) fn harmonics(log: &Log, points: &[OperatingPoint], motor: &Motor, vol
 /// does a slow controller, of whose log nobody can say whether it is filtered.
 fn shows_steps(log: &Log) -> bool {
     let (id, iq) = (&log.columns().id, &log.columns().iq);
-    let (part, around) = AT_ONCE;
+    let change = |of: &dyn Fn(&[f64]) -> f64| of(id).hypot(of(iq));
+    let mean = |rows: &[f64]| rows.iter().sum::<f64>() / rows.len() as f64;
     let least = STEP * log.peak_current();
-    let change = |mean: &dyn Fn(&[f64]) -> f64| mean(id).hypot(mean(iq));
     log.segments().iter().any(|segment| {
-        let rows = segment.rows.start + around..segment.rows.end.saturating_sub(around);
-        rows.into_iter().any(|row| {
-            let at_once = change(&|i| i[row] - i[row - 1]);
-            let sum = |rows: &[f64]| rows.iter().sum::<f64>() / around as f64;
-            at_once > least && at_once > part * change(&|i| sum(&i[row..row + around]) - sum(&i[row - around..row]))
+        let mut rows = segment.rows.start + STEP_ROWS..segment.rows.end.saturating_sub(STEP_ROWS);
+        rows.any(|row| {
+            let step = change(&|i| mean(&i[row..row + STEP_ROWS]) - mean(&i[row - STEP_ROWS..row]));
+            // Noise makes a difference of two rows, but hardly one of means.
+            step > least && change(&|i| i[row] - i[row - 1]) > AT_ONCE * step
         })
     })
 }
@@ -133,9 +136,10 @@ fn harmonic(
         (residual_d + residual_q * Complex::I).norm()
     };
     let stretch = (TURNS / turns).max(1.0);
-    let beside =
-        BESIDE.map(|distance| HARMONIC + stretch * distance).into_iter().chain([-0.6, -1.4].map(|distance| stretch * distance - HARMONIC));
-    let noise = beside.map(|multiple| amplitude(multiple).powi(2)).sum::<f64>() / (BESIDE.len() + 2) as f64;
+    let around = BESIDE.map(|distance| HARMONIC + stretch * distance);
+    let mirrored = BESIDE.iter().filter(|distance| **distance < 0.0).map(|distance| stretch * distance - HARMONIC);
+    let beside: Vec<f64> = around.into_iter().chain(mirrored).collect();
+    let noise = beside.iter().map(|multiple| amplitude(*multiple).powi(2)).sum::<f64>() / beside.len() as f64;
     let found = amplitude(HARMONIC);
     let stands_out = found.powi(2) > STANDS_OUT * noise && found > voltage_accuracy * point.voltage().magnitude();
     Some(Harmonic { loss: found / PART, noise: noise.sqrt() / PART, stands_out })
@@ -212,15 +216,26 @@ mod tests {
         }
     }
 
+    fn with_noise(log: &Log, noise: f64) -> Log {
+        let mut draws = crate::optimizer::Draws::seeded(7, 0);
+        let mut columns = log.columns().clone();
+        columns.id.iter_mut().chain(&mut columns.iq).for_each(|i| *i += noise * draws.normal());
+        Log::new(columns).unwrap()
+    }
+
+    /// Noise of 2 A of 41 A, which comes in after a filter, makes no step.
+    #[test]
+    fn noise_is_no_step() {
+        assert!(shows_steps(&with_noise(&log(2.0, 0.2, 20.0, true), 2.0)));
+        assert!(!shows_steps(&with_noise(&log(2.0, 0.2, 20.0, false), 2.0)));
+    }
+
     /// Noise of 0.1 A is no harmonic, and bounds the loss by about what it makes of one: its part at one frequency through 0.5 ohm, times
     /// five.
     #[test]
     fn noise_bounds_the_loss() {
         let (quiet, rows) = (log(0.0, 0.2, 40.0, true), window(0.2, 40.0));
-        let mut draws = crate::optimizer::Draws::seeded(7, 0);
-        let mut columns = quiet.columns().clone();
-        columns.id.iter_mut().chain(&mut columns.iq).for_each(|i| *i += 0.1 * draws.normal());
-        let harmonic = said(&Log::new(columns).unwrap(), rows.clone(), &MOTOR).unwrap();
+        let harmonic = said(&with_noise(&quiet, 0.1), rows.clone(), &MOTOR).unwrap();
         // Both axes.
         let expected = 5.0 * 5.0 * OMEGA_E * MOTOR.ld * 0.1 * (2.0 / rows.len() as f64).sqrt();
         assert!(!harmonic.stands_out && harmonic.noise > 0.5 * expected && harmonic.noise < 2.0 * expected, "{harmonic:?} {expected}");

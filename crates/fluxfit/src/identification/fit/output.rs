@@ -25,8 +25,7 @@ use super::{
     uncertainty::{Systematic, Uncertainty},
     undetected_loss,
     voltage_accuracy::VoltageAccuracy,
-    voltage_loss::{self},
-    within_rows,
+    voltage_loss, within_rows,
 };
 use crate::{
     error::Error,
