@@ -39,11 +39,11 @@ const AS_GOOD: f64 = 1.5;
 /// By this factor the slopes of the currents must reduce what is left of the voltage's square, where the time is judged by them.
 const BY_SLOPES: f64 = 4.0;
 
-/// A current that changes from a row to the next by more than this part of the largest,
+/// Least jump of a current from one row to the next, as a part of the largest current.
 const JUMP: f64 = 0.05;
 
-/// and this part of its change over a mean, jumps. Where rows may be every n-th of a drive's periods, the voltage of such a row acted for a
-/// part of the time only, and the inductance of the slope comes out as much too large.
+/// The same as a part of the current's change over a mean. Where rows are every n-th of a drive's periods, the voltage of such a row acted
+/// for a part of the time only, and the inductance of the slope comes out too large.
 const JUMP_OF_CHANGE: f64 = 0.4;
 
 /// The unknowns: R, L_d, L_q, psi, V; and the two inductances of the slopes, which may have any sign.

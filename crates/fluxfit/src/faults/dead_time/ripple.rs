@@ -69,8 +69,8 @@ pub(crate) fn harmonics(log: &Log, points: &[OperatingPoint], motor: &Motor, vol
     points.iter().map(|point| harmonic(log, point, motor, voltage_accuracy, limits)).collect()
 }
 
-/// Whether a current somewhere changes at once. A filter of the columns, which would take the harmonic with it, lets nothing do so; neither
-/// does a slow controller, of whose log nobody can say whether it is filtered.
+/// Whether a current somewhere changes at once. Behind a filter of the columns, which hides the harmonic too, none does; nor does one of a
+/// slow controller, whose log may or may not be filtered.
 fn shows_steps(log: &Log) -> bool {
     let (id, iq) = (&log.columns().id, &log.columns().iq);
     let change = |of: &dyn Fn(&[f64]) -> f64| of(id).hypot(of(iq));
