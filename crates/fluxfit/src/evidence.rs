@@ -8,7 +8,7 @@ pub use crate::identification::{
     fit::{
         estimate::Estimate,
         excitation::{Direction, Excitation},
-        fault_search::{FaultOutcome, FaultTrial},
+        fault_trial::{FaultOutcome, FaultTrial},
         finding::{Finding, Trust},
         frame_lag::FrameLag,
         incremental::Incremental,

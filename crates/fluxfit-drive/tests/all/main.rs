@@ -17,6 +17,7 @@ mod logging;
 mod ode_oracle;
 mod output_error;
 mod refusals;
+mod rows_far_apart;
 mod saturation;
 mod sensors;
 mod standstill;

@@ -6,7 +6,8 @@
 
 use super::{
     super::request::Request,
-    fault_search::{FaultOutcome, schwarz, unphysical},
+    fault_search::{schwarz, unphysical},
+    fault_trial::FaultOutcome,
     long_run,
     output_choice::{Chosen, is_a_motor},
     readings::{self, VERY_STRONG},

@@ -4,7 +4,8 @@
 //! part of the answer would do to it is in doubt. Here a lag may stand beside a filter of the voltages, which is not tried before.
 
 use super::{
-    fault_search::{FaultOutcome, FaultSearch, FaultTrial, NOTICEABLE, WITHIN_ROWS},
+    fault_search::{FaultSearch, NOTICEABLE, WITHIN_ROWS},
+    fault_trial::{FaultOutcome, FaultTrial},
     long_run::effective_sample_size,
     readings::{HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest},
 };

@@ -13,6 +13,7 @@
 //! faults are judged again beside it.
 
 use super::{
+    fault_trial::{FaultOutcome, FaultTrial},
     long_run::effective_sample_size,
     output_errors::sensors,
     readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest, in_the_running},
@@ -34,69 +35,6 @@ use crate::{
 };
 use nalgebra::DVector;
 use std::f64::consts::PI;
-
-/// A fault that was tried.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct FaultTrial {
-    /// The fault.
-    pub fault: Fault,
-    /// Schwarz's criterion: what it gains, less what its unknowns cost; positive is evidence for it. The fit's own where it was fitted,
-    /// else as the score test expects it.
-    pub gain: f64,
-    /// Taken or not, and why.
-    pub outcome: FaultOutcome,
-    /// How far each parameter would move with it, SI: as fitted where it was, else as the score test expects; zeros where it was not
-    /// judged.
-    pub moves: [f64; PARAMETERS],
-}
-
-impl FaultTrial {
-    pub(super) fn not_judged(fault: Fault, outcome: FaultOutcome) -> Self {
-        Self { fault, gain: 0.0, outcome, moves: [0.0; PARAMETERS] }
-    }
-}
-
-/// Whether a fault was taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum FaultOutcome {
-    /// It is part of the answer.
-    Taken,
-    /// It does not explain enough of the residual.
-    NotNeeded,
-    /// What fits has no physical meaning.
-    NotPhysical,
-    /// It stands in for what voltages do within rows that are not the drive's own periods.
-    WithinRows,
-    /// It explains something, but nothing that matters to a parameter.
-    NoMatter,
-    /// Another fault explains the same.
-    Covered,
-    /// It needs the electrical angle, which the log does not have.
-    NeedsAngle,
-    /// It needs a rotor that turns.
-    NeedsTurning,
-    /// It needs rows between which the rotor turns less.
-    NeedsCloserRows,
-}
-
-impl FaultOutcome {
-    /// In prose.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Taken => "taken",
-            Self::NotNeeded => "explains too little of the residual",
-            Self::NotPhysical => "what fits has no physical meaning",
-            Self::WithinRows => "is faster than the rows, within which nothing is logged, and explains little",
-            Self::NoMatter => "moves no parameter by more than its standard error",
-            Self::Covered => "another term explains the same",
-            Self::NeedsAngle => "needs the electrical angle, theta_e",
-            Self::NeedsTurning => "needs a rotor that turns",
-            Self::NeedsCloserRows => "needs rows between which the rotor turns less",
-        }
-    }
-}
 
 /// Largest angle from row to row, rad, at which harmonics of the flux are looked for: a quarter of a turn of the sixth, half of that where
 /// rows need not be the drive's periods. Beyond, they take what voltages held for a row lack of that frequency.
@@ -149,6 +87,8 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) row_period: f64,
     /// The largest angle from row to row, rad.
     pub(crate) row_turn: f64,
+    /// Whether [so few points are held](super::output_start::Start::points_tell_no_angle) that they tell no angle that is off.
+    pub(crate) points_tell_no_angle: bool,
     /// Every reading with this drive's faults, the best first; empty where they were not compared since it changed.
     pub(crate) compared: Vec<(usize, TimingTrial)>,
     /// Faults that were taken in a search before, and whose values lost their meaning beside others: their families are left out.
@@ -205,6 +145,7 @@ impl FaultSearch<'_> {
             not_taken = self.add(&faults, &mut taken);
         }
         let in_doubt = [self.drop_needless(&mut taken), self.exchange_winding(&taken), self.choose_delay(&mut taken)].concat();
+        let in_doubt = [in_doubt, self.drop_angle_of_points(&mut taken)].concat();
         not_taken.retain(|trial| !taken.iter().chain(&in_doubt).any(|other| other.fault == trial.fault));
         let mut all: Vec<FaultTrial> = taken.into_iter().chain([observer]).chain(in_doubt).chain(not_taken).collect();
         all.sort_by_key(|trial| trial.outcome != FaultOutcome::Taken);

@@ -9,7 +9,7 @@
 //! doi:10.1214/ss/1009212519.
 
 use super::{
-    fault_search::{FaultOutcome, FaultTrial},
+    fault_trial::{FaultOutcome, FaultTrial},
     readings::VERY_STRONG,
 };
 use crate::{faults::Fault, motor::PARAMETERS};
@@ -28,12 +28,15 @@ pub(super) fn doubt(trials: &[FaultTrial]) -> [f64; PARAMETERS] {
             FaultOutcome::NotNeeded | FaultOutcome::NoMatter => trial.gain > STRONG,
             // In the place of the one that was taken.
             FaultOutcome::Covered => trial.gain > -VERY_STRONG,
+            FaultOutcome::NeedsMorePoints => true,
             _ => false,
         };
         may_be_there && trial.fault != Fault::Saturation
     };
     for trial in trials.iter().filter(counts) {
-        let probability = 1.0 / (1.0 + (-0.5 * trial.gain).exp());
+        // Evidence that is worth nothing leaves it as likely as not.
+        let gain = if trial.outcome == FaultOutcome::NeedsMorePoints { 0.0 } else { trial.gain };
+        let probability = 1.0 / (1.0 + (-0.5 * gain).exp());
         let family = families.entry(trial.fault.family()).or_default();
         *family = std::array::from_fn(|p| family[p].max(probability * trial.moves[p].powi(2)));
     }
@@ -66,6 +69,9 @@ mod tests {
         let other = trial(Fault::VoltageLag, -gain, FaultOutcome::Covered, 2.0);
         assert!((doubt(std::slice::from_ref(&other))[0] - 0.4).abs() < 1e-12);
         assert_eq!(doubt(&[trial(Fault::VoltageLag, -20.0, FaultOutcome::Covered, 2.0)]), [0.0; PARAMETERS]);
+        // Evidence that is worth nothing: as likely as not.
+        let untold = trial(Fault::AngleOffset, 1000.0, FaultOutcome::NeedsMorePoints, 2.0);
+        assert!((doubt(&[untold])[0] - 2.0_f64.sqrt()).abs() < 1e-12);
         // Both filters say the same.
         let filters = [Fault::CurrentFilter, Fault::DqCurrentFilter].map(|filter| trial(filter, gain, FaultOutcome::NotNeeded, 2.0));
         assert_eq!(doubt(&filters), doubt(&[angle]));

@@ -1,12 +1,14 @@
 //! Fits: a motor and its uncertainty, from steady operating points or from simulated currents.
 
 mod all_rows;
+mod angle_of_points;
 mod coasting;
 pub(crate) mod common_gains;
 mod delays;
 pub(crate) mod estimate;
 pub(crate) mod excitation;
 pub(crate) mod fault_search;
+pub(crate) mod fault_trial;
 mod faults_in_doubt;
 pub(crate) mod finding;
 mod frame_angle;
@@ -22,7 +24,7 @@ pub(crate) mod output;
 mod output_choice;
 pub(crate) mod output_errors;
 pub(crate) mod output_excitation;
-mod output_start;
+pub(crate) mod output_start;
 pub(crate) mod part;
 pub(crate) mod readings;
 mod resistance_of_speeds;

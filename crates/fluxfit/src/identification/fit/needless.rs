@@ -2,7 +2,8 @@
 //! model lacks. They go, and what they would do to the parameters is in doubt.
 
 use super::{
-    fault_search::{FaultOutcome, FaultSearch, FaultTrial, schwarz},
+    fault_search::{FaultSearch, schwarz},
+    fault_trial::{FaultOutcome, FaultTrial},
     long_run::effective_sample_size,
     readings::VERY_STRONG,
 };

@@ -1,7 +1,8 @@
 //! The observer of a disturbed motor, which comes first of all faults and goes again where they have made it useless.
 
 use super::{
-    fault_search::{FaultOutcome, FaultSearch, FaultTrial, RIPPLE, schwarz},
+    fault_search::{FaultSearch, RIPPLE, schwarz},
+    fault_trial::{FaultOutcome, FaultTrial},
     readings::{HOPELESS, Rules, VERY_STRONG, contest},
 };
 use crate::{faults::Fault, objective::adjustable::Unknown};

@@ -52,6 +52,20 @@ pub(super) struct Start {
     pub(super) may_hide_an_angle: bool,
     /// Whether the operating points show the harmonic of dead time.
     pub(super) shows_dead_time: bool,
+    /// Whether nearly all rows belong to operating points of no more equations than unknowns: they have none left to tell an angle that is
+    /// off from inductances.
+    pub(super) points_tell_no_angle: bool,
+}
+
+/// Part of the rows that is nearly all: transients of the windings, a few milliseconds of each mode that is held for a second, are less
+/// than the rest; ramps are more.
+const NEARLY_ALL: f64 = 0.9;
+
+/// Whether operating points are nearly all rows at which currents are compared.
+pub(crate) fn are_nearly_all_rows(points: &SteadyFit, stretches: &[Range<usize>]) -> bool {
+    let of_points: usize = points.operating_points.iter().map(|point| point.rows.len()).sum();
+    let compared: usize = stretches.iter().map(ExactSizeIterator::len).sum();
+    of_points as f64 > NEARLY_ALL * compared as f64
 }
 
 /// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations. Where the
@@ -90,6 +104,7 @@ pub(super) fn start(
     Start {
         drive: Adjustable::from(Motor::from(values)),
         may_hide_an_angle: is_open(Parameter::Ld) != is_open(Parameter::Lq),
+        points_tell_no_angle: steady.is_some_and(|fit| fit.estimate.redundancy == 0 && are_nearly_all_rows(fit, stretches)),
         shows_dead_time: steady.is_some_and(|fit| fit.voltage_losses.iter().any(|volts| *volts > 0.0)),
     }
 }

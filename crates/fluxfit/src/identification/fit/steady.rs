@@ -108,7 +108,8 @@ impl SteadyFit {
             Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
             None => solve_at_angle(log, &unturned, angle, in_doubt, request),
         };
-        let Solved { points, excitation, harmonics, loss_prior, losses, possible_losses, estimate, misfit, lag, warming } = solved;
+        let Solved { points, excitation, harmonics, loss_prior, losses, possible_losses, estimate, misfit, lag, at_another_angle, warming } =
+            solved;
         let timing_doubt = match &other_timing {
             // Of a recorder's log it is one of the unknowns.
             Some(other) if lag.is_none() => timing_doubt(&unturned, other, request),
@@ -121,6 +122,14 @@ impl SteadyFit {
             let lq = &mut uncertainty.parameters[Parameter::Lq as usize];
             lq.systematic.frame_lag = lq.systematic.frame_lag.hypot(FrameLag::spread(&points, estimate.motor.psi_f));
             *lq = lq.anew();
+        }
+        if let Some(other) = at_another_angle {
+            for (parameter, one) in Parameter::ALL.into_iter().zip(&mut uncertainty.parameters) {
+                // Either is as likely as the other.
+                let moves = other.get(parameter) - estimate.motor.get(parameter);
+                one.systematic.frame_lag = one.systematic.frame_lag.hypot(moves / 2.0_f64.sqrt());
+                *one = one.anew();
+            }
         }
         let of_angle = angle.filter(|_| misfit.is_some()).map(|angle| angle.unknowns(&points, &estimate.motor));
         let possible_losses: Vec<Loss> = possible_losses.into_iter().chain(of_angle.into_iter().flatten()).collect();
@@ -291,6 +300,8 @@ struct Solved {
     estimate: Estimate,
     misfit: Option<Misfit>,
     lag: Option<FrameLag>,
+    /// The motor at another angle, if points that contradict each other do not contradict each other there.
+    at_another_angle: Option<Motor>,
     warming: Option<Warming>,
 }
 
@@ -328,10 +339,11 @@ fn only_flux(psi_f: f64) -> Motor {
 }
 
 /// Solves points of a drive whose angle may be unknown; again with the points turned back by what was found of it. Points that contradict
-/// each other are left so: an angle bends to anything, and what makes them contradict each other may be something else.
+/// each other are left so: an angle bends to anything, and what makes them contradict each other may be something else. The motor at an
+/// angle at which they do not is then a possible one.
 fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAngle>, in_doubt: InDoubt, request: &Request) -> Solved {
     let at_the_angle = solve_beside(log, unturned.to_vec(), &[], in_doubt, request);
-    let Some(mut angle) = angle.filter(|_| at_the_angle.misfit.is_none()) else { return at_the_angle };
+    let Some(mut angle) = angle else { return at_the_angle };
     let mut motor = only_flux(frame_lag::rough_flux(unturned));
     let mut round = |angle: &mut FrameAngle| {
         let points = angle.turned_back(unturned);
@@ -346,7 +358,11 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
     for _ in 1..frame_angle::ROUNDS {
         round(&mut angle);
     }
-    round(&mut angle)
+    let turned = round(&mut angle);
+    match at_the_angle.misfit {
+        None => turned,
+        Some(_) => Solved { at_another_angle: turned.misfit.is_none().then_some(turned.estimate.motor), ..at_the_angle },
+    }
 }
 
 /// Solves points beside the losses, these unknowns of their frames, and a resistance that changes, if that is in doubt.
@@ -373,7 +389,19 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_d
         (estimate, misfit) = admit(&all(&losses));
         (warming.change, warming.standard_error) = estimate.found[losses.len() - 1];
     }
-    Solved { losses: all(&losses), possible_losses, excitation, harmonics, loss_prior, estimate, misfit, lag: None, warming, points }
+    Solved {
+        losses: all(&losses),
+        possible_losses,
+        excitation,
+        harmonics,
+        loss_prior,
+        estimate,
+        misfit,
+        lag: None,
+        at_another_angle: None,
+        warming,
+        points,
+    }
 }
 
 /// The harmonics of dead time and device drops in the rows of each point, by the motor that comes out beside any loss that is possible.

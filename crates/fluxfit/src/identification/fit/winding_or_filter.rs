@@ -4,7 +4,8 @@
 //! the other is tried, and counts as doubt.
 
 use super::{
-    fault_search::{FaultOutcome, FaultSearch, FaultTrial},
+    fault_search::FaultSearch,
+    fault_trial::{FaultOutcome, FaultTrial},
     long_run::effective_sample_size,
     readings::VERY_STRONG,
 };
