@@ -186,6 +186,8 @@ pub(crate) enum Timing {
     Half,
     /// Mean over the row's own span, as the currents
     Averaged,
+    /// The same of commands that act later
+    AveragedLater,
     /// Of a simulator that goes from row to row by Euler's rule
     Euler,
     /// The same, logged with the current after the step
@@ -211,7 +213,8 @@ impl Timing {
             Self::OneRotor => in_rotor(1),
             Self::MinusOne => Some(VoltageTiming::Ended),
             Self::Half => Some(VoltageTiming::HalfPeriodLater),
-            Self::Averaged => Some(VoltageTiming::Averaged),
+            Self::Averaged => Some(VoltageTiming::Averaged { later: false }),
+            Self::AveragedLater => Some(VoltageTiming::Averaged { later: true }),
             Self::Euler => Some(VoltageTiming::Euler { after: false }),
             Self::EulerAfter => Some(VoltageTiming::Euler { after: true }),
         }

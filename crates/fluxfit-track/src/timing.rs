@@ -42,7 +42,7 @@ impl Timing {
             VoltageTiming::Delayed { .. }
             | VoltageTiming::Ended
             | VoltageTiming::HalfPeriodLater
-            | VoltageTiming::Averaged
+            | VoltageTiming::Averaged { .. }
             | VoltageTiming::Euler { .. } => None,
         }
     }

@@ -89,7 +89,7 @@ impl Case {
             // Of every n-th row the timing is none of those that can be stated.
             Remedy::StateVoltageTiming if self.scenario.logging.every == 1 => case.request.voltage_timing = Some(VoltageTiming::Centered),
             Remedy::StateVoltageTiming if self.scenario.logging.rows == LoggedRows::Mean => {
-                case.request.voltage_timing = Some(VoltageTiming::Averaged);
+                case.request.voltage_timing = Some(VoltageTiming::Averaged { later: false });
             }
             Remedy::CompensateDeadTime { .. } => {
                 let inverter = &mut case.scenario.inverter;

@@ -38,13 +38,20 @@ pub enum VoltageTiming {
     /// middle of one period of its carrier, and its command takes effect with the next.
     HalfPeriodLater,
     /// The mean over the row's own span, as the currents are.
-    Averaged,
+    Averaged {
+        /// The means are those of commands, each of which acts [later](MEANS_LATER) than the current from which it was computed.
+        later: bool,
+    },
     /// By Euler's rule: the slope of the current at a row lasts until the next row.
     Euler {
         /// The row holds the current that its voltage led to, not the one before.
         after: bool,
     },
 }
+
+/// By which part of a row means of commands act later: 1.5 periods from the sample of a current to the middle of what its command applies,
+/// of a row of five; means of four to eight have 0.38 to 0.19. Fewer are read as what begins at the row, more as all means are.
+const MEANS_LATER: f64 = 1.5 / 5.0;
 
 /// The frame in which a delayed voltage is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +83,7 @@ impl VoltageTiming {
     pub(crate) const RARE: [Self; 2] = [Self::Ended, Self::HalfPeriodLater];
 
     /// All timings that are known from drives and simulators.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
         Self::Delayed { delay: 1, frame: VoltageFrame::Middle },
@@ -88,7 +95,8 @@ impl VoltageTiming {
         Self::HalfPeriodLater,
         Self::Delayed { delay: 0, frame: VoltageFrame::Rotor },
         Self::Delayed { delay: 1, frame: VoltageFrame::Rotor },
-        Self::Averaged,
+        Self::Averaged { later: false },
+        Self::Averaged { later: true },
         Self::BY_EULERS_RULE[0],
         Self::BY_EULERS_RULE[1],
     ];
@@ -107,7 +115,8 @@ impl VoltageTiming {
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "1-rotor",
             Self::Ended => "-1",
             Self::HalfPeriodLater => "0.5",
-            Self::Averaged => "averaged",
+            Self::Averaged { later: false } => "averaged",
+            Self::Averaged { later: true } => "averaged-later",
             Self::Euler { after: false } => "euler",
             Self::Euler { after: true } => "euler-after",
         }
@@ -131,7 +140,8 @@ impl VoltageTiming {
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "what acts one period later, held in the rotor's frame",
             Self::Ended => "what acted over the period that ended at the row",
             Self::HalfPeriodLater => "what acts half a period later",
-            Self::Averaged => "the mean over the row's own span, as the currents",
+            Self::Averaged { later: false } => "the mean over the row's own span, as the currents",
+            Self::Averaged { later: true } => "the mean over the row's own span, of commands that act later",
             Self::Euler { after: false } => "a simulator's that goes from row to row by Euler's rule",
             Self::Euler { after: true } => "a simulator's that goes from row to row by Euler's rule, and logs the current after the step",
         }
@@ -140,7 +150,7 @@ impl VoltageTiming {
     /// Rows at a segment's start whose acting voltage is not in the log.
     pub(super) fn lost_rows(self) -> usize {
         match self {
-            Self::Centered | Self::Ended | Self::Averaged | Self::Euler { .. } => 0,
+            Self::Centered | Self::Ended | Self::Averaged { .. } | Self::Euler { .. } => 0,
             Self::HalfPeriodLater => 1,
             Self::Delayed { delay, .. } => delay,
         }
@@ -149,7 +159,7 @@ impl VoltageTiming {
     /// Where its voltages stand still.
     pub(super) fn held(self) -> Held {
         match self {
-            Self::Averaged | Self::Delayed { frame: VoltageFrame::Rotor, .. } => Held::InRotor,
+            Self::Averaged { .. } | Self::Delayed { frame: VoltageFrame::Rotor, .. } => Held::InRotor,
             Self::Euler { .. } => Held::WithSlope,
             Self::Centered | Self::Delayed { .. } | Self::Ended | Self::HalfPeriodLater => Held::InStator,
         }
@@ -254,9 +264,10 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 }
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => at_middle(in_stator(row - delay)),
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Rotor } => in_rotor_frame(row - delay),
-                VoltageTiming::Averaged => {
+                VoltageTiming::Averaged { later } => {
                     let (start, end) = (in_rotor_frame(row), in_rotor_frame(row + 1));
-                    Dq { d: 0.5 * (start.d + end.d), q: 0.5 * (start.q + end.q) }
+                    let part = if later { 0.5 - MEANS_LATER } else { 0.5 };
+                    Dq { d: start.d + part * (end.d - start.d), q: start.q + part * (end.q - start.q) }
                 }
                 VoltageTiming::Euler { after } => in_rotor_frame(row + usize::from(after)),
             };
@@ -277,7 +288,10 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
                     VoltageTiming::Ended => -0.5 * acceleration(row) * length,
                     VoltageTiming::HalfPeriodLater => acceleration(row) * length,
-                    VoltageTiming::Centered | VoltageTiming::Delayed { .. } | VoltageTiming::Averaged | VoltageTiming::Euler { .. } => 0.0,
+                    VoltageTiming::Centered
+                    | VoltageTiming::Delayed { .. }
+                    | VoltageTiming::Averaged { .. }
+                    | VoltageTiming::Euler { .. } => 0.0,
                 },
                 time: (columns.t[row] + 0.5 * length - first_time) / (last_time - first_time) - 0.5,
             }

@@ -433,8 +433,11 @@ mod tests {
             columns.theta_e = None;
             let log = Log::new(columns).unwrap();
             let frame = VoltageFrame::Rotor;
-            for timing in [VoltageTiming::Delayed { delay: 0, frame }, VoltageTiming::Delayed { delay: 1, frame }, VoltageTiming::Averaged]
-            {
+            for timing in [
+                VoltageTiming::Delayed { delay: 0, frame },
+                VoltageTiming::Delayed { delay: 1, frame },
+                VoltageTiming::Averaged { later: false },
+            ] {
                 let cost = rows(&log, timing).costs(&[Adjustable::from(MOTOR)])[0];
                 assert!(cost < 1e-18, "{timing:?}: {cost}");
             }

@@ -39,7 +39,7 @@ impl From<VoltageTiming> for SteadyVoltageTiming {
             VoltageTiming::Delayed { .. }
             | VoltageTiming::Ended
             | VoltageTiming::HalfPeriodLater
-            | VoltageTiming::Averaged
+            | VoltageTiming::Averaged { .. }
             | VoltageTiming::Euler { .. } => Self::Compensated,
         }
     }

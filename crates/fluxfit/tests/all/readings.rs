@@ -189,13 +189,24 @@ fn a_simulators_steps_by_eulers_rule_are_read() {
     }
 }
 
+fn mean<'a>(values: impl ExactSizeIterator<Item = &'a Dq>) -> Dq {
+    let part = 1.0 / values.len() as f64;
+    values.fold(Dq::default(), |sum, one| Dq { d: sum.d + part * one.d, q: sum.q + part * one.q })
+}
+
 /// Rows are means of four of the drive's periods.
 #[test]
 fn means_over_each_rows_span_are_read() {
-    let mean = |values: &[Dq]| {
-        let sum = values.iter().fold(Dq::default(), |sum, one| Dq { d: sum.d + one.d, q: sum.q + one.q });
-        Dq { d: sum.d / values.len() as f64, q: sum.q / values.len() as f64 }
-    };
-    let log = log(&course(160_000), 4 * HELD, mean);
-    holds(&log, VoltageTiming::Averaged, 1.0);
+    let log = log(&course(160_000), 4 * HELD, |values| mean(values.iter()));
+    holds(&log, VoltageTiming::Averaged { later: false }, 1.0);
+}
+
+/// Rows are means of five periods' samples, each of a current and of the command that acts from the next sample on. Read as acting at the
+/// row, held in the rotor's frame, such a log had R_s 7.1 % too large, ±4.5 %, identified.
+#[test]
+fn means_of_commands_are_read() {
+    let Course { currents, mut voltages } = course(200_000);
+    voltages.rotate_left(HELD);
+    let log = log(&Course { currents, voltages }, 5 * HELD, |values| mean(values.iter().step_by(HELD)));
+    holds(&log, VoltageTiming::Averaged { later: true }, 1.0);
 }

@@ -54,7 +54,7 @@ impl AllRows {
             return Err(ErrorKind::NoFiniteFit.into());
         }
         while let Some(fault) = fit.unphysical(lag) {
-            let chosen = fit.chosen.without(fault, &fit.drive).again(log, stretches, &readings::asked(request))?;
+            let chosen = fit.chosen.without(fault, &fit.drive).again(log, stretches, &readings::asked(log, request))?;
             let without = polished(chosen)?;
             let further = fit.chosen.unknowns.len() - without.chosen.unknowns.len();
             if schwarz(without.cost, fit.cost, further, long_run::effective_sample_size(&fit.residuals)) > VERY_STRONG {

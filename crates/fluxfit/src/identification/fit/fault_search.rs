@@ -247,7 +247,7 @@ impl FaultSearch<'_> {
 
     /// Whether it is a filter, and faster than rows that are means.
     fn is_within_rows(&self, fault: Fault, drive: &Adjustable) -> bool {
-        self.objectives[self.reading].0 == VoltageTiming::Averaged && self.is_faster(fault, drive, 1.0)
+        matches!(self.objectives[self.reading].0, VoltageTiming::Averaged { .. }) && self.is_faster(fault, drive, 1.0)
     }
 
     /// Whether it is a filter so fast that it may be the error of the loss model beside it.

@@ -103,7 +103,7 @@ impl OutputFit {
             None => with_speed_in_time(
                 log,
                 |log, undone_lag| choose(log, &stretches, &start, undone_lag, request, progress),
-                |chosen, log| chosen.again(log, &stretches, &readings::asked(request)),
+                |chosen, log| chosen.again(log, &stretches, &readings::asked(log, request)),
             )?,
         };
         let log = advanced.as_ref().unwrap_or(log);

@@ -116,7 +116,7 @@ pub(super) fn choose(
 ) -> Result<Vec<Chosen>, Error> {
     let _ = progress(Step::VoltageTiming);
     let free: Vec<Unknown> = free(log, request).into_iter().chain(output_start::rest_of_lag(undone_lag)).collect();
-    let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &readings::asked(request))?;
+    let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &readings::asked(log, request))?;
     let rough = readings::readings(&objectives, &start.drive, &free, &[], HOPELESS);
     let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut found: Vec<Searched> = Vec::new();

@@ -55,7 +55,7 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
     let unknowns: Vec<Unknown> = faults.iter().copied().chain(free.iter().map(|p| MOTOR[*p])).collect();
     let mut drive = fit.drive;
     let logged = log.columns();
-    let averaged = fit.voltage_timing.value == VoltageTiming::Averaged;
+    let averaged = matches!(fit.voltage_timing.value, VoltageTiming::Averaged { .. });
     let hidden = averaged || !log.is_control_rate() || fit.is_filtered();
     // Where a row's voltage acts at once, the rows may as well be means of a faster drive, whose noise tells no inductance.
     let may_be_means = fit.voltage_timing.value.acts_at_once();

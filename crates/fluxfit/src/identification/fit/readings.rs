@@ -3,9 +3,10 @@
 //! A period's delay that is wrong shows wherever the voltage moves. In a log that stands still at one speed it does not show; then the
 //! readings that fit about as well as the best one tell how much it matters.
 
-use super::super::request::Request;
+use super::super::{prepare::model::largest_turn, request::Request};
 use crate::{
     levenberg_marquardt::{Polished, PriorResidual, polish_to_beat, step},
+    log::Log,
     motor::PARAMETERS,
     objective::{
         acting_voltage::VoltageTiming,
@@ -13,6 +14,7 @@ use crate::{
         output_error::OutputError,
     },
     parallel,
+    steady::zero_order_hold::MAX_ANGLE_PER_SAMPLE,
 };
 
 /// Twice the logarithm of the odds against a reading from which on it is ruled out: e^-5, one in 150. R. E. Kass and A. E. Raftery, "Bayes
@@ -40,7 +42,7 @@ impl TimingTrial {
     /// The mean square with a handicap for readings that are rare.
     pub(super) fn rank(&self) -> f64 {
         let handicap = match self.timing {
-            VoltageTiming::Averaged => AVERAGED,
+            VoltageTiming::Averaged { .. } => AVERAGED,
             timing if timing.is_unusual() || VoltageTiming::RARE.contains(&timing) => UNUSUAL,
             _ => 0.0,
         };
@@ -55,9 +57,14 @@ const UNUSUAL: f64 = 0.01;
 /// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
 const AVERAGED: f64 = 0.1;
 
-/// Every usual reading of a drive's voltages, or the one that is stated.
-pub(crate) fn asked(request: &Request) -> Vec<VoltageTiming> {
-    let set_apart = |timing: &VoltageTiming| VoltageTiming::BY_EULERS_RULE.contains(timing) || VoltageTiming::RARE.contains(timing);
+/// Every usual reading of a drive's voltages, or the one that is stated. A row that may be one period is no mean of commands.
+pub(crate) fn asked(log: &Log, request: &Request) -> Vec<VoltageTiming> {
+    let may_be_periods = log.is_control_rate() && largest_turn(log) <= MAX_ANGLE_PER_SAMPLE;
+    let is_of_slow_rows = |timing: VoltageTiming| timing == VoltageTiming::Averaged { later: true };
+    let set_apart = |timing: &VoltageTiming| {
+        let is_rare = VoltageTiming::BY_EULERS_RULE.contains(timing) || VoltageTiming::RARE.contains(timing);
+        is_rare || is_of_slow_rows(*timing) && may_be_periods
+    };
     let usual = || VoltageTiming::ALL.into_iter().filter(|timing| !set_apart(timing)).collect();
     request.voltage_timing.map_or_else(usual, |stated| vec![stated])
 }

@@ -169,7 +169,7 @@ impl<'a> Speeds<'a> {
         let (asked, fitted) = match effort {
             Effort::Step => (vec![reading], 0),
             Effort::Fit => (vec![reading], 1),
-            Effort::Readings => (readings::asked(self.request), FITTED),
+            Effort::Readings => (readings::asked(&self.log, self.request), FITTED),
         };
         let objectives = self.objectives(factor, &asked)?;
         let starts = (0..objectives.len()).map(|place| (place, drive)).collect();

@@ -58,7 +58,7 @@ pub(super) fn doubt(
     let more = |turn: f64| 1.0 + (turn / PERIODS_PER_ROW).abs().min(TAU / PERIODS_PER_TURN).powi(2) / 12.0;
     let by_periods = moves(&objective.with_voltages_scaled(more));
     let is_taken = |fault: Fault| unknowns.iter().filter_map(|unknown| unknown.fault()).any(|taken| taken.family() == fault.family());
-    let changes = reading == VoltageTiming::Averaged && (is_taken(Fault::DeadTime) || is_taken(Fault::FluxHarmonics));
+    let changes = matches!(reading, VoltageTiming::Averaged { .. }) && (is_taken(Fault::DeadTime) || is_taken(Fault::FluxHarmonics));
     let by_averages = if changes { moves(&objective.averaging_twice()) } else { [0.0; PARAMETERS] };
     std::array::from_fn(|p| (by_periods[p] / DEVIATIONS).hypot(by_averages[p]))
 }

@@ -60,7 +60,7 @@ pub(crate) fn points_tell_more(
     let is_explained = is_white && !currents.has(Fault::Disturbance);
     if may_be_decimated {
         // What passes for a filter there is the voltage between the rows; of means it is only known to go about straight.
-        let is_filtered = currents.is_filtered() || currents.voltage_timing.value == VoltageTiming::Averaged;
+        let is_filtered = currents.is_filtered() || matches!(currents.voltage_timing.value, VoltageTiming::Averaged { .. });
         let of_points = judge(&points.finding, None, request, false).map(|one| one.verdict != Verdict::NotIdentifiable);
         let tell_all = of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told);
         let is_misread = currents.is_filtered() || !is_white;
