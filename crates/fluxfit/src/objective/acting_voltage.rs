@@ -39,7 +39,7 @@ pub enum VoltageTiming {
     HalfPeriodLater,
     /// The mean over the row's own span, as the currents are.
     Averaged {
-        /// The means are those of commands, each of which acts [later](MEANS_LATER) than the current from which it was computed.
+        /// The means are those of commands, each of which acts later than the current from which it was computed.
         later: bool,
     },
     /// By Euler's rule: the slope of the current at a row lasts until the next row.
