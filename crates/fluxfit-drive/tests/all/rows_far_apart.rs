@@ -62,6 +62,7 @@ fn two_loads_in_rows_far_apart_tell_no_angle() {
         let is_angle = |fault: Fault| matches!(fault, Fault::AngleOffset | Fault::AngleDelay);
         let of_angle = |outcome| trials.iter().any(|trial| is_angle(trial.fault) && trial.outcome == outcome);
         assert!(of_angle(FaultOutcome::NeedsMorePoints) && !of_angle(FaultOutcome::Taken), "{rows:?}: {trials:?}");
+        assert!(off(&found, Parameter::Ld).is_some() && off(&found, Parameter::PsiF).is_some());
         for parameter in Parameter::ALL {
             assert!(off(&found, parameter).is_none_or(|off| off < 1.5), "{rows:?}, {parameter:?}: {:?}", off(&found, parameter));
         }

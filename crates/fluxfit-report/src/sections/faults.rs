@@ -65,7 +65,8 @@ fn tried(fit: &OutputFit, warnings: &[Warning]) -> Markup {
             "The gain is Schwarz’s criterion (BIC): N ln (cost before / cost after) less ln N for each unknown, with N independent residuals. "
             "Above zero the fault explains more than chance is expected to; above " (VERY_STRONG) " the odds are 150 to 1 that it is there. Each "
             "fault is compared with the fit that includes the faults taken before. It is taken if its gain is above " (VERY_STRONG) ", its value "
-            "is physical, and it changes a parameter by more than its standard error or removes a noticeable part of the residuals’ power."
+            "is physical, and it changes a parameter by more than its standard error or removes a noticeable part of the residuals’ power; an angle "
+            "also needs operating points that tell it where rows are not the drive’s periods."
         }
     }
 }

@@ -134,7 +134,7 @@ impl Estimate {
 }
 
 /// A loss is told by the points where they leave less than this part of its prior's standard error.
-const TOLD: f64 = 0.7;
+pub(super) const TOLD: f64 = 0.7;
 
 /// Whitened equations: two per point, then one per prior, then one per prior of a loss; without their part along the losses. Their values'
 /// errors have unit variance.

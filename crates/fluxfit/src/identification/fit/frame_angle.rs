@@ -11,7 +11,7 @@
 //!
 //! and of an angle that stays unknown the cosine takes a part of the flux.
 
-use super::{super::request::Request, part::Part, voltage_loss::Loss};
+use super::{super::request::Request, estimate::TOLD, part::Part, voltage_loss::Loss};
 use crate::{frames::Dq, log::Log, motor::Motor, steady::OperatingPoint};
 
 /// Standard error of the angle, rad: 95 % of the drives within 6 degrees, as an alignment by current leaves it against friction and
@@ -47,6 +47,12 @@ impl FrameAngle {
     pub(super) fn possible(log: &Log, request: &Request) -> Option<Self> {
         let are_exact = request.voltage_accuracy == 0.0 || log.is_short_circuit();
         (!are_exact && request.model.is_none()).then_some(Self::USUAL)
+    }
+
+    /// Whether the points tell the offset or, at one speed, the delay that does the same, rather than their priors.
+    pub(super) fn is_told(&self) -> bool {
+        let [offset, delay] = self.errors;
+        offset < TOLD * USUAL_OFFSET || delay < TOLD * USUAL_DELAY
     }
 
     /// By how much it is late, s.

@@ -52,20 +52,24 @@ pub(super) struct Start {
     pub(super) may_hide_an_angle: bool,
     /// Whether the operating points show the harmonic of dead time.
     pub(super) shows_dead_time: bool,
-    /// Whether nearly all rows belong to operating points of no more equations than unknowns: they have none left to tell an angle that is
-    /// off from inductances.
+    /// Whether most rows belong to operating points that do not tell an angle that is off from inductances.
     pub(super) points_tell_no_angle: bool,
 }
 
-/// Part of the rows that is nearly all: transients of the windings, a few milliseconds of each mode that is held for a second, are less
-/// than the rest; ramps are more.
-const NEARLY_ALL: f64 = 0.9;
+/// Whether these points tell an angle that is off: where it was not among their unknowns, whether they have an equation left for it.
+fn tell_angle(points: &SteadyFit) -> bool {
+    points.tells_angle.unwrap_or(points.estimate.redundancy > 0)
+}
 
-/// Whether operating points are nearly all rows at which currents are compared.
-pub(crate) fn are_nearly_all_rows(points: &SteadyFit, stretches: &[Range<usize>]) -> bool {
+/// Part of the rows that is most of them: the rest is how currents settle, a tenth of a mode in a slow loop; ramps of the speed, which tell
+/// an angle, are more.
+const MOST: f64 = 0.75;
+
+/// The part of the rows at which currents are compared that belongs to operating points.
+pub(crate) fn part_of_rows(points: &SteadyFit, stretches: &[Range<usize>]) -> f64 {
     let of_points: usize = points.operating_points.iter().map(|point| point.rows.len()).sum();
     let compared: usize = stretches.iter().map(ExactSizeIterator::len).sum();
-    of_points as f64 > NEARLY_ALL * compared as f64
+    of_points as f64 / compared as f64
 }
 
 /// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations. Where the
@@ -104,7 +108,7 @@ pub(super) fn start(
     Start {
         drive: Adjustable::from(Motor::from(values)),
         may_hide_an_angle: is_open(Parameter::Ld) != is_open(Parameter::Lq),
-        points_tell_no_angle: steady.is_some_and(|fit| fit.estimate.redundancy == 0 && are_nearly_all_rows(fit, stretches)),
+        points_tell_no_angle: steady.is_some_and(|fit| !tell_angle(fit) && part_of_rows(fit, stretches) > MOST),
         shows_dead_time: steady.is_some_and(|fit| fit.voltage_losses.iter().any(|volts| *volts > 0.0)),
     }
 }

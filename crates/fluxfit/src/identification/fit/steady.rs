@@ -71,6 +71,8 @@ pub struct SteadyFit {
     possible_losses: Vec<Loss>,
     /// R_s and these, however the flux depends on the current; none where the points do not tell it, or agree on constants.
     rs_of_speeds: Option<Resistance>,
+    /// Whether the points tell an angle that is off or late, where it was among the unknowns.
+    pub(crate) tells_angle: Option<bool>,
     /// The operating points before any correction.
     pub(crate) as_measured: Vec<OperatingPoint>,
 }
@@ -108,8 +110,20 @@ impl SteadyFit {
             Some(frames) => solve_at_lag(log, (&unturned, other_timing.as_deref()), frames, request),
             None => solve_at_angle(log, &unturned, angle, in_doubt, request),
         };
-        let Solved { points, excitation, harmonics, loss_prior, losses, possible_losses, estimate, misfit, lag, at_another_angle, warming } =
-            solved;
+        let Solved {
+            points,
+            excitation,
+            harmonics,
+            loss_prior,
+            losses,
+            possible_losses,
+            estimate,
+            misfit,
+            lag,
+            at_another_angle,
+            tells_angle,
+            warming,
+        } = solved;
         let timing_doubt = match &other_timing {
             // Of a recorder's log it is one of the unknowns.
             Some(other) if lag.is_none() => timing_doubt(&unturned, other, request),
@@ -127,8 +141,7 @@ impl SteadyFit {
             for (parameter, one) in Parameter::ALL.into_iter().zip(&mut uncertainty.parameters) {
                 // Either is as likely as the other.
                 let moves = other.get(parameter) - estimate.motor.get(parameter);
-                one.systematic.frame_lag = one.systematic.frame_lag.hypot(moves / 2.0_f64.sqrt());
-                *one = one.anew();
+                *one = one.with_angle_in_doubt(moves.abs() / 2.0_f64.sqrt());
             }
         }
         let of_angle = angle.filter(|_| misfit.is_some()).map(|angle| angle.unknowns(&points, &estimate.motor));
@@ -166,6 +179,7 @@ impl SteadyFit {
             open_loop: frames.map_or_else(Vec::new, |frames| frames.open_loop),
             warming,
             finding,
+            tells_angle,
             as_measured,
         })
     }
@@ -302,6 +316,8 @@ struct Solved {
     lag: Option<FrameLag>,
     /// The motor at another angle, if points that contradict each other do not contradict each other there.
     at_another_angle: Option<Motor>,
+    /// Whether the points tell the angle, where it was among the unknowns.
+    tells_angle: Option<bool>,
     warming: Option<Warming>,
 }
 
@@ -360,8 +376,12 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
     }
     let turned = round(&mut angle);
     match at_the_angle.misfit {
-        None => turned,
-        Some(_) => Solved { at_another_angle: turned.misfit.is_none().then_some(turned.estimate.motor), ..at_the_angle },
+        None => Solved { tells_angle: Some(angle.is_told()), ..turned },
+        Some(_) => Solved {
+            at_another_angle: Some(turned.estimate.motor)
+                .filter(|motor| turned.misfit.is_none() && motor.to_array().iter().all(|value| value.is_finite())),
+            ..at_the_angle
+        },
     }
 }
 
@@ -399,6 +419,7 @@ fn solve_beside(log: &Log, points: Vec<OperatingPoint>, of_frames: &[Loss], in_d
         misfit,
         lag: None,
         at_another_angle: None,
+        tells_angle: None,
         warming,
         points,
     }

@@ -145,6 +145,18 @@ impl ParameterUncertainty {
         Self::of(self.statistical, self.degrees_of_freedom, self.systematic)
     }
 
+    /// The same with a further doubt of how far the angle is off, a standard uncertainty, SI.
+    pub(super) fn with_angle_in_doubt(self, doubt: f64) -> Self {
+        let mut systematic = self.systematic;
+        systematic.frame_lag = systematic.frame_lag.hypot(doubt);
+        Self::of(self.statistical, self.degrees_behind(), systematic)
+    }
+
+    /// Degrees of freedom of both parts together, back to those of the statistical one.
+    fn degrees_behind(&self) -> f64 {
+        self.degrees_of_freedom * (self.statistical / self.standard_error()).powi(4)
+    }
+
     /// Both parts in quadrature.
     pub fn standard_error(&self) -> f64 {
         self.statistical.hypot(self.systematic.total())
@@ -211,9 +223,8 @@ impl Uncertainty {
     /// The same of an answer with constant parameters, where saturation makes them spread with this standard uncertainty, SI.
     pub(crate) fn with_saturation(mut self, spread: [f64; PARAMETERS]) -> Self {
         for (parameter, part) in self.parameters.iter_mut().zip(spread) {
-            let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
-            // Degrees of freedom of both parts together, back to those of the statistical one.
-            let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
+            let ParameterUncertainty { statistical, mut systematic, .. } = *parameter;
+            let behind = parameter.degrees_behind();
             // Saturation is why the points contradict each other: one doubt, told twice. And its spread is about this very answer, so that
             // what else is doubtful there is within it. A gain is not: it moves the spread as a whole.
             let needed = part.max(systematic.misfit);
@@ -230,8 +241,8 @@ impl Uncertainty {
     pub(super) fn count_common_gains(&mut self, currents: &[f64; PARAMETERS], voltages: &[f64; PARAMETERS]) {
         let before = self.parameters.map(|parameter| parameter.correlated());
         for (p, parameter) in self.parameters.iter_mut().enumerate() {
-            let ParameterUncertainty { statistical, mut systematic, degrees_of_freedom, .. } = *parameter;
-            let behind = degrees_of_freedom * (statistical / parameter.standard_error()).powi(4);
+            let ParameterUncertainty { statistical, mut systematic, .. } = *parameter;
+            let behind = parameter.degrees_behind();
             (systematic.current_gain, systematic.bus_voltage) = (currents[p].abs(), voltages[p].abs());
             *parameter = ParameterUncertainty::of(statistical, behind, systematic);
         }

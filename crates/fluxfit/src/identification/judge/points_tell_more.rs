@@ -13,8 +13,8 @@
 use super::{
     super::{
         fit::{
-            fault_search::LEAST_RESIDUAL, finding::Finding, output::OutputFit, output_errors::CORRELATED,
-            output_start::are_nearly_all_rows, steady::SteadyFit,
+            fault_search::LEAST_RESIDUAL, finding::Finding, output::OutputFit, output_errors::CORRELATED, output_start::part_of_rows,
+            steady::SteadyFit,
         },
         request::{Known, Request},
     },
@@ -64,11 +64,15 @@ pub(crate) fn points_tell_more(
         let of_points = judge(&points.finding, None, request, false).map(|one| one.verdict != Verdict::NotIdentifiable);
         let tell_all = of_points.iter().zip(told).all(|(of_points, told)| *of_points || !told);
         let is_misread = currents.is_filtered() || !is_white;
-        return if_so((!is_explained || is_filtered) && (tell_all || is_misread && are_nearly_all_rows(points, &currents.stretches)));
+        return if_so((!is_explained || is_filtered) && (tell_all || is_misread && part_of_rows(points, &currents.stretches) > NEARLY_ALL));
     }
     let can_contradict = points.estimate.redundancy > 0;
     if !is_explained && can_contradict && is_narrower(points, currents, request) { Points::AreNarrower } else { Points::TellLess }
 }
+
+/// Part of the rows that is nearly all: transients of the windings, a few milliseconds of each mode that is held for a second, are less
+/// than the rest; ramps are more.
+const NEARLY_ALL: f64 = 0.9;
 
 /// Whether the points' intervals are narrower than the currents'.
 pub(crate) fn is_narrower(points: &SteadyFit, currents: &OutputFit, request: &Request) -> bool {
