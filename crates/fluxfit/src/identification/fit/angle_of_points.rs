@@ -46,7 +46,7 @@ impl FaultSearch<'_> {
         taken.retain(|trial| !is_angle(trial.fault));
         self.choose_reading();
         let moves = Parameter::ALL.map(|parameter| with_angle.get(parameter) - self.drive.motor.get(parameter));
-        // Of two, both went at once: their moves are told once.
+        // Both of two go at once, so their moves count once.
         let told = |place: usize| if place == 0 { moves } else { [0.0; PARAMETERS] };
         let trial = |(place, fault)| FaultTrial { fault, gain, outcome: FaultOutcome::NeedsMorePoints, moves: told(place) };
         angles.into_iter().enumerate().map(trial).collect()

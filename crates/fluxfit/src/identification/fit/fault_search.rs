@@ -87,7 +87,7 @@ pub(crate) struct FaultSearch<'a> {
     pub(crate) row_period: f64,
     /// The largest angle from row to row, rad.
     pub(crate) row_turn: f64,
-    /// Whether [so few points are held](super::output_start::Start::points_tell_no_angle) that they tell no angle that is off.
+    /// Whether most rows belong to operating points that do not tell an angle that is off.
     pub(crate) points_tell_no_angle: bool,
     /// Every reading with this drive's faults, the best first; empty where they were not compared since it changed.
     pub(crate) compared: Vec<(usize, TimingTrial)>,

@@ -46,7 +46,7 @@ pub enum FaultOutcome {
     NeedsTurning,
     /// It needs rows between which the rotor turns less.
     NeedsCloserRows,
-    /// It needs more operating points, or rows that are the drive's own periods: only what goes on between these rows speaks for it.
+    /// It needs more operating points, or rows that are the drive's own periods: only what goes on between the rows speaks for it.
     NeedsMorePoints,
 }
 
@@ -63,7 +63,7 @@ impl FaultOutcome {
             Self::NeedsAngle => "needs the electrical angle, theta_e",
             Self::NeedsTurning => "needs a rotor that turns",
             Self::NeedsCloserRows => "needs rows between which the rotor turns less",
-            Self::NeedsMorePoints => "needs more operating points: of these only what goes on between the rows speaks for it",
+            Self::NeedsMorePoints => "needs more operating points: only what goes on between the rows speaks for it",
         }
     }
 }

@@ -52,7 +52,7 @@ pub(super) struct Start {
     pub(super) may_hide_an_angle: bool,
     /// Whether the operating points show the harmonic of dead time.
     pub(super) shows_dead_time: bool,
-    /// Whether most rows belong to operating points that do not tell an angle that is off from inductances.
+    /// Whether most rows belong to operating points that do not tell an angle that is off from other inductances.
     pub(super) points_tell_no_angle: bool,
 }
 
@@ -61,8 +61,8 @@ fn tell_angle(points: &SteadyFit) -> bool {
     points.tells_angle.unwrap_or(points.estimate.redundancy > 0)
 }
 
-/// Part of the rows that is most of them: the rest is how currents settle, a tenth of a mode in a slow loop; ramps of the speed, which tell
-/// an angle, are more.
+/// Part of the rows that is most of them. Of steps from one point to the next, the others are a tenth or two, in which currents settle;
+/// ramps of the speed, which tell an angle, take more.
 const MOST: f64 = 0.75;
 
 /// The part of the rows at which currents are compared that belongs to operating points.

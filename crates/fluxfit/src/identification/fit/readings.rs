@@ -60,10 +60,9 @@ const AVERAGED: f64 = 0.1;
 /// Every usual reading of a drive's voltages, or the one that is stated. A row that may be one period is no mean of commands.
 pub(crate) fn asked(log: &Log, request: &Request) -> Vec<VoltageTiming> {
     let may_be_periods = log.is_control_rate() && largest_turn(log) <= MAX_ANGLE_PER_SAMPLE;
-    let is_of_slow_rows = |timing: VoltageTiming| timing == VoltageTiming::Averaged { later: true };
     let set_apart = |timing: &VoltageTiming| {
         let is_rare = VoltageTiming::BY_EULERS_RULE.contains(timing) || VoltageTiming::RARE.contains(timing);
-        is_rare || is_of_slow_rows(*timing) && may_be_periods
+        is_rare || *timing == VoltageTiming::Averaged { later: true } && may_be_periods
     };
     let usual = || VoltageTiming::ALL.into_iter().filter(|timing| !set_apart(timing)).collect();
     request.voltage_timing.map_or_else(usual, |stated| vec![stated])
