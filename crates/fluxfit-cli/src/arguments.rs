@@ -2,7 +2,7 @@
 //! stand in its own file.
 
 use clap::{Args, ValueEnum, builder::Resettable};
-use fluxfit::{Model, Request, TimeWindow, VoltageFrame, VoltageTiming, motor::Parameter, optimizer::METHODS};
+use fluxfit::{MeansOf, Model, Request, TimeWindow, VoltageFrame, VoltageTiming, motor::Parameter, optimizer::METHODS};
 use fluxfit_log::CONTAINERS;
 use fluxfit_setup::SensorAccuracy;
 use fluxfit_units::{Unit, wording::choice};
@@ -186,8 +186,10 @@ pub(crate) enum Timing {
     Half,
     /// Mean over the row's own span, as the currents
     Averaged,
-    /// The same of commands that act later
-    AveragedLater,
+    /// The same of four to eight commands, which act later
+    AveragedCommands,
+    /// The same of two commands
+    AveragedTwoCommands,
     /// Of a simulator that goes from row to row by Euler's rule
     Euler,
     /// The same, logged with the current after the step
@@ -213,8 +215,9 @@ impl Timing {
             Self::OneRotor => in_rotor(1),
             Self::MinusOne => Some(VoltageTiming::Ended),
             Self::Half => Some(VoltageTiming::HalfPeriodLater),
-            Self::Averaged => Some(VoltageTiming::Averaged { later: false }),
-            Self::AveragedLater => Some(VoltageTiming::Averaged { later: true }),
+            Self::Averaged => Some(VoltageTiming::Averaged { of: MeansOf::Voltages }),
+            Self::AveragedCommands => Some(VoltageTiming::Averaged { of: MeansOf::Commands }),
+            Self::AveragedTwoCommands => Some(VoltageTiming::Averaged { of: MeansOf::TwoCommands }),
             Self::Euler => Some(VoltageTiming::Euler { after: false }),
             Self::EulerAfter => Some(VoltageTiming::Euler { after: true }),
         }

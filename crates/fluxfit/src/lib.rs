@@ -101,7 +101,7 @@ pub use identification::{
 };
 pub use log::{Columns, Log};
 pub use motor::{Motor, Parameter};
-pub use objective::acting_voltage::{VoltageFrame, VoltageTiming};
+pub use objective::acting_voltage::{MeansOf, VoltageFrame, VoltageTiming};
 pub use sample_check::{SampleFinding, check_samples};
 pub use steady::windows::TimeWindow;
 pub use validation::{

@@ -1,7 +1,8 @@
 //! Carrying out a remedy: the drive as it was, with what the remedy says.
 
 use fluxfit::{
-    Also, Answer, Known, Log, Measurement, Model, Parameter, Place, Remedy, Request, VoltageTiming, frames::Dq, identify, optimizer::Draws,
+    Also, Answer, Known, Log, MeansOf, Measurement, Model, Parameter, Place, Remedy, Request, VoltageTiming, frames::Dq, identify,
+    optimizer::Draws,
 };
 use fluxfit_drive::{
     Scenario,
@@ -89,7 +90,7 @@ impl Case {
             // Of every n-th row the timing is none of those that can be stated.
             Remedy::StateVoltageTiming if self.scenario.logging.every == 1 => case.request.voltage_timing = Some(VoltageTiming::Centered),
             Remedy::StateVoltageTiming if self.scenario.logging.rows == LoggedRows::Mean => {
-                case.request.voltage_timing = Some(VoltageTiming::Averaged { later: false });
+                case.request.voltage_timing = Some(VoltageTiming::Averaged { of: MeansOf::Voltages });
             }
             Remedy::CompensateDeadTime { .. } => {
                 let inverter = &mut case.scenario.inverter;

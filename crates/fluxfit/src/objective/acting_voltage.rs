@@ -39,8 +39,8 @@ pub enum VoltageTiming {
     HalfPeriodLater,
     /// The mean over the row's own span, as the currents are.
     Averaged {
-        /// The means are those of commands, each of which acts later than the current from which it was computed.
-        later: bool,
+        /// Of what.
+        of: MeansOf,
     },
     /// By Euler's rule: the slope of the current at a row lasts until the next row.
     Euler {
@@ -49,9 +49,32 @@ pub enum VoltageTiming {
     },
 }
 
-/// By which part of a row means of commands act later: 1.5 periods from the sample of a current to the middle of what its command applies,
-/// of a row of five; means of four to eight have 0.38 to 0.19. Fewer are read as what begins at the row, more as all means are.
-const MEANS_LATER: f64 = 1.5 / 5.0;
+/// What means of voltages were made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeansOf {
+    /// Of voltages that act while the currents are sampled, or of so many commands that their delay does not count.
+    Voltages,
+    /// Of four to eight commands, each of which acts later than the current from which it was computed. Three act half a row later, as what
+    /// begins at the row does.
+    Commands,
+    /// Of two commands.
+    TwoCommands,
+}
+
+/// Periods from the sample of a current to the middle of what its command applies.
+const COMMAND_DELAY: f64 = 1.5;
+
+impl MeansOf {
+    /// By which part of a row they act later than the currents.
+    fn later(self) -> f64 {
+        match self {
+            Self::Voltages => 0.0,
+            // Between 0.38 of a row of four periods and 0.19 of one of eight.
+            Self::Commands => COMMAND_DELAY / 5.0,
+            Self::TwoCommands => COMMAND_DELAY / 2.0,
+        }
+    }
+}
 
 /// The frame in which a delayed voltage is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,8 +105,11 @@ impl VoltageTiming {
     /// Those of few drives. A filter or a late angle in a usual log passes for one.
     pub(crate) const RARE: [Self; 2] = [Self::Ended, Self::HalfPeriodLater];
 
+    /// Those of rows that are means of what a drive commands.
+    pub(crate) const MEANS_OF_COMMANDS: [Self; 2] = [Self::Averaged { of: MeansOf::Commands }, Self::Averaged { of: MeansOf::TwoCommands }];
+
     /// All timings that are known from drives and simulators.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
         Self::Delayed { delay: 1, frame: VoltageFrame::Middle },
@@ -95,8 +121,9 @@ impl VoltageTiming {
         Self::HalfPeriodLater,
         Self::Delayed { delay: 0, frame: VoltageFrame::Rotor },
         Self::Delayed { delay: 1, frame: VoltageFrame::Rotor },
-        Self::Averaged { later: false },
-        Self::Averaged { later: true },
+        Self::Averaged { of: MeansOf::Voltages },
+        Self::MEANS_OF_COMMANDS[0],
+        Self::MEANS_OF_COMMANDS[1],
         Self::BY_EULERS_RULE[0],
         Self::BY_EULERS_RULE[1],
     ];
@@ -115,8 +142,9 @@ impl VoltageTiming {
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "1-rotor",
             Self::Ended => "-1",
             Self::HalfPeriodLater => "0.5",
-            Self::Averaged { later: false } => "averaged",
-            Self::Averaged { later: true } => "averaged-later",
+            Self::Averaged { of: MeansOf::Voltages } => "averaged",
+            Self::Averaged { of: MeansOf::Commands } => "averaged-commands",
+            Self::Averaged { of: MeansOf::TwoCommands } => "averaged-two-commands",
             Self::Euler { after: false } => "euler",
             Self::Euler { after: true } => "euler-after",
         }
@@ -140,8 +168,9 @@ impl VoltageTiming {
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "what acts one period later, held in the rotor's frame",
             Self::Ended => "what acted over the period that ended at the row",
             Self::HalfPeriodLater => "what acts half a period later",
-            Self::Averaged { later: false } => "the mean over the row's own span, as the currents",
-            Self::Averaged { later: true } => "the mean over the row's own span, of commands that act later",
+            Self::Averaged { of: MeansOf::Voltages } => "the mean over the row's own span, as the currents",
+            Self::Averaged { of: MeansOf::Commands } => "the mean over the row's own span, of commands that act later",
+            Self::Averaged { of: MeansOf::TwoCommands } => "the mean of two commands that act later",
             Self::Euler { after: false } => "a simulator's that goes from row to row by Euler's rule",
             Self::Euler { after: true } => "a simulator's that goes from row to row by Euler's rule, and logs the current after the step",
         }
@@ -150,8 +179,8 @@ impl VoltageTiming {
     /// Rows at a segment's start whose acting voltage is not in the log.
     pub(super) fn lost_rows(self) -> usize {
         match self {
+            Self::HalfPeriodLater | Self::Averaged { of: MeansOf::TwoCommands } => 1,
             Self::Centered | Self::Ended | Self::Averaged { .. } | Self::Euler { .. } => 0,
-            Self::HalfPeriodLater => 1,
             Self::Delayed { delay, .. } => delay,
         }
     }
@@ -264,9 +293,11 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 }
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Row } => at_middle(in_stator(row - delay)),
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Rotor } => in_rotor_frame(row - delay),
-                VoltageTiming::Averaged { later } => {
-                    let (start, end) = (in_rotor_frame(row), in_rotor_frame(row + 1));
-                    let part = if later { 0.5 - MEANS_LATER } else { 0.5 };
+                VoltageTiming::Averaged { of } => {
+                    // Where the middle of this period lies between the rows, seen from the first of these two.
+                    let first = row - reading.lost_rows();
+                    let (start, end) = (in_rotor_frame(first), in_rotor_frame(first + 1));
+                    let part = 0.5 + (row - first) as f64 - of.later();
                     Dq { d: start.d + part * (end.d - start.d), q: start.q + part * (end.q - start.q) }
                 }
                 VoltageTiming::Euler { after } => in_rotor_frame(row + usize::from(after)),

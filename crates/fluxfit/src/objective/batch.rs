@@ -328,7 +328,7 @@ mod tests {
         log::{Columns, Log},
         motor::Motor,
         objective::{
-            acting_voltage::{VoltageFrame, VoltageTiming},
+            acting_voltage::{MeansOf, VoltageFrame, VoltageTiming},
             angles::Angles,
             output_error::OutputError,
             transition::Transition,
@@ -436,7 +436,7 @@ mod tests {
             for timing in [
                 VoltageTiming::Delayed { delay: 0, frame },
                 VoltageTiming::Delayed { delay: 1, frame },
-                VoltageTiming::Averaged { later: false },
+                VoltageTiming::Averaged { of: MeansOf::Voltages },
             ] {
                 let cost = rows(&log, timing).costs(&[Adjustable::from(MOTOR)])[0];
                 assert!(cost < 1e-18, "{timing:?}: {cost}");

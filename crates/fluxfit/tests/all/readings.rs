@@ -11,7 +11,7 @@ use fluxfit::{
     identify,
     log::{Columns, Log},
     motor::{Motor, Parameter},
-    objective::acting_voltage::{VoltageFrame, VoltageTiming},
+    objective::acting_voltage::{MeansOf, VoltageFrame, VoltageTiming},
     optimizer::Draws,
 };
 
@@ -198,15 +198,19 @@ fn mean<'a>(values: impl ExactSizeIterator<Item = &'a Dq>) -> Dq {
 #[test]
 fn means_over_each_rows_span_are_read() {
     let log = log(&course(160_000), 4 * HELD, |values| mean(values.iter()));
-    holds(&log, VoltageTiming::Averaged { later: false }, 1.0);
+    holds(&log, VoltageTiming::Averaged { of: MeansOf::Voltages }, 1.0);
 }
 
-/// Rows are means of five periods' samples, each of a current and of the command that acts from the next sample on. Read as acting at the
-/// row, held in the rotor's frame, such a log had R_s 7.1 % too large, ±4.5 %, identified.
+/// Rows are means of so many periods' samples, each of a current and of the command that acts from the next sample on.
+fn means_of_commands(periods: usize) -> Log {
+    let Course { currents, mut voltages } = course(40_000 * periods);
+    voltages.rotate_left(HELD);
+    log(&Course { currents, voltages }, periods * HELD, |values| mean(values.iter().step_by(HELD)))
+}
+
+/// Read as acting at the row, held in the rotor's frame, the first log had R_s 7.1 % too large, ±4.5 %, identified.
 #[test]
 fn means_of_commands_are_read() {
-    let Course { currents, mut voltages } = course(200_000);
-    voltages.rotate_left(HELD);
-    let log = log(&Course { currents, voltages }, 5 * HELD, |values| mean(values.iter().step_by(HELD)));
-    holds(&log, VoltageTiming::Averaged { later: true }, 1.0);
+    holds(&means_of_commands(5), VoltageTiming::Averaged { of: MeansOf::Commands }, 1.0);
+    holds(&means_of_commands(2), VoltageTiming::Averaged { of: MeansOf::TwoCommands }, 1.0);
 }

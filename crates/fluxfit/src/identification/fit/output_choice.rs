@@ -116,8 +116,15 @@ pub(super) fn choose(
 ) -> Result<Vec<Chosen>, Error> {
     let _ = progress(Step::VoltageTiming);
     let free: Vec<Unknown> = free(log, request).into_iter().chain(output_start::rest_of_lag(undone_lag)).collect();
-    let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &readings::asked(log, request))?;
-    let rough = readings::readings(&objectives, &start.drive, &free, &[], HOPELESS);
+    let under = |readings: &[_]| OutputError::under_readings(log, &stretches::spread(stretches), readings);
+    let roughly = |objectives: &Objectives| readings::readings(objectives, &start.drive, &free, &[], HOPELESS);
+    let mut objectives = under(&readings::asked(log, request))?;
+    let mut rough = roughly(&objectives);
+    let suspected = rough.first().map_or(Vec::new(), |(_, best)| readings::suspected(best.timing, &objectives, request));
+    if !suspected.is_empty() {
+        objectives.extend(under(&suspected)?);
+        rough = roughly(&objectives);
+    }
     let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut found: Vec<Searched> = Vec::new();
     let mut begun: Vec<FaultSearch> = Vec::new();
@@ -131,7 +138,7 @@ pub(super) fn choose(
     // Between rows that are not the drive's periods, means pass for rare readings.
     let rare: &[_] = if every_period { &VoltageTiming::RARE } else { &[] };
     let objectives_of = |readings: &[_]| match request.voltage_timing {
-        None => OutputError::under_readings(log, &stretches::spread(stretches), readings),
+        None => under(readings),
         Some(_) => Ok(Vec::new()),
     };
     let (steps, rare) = (objectives_of(&VoltageTiming::BY_EULERS_RULE)?, objectives_of(rare)?);
@@ -327,8 +334,9 @@ impl Chosen {
         let (steps, rare) = (VoltageTiming::BY_EULERS_RULE, VoltageTiming::RARE);
         let asked = match self.reading {
             reading if steps.contains(&reading) => steps.to_vec(),
-            reading if rare.contains(&reading) && !asked.contains(&reading) => [&rare, asked].concat(),
-            _ => asked.to_vec(),
+            reading if asked.contains(&reading) => asked.to_vec(),
+            reading if rare.contains(&reading) => [&rare, asked].concat(),
+            _ => [&VoltageTiming::MEANS_OF_COMMANDS, asked].concat(),
         };
         let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &asked)?;
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);

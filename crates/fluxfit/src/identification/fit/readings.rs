@@ -57,15 +57,24 @@ const UNUSUAL: f64 = 0.01;
 /// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
 const AVERAGED: f64 = 0.1;
 
-/// Every usual reading of a drive's voltages, or the one that is stated. A row that may be one period is no mean of commands.
+/// Every usual reading of a drive's voltages, or the one that is stated. A row that may be one period is hardly a mean of commands.
 pub(crate) fn asked(log: &Log, request: &Request) -> Vec<VoltageTiming> {
     let may_be_periods = log.is_control_rate() && largest_turn(log) <= MAX_ANGLE_PER_SAMPLE;
     let set_apart = |timing: &VoltageTiming| {
         let is_rare = VoltageTiming::BY_EULERS_RULE.contains(timing) || VoltageTiming::RARE.contains(timing);
-        is_rare || *timing == VoltageTiming::Averaged { later: true } && may_be_periods
+        is_rare || VoltageTiming::MEANS_OF_COMMANDS.contains(timing) && may_be_periods
     };
     let usual = || VoltageTiming::ALL.into_iter().filter(|timing| !set_apart(timing)).collect();
     request.voltage_timing.map_or_else(usual, |stated| vec![stated])
+}
+
+/// Readings to try beside those that were asked for, given the best of them: in no drive that logs each of its periods a command acts at
+/// once, so rows as close as periods may be means of commands all the same.
+pub(crate) fn suspected(best: VoltageTiming, tried: &[(VoltageTiming, OutputError)], request: &Request) -> Vec<VoltageTiming> {
+    let may_be_means = best.acts_at_once() || matches!(best, VoltageTiming::Averaged { .. });
+    let is_open = |timing: &VoltageTiming| !tried.iter().any(|(other, _)| other == timing);
+    let of_commands = || VoltageTiming::MEANS_OF_COMMANDS.into_iter().filter(is_open).collect();
+    if may_be_means && request.voltage_timing.is_none() { of_commands() } else { Vec::new() }
 }
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
