@@ -73,7 +73,7 @@ mod tests {
         let refusal = |text| parse_unit(text).unwrap_err().to_string();
         assert_eq!(
             refusal("omega=rpm"),
-            "\"rpm\" is not a unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec, Hz-mech, krpm-elec or krpm-mech"
+            "\"rpm\" is not a unit of omega_e; it can be rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec, Hz-mech, krpm-elec, krpm-mech, deg/s or deg/s-mech"
         );
         assert_eq!(refusal("ud=A"), "\"A\" is not a unit of ud; it can be V, mV, kV or Vrms");
         assert_eq!(parse_unit("id=arms"), Ok(("id".into(), Unit::AmpereRms)));

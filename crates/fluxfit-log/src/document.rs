@@ -3,8 +3,8 @@
 //! Its fields are the document's keys, in this order, and their comments are the descriptions of its JSON Schema (`docs/schema`, feature
 //! `schema`). Fields are added, never renamed.
 
-use crate::reading::{InspectedColumn, Inspection, ReadLog};
-use fluxfit::{ColumnFinding, SampleFinding, check_columns, check_samples, log::Log};
+use crate::reading::{InspectedColumn, Inspection, ReadLog, column_findings};
+use fluxfit::{ColumnFinding, SampleFinding, check_samples};
 use serde::Serialize;
 
 /// The name of this document.
@@ -113,14 +113,14 @@ impl InspectionDocument {
             log: read.ok().map(InspectedLogEntry::of),
             table: inspection.table.as_ref().map(|read| read.table.label()),
             notes: notes.iter().map(|note| note.sentence.clone()).collect(),
-            findings: read.map_or(Vec::new(), |read| findings(&read.log)),
+            findings: read.map_or(Vec::new(), findings),
             error: read.err().filter(|_| inspection.table.is_none()).map(ToString::to_string),
         }
     }
 }
 
-fn findings(log: &Log) -> Vec<FindingEntry> {
-    let (columns, samples) = (check_columns(log), check_samples(log));
+fn findings(read: &ReadLog) -> Vec<FindingEntry> {
+    let (columns, samples) = (column_findings(&read.log, &read.columns), check_samples(&read.log));
     columns.iter().map(FindingEntry::of).chain(samples.iter().map(FindingEntry::of_samples)).collect()
 }
 

@@ -50,6 +50,9 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         "rad/s" | "rad_s" | "rad.s" | "rads" | "rad_per_s" | "radps" => {
             by_rotation(Unit::RadianPerSecond, Unit::RadianPerSecondMechanical, Unit::RadianPerSecond)
         }
+        "deg/s" | "deg_s" | "deg_per_s" | "degree/s" | "degrees/s" | "°/s" | "dps" => {
+            by_rotation(Unit::DegreePerSecond, Unit::DegreePerSecondMechanical, Unit::DegreePerSecond)
+        }
         "rps" | "rev/s" | "revs/s" | "turn/s" | "turns/s" => {
             by_rotation(Unit::HertzElectrical, Unit::HertzMechanical, Unit::HertzMechanical)
         }
@@ -117,7 +120,7 @@ fn is_index(text: &str) -> bool {
 
 /// Units without brackets that would be read as SI if they were not known: shares of a base value, digits of a converter, root
 /// mean squares where a dq value is a peak.
-const NO_SI: [&str; 13] = ["rms", "arms", "vrms", "pu", "mrad/s", "krad/s", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
+const NO_SI: [&str; 14] = ["rms", "arms", "vrms", "pu", "mrad/s", "krad/s", "khz", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
 
 /// Texts in the place of a unit for a share of a base value, and how many of them are the whole.
 const SHARES: [(&str, f64); 7] =
@@ -130,7 +133,7 @@ pub(crate) fn share(text: &str) -> Option<f64> {
 }
 
 /// Units and counts that a unit of speed begins with.
-const NUMERATORS: [&str; 10] = ["rad", "r", "rev", "revs", "turn", "turns", "u", "1", "m", "km"];
+const NUMERATORS: [&str; 13] = ["deg", "degree", "degrees", "rad", "r", "rev", "revs", "turn", "turns", "u", "1", "m", "km"];
 
 fn last_word(text: &str) -> &str {
     text.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or(text)
@@ -238,6 +241,12 @@ mod tests {
             ("theta_e_rad", Angle, ("theta_e", HeaderUnit::Known(Unit::Radian))),
             ("speed_rad", Speed, ("speed_rad", HeaderUnit::None)),
             ("n / min^-1", Speed, ("n", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("speed [deg/s]", Speed, ("speed", HeaderUnit::Known(Unit::DegreePerSecond))),
+            ("f_e_kHz", Speed, ("f_e", HeaderUnit::Unknown("kHz"))),
+            ("omega_e_deg_s", Speed, ("omega_e", HeaderUnit::Known(Unit::DegreePerSecond))),
+            ("n_mech (°/s)", Speed, ("n_mech", HeaderUnit::Known(Unit::DegreePerSecondMechanical))),
+            ("mech speed deg/s", Speed, ("mech speed", HeaderUnit::Known(Unit::DegreePerSecondMechanical))),
+            ("speed deg/s", Time, ("speed deg/s", HeaderUnit::None)),
             ("omega/(rad/s)", Speed, ("omega", HeaderUnit::Known(Unit::RadianPerSecond))),
             ("Ud in V", Voltage, ("Ud", HeaderUnit::Known(Unit::Volt))),
             ("t/s", Time, ("t", HeaderUnit::Known(Unit::Second))),

@@ -46,6 +46,10 @@ pub enum Unit {
     HertzElectrical,
     /// Mechanical turns in a second.
     HertzMechanical,
+    /// Electrical degrees in a second.
+    DegreePerSecond,
+    /// Mechanical degrees in a second.
+    DegreePerSecondMechanical,
     /// Electrical rad.
     Radian,
     /// Electrical degrees.
@@ -62,7 +66,7 @@ pub enum Unit {
 
 impl Unit {
     /// All of them; of each dimension the SI unit first.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 28] = [
         Self::Second,
         Self::Millisecond,
         Self::Microsecond,
@@ -83,6 +87,8 @@ impl Unit {
         Self::HertzMechanical,
         Self::KrpmElectrical,
         Self::KrpmMechanical,
+        Self::DegreePerSecond,
+        Self::DegreePerSecondMechanical,
         Self::Radian,
         Self::Degree,
         Self::RadianMechanical,
@@ -114,6 +120,8 @@ impl Unit {
             Self::RadianPerSecondMechanical => ("rad/s-mech", "mechanical rad/s", Dimension::Speed, 1.0),
             Self::HertzElectrical => ("Hz-elec", "electrical Hz", Dimension::Speed, TAU),
             Self::HertzMechanical => ("Hz-mech", "mechanical Hz", Dimension::Speed, TAU),
+            Self::DegreePerSecond => ("deg/s", "electrical degrees a second", Dimension::Speed, PI / 180.0),
+            Self::DegreePerSecondMechanical => ("deg/s-mech", "mechanical degrees a second", Dimension::Speed, PI / 180.0),
             Self::Radian => ("rad", "electrical rad", Dimension::Angle, 1.0),
             Self::Degree => ("deg", "electrical degrees", Dimension::Angle, PI / 180.0),
             Self::RadianMechanical => ("rad-mech", "mechanical rad", Dimension::Angle, 1.0),
@@ -197,6 +205,9 @@ mod tests {
         assert_eq!(si(Unit::RpmMechanical), 300.0 * (TAU / 60.0 * 4.0));
         assert_eq!(si(Unit::HertzMechanical), 300.0 * (TAU * 4.0));
         assert_eq!(si(Unit::DegreeMechanical), 300.0 * (PI / 180.0 * 4.0));
+        // 360 degrees a second are one turn a second.
+        assert!((si(Unit::DegreePerSecond) * 360.0 - si(Unit::HertzElectrical)).abs() < 1e-8);
+        assert!((si(Unit::DegreePerSecondMechanical) * 360.0 - si(Unit::HertzMechanical)).abs() < 1e-8);
     }
 
     #[test]

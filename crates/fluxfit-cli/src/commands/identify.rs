@@ -141,10 +141,10 @@ pub(crate) fn run(arguments: &Identify) -> Result<Status, CommandError> {
     Ok(if answer.is_complete() { exported } else { Status::Incomplete })
 }
 
-/// What the columns contradict each other in, if the model is stated all the same.
+/// What the columns contradict each other in, if the model is stated all the same or nothing of it is certain.
 pub(crate) fn accepted(arguments: &Identify, input: &input::Input) -> Result<Vec<Told>, CommandError> {
     let findings = input.findings();
-    match findings.first().filter(|_| arguments.model == ModelArgument::Auto) {
+    match findings.iter().find(|finding| finding.refuses && arguments.model == ModelArgument::Auto) {
         Some(finding) => Err(CommandError::Columns { log: input.name.clone(), finding: finding.clone() }),
         None => Ok(findings),
     }

@@ -6,9 +6,11 @@ use crate::{
     error::CommandError,
     terminal::{self, mending, told::Told},
 };
-use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, check_columns, check_samples, log::Source, optimizer};
+use fluxfit::{Error, ErrorKind, Log, Nameplate, Rating, Request, check_samples, log::Source, optimizer};
 use fluxfit_files::FileError;
-use fluxfit_log::{LogOptions, MemoryTable, Note, ReadColumn, ReadLog, read_log, read_log_with_progress, read_mapping, read_table};
+use fluxfit_log::{
+    LogOptions, MemoryTable, Note, ReadColumn, ReadLog, column_findings, read_log, read_log_with_progress, read_mapping, read_table,
+};
 use fluxfit_setup::{MotorFile, read_motor};
 use fluxfit_units::wording::one_line;
 use std::{fs, path::Path, sync::Arc};
@@ -34,7 +36,9 @@ impl Input {
     /// What was read as what, and what was inferred: for a page that stands alone.
     pub(crate) fn said(&self) -> Vec<String> {
         let Source { columns, notes } = self.log.source();
-        columns.iter().chain(notes).cloned().chain(self.samples().into_iter().map(|finding| finding.sentence)).collect()
+        // What has no number in the answer stands beside it.
+        let findings = self.findings().into_iter().map(|finding| finding.sentence.trim_end_matches(':').to_owned());
+        columns.iter().chain(notes).cloned().chain(findings).chain(self.samples().into_iter().map(|finding| finding.sentence)).collect()
     }
 }
 
@@ -43,7 +47,7 @@ impl Input {
     /// mostly of one drive, and what is proposed is for the first.
     pub(crate) fn findings(&self) -> Vec<Told> {
         let columns = self.columns.first().map_or(&[][..], Vec::as_slice);
-        check_columns(&self.log).iter().map(|finding| mending::told(finding, columns, self.pole_pairs)).collect()
+        column_findings(&self.log, columns).iter().map(|finding| mending::told(finding, columns, self.pole_pairs)).collect()
     }
 }
 

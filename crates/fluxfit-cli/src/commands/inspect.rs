@@ -10,9 +10,9 @@ use crate::{
     terminal::{self, mending, told::Told},
 };
 use clap::Args;
-use fluxfit::{check_columns, check_samples};
+use fluxfit::check_samples;
 use fluxfit_files::{check_writable, write_atomically};
-use fluxfit_log::{Inspection, LogOptions, document::InspectionDocument, inspect};
+use fluxfit_log::{Inspection, LogOptions, column_findings, document::InspectionDocument, inspect};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -81,7 +81,7 @@ fn command_for_table(arguments: &Inspect, options: &LogOptions) -> String {
 /// What the columns contradict each other in, with what mends it.
 fn findings(inspection: &Inspection, pole_pairs: Option<u32>) -> Vec<Told> {
     let Ok(read) = &inspection.log else { return Vec::new() };
-    check_columns(&read.log).iter().map(|finding| mending::told(finding, &read.columns, pole_pairs)).collect()
+    column_findings(&read.log, &read.columns).iter().map(|finding| mending::told(finding, &read.columns, pole_pairs)).collect()
 }
 
 /// Outliers and stale samples.

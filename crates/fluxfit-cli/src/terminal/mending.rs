@@ -42,7 +42,9 @@ impl Mending {
             ColumnFinding::TimeUnit { factor } => time_unit(*factor, read),
             ColumnFinding::Axes { changes, .. } => changes.first().map(|changes| axes(changes, read)).unwrap_or_default(),
             ColumnFinding::PhaseOrder => phases(read),
-            ColumnFinding::VoltageScale { ratio } => voltages(*ratio, read),
+            ColumnFinding::VoltageScale { ratio, rows, most } => voltages(*ratio, *rows, *most, read),
+            ColumnFinding::VoltageShare { .. } => shares(SEEM_SHARES, 0.5, "", read),
+            ColumnFinding::VoltageDigits { .. } => digits(MAY_BE_DIGITS, read),
             _ => Self::default(),
         }
     }
@@ -219,7 +221,9 @@ fn line(read: &[ReadColumn], channel: &str, from: &str, factor: f64) -> Option<S
     } else if factor == -1.0 {
         format!("{channel} = {{ column = \"{name}\", sign = -1 }}")
     } else {
-        format!("{channel} = {{ column = \"{name}\", scale = {} }}", significant(factor, 6))
+        let scale = significant(factor, 6);
+        let scale = if scale.contains('.') && !scale.contains('e') { scale.trim_end_matches('0').trim_end_matches('.') } else { &scale };
+        format!("{channel} = {{ column = \"{name}\", scale = {scale} }}")
     })
 }
 
@@ -288,24 +292,68 @@ fn phases(read: &[ReadColumn]) -> Mending {
 /// From here on the voltages are not V.
 const MILLI: f64 = 100.0;
 
-/// Up to here line to line voltages explain it.
+/// Up to here line to line voltages explain it, in nearly all rows.
 const LINE_TO_LINE: f64 = 1.8;
+const NEARLY_ALL: f64 = 0.9;
 
-fn voltages(ratio: f64, read: &[ReadColumn]) -> Mending {
+/// Per cent of half the DC voltage stay below this: in six-step operation they come to 127.
+const MOST_PER_CENT: f64 = 130.0;
+
+const SEEM_SHARES: &str = "they seem to be shares of u_dc (if they are V, add --unit ud=V,uq=V)";
+
+const MAY_BE_DIGITS: &str = "digits of a converter, or rounded V (if so, add --unit ud=V,uq=V)";
+
+fn voltages(ratio: f64, rows: f64, most: f64, read: &[ReadColumn]) -> Mending {
     if ratio >= MILLI {
         return Mending { cause: Some("in mV, or digits of a converter".to_owned()), ..Mending::option("--unit ud=mV,uq=mV".to_owned()) };
     }
-    if ratio > LINE_TO_LINE {
-        return Mending { cause: Some("in another unit, or digits of a converter".to_owned()), ..Mending::default() };
+    if ratio <= LINE_TO_LINE && rows >= NEARLY_ALL {
+        let lines = ["ud", "uq"].into_iter().map(|channel| line(read, channel, channel, 1.0 / 3.0_f64.sqrt()));
+        let cause = Some("line to line, or RMS times sqrt 2 twice".to_owned());
+        return Mending { cause, option: None, lines: lines.collect::<Option<_>>().unwrap_or_default() };
     }
-    let lines: Option<Vec<String>> = ["ud", "uq"].into_iter().map(|channel| line(read, channel, channel, 1.0 / 3.0_f64.sqrt())).collect();
-    Mending { cause: Some("line to line, or RMS times sqrt 2 twice".to_owned()), option: None, lines: lines.unwrap_or_default() }
+    if most <= MOST_PER_CENT {
+        return shares("per cent of u_dc, line to line, or in another unit", 0.005, " / 100", read);
+    }
+    digits("digits of a converter, or in another unit", read)
+}
+
+/// Voltages that are shares of the DC voltage: what the whole is, only the drive's documentation tells.
+fn shares(cause: &str, scale: f64, of: &str, read: &[ReadColumn]) -> Mending {
+    let whole = format!("# scale: 0.5{of} if 1 is half of u_dc, 0.57735{of} if u_dc / sqrt 3, 1{of} if u_dc");
+    Mending { cause: Some(cause.to_owned()), option: None, lines: with_comment(times_u_dc(scale, read), whole) }
+}
+
+/// Voltages that are digits of a converter, or of a register.
+fn digits(cause: &str, read: &[ReadColumn]) -> Mending {
+    let whole = "# scale: 0.5 / 2048 if 2048 (12 bits) are half of u_dc; with 16 bits, 0.5 / 32768".to_owned();
+    Mending { cause: Some(cause.to_owned()), option: None, lines: with_comment(times_u_dc(0.5 / 2048.0, read), whole) }
+}
+
+fn with_comment(mut lines: Vec<String>, comment: String) -> Vec<String> {
+    if !lines.is_empty() {
+        lines.push(comment);
+    }
+    lines
+}
+
+/// The voltages as shares of the DC voltage, where the log has one.
+fn times_u_dc(scale: f64, read: &[ReadColumn]) -> Vec<String> {
+    let columns = read.iter().filter(|column| column.is_voltage() && self::column(read, "u_dc").is_some());
+    let line = |column: &ReadColumn| {
+        let line = line(read, column.channel, column.channel, scale)?;
+        Some(line.strip_suffix(" }")?.to_owned() + ", times = \"u_dc\" }")
+    };
+    columns.map(line).collect::<Option<_>>().unwrap_or_default()
 }
 
 /// A finding in a log with these columns, read with this number of pole pairs, with what mends it.
 pub(crate) fn told(finding: &ColumnFinding, read: &[ReadColumn], pole_pairs: Option<u32>) -> Told {
     let (sentence, lines) = Mending::of(finding, read, pole_pairs).tell(finding);
-    Told { code: finding.code(), sentence, lines }
+    // Whoever writes that the voltages are V is believed, and warned.
+    let is_stated =
+        finding.is_of_unwritten_volts() && read.iter().filter(|column| column.is_voltage()).all(|column| column.is_unit_written);
+    Told { code: finding.code(), sentence, lines, refuses: finding.is_certain() && !is_stated }
 }
 
 #[cfg(test)]
@@ -313,7 +361,7 @@ mod tests {
     use super::*;
 
     fn read(channel: &'static str, header: &str, unit: Unit) -> ReadColumn {
-        ReadColumn { channel, header: header.to_owned(), unit, scale: 1.0 }
+        ReadColumn { channel, header: header.to_owned(), unit, scale: 1.0, is_unit_written: false }
     }
 
     /// By hand: a shaft at 100 rad/s with 4 pole pairs has 400 electrical rad/s, 955 r/min and 15.9 turns a second.

@@ -11,11 +11,13 @@ pub(crate) struct Told {
     pub(crate) sentence: String,
     /// Lines to paste, below it.
     pub(crate) lines: String,
+    /// Whether an answer would mean nothing, so that there is none unless the model is stated.
+    pub(crate) refuses: bool,
 }
 
 impl Told {
     /// Samples that are no measurements: the sentence says what to do, and no option mends them.
     pub(crate) fn of_samples(finding: &SampleFinding) -> Self {
-        Self { code: finding.code(), sentence: finding.to_string(), lines: String::new() }
+        Self { code: finding.code(), sentence: finding.to_string(), lines: String::new(), refuses: false }
     }
 }

@@ -195,6 +195,53 @@ fn voltages_that_cannot_be_are_found() {
     }
 }
 
+/// The paper's rig at 310 V, its voltages as shares of half the DC voltage and of all of it: 180 times too small in V. The truth is that of
+/// the independent simulator.
+#[test]
+fn shares_of_the_dc_voltage_are_found_and_mended() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("log.csv");
+    let rows = rows(LOGS[1]);
+    let write = |names: &str, whole: f64| {
+        let line = |r: &Row| format!("{},{},{},{},{},{},310\n", r[0], r[1] / whole, r[2] / whole, r[3], r[4], r[5]);
+        fs::write(&path, format!("t,{names},id,iq,omega_e,u_dc\n") + &rows.iter().map(line).collect::<String>()).unwrap();
+    };
+    for whole in [310.0, 155.0] {
+        write("ud,uq", whole);
+        let (code, told) = finding(&path, &[]).unwrap();
+        let needed = "uq = { column = \"uq\", scale = 0.5, times = \"u_dc\" }";
+        assert!(code == "voltage-share" && told.contains(needed) && told.contains("electrical r/min"), "{told}");
+        let refused = fluxfit(&["identify", path.to_str().unwrap()]);
+        assert!(refused.status == 2 && refused.out.is_empty() && refused.err.contains("shares of u_dc"), "{}", refused.err);
+    }
+    let (_, told) = finding(&path, &[]).unwrap();
+    let options = proposed(&told, directory.path());
+    assert_eq!(finding(&path, &options), None);
+    let mended =
+        fluxfit(&[&["identify", path.to_str().unwrap(), "--json"], &options.iter().map(String::as_str).collect::<Vec<_>>()[..]].concat());
+    let answer: serde_json::Value = serde_json::from_str(&mended.out).unwrap();
+    let psi_f = answer["parameters"]["psi_f"]["value"].as_f64().unwrap();
+    assert!((psi_f / 0.1827 - 1.0).abs() < 0.01, "{psi_f}");
+    // Who states that they are V is warned and answered.
+    let stated = fluxfit(&["identify", path.to_str().unwrap(), "--unit", "ud=V,uq=V"]);
+    assert!(stated.status < 2 && stated.err.starts_with("warning [voltage-share]"), "{}", stated.err);
+}
+
+/// The same voltages in digits of 12 bits below a thousand; a header that says V is believed.
+#[test]
+fn whole_numbers_are_warned_of_unless_the_unit_is_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("log.csv");
+    let rows = rows(LOGS[1]);
+    for (names, code) in [("ud,uq", Some("voltage-scale")), ("ud [V],uq [V]", None)] {
+        let line = |r: &Row| format!("{},{:.0},{:.0},{},{},{}\n", r[0], 3.0 * r[1], 3.0 * r[2], r[3], r[4], r[5]);
+        fs::write(&path, format!("t,{names},id,iq,omega_e\n") + &rows.iter().map(line).collect::<String>()).unwrap();
+        let run = fluxfit(&["inspect", path.to_str().unwrap()]);
+        assert_eq!(run.err.contains("whole numbers"), code.is_some(), "{}", run.err);
+        assert_eq!(run.out.starts_with("Readable, but the voltages may be no volts."), code.is_some(), "{}", run.out);
+    }
+}
+
 #[test]
 fn identify_refuses_what_means_nothing_unless_a_model_is_stated() {
     let directory = tempfile::tempdir().unwrap();

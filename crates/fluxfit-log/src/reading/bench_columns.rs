@@ -74,8 +74,8 @@ pub(super) fn found(index: usize, head: &ColumnHead) -> Option<Found> {
         [(Quantity::Speed, Dimension::Speed), (Quantity::Voltage, Dimension::Voltage), (Quantity::Current, Dimension::Current)]
     {
         if let Some(unit) = unit(dimension) {
-            let is_electrical =
-                matches!(unit, Unit::RpmElectrical | Unit::HertzElectrical) || unit == Unit::RadianPerSecond && states_electrical(&header);
+            let is_electrical = matches!(unit, Unit::RpmElectrical | Unit::HertzElectrical)
+                || matches!(unit, Unit::RadianPerSecond | Unit::DegreePerSecond) && states_electrical(&header);
             return of(quantity, true, unit.in_si(), is_electrical);
         }
     }

@@ -479,7 +479,7 @@ impl Finder<'_> {
             return Err(needs_pole_pairs(channel, unit).into());
         }
         let column = format!("{canonical}: column '{}'", shorten(name));
-        let turning = matches!(unit, Unit::RadianPerSecond | Unit::HertzElectrical | Unit::Radian | Unit::Degree);
+        let turning = matches!(unit, Unit::RadianPerSecond | Unit::DegreePerSecond | Unit::HertzElectrical | Unit::Radian | Unit::Degree);
         let is_sure = stated.is_some() || is_canonical || of_layout.is_some() || states_electrical(name);
         if turning && !is_sure && !(is_alias && dimension == Dimension::Angle) {
             let sentence = format!("{column} read as {}; if it is mechanical, state its unit", unit.prose());
@@ -514,6 +514,7 @@ fn electrical(mechanical: Unit) -> Unit {
         Unit::RpmMechanical => Unit::RpmElectrical,
         Unit::KrpmMechanical => Unit::KrpmElectrical,
         Unit::HertzMechanical => Unit::HertzElectrical,
+        Unit::DegreePerSecondMechanical => Unit::DegreePerSecond,
         Unit::RadianMechanical => Unit::Radian,
         Unit::DegreeMechanical => Unit::Degree,
         _ => Unit::RadianPerSecond,
@@ -526,6 +527,7 @@ fn mechanical(electrical: Unit) -> Unit {
         Unit::RpmElectrical => Unit::RpmMechanical,
         Unit::KrpmElectrical => Unit::KrpmMechanical,
         Unit::HertzElectrical => Unit::HertzMechanical,
+        Unit::DegreePerSecond => Unit::DegreePerSecondMechanical,
         Unit::Radian => Unit::RadianMechanical,
         Unit::Degree => Unit::DegreeMechanical,
         _ => Unit::RadianPerSecondMechanical,

@@ -2,8 +2,9 @@
 
 use super::{channels::Channels, chosen::ChosenColumn};
 use crate::{channel::Channel, problem::Problem};
+use fluxfit::{ColumnFinding, check_columns, log::Log};
 use fluxfit_files::FileError;
-use fluxfit_units::significant;
+use fluxfit_units::{Dimension, significant};
 
 /// A column looks standardized if its mean is less than this many standard deviations,
 const NORMALIZED_MEAN: f64 = 0.2;
@@ -186,6 +187,33 @@ pub(super) fn note_references(channels: &Channels) -> Option<String> {
         format!(
             "id and iq change in only {:.1} % of the rows, the voltages in most: if these are references and not measured currents, the result is meaningless",
             100.0 * currents
+        )
+    })
+}
+
+/// Voltages up to here may be shares of the DC voltage: in six-step operation the fundamental is 4 / pi of half of it.
+const MOST_SHARE: f64 = 1.3;
+
+/// A DC voltage, V, beside which such voltages are small.
+const LEAST_BUS: f64 = 20.0;
+
+/// A note on voltages that are as small as shares of the DC voltage, where nothing states their unit: they may be those of a slow motor, or
+/// of one with few mOhm. Where more speaks for shares, there is a finding of the columns.
+pub(super) fn note_small_voltages(chosen: &[ChosenColumn], log: &Log) -> Option<String> {
+    let columns = log.columns();
+    let least_bus = columns.u_dc.as_ref()?.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = columns.ud.iter().zip(&columns.uq).fold(0.0, |most: f64, (ud, uq)| most.max(ud.hypot(*uq)));
+    let is_of_motor = |channel: Channel| channel.dimension() == Dimension::Voltage && channel != Channel::UDc;
+    let is_written = || chosen.iter().any(|column| is_of_motor(column.channel) && column.is_unit_written);
+    if least_bus < LEAST_BUS || most > MOST_SHARE || most == 0.0 || is_written() {
+        return None;
+    }
+    let is_found = check_columns(log).iter().any(|finding| matches!(finding, ColumnFinding::VoltageShare { .. }));
+    (!is_found).then(|| {
+        let (most, bus) = (significant(most, 3), significant(least_bus, 3));
+        format!(
+            "the voltages never exceed {most} while u_dc is {bus} V or more: read as V; if they are shares of u_dc, a mapping file says so: \
+             ud = {{ column = \"..\", scale = 0.5, times = \"u_dc\" }}"
         )
     })
 }

@@ -25,7 +25,10 @@ use crate::{
     note::Note,
     problem::Problem,
 };
-use fluxfit::log::{Columns, Log, Source, check_values, without_gaps};
+use fluxfit::{
+    ColumnFinding, check_columns,
+    log::{Columns, Log, Source, check_values, without_gaps},
+};
 use fluxfit_files::{
     FileError,
     input::{self, Bytes},
@@ -63,6 +66,8 @@ pub struct ReadColumn {
     pub unit: Unit,
     /// The factor besides the unit: scale and sign.
     pub scale: f64,
+    /// Whether the file or the user writes its unit or a scale: SI does not only follow from its name.
+    pub is_unit_written: bool,
 }
 
 impl ReadLog {
@@ -77,8 +82,28 @@ impl ReadLog {
 
 impl ReadColumn {
     fn of(column: &ChosenColumn) -> Self {
-        Self { channel: column.channel.name(), header: column.header.clone(), unit: column.unit, scale: column.scale }
+        Self {
+            channel: column.channel.name(),
+            header: column.header.clone(),
+            unit: column.unit,
+            scale: column.scale,
+            is_unit_written: column.is_unit_written,
+        }
     }
+
+    /// Whether it is a voltage of the motor.
+    pub fn is_voltage(&self) -> bool {
+        ["ud", "uq", "ua", "ub", "uc", "ualpha", "ubeta"].contains(&self.channel)
+    }
+}
+
+/// What the columns of a log contradict each other in. What only the size of the voltages says is left out where their unit is written,
+/// unless it is certain.
+pub fn column_findings(log: &Log, columns: &[ReadColumn]) -> Vec<ColumnFinding> {
+    let is_written = columns.iter().filter(|column| column.is_voltage()).all(|column| column.is_unit_written);
+    let mut findings = check_columns(log);
+    findings.retain(|finding| !is_written || finding.is_certain() || !finding.is_of_unwritten_volts());
+    findings
 }
 
 /// Reads a log; the path `-` is standard input.
@@ -190,7 +215,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     if !log.spikes().is_empty() {
         notes.push(log.spikes().to_string().into());
     }
-    notes.extend(note_gaps(&gaps).map(Note::from));
+    notes.extend(note_gaps(&gaps).into_iter().chain(plausibility::note_small_voltages(&chosen, &log)).map(Note::from));
     let source = Source { columns: vec![chosen::describe(&chosen)], notes: notes.iter().map(|note| note.sentence.clone()).collect() };
     let log = log.with_source(source);
     // Columns that were found without a mapping and without another layout have the canonical names.

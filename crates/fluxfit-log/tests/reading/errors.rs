@@ -105,7 +105,7 @@ fn maps_and_units_that_do_not_fit_the_file_are_refused() {
     assert_eq!(
         error("speed [km/h]", &map(&["omega=speed [km/h]"])),
         "drive.csv, line 1, column 'speed [km/h]': \"km/h\" in the header is not a known unit of omega_e; \
-         state the unit if it is rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec, Hz-mech, krpm-elec or krpm-mech; \
+         state the unit if it is rad/s, rpm-elec, rpm-mech, rad/s-mech, Hz-elec, Hz-mech, krpm-elec, krpm-mech, deg/s or deg/s-mech; \
          else write its scale into a mapping file: omega_e = { column = \"speed [km/h]\", scale = .. }"
     );
     let units = LogOptions { units: vec![("omega".into(), Unit::HertzMechanical)], ..LogOptions::default() };

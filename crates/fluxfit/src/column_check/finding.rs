@@ -41,10 +41,31 @@ pub enum ColumnFinding {
     },
     /// The current turns backward in the frame of the angle: two phases have changed places.
     PhaseOrder,
-    /// Nearly all rows with current have more voltage than the inverter can make.
+    /// Nearly all rows with current have more voltage than the inverter can make; or some have, and the currents follow it.
     VoltageScale {
-        /// Median of |u| over `u_dc / sqrt 3`.
+        /// Median of |u| over `u_dc / sqrt 3`; where not nearly all rows have more than there is, the median of those that have.
         ratio: f64,
+        /// Part of the rows with current that have more than there is.
+        rows: f64,
+        /// The largest |u|.
+        most: f64,
+    },
+    /// Voltages that never exceed one, beside a DC voltage: shares of it. As volts they would be those of no motor.
+    VoltageShare {
+        /// The largest |u|.
+        most: f64,
+        /// The DC voltage, V.
+        u_dc: f64,
+        /// Electrical speed, rad/s, at which the motor of these voltages would use up the DC voltage; none of a rotor that stands, whose
+        /// voltages are smaller than a step of the inverter.
+        omega_e: Option<f64>,
+        /// Whether no motor comes to that speed.
+        is_certain: bool,
+    },
+    /// Voltages that are whole numbers while the currents are not: digits of a converter, or V that were rounded.
+    VoltageDigits {
+        /// The largest |u|.
+        most: f64,
     },
 }
 
@@ -94,10 +115,22 @@ impl ColumnFinding {
             Self::TimeUnit { .. } => "time-unit",
             Self::Axes { .. } => "column-signs",
             Self::PhaseOrder => "phase-order",
-            Self::VoltageScale { .. } => "voltage-scale",
+            Self::VoltageScale { .. } | Self::VoltageDigits { .. } => "voltage-scale",
+            Self::VoltageShare { .. } => "voltage-share",
         }
     }
 
+    /// Whether an answer would mean nothing. What is not certain is a warning.
+    pub fn is_certain(&self) -> bool {
+        !matches!(self, Self::VoltageShare { is_certain: false, .. } | Self::VoltageDigits { .. })
+    }
+
+    /// Whether it is answered where the file or the user writes the unit of the voltages: what the numbers alone say is then no evidence.
+    pub fn is_of_unwritten_volts(&self) -> bool {
+        matches!(self, Self::VoltageShare { .. } | Self::VoltageDigits { .. })
+    }
+
     /// The codes of all findings.
-    pub const CODES: [&'static str; 6] = ["speed-unit", "speed-sign", "time-unit", "column-signs", "phase-order", "voltage-scale"];
+    pub const CODES: [&'static str; 7] =
+        ["speed-unit", "speed-sign", "time-unit", "column-signs", "phase-order", "voltage-scale", "voltage-share"];
 }

@@ -25,5 +25,6 @@ pub fn check_columns(log: &Log) -> Vec<ColumnFinding> {
         .or_else(|| regression::time_unit(log))
         .or_else(|| regression::speed_scale(log))
         .or_else(|| regression::axes(log));
-    of_frame.into_iter().chain(voltages::scale(log)).collect()
+    let of_voltages = voltages::scale(log).or_else(|| voltages::share(log)).or_else(|| voltages::digits(log));
+    of_frame.into_iter().chain(of_voltages).collect()
 }

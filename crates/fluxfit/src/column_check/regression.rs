@@ -384,6 +384,11 @@ pub(super) fn axes(log: &Log) -> Option<ColumnFinding> {
     (left_if_turned(&means) > (AS_GOOD * left).max(TURN)).then_some(ColumnFinding::Axes { changes, left, left_now: now })
 }
 
+/// What no motor explains of the voltages as they are, as a fraction; nothing where the log has too few rows with current at speed.
+pub(super) fn left_of_voltages(log: &Log) -> Option<f64> {
+    fit(&means(log), &Frame::AS_IT_IS, true).map(|fit| fit.left)
+}
+
 /// Whether the voltages are explained far better turned with the speed, as those are that act later than the instant of their row.
 pub(crate) fn turn_with_speed(log: &Log) -> bool {
     let means = means(log);

@@ -45,13 +45,40 @@ impl Display for ColumnFinding {
                 )
             }
             Self::PhaseOrder => write!(f, "the current turns backward in the frame of theta_e: two phases have changed places"),
-            Self::VoltageScale { ratio } => write!(
-                f,
-                "the voltages are {} times what the inverter can make of u_dc (u_dc / sqrt 3), in nearly every row",
-                three_digits(*ratio)
-            ),
+            Self::VoltageScale { ratio, rows, .. } => {
+                let rows = if *rows < NEARLY {
+                    format!("in {} of the rows, and the currents follow them", percent(*rows))
+                } else {
+                    "in nearly every row".to_owned()
+                };
+                write!(f, "the voltages are {} times what the inverter can make of u_dc (u_dc / sqrt 3), {rows}", three_digits(*ratio))
+            }
+            Self::VoltageShare { most, u_dc, omega_e, .. } => {
+                write!(f, "|u| never exceeds {} where u_dc is {} V, ", three_digits(*most), three_digits(*u_dc))?;
+                match omega_e {
+                    Some(omega_e) => {
+                        let speed = grouped(omega_e * 60.0 / std::f64::consts::TAU);
+                        write!(f, "and if these were volts the motor could reach {speed} electrical r/min")
+                    }
+                    None => write!(f, "as volts less than one step of an inverter"),
+                }
+            }
+            Self::VoltageDigits { most } => {
+                write!(f, "u_d and u_q are whole numbers, up to {most:.0}, while the currents are not")
+            }
         }
     }
+}
+
+/// From this part of the rows on it is nearly every one.
+const NEARLY: f64 = 0.9;
+
+/// Two digits of a large number, in groups of three: `2 900 000`.
+fn grouped(number: f64) -> String {
+    let size = 10_f64.powf(number.log10().floor() - 1.0);
+    let digits = format!("{:.0}", (number / size).round() * size);
+    let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
+    groups.join(" ")
 }
 
 /// Ways that are named; more would only say that the log tells little.

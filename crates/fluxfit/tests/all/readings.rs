@@ -217,7 +217,7 @@ fn means_of_commands(periods: usize) -> Log {
 }
 
 /// Read as acting at the row, held in the rotor's frame, the first log had R_s 7.1 % too large, ±4.5 %, identified. Of the second, faults
-/// take a part of what noise does within rows, and R_s is weak.
+/// take a part of what noise does within rows, and numbers are weak.
 #[test]
 fn means_of_commands_are_read() {
     holds(&means_of_commands(5), VoltageTiming::Averaged { of: MeansOf::Commands }, 1.0);

@@ -20,6 +20,9 @@ pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told], sampl
         (Err(_), _) => format!("{BAD}Not a log yet: the reason is below.{BAD:#}\n"),
         (Ok(_), 0) if !samples.is_empty() => format!("{BAD}Readable, but some samples are no measurements.{BAD:#}\n"),
         (Ok(_), 0) => format!("{GOOD}Readable, and the columns agree with each other.{GOOD:#}\n"),
+        (Ok(_), _) if findings.iter().all(|finding| !finding.refuses) => {
+            format!("{BAD}Readable, but the voltages may be no volts.{BAD:#}\n")
+        }
         (Ok(_), 1) => format!("{BAD}Readable, but the columns contradict each other.{BAD:#}\n"),
         (Ok(_), many) => format!("{BAD}Readable, but the columns contradict each other in {many} ways.{BAD:#}\n"),
     };

@@ -331,12 +331,13 @@ impl Chosen {
 
     /// The same choice for a log that differs a little: its numbers are fitted again, and the reading is chosen from these.
     pub(super) fn again(self, log: &Log, stretches: &[Range<usize>], asked: &[VoltageTiming]) -> Result<Self, Error> {
-        let (steps, rare) = (VoltageTiming::BY_EULERS_RULE, VoltageTiming::RARE);
+        let (steps, rare, of_commands) = (VoltageTiming::BY_EULERS_RULE, VoltageTiming::RARE, VoltageTiming::MEANS_OF_COMMANDS);
         let asked = match self.reading {
             reading if steps.contains(&reading) => steps.to_vec(),
             reading if asked.contains(&reading) => asked.to_vec(),
             reading if rare.contains(&reading) => [&rare, asked].concat(),
-            _ => [&VoltageTiming::MEANS_OF_COMMANDS, asked].concat(),
+            reading if of_commands.contains(&reading) => [&[reading], asked].concat(),
+            _ => asked.to_vec(),
         };
         let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &asked)?;
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);

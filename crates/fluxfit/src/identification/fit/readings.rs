@@ -69,7 +69,7 @@ pub(crate) fn asked(log: &Log, request: &Request) -> Vec<VoltageTiming> {
 }
 
 /// Readings to try beside those that were asked for, given the best of them: in no drive that logs each of its periods a command acts at
-/// once, so rows as close as periods may be means of commands all the same.
+/// once, so rows as close as periods may be means of commands all the same; and so they may where other means fit best.
 pub(crate) fn suspected(best: VoltageTiming, tried: &[(VoltageTiming, OutputError)], request: &Request) -> Vec<VoltageTiming> {
     let may_be_means = best.acts_at_once() || matches!(best, VoltageTiming::Averaged { .. });
     let is_open = |timing: &VoltageTiming| !tried.iter().any(|(other, _)| other == timing);
