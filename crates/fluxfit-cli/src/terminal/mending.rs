@@ -3,10 +3,10 @@
 use super::{advice, given, told::Told};
 use fluxfit::{
     ColumnFinding,
-    column_check::{Change, Turning},
+    column_check::{Change, NEARLY_ALL, Turning},
 };
 use fluxfit_files::Advice;
-use fluxfit_log::ReadColumn;
+use fluxfit_log::{ReadColumn, are_volts_written};
 use fluxfit_units::{Dimension, Unit, significant};
 use std::{f64::consts::TAU, ops::RangeInclusive};
 
@@ -294,7 +294,6 @@ const MILLI: f64 = 100.0;
 
 /// Up to here line to line voltages explain it, in nearly all rows.
 const LINE_TO_LINE: f64 = 1.8;
-const NEARLY_ALL: f64 = 0.9;
 
 /// Per cent of half the DC voltage stay below this: in six-step operation they come to 127.
 const MOST_PER_CENT: f64 = 130.0;
@@ -351,8 +350,7 @@ fn times_u_dc(scale: f64, read: &[ReadColumn]) -> Vec<String> {
 pub(crate) fn told(finding: &ColumnFinding, read: &[ReadColumn], pole_pairs: Option<u32>) -> Told {
     let (sentence, lines) = Mending::of(finding, read, pole_pairs).tell(finding);
     // Whoever writes that the voltages are V is believed, and warned.
-    let is_stated =
-        finding.is_of_unwritten_volts() && read.iter().filter(|column| column.is_voltage()).all(|column| column.is_unit_written);
+    let is_stated = finding.is_of_unwritten_volts() && are_volts_written(read);
     Told { code: finding.code(), sentence, lines, refuses: finding.is_certain() && !is_stated }
 }
 

@@ -50,4 +50,7 @@ pub use layout::{LAYOUTS, Layout};
 pub use live::LiveLog;
 pub use mapping::{Mapping, Park, read_mapping};
 pub use options::LogOptions;
-pub use read::{ReadColumn, ReadLog, column_findings, parse_log, read_log, read_log_from, read_log_with_progress, read_part, read_table};
+pub use read::{
+    ReadColumn, ReadLog, are_volts_written, column_findings, parse_log, read_log, read_log_from, read_log_with_progress, read_part,
+    read_table,
+};

@@ -2,7 +2,11 @@
 
 use super::{channels::Channels, chosen::ChosenColumn};
 use crate::{channel::Channel, problem::Problem};
-use fluxfit::{ColumnFinding, check_columns, log::Log};
+use fluxfit::{
+    ColumnFinding, check_columns,
+    column_check::{LEAST_BUS, MOST_SHARE},
+    log::Log,
+};
 use fluxfit_files::FileError;
 use fluxfit_units::{Dimension, significant};
 
@@ -190,12 +194,6 @@ pub(super) fn note_references(channels: &Channels) -> Option<String> {
         )
     })
 }
-
-/// Voltages up to here may be shares of the DC voltage: in six-step operation the fundamental is 4 / pi of half of it.
-const MOST_SHARE: f64 = 1.3;
-
-/// A DC voltage, V, beside which such voltages are small.
-const LEAST_BUS: f64 = 20.0;
 
 /// A note on voltages that are as small as shares of the DC voltage, where nothing states their unit: they may be those of a slow motor, or
 /// of one with few mOhm. Where more speaks for shares, there is a finding of the columns.

@@ -97,10 +97,15 @@ impl ReadColumn {
     }
 }
 
+/// Whether the file or the user writes the unit of every voltage of the motor.
+pub fn are_volts_written(columns: &[ReadColumn]) -> bool {
+    columns.iter().filter(|column| column.is_voltage()).all(|column| column.is_unit_written)
+}
+
 /// What the columns of a log contradict each other in. What only the size of the voltages says is left out where their unit is written,
 /// unless it is certain.
 pub fn column_findings(log: &Log, columns: &[ReadColumn]) -> Vec<ColumnFinding> {
-    let is_written = columns.iter().filter(|column| column.is_voltage()).all(|column| column.is_unit_written);
+    let is_written = are_volts_written(columns);
     let mut findings = check_columns(log);
     findings.retain(|finding| !is_written || finding.is_certain() || !finding.is_of_unwritten_volts());
     findings

@@ -12,6 +12,7 @@ mod voltages;
 use crate::log::Log;
 pub use finding::{Change, ColumnFinding, Turning};
 pub(crate) use regression::{speed_in_doubt, turn_with_speed};
+pub use voltages::{LEAST_BUS, MOST_SHARE, NEARLY_ALL};
 
 /// What the columns of a log contradict each other in. After the first contradiction of angle, time or axes no other of these is looked
 /// for: it would follow from the first.

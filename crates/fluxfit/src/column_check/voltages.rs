@@ -4,7 +4,7 @@ use super::{finding::ColumnFinding, regression};
 use crate::{log::Log, steady::windows};
 
 /// Share of the rows with current that must be above the limit: a drive at its limit is there for a part of its log.
-const NEARLY_ALL: f64 = 0.9;
+pub const NEARLY_ALL: f64 = 0.9;
 
 /// Six-step operation makes 2 sqrt 3 / pi of the limit; more there is not.
 const SIX_STEP: f64 = 1.15;
@@ -60,10 +60,10 @@ fn largest(log: &Log) -> f64 {
 }
 
 /// Shares of the DC voltage stay below this: in six-step operation the fundamental is 4 / pi of half the DC voltage.
-const MOST_SHARE: f64 = 1.3;
+pub const MOST_SHARE: f64 = 1.3;
 
 /// A DC voltage, V, beside which voltages below [`MOST_SHARE`] are a few hundredths of what there is.
-const LEAST_BUS: f64 = 20.0;
+pub const LEAST_BUS: f64 = 20.0;
 
 /// No motor turns as fast, electrical rad/s: 955 000 electrical r/min, for which an inverter would need 160 kHz. The fastest drones and
 /// compressors come to half of it.

@@ -1,7 +1,7 @@
 //! What the columns of a log contradict each other in.
 
 use super::digits::{percent, three_digits};
-use crate::column_check::{Change, ColumnFinding, Turning};
+use crate::column_check::{Change, ColumnFinding, NEARLY_ALL, Turning};
 use std::fmt::{Display, Formatter, Result};
 
 impl Display for ColumnFinding {
@@ -46,7 +46,7 @@ impl Display for ColumnFinding {
             }
             Self::PhaseOrder => write!(f, "the current turns backward in the frame of theta_e: two phases have changed places"),
             Self::VoltageScale { ratio, rows, .. } => {
-                let rows = if *rows < NEARLY {
+                let rows = if *rows < NEARLY_ALL {
                     format!("in {} of the rows, and the currents follow them", percent(*rows))
                 } else {
                     "in nearly every row".to_owned()
@@ -69,9 +69,6 @@ impl Display for ColumnFinding {
         }
     }
 }
-
-/// From this part of the rows on it is nearly every one.
-const NEARLY: f64 = 0.9;
 
 /// Two digits of a large number, in groups of three: `2 900 000`.
 fn grouped(number: f64) -> String {

@@ -208,3 +208,42 @@ pub(crate) fn doubt(tried: &[TimingTrial], independent: f64) -> [f64; PARAMETERS
         std::array::from_fn(|p| most[p].max((one[p] - other[p]).abs()))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        log::Columns,
+        objective::acting_voltage::{MeansOf, VoltageFrame},
+    };
+
+    /// A command that acts one period later is a drive's own; one that acts at once may be a mean of commands.
+    #[test]
+    fn means_of_commands_are_suspected_where_a_command_acts_at_once() {
+        let rows = 20;
+        let column = |value: f64| (0..rows).map(|row| value * f64::from(row)).collect::<Vec<f64>>();
+        let columns = Columns {
+            t: column(1e-4),
+            ud: column(0.1),
+            uq: column(0.2),
+            id: column(0.1),
+            iq: column(0.3),
+            omega_e: column(2.0),
+            ..Columns::default()
+        };
+        let log = Log::new(columns).unwrap();
+        let (auto, once) = (Request::default(), VoltageTiming::Delayed { delay: 0, frame: VoltageFrame::Rotor });
+        let usual = asked(&log, &auto);
+        let tried = |readings: &[VoltageTiming]| OutputError::under_readings(&log, std::slice::from_ref(&(0..20)), readings).unwrap();
+        for own in [VoltageTiming::Centered, VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle }] {
+            assert_eq!(suspected(own, &tried(&usual), &auto), []);
+        }
+        for best in [once, VoltageTiming::Averaged { of: MeansOf::Voltages }] {
+            assert_eq!(suspected(best, &tried(&usual), &auto), VoltageTiming::MEANS_OF_COMMANDS);
+        }
+        let with_one = [&usual[..], &VoltageTiming::MEANS_OF_COMMANDS[..1]].concat();
+        assert_eq!(suspected(once, &tried(&with_one), &auto), VoltageTiming::MEANS_OF_COMMANDS[1..]);
+        let stated = Request { voltage_timing: Some(once), ..Request::default() };
+        assert_eq!(suspected(once, &tried(&[once]), &stated), []);
+    }
+}
