@@ -2,7 +2,7 @@
 //! model lacks. They go, and what they would do to the parameters is in doubt.
 
 use super::{
-    fault_search::{FaultSearch, schwarz},
+    fault_search::{FaultSearch, WITHIN_ROWS, schwarz},
     fault_trial::{FaultOutcome, FaultTrial},
     long_run::effective_sample_size,
     readings::VERY_STRONG,
@@ -48,26 +48,35 @@ impl FaultSearch<'_> {
         let cost_without = |fault: Fault| self.cost + self.cost_of(fault, &inverse);
         let (fault, cost) = candidates.map(|fault| (fault, cost_without(fault))).min_by(|(_, one), (_, other)| one.total_cmp(other))?;
         let own = Unknown::of_fault(fault).count();
-        if schwarz(cost, self.cost, own, independent) > NEAR * needed {
+        // What may be the error of the loss model must explain more than that.
+        let may_be_loss = self.may_be_loss(fault, &self.drive);
+        let explains_little = |cost: f64| may_be_loss && self.cost > (1.0 - WITHIN_ROWS) * cost;
+        if schwarz(cost, self.cost, own, independent) > NEAR * needed && !explains_little(cost) {
             return None;
         }
         let start = Unknown::of_fault(fault).fold(self.drive, |drive, unknown| drive.with(unknown, 0.0));
         let unknowns: Vec<Unknown> = self.unknowns.iter().copied().filter(|unknown| unknown.fault() != Some(fault)).collect();
         let Polished { drive, cost, .. } = polish_to_choose(self.objective(), &start, &unknowns, self.priors);
         let gain = schwarz(cost, self.cost, own, independent);
-        if gain > needed {
+        let outcome = if gain <= needed {
+            FaultOutcome::NotNeeded
+        } else if explains_little(cost) {
+            FaultOutcome::NoMatter
+        } else {
             return None;
-        }
+        };
         let moves = Parameter::ALL.map(|parameter| self.drive.motor.get(parameter) - drive.motor.get(parameter));
         (self.drive, self.cost, self.unknowns) = (drive, cost, unknowns);
         self.choose_reading();
-        Some(FaultTrial { fault, gain, outcome: FaultOutcome::NotNeeded, moves })
+        Some(FaultTrial { fault, gain, outcome, moves })
     }
 
     /// By how much the cost grows without a fault, to second order, A²: `x' C^-1 x` for its numbers `x` and their part `C` of the inverse
     /// of the normal matrix.
     fn cost_of(&self, fault: Fault, inverse: &DMatrix<f64>) -> f64 {
-        let places: Vec<usize> = (0..self.unknowns.len()).filter(|k| self.unknowns[*k].fault() == Some(fault)).collect();
+        // Of a filter without memory, how it corrects that does nothing.
+        let acts = |k: &usize| self.unknowns[*k].fault() == Some(fault) && inverse[(*k, *k)] > 0.0;
+        let places: Vec<usize> = (0..self.unknowns.len()).filter(acts).collect();
         let values = DVector::from_iterator(places.len(), places.iter().map(|k| self.drive.get(self.unknowns[*k])));
         let part = DMatrix::from_fn(places.len(), places.len(), |p, q| inverse[(places[p], places[q])]);
         part.cholesky().map_or(0.0, |factor| values.dot(&factor.solve(&values)))
