@@ -47,8 +47,9 @@ pub(super) const NOTICEABLE: f64 = 0.02;
 /// within these rows, which is not in the log, and stand in for it in logs without either.
 pub(super) const WITHIN_ROWS: f64 = 0.1;
 
-/// Beside dead time, a filter faster than this part of a row must explain as much: its effect is as small as the error of the loss model,
-/// and logs without a filter had one found, with R_s 3 to 24 % off; one of a rotor that turns by 0.4 rad a row explained 7 %.
+/// Beside dead time, a filter faster than this part of a row must explain [`WITHIN_ROWS`] of the residual: its effect is as small as the
+/// error of the loss model. Logs without a filter had one found, with R_s 3 to 24 % off; where the rotor turned by 0.4 rad a row, it
+/// explained 7 %.
 const FAST_FILTER: f64 = 0.03;
 
 /// A fault is not fitted where the score test expects less than this part of what would matter: it is not more wrong than that.

@@ -48,7 +48,7 @@ impl FaultSearch<'_> {
         let cost_without = |fault: Fault| self.cost + self.cost_of(fault, &inverse);
         let (fault, cost) = candidates.map(|fault| (fault, cost_without(fault))).min_by(|(_, one), (_, other)| one.total_cmp(other))?;
         let own = Unknown::of_fault(fault).count();
-        // What may be the error of the loss model must explain more than that.
+        // What may be the error of the loss model goes even with strong evidence, if it explains little.
         let may_be_loss = self.may_be_loss(fault, &self.drive);
         let explains_little = |cost: f64| may_be_loss && self.cost > (1.0 - WITHIN_ROWS) * cost;
         if schwarz(cost, self.cost, own, independent) > NEAR * needed && !explains_little(cost) {
@@ -74,7 +74,7 @@ impl FaultSearch<'_> {
     /// By how much the cost grows without a fault, to second order, A²: `x' C^-1 x` for its numbers `x` and their part `C` of the inverse
     /// of the normal matrix.
     fn cost_of(&self, fault: Fault, inverse: &DMatrix<f64>) -> f64 {
-        // Of a filter without memory, how it corrects that does nothing.
+        // A filter much faster than a row keeps nothing from one row to the next: its number for the noise has no effect.
         let acts = |k: &usize| self.unknowns[*k].fault() == Some(fault) && inverse[(*k, *k)] > 0.0;
         let places: Vec<usize> = (0..self.unknowns.len()).filter(acts).collect();
         let values = DVector::from_iterator(places.len(), places.iter().map(|k| self.drive.get(self.unknowns[*k])));
