@@ -9,6 +9,10 @@
 //! rotor's frame. Rows that are means over their own span hold the means of the voltage as of the current: the moving mean of the current
 //! obeys the motor's equation with the moving mean of the voltage, which goes about straight from row to row.
 //!
+//! Each command of which a row is the mean is held in the stator for a period in which the rotor turns by `x`. The flux, sampled at the
+//! period's ends, goes along a chord from one to the other and not along the arc: the command is smaller than the voltage that would take
+//! it along the arc, by `2 sin(x / 2) / x`.
+//!
 //! Many simulators that are written by hand go from row to row by Euler's rule: the slope of the current at a row, times the period. Their
 //! currents obey the rule exactly, and the differential equation of the motor only roughly. A row holds the current before or after its
 //! voltage acted.
@@ -65,14 +69,33 @@ pub enum MeansOf {
 const COMMAND_DELAY: f64 = 1.5;
 
 impl MeansOf {
+    /// How many commands a row is the mean of; `None` where nobody knows.
+    fn commands(self) -> Option<f64> {
+        match self {
+            Self::Voltages => None,
+            // They act later by between 0.38 of a row of four periods and 0.19 of one of eight.
+            Self::Commands => Some(5.0),
+            Self::TwoCommands => Some(2.0),
+        }
+    }
+
+    /// The fewest that they may be.
+    pub(crate) fn fewest_commands(self) -> Option<f64> {
+        match self {
+            Self::Commands => Some(4.0),
+            other => other.commands(),
+        }
+    }
+
     /// By which part of a row they act later than the currents.
     fn later(self) -> f64 {
-        match self {
-            Self::Voltages => 0.0,
-            // Between 0.38 of a row of four periods and 0.19 of one of eight.
-            Self::Commands => COMMAND_DELAY / 5.0,
-            Self::TwoCommands => COMMAND_DELAY / 2.0,
-        }
+        self.commands().map_or(0.0, |commands| COMMAND_DELAY / commands)
+    }
+
+    /// Arc over chord of what each of them does, where the rotor turns so far in a row, rad.
+    fn arc_over_chord(self, turn: f64) -> f64 {
+        let half = self.commands().map_or(0.0, |commands| 0.5 * turn / commands);
+        if half == 0.0 { 1.0 } else { half / half.sin() }
     }
 }
 
@@ -277,6 +300,7 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 Dq { d, q }
             };
             let length = columns.t[row + 1] - columns.t[row];
+            let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
             let mut change_within = Dq { d: 0.0, q: 0.0 };
             let u = match reading {
                 VoltageTiming::Centered => {
@@ -297,12 +321,11 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                     // Where the middle of this period lies between the rows, seen from the first of these two.
                     let first = row - reading.lost_rows();
                     let (start, end) = (in_rotor_frame(first), in_rotor_frame(first + 1));
-                    let part = 0.5 + (row - first) as f64 - of.later();
-                    Dq { d: start.d + part * (end.d - start.d), q: start.q + part * (end.q - start.q) }
+                    let (part, more) = (0.5 + (row - first) as f64 - of.later(), of.arc_over_chord(turn));
+                    Dq { d: more * (start.d + part * (end.d - start.d)), q: more * (start.q + part * (end.q - start.q)) }
                 }
                 VoltageTiming::Euler { after } => in_rotor_frame(row + usize::from(after)),
             };
-            let turn = angles.rotor[row + 1 - rows.start] - angles.rotor[row - rows.start];
             let mean_speed = turn / length;
             let omega_e = if reading.held() == Held::WithSlope && !angles.known { columns.omega_e[row] } else { mean_speed };
             let (slower, faster) = (angles.speed[row - rows.start], angles.speed[row + 1 - rows.start]);

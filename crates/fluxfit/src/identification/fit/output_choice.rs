@@ -256,6 +256,19 @@ pub(super) fn choose(
         searched.chosen.compare(&[&rare, &objectives]);
         found.insert(0, searched);
     }
+    // A command that acts at once beside the faults, but did not without them, may be a mean of commands as well.
+    let is_simple = |best: &Searched| best.explained && best.chosen.unknowns == free;
+    let late = found.first().filter(|best| !is_simple(best)).map(|best| best.chosen.reading);
+    let late = under(&late.map_or(Vec::new(), |reading| readings::suspected(reading, &objectives, request)))?;
+    let mean = roughly(&late).into_iter().next();
+    if let (Some(mean), Some(usual)) = (mean, found.first())
+        && let Some(mut searched) = search_from(without(mean), &late, &mut Vec::new())
+        && is_motor(&searched)
+        && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
+    {
+        searched.chosen.compare(&[&late, &objectives]);
+        found.insert(0, searched);
+    }
     let mut found: Vec<Chosen> = found.into_iter().map(|found| found.chosen).collect();
     let best = found.first_mut().ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
     if best.readings.is_empty() {

@@ -188,16 +188,21 @@ pub(super) fn is_better(other: &TimingTrial, tried: &[TimingTrial], independent:
 }
 
 /// The readings that are not ruled out, given how many independent residuals there are. The best one first. Beside one of a drive that logs
-/// each of its periods no other kind is possible; voltages that act at once are of no such drive. Steps by Euler's rule are listed among
-/// those of a drive only if they fit better for certain, though not by enough to be taken.
+/// each of its periods no other kind is possible; voltages that act at once are of no such drive, and those that act half a period later
+/// are of few: every other row of a usual one passes for such a drive's, and is nearly as well read as a mean of two commands. Steps by
+/// Euler's rule are listed among those of a drive only if they fit better for certain, though not by enough to be taken.
 pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
     let least = tried.first().map_or(0.0, TimingTrial::mean_square);
     let any_kind = tried.first().is_some_and(|best| best.timing.is_unusual() || best.timing.acts_at_once());
     // Where the best is perfect, so is every other one that is possible.
     let is_possible =
         move |other: &TimingTrial| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG;
+    let is_rare = tried.first().is_some_and(|best| VoltageTiming::RARE.contains(&best.timing));
+    let is_mean = move |other: &TimingTrial| {
+        is_rare && VoltageTiming::MEANS_OF_COMMANDS.contains(&other.timing) && other.mean_square() <= (1.0 + AVERAGED) * least
+    };
     let is_steps = |other: &TimingTrial| VoltageTiming::BY_EULERS_RULE.contains(&other.timing);
-    tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)))
+    tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)) || is_mean(other))
 }
 
 /// How far each parameter moves between them.

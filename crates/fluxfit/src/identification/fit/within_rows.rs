@@ -1,9 +1,11 @@
 //! What goes on within rows that each span several of the drive's periods is not in the log. How far the parameters would move with what it
 //! could be is the doubt.
 //!
-//! - An inverter holds its voltage in the stator for one of its periods, in which the rotor turns by `x`. What of it acts in the rotor's
-//!   frame is less than a logged command by `x²/24`, and more than a logged mean of two periods by `x²/12`: which of them, and how long the
-//!   drive's periods are, is not known.
+//! - An inverter holds its voltage in the stator for one of its periods, in which the rotor turns by `x`. The flux goes along a chord and not
+//!   along the arc, so that the voltage that would take it along the arc is more than a logged command by `x²/24`, and more than a logged
+//!   mean of two periods by `x²/6`: which of them, and how long the drive's periods are, is not known. `x²/12` stands for both. Means of a
+//!   few commands are [read](VoltageTiming) as held for about their period; they may be more commands, or of a simulator that holds its
+//!   voltage in the rotor's frame.
 //! - Of means, what dead time, devices and harmonics take is averaged twice, over a row's span and from row to row. The simulation has it
 //!   averaged once; with a wider span it comes nearer to that, and how much this matters tells what else is lost within a row.
 
@@ -55,7 +57,14 @@ pub(super) fn doubt(
         let moves = &inverse * DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(&column[..change.len()], &change)));
         MOTOR.map(|parameter| unknowns.iter().position(|unknown| *unknown == parameter).map_or(0.0, |place| moves[place].abs()))
     };
-    let more = |turn: f64| 1.0 + (turn / PERIODS_PER_ROW).abs().min(TAU / PERIODS_PER_TURN).powi(2) / 12.0;
+    let of_commands = match reading {
+        VoltageTiming::Averaged { of } => of.fewest_commands(),
+        _ => None,
+    };
+    let more = |turn: f64| match of_commands {
+        Some(commands) => 1.0 + (turn / commands).powi(2) / 24.0,
+        None => 1.0 + (turn / PERIODS_PER_ROW).abs().min(TAU / PERIODS_PER_TURN).powi(2) / 12.0,
+    };
     let by_periods = moves(&objective.with_voltages_scaled(more));
     let is_taken = |fault: Fault| unknowns.iter().filter_map(|unknown| unknown.fault()).any(|taken| taken.family() == fault.family());
     let changes = matches!(reading, VoltageTiming::Averaged { .. }) && (is_taken(Fault::DeadTime) || is_taken(Fault::FluxHarmonics));
