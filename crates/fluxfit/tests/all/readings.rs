@@ -240,7 +240,7 @@ fn means(log: &Log, rows: usize) -> Log {
     .unwrap()
 }
 
-/// Between its samples the flux of an inverter's motor goes along chords, here of 0.2 rad: read as if along arcs, psi_f is 0.17 % too small.
+/// Between its samples the flux of an inverter's motor goes along chords, here of 0.2 rad. Read as if along arcs psi_f is 0.17 % too small.
 #[test]
 fn means_of_two_commands_are_read_as_held_by_an_inverter() {
     let request = Request {

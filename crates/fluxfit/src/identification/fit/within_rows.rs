@@ -1,11 +1,11 @@
 //! What goes on within rows that each span several of the drive's periods is not in the log. How far the parameters would move with what it
 //! could be is the doubt.
 //!
-//! - An inverter holds its voltage in the stator for one of its periods, in which the rotor turns by `x`. The flux goes along a chord and not
-//!   along the arc, so that the voltage that would take it along the arc is more than a logged command by `x²/24`, and more than a logged
-//!   mean of two periods by `x²/6`: which of them, and how long the drive's periods are, is not known. `x²/12` stands for both. Means of a
-//!   few commands are [read](VoltageTiming) as held for about their period; they may be more commands, or of a simulator that holds its
-//!   voltage in the rotor's frame.
+//! - An inverter holds its voltage in the stator for one of its periods, in which the rotor turns by `x`. The flux goes along a chord and
+//!   not along the arc, so that the voltage that would take it along the arc is more than a logged command by `x²/24`, and more than a
+//!   logged mean of two periods by `x²/6`: which of them, and how long the drive's periods are, is not known. `x²/12` stands for both.
+//!   Means of a few commands are [read](VoltageTiming) as held for about their period; they may be more commands, or of a simulator that
+//!   holds its voltage in the rotor's frame.
 //! - Of means, what dead time, devices and harmonics take is averaged twice, over a row's span and from row to row. The simulation has it
 //!   averaged once; with a wider span it comes nearer to that, and how much this matters tells what else is lost within a row.
 
