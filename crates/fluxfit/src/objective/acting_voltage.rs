@@ -11,7 +11,8 @@
 //!
 //! Each command of which a row is the mean is held in the stator for a period in which the rotor turns by `x`. The flux, sampled at the
 //! period's ends, goes along a chord from one to the other and not along the arc: the command is smaller than the voltage that would take
-//! it along the arc, by `2 sin(x / 2) / x`.
+//! it along the arc, by `2 sin(x / 2) / x`. (Samples from the middle of the period, of drives whose own reading is half a period later, lie
+//! below the arc; their means are not told apart.)
 //!
 //! Many simulators that are written by hand go from row to row by Euler's rule: the slope of the current at a row, times the period. Their
 //! currents obey the rule exactly, and the differential equation of the motor only roughly. A row holds the current before or after its
@@ -58,15 +59,18 @@ pub enum VoltageTiming {
 pub enum MeansOf {
     /// Of voltages that act while the currents are sampled, or of so many commands that their delay does not count.
     Voltages,
-    /// Of four to eight commands, each of which acts later than the current from which it was computed. Three act half a row later, as what
-    /// begins at the row does.
+    /// Of four to eight commands, each of which acts later than the current from which it was computed, held in the stator. Three act half
+    /// a row later, as what begins at the row does.
     Commands,
-    /// Of two commands.
+    /// Of two such commands.
     TwoCommands,
 }
 
 /// Periods from the sample of a current to the middle of what its command applies.
 const COMMAND_DELAY: f64 = 1.5;
+
+/// Largest turn of a rotor in a drive's period, rad: six periods per turn. Where rows are farther apart than others, it turns more.
+const MOST_TURN: f64 = 1.0;
 
 impl MeansOf {
     /// How many commands a row is the mean of; `None` where nobody knows.
@@ -79,12 +83,10 @@ impl MeansOf {
         }
     }
 
-    /// The fewest that they may be.
-    pub(crate) fn fewest_commands(self) -> Option<f64> {
-        match self {
-            Self::Commands => Some(4.0),
-            other => other.commands(),
-        }
+    /// How far the rotor turns at most while one of them acts, where it turns so far in a row, rad; `None` where nobody knows.
+    pub(crate) fn most_turn(self, turn: f64) -> Option<f64> {
+        let fewest = if self == Self::Commands { Some(4.0) } else { self.commands() };
+        fewest.map(|fewest| (turn / fewest).abs().min(MOST_TURN))
     }
 
     /// By which part of a row they act later than the currents.
@@ -92,9 +94,9 @@ impl MeansOf {
         self.commands().map_or(0.0, |commands| COMMAND_DELAY / commands)
     }
 
-    /// Arc over chord of what each of them does, where the rotor turns so far in a row, rad.
+    /// The arc of the flux over its chord, while one of them acts and the rotor turns so far in a row, rad.
     fn arc_over_chord(self, turn: f64) -> f64 {
-        let half = self.commands().map_or(0.0, |commands| 0.5 * turn / commands);
+        let half = self.commands().map_or(0.0, |commands| 0.5 * (turn / commands).abs().min(MOST_TURN));
         if half == 0.0 { 1.0 } else { half / half.sin() }
     }
 }

@@ -256,17 +256,17 @@ pub(super) fn choose(
         searched.chosen.compare(&[&rare, &objectives]);
         found.insert(0, searched);
     }
-    // A command that acts at once beside the faults, but did not without them, may be a mean of commands as well.
+    // Where a command acts at once only beside the faults, means of commands were not suspected before.
     let is_simple = |best: &Searched| best.explained && best.chosen.unknowns == free;
     let late = found.first().filter(|best| !is_simple(best)).map(|best| best.chosen.reading);
     let late = under(&late.map_or(Vec::new(), |reading| readings::suspected(reading, &objectives, request)))?;
-    let mean = roughly(&late).into_iter().next();
+    let mean = readings::readings(&late, &start.drive, &free, &priors, HOPELESS).into_iter().next();
     if let (Some(mean), Some(usual)) = (mean, found.first())
         && let Some(mut searched) = search_from(without(mean), &late, &mut Vec::new())
         && is_motor(&searched)
         && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
     {
-        searched.chosen.compare(&[&late, &objectives]);
+        searched.chosen.compare(&[&late, &rare, &objectives]);
         found.insert(0, searched);
     }
     let mut found: Vec<Chosen> = found.into_iter().map(|found| found.chosen).collect();
@@ -354,8 +354,12 @@ impl Chosen {
         };
         let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &asked)?;
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);
-        let readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
-        let Some((place, best)) = tried.first() else { return Ok(self) };
+        let mut readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
+        let Some(first) = tried.first() else { return Ok(self) };
+        // What was chosen stays if it fits best: that it is rare was weighed then.
+        let is_own = |(_, own): &&(usize, TimingTrial)| own.timing == self.reading && own.mean_square() <= first.1.mean_square();
+        let (place, best) = tried.iter().find(is_own).unwrap_or(first);
+        readings.sort_by_key(|trial| trial.timing != best.timing);
         let drive = best.polished.drive;
         let residuals = objectives[*place].1.residuals(&drive);
         let independent = long_run::effective_sample_size(&residuals);

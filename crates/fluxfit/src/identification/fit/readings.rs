@@ -9,7 +9,7 @@ use crate::{
     log::Log,
     motor::PARAMETERS,
     objective::{
-        acting_voltage::VoltageTiming,
+        acting_voltage::{MeansOf, VoltageTiming},
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
@@ -188,27 +188,31 @@ pub(super) fn is_better(other: &TimingTrial, tried: &[TimingTrial], independent:
 }
 
 /// The readings that are not ruled out, given how many independent residuals there are. The best one first. Beside one of a drive that logs
-/// each of its periods no other kind is possible; voltages that act at once are of no such drive, and those that act half a period later
-/// are of few: every other row of a usual one passes for such a drive's, and is nearly as well read as a mean of two commands. Steps by
-/// Euler's rule are listed among those of a drive only if they fit better for certain, though not by enough to be taken.
+/// each of its periods no other kind is possible; voltages that act at once are of no such drive. Steps by Euler's rule are listed among
+/// those of a drive only if they fit better for certain, though not by enough to be taken.
 pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
     let least = tried.first().map_or(0.0, TimingTrial::mean_square);
     let any_kind = tried.first().is_some_and(|best| best.timing.is_unusual() || best.timing.acts_at_once());
     // Where the best is perfect, so is every other one that is possible.
     let is_possible =
         move |other: &TimingTrial| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG;
-    let is_rare = tried.first().is_some_and(|best| VoltageTiming::RARE.contains(&best.timing));
-    let is_mean = move |other: &TimingTrial| {
-        is_rare && VoltageTiming::MEANS_OF_COMMANDS.contains(&other.timing) && other.mean_square() <= (1.0 + AVERAGED) * least
-    };
     let is_steps = |other: &TimingTrial| VoltageTiming::BY_EULERS_RULE.contains(&other.timing);
-    tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)) || is_mean(other))
+    tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)))
+}
+
+/// The mean of two commands, where voltages seem to act half a period later and it fits about as well: every other row of a usual drive
+/// passes for the rows of a drive that samples in the middle of its period. Neither is exact there, so the evidence does not count.
+fn means_of_every_other_row(tried: &[TimingTrial]) -> Option<&TimingTrial> {
+    let best = tried.first().filter(|best| best.timing == VoltageTiming::HalfPeriodLater)?;
+    let of_two = VoltageTiming::Averaged { of: MeansOf::TwoCommands };
+    tried.iter().find(|other| other.timing == of_two && other.mean_square() <= (1.0 + AVERAGED) * best.mean_square())
 }
 
 /// How far each parameter moves between them.
 pub(crate) fn doubt(tried: &[TimingTrial], independent: f64) -> [f64; PARAMETERS] {
     let Some(best) = tried.first() else { return [0.0; PARAMETERS] };
-    possible(tried, independent).fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
+    let others = possible(tried, independent).chain(means_of_every_other_row(tried));
+    others.fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
         let (one, other) = (best.polished.drive.motor.to_array(), other.polished.drive.motor.to_array());
         std::array::from_fn(|p| most[p].max((one[p] - other[p]).abs()))
     })
@@ -217,10 +221,7 @@ pub(crate) fn doubt(tried: &[TimingTrial], independent: f64) -> [f64; PARAMETERS
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        log::Columns,
-        objective::acting_voltage::{MeansOf, VoltageFrame},
-    };
+    use crate::{log::Columns, motor::Motor, objective::acting_voltage::VoltageFrame};
 
     /// A command that acts one period later is a drive's own; one that acts at once may be a mean of commands.
     #[test]
@@ -250,5 +251,23 @@ mod tests {
         assert_eq!(suspected(once, &tried(&with_one), &auto), VoltageTiming::MEANS_OF_COMMANDS[1..]);
         let stated = Request { voltage_timing: Some(once), ..Request::default() };
         assert_eq!(suspected(once, &tried(&[once]), &stated), []);
+    }
+
+    /// However strong the evidence against it; other means of as good a fit, and other readings of a drive, have to go by it.
+    #[test]
+    fn every_other_row_may_be_a_mean_of_two_commands() {
+        let rows = 5000;
+        let trial = |timing, rs: f64, mean_square: f64| {
+            let drive = Adjustable::from(Motor { rs, ld: 1e-3, lq: 1e-3, psi_f: 0.1 });
+            let polished = Polished { drive, cost: mean_square * (2 * rows) as f64, converged: true };
+            TimingTrial { timing, polished, rows }
+        };
+        let of = |of| VoltageTiming::Averaged { of };
+        let later = trial(VoltageTiming::HalfPeriodLater, 1.0, 1.0);
+        let moved = |tried: &[TimingTrial]| doubt(tried, (2 * rows) as f64)[0];
+        assert!((moved(&[later, trial(of(MeansOf::TwoCommands), 1.5, 1.09)]) - 0.5).abs() < 1e-12);
+        assert_eq!(moved(&[later, trial(of(MeansOf::TwoCommands), 1.5, 1.11), trial(of(MeansOf::Commands), 1.5, 1.09)]), 0.0);
+        let ended = trial(VoltageTiming::Ended, 1.0, 1.0);
+        assert_eq!(moved(&[ended, trial(of(MeansOf::TwoCommands), 1.5, 1.09)]), 0.0);
     }
 }

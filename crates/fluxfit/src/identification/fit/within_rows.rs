@@ -4,8 +4,8 @@
 //! - An inverter holds its voltage in the stator for one of its periods, in which the rotor turns by `x`. The flux goes along a chord and
 //!   not along the arc, so that the voltage that would take it along the arc is more than a logged command by `x²/24`, and more than a
 //!   logged mean of two periods by `x²/6`: which of them, and how long the drive's periods are, is not known. `x²/12` stands for both.
-//!   Means of a few commands are [read](VoltageTiming) as held for about their period; they may be more commands, or of a simulator that
-//!   holds its voltage in the rotor's frame.
+//!   Means of a few commands are [read](VoltageTiming) as of two or five that are held so; they may be fewer or more, or of a simulator
+//!   that holds its voltage in the rotor's frame.
 //! - Of means, what dead time, devices and harmonics take is averaged twice, over a row's span and from row to row. The simulation has it
 //!   averaged once; with a wider span it comes nearer to that, and how much this matters tells what else is lost within a row.
 
@@ -57,12 +57,9 @@ pub(super) fn doubt(
         let moves = &inverse * DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(&column[..change.len()], &change)));
         MOTOR.map(|parameter| unknowns.iter().position(|unknown| *unknown == parameter).map_or(0.0, |place| moves[place].abs()))
     };
-    let of_commands = match reading {
-        VoltageTiming::Averaged { of } => of.fewest_commands(),
-        _ => None,
-    };
-    let more = |turn: f64| match of_commands {
-        Some(commands) => 1.0 + (turn / commands).powi(2) / 24.0,
+    let most_turn = |turn: f64| if let VoltageTiming::Averaged { of } = reading { of.most_turn(turn) } else { None };
+    let more = |turn: f64| match most_turn(turn) {
+        Some(turn) => 1.0 + turn.powi(2) / 24.0,
         None => 1.0 + (turn / PERIODS_PER_ROW).abs().min(TAU / PERIODS_PER_TURN).powi(2) / 12.0,
     };
     let by_periods = moves(&objective.with_voltages_scaled(more));
