@@ -259,7 +259,7 @@ const WELL_EXPLAINED: f64 = 0.03;
 const POSSIBLE: f64 = 1.15;
 
 /// Factors nearer to one than this are not looked for: saturation, noise, and voltages that act later than their row change the
-/// inductances of the slopes by less. In every second and fourth row of drives the speed seemed 1.05 to 1.6 times too high.
+/// inductances of the slopes by less. In every fourth row of two drives the speed seemed 1.1 to 1.6 times too high.
 const LEAST_SCALE: f64 = 1.5;
 
 /// The speed as it is must leave this many times as much as the best higher factor. 37 drives with faults of every kind, and 40 with

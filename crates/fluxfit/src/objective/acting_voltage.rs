@@ -11,8 +11,8 @@
 //!
 //! Each command of which a row is the mean is held in the stator for a period in which the rotor turns by `x`. The flux, sampled at the
 //! period's ends, goes along a chord from one to the other and not along the arc: the command is smaller than the voltage that would take
-//! it along the arc, by `2 sin(x / 2) / x`. (Samples from the middle of the period, of drives whose own reading is half a period later, lie
-//! below the arc; their means are not told apart.)
+//! it along the arc, by `2 sin(x / 2) / x`. A drive that samples in the middle of its period, where the chord lies
+//! below the arc, is read as one that samples at its ends.
 //!
 //! Many simulators that are written by hand go from row to row by Euler's rule: the slope of the current at a row, times the period. Their
 //! currents obey the rule exactly, and the differential equation of the motor only roughly. A row holds the current before or after its
@@ -69,7 +69,7 @@ pub enum MeansOf {
 /// Periods from the sample of a current to the middle of what its command applies.
 const COMMAND_DELAY: f64 = 1.5;
 
-/// Largest turn of a rotor in a drive's period, rad: six periods per turn. Where rows are farther apart than others, it turns more.
+/// Largest turn of a rotor in a drive's period, rad: six periods per turn. Across a lost row it turns more, but not in a period.
 const MOST_TURN: f64 = 1.0;
 
 impl MeansOf {
@@ -86,7 +86,7 @@ impl MeansOf {
     /// How far the rotor turns at most while one of them acts, where it turns so far in a row, rad; `None` where nobody knows.
     pub(crate) fn most_turn(self, turn: f64) -> Option<f64> {
         let fewest = if self == Self::Commands { Some(4.0) } else { self.commands() };
-        fewest.map(|fewest| (turn / fewest).abs().min(MOST_TURN))
+        fewest.map(|fewest| turn_of_each(turn, fewest))
     }
 
     /// By which part of a row they act later than the currents.
@@ -96,9 +96,14 @@ impl MeansOf {
 
     /// The arc of the flux over its chord, while one of them acts and the rotor turns so far in a row, rad.
     fn arc_over_chord(self, turn: f64) -> f64 {
-        let half = self.commands().map_or(0.0, |commands| 0.5 * (turn / commands).abs().min(MOST_TURN));
+        let half = self.commands().map_or(0.0, |commands| 0.5 * turn_of_each(turn, commands));
         if half == 0.0 { 1.0 } else { half / half.sin() }
     }
+}
+
+/// How far the rotor turns while each of so many commands acts, where it turns so far in a row, rad.
+fn turn_of_each(turn: f64, commands: f64) -> f64 {
+    (turn / commands).abs().min(MOST_TURN)
 }
 
 /// The frame in which a delayed voltage is written.

@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(suspected(once, &tried(&[once]), &stated), []);
     }
 
-    /// However strong the evidence against it; other means of as good a fit, and other readings of a drive, have to go by it.
+    /// Its distance is doubt however strong the evidence against it is. That of other means is not, nor its own beside another reading.
     #[test]
     fn every_other_row_may_be_a_mean_of_two_commands() {
         let rows = 5000;
