@@ -48,6 +48,8 @@ struct Searched {
     chosen: Chosen,
     /// Whether the log [is explained](is_explained).
     explained: bool,
+    /// Mean square of a residual, A².
+    mean_square: f64,
 }
 
 /// Where a search for faults begins.
@@ -141,23 +143,27 @@ pub(super) fn choose(
         None => under(readings),
         Some(_) => Ok(Vec::new()),
     };
-    let (steps, rare) = (objectives_of(&VoltageTiming::BY_EULERS_RULE)?, objectives_of(rare)?);
+    let (steps, mut rare) = (objectives_of(&VoltageTiming::BY_EULERS_RULE)?, objectives_of(rare)?);
     let alone = |objectives: &Objectives| Alone::of(objectives, &start.drive, (&free, &priors));
-    let (as_steps, as_rare) = (alone(&steps), alone(&rare));
+    let (as_steps, mut as_rare) = (alone(&steps), alone(&rare));
     let is_ahead = |alone: &&Alone| tried.first().is_some_and(|(_, usual)| alone.best.1.rank() < usual.rank());
-    let explained = [&as_steps, &as_rare].into_iter().flatten().filter(|alone| alone.searched.explained).filter(is_ahead);
-    if let Some(alone) = explained.min_by(|one, other| one.best.1.rank().total_cmp(&other.best.1.rank())) {
-        let mut chosen = alone.searched.chosen.clone();
+    let least = tried.first().map_or(f64::INFINITY, |(_, usual)| usual.mean_square());
+    if let Some(Alone { best: (place, best), .. }) = &as_rare
+        && best.timing == VoltageTiming::HalfPeriodLater
+        && best.mean_square() <= HOPELESS * least
+        && is_a_motor(&best.polished.drive.motor)
+    {
+        // In a fast motor, halves that count alike leave more than another reading does.
+        rare[*place].1 = rare[*place].1.with_halves_weighed(&best.polished.drive.motor);
+        as_rare = alone(&rare);
+    }
+    let is_explained = |alone: &&Alone| alone.searched.explained && is_ahead(alone);
+    let is_first = |steps: &&Alone| as_rare.as_ref().filter(is_explained).is_none_or(|rare| steps.best.1.rank() <= rare.best.1.rank());
+    if let Some(steps) = as_steps.as_ref().filter(is_explained).filter(is_first) {
+        let mut chosen = steps.searched.chosen.clone();
         chosen.readings.extend(tried.iter().map(|(_, tried)| *tried));
         return Ok(vec![chosen]);
     }
-    let best_timing = tried.first().map(|(_, best)| best.timing);
-    let may_hide_an_angle = start.may_hide_an_angle || best_timing.is_some_and(VoltageTiming::is_in_frame_of_row);
-    let of_angle = if may_hide_an_angle { &[Fault::AngleOffset, Fault::AngleDelay][..] } else { &[] };
-    // Voltages that lag are of another reading than without.
-    let of_voltages = best_timing.filter(|timing| !timing.tells_lag()).map(|_| Fault::VoltageLag);
-    let of_frame: Vec<Fault> = of_angle.iter().copied().chain(of_voltages).collect();
-    let with_frame = Begin::with_fault(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
     let _ = progress(Step::Faults);
     let most = if every_period { TRIED_READINGS } else { 1 };
     let ready = |begin: Begin, objectives| {
@@ -194,6 +200,30 @@ pub(super) fn choose(
         })
     };
     let without = |tried| Begin { tried, unknowns: free.clone(), faults: Vec::new() };
+    let is_motor = |found: &Searched| is_a_motor(&found.chosen.drive.motor);
+    // A filter or a late angle in a usual log passes for a rare reading as long as it is not found: what begins with one must do without
+    // a filter, and explain the log, or a log that nothing explains better for certain.
+    let has_filter = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(Fault::is_filter);
+    let with_rare = |alone: &Alone| {
+        let searched = search_from(without(alone.best), &rare, &mut Vec::new());
+        searched.filter(|searched| is_motor(searched) && !has_filter(searched))
+    };
+    let compared_with_all = |mut searched: Searched| {
+        let alike = under(&readings::alike(searched.chosen.reading, request))?;
+        searched.chosen.compare(&[&alike, &rare, &objectives]);
+        Ok::<Searched, Error>(searched)
+    };
+    let seems_rare = as_rare.as_ref().filter(is_explained);
+    if let Some(searched) = seems_rare.and_then(with_rare).filter(|searched| searched.explained) {
+        return Ok(vec![compared_with_all(searched)?.chosen]);
+    }
+    let best_timing = tried.first().map(|(_, best)| best.timing);
+    let may_hide_an_angle = start.may_hide_an_angle || best_timing.is_some_and(VoltageTiming::is_in_frame_of_row);
+    let of_angle = if may_hide_an_angle { &[Fault::AngleOffset, Fault::AngleDelay][..] } else { &[] };
+    // Voltages that lag are of another reading than without.
+    let of_voltages = best_timing.filter(|timing| !timing.tells_lag()).map(|_| Fault::VoltageLag);
+    let of_frame: Vec<Fault> = of_angle.iter().copied().chain(of_voltages).collect();
+    let with_frame = Begin::with_fault(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
     let first_plain = usize::from(with_frame.is_some());
     let begins: Vec<Begin> = with_frame.into_iter().chain(tried.iter().copied().take(most).map(without)).collect();
     if every_period {
@@ -221,7 +251,6 @@ pub(super) fn choose(
         }
     }
     // What is no motor comes last, however well it fits.
-    let is_motor = |found: &Searched| is_a_motor(&found.chosen.drive.motor);
     let criterion = |found: &Searched| found.chosen.criterion;
     let sort = |found: &mut Vec<Searched>| {
         found.sort_by(|one, other| is_motor(other).cmp(&is_motor(one)).then(criterion(one).total_cmp(&criterion(other))));
@@ -244,17 +273,19 @@ pub(super) fn choose(
         let first = tried.iter().copied().find(|(place, _)| *place < usual.len());
         found.extend(first.and_then(|first| search_from(without(first), usual, &mut begun)));
     }
-    // A filter or a late angle in a usual log passes for a rare reading as long as it is not found. So what begins with a rare one must
-    // explain the log, and without a filter.
-    if let (Some(alone), Some(usual)) = (as_rare.as_ref().filter(is_ahead), found.first())
-        && let Some(mut searched) = search_from(without(alone.best), &rare, &mut Vec::new())
-        && is_motor(&searched)
-        && searched.explained
-        && !searched.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(Fault::is_filter)
+    // A rare reading may be ahead only beside the faults that were found.
+    let is_ahead_beside = |usual: &Searched| {
+        let Chosen { drive, unknowns, independent, .. } = &usual.chosen;
+        let beside = readings::readings(&rare, drive, unknowns, &priors, HOPELESS_AFTER_A_FIT);
+        beside.first().is_some_and(|(_, beside)| independent * (usual.mean_square / beside.mean_square()).ln() > VERY_STRONG)
+    };
+    if let (Some(alone), Some(usual), None) = (&as_rare, found.first(), seems_rare)
+        && (is_ahead(&alone) || usual.chosen.unknowns != free && is_ahead_beside(usual))
+        && let Some(searched) = with_rare(alone)
+        && (searched.explained || !usual.explained)
         && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
     {
-        searched.chosen.compare(&[&rare, &objectives]);
-        found.insert(0, searched);
+        found.insert(0, compared_with_all(searched)?);
     }
     // Where a command acts at once only beside the faults, means of commands were not suspected before.
     let is_simple = |best: &Searched| best.explained && best.chosen.unknowns == free;
@@ -314,7 +345,7 @@ impl Alone {
             criterion: criterion(best.polished.cost, unknowns.len(), residuals.len()),
         };
         let explained = is_explained(&best.polished.drive, best.polished.cost, residuals.len(), independent, objective);
-        Some(Self { best: (place, best), searched: Searched { chosen, explained } })
+        Some(Self { best: (place, best), searched: Searched { chosen, explained, mean_square: best.mean_square() } })
     }
 }
 
@@ -420,6 +451,7 @@ impl Searched {
         let independent = long_run::effective_sample_size(&residuals);
         Self {
             explained: is_explained(&drive, cost, residuals.len(), independent, objective),
+            mean_square: cost / residuals.len() as f64,
             chosen: Chosen {
                 reading: *reading,
                 readings: compared.into_iter().map(|(_, tried)| tried).collect(),

@@ -77,6 +77,15 @@ pub(crate) fn suspected(best: VoltageTiming, tried: &[(VoltageTiming, OutputErro
     if may_be_means && request.voltage_timing.is_none() { of_commands() } else { Vec::new() }
 }
 
+/// What passes for a reading that was found, and so must be tried beside it.
+pub(crate) fn alike(found: VoltageTiming, request: &Request) -> Vec<VoltageTiming> {
+    let is_open = found == VoltageTiming::HalfPeriodLater && request.voltage_timing.is_none();
+    if is_open { vec![MEAN_OF_TWO] } else { Vec::new() }
+}
+
+/// What passes for [`VoltageTiming::HalfPeriodLater`] in every other row of a usual drive.
+const MEAN_OF_TWO: VoltageTiming = VoltageTiming::Averaged { of: MeansOf::TwoCommands };
+
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
 /// up for it.
 pub(crate) const HOPELESS: f64 = 10.0;
@@ -204,8 +213,7 @@ pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator
 /// passes for the rows of a drive that samples in the middle of its period. Neither is exact there, so the evidence does not count.
 fn means_of_every_other_row(tried: &[TimingTrial]) -> Option<&TimingTrial> {
     let best = tried.first().filter(|best| best.timing == VoltageTiming::HalfPeriodLater)?;
-    let of_two = VoltageTiming::Averaged { of: MeansOf::TwoCommands };
-    tried.iter().find(|other| other.timing == of_two && other.mean_square() <= (1.0 + AVERAGED) * best.mean_square())
+    tried.iter().find(|other| other.timing == MEAN_OF_TWO && other.mean_square() <= (1.0 + AVERAGED) * best.mean_square())
 }
 
 /// How far each parameter moves between them.
