@@ -262,6 +262,11 @@ const POSSIBLE: f64 = 1.15;
 /// inductances of the slopes by less. In every fourth row of two drives the speed seemed 1.1 to 1.6 times too high.
 const LEAST_SCALE: f64 = 1.5;
 
+/// The same where rows lie further apart than a drive's periods and currents jump between them: where a row has the voltage of the first
+/// period of a jump, it stands for all of them, and the inductance of the slope comes out too large. In every tenth row the right speed of
+/// six drives seemed 1.6 to 3.4 times too high.
+const LEAST_SCALE_OF_JUMPS: f64 = 4.0;
+
 /// The speed as it is must leave this many times as much as the best higher factor. 37 drives with faults of every kind, and 40 with
 /// filters and means, leave at most 1.4 times as much; with a speed four times too high, mostly 2 to 4 times.
 const TOO_HIGH: f64 = 1.65;
@@ -282,7 +287,7 @@ pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
 pub(crate) fn speed_in_doubt(log: &Log) -> Option<[f64; 2]> {
     let slopes = speed_of_slopes(log)?;
     let [low, high] = slopes.too_high;
-    let is_far = low > LEAST_SCALE || high < 1.0 / LEAST_SCALE;
+    let is_far = low > slopes.least_scale || high < 1.0 / LEAST_SCALE;
     let is_in_doubt = if log.columns().theta_e.is_some() { slopes.is_certain() } else { is_far };
     is_in_doubt.then_some([low, high])
 }
@@ -293,13 +298,15 @@ struct SpeedOfSlopes {
     too_high: [f64; 2],
     /// What the speed as it is leaves of the voltages, over what the best of these leaves.
     excess: f64,
+    /// Smaller factors may be of a speed that is right.
+    least_scale: f64,
 }
 
 impl SpeedOfSlopes {
     /// Whether no log of the right speed looks like this.
     fn is_certain(&self) -> bool {
         let [low, high] = self.too_high;
-        low > LEAST_SCALE && self.excess > TOO_HIGH || high < 1.0 / LEAST_SCALE && self.excess > TOO_LOW
+        low > self.least_scale && self.excess > TOO_HIGH || high < 1.0 / LEAST_SCALE && self.excess > TOO_LOW
     }
 }
 
@@ -308,13 +315,22 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
     if log.is_interpolated() {
         return None;
     }
+    let means = means(log);
+    if log.is_control_rate() {
+        return of_slopes(log, &means, LEAST_SCALE);
+    }
+    let calm: Vec<Mean> = means.iter().copied().filter(|mean| !mean.jumps).collect();
     // An angle that agrees with the speed is rarely wrong with it: there, more is asked.
-    let may_jump = log.is_control_rate() || log.columns().theta_e.is_none();
-    let means: Vec<Mean> = means(log).into_iter().filter(|mean| may_jump || !mean.jumps).collect();
+    let of_jumps = || if log.columns().theta_e.is_none() { of_slopes(log, &means, LEAST_SCALE_OF_JUMPS) } else { None };
+    of_slopes(log, &calm, LEAST_SCALE).or_else(of_jumps)
+}
+
+/// The same of these means.
+fn of_slopes(log: &Log, means: &[Mean], least_scale: f64) -> Option<SpeedOfSlopes> {
     if means.len() < LEAST {
         return None;
     }
-    let normal = normal(&means, &Frame::AS_IT_IS, true);
+    let normal = normal(means, &Frame::AS_IT_IS, true);
     let steps = (MOST_SCALE.ln() / SCALE_STEP.ln()) as i32;
     let tried: Vec<(f64, f64)> = (-steps..=steps).map(|step| SCALE_STEP.powi(step)).map(|scale| (scale, left(&normal, scale))).collect();
     let best = tried.iter().fold(f64::INFINITY, |best, (_, left)| best.min(*left));
@@ -331,7 +347,7 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
     let block = BLOCK.min(log.rows() / ENOUGH).max(1) as f64;
     let is_seen = log.segments().iter().all(|segment| block * segment.sample_period * resistance < inductance);
     let excess = left(&normal, 1.0) / best;
-    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess })
+    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess, least_scale })
 }
 
 /// What is left of the voltages, as a fraction, where the inductances of the slopes are those of the speed, times a factor.
@@ -441,9 +457,9 @@ mod tests {
     use crate::log::Columns;
 
     /// Rows of 1 ms, every tenth of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps between 1 and 2 A, i_d
-    /// between 0 and -1 A. The drive made each change in the period that begins at a row, with ten times the voltage of a row's change, so
-    /// slopes ask for ten times the inductance.
-    fn jumps_between_rows(has_angle: bool) -> Log {
+    /// between 0 and -1 A. The drive made each change in the first part of the row, with so many times the voltage of a row's change, and
+    /// slopes ask for so many times the inductance.
+    fn jumps_between_rows(times: f64, has_angle: bool) -> Log {
         let (rs, l, psi_f, omega_e, period, rows) = (6.0, 0.06, 0.3, 360.0, 1e-3, 900);
         let current = |row: usize| Dq {
             d: if (row / 40).is_multiple_of(2) { 0.0 } else { -1.0 },
@@ -451,7 +467,7 @@ mod tests {
         };
         let voltage = |row: usize| {
             let (i, next) = (current(row), current(row + 1));
-            let kick = |from: f64, to: f64| l * (to - from) / (0.1 * period);
+            let kick = |from: f64, to: f64| times * l * (to - from) / period;
             Dq { d: rs * i.d - omega_e * l * i.q + kick(i.d, next.d), q: rs * i.q + omega_e * (l * i.d + psi_f) + kick(i.q, next.q) }
         };
         let each = |value: &dyn Fn(usize) -> f64| (0..rows).map(value).collect::<Vec<f64>>();
@@ -468,11 +484,14 @@ mod tests {
         .unwrap()
     }
 
-    /// A speed alone may well be the shaft's; one that an angle follows is believed before a voltage that acted for a part of its row.
+    /// A speed alone may well be the shaft's, if the factor is larger than a part of a row makes it; one that an angle follows is believed
+    /// before a voltage that acted for a part of its row.
     #[test]
-    fn currents_that_jump_between_rows_do_not_contradict_an_angle() {
-        assert_eq!(speed_scale(&jumps_between_rows(true)), None);
-        let alone = speed_scale(&jumps_between_rows(false));
+    fn currents_that_jump_between_rows_contradict_a_speed_alone_by_large_factors() {
+        assert_eq!(speed_scale(&jumps_between_rows(10.0, true)), None);
+        assert_eq!(speed_scale(&jumps_between_rows(3.0, false)), None);
+        assert_eq!(speed_in_doubt(&jumps_between_rows(3.0, false)), None);
+        let alone = speed_scale(&jumps_between_rows(10.0, false));
         assert!(matches!(alone, Some(ColumnFinding::SpeedScale { low, high, .. }) if low > 5.0 && high < 20.0), "{alone:?}");
     }
 }

@@ -71,7 +71,8 @@ impl SpeedScale {
             return Self::Right;
         }
         // Between rows further apart than the drive's periods voltages are not logged, and a wrong speed may make up for them.
-        if !log.is_control_rate() || log.is_interpolated() || log.is_at_rest() {
+        let reading = fit.voltage_timing.value;
+        if !log.is_control_rate() || reading.acts_at_once() || reading.is_unusual() || log.is_interpolated() || log.is_at_rest() {
             return Self::Untold;
         }
         let of_faults = fit.fault_estimates.iter().map(|estimate| estimate.unknown);
