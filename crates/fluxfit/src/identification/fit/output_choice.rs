@@ -10,7 +10,7 @@ use super::{
     fault_trial::{FaultOutcome, FaultTrial},
     long_run,
     output_start::{self, Start, free},
-    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, VERY_STRONG, contest},
+    readings::{self, HOPELESS, HOPELESS_AFTER_A_FIT, Rules, TimingTrial, UNUSUAL, VERY_STRONG, contest},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -44,6 +44,7 @@ pub(super) struct Chosen {
 }
 
 /// What a search came to.
+#[derive(Clone)]
 struct Searched {
     chosen: Chosen,
     /// Whether the log [is explained](is_explained).
@@ -127,6 +128,9 @@ pub(super) fn choose(
         objectives.extend(under(&suspected)?);
         rough = roughly(&objectives);
     }
+    if rough.first().is_some_and(|(_, best)| weigh_halves(&mut objectives, best.timing, &best.polished.drive.motor)) {
+        rough = roughly(&objectives);
+    }
     let priors = output_start::priors(request, undone_lag, rough.first().map_or(0.0, |(_, best)| best.mean_square()));
     let mut found: Vec<Searched> = Vec::new();
     let mut begun: Vec<FaultSearch> = Vec::new();
@@ -148,13 +152,10 @@ pub(super) fn choose(
     let (as_steps, mut as_rare) = (alone(&steps), alone(&rare));
     let is_ahead = |alone: &&Alone| tried.first().is_some_and(|(_, usual)| alone.best.1.rank() < usual.rank());
     let least = tried.first().map_or(f64::INFINITY, |(_, usual)| usual.mean_square());
-    if let Some(Alone { best: (place, best), .. }) = &as_rare
-        && best.timing == VoltageTiming::HalfPeriodLater
+    if let Some(Alone { best: (_, best), .. }) = &as_rare
         && best.mean_square() <= HOPELESS * least
-        && is_a_motor(&best.polished.drive.motor)
+        && weigh_halves(&mut rare, best.timing, &best.polished.drive.motor)
     {
-        // In a fast motor, halves that count alike leave more than another reading does.
-        rare[*place].1 = rare[*place].1.with_halves_weighed(&best.polished.drive.motor);
         as_rare = alone(&rare);
     }
     let is_explained = |alone: &&Alone| alone.searched.explained && is_ahead(alone);
@@ -204,18 +205,23 @@ pub(super) fn choose(
     // A filter or a late angle in a usual log passes for a rare reading as long as it is not found: what begins with one must do without
     // a filter, and explain the log, or a log that nothing explains better for certain.
     let has_filter = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(Fault::is_filter);
+    let is_loss = |fault: Fault| fault.family() == Fault::DeadTime.family();
+    let has_loss = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(is_loss);
     let with_rare = |alone: &Alone| {
         let searched = search_from(without(alone.best), &rare, &mut Vec::new());
         searched.filter(|searched| is_motor(searched) && !has_filter(searched))
     };
     let compared_with_all = |mut searched: Searched| {
-        let alike = under(&readings::alike(searched.chosen.reading, request))?;
+        let tried: Vec<VoltageTiming> = objectives.iter().map(|(timing, _)| *timing).collect();
+        let alike = under(&readings::alike(searched.chosen.reading, &tried))?;
         searched.chosen.compare(&[&alike, &rare, &objectives]);
         Ok::<Searched, Error>(searched)
     };
     let seems_rare = as_rare.as_ref().filter(is_explained);
-    if let Some(searched) = seems_rare.and_then(with_rare).filter(|searched| searched.explained) {
-        return Ok(vec![compared_with_all(searched)?.chosen]);
+    if let Some(alone) = seems_rare {
+        // Dead time may leave next to nothing of itself. Beside a motor that explains the log no other fault is believed.
+        let with_faults = with_rare(alone).filter(|searched| searched.explained && has_loss(searched));
+        return Ok(vec![compared_with_all(with_faults.unwrap_or_else(|| alone.searched.clone()))?.chosen]);
     }
     let best_timing = tried.first().map(|(_, best)| best.timing);
     let may_hide_an_angle = start.may_hide_an_angle || best_timing.is_some_and(VoltageTiming::is_in_frame_of_row);
@@ -257,8 +263,6 @@ pub(super) fn choose(
     };
     sort(&mut found);
     // Something else may be taken first in the place of dead time that operating points show.
-    let is_loss = |fault: Fault| fault.family() == Fault::DeadTime.family();
-    let has_loss = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(is_loss);
     let is_answer = |best: &Searched| best.explained && is_motor(best) || has_loss(best);
     if start.shows_dead_time && !found.first().is_none_or(is_answer) {
         let angle_known = objectives.iter().all(|(_, objective)| objective.angle_known());
@@ -279,10 +283,16 @@ pub(super) fn choose(
         let beside = readings::readings(&rare, drive, unknowns, &priors, HOPELESS_AFTER_A_FIT);
         beside.first().is_some_and(|(_, beside)| independent * (usual.mean_square / beside.mean_square()).ln() > VERY_STRONG)
     };
-    if let (Some(alone), Some(usual), None) = (&as_rare, found.first(), seems_rare)
+    // What neither explains must be less for certain, and not because an observer follows it.
+    let is_disturbed = |found: &Searched| found.chosen.unknowns.iter().any(|unknown| unknown.is_observer_gain());
+    let is_better = |rare: &Searched, usual: &Searched| {
+        rare.explained
+            || !usual.explained && (is_disturbed(usual) || !is_disturbed(rare)) && (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square
+    };
+    if let (Some(alone), Some(usual)) = (&as_rare, found.first())
         && (is_ahead(&alone) || usual.chosen.unknowns != free && is_ahead_beside(usual))
         && let Some(searched) = with_rare(alone)
-        && (searched.explained || !usual.explained)
+        && is_better(&searched, usual)
         && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
     {
         found.insert(0, compared_with_all(searched)?);
@@ -318,6 +328,14 @@ pub(super) fn choose(
 
 /// A log under each of several readings.
 type Objectives = [(VoltageTiming, OutputError)];
+
+/// Weighs the halves of a row by the motor that was found, where the best reading has two: in a fast motor, halves that count alike leave
+/// more than another reading does. Whether it did.
+fn weigh_halves(objectives: &mut Objectives, best: VoltageTiming, motor: &Motor) -> bool {
+    let has_halves = |(timing, _): &&mut (VoltageTiming, OutputError)| *timing == VoltageTiming::HalfPeriodLater;
+    let own = objectives.iter_mut().find(has_halves).filter(|(timing, _)| *timing == best && is_a_motor(motor));
+    own.map(|(_, objective)| *objective = objective.with_halves_weighed(motor)).is_some()
+}
 
 /// The motor without any fault of a drive, under readings that are set apart: among the usual ones they could be taken for a fault. A
 /// simulator that steps by Euler's rule has none.
@@ -379,11 +397,12 @@ impl Chosen {
         let asked = match self.reading {
             reading if steps.contains(&reading) => steps.to_vec(),
             reading if asked.contains(&reading) => asked.to_vec(),
-            reading if rare.contains(&reading) => [&rare, asked].concat(),
+            reading if rare.contains(&reading) => [&rare, asked, &readings::alike(reading, asked)].concat(),
             reading if of_commands.contains(&reading) => [&[reading], asked].concat(),
             _ => asked.to_vec(),
         };
-        let objectives = OutputError::under_readings(log, &stretches::spread(stretches), &asked)?;
+        let mut objectives = OutputError::under_readings(log, &stretches::spread(stretches), &asked)?;
+        weigh_halves(&mut objectives, self.reading, &self.drive.motor);
         let tried = readings::readings(&objectives, &self.drive, &self.unknowns, &self.priors, HOPELESS_AFTER_A_FIT);
         let mut readings: Vec<TimingTrial> = tried.iter().map(|(_, tried)| *tried).collect();
         let Some(first) = tried.first() else { return Ok(self) };

@@ -52,7 +52,7 @@ impl TimingTrial {
 
 /// By which part a reading that is rare, or no inverter's, must fit better than all others: in a log that stands still it would fit as
 /// well, and may scale all voltages by what a rotor that turns through a held voltage makes of it.
-const UNUSUAL: f64 = 0.01;
+pub(super) const UNUSUAL: f64 = 0.01;
 
 /// The same of means over each row's span: voltages that move little from row to row are calmed by another mean, whatever they are.
 const AVERAGED: f64 = 0.1;
@@ -77,10 +77,10 @@ pub(crate) fn suspected(best: VoltageTiming, tried: &[(VoltageTiming, OutputErro
     if may_be_means && request.voltage_timing.is_none() { of_commands() } else { Vec::new() }
 }
 
-/// What passes for a reading that was found, and so must be tried beside it.
-pub(crate) fn alike(found: VoltageTiming, request: &Request) -> Vec<VoltageTiming> {
-    let is_open = found == VoltageTiming::HalfPeriodLater && request.voltage_timing.is_none();
-    if is_open { vec![MEAN_OF_TWO] } else { Vec::new() }
+/// What passes for a reading that was found, and so must be tried beside it, if it is not among these already.
+pub(super) fn alike(found: VoltageTiming, tried: &[VoltageTiming]) -> Vec<VoltageTiming> {
+    let may_pass = found == VoltageTiming::HalfPeriodLater && !tried.contains(&MEAN_OF_TWO);
+    if may_pass { vec![MEAN_OF_TWO] } else { Vec::new() }
 }
 
 /// What passes for [`VoltageTiming::HalfPeriodLater`] in every other row of a usual drive.
