@@ -169,11 +169,11 @@ fn voltages_of_the_period_before_and_half_a_period_later_are_read() {
     holds(&of_an_inverter(&TRUTH, HELD / 2, true, 0.0), VoltageTiming::HalfPeriodLater, 0.3);
 }
 
-/// The time constants of this winding are a few periods, so that the half that acts later counts for more. Where both count alike, another
-/// reading fits better.
+/// The time constant of this winding is four periods, so that the half that acts later counts for more. Where both count alike, another
+/// reading fits better. By how much more is exact for equal inductances; where they are 20 % apart, R_s is 0.06 % off.
 #[test]
 fn voltages_half_a_period_later_are_read_of_a_fast_winding() {
-    const FAST: Motor = Motor { rs: 5.0, ld: 2e-3, lq: 2.4e-3, psi_f: 0.1827 };
+    const FAST: Motor = Motor { rs: 5.0, ld: 2e-3, lq: 2e-3, psi_f: 0.1827 };
     holds_for(&FAST, &of_an_inverter(&FAST, HELD / 2, true, 0.0), VoltageTiming::HalfPeriodLater, 0.3);
 }
 
