@@ -140,7 +140,8 @@ impl Lvm {
         }
         let stamp = self.of_channel("Date", 0).zip(self.of_channel("Time", 0)).map(|(date, time)| {
             let end = time.len().min(time.find(['.', ',']).map_or(time.len(), |at| at + 10));
-            format!("{date} {}", &time[..end])
+            // In a damaged file the ninth digit may be a part of a letter: then it is no time, whole or cut.
+            format!("{date} {}", time.get(..end).unwrap_or(time))
         });
         match (&self.start, stamp) {
             (None, Some(stamp)) => self.start = Instants::of(&[&stamp]),
