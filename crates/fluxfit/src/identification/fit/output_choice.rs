@@ -202,8 +202,8 @@ pub(super) fn choose(
     };
     let without = |tried| Begin { tried, unknowns: free.clone(), faults: Vec::new() };
     let is_motor = |found: &Searched| is_a_motor(&found.chosen.drive.motor);
-    // A filter or a late angle in a usual log passes for a rare reading as long as it is not found: what begins with one must do without
-    // a filter, and explain the log, or a log that nothing explains better for certain.
+    // A filter or a late angle in a usual log passes for a rare reading as long as it is not found. So a search that begins with a rare
+    // reading counts only without a filter.
     let has_filter = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(Fault::is_filter);
     let is_loss = |fault: Fault| fault.family() == Fault::DeadTime.family();
     let has_loss = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(is_loss);
@@ -219,7 +219,7 @@ pub(super) fn choose(
     };
     let seems_rare = as_rare.as_ref().filter(is_explained);
     if let Some(alone) = seems_rare {
-        // Dead time may leave next to nothing of itself. Beside a motor that explains the log no other fault is believed.
+        // What is left may be white though dead time is there: a search counts if it finds one. Without, the motor alone is the answer.
         let with_faults = with_rare(alone).filter(|searched| searched.explained && has_loss(searched));
         return Ok(vec![compared_with_all(with_faults.unwrap_or_else(|| alone.searched.clone()))?.chosen]);
     }
@@ -283,7 +283,7 @@ pub(super) fn choose(
         let beside = readings::readings(&rare, drive, unknowns, &priors, HOPELESS_AFTER_A_FIT);
         beside.first().is_some_and(|(_, beside)| independent * (usual.mean_square / beside.mean_square()).ln() > VERY_STRONG)
     };
-    // What neither explains must be less for certain, and not because an observer follows it.
+    // Where neither explains the log, the rare one must leave noticeably less, and not because an observer follows the currents.
     let is_disturbed = |found: &Searched| found.chosen.unknowns.iter().any(|unknown| unknown.is_observer_gain());
     let is_better = |rare: &Searched, usual: &Searched| {
         rare.explained
@@ -329,11 +329,11 @@ pub(super) fn choose(
 /// A log under each of several readings.
 type Objectives = [(VoltageTiming, OutputError)];
 
-/// Weighs the halves of a row by the motor that was found, where the best reading has two: in a fast motor, halves that count alike leave
-/// more than another reading does. Whether it did.
+/// Weighs the two halves of each row by this motor, if the best reading is the one with halves; returns whether it is. Where the winding
+/// is fast, halves that count alike leave more than another reading does.
 fn weigh_halves(objectives: &mut Objectives, best: VoltageTiming, motor: &Motor) -> bool {
-    let has_halves = |(timing, _): &&mut (VoltageTiming, OutputError)| *timing == VoltageTiming::HalfPeriodLater;
-    let own = objectives.iter_mut().find(has_halves).filter(|(timing, _)| *timing == best && is_a_motor(motor));
+    let has_halves = best == VoltageTiming::HalfPeriodLater && is_a_motor(motor);
+    let own = objectives.iter_mut().find(|(timing, _)| has_halves && *timing == best);
     own.map(|(_, objective)| *objective = objective.with_halves_weighed(motor)).is_some()
 }
 

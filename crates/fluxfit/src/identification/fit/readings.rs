@@ -77,7 +77,7 @@ pub(crate) fn suspected(best: VoltageTiming, tried: &[(VoltageTiming, OutputErro
     if may_be_means && request.voltage_timing.is_none() { of_commands() } else { Vec::new() }
 }
 
-/// What passes for a reading that was found, and so must be tried beside it, if it is not among these already.
+/// A reading whose rows pass for those of the one that was found, and so must be tried beside it, unless it was tried.
 pub(super) fn alike(found: VoltageTiming, tried: &[VoltageTiming]) -> Vec<VoltageTiming> {
     let may_pass = found == VoltageTiming::HalfPeriodLater && !tried.contains(&MEAN_OF_TWO);
     if may_pass { vec![MEAN_OF_TWO] } else { Vec::new() }

@@ -70,12 +70,13 @@ impl SpeedScale {
         if log.columns().theta_e.is_some() {
             return Self::Right;
         }
-        // Between rows further apart than the drive's periods voltages are not logged, and a wrong speed may make up for them.
-        // Some rows that are as close as periods are every n-th of them all the same, or means: then a reading is found that no drive has.
+        // Between rows further apart than the drive's periods voltages are not logged, and a wrong speed may make up for them. Some rows
+        // that are as close as periods are every n-th of them all the same, or means: there a reading is found that no drive has.
         let reading = fit.voltage_timing.value;
-        let is_a_drives = || matches!(reading, VoltageTiming::Ended) || !(reading.acts_at_once() || reading.is_unusual());
-        let is_of_every_period = request.voltage_timing.is_some() || matches!(reading, VoltageTiming::Euler { .. }) || is_a_drives();
-        if !log.is_control_rate() || !is_of_every_period || log.is_interpolated() || log.is_at_rest() {
+        let is_measured_or_simulated = matches!(reading, VoltageTiming::Ended | VoltageTiming::Euler { .. });
+        let may_lack_periods =
+            request.voltage_timing.is_none() && !is_measured_or_simulated && (reading.acts_at_once() || reading.is_unusual());
+        if !log.is_control_rate() || may_lack_periods || log.is_interpolated() || log.is_at_rest() {
             return Self::Untold;
         }
         let of_faults = fit.fault_estimates.iter().map(|estimate| estimate.unknown);
