@@ -53,7 +53,7 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
         "deg/s" | "deg_s" | "deg_per_s" | "degree/s" | "degrees/s" | "°/s" | "dps" => {
             by_rotation(Unit::DegreePerSecond, Unit::DegreePerSecondMechanical, Unit::DegreePerSecond)
         }
-        "rps" | "rev/s" | "revs/s" | "turn/s" | "turns/s" => {
+        "rps" | "rev/s" | "revs/s" | "turn/s" | "turns/s" | "rev_s" | "revs_s" | "turn_s" | "turns_s" => {
             by_rotation(Unit::HertzElectrical, Unit::HertzMechanical, Unit::HertzMechanical)
         }
         "hz" => by_rotation(Unit::HertzElectrical, Unit::HertzMechanical, Unit::HertzElectrical),
@@ -109,8 +109,18 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
     // A header may be a unit and nothing else; a single letter is more likely a phase.
     match spelled(header, dimension, rotation) {
         Some(unit) if header.len() > 1 => ("", HeaderUnit::Known(unit)),
+        _ if dimension == Dimension::Speed => (header, within(header, rotation)),
         _ => (header, HeaderUnit::None),
     }
+}
+
+/// Units of speed that are no other word: they count wherever in a name they stand.
+const SPEED_WORDS: [&str; 6] = ["erpm", "rpm", "krpm", "rps", "hz", "dps"];
+
+/// The unit of speed that a name has in its middle: `/motor/erpm`, `rpm_filtered`.
+fn within(name: &str, rotation: Rotation) -> HeaderUnit<'_> {
+    let mut words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| SPEED_WORDS.contains(&word.to_lowercase().as_str()));
+    words.find_map(|word| spelled(word, Dimension::Speed, rotation)).map_or(HeaderUnit::None, HeaderUnit::Known)
 }
 
 /// Whether a text in brackets is an index: `0`, or as MATLAB and numpy write that of a column or a row, `:,1`, `1,:`.
@@ -120,7 +130,8 @@ fn is_index(text: &str) -> bool {
 
 /// Units without brackets that would be read as SI if they were not known: shares of a base value, digits of a converter, root
 /// mean squares where a dq value is a peak.
-const NO_SI: [&str; 14] = ["rms", "arms", "vrms", "pu", "mrad/s", "krad/s", "khz", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
+const NO_SI: [&str; 16] =
+    ["rms", "arms", "vrms", "pu", "mrad/s", "krad/s", "khz", "dhz", "mhz", "counts", "lsb", "digits", "q15", "q24", "s16", "pct"];
 
 /// Texts in the place of a unit for a share of a base value, and how many of them are the whole.
 const SHARES: [(&str, f64); 7] =
@@ -243,6 +254,14 @@ mod tests {
             ("n / min^-1", Speed, ("n", HeaderUnit::Known(Unit::RpmMechanical))),
             ("speed [deg/s]", Speed, ("speed", HeaderUnit::Known(Unit::DegreePerSecond))),
             ("f_e_kHz", Speed, ("f_e", HeaderUnit::Unknown("kHz"))),
+            ("speed_dHz", Speed, ("speed", HeaderUnit::Unknown("dHz"))),
+            ("motor.erpm", Speed, ("motor.erpm", HeaderUnit::Known(Unit::RpmElectrical))),
+            ("/motor/erpm", Speed, ("/motor/erpm", HeaderUnit::Known(Unit::RpmElectrical))),
+            ("rpm_el", Speed, ("rpm_el", HeaderUnit::Known(Unit::RpmElectrical))),
+            ("spd_rpm_filt", Speed, ("spd_rpm_filt", HeaderUnit::Known(Unit::RpmMechanical))),
+            ("speed_Hz_filt", Speed, ("speed_Hz_filt", HeaderUnit::Known(Unit::HertzElectrical))),
+            ("vel_turns_s", Speed, ("vel", HeaderUnit::Known(Unit::HertzMechanical))),
+            ("rpm_filtered", Time, ("rpm_filtered", HeaderUnit::None)),
             ("omega_e_deg_s", Speed, ("omega_e", HeaderUnit::Known(Unit::DegreePerSecond))),
             ("n_mech (°/s)", Speed, ("n_mech", HeaderUnit::Known(Unit::DegreePerSecondMechanical))),
             ("mech speed deg/s", Speed, ("mech speed", HeaderUnit::Known(Unit::DegreePerSecondMechanical))),

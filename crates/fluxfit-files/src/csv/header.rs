@@ -225,9 +225,9 @@ fn from_comments(text: &str, comments: &[(usize, &str)], body: usize, first: Hea
     Ok(Header { names, units, line, body, ..first })
 }
 
-/// Whether a line is a title, a timestamp or a line of information above the header: it has one cell or begins with a digit, and the
-/// next line has more cells; or it has at most half as many cells as the first row of numbers below; or it has empty cells, and the line
-/// below has fewer and is no row of numbers either; or it belongs to a preamble.
+/// Whether a line is a title, a timestamp or a line of information above the header: it has one cell, and some line below has more; or it
+/// begins with a digit, and the next line has more cells; or it has at most half as many cells as the first row of numbers below; or it has
+/// empty cells, and the line below has fewer and is no row of numbers either; or it belongs to a preamble.
 fn is_title(text: &str, start: usize, line: &str) -> bool {
     let header = at(text, start, most_frequent_separator(line));
     let cells = header.names.len();
@@ -241,7 +241,9 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
             || header.names.iter().any(String::is_empty) && is_above_names(&header, text)
             || is_preamble(&header, text);
     }
-    below().next().is_some_and(|(_, line)| cells_of(line).len() > cells)
+    // Above others of one cell, too.
+    let reach = if cells > 1 { 1 } else { TITLES };
+    below().take(reach).any(|(_, line)| cells_of(line).len() > cells)
 }
 
 /// Whether a line belongs to a preamble: above the rows of numbers another line has as many names as these have cells, and this one has
@@ -362,6 +364,8 @@ mod tests {
         let names = || vec!["t".to_owned(), "ud".to_owned(), "uq".to_owned()];
         assert_eq!(found("Bench 3;;2016\n;Drive;\nt;ud;uq\n1;2;3"), (names(), 3, b';', "1;2;3"));
         assert_eq!(found("t;ud;uq;\n1;2;3"), (names(), 1, b';', "1;2;3"));
+        assert_eq!(found("Bench 3\nDrive A: 8 kHz\nt;ud;uq\n1;2;3"), (names(), 3, b';', "1;2;3"));
+        assert_eq!(found("Bench 3;;\n29.11.2026;;\n;;\nt;ud;uq\n1;2;3"), (names(), 4, b';', "1;2;3"));
         // A column without a name, as pandas writes its index.
         assert_eq!(found(",ud,uq\n0,1,2\n").0, ["", "ud", "uq"]);
     }

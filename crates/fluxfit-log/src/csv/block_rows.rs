@@ -68,6 +68,7 @@ pub(super) struct Row<'a> {
 /// How a row was read.
 enum Reading {
     Taken,
+    /// Or a comment.
     Blank,
     /// The last row, whose end is missing.
     CutOff,
@@ -188,7 +189,7 @@ impl<'a> BlockRows<'a> {
         let found = row.cells.len();
         // Empty cells beyond the names are trailing separators.
         if found < expected && (!may_end_early || row.is_cut_off) || (expected..found).any(|index| !row.cell(index).is_empty()) {
-            if row.is_blank() {
+            if row.is_blank() || row.is_comment() {
                 return Ok(Reading::Blank);
             }
             if row.is_cut_off && found < expected && self.carried.any {
@@ -269,6 +270,11 @@ impl<'a> BlockRows<'a> {
 impl Row<'_> {
     fn cell(&self, index: usize) -> &[u8] {
         trimmed(self.cells.get(index).and_then(|range| self.text.get(range.clone())).unwrap_or_default())
+    }
+
+    /// Tools write them between the rows and below the last one, too.
+    fn is_comment(&self) -> bool {
+        trimmed(self.text).starts_with(b"#") || trimmed(self.text).starts_with(b"%")
     }
 
     fn is_blank(&self) -> bool {

@@ -16,6 +16,7 @@ mod characteristic;
 mod chosen;
 mod clock;
 mod columns;
+mod even_time;
 mod finder;
 mod gather;
 mod inspect;

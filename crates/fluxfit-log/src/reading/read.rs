@@ -8,7 +8,7 @@ use super::{
     align, back_emf,
     channels::Channels,
     chosen::{self, ChosenColumn},
-    columns,
+    columns, even_time,
     gather::{Gathered, gather},
     layout::Layout,
     lines::Lines,
@@ -199,6 +199,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let chosen = columns::choose(&table, named, options, &mut notes).map_err(|error| back_emf::named(&mut table, options, error))?;
     let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     rounded_time::refuse(&chosen, &channels)?;
+    notes.extend(even_time::settle(&mut channels).map(Note::from));
     let aligned = align::align(&mut channels, &lines)?;
     let gaps = gaps_of_file(&channels, &dropped_before);
     plausibility::refuse_duties(&chosen, &channels)?;

@@ -51,7 +51,7 @@ fn problem(channels: &Channels) -> Option<Problem> {
 }
 
 /// A number with as few digits as have it within a share of it: periods of drives are round.
-fn shortest(number: f64, accuracy: f64) -> String {
+pub(super) fn shortest(number: f64, accuracy: f64) -> String {
     let is_near = |text: &String| text.parse::<f64>().is_ok_and(|near| (near - number).abs() <= accuracy * number);
     let mut texts = (1..MOST_DIGITS).map(|digits| significant(number, digits));
     texts.find(is_near).unwrap_or_else(|| significant(number, MOST_DIGITS))
