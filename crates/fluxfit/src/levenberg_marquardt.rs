@@ -35,6 +35,10 @@ const NO_STEP_OF_CHOICE: f64 = 1e-7;
 /// What such a fit must gain to go on, by twice the logarithm of the odds: a tenth of very strong evidence.
 const WORTH_GOING_ON: f64 = 1.0;
 
+/// The same of an answer: along a way that gains so much, an unknown moves by a tenth of its standard error. Beside a loss with edges some
+/// fits crept on for forty steps and more, each gaining a tenth of this or less.
+const WORTH_GOING_ON_FOR_AN_ANSWER: f64 = 0.01;
+
 /// It ends, too, where its derivatives promise less than this part of that gain, all steps to come together.
 const WORTH_A_STEP: f64 = 0.1;
 
@@ -162,6 +166,13 @@ impl Purpose {
             Self::Answer => NO_STEP,
             Self::Choice { .. } | Self::Distance => NO_STEP_OF_CHOICE,
             Self::FirstStep => FIRST_STEP,
+        }
+    }
+
+    const fn worth_going_on(self) -> f64 {
+        match self {
+            Self::Answer => WORTH_GOING_ON_FOR_AN_ANSWER,
+            Self::Choice { .. } | Self::Distance | Self::FirstStep => WORTH_GOING_ON,
         }
     }
 
@@ -344,12 +355,14 @@ impl Problem<'_> {
     /// Whether the fit is good enough for what it is for.
     fn is_enough(&self) -> bool {
         let limit = if self.in_vain.gains > 1 { EVALUATIONS_IN_VAIN } else { FIRST_EVALUATIONS_IN_VAIN };
+        let is_in_vain = self.in_vain.evaluations >= limit;
         let is_there = match self.purpose {
-            Purpose::Answer | Purpose::FirstStep => return false,
+            Purpose::FirstStep => return false,
+            Purpose::Answer => return is_in_vain,
             Purpose::Choice { to_beat } => self.is_beaten(to_beat),
             Purpose::Distance => self.has_little_way_left(),
         };
-        is_there || self.in_vain.evaluations >= limit || self.promises_little()
+        is_there || is_in_vain || self.promises_little()
     }
 
     /// The best point so far that has derivatives.
@@ -434,7 +447,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         if self.first_cost.is_infinite() {
             self.first_cost = with_priors;
         }
-        self.in_vain = if with_priors < self.in_vain.since * self.odds(-WORTH_GOING_ON) {
+        self.in_vain = if with_priors < self.in_vain.since * self.odds(-self.purpose.worth_going_on()) {
             InVain { since: with_priors, evaluations: 0, gains: self.in_vain.gains + 1 }
         } else {
             InVain { evaluations: self.in_vain.evaluations + 1, ..self.in_vain }

@@ -58,6 +58,8 @@ pub(crate) struct Acting<V> {
 pub(crate) struct FaultKinds {
     /// What the sensors of current do.
     pub(crate) sensors: bool,
+    /// A frame that is turned, by a constant angle or with the speed.
+    pub(crate) turns: bool,
     /// A frame whose turn depends on the speed.
     pub(crate) delay: bool,
     /// A filter of the currents.
@@ -79,6 +81,7 @@ impl FaultKinds {
     #[cfg(test)]
     pub(crate) const ALL: Self = Self {
         sensors: true,
+        turns: true,
         delay: true,
         filter: true,
         voltages: true,
@@ -96,6 +99,7 @@ impl FaultKinds {
         let lags = faults.voltage_lag != none.voltage_lag;
         Self {
             sensors: turns || faults.current_offset != none.current_offset || faults.current_gains != none.current_gains,
+            turns,
             delay: late || lags,
             filter: faults.filter.phases != 0.0 || faults.filter.currents != 0.0,
             voltages: turns || lags || faults.speed_lag != none.speed_lag || faults.filter.voltages != 0.0,
@@ -114,6 +118,7 @@ impl FaultKinds {
     pub(crate) fn or(self, other: Self) -> Self {
         Self {
             sensors: self.sensors || other.sensors,
+            turns: self.turns || other.turns,
             delay: self.delay || other.delay,
             filter: self.filter || other.filter,
             voltages: self.voltages || other.voltages,
@@ -238,6 +243,9 @@ impl<V: Number> Acting<V> {
     /// A vector of the frame of an angle that is late by the speed times the delay, in the magnet's.
     #[inline(always)]
     fn in_magnets_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
+        if !self.kinds.turns {
+            return vector;
+        }
         let [cos, sin] = self.angle;
         self.undelayed(turned(vector, cos, sin), self.angle_delay, late_by)
     }
@@ -245,6 +253,9 @@ impl<V: Number> Acting<V> {
     /// A vector of the magnet's frame, in that of an angle that is late.
     #[inline(always)]
     fn in_rotors_frame(&self, vector: [V; 2], late_by: f64) -> [V; 2] {
+        if !self.kinds.turns {
+            return vector;
+        }
         let [cos, sin] = self.angle;
         self.undelayed(turned(vector, cos, -sin), self.angle_delay, -late_by)
     }

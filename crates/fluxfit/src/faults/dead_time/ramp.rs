@@ -3,9 +3,9 @@
 use crate::lanes::Number;
 
 /// `i / width`, but at most one and at least minus one.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Ramp<V> {
-    pub(super) width: V,
+    width: V,
     per_width: V,
 }
 
@@ -42,13 +42,15 @@ impl<V: Number> Fraction<V> {
     }
 }
 
-impl<V: Number> Ramp<V> {
+impl<V> Ramp<V> {
+    /// Of the widths, A, of which `lanes` has one a lane: divided once, and not in every row.
     #[inline(always)]
-    pub(super) fn of(width: V) -> Self {
-        let width = width.higher(width.constant(NARROWEST));
-        Self { width, per_width: width.constant(1.0) / width }
+    pub(super) fn of(lanes: impl Fn(&dyn Fn(f64) -> f64) -> V) -> Self {
+        Self { width: lanes(&|width| width.max(NARROWEST)), per_width: lanes(&|width| 1.0 / width.max(NARROWEST)) }
     }
+}
 
+impl<V: Number> Ramp<V> {
     #[inline(always)]
     pub(super) fn at(self, i: V) -> V {
         let one = i.constant(1.0);
@@ -105,7 +107,7 @@ mod tests {
             const POINTS: u32 = 20_000;
             let point = |k: u32| ((from + (to - from) * (f64::from(k) + 0.5) / f64::from(POINTS)) / width).clamp(-1.0, 1.0);
             let expected = (0..POINTS).map(point).sum::<f64>() / f64::from(POINTS);
-            prop_assert!((Ramp::of(width).mean(from, to).value() - expected).abs() < 1e-4);
+            prop_assert!((Ramp::of(|of_width| of_width(width)).mean(from, to).value() - expected).abs() < 1e-4);
         }
     }
 }

@@ -57,8 +57,8 @@ pub(crate) struct SwitchedLoss<V> {
     pub(crate) voltage: V,
     /// The part of it that is lost all the time, by devices; the rest is lost at the edges.
     pub(crate) lasting: V,
-    /// Phase current, A, from which on all of it is lost.
-    pub(crate) width: V,
+    /// From which phase current on how much of it is lost.
+    ramp: Ramp<V>,
     /// The ripple over what it is if a row is a carrier period, or half of one.
     pub(crate) ripple: V,
     /// Zero if a row is a whole carrier period; plus one if it is half of one, and even rows have the edges up; minus one if odd rows do.
@@ -121,7 +121,7 @@ impl<V> SwitchedLoss<V> {
         Self {
             voltage: lanes(&|f| f.voltage),
             lasting: lanes(&|f| f.lasting),
-            width: lanes(&|f| f.width.hypot(f.least_width)),
+            ramp: Ramp::of(|of_width| lanes(&|f| of_width(f.width.hypot(f.least_width)))),
             clamps: lanes(&|f| f.clamps),
             ripple: lanes(&|f| f.ripple),
             halves: lanes(&|f| f.halves),
@@ -185,7 +185,7 @@ impl<V: Number> SwitchedLoss<V> {
             down[x] = (one - when).mul_add(way, start[x]) + bent - commanded;
         }
         // Edge by edge: what the phases that switch before have lost, as far as their dead time is over. What is up later is down earlier.
-        let ramp = Ramp::of(self.width);
+        let ramp = self.ramp;
         let lost = self.voltage * (one - self.lasting);
         let clamped = if kinds.edges { self.clamped(ramp.out(up), [v, together.map(|i| i * per_bus)], &amperes) } else { [zero; 3] };
         for x in 0..3 {
