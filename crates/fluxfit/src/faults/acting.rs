@@ -35,7 +35,7 @@ pub(crate) struct Acting<V> {
     /// By which the commanded voltages are late, s: by the angle and by themselves.
     voltage_delay: V,
     /// Weights over a period.
-    current_filter: [V; 3],
+    current_filter: [V; 4],
     /// What of a change of the current within a period the filter passes on, inverted.
     before_filter: V,
     noise_before_filter: V,
@@ -155,6 +155,7 @@ impl<V> Acting<V> {
                 lanes(&|f| f.filter.weights(period)[0]),
                 lanes(&|f| f.filter.weights(period)[1]),
                 lanes(&|f| f.filter.weights(period)[2]),
+                lanes(&|f| f.filter.weights(period)[3]),
             ],
             noise_before_filter: lanes(&|f| f.filter.noise_before),
             before_filter: lanes(&|f| 1.0 / (1.0 - f.filter.weights(period)[1])),

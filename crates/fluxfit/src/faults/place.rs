@@ -7,6 +7,8 @@ use crate::frames::Turn;
 pub(crate) struct Place {
     /// Plus one or minus one from row to row of the log: the carrier's half, where each half is a row.
     pub(crate) half: f64,
+    /// Whether all legs of the inverter are high at its start, as in a drive that samples in the middle of its period; else they are low.
+    pub(crate) starts_high: bool,
     /// The rotor at its start, middle and end.
     pub(crate) start: Turn,
     pub(crate) middle: Turn,
@@ -37,6 +39,7 @@ impl Place {
     pub(crate) fn still(rotor: Turn) -> Self {
         Self {
             half: 1.0,
+            starts_high: false,
             start: rotor,
             middle: rotor,
             end: rotor,

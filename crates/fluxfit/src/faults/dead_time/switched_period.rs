@@ -30,6 +30,9 @@
 //! and the middle of that way lies not at zero but at `-V (A_xx + 2 sum A_xy s_y - 2 sum A_xy v_y / U_dc) / 2`, with the part `s_y` of the
 //! dead time in which the other legs are up.
 //!
+//! A drive that samples in the middle of its period has its rows begin where all legs are high. With all signs turned over, of voltages,
+//! currents and loss, such a row is a period that begins where they are low.
+//!
 //! One late edge of two makes the pulse late, too, by half the dead time: the mean current of the period lies below the way from sample to
 //! sample, and the resistance takes so much less. Of phase `x` these are
 //!
@@ -137,6 +140,22 @@ impl<V: Number> SwitchedLoss<V> {
     /// zero, `phase` is the cosine and sine of its angle.
     #[inline(always)]
     pub(crate) fn over(
+        &self,
+        kinds: LossKinds,
+        u: [V; 2],
+        currents: [[V; 2]; 2],
+        winding: &Winding<V>,
+        phase: Option<[V; 2]>,
+        place: &Place,
+    ) -> [V; 2] {
+        let sign = self.voltage.constant(if place.starts_high { -1.0 } else { 1.0 });
+        let signed = |[d, q]: [V; 2]| [sign * d, sign * q];
+        signed(self.from_low(kinds, signed(u), currents.map(signed), winding, phase, place))
+    }
+
+    /// The same of a period that begins where all legs are low.
+    #[inline(always)]
+    fn from_low(
         &self,
         kinds: LossKinds,
         u: [V; 2],
@@ -340,6 +359,7 @@ mod tests {
 
     /// An inverter of three ideal legs whose edges up come late while current flows out, and edges down while it flows in, and a motor at
     /// rest that is nothing but inductance, H. Time runs in fine steps.
+    #[derive(Clone, Copy)]
     struct Switched {
         bus: f64,
         dead_time: f64,
@@ -348,6 +368,8 @@ mod tests {
         duty: [f64; 3],
         /// Whether a current that reaches zero within the dead time stays there, as it does; else the sign at the edge decides.
         clamps: bool,
+        /// Whether the legs are high at the period's start.
+        starts_high: bool,
     }
 
     const STEPS: u32 = 50_000;
@@ -365,15 +387,16 @@ mod tests {
         }
 
         fn run(&self, mut i: [f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
-            let Self { bus, dead_time, inductance, duty, clamps } = *self;
+            let Self { bus, dead_time, inductance, duty, clamps, starts_high } = *self;
             let (start, mut mean) = (i, [0.0; 3]);
-            let (mut lost, mut high, mut late, mut dead) = ([[0.0; 3]; 2], [false; 3], [0.0; 3], [0.0; 3]);
+            let (mut lost, mut high, mut late, mut dead) = ([[0.0; 3]; 2], [starts_high; 3], [0.0; 3], [0.0; 3]);
             let h = 1.0 / f64::from(STEPS);
             for step in 0..STEPS {
                 let t = (f64::from(step) + 0.5) * h;
                 let mut volts = [0.0; 3];
                 for leg in 0..3 {
-                    let commanded = (t - 0.5).abs() < 0.5 * duty[leg];
+                    let inner = if starts_high { 1.0 - duty[leg] } else { duty[leg] };
+                    let commanded = ((t - 0.5).abs() < 0.5 * inner) != starts_high;
                     if commanded != high[leg] {
                         // Both switches open, and a diode holds what the current's direction asks for.
                         let waits = commanded == (i[leg] > 0.0);
@@ -405,7 +428,7 @@ mod tests {
         let v = modulated([0.5, -0.2, -0.3]);
         for i in [[5.0, -2.0, -3.0], [0.5, -5.0, 4.5], [4.0, 0.0, -4.0], [0.01, 3.0, -3.01]] {
             let below = |dead_time: f64| {
-                let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false };
+                let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false, starts_high: false };
                 alpha_beta(switched.below_way(i))
             };
             let (with, without) = (below(dead_time), below(0.0));
@@ -454,11 +477,12 @@ mod tests {
             };
             let v = modulated(vector(modulation * bus / 3.0_f64.sqrt(), angle));
             let i = vector(current, at);
-            let lost = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false }.loses(i);
-            for (halves, length) in [(0.0, 1.0), (1.0, 0.5)] {
+            let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false, starts_high: false };
+            for (halves, length, starts_high) in [(0.0, 1.0, false), (0.0, 1.0, true), (1.0, 0.5, false)] {
+                let lost = Switched { starts_high, ..switched }.loses(i);
                 let loss = loss_of(bus * dead_time, 0.0, 1e-9, 1.0, halves, 0.0);
                 for (half, in_half) in [1.0, -1.0].into_iter().zip(lost) {
-                    let place = Place { half, length, per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
+                    let place = Place { half, length, starts_high, per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
                     let kinds = LossKinds { edges: true, lasting: false };
                     let found = loss.over(kinds, alpha_beta(v), [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
                     let expected = if halves == 0.0 { std::array::from_fn(|leg| lost[0][leg] + lost[1][leg]) } else { in_half };
@@ -485,7 +509,8 @@ mod tests {
         let (mut squares, mut about_zero, mut count) = (0.0, 0.0, 0.0);
         for order in [[0.5, -0.1, -0.4], [0.02, 0.3, -0.32], [-0.5, 0.3, 0.2], [0.03, 0.02, -0.05], [0.4, -0.21, -0.19]] {
             let v = modulated(order);
-            let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: true };
+            let duty = v.map(|v| 0.5 + v / bus);
+            let switched = Switched { bus, dead_time, inductance, duty, clamps: true, starts_high: false };
             for step in -30..=30 {
                 let a = 0.004 * f64::from(step);
                 let i = [a, 1.0 - 0.5 * a, -1.0 - 0.5 * a];

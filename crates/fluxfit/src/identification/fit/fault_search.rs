@@ -130,6 +130,9 @@ impl FaultSearch<'_> {
         let faults: Vec<Fault> = Fault::ALL.into_iter().filter(|fault| !is_out(*fault)).collect();
         let mut taken = self.begun_with.clone();
         let mut not_taken = self.add(&faults, &mut taken);
+        if self.choose_filter(&mut taken) {
+            not_taken = self.add(&faults, &mut taken);
+        }
         if taken.len() > 1 {
             self.choose_kinds(&taken, false);
         }
@@ -345,7 +348,7 @@ pub(super) fn unphysical(trials: &[FaultTrial], drive: &Adjustable, peak: f64) -
 const EXCHANGED_READINGS: usize = 4;
 
 /// Of the kinds of a fault: as they stand, most are far from the best.
-const KINDS: Rules = Rules { stepped: 6, fitted: 3, ..Rules::all(HOPELESS) };
+pub(super) const KINDS: Rules = Rules { stepped: 6, fitted: 3, ..Rules::all(HOPELESS) };
 
 /// A parameter that a fault moves by so many times its value has run away, as where columns are exchanged or turned over: no fault of a
 /// drive hides a parameter to that degree.

@@ -10,6 +10,7 @@ pub(crate) mod excitation;
 pub(crate) mod fault_search;
 pub(crate) mod fault_trial;
 mod faults_in_doubt;
+mod filter_place;
 pub(crate) mod finding;
 mod frame_angle;
 mod frame_free;
