@@ -130,7 +130,7 @@ fn rows_are_refused_in_one_sentence() {
             "drive.csv, line 4: the row has 5 cells where the header has 6; complete the row or remove it",
         ),
         (below("0,1,2,3,4,5,6\n"), "drive.csv, line 2: the row has 7 cells where the header has 6; remove the extra cells or the row"),
-        (below("0,1,2,3,4,5\n# end\n"), "drive.csv, line 3: the row has 1 cell where the header has 6; complete the row or remove it"),
+        (below("0,1,2,3,4,5\nend\n"), "drive.csv, line 3: the row has 1 cell where the header has 6; complete the row or remove it"),
         (
             below("0,1,2,3,4,5\n\"1,1,2,3,4,5\n2,1,2,3,4,5\n"),
             "drive.csv, line 3: the row has 1 cell where the header has 6; a quotation mark in this line opens a cell that continues over several lines: close it",

@@ -150,12 +150,12 @@ impl<V: Number> SwitchedLoss<V> {
     ) -> [V; 2] {
         let sign = self.voltage.constant(if place.starts_high { -1.0 } else { 1.0 });
         let signed = |[d, q]: [V; 2]| [sign * d, sign * q];
-        signed(self.from_low(kinds, signed(u), currents.map(signed), winding, phase, place))
+        signed(self.beginning_low(kinds, signed(u), currents.map(signed), winding, phase, place))
     }
 
     /// The same of a period that begins where all legs are low.
     #[inline(always)]
-    fn from_low(
+    fn beginning_low(
         &self,
         kinds: LossKinds,
         u: [V; 2],
