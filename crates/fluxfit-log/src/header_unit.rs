@@ -109,19 +109,31 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
     // A header may be a unit and nothing else; a single letter is more likely a phase.
     match spelled(header, dimension, rotation) {
         Some(unit) if header.len() > 1 => ("", HeaderUnit::Known(unit)),
-        _ if dimension == Dimension::Speed => (header, within(header, rotation)),
         _ => (header, HeaderUnit::None),
     }
 }
 
-/// Units of speed that are no other word: they count wherever in a name they stand.
+/// Units of speed that are no other word: they count wherever in a name they stand, if nothing else states a unit.
 const SPEED_WORDS: [&str; 6] = ["erpm", "rpm", "krpm", "rps", "hz", "dps"];
 
-/// The unit of speed that a name has in its middle: `/motor/erpm`, `rpm_filtered`.
-fn within(name: &str, rotation: Rotation) -> HeaderUnit<'_> {
-    let mut words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| SPEED_WORDS.contains(&word.to_lowercase().as_str()));
-    words.find_map(|word| spelled(word, Dimension::Speed, rotation)).map_or(HeaderUnit::None, HeaderUnit::Known)
+/// The unit that the last part of a column's name has in its middle: `rpm_filtered` of `/motor/rpm_filtered`, but not the corner of a
+/// filter, `speed_50_hz`.
+pub(crate) fn unit_within(header: &str, dimension: Dimension) -> HeaderUnit<'_> {
+    let last = header.rsplit(['.', '/', '\\', ':']).next().unwrap_or(header);
+    let words: Vec<&str> = last.split(|c: char| !c.is_alphanumeric()).collect();
+    let is_number = |word: &str| !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit());
+    let of_speed = words.iter().enumerate().find(|(place, word)| {
+        let is_unit = SPEED_WORDS.contains(&word.to_lowercase().as_str()) || NO_SPEED.contains(&word.to_lowercase().as_str());
+        is_unit && !place.checked_sub(1).is_some_and(|before| is_number(words[before]))
+    });
+    match of_speed.filter(|_| dimension == Dimension::Speed) {
+        Some((_, word)) => spelled(word, dimension, rotation(header)).map_or(HeaderUnit::Unknown(word), HeaderUnit::Known),
+        None => HeaderUnit::None,
+    }
 }
+
+/// Such words that are no unit known here.
+const NO_SPEED: [&str; 3] = ["khz", "dhz", "mhz"];
 
 /// Whether a text in brackets is an index: `0`, or as MATLAB and numpy write that of a column or a row, `:,1`, `1,:`.
 fn is_index(text: &str) -> bool {
@@ -255,13 +267,8 @@ mod tests {
             ("speed [deg/s]", Speed, ("speed", HeaderUnit::Known(Unit::DegreePerSecond))),
             ("f_e_kHz", Speed, ("f_e", HeaderUnit::Unknown("kHz"))),
             ("speed_dHz", Speed, ("speed", HeaderUnit::Unknown("dHz"))),
-            ("motor.erpm", Speed, ("motor.erpm", HeaderUnit::Known(Unit::RpmElectrical))),
-            ("/motor/erpm", Speed, ("/motor/erpm", HeaderUnit::Known(Unit::RpmElectrical))),
-            ("rpm_el", Speed, ("rpm_el", HeaderUnit::Known(Unit::RpmElectrical))),
-            ("spd_rpm_filt", Speed, ("spd_rpm_filt", HeaderUnit::Known(Unit::RpmMechanical))),
-            ("speed_Hz_filt", Speed, ("speed_Hz_filt", HeaderUnit::Known(Unit::HertzElectrical))),
             ("vel_turns_s", Speed, ("vel", HeaderUnit::Known(Unit::HertzMechanical))),
-            ("rpm_filtered", Time, ("rpm_filtered", HeaderUnit::None)),
+            ("rpm_filtered", Speed, ("rpm_filtered", HeaderUnit::None)),
             ("omega_e_deg_s", Speed, ("omega_e", HeaderUnit::Known(Unit::DegreePerSecond))),
             ("n_mech (°/s)", Speed, ("n_mech", HeaderUnit::Known(Unit::DegreePerSecondMechanical))),
             ("mech speed deg/s", Speed, ("mech speed", HeaderUnit::Known(Unit::DegreePerSecondMechanical))),
@@ -280,5 +287,24 @@ mod tests {
         for (header, dimension, expected) in cases {
             assert_eq!(split_header(header, dimension), expected, "{header}");
         }
+    }
+
+    #[test]
+    fn units_of_speed_count_in_the_middle_of_a_name() {
+        let cases = [
+            ("motor.erpm", HeaderUnit::Known(Unit::RpmElectrical)),
+            ("/motor/erpm_abs", HeaderUnit::Known(Unit::RpmElectrical)),
+            ("rpm_el", HeaderUnit::Known(Unit::RpmElectrical)),
+            ("spd_rpm_filt", HeaderUnit::Known(Unit::RpmMechanical)),
+            ("speed_Hz_filt", HeaderUnit::Known(Unit::HertzElectrical)),
+            ("speed_kHz_filt", HeaderUnit::Unknown("kHz")),
+            ("speed_lp_50_hz_filt", HeaderUnit::None),
+            ("/rpm_ctrl/omega_e", HeaderUnit::None),
+            ("motor_speed", HeaderUnit::None),
+        ];
+        for (header, expected) in cases {
+            assert_eq!(unit_within(header, Dimension::Speed), expected, "{header}");
+        }
+        assert_eq!(unit_within("rpm_filtered", Dimension::Time), HeaderUnit::None);
     }
 }

@@ -47,7 +47,7 @@ const WORTH_A_STEP: f64 = 0.1;
 /// three, more numbers of drawn drives were wrong.
 const EVALUATIONS_IN_VAIN: usize = 4;
 
-/// The same before anything was gained: the first steps may be much too long.
+/// The same before anything was gained: the first steps may be much too long. Of an answer twice as many.
 const FIRST_EVALUATIONS_IN_VAIN: usize = 6;
 
 /// The same for a fit that ends after its first step: any step is small beside it.
@@ -354,7 +354,11 @@ struct Point {
 impl Problem<'_> {
     /// Whether the fit is good enough for what it is for.
     fn is_enough(&self) -> bool {
-        let limit = if self.in_vain.gains > 1 { EVALUATIONS_IN_VAIN } else { FIRST_EVALUATIONS_IN_VAIN };
+        let limit = match self.purpose {
+            _ if self.in_vain.gains > 1 => EVALUATIONS_IN_VAIN,
+            Purpose::Answer => 2 * FIRST_EVALUATIONS_IN_VAIN,
+            _ => FIRST_EVALUATIONS_IN_VAIN,
+        };
         let is_in_vain = self.in_vain.evaluations >= limit;
         let is_there = match self.purpose {
             Purpose::FirstStep => return false,

@@ -13,8 +13,11 @@ const FEWEST: usize = 30;
 /// Digits smaller than this part of a period change no answer.
 const SMALL: f64 = 1e-3;
 
-/// Digits larger than this part of a period hide a missing row: none may be missing.
+/// Digits larger than this part of a period hide a missing row,
 const LARGE: f64 = 0.25;
+
+/// and are believed if at least this share of the steps is longer: fewer are rows that were lost.
+const LONGER: f64 = 0.1;
 
 /// Digits by which a written time may differ from the even one: half a digit, and what the line through all of them misses.
 const OFF: f64 = 0.75;
@@ -68,7 +71,9 @@ impl Even {
     /// The same if these are the digits, and rows usually so far apart, s.
     fn by(last: LastDigit, t: &[f64], usual: f64) -> Option<Self> {
         let digit = t.iter().map(|time| last.of(*time)).fold(0.0, f64::max);
-        if digit <= SMALL * usual || digit > usual {
+        let longer = t.windows(2).filter(|pair| (pair[1] - pair[0] - usual).abs() > 0.5 * digit).count();
+        let are_lost = digit > LARGE * usual && (longer as f64) < LONGER * t.len() as f64;
+        if digit <= SMALL * usual || are_lost {
             return None;
         }
         let counted = |row: usize| if digit > LARGE * usual { 1.0 } else { ((t[row] - t[row - 1]) / usual).round() };
@@ -89,7 +94,9 @@ impl Even {
         };
         let even: Vec<f64> = stretches.iter().zip(&lines).flat_map(of_stretch).collect();
         let is_rounded = |(even, time): (&f64, &f64)| (even - time).abs() <= OFF * last.of(*time).max(SMALL * usual);
-        even.iter().zip(t).all(is_rounded).then_some(Self { t: even, period, digit })
+        // Even times with a gap are so as they are.
+        let moves = even.iter().zip(t).any(|(even, time)| (even - time).abs() > SMALL * usual);
+        (moves && even.iter().zip(t).all(is_rounded)).then_some(Self { t: even, period, digit })
     }
 }
 
@@ -187,7 +194,21 @@ mod tests {
         assert!(Even::of(&(0..6000).map(|row| f64::from(row) / 8000.0).collect::<Vec<f64>>()).is_none());
         let late = |row: i32| (1e5 * (f64::from(row) / 8000.0 + if row % 7 == 0 { 3e-5 } else { 0.0 })).round() / 1e5;
         assert!(Even::of(&(0..6000).map(late).collect::<Vec<f64>>()).is_none());
-        // Of a digit nearly as large as the period, a missing row is not seen.
+        // Even ones with a missing row and a gap.
+        assert!(Even::of(&written(|time| (time * 1e6).round() / 1e6)).is_none());
+        // Milliseconds of which some are missing, or every twentieth; and a digit nearly as large as the period with a missing row.
+        let kept = |is_lost: fn(i32) -> bool| (0..1000).filter(|row| !is_lost(*row)).map(|row| f64::from(row) / 1e3).collect::<Vec<f64>>();
+        assert!(Even::of(&kept(|row| row == 500)).is_none());
+        assert!(Even::of(&kept(|row| [250, 251, 750].contains(&row))).is_none());
+        assert!(Even::of(&kept(|row| row % 20 == 10)).is_none());
         assert!(Even::of(&written(|time| (time * 1e4).round() / 1e4)).is_none());
+    }
+
+    /// 8 kHz in tenths of a millisecond: every fourth step is two digits.
+    #[test]
+    fn digits_as_long_as_a_period_are_made_even_where_none_is_missing() {
+        let t: Vec<f64> = (0..4000).map(|row| (f64::from(row) / 8000.0 * 1e4).round() / 1e4).collect();
+        let even = Even::of(&t).expect("rounding explains them");
+        assert!((even.period * 8000.0 - 1.0).abs() < 1e-4, "{}", even.period);
     }
 }

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     block::ColumnHead,
     channel::Channel,
-    header_unit::{HeaderUnit, contradicted, share, split_header, states_electrical, unit_in_row},
+    header_unit::{HeaderUnit, contradicted, share, split_header, states_electrical, unit_in_row, unit_within},
     instant::Instants,
     note::Note,
     problem::{LineToLine, Problem},
@@ -429,6 +429,7 @@ impl Finder<'_> {
         }
         let (stem, in_name) = split_header(name, dimension);
         let named = match (in_name, head.unit.as_deref()) {
+            (HeaderUnit::None, None) => unit_within(name, dimension),
             (HeaderUnit::Known(_), _) | (_, None) => in_name,
             (_, Some(unit)) => unit_in_row(unit, name, dimension),
         };

@@ -401,12 +401,25 @@ const CHANGES: [Change; 11] = [
     Change::ReverseVoltages,
 ];
 
+/// Whether nothing but noise moves the currents. Then a controller's answer to it is all that there is in the voltages, and with exchanged
+/// columns that passes for a motor's; it is gone from means of many rows, while what wrong columns do is not.
+fn stands_still(means: &[Mean], peak: f64) -> bool {
+    let axes: [fn(&Mean) -> f64; 2] = [|mean| mean.i.d, |mean| mean.i.q];
+    axes.iter().all(|i| {
+        let middle = means.iter().map(i).sum::<f64>() / means.len() as f64;
+        let spread = means.iter().map(|mean| (i(mean) - middle).powi(2)).sum::<f64>();
+        let changes = means.windows(2).map(|pair| (i(&pair[1]) - i(&pair[0])).powi(2)).sum::<f64>();
+        // Of white noise they are twice as much (J. von Neumann, Ann. Math. Stat. 12 (1941) 367, doi:10.1214/aoms/1177731677).
+        changes > spread && spread < (SMALL * peak).powi(2) * means.len() as f64
+    })
+}
+
 /// Whether a motor explains the voltages only with other signs, or another order of the axes.
 pub(super) fn axes(log: &Log) -> Option<ColumnFinding> {
-    // Of a log that stands still a controller's answer to noise is all that moves, and with exchanged columns it passes for a motor's. It
-    // is gone from means of many rows; what wrong columns do is not.
-    let means = means(log);
-    let means: Vec<Mean> = means.chunks((means.len() / LEAST).max(1)).map(Mean::of).collect();
+    let mut means = means(log);
+    if stands_still(&means, log.peak_current()) {
+        means = means.chunks((means.len() / LEAST).max(1)).map(Mean::of).collect();
+    }
     let now = fit(&means, &Frame::AS_IT_IS, true)?.left;
     if now < UNEXPLAINED {
         return None;

@@ -212,10 +212,11 @@ impl<V: Number> Acting<V> {
         turned(vector, cos, sin)
     }
 
-    /// What a filter makes of the motor's current at a period's end: given its output at the start, `y`, and the currents at both, A.
+    /// What a filter makes of the motor's current at a period's end: given its output at the start, `y`, the currents at both, A, and by
+    /// how much the current half-way is beside their mean, times four.
     #[inline(always)]
-    pub(crate) fn filtered(&self, y: [V; 2], i: [[V; 2]; 2], place: &Place) -> [V; 2] {
-        if self.kinds.filter { filtered(self.current_filter, y, i, place) } else { i[1] }
+    pub(crate) fn filtered(&self, y: [V; 2], i: [[V; 2]; 2], bend: [V; 2], place: &Place) -> [V; 2] {
+        if self.kinds.filter { filtered(self.current_filter, y, i, bend, place) } else { i[1] }
     }
 
     /// The voltage that the drive means to act on the motor over a period, V, in the frame of its magnet, where `logged` was logged, and

@@ -442,7 +442,7 @@ mod tests {
             assert_eq!(acting.commanded_voltage(i, i, &place), i);
             assert_eq!(acting.lost(i, [i, i], &Winding::of(1.0, i), &place), [0.0; 2]);
             assert_eq!(acting.beside([0.0; 2], i, [0.1, 0.2], &place), [0.0; 2]);
-            assert_eq!(acting.filtered(i, [i, i], &Place { end: place.start, ..place }), i);
+            assert_eq!(acting.filtered(i, [i, i], [0.0; 2], &Place { end: place.start, ..place }), i);
             assert_eq!(acting.extra_flux(i), [0.0; 2]);
             assert_eq!((acting.corrected(i, i, [1.0; 2]), acting.remaining(i, i)), ([i, i], [i, i]));
         }

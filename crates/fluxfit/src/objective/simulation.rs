@@ -14,7 +14,7 @@ use super::{
     transition_polynomials::{TransitionPlan, TransitionPolynomials},
 };
 use crate::{
-    faults::{Acting, Winding},
+    faults::{Acting, Place, Winding},
     lanes::Number,
 };
 use pulp::NullaryFnOnce;
@@ -184,6 +184,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
                 segment,
                 first,
                 transitions: &transitions,
+                held: self.held,
                 winding: Winding::of(self.motors.rs, [self.motors.ld, self.motors.lq]),
                 state,
                 sums,
@@ -329,6 +330,7 @@ struct FaultyBlock<'a, V> {
     segment: &'a SimulatedSegment,
     first: usize,
     transitions: &'a [TransitionLanes<V>],
+    held: Held,
     winding: Winding<V>,
     state: &'a mut State<V>,
     sums: &'a mut Sums<V>,
@@ -404,14 +406,26 @@ impl<V: Number> FaultyBlock<'_, V> {
                 2 => transitions.driven_response(of_motor, [alpha_d, alpha_q]),
                 _ => transitions.driven_response(of_motor, [-alpha_q, alpha_d]),
             };
-            state.response[k] = self.faults.filtered(compared, [of_motor, after], &place);
+            state.response[k] = self.faults.filtered(compared, [of_motor, after], [zero; 2], &place);
             if filter {
                 state.motor_response[k] = after;
             }
         }
-        state.filtered = self.faults.filtered(filtered, [start, state.i], &place);
+        let bend = if self.faults.kinds.filter { self.bend(start, &place) } else { [zero; 2] };
+        state.filtered = self.faults.filtered(filtered, [start, state.i], bend, &place);
         let measured = self.faults.motor_current(zero.constants(period.measured), place.end, place.late_by);
         state.error = [measured[0] - state.filtered[0], measured[1] - state.filtered[1]];
+    }
+
+    /// How the current's way over a period is bent in the stator, A, `d, q`: four times what it is half-way beside the mean of its ends. A
+    /// voltage that stands still there leaves the magnets' to bend it, one that turns with the rotor takes the current along an arc.
+    #[inline(always)]
+    fn bend(&self, i: [V; 2], place: &Place) -> [V; 2] {
+        let square = i[0].constant(0.5 * (place.omega_e * place.length).powi(2));
+        match self.held {
+            Held::InStator => [-(square * self.motors.psi_f * self.winding.per_henry[0]), square.constant(0.0)],
+            Held::InRotor | Held::WithSlope => [square * i[0], square * i[1]],
+        }
     }
 
     /// A step whose flux is not only `L i + psi_f`: what is beyond takes a voltage as any flux does, by its turning and by its growth.

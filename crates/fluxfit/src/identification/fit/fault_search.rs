@@ -205,14 +205,19 @@ impl FaultSearch<'_> {
     fn choose_kinds(&mut self, taken: &[FaultTrial], under_other_readings: bool) {
         let mut starts = self.kinds(taken, &self.drive);
         starts.retain(|(reading, _)| under_other_readings || *reading == self.reading);
-        let (timing, objective) = &self.objectives[self.reading];
-        let now = Polished { drive: self.drive, cost: self.cost, converged: false };
-        let now = TimingTrial { timing: *timing, polished: now, rows: objective.rows() };
+        let now = self.present();
         let fitted = contest(self.objectives, starts, &self.unknowns, self.priors, &Rules { to_beat: now.rank(), ..KINDS });
         if let Some((reading, best)) = fitted.first().filter(|(_, best)| best.rank() < now.rank()) {
             (self.reading, self.drive, self.cost) = (*reading, best.polished.drive, best.polished.cost);
             self.compared.clear();
         }
+    }
+
+    /// The present fit.
+    pub(super) fn present(&self) -> TimingTrial {
+        let (timing, objective) = &self.objectives[self.reading];
+        let polished = Polished { drive: self.drive, cost: self.cost, converged: false };
+        TimingTrial { timing: *timing, polished, rows: objective.rows() }
     }
 
     /// A drive with all kinds of its faults, under every reading.
