@@ -241,9 +241,14 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
             || header.names.iter().any(String::is_empty) && is_above_names(&header, text)
             || is_preamble(&header, text);
     }
-    // Above others of one cell, too.
-    let reach = if cells > 1 { 1 } else { TITLES };
-    below().take(reach).any(|(_, line)| cells_of(line).len() > cells)
+    let mut below = below().map(|(_, line)| cells_of(line));
+    let Some(next) = below.next() else { return false };
+    if next.len() > cells || cells > 1 {
+        return next.len() > cells;
+    }
+    // Above others of one cell, too, if there is a table below.
+    let mut below = below.take(TITLES).skip_while(|line| line.len() <= cells).skip(1);
+    below.by_ref().take(NAMES_AND_UNITS).any(|line| line.len() > 1 && line.iter().filter(|cell| is_number(cell)).count() * 2 > line.len())
 }
 
 /// Whether a line belongs to a preamble: above the rows of numbers another line has as many names as these have cells, and this one has

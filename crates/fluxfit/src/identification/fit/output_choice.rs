@@ -271,6 +271,17 @@ pub(super) fn choose(
         found.extend(with_loss.and_then(|begin| search_from(begin, &objectives, &mut begun)));
         sort(&mut found);
     }
+    // What a filter of the phase currents does while the rotor turns passes for much else beside an observer. A lag of the speed and
+    // saturation, which leave as much, have searches of their own.
+    let leaves_much = |best: &Searched| {
+        let has = |fault| best.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
+        !best.explained && ![Fault::CurrentFilter, Fault::SpeedLag, Fault::Saturation].into_iter().any(has)
+    };
+    if every_period && found.first().is_some_and(leaves_much) {
+        let with_filter = Begin::with_fault(&[Fault::CurrentFilter], &objectives, &start.drive, (&free, &priors), &tried);
+        found.extend(with_filter.and_then(|begin| search_from(begin, &objectives, &mut begun)));
+        sort(&mut found);
+    }
     // A reading that is no inverter's may hide what a speed that lags does: it is looked for without them, too.
     if every_period && found.first().is_some_and(|best| best.chosen.reading.is_unusual() && !best.explained) {
         let usual = &objectives[..objectives.iter().take_while(|(reading, _)| !reading.is_unusual()).count()];
