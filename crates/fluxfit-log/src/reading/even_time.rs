@@ -56,15 +56,15 @@ impl Even {
     /// Nothing of times that are even as they are written, or that rounding does not explain.
     fn of(t: &[f64]) -> Option<Self> {
         let steps = || t.windows(2).map(|pair| pair[1] - pair[0]);
-        if t.len() < FEWEST || steps().any(|step| step.is_nan() || step <= 0.0) {
+        // Those of most logs are even as they are.
+        let first = steps().next()?;
+        if t.len() < FEWEST || steps().all(|step| (step - first).abs() <= SMALL * first) || steps().any(|step| step.is_nan() || step <= 0.0)
+        {
             return None;
         }
         let mut sorted: Vec<f64> = steps().collect();
         let middle = sorted.len() / 2;
         let usual = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-        if steps().all(|step| (step - usual).abs() <= SMALL * usual) {
-            return None;
-        }
         LastDigit::all_of(t).find_map(|digit| Self::by(digit, t, usual))
     }
 
