@@ -116,6 +116,9 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
 /// Units of speed that are no other word: they count wherever in a name they stand, if nothing else states a unit.
 const SPEED_WORDS: [&str; 6] = ["erpm", "rpm", "krpm", "rps", "hz", "dps"];
 
+/// Such words that are no unit known here.
+const NO_SPEED: [&str; 3] = ["khz", "dhz", "mhz"];
+
 /// The unit that the last part of a column's name has in its middle: `rpm_filtered` of `/motor/rpm_filtered`, but not the corner of a
 /// filter, `speed_50_hz`.
 pub(crate) fn unit_within(header: &str, dimension: Dimension) -> HeaderUnit<'_> {
@@ -131,9 +134,6 @@ pub(crate) fn unit_within(header: &str, dimension: Dimension) -> HeaderUnit<'_> 
         None => HeaderUnit::None,
     }
 }
-
-/// Such words that are no unit known here.
-const NO_SPEED: [&str; 3] = ["khz", "dhz", "mhz"];
 
 /// Whether a text in brackets is an index: `0`, or as MATLAB and numpy write that of a column or a row, `:,1`, `1,:`.
 fn is_index(text: &str) -> bool {

@@ -1,7 +1,10 @@
 //! Times of even rows that were written with few digits: 0, 0.00013, 0.00025, 0.00038. Some rows seem to be one digit further apart than
 //! others, and the usual distance is not the mean. Where every time is what rounding makes of even ones, it is these that the drive had.
 
-use super::{channels::Channels, rounded_time::shortest};
+use super::{
+    channels::Channels,
+    rounded_time::{median, shortest},
+};
 use crate::channel::Channel;
 use fluxfit::log::without_gaps;
 use fluxfit_units::significant;
@@ -62,9 +65,7 @@ impl Even {
         {
             return None;
         }
-        let mut sorted: Vec<f64> = steps().collect();
-        let middle = sorted.len() / 2;
-        let usual = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let usual = median(steps().collect());
         LastDigit::all_of(t).find_map(|digit| Self::by(digit, t, usual))
     }
 

@@ -57,7 +57,7 @@ pub(super) fn shortest(number: f64, accuracy: f64) -> String {
     texts.find(is_near).unwrap_or_else(|| significant(number, MOST_DIGITS))
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
     let middle = values.len() / 2;
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

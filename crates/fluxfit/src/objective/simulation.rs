@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     faults::{Acting, Place, Winding},
+    frames::Turn,
     lanes::Number,
 };
 use pulp::NullaryFnOnce;
@@ -423,7 +424,11 @@ impl<V: Number> FaultyBlock<'_, V> {
     fn bend(&self, i: [V; 2], place: &Place) -> [V; 2] {
         let square = i[0].constant(0.5 * (place.omega_e * place.length).powi(2));
         match self.held {
-            Held::InStator => [-(square * self.motors.psi_f * self.winding.per_henry[0]), square.constant(0.0)],
+            Held::InStator => {
+                let along = -(square * self.motors.psi_f * self.winding.per_henry[0]);
+                let Turn { cos, sin } = place.middle.until(place.end);
+                [along * along.constant(cos), along * along.constant(-sin)]
+            }
             Held::InRotor | Held::WithSlope => [square * i[0], square * i[1]],
         }
     }

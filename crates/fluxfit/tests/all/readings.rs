@@ -85,10 +85,19 @@ fn loss_of_phases(i: Dq, theta_e: f64, lost: f64) -> Dq {
 /// A log of an inverter that samples after so many steps of each period, and holds what it commands there in the stator for the next one.
 /// A row holds what it commands, or else what was applied in the period before. Each phase loses some volts against its current.
 fn of_an_inverter(motor: &Motor, sampled: usize, commands: bool, lost: f64) -> Log {
+    behind_filters(motor, sampled, commands, lost, 0.0)
+}
+
+/// The same where the logged currents passed a filter of this time constant, s, in each phase.
+fn behind_filters(motor: &Motor, sampled: usize, commands: bool, lost: f64, time_constant: f64) -> Log {
     const STEPS: usize = 40_000;
     let (mut draws, mut noise) = (Draws::seeded(5, 0), Draws::seeded(6, 0));
     let mut columns = Columns::default();
     let (mut i, mut ended, mut acting, mut commanded) = (Dq::default(), Dq::default(), Dq::default(), Dq::default());
+    let (mut logged, mut before) = (i, i);
+    // Over a fine step the current's way is straight enough: `y_1 = kept y_0 + (late - kept) i_0 + (1 - late) i_1`.
+    let kept = if time_constant > 0.0 { (-STEP / time_constant).exp() } else { 0.0 };
+    let late = time_constant / STEP * (1.0 - kept);
     for step in 0..STEPS {
         if step % HELD == 0 {
             (ended, acting) = (acting, commanded);
@@ -97,8 +106,8 @@ fn of_an_inverter(motor: &Motor, sampled: usize, commands: bool, lost: f64) -> L
             commanded = command(motor, i, step, STEPS, &mut draws);
             let u = if commands { commanded } else { ended };
             columns.t.push(step as f64 * STEP);
-            columns.id.push(i.d + NOISE * noise.normal());
-            columns.iq.push(i.q + NOISE * noise.normal());
+            columns.id.push(logged.d + NOISE * noise.normal());
+            columns.iq.push(logged.q + NOISE * noise.normal());
             columns.ud.push(u.d);
             columns.uq.push(u.q);
             columns.omega_e.push(OMEGA_E);
@@ -111,7 +120,22 @@ fn of_an_inverter(motor: &Motor, sampled: usize, commands: bool, lost: f64) -> L
             let (sin, cos) = (OMEGA_E * (from_middle + time)).sin_cos();
             Dq { d: cos * acting.d + sin * acting.q - loss.d, q: cos * acting.q - sin * acting.d - loss.q }
         });
+        // What a filter holds stands still in the stator.
+        let turned = |held: Dq| {
+            let (sin, cos) = (OMEGA_E * STEP).sin_cos();
+            Dq { d: cos * held.d + sin * held.q, q: cos * held.q - sin * held.d }
+        };
+        let (held, old) = (turned(logged), turned(before));
+        let filtered = |held: f64, old: f64, new: f64| kept * held + (late - kept) * old + (1.0 - late) * new;
+        logged = Dq { d: filtered(held.d, old.d, i.d), q: filtered(held.q, old.q, i.q) };
+        before = i;
     }
+    // The log begins when the filter holds what it will: it starts with none of the current.
+    let begin = if time_constant > 0.0 { 50 } else { 0 };
+    for column in [&mut columns.t, &mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq, &mut columns.omega_e] {
+        column.drain(..begin);
+    }
+    columns.theta_e.iter_mut().for_each(|theta_e| drop(theta_e.drain(..begin)));
     Log::new(columns).unwrap()
 }
 
@@ -185,6 +209,16 @@ fn voltages_half_a_period_later_are_read_beside_dead_time() {
     for (parameter, verdict) in read_as(&TRUTH, &log, &request, VoltageTiming::HalfPeriodLater, 0.5) {
         assert_eq!(verdict, Verdict::Identified, "{parameter:?}");
     }
+}
+
+/// A filter in the phases, of one period's time constant. Read as one of d and q it is worth minus `omega_e² L tau` of resistance, all
+/// there is; along chords, psi_f is 0.3 % too large.
+#[test]
+fn currents_behind_a_filter_of_the_phases_are_read() {
+    const ROUND: Motor = Motor { rs: 0.958, ld: 8e-3, lq: 8e-3, psi_f: 0.1827 };
+    let log = behind_filters(&ROUND, 0, true, 0.0, HELD as f64 * STEP);
+    let delayed = VoltageTiming::Delayed { delay: 1, frame: VoltageFrame::Middle };
+    holds_for(&ROUND, &log, delayed, 0.3);
 }
 
 #[test]
