@@ -99,6 +99,10 @@ pub(super) fn refuse_high_voltage(chosen: &[ChosenColumn], channels: &Channels) 
     let is_voltage = |column: &&ChosenColumn| [Channel::Ud, Channel::Uq].contains(&column.channel) && !column.is_unit_written;
     for column in chosen.iter().filter(is_voltage).filter(|_| channels.get(Channel::UDc).is_none()) {
         let values = channels.get(column.channel).unwrap_or_default().iter();
+        // So it is in most logs, which is seen much faster than a percentile.
+        if values.clone().all(|value| value.abs() <= MOST_VOLTAGE) {
+            continue;
+        }
         let mut sizes: Vec<f64> = values.map(|value| value.abs()).filter(|size| size.is_finite()).collect();
         // Not the largest: a spike is left out later.
         let upper = sizes.len() * 3 / 4;

@@ -40,6 +40,12 @@ pub(super) fn split(t: &[f64], steps: [f64; 5], starts: &[usize]) -> Vec<Segment
 
 /// Stretches of rows with these times, s, split where a step is a gap: more than 2.5 times the median one.
 pub fn without_gaps(t: &[f64]) -> Vec<Range<usize>> {
+    // The median lies between the shortest and the longest step, and is not needed where these are close.
+    let steps = || t.windows(2).map(|pair| pair[1] - pair[0]);
+    let (shortest, longest) = steps().fold((f64::INFINITY, 0.0_f64), |(shortest, longest), step| (shortest.min(step), longest.max(step)));
+    if t.len() > 1 && longest <= GAP_FACTOR * shortest {
+        return std::iter::once(0..t.len()).collect();
+    }
     let sample_period = median_step(t);
     let mut stretches = Vec::new();
     let mut start = 0;
