@@ -25,7 +25,7 @@ pub(crate) struct LogArguments {
     /// When the voltages ud, uq of a row are applied
     ///
     /// Either they are the mean of the two periods around the row (centered), or the vector of one period that begins 0, 1 or 2 periods
-    /// after the row, half a period after it (0.5), or ended at it (-1).
+    /// after the row, half a period before or after it (-0.5, 0.5), or ended at it (-1).
     #[arg(long, value_enum, default_value_t = Timing::Auto, allow_hyphen_values = true)]
     pub(crate) voltage_timing: Timing,
     /// Motor file: pole pairs, nameplate values, rating, accuracy of the sensors, magnets' coefficient
@@ -181,6 +181,9 @@ pub(crate) enum Timing {
     /// Vector of the period that ended at the row, as measured
     #[value(name = "-1")]
     MinusOne,
+    /// Vector that acts while the row is sampled, in mid-period
+    #[value(name = "-0.5")]
+    MinusHalf,
     /// Vector that acts from half a period after the row on
     #[value(name = "0.5")]
     Half,
@@ -214,7 +217,8 @@ impl Timing {
             Self::ZeroRotor => in_rotor(0),
             Self::OneRotor => in_rotor(1),
             Self::MinusOne => Some(VoltageTiming::Ended),
-            Self::Half => Some(VoltageTiming::HalfPeriodLater),
+            Self::MinusHalf => Some(VoltageTiming::MidPeriod { delay: 0 }),
+            Self::Half => Some(VoltageTiming::MidPeriod { delay: 1 }),
             Self::Averaged => Some(VoltageTiming::Averaged { of: MeansOf::Voltages }),
             Self::AveragedCommands => Some(VoltageTiming::Averaged { of: MeansOf::Commands }),
             Self::AveragedTwoCommands => Some(VoltageTiming::Averaged { of: MeansOf::TwoCommands }),

@@ -41,7 +41,7 @@ impl Timing {
             }
             VoltageTiming::Delayed { .. }
             | VoltageTiming::Ended
-            | VoltageTiming::HalfPeriodLater
+            | VoltageTiming::MidPeriod { .. }
             | VoltageTiming::Averaged { .. }
             | VoltageTiming::Euler { .. } => None,
         }

@@ -39,9 +39,11 @@ pub enum VoltageTiming {
     },
     /// What acted over the period that ended at the row, as a drive measures it; in the frame at the middle of that period.
     Ended,
-    /// What acts from half a period after the row on, in the frame at the middle of the period in which it acts: the drive samples at the
-    /// middle of one period of its carrier, and its command takes effect with the next.
-    HalfPeriodLater,
+    /// In the frame at the middle of the period in which it acts, of a drive that samples in the middle of its periods.
+    MidPeriod {
+        /// 0: what acts while the row is sampled; 1: what is commanded there, and takes effect half a period later.
+        delay: usize,
+    },
     /// The mean over the row's own span, as the currents are.
     Averaged {
         /// Of what.
@@ -133,13 +135,13 @@ impl VoltageTiming {
     pub(crate) const BY_EULERS_RULE: [Self; 2] = [Self::Euler { after: false }, Self::Euler { after: true }];
 
     /// Those of few drives. A filter or a late angle in a usual log passes for one.
-    pub(crate) const RARE: [Self; 2] = [Self::Ended, Self::HalfPeriodLater];
+    pub(crate) const RARE: [Self; 3] = [Self::Ended, Self::MidPeriod { delay: 0 }, Self::MidPeriod { delay: 1 }];
 
     /// Those of rows that are means of what a drive commands.
     pub(crate) const MEANS_OF_COMMANDS: [Self; 2] = [Self::Averaged { of: MeansOf::Commands }, Self::Averaged { of: MeansOf::TwoCommands }];
 
     /// All timings that are known from drives and simulators.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Centered,
         Self::Delayed { delay: 0, frame: VoltageFrame::Middle },
         Self::Delayed { delay: 1, frame: VoltageFrame::Middle },
@@ -147,8 +149,9 @@ impl VoltageTiming {
         Self::Delayed { delay: 0, frame: VoltageFrame::Row },
         Self::Delayed { delay: 1, frame: VoltageFrame::Row },
         Self::Delayed { delay: 2, frame: VoltageFrame::Row },
-        Self::Ended,
-        Self::HalfPeriodLater,
+        Self::RARE[0],
+        Self::RARE[1],
+        Self::RARE[2],
         Self::Delayed { delay: 0, frame: VoltageFrame::Rotor },
         Self::Delayed { delay: 1, frame: VoltageFrame::Rotor },
         Self::Averaged { of: MeansOf::Voltages },
@@ -171,7 +174,8 @@ impl VoltageTiming {
             Self::Delayed { delay: 0, frame: VoltageFrame::Rotor } => "0-rotor",
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "1-rotor",
             Self::Ended => "-1",
-            Self::HalfPeriodLater => "0.5",
+            Self::MidPeriod { delay: 0 } => "-0.5",
+            Self::MidPeriod { .. } => "0.5",
             Self::Averaged { of: MeansOf::Voltages } => "averaged",
             Self::Averaged { of: MeansOf::Commands } => "averaged-commands",
             Self::Averaged { of: MeansOf::TwoCommands } => "averaged-two-commands",
@@ -197,7 +201,8 @@ impl VoltageTiming {
             }
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "what acts one period later, held in the rotor's frame",
             Self::Ended => "what acted over the period that ended at the row",
-            Self::HalfPeriodLater => "what acts half a period later",
+            Self::MidPeriod { delay: 0 } => "what acts from half a period before the row to half a period after it",
+            Self::MidPeriod { .. } => "what acts half a period later",
             Self::Averaged { of: MeansOf::Voltages } => "the mean over the row's own span, as the currents",
             Self::Averaged { of: MeansOf::Commands } => "the mean over the row's own span, of commands that act later",
             Self::Averaged { of: MeansOf::TwoCommands } => "the mean of two commands that act later",
@@ -209,9 +214,9 @@ impl VoltageTiming {
     /// Rows at a segment's start whose acting voltage is not in the log.
     pub(super) fn lost_rows(self) -> usize {
         match self {
-            Self::HalfPeriodLater | Self::Averaged { of: MeansOf::TwoCommands } => 1,
+            Self::Averaged { of: MeansOf::TwoCommands } => 1,
             Self::Centered | Self::Ended | Self::Averaged { .. } | Self::Euler { .. } => 0,
-            Self::Delayed { delay, .. } => delay,
+            Self::Delayed { delay, .. } | Self::MidPeriod { delay } => delay,
         }
     }
 
@@ -220,13 +225,18 @@ impl VoltageTiming {
         match self {
             Self::Averaged { .. } | Self::Delayed { frame: VoltageFrame::Rotor, .. } => Held::InRotor,
             Self::Euler { .. } => Held::WithSlope,
-            Self::Centered | Self::Delayed { .. } | Self::Ended | Self::HalfPeriodLater => Held::InStator,
+            Self::Centered | Self::Delayed { .. } | Self::Ended | Self::MidPeriod { .. } => Held::InStator,
         }
+    }
+
+    /// Whether the voltage changes in the middle between two rows: the drive samples in the middle of its periods.
+    pub(crate) fn has_halves(self) -> bool {
+        matches!(self, Self::MidPeriod { .. })
     }
 
     /// Whether the voltage of a row acts from that row on, as no drive does that computes it from what it samples there.
     pub(crate) fn acts_at_once(self) -> bool {
-        matches!(self, Self::Delayed { delay: 0, .. } | Self::Ended | Self::Euler { .. })
+        matches!(self, Self::Delayed { delay: 0, .. } | Self::Ended | Self::MidPeriod { delay: 0 } | Self::Euler { .. })
     }
 
     /// Whether the drive does not compensate its delay: as an angle that is late would have it.
@@ -317,8 +327,10 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 }
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => at_middle(ahead(row - delay, delay as f64 + 0.5, length)),
                 VoltageTiming::Ended => at_middle(ahead(row + 1, -0.5, length)),
-                VoltageTiming::HalfPeriodLater => {
-                    let (first, second) = (at_middle(ahead(row - 1, 1.0, length)), at_middle(ahead(row, 1.0, length)));
+                VoltageTiming::MidPeriod { delay } => {
+                    // From one row to the middle between them, and from there to the other.
+                    let half = |row: usize| at_middle(ahead(row - delay, delay as f64, length));
+                    let (first, second) = (half(row), half(row + 1));
                     change_within = Dq { d: second.d - first.d, q: second.q - first.q };
                     Dq { d: 0.5 * (first.d + second.d), q: 0.5 * (first.q + second.q) }
                 }
@@ -348,7 +360,7 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 advance_per_lag: match reading {
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
                     VoltageTiming::Ended => -0.5 * acceleration(row) * length,
-                    VoltageTiming::HalfPeriodLater => acceleration(row) * length,
+                    VoltageTiming::MidPeriod { delay } => acceleration(row) * delay as f64 * length,
                     VoltageTiming::Centered
                     | VoltageTiming::Delayed { .. }
                     | VoltageTiming::Averaged { .. }

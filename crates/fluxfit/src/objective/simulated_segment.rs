@@ -92,7 +92,7 @@ impl SimulatedSegment {
             bus_known: log.columns().u_dc.is_some(),
             per_bus: bus_voltage(log, &rows).recip(),
             alternates: timing == VoltageTiming::Centered,
-            starts_high: timing == VoltageTiming::HalfPeriodLater,
+            starts_high: timing.has_halves(),
             rows_of_periods: Vec::new(),
             spans: Vec::new(),
             rows,

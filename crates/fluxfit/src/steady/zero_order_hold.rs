@@ -38,7 +38,7 @@ impl From<VoltageTiming> for SteadyVoltageTiming {
             VoltageTiming::Centered => Self::Centered,
             VoltageTiming::Delayed { .. }
             | VoltageTiming::Ended
-            | VoltageTiming::HalfPeriodLater
+            | VoltageTiming::MidPeriod { .. }
             | VoltageTiming::Averaged { .. }
             | VoltageTiming::Euler { .. } => Self::Compensated,
         }

@@ -18,7 +18,6 @@ use crate::{
     levenberg_marquardt::{Polished, polish_to_choose, polish_with_progress},
     log::Log,
     objective::{
-        acting_voltage::VoltageTiming,
         adjustable::{Adjustable, Unknown},
         output_error::OutputError,
     },
@@ -82,7 +81,7 @@ impl AllRows {
             }
         };
         let mut polished = polish(&objective, &chosen.drive);
-        if chosen.reading == VoltageTiming::HalfPeriodLater && is_a_motor(&polished.drive.motor) {
+        if chosen.reading.has_halves() && is_a_motor(&polished.drive.motor) {
             objective = objective.with_halves_weighed(&polished.drive.motor);
             polished = polish(&objective, &polished.drive);
         }

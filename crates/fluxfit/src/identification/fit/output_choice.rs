@@ -343,7 +343,7 @@ type Objectives = [(VoltageTiming, OutputError)];
 /// Weighs the two halves of each row by this motor, if the best reading is the one with halves; returns whether it is. Where the winding
 /// is fast, halves that count alike leave more than another reading does.
 fn weigh_halves(objectives: &mut Objectives, best: VoltageTiming, motor: &Motor) -> bool {
-    let has_halves = best == VoltageTiming::HalfPeriodLater && is_a_motor(motor);
+    let has_halves = best.has_halves() && is_a_motor(motor);
     let own = objectives.iter_mut().find(|(timing, _)| has_halves && *timing == best);
     own.map(|(_, objective)| *objective = objective.with_halves_weighed(motor)).is_some()
 }

@@ -79,11 +79,11 @@ pub(crate) fn suspected(best: VoltageTiming, tried: &[(VoltageTiming, OutputErro
 
 /// A reading whose rows pass for those of the one that was found, and so must be tried beside it, unless it was tried.
 pub(super) fn alike(found: VoltageTiming, tried: &[VoltageTiming]) -> Vec<VoltageTiming> {
-    let may_pass = found == VoltageTiming::HalfPeriodLater && !tried.contains(&MEAN_OF_TWO);
+    let may_pass = found == VoltageTiming::MidPeriod { delay: 1 } && !tried.contains(&MEAN_OF_TWO);
     if may_pass { vec![MEAN_OF_TWO] } else { Vec::new() }
 }
 
-/// What passes for [`VoltageTiming::HalfPeriodLater`] in every other row of a usual drive.
+/// What passes for [`VoltageTiming::MidPeriod { delay: 1 }`] in every other row of a usual drive.
 const MEAN_OF_TWO: VoltageTiming = VoltageTiming::Averaged { of: MeansOf::TwoCommands };
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
@@ -212,7 +212,7 @@ pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator
 /// The mean of two commands, where voltages seem to act half a period later and it fits about as well: every other row of a usual drive
 /// passes for the rows of a drive that samples in the middle of its period. Neither is exact there, so the evidence does not count.
 fn means_of_every_other_row(tried: &[TimingTrial]) -> Option<&TimingTrial> {
-    let best = tried.first().filter(|best| best.timing == VoltageTiming::HalfPeriodLater)?;
+    let best = tried.first().filter(|best| best.timing == VoltageTiming::MidPeriod { delay: 1 })?;
     tried.iter().find(|other| other.timing == MEAN_OF_TWO && other.mean_square() <= (1.0 + AVERAGED) * best.mean_square())
 }
 
@@ -271,7 +271,7 @@ mod tests {
             TimingTrial { timing, polished, rows }
         };
         let of = |of| VoltageTiming::Averaged { of };
-        let later = trial(VoltageTiming::HalfPeriodLater, 1.0, 1.0);
+        let later = trial(VoltageTiming::MidPeriod { delay: 1 }, 1.0, 1.0);
         let moved = |tried: &[TimingTrial]| doubt(tried, (2 * rows) as f64)[0];
         assert!((moved(&[later, trial(of(MeansOf::TwoCommands), 1.5, 1.09)]) - 0.5).abs() < 1e-12);
         assert_eq!(moved(&[later, trial(of(MeansOf::TwoCommands), 1.5, 1.11), trial(of(MeansOf::Commands), 1.5, 1.09)]), 0.0);
