@@ -420,7 +420,7 @@ mod tests {
         assert!(Fault::ALL.into_iter().flat_map(Fault::numbers).all(|number| number.usual_size(&motor, 10.0) > 0.0));
         let place = Place {
             half: 1.0,
-            starts_high: false,
+            changes: None,
             start: Turn::by(0.1),
             middle: Turn::by(0.2),
             end: Turn::by(0.3),

@@ -7,8 +7,9 @@ use crate::frames::Turn;
 pub(crate) struct Place {
     /// Plus one or minus one from row to row of the log: the carrier's half, where each half is a row.
     pub(crate) half: f64,
-    /// Whether all legs of the inverter are high at its start, as in a drive that samples in the middle of its period; else they are low.
-    pub(crate) starts_high: bool,
+    /// Where the drive samples in the middle of its own periods: by how much the voltage changes half-way, V, `d, q` in the frame of the
+    /// rotor's most likely angle. All legs of the inverter are high at the start then, else low.
+    pub(crate) changes: Option<[f64; 2]>,
     /// The rotor at its start, middle and end.
     pub(crate) start: Turn,
     pub(crate) middle: Turn,
@@ -39,7 +40,7 @@ impl Place {
     pub(crate) fn still(rotor: Turn) -> Self {
         Self {
             half: 1.0,
-            starts_high: false,
+            changes: None,
             start: rotor,
             middle: rotor,
             end: rotor,

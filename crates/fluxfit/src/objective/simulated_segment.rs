@@ -55,8 +55,8 @@ pub(super) struct SimulatedSegment {
     pub(super) log_segment: Option<usize>,
     /// Whether the first vector is unknown, because the voltages are centred.
     pub(super) alternates: bool,
-    /// Whether all legs of the inverter are high at the start of each period: the drive samples in the middle of its own.
-    starts_high: bool,
+    /// Whether the voltage changes within each period: the drive samples in the middle of its own.
+    has_halves: bool,
     /// Whether the DC voltage is in the log.
     pub(super) bus_known: bool,
     /// One over the DC voltage, 1/V.
@@ -92,7 +92,7 @@ impl SimulatedSegment {
             bus_known: log.columns().u_dc.is_some(),
             per_bus: bus_voltage(log, &rows).recip(),
             alternates: timing == VoltageTiming::Centered,
-            starts_high: timing.has_halves(),
+            has_halves: timing.has_halves(),
             rows_of_periods: Vec::new(),
             spans: Vec::new(),
             rows,
@@ -148,10 +148,12 @@ impl SimulatedSegment {
     /// Where a period lies.
     #[inline(always)]
     pub(super) fn place(&self, row: usize) -> Place {
-        let Period { length, omega_e, acceleration, late_by, angle_acceleration, advance_per_lag, time, .. } = self.periods[row];
+        let Period {
+            length, omega_e, acceleration, late_by, angle_acceleration, advance_per_lag, time, change_within: Dq { d, q }, ..
+        } = self.periods[row];
         Place {
             half: carrier_half(self.rows.start + row),
-            starts_high: self.starts_high,
+            changes: self.has_halves.then_some([d, q]),
             start: self.turns[row],
             middle: self.middles[row],
             end: self.turns[row + 1],

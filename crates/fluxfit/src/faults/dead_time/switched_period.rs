@@ -148,17 +148,18 @@ impl<V: Number> SwitchedLoss<V> {
         phase: Option<[V; 2]>,
         place: &Place,
     ) -> [V; 2] {
-        let sign = self.voltage.constant(if place.starts_high { -1.0 } else { 1.0 });
+        let sign = self.voltage.constant(if place.changes.is_some() { -1.0 } else { 1.0 });
         let signed = |[d, q]: [V; 2]| [sign * d, sign * q];
-        signed(self.beginning_low(kinds, signed(u), currents.map(signed), winding, phase, place))
+        let changes = place.changes.map(|change| signed(sign.constants(change)));
+        signed(self.beginning_low(kinds, (signed(u), changes), currents.map(signed), winding, phase, place))
     }
 
-    /// The same of a period that begins where all legs are low.
+    /// The same of a period that begins where all legs are low, and of a voltage that changes half-way, if it does.
     #[inline(always)]
     fn beginning_low(
         &self,
         kinds: LossKinds,
-        u: [V; 2],
+        (u, changes): ([V; 2], Option<[V; 2]>),
         [start, end]: [[V; 2]; 2],
         winding: &Winding<V>,
         phase: Option<[V; 2]>,
@@ -179,34 +180,33 @@ impl<V: Number> SwitchedLoss<V> {
         let carrier = one + self.halves.abs();
         let rising = half * (one + self.halves * zero.constant(place.half));
         let amperes = by_volt_seconds(self.ripple * carrier * zero.constant(place.length), per_henry, phase, place);
-        // By how much each phase is later than each other one, V: by that over the DC voltage, and half a period, it switches after it.
-        let mut later = [[zero; 3]; 3];
-        for x in 0..3 {
-            for y in [(x + 1) % 3, (x + 2) % 3] {
-                later[x][y] = zero.higher(v[y] - v[x]);
-            }
-        }
         // The currents at the edges, but for what the others lose before.
-        let (mut low, mut up, mut down, mut together) = ([zero; 3], [zero; 3], [zero; 3], [zero; 3]);
-        for x in 0..3 {
-            low[x] = (-v[x]).mul_add(per_bus, half);
-            together[x] = amperes[x][x] * v[x];
-            let mut ahead = zero;
-            for y in [(x + 1) % 3, (x + 2) % 3] {
-                together[x] = amperes[x][y].mul_add(v[y], together[x]);
-                ahead = amperes[x][y].mul_add(later[x][y], ahead);
+        let (mut up, mut down) = ([zero; 3], [zero; 3]);
+        let of_half;
+        let (first, second, kink) = match changes {
+            None => {
+                of_half = [Half::of(v, per_bus, &amperes), Half::none(zero)];
+                (&of_half[0], &of_half[0], [zero; 3])
             }
-            // What all phases have been driven by beyond their mean until `x` goes up, as a current in `x`.
-            let commanded = half * (-low[x]).mul_add(together[x], ahead);
-            let (when, way) = (half * carrier * low[x], end[x] - start[x]);
-            let bent = when * (one - when) * bend[x];
-            up[x] = when.mul_add(way, start[x]) + bent + commanded;
-            down[x] = (one - when).mul_add(way, start[x]) + bent - commanded;
+            Some(change) => {
+                let vector = |part: f64| [0, 1].map(|axis| change[axis].mul_add(zero.constant(part), u[axis]));
+                let phases = |vector: [V; 2]| inverse_clarke(place.middle.forward(by_phase(vector, phase)));
+                of_half = [-0.5, 0.5].map(|part| Half::of(modulated(phases(vector(part))), per_bus, &amperes));
+                let pull = zero.constant(-0.5 * place.length);
+                (&of_half[0], &of_half[1], phases([0, 1].map(|axis| pull * per_henry[axis] * change[axis])))
+            }
+        };
+        for x in 0..3 {
+            let way = end[x] - start[x];
+            let beside = |when: V| when * (one - when).mul_add(bend[x], kink[x]);
+            let [to_up, from_down] = [first, second].map(|own| half * carrier * own.low[x]);
+            up[x] = to_up.mul_add(way, start[x]) + beside(to_up) + first.commanded[x];
+            down[x] = (one - from_down).mul_add(way, start[x]) + beside(from_down) - second.commanded[x];
         }
         // Edge by edge: what the phases that switch before have lost, as far as their dead time is over. What is up later is down earlier.
         let ramp = self.ramp;
         let lost = self.voltage * (one - self.lasting);
-        let clamped = if kinds.edges { self.clamped(ramp.out(up), [v, together.map(|i| i * per_bus)], &amperes) } else { [zero; 3] };
+        let clamped = if kinds.edges { self.clamped(ramp.out(up), [v, first.together.map(|i| i * per_bus)], &amperes) } else { [zero; 3] };
         for x in 0..3 {
             (up[x], down[x]) = (up[x] + clamped[x], down[x] + clamped[x]);
         }
@@ -214,9 +214,8 @@ impl<V: Number> SwitchedLoss<V> {
         for x in 0..3 {
             // A phase does not wait for itself.
             for y in [(x + 1) % 3, (x + 2) % 3] {
-                let until = (half * later[x][y]).lower(lost);
-                before_up[x][y] = amperes[x][y] * until;
-                before_down[y][x] = amperes[y][x] * until;
+                before_up[x][y] = amperes[x][y] * (half * first.later[x][y]).lower(lost);
+                before_down[y][x] = amperes[y][x] * (half * second.later[x][y]).lower(lost);
             }
         }
         let up = after_others(up, before_up, ramp);
@@ -244,8 +243,8 @@ impl<V: Number> SwitchedLoss<V> {
                 let (up, down) = (up - clamped[x], down - clamped[x]);
                 let half_way = half * carrier * (end[x] - start[x]);
                 let (top, bottom) = (start[x] + half_way, end[x] - half_way);
-                let of_up = ramp.means([start[x], up, top], [low[x], one - low[x]]);
-                let of_down = ramp.means([bottom, down, end[x]], [one - low[x], low[x]]);
+                let of_up = ramp.means([start[x], up, top], [first.low[x], one - first.low[x]]);
+                let of_down = ramp.means([bottom, down, end[x]], [one - second.low[x], second.low[x]]);
                 loss[x] = loss[x] + self.lasting * of_up.times(rising).plus(of_down.times(one - rising)).value();
             }
         }
@@ -286,6 +285,44 @@ impl<V: Number> SwitchedLoss<V> {
             seconds[x] = quarter * at_edges * late[x] * left.mul_add(twice_per_bus, one);
         }
         clarke(seconds)
+    }
+}
+
+/// What the command of either half of a carrier's period says of its edges.
+struct Half<V> {
+    /// The part of the period in which each phase is low.
+    low: [V; 3],
+    /// By how much each phase is later than each other one, V: by that over the DC voltage, and half a period, it switches after it.
+    later: [[V; 3]; 3],
+    /// Current of each phase, A, that all of them drive together by their voltages over the period.
+    together: [V; 3],
+    /// What all phases have been driven by beyond their mean until one goes up, as a current in it, A; less until it goes down.
+    commanded: [V; 3],
+}
+
+impl<V: Number> Half<V> {
+    #[inline(always)]
+    fn none(zero: V) -> Self {
+        Self { low: [zero; 3], later: [[zero; 3]; 3], together: [zero; 3], commanded: [zero; 3] }
+    }
+
+    /// Of phase voltages, V, one over the DC voltage, and the amperes per volt.
+    #[inline(always)]
+    fn of(v: [V; 3], per_bus: V, amperes: &[[V; 3]; 3]) -> Self {
+        let (zero, half) = (per_bus.constant(0.0), per_bus.constant(0.5));
+        let mut it = Self::none(zero);
+        for x in 0..3 {
+            it.low[x] = (-v[x]).mul_add(per_bus, half);
+            it.together[x] = amperes[x][x] * v[x];
+            let mut ahead = zero;
+            for y in [(x + 1) % 3, (x + 2) % 3] {
+                it.later[x][y] = zero.higher(v[y] - v[x]);
+                it.together[x] = amperes[x][y].mul_add(v[y], it.together[x]);
+                ahead = amperes[x][y].mul_add(it.later[x][y], ahead);
+            }
+            it.commanded[x] = half * (-it.low[x]).mul_add(it.together[x], ahead);
+        }
+        it
     }
 }
 
@@ -368,8 +405,8 @@ mod tests {
         duty: [f64; 3],
         /// Whether a current that reaches zero within the dead time stays there, as it does; else the sign at the edge decides.
         clamps: bool,
-        /// Whether the legs are high at the period's start.
-        starts_high: bool,
+        /// Those of the second half, where all legs are high at the start.
+        second: Option<[f64; 3]>,
     }
 
     const STEPS: u32 = 50_000;
@@ -387,7 +424,9 @@ mod tests {
         }
 
         fn run(&self, mut i: [f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
-            let Self { bus, dead_time, inductance, duty, clamps, starts_high } = *self;
+            let Self { bus, dead_time, inductance, duty, clamps, second } = *self;
+            let starts_high = second.is_some();
+            let duties = [duty, second.unwrap_or(duty)];
             let (start, mut mean) = (i, [0.0; 3]);
             let (mut lost, mut high, mut late, mut dead) = ([[0.0; 3]; 2], [starts_high; 3], [0.0; 3], [0.0; 3]);
             let h = 1.0 / f64::from(STEPS);
@@ -395,7 +434,9 @@ mod tests {
                 let t = (f64::from(step) + 0.5) * h;
                 let mut volts = [0.0; 3];
                 for leg in 0..3 {
-                    let inner = if starts_high { 1.0 - duty[leg] } else { duty[leg] };
+                    let duty = duties[usize::from(t > 0.5)][leg];
+                    let mean = 0.5 * (duties[0][leg] + duties[1][leg]);
+                    let inner = if starts_high { 1.0 - duty } else { duty };
                     let commanded = ((t - 0.5).abs() < 0.5 * inner) != starts_high;
                     if commanded != high[leg] {
                         // Both switches open, and a diode holds what the current's direction asks for.
@@ -407,7 +448,7 @@ mod tests {
                     let output = if clamps && t < dead[leg] { of_diode } else { commanded != (t < late[leg]) };
                     lost[usize::from(t > 0.5)][leg] += bus * h * (f64::from(u8::from(commanded)) - f64::from(u8::from(output)));
                     // In the rotor's frame, the motor's voltage is what holds the current where it is, in the mean of the command.
-                    volts[leg] = bus * (f64::from(u8::from(output)) - duty[leg]);
+                    volts[leg] = bus * (f64::from(u8::from(output)) - mean);
                 }
                 let star = volts.iter().sum::<f64>() / 3.0;
                 for leg in 0..3 {
@@ -428,7 +469,7 @@ mod tests {
         let v = modulated([0.5, -0.2, -0.3]);
         for i in [[5.0, -2.0, -3.0], [0.5, -5.0, 4.5], [4.0, 0.0, -4.0], [0.01, 3.0, -3.01]] {
             let below = |dead_time: f64| {
-                let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false, starts_high: false };
+                let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false, second: None };
                 alpha_beta(switched.below_way(i))
             };
             let (with, without) = (below(dead_time), below(0.0));
@@ -477,21 +518,25 @@ mod tests {
             };
             let v = modulated(vector(modulation * bus / 3.0_f64.sqrt(), angle));
             let i = vector(current, at);
-            let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false, starts_high: false };
-            for (halves, length, starts_high) in [(0.0, 1.0, false), (0.0, 1.0, true), (1.0, 0.5, false)] {
-                let lost = Switched { starts_high, ..switched }.loses(i);
+            let switched = Switched { bus, dead_time, inductance, duty: v.map(|v| 0.5 + v / bus), clamps: false, second: None };
+            for (halves, length, turn) in [(0.0, 1.0, None), (0.0, 1.0, Some(0.0)), (0.0, 1.0, Some(0.25)), (1.0, 0.5, None)] {
+                let later = turn.map(|turn| modulated(vector(modulation * bus / 3.0_f64.sqrt(), angle + turn)));
+                let lost = Switched { second: later.map(|v| v.map(|v| 0.5 + v / bus)), ..switched }.loses(i);
+                let [first, second] = [v, later.unwrap_or(v)].map(alpha_beta);
+                let mean = [0, 1].map(|axis| 0.5 * (first[axis] + second[axis]));
+                let changes = turn.map(|_| [0, 1].map(|axis| second[axis] - first[axis]));
                 let loss = loss_of(bus * dead_time, 0.0, 1e-9, 1.0, halves, 0.0);
                 for (half, in_half) in [1.0, -1.0].into_iter().zip(lost) {
-                    let place = Place { half, length, starts_high, per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
+                    let place = Place { half, length, changes, per_bus: 1.0 / bus, ..Place::still(Turn::by(0.0)) };
                     let kinds = LossKinds { edges: true, lasting: false };
-                    let found = loss.over(kinds, alpha_beta(v), [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
+                    let found = loss.over(kinds, mean, [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
                     let expected = if halves == 0.0 { std::array::from_fn(|leg| lost[0][leg] + lost[1][leg]) } else { in_half };
                     let expected = alpha_beta(expected).map(|volt_seconds| volt_seconds / length);
                     let off = (found[0] - expected[0]).hypot(found[1] - expected[1]);
                     assert!(off < 0.02 * bus * dead_time, "{angle} {halves} {half}: {found:?}, not {expected:?}");
                     // Without the ripple it would be another loss, here and there.
                     let plain = loss_of(bus * dead_time, 0.0, 1e-9, 0.0, halves, 0.0);
-                    let plain = plain.over(kinds, alpha_beta(v), [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
+                    let plain = plain.over(kinds, mean, [alpha_beta(i); 2], &Winding::of(0.0, [inductance; 2]), None, &place);
                     differ += usize::from((plain[0] - expected[0]).hypot(plain[1] - expected[1]) > 0.1 * bus * dead_time);
                 }
             }
@@ -510,7 +555,7 @@ mod tests {
         for order in [[0.5, -0.1, -0.4], [0.02, 0.3, -0.32], [-0.5, 0.3, 0.2], [0.03, 0.02, -0.05], [0.4, -0.21, -0.19]] {
             let v = modulated(order);
             let duty = v.map(|v| 0.5 + v / bus);
-            let switched = Switched { bus, dead_time, inductance, duty, clamps: true, starts_high: false };
+            let switched = Switched { bus, dead_time, inductance, duty, clamps: true, second: None };
             for step in -30..=30 {
                 let a = 0.004 * f64::from(step);
                 let i = [a, 1.0 - 0.5 * a, -1.0 - 0.5 * a];
