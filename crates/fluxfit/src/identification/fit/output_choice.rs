@@ -294,6 +294,8 @@ pub(super) fn choose(
         let beside = readings::readings(&rare, drive, unknowns, &priors, HOPELESS_AFTER_A_FIT);
         beside.first().is_some_and(|(_, beside)| independent * (usual.mean_square / beside.mean_square()).ln() > VERY_STRONG)
     };
+    // Or faults may hide it beside a reading that no drive which logs each of its periods has.
+    let may_hide_it = |usual: &Searched| usual.chosen.unknowns != free && !usual.chosen.reading.tells_lag();
     // Where neither explains the log, the rare one must leave noticeably less, and not because an observer follows the currents.
     let is_disturbed = |found: &Searched| found.chosen.unknowns.iter().any(|unknown| unknown.is_observer_gain());
     let is_better = |rare: &Searched, usual: &Searched| {
@@ -301,7 +303,7 @@ pub(super) fn choose(
             || !usual.explained && (is_disturbed(usual) || !is_disturbed(rare)) && (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square
     };
     if let (Some(alone), Some(usual)) = (&as_rare, found.first())
-        && (is_ahead(&alone) || usual.chosen.unknowns != free && is_ahead_beside(usual))
+        && (is_ahead(&alone) || may_hide_it(usual) || usual.chosen.unknowns != free && is_ahead_beside(usual))
         && let Some(searched) = with_rare(alone)
         && is_better(&searched, usual)
         && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
