@@ -31,7 +31,9 @@
 //! dead time in which the other legs are up.
 //!
 //! A drive that samples in the middle of its period has its rows begin where all legs are high. With all signs turned over, of voltages,
-//! currents and loss, such a row is a period that begins where they are low.
+//! currents and loss, such a row is a period that begins where they are low. The edges of its first half are those of one command, the
+//! edges of the second half those of the next: between them the voltage changes by `change`, and at the part `s` of the period the
+//! current lies by `change T min(s, 1 - s) / (2 L)` below the straight way.
 //!
 //! One late edge of two makes the pulse late, too, by half the dead time: the mean current of the period lies below the way from sample to
 //! sample, and the resistance takes so much less. Of phase `x` these are
@@ -150,16 +152,20 @@ impl<V: Number> SwitchedLoss<V> {
     ) -> [V; 2] {
         let sign = self.voltage.constant(if place.changes.is_some() { -1.0 } else { 1.0 });
         let signed = |[d, q]: [V; 2]| [sign * d, sign * q];
-        let changes = place.changes.map(|change| signed(sign.constants(change)));
-        signed(self.beginning_low(kinds, (signed(u), changes), currents.map(signed), winding, phase, place))
+        let [u, start, end] = [u, currents[0], currents[1]].map(signed);
+        // Compiled twice, because one way for both takes a third longer.
+        signed(match place.changes {
+            None => self.beginning_low::<false>(kinds, (u, [sign; 2]), [start, end], winding, phase, place),
+            Some(change) => self.beginning_low::<true>(kinds, (u, signed(sign.constants(change))), [start, end], winding, phase, place),
+        })
     }
 
-    /// The same of a period that begins where all legs are low, and of a voltage that changes half-way, if it does.
+    /// The same of a period that begins where all legs are low, and of a voltage that changes so much half-way, V, if it does.
     #[inline(always)]
-    fn beginning_low(
+    fn beginning_low<const CHANGES: bool>(
         &self,
         kinds: LossKinds,
-        (u, changes): ([V; 2], Option<[V; 2]>),
+        (u, change): ([V; 2], [V; 2]),
         [start, end]: [[V; 2]; 2],
         winding: &Winding<V>,
         phase: Option<[V; 2]>,
@@ -182,26 +188,26 @@ impl<V: Number> SwitchedLoss<V> {
         let amperes = by_volt_seconds(self.ripple * carrier * zero.constant(place.length), per_henry, phase, place);
         // The currents at the edges, but for what the others lose before.
         let (mut up, mut down) = ([zero; 3], [zero; 3]);
-        let of_half;
-        let (first, second, kink) = match changes {
-            None => {
-                of_half = [Half::of(v, per_bus, &amperes), Half::none(zero)];
-                (&of_half[0], &of_half[0], [zero; 3])
-            }
-            Some(change) => {
-                let vector = |part: f64| [0, 1].map(|axis| change[axis].mul_add(zero.constant(part), u[axis]));
-                let phases = |vector: [V; 2]| inverse_clarke(place.middle.forward(by_phase(vector, phase)));
-                of_half = [-0.5, 0.5].map(|part| Half::of(modulated(phases(vector(part))), per_bus, &amperes));
-                let pull = zero.constant(-0.5 * place.length);
-                (&of_half[0], &of_half[1], phases([0, 1].map(|axis| pull * per_henry[axis] * change[axis])))
-            }
-        };
+        // No closure here: the compiler does not put them in place, and calls them without the processor's wide registers.
+        let mut first = Half::of(v, per_bus, &amperes);
+        let (mut second, mut kink) = (first, [zero; 3]);
+        if CHANGES {
+            let (before, pull) = ([u[0] - half * change[0], u[1] - half * change[1]], -half * zero.constant(place.length));
+            let bent = [pull * per_henry[0] * change[0], pull * per_henry[1] * change[1]];
+            let [of_first, of_second] = [before, [before[0] + change[0], before[1] + change[1]]];
+            first = Half::of(modulated(inverse_clarke(place.middle.forward(by_phase(of_first, phase)))), per_bus, &amperes);
+            second = Half::of(modulated(inverse_clarke(place.middle.forward(by_phase(of_second, phase)))), per_bus, &amperes);
+            kink = inverse_clarke(place.middle.forward(by_phase(bent, phase)));
+        }
         for x in 0..3 {
             let way = end[x] - start[x];
-            let beside = |when: V| when * (one - when).mul_add(bend[x], kink[x]);
-            let [to_up, from_down] = [first, second].map(|own| half * carrier * own.low[x]);
-            up[x] = to_up.mul_add(way, start[x]) + beside(to_up) + first.commanded[x];
-            down[x] = (one - from_down).mul_add(way, start[x]) + beside(from_down) - second.commanded[x];
+            let (to_up, from_down) = (half * carrier * first.low[x], half * carrier * second.low[x]);
+            let (mut at_up, mut at_down) = (to_up * (one - to_up) * bend[x], from_down * (one - from_down) * bend[x]);
+            if CHANGES {
+                (at_up, at_down) = (to_up.mul_add(kink[x], at_up), from_down.mul_add(kink[x], at_down));
+            }
+            up[x] = to_up.mul_add(way, start[x]) + at_up + first.commanded[x];
+            down[x] = (one - from_down).mul_add(way, start[x]) + at_down - second.commanded[x];
         }
         // Edge by edge: what the phases that switch before have lost, as far as their dead time is over. What is up later is down earlier.
         let ramp = self.ramp;
@@ -289,6 +295,7 @@ impl<V: Number> SwitchedLoss<V> {
 }
 
 /// What the command of either half of a carrier's period says of its edges.
+#[derive(Clone, Copy)]
 struct Half<V> {
     /// The part of the period in which each phase is low.
     low: [V; 3],

@@ -107,6 +107,9 @@ const WHITE: f64 = 0.1;
 /// Faults that are ruled out because their values run away beside others: each costs a search.
 const MOST_RULED_OUT: usize = 2;
 
+/// Mean square over that of another search below which it is much less: most of what the other leaves beyond noise is explained.
+const MUCH_LESS: f64 = 0.8;
+
 /// Chooses the reading of the voltages and the faults of the drive; of a log whose speed was advanced by a
 /// lag, s, or by zero. The best first, then what searches from other readings came to.
 pub(super) fn choose(
@@ -264,11 +267,17 @@ pub(super) fn choose(
     sort(&mut found);
     // Something else may be taken first in the place of dead time that operating points show.
     let is_answer = |best: &Searched| best.explained && is_motor(best) || has_loss(best);
-    if start.shows_dead_time && !found.first().is_none_or(is_answer) {
-        let angle_known = objectives.iter().all(|(_, objective)| objective.angle_known());
-        let loss = if angle_known { Fault::DeadTime } else { Fault::DeadTimeWithoutAngle };
-        let with_loss = Begin::with_fault(&[loss], &objectives, &start.drive, (&free, &priors), &tried);
-        found.extend(with_loss.and_then(|begin| search_from(begin, &objectives, &mut begun)));
+    let angle_known = objectives.iter().all(|(_, objective)| objective.angle_known());
+    let loss = if angle_known { Fault::DeadTime } else { Fault::DeadTimeWithoutAngle };
+    let with_loss = |objectives, tried: &[_]| Begin::with_fault(&[loss], objectives, &start.drive, (&free, &priors), tried);
+    // What explains much, but with values that no drive has, may be there beside other faults.
+    let is_hidden = |best: &Searched| {
+        let hides = |trial: &FaultTrial| trial.fault == loss && trial.outcome == FaultOutcome::NotPhysical && trial.gain > VERY_STRONG;
+        !has_loss(best) && best.chosen.terms.iter().any(hides)
+    };
+    let may_have_loss = |best: &Searched| start.shows_dead_time && !is_answer(best) || is_hidden(best);
+    if found.first().is_some_and(may_have_loss) {
+        found.extend(with_loss(&objectives, &tried).and_then(|begin| search_from(begin, &objectives, &mut begun)));
         sort(&mut found);
     }
     // What a filter of the phase currents does while the rotor turns passes for much else beside an observer. A lag of the speed and
@@ -294,21 +303,40 @@ pub(super) fn choose(
         let beside = readings::readings(&rare, drive, unknowns, &priors, HOPELESS_AFTER_A_FIT);
         beside.first().is_some_and(|(_, beside)| independent * (usual.mean_square / beside.mean_square()).ln() > VERY_STRONG)
     };
-    // Or faults may hide it beside a reading that no drive which logs each of its periods has.
-    let may_hide_it = |usual: &Searched| usual.chosen.unknowns != free && !usual.chosen.reading.tells_lag();
+    // Or faults may hide it beside a reading that is half a period off, of voltages that act at once or are means.
+    let may_hide_it = |usual: &Searched| {
+        let is_half_off = usual.chosen.reading.acts_at_once() || matches!(usual.chosen.reading, VoltageTiming::Averaged { .. });
+        usual.chosen.unknowns != free && is_half_off
+    };
+    let leaves_much_less = |rare: &Searched, usual: &Searched| may_hide_it(usual) && rare.mean_square < MUCH_LESS * usual.mean_square;
     // Where neither explains the log, the rare one must leave noticeably less, and not because an observer follows the currents.
     let is_disturbed = |found: &Searched| found.chosen.unknowns.iter().any(|unknown| unknown.is_observer_gain());
     let is_better = |rare: &Searched, usual: &Searched| {
         rare.explained
+            || leaves_much_less(rare, usual)
             || !usual.explained && (is_disturbed(usual) || !is_disturbed(rare)) && (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square
+    };
+    // A filter counts there only if much less is left; and a small resistance may come out below zero.
+    let counts = |rare: &Searched, usual: &Searched| {
+        is_motor(rare) && !has_filter(rare) || leaves_much_less(rare, usual) && has_inductances(&rare.chosen.drive.motor)
     };
     if let (Some(alone), Some(usual)) = (&as_rare, found.first())
         && (is_ahead(&alone) || may_hide_it(usual) || usual.chosen.unknowns != free && is_ahead_beside(usual))
-        && let Some(searched) = with_rare(alone)
-        && is_better(&searched, usual)
-        && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
     {
-        found.insert(0, compared_with_all(searched)?);
+        let first = search_from(without(alone.best), &rare, &mut Vec::new());
+        let begin = first.as_ref().filter(|first| is_hidden(first)).and_then(|_| with_loss(&rare, &[alone.best]));
+        let second = begin.and_then(|begin| search_from(begin, &rare, &mut Vec::new()));
+        let is_better = |rare: &Searched| {
+            counts(rare, usual) && is_better(rare, usual) && rare.chosen.independent * (criterion(usual) - criterion(rare)) > VERY_STRONG
+        };
+        let mut found_there: Vec<Searched> = first.into_iter().chain(second).collect();
+        // That the reading is a rare one is told by either; then the better one is the answer, with or without a filter.
+        let is_rare = found_there.iter().any(is_better);
+        found_there.retain(|rare| is_rare && (is_better(rare) || has_inductances(&rare.chosen.drive.motor)));
+        let best = found_there.into_iter().min_by(|one, other| criterion(one).total_cmp(&criterion(other)));
+        if let Some(searched) = best {
+            found.insert(0, compared_with_all(searched)?);
+        }
     }
     // Where a command acts at once only beside the faults, means of commands were not suspected before.
     let is_simple = |best: &Searched| best.explained && best.chosen.unknowns == free;
@@ -389,8 +417,13 @@ pub(super) fn is_explained(drive: &Adjustable, cost: f64, residuals: usize, inde
 
 /// Whether all parameters are positive, as a motor's are; at rest the flux is zero, because it is not fitted.
 pub(super) fn is_a_motor(motor: &Motor) -> bool {
-    let Motor { rs, ld, lq, psi_f } = *motor;
-    [rs, ld, lq].iter().all(|value| *value > 0.0) && psi_f >= 0.0
+    motor.rs > 0.0 && has_inductances(motor)
+}
+
+/// Whether they are positive but for the resistance, which a log that does not tell it leaves near zero on either side.
+fn has_inductances(motor: &Motor) -> bool {
+    let Motor { ld, lq, psi_f, .. } = *motor;
+    ld > 0.0 && lq > 0.0 && psi_f >= 0.0
 }
 
 impl Chosen {
