@@ -9,6 +9,7 @@
 //! S.-G. Jeong and M.-H. Park, "The analysis and compensation of dead-time effects in PWM inverters", IEEE Transactions on Industrial
 //! Electronics 38, 1991, doi:10.1109/41.88903.
 
+mod half;
 mod ramp;
 pub mod ripple;
 pub(super) mod switched_period;

@@ -48,6 +48,7 @@
 use super::{
     super::Place,
     DeadTime,
+    half::Half,
     ramp::{NARROWEST, Ramp},
 };
 use crate::{
@@ -291,45 +292,6 @@ impl<V: Number> SwitchedLoss<V> {
             seconds[x] = quarter * at_edges * late[x] * left.mul_add(twice_per_bus, one);
         }
         clarke(seconds)
-    }
-}
-
-/// What the command of either half of a carrier's period says of its edges.
-#[derive(Clone, Copy)]
-struct Half<V> {
-    /// The part of the period in which each phase is low.
-    low: [V; 3],
-    /// By how much each phase is later than each other one, V: by that over the DC voltage, and half a period, it switches after it.
-    later: [[V; 3]; 3],
-    /// Current of each phase, A, that all of them drive together by their voltages over the period.
-    together: [V; 3],
-    /// What all phases have been driven by beyond their mean until one goes up, as a current in it, A; less until it goes down.
-    commanded: [V; 3],
-}
-
-impl<V: Number> Half<V> {
-    #[inline(always)]
-    fn none(zero: V) -> Self {
-        Self { low: [zero; 3], later: [[zero; 3]; 3], together: [zero; 3], commanded: [zero; 3] }
-    }
-
-    /// Of phase voltages, V, one over the DC voltage, and the amperes per volt.
-    #[inline(always)]
-    fn of(v: [V; 3], per_bus: V, amperes: &[[V; 3]; 3]) -> Self {
-        let (zero, half) = (per_bus.constant(0.0), per_bus.constant(0.5));
-        let mut it = Self::none(zero);
-        for x in 0..3 {
-            it.low[x] = (-v[x]).mul_add(per_bus, half);
-            it.together[x] = amperes[x][x] * v[x];
-            let mut ahead = zero;
-            for y in [(x + 1) % 3, (x + 2) % 3] {
-                it.later[x][y] = zero.higher(v[y] - v[x]);
-                it.together[x] = amperes[x][y].mul_add(v[y], it.together[x]);
-                ahead = amperes[x][y].mul_add(it.later[x][y], ahead);
-            }
-            it.commanded[x] = half * (-it.low[x]).mul_add(it.together[x], ahead);
-        }
-        it
     }
 }
 

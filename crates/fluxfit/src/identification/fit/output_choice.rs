@@ -270,10 +270,11 @@ pub(super) fn choose(
     let angle_known = objectives.iter().all(|(_, objective)| objective.angle_known());
     let loss = if angle_known { Fault::DeadTime } else { Fault::DeadTimeWithoutAngle };
     let with_loss = |objectives, tried: &[_]| Begin::with_fault(&[loss], objectives, &start.drive, (&free, &priors), tried);
-    // What explains much, but with values that no drive has, may be there beside other faults.
+    // Harmonics of the flux pass for dead time: it explains much beside them, but with values that no drive has.
     let is_hidden = |best: &Searched| {
         let hides = |trial: &FaultTrial| trial.fault == loss && trial.outcome == FaultOutcome::NotPhysical && trial.gain > VERY_STRONG;
-        !has_loss(best) && best.chosen.terms.iter().any(hides)
+        let has_harmonics = best.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(Fault::FluxHarmonics));
+        has_harmonics && !has_loss(best) && best.chosen.terms.iter().any(hides)
     };
     let may_have_loss = |best: &Searched| start.shows_dead_time && !is_answer(best) || is_hidden(best);
     if found.first().is_some_and(may_have_loss) {
@@ -297,6 +298,19 @@ pub(super) fn choose(
         let first = tried.iter().copied().find(|(place, _)| *place < usual.len());
         found.extend(first.and_then(|first| search_from(without(first), usual, &mut begun)));
     }
+    // Where a command acts at once only beside the faults, means of commands were not suspected before.
+    let is_simple = |best: &Searched| best.explained && best.chosen.unknowns == free;
+    let late = found.first().filter(|best| !is_simple(best)).map(|best| best.chosen.reading);
+    let late = under(&late.map_or(Vec::new(), |reading| readings::suspected(reading, &objectives, request)))?;
+    let mean = readings::readings(&late, &start.drive, &free, &priors, HOPELESS).into_iter().next();
+    if let (Some(mean), Some(usual)) = (mean, found.first())
+        && let Some(mut searched) = search_from(without(mean), &late, &mut Vec::new())
+        && is_motor(&searched)
+        && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
+    {
+        searched.chosen.compare(&[&late, &rare, &objectives]);
+        found.insert(0, searched);
+    }
     // A rare reading may be ahead only beside the faults that were found.
     let is_ahead_beside = |usual: &Searched| {
         let Chosen { drive, unknowns, independent, .. } = &usual.chosen;
@@ -308,7 +322,11 @@ pub(super) fn choose(
         let is_half_off = usual.chosen.reading.acts_at_once() || matches!(usual.chosen.reading, VoltageTiming::Averaged { .. });
         usual.chosen.unknowns != free && is_half_off
     };
-    let leaves_much_less = |rare: &Searched, usual: &Searched| may_hide_it(usual) && rare.mean_square < MUCH_LESS * usual.mean_square;
+    // Beside means of commands a filter and a late angle pass for it.
+    let leaves_much_less = |rare: &Searched, usual: &Searched| {
+        let is_open = may_hide_it(usual) && !VoltageTiming::MEANS_OF_COMMANDS.contains(&usual.chosen.reading);
+        is_open && rare.mean_square < MUCH_LESS * usual.mean_square
+    };
     // Where neither explains the log, the rare one must leave noticeably less, and not because an observer follows the currents.
     let is_disturbed = |found: &Searched| found.chosen.unknowns.iter().any(|unknown| unknown.is_observer_gain());
     let is_better = |rare: &Searched, usual: &Searched| {
@@ -337,19 +355,6 @@ pub(super) fn choose(
         if let Some(searched) = best {
             found.insert(0, compared_with_all(searched)?);
         }
-    }
-    // Where a command acts at once only beside the faults, means of commands were not suspected before.
-    let is_simple = |best: &Searched| best.explained && best.chosen.unknowns == free;
-    let late = found.first().filter(|best| !is_simple(best)).map(|best| best.chosen.reading);
-    let late = under(&late.map_or(Vec::new(), |reading| readings::suspected(reading, &objectives, request)))?;
-    let mean = readings::readings(&late, &start.drive, &free, &priors, HOPELESS).into_iter().next();
-    if let (Some(mean), Some(usual)) = (mean, found.first())
-        && let Some(mut searched) = search_from(without(mean), &late, &mut Vec::new())
-        && is_motor(&searched)
-        && searched.chosen.independent * (criterion(usual) - criterion(&searched)) > VERY_STRONG
-    {
-        searched.chosen.compare(&[&late, &rare, &objectives]);
-        found.insert(0, searched);
     }
     let mut found: Vec<Chosen> = found.into_iter().map(|found| found.chosen).collect();
     let best = found.first_mut().ok_or(ErrorKind::TooShort { rows: log.rows(), least: 2 })?;
