@@ -87,7 +87,7 @@ impl Begin {
             let stands_in = fault == Fault::VoltageLag && with.mean_square() > (1.0 - WITHIN_ROWS) * without.mean_square();
             let is_there = gain > VERY_STRONG
                 && !stands_in
-                && is_a_motor(&drive.motor)
+                && has_inductances(&drive.motor)
                 && fault.is_physical(&drive.faults, &drive.motor, objective.peak_current());
             let moves = Parameter::ALL.map(|parameter| drive.motor.get(parameter) - without.polished.drive.motor.get(parameter));
             let trial = FaultTrial { fault, gain, outcome: FaultOutcome::Taken, moves };
@@ -342,7 +342,9 @@ pub(super) fn choose(
         && (is_ahead(&alone) || may_hide_it(usual) || usual.chosen.unknowns != free && is_ahead_beside(usual))
     {
         let first = search_from(without(alone.best), &rare, &mut Vec::new());
-        let begin = first.as_ref().filter(|first| is_hidden(first)).and_then(|_| with_loss(&rare, &[alone.best]));
+        // Something else may be taken first in its place.
+        let may_miss_loss = |first: &&Searched| !first.explained || is_hidden(first);
+        let begin = first.as_ref().filter(may_miss_loss).and_then(|_| with_loss(&rare, &[alone.best]));
         let second = begin.and_then(|begin| search_from(begin, &rare, &mut Vec::new()));
         let is_better = |rare: &Searched| {
             counts(rare, usual) && is_better(rare, usual) && rare.chosen.independent * (criterion(usual) - criterion(rare)) > VERY_STRONG
