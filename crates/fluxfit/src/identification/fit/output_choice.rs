@@ -71,6 +71,7 @@ impl Begin {
         start: &Adjustable,
         (free, priors): (&[Unknown], &[PriorResidual]),
         tried: &[(usize, TimingTrial)],
+        is_possible: impl Fn(&Motor) -> bool,
     ) -> Option<Self> {
         let (place, without) = tried.first()?;
         let turns = objectives[*place].1.turns();
@@ -87,7 +88,7 @@ impl Begin {
             let stands_in = fault == Fault::VoltageLag && with.mean_square() > (1.0 - WITHIN_ROWS) * without.mean_square();
             let is_there = gain > VERY_STRONG
                 && !stands_in
-                && has_inductances(&drive.motor)
+                && is_possible(&drive.motor)
                 && fault.is_physical(&drive.faults, &drive.motor, objective.peak_current());
             let moves = Parameter::ALL.map(|parameter| drive.motor.get(parameter) - without.polished.drive.motor.get(parameter));
             let trial = FaultTrial { fault, gain, outcome: FaultOutcome::Taken, moves };
@@ -153,7 +154,10 @@ pub(super) fn choose(
     let (steps, mut rare) = (objectives_of(&VoltageTiming::BY_EULERS_RULE)?, objectives_of(rare)?);
     let alone = |objectives: &Objectives| Alone::of(objectives, &start.drive, (&free, &priors));
     let (as_steps, mut as_rare) = (alone(&steps), alone(&rare));
-    let is_ahead = |alone: &&Alone| tried.first().is_some_and(|(_, usual)| alone.best.1.rank() < usual.rank());
+    let is_ahead = |alone: &&Alone| {
+        let best = &alone.best.1;
+        tried.first().is_some_and(|(_, usual)| best.rank() < usual.rank()) && !readings::is_behind_means(best, &tried)
+    };
     let least = tried.first().map_or(f64::INFINITY, |(_, usual)| usual.mean_square());
     if let Some(Alone { best: (_, best), .. }) = &as_rare
         && best.mean_square() <= HOPELESS * least
@@ -232,7 +236,7 @@ pub(super) fn choose(
     // Voltages that lag are of another reading than without.
     let of_voltages = best_timing.filter(|timing| !timing.tells_lag()).map(|_| Fault::VoltageLag);
     let of_frame: Vec<Fault> = of_angle.iter().copied().chain(of_voltages).collect();
-    let with_frame = Begin::with_fault(&of_frame, &objectives, &start.drive, (&free, &priors), &tried);
+    let with_frame = Begin::with_fault(&of_frame, &objectives, &start.drive, (&free, &priors), &tried, is_a_motor);
     let first_plain = usize::from(with_frame.is_some());
     let begins: Vec<Begin> = with_frame.into_iter().chain(tried.iter().copied().take(most).map(without)).collect();
     if every_period {
@@ -269,7 +273,8 @@ pub(super) fn choose(
     let is_answer = |best: &Searched| best.explained && is_motor(best) || has_loss(best);
     let angle_known = objectives.iter().all(|(_, objective)| objective.angle_known());
     let loss = if angle_known { Fault::DeadTime } else { Fault::DeadTimeWithoutAngle };
-    let with_loss = |objectives, tried: &[_]| Begin::with_fault(&[loss], objectives, &start.drive, (&free, &priors), tried);
+    let with_loss =
+        |objectives, tried: &[_], is_possible| Begin::with_fault(&[loss], objectives, &start.drive, (&free, &priors), tried, is_possible);
     // Harmonics of the flux pass for dead time: it explains much beside them, but with values that no drive has.
     let is_hidden = |best: &Searched| {
         let hides = |trial: &FaultTrial| trial.fault == loss && trial.outcome == FaultOutcome::NotPhysical && trial.gain > VERY_STRONG;
@@ -278,7 +283,9 @@ pub(super) fn choose(
     };
     let may_have_loss = |best: &Searched| start.shows_dead_time && !is_answer(best) || is_hidden(best);
     if found.first().is_some_and(may_have_loss) {
-        found.extend(with_loss(&objectives, &tried).and_then(|begin| search_from(begin, &objectives, &mut begun)));
+        found.extend(
+            with_loss(&objectives, &tried, is_a_motor as fn(&Motor) -> bool).and_then(|begin| search_from(begin, &objectives, &mut begun)),
+        );
         sort(&mut found);
     }
     // What a filter of the phase currents does while the rotor turns passes for much else beside an observer. A lag of the speed and
@@ -288,7 +295,7 @@ pub(super) fn choose(
         !best.explained && ![Fault::CurrentFilter, Fault::SpeedLag, Fault::Saturation].into_iter().any(has)
     };
     if every_period && found.first().is_some_and(leaves_much) {
-        let with_filter = Begin::with_fault(&[Fault::CurrentFilter], &objectives, &start.drive, (&free, &priors), &tried);
+        let with_filter = Begin::with_fault(&[Fault::CurrentFilter], &objectives, &start.drive, (&free, &priors), &tried, is_a_motor);
         found.extend(with_filter.and_then(|begin| search_from(begin, &objectives, &mut begun)));
         sort(&mut found);
     }
@@ -330,7 +337,8 @@ pub(super) fn choose(
     // Where neither explains the log, the rare one must leave noticeably less, and not because an observer follows the currents.
     let is_disturbed = |found: &Searched| found.chosen.unknowns.iter().any(|unknown| unknown.is_observer_gain());
     let is_better = |rare: &Searched, usual: &Searched| {
-        rare.explained
+        let beside_means = matches!(usual.chosen.reading, VoltageTiming::Averaged { .. });
+        rare.explained && (!beside_means || (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square)
             || leaves_much_less(rare, usual)
             || !usual.explained && (is_disturbed(usual) || !is_disturbed(rare)) && (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square
     };
@@ -344,16 +352,18 @@ pub(super) fn choose(
         let first = search_from(without(alone.best), &rare, &mut Vec::new());
         // Something else may be taken first in its place.
         let may_miss_loss = |first: &&Searched| !first.explained || is_hidden(first);
-        let begin = first.as_ref().filter(may_miss_loss).and_then(|_| with_loss(&rare, &[alone.best]));
+        let begin = first.as_ref().filter(may_miss_loss).and_then(|_| with_loss(&rare, &[alone.best], has_inductances));
         let second = begin.and_then(|begin| search_from(begin, &rare, &mut Vec::new()));
         let is_better = |rare: &Searched| {
             counts(rare, usual) && is_better(rare, usual) && rare.chosen.independent * (criterion(usual) - criterion(rare)) > VERY_STRONG
         };
         let mut found_there: Vec<Searched> = first.into_iter().chain(second).collect();
         // That the reading is a rare one is told by either; then the better one is the answer, with or without a filter.
-        let is_rare = found_there.iter().any(is_better);
-        found_there.retain(|rare| is_rare && (is_better(rare) || has_inductances(&rare.chosen.drive.motor)));
-        let best = found_there.into_iter().min_by(|one, other| criterion(one).total_cmp(&criterion(other)));
+        let told: Vec<VoltageTiming> = found_there.iter().filter(|rare| is_better(rare)).map(|rare| rare.chosen.reading).collect();
+        let is_possible = |rare: &Searched| is_better(rare) || told.contains(&rare.chosen.reading) && is_motor(rare);
+        found_there.retain(is_possible);
+        sort(&mut found_there);
+        let best = found_there.into_iter().next();
         if let Some(searched) = best {
             found.insert(0, compared_with_all(searched)?);
         }

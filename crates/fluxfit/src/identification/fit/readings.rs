@@ -209,17 +209,34 @@ pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator
     tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)))
 }
 
-/// The mean of two commands, where voltages seem to act half a period later and it fits about as well: every other row of a usual drive
-/// passes for the rows of a drive that samples in the middle of its period. Neither is exact there, so the evidence does not count.
-fn means_of_every_other_row(tried: &[TimingTrial]) -> Option<&TimingTrial> {
-    let best = tried.first().filter(|best| best.timing == VoltageTiming::MidPeriod { delay: 1 })?;
-    tried.iter().find(|other| other.timing == MEAN_OF_TWO && other.mean_square() <= (1.0 + AVERAGED) * best.mean_square())
+/// Means that pass for the rows of a drive that samples in the middle of its period. Of two commands: every other row of a usual drive seems
+/// to act half a period later. Or of what acts: between such rows voltages go from one mean to the next.
+fn means_like(timing: VoltageTiming) -> Option<VoltageTiming> {
+    match timing {
+        VoltageTiming::MidPeriod { delay: 0 } => Some(VoltageTiming::Averaged { of: MeansOf::Voltages }),
+        VoltageTiming::MidPeriod { .. } => Some(MEAN_OF_TWO),
+        _ => None,
+    }
+}
+
+/// They, where they fit about as well as the best. Neither is exact, so the evidence does not count.
+fn means_in_doubt(tried: &[TimingTrial]) -> Option<&TimingTrial> {
+    let best = tried.first()?;
+    let means = means_like(best.timing)?;
+    tried.iter().find(|other| other.timing == means && other.mean_square() <= (1.0 + AVERAGED) * best.mean_square())
+}
+
+/// Whether means that pass for it fit better than a reading: they differ by a twelfth of the square of a row's turn, and no other
+/// preference may decide between them.
+pub(super) fn is_behind_means(reading: &TimingTrial, tried: &[(usize, TimingTrial)]) -> bool {
+    let means = means_like(reading.timing);
+    tried.iter().any(|(_, other)| means == Some(other.timing) && other.mean_square() <= reading.mean_square())
 }
 
 /// How far each parameter moves between them.
 pub(crate) fn doubt(tried: &[TimingTrial], independent: f64) -> [f64; PARAMETERS] {
     let Some(best) = tried.first() else { return [0.0; PARAMETERS] };
-    let others = possible(tried, independent).chain(means_of_every_other_row(tried));
+    let others = possible(tried, independent).chain(means_in_doubt(tried));
     others.fold([0.0; PARAMETERS], |most: [f64; PARAMETERS], other| {
         let (one, other) = (best.polished.drive.motor.to_array(), other.polished.drive.motor.to_array());
         std::array::from_fn(|p| most[p].max((one[p] - other[p]).abs()))
