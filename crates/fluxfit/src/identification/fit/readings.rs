@@ -209,8 +209,8 @@ pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator
     tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)))
 }
 
-/// Means that pass for the rows of a drive that samples in the middle of its period. Of two commands: every other row of a usual drive seems
-/// to act half a period later. Or of what acts: between such rows voltages go from one mean to the next.
+/// Means that pass for the rows of a drive that samples in the middle of its period. Of two commands: every other row of a usual drive
+/// seems to act half a period later. Or of what acts: between such rows voltages go from one mean to the next.
 fn means_like(timing: VoltageTiming) -> Option<VoltageTiming> {
     match timing {
         VoltageTiming::MidPeriod { delay: 0 } => Some(VoltageTiming::Averaged { of: MeansOf::Voltages }),
