@@ -41,8 +41,8 @@ pub enum VoltageTiming {
     Ended,
     /// In the frame at the middle of the period in which it acts, of a drive that samples in the middle of its periods.
     MidPeriod {
-        /// 0: what acts while the row is sampled; 1: what is commanded there, and takes effect half a period later.
-        delay: usize,
+        /// The row holds what is commanded there, and takes effect half a period later; else what acts while it is sampled.
+        later: bool,
     },
     /// The mean over the row's own span, as the currents are.
     Averaged {
@@ -135,7 +135,7 @@ impl VoltageTiming {
     pub(crate) const BY_EULERS_RULE: [Self; 2] = [Self::Euler { after: false }, Self::Euler { after: true }];
 
     /// Those of few drives. A filter or a late angle in a usual log passes for one.
-    pub(crate) const RARE: [Self; 3] = [Self::Ended, Self::MidPeriod { delay: 0 }, Self::MidPeriod { delay: 1 }];
+    pub(crate) const RARE: [Self; 3] = [Self::Ended, Self::MidPeriod { later: false }, Self::MidPeriod { later: true }];
 
     /// Those of rows that are means of what a drive commands.
     pub(crate) const MEANS_OF_COMMANDS: [Self; 2] = [Self::Averaged { of: MeansOf::Commands }, Self::Averaged { of: MeansOf::TwoCommands }];
@@ -174,7 +174,7 @@ impl VoltageTiming {
             Self::Delayed { delay: 0, frame: VoltageFrame::Rotor } => "0-rotor",
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "1-rotor",
             Self::Ended => "-1",
-            Self::MidPeriod { delay: 0 } => "-0.5",
+            Self::MidPeriod { later: false } => "-0.5",
             Self::MidPeriod { .. } => "0.5",
             Self::Averaged { of: MeansOf::Voltages } => "averaged",
             Self::Averaged { of: MeansOf::Commands } => "averaged-commands",
@@ -201,7 +201,7 @@ impl VoltageTiming {
             }
             Self::Delayed { frame: VoltageFrame::Rotor, .. } => "what acts one period later, held in the rotor's frame",
             Self::Ended => "what acted over the period that ended at the row",
-            Self::MidPeriod { delay: 0 } => "what acts from half a period before the row to half a period after it",
+            Self::MidPeriod { later: false } => "what acts from half a period before the row to half a period after it",
             Self::MidPeriod { .. } => "what acts half a period later",
             Self::Averaged { of: MeansOf::Voltages } => "the mean over the row's own span, as the currents",
             Self::Averaged { of: MeansOf::Commands } => "the mean over the row's own span, of commands that act later",
@@ -216,7 +216,8 @@ impl VoltageTiming {
         match self {
             Self::Averaged { of: MeansOf::TwoCommands } => 1,
             Self::Centered | Self::Ended | Self::Averaged { .. } | Self::Euler { .. } => 0,
-            Self::Delayed { delay, .. } | Self::MidPeriod { delay } => delay,
+            Self::Delayed { delay, .. } => delay,
+            Self::MidPeriod { later } => usize::from(later),
         }
     }
 
@@ -236,7 +237,7 @@ impl VoltageTiming {
 
     /// Whether the voltage of a row acts from that row on, as no drive does that computes it from what it samples there.
     pub(crate) fn acts_at_once(self) -> bool {
-        matches!(self, Self::Delayed { delay: 0, .. } | Self::Ended | Self::MidPeriod { delay: 0 } | Self::Euler { .. })
+        matches!(self, Self::Delayed { delay: 0, .. } | Self::Ended | Self::MidPeriod { later: false } | Self::Euler { .. })
     }
 
     /// Whether the drive does not compensate its delay: as an angle that is late would have it.
@@ -327,9 +328,9 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 }
                 VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => at_middle(ahead(row - delay, delay as f64 + 0.5, length)),
                 VoltageTiming::Ended => at_middle(ahead(row + 1, -0.5, length)),
-                VoltageTiming::MidPeriod { delay } => {
+                VoltageTiming::MidPeriod { later } => {
                     // From one row to the middle between them, and from there to the other.
-                    let half = |row: usize| at_middle(ahead(row - delay, delay as f64, length));
+                    let half = |row: usize| at_middle(ahead(row - usize::from(later), f64::from(later), length));
                     let (first, second) = (half(row), half(row + 1));
                     change_within = Dq { d: second.d - first.d, q: second.q - first.q };
                     Dq { d: 0.5 * (first.d + second.d), q: 0.5 * (first.q + second.q) }
@@ -360,7 +361,7 @@ pub(super) fn periods(log: &Log, rows: &Range<usize>, angles: &Angles, reading: 
                 advance_per_lag: match reading {
                     VoltageTiming::Delayed { delay, frame: VoltageFrame::Middle } => acceleration(row) * (delay as f64 + 0.5) * length,
                     VoltageTiming::Ended => -0.5 * acceleration(row) * length,
-                    VoltageTiming::MidPeriod { delay } => acceleration(row) * delay as f64 * length,
+                    VoltageTiming::MidPeriod { later } => acceleration(row) * f64::from(later) * length,
                     VoltageTiming::Centered
                     | VoltageTiming::Delayed { .. }
                     | VoltageTiming::Averaged { .. }

@@ -205,23 +205,13 @@ fn read_as(motor: &Motor, log: &Log, request: &Request, timing: VoltageTiming, p
 #[test]
 fn voltages_of_the_period_before_and_half_a_period_later_are_read() {
     holds(&of_an_inverter(&TRUTH, 0, Logged::Ended, 0.0), VoltageTiming::Ended, 0.3);
-    holds(&of_an_inverter(&TRUTH, HELD / 2, Logged::Command, 0.0), VoltageTiming::MidPeriod { delay: 1 }, 0.3);
+    holds(&of_an_inverter(&TRUTH, HELD / 2, Logged::Command, 0.0), VoltageTiming::MidPeriod { later: true }, 0.3);
 }
 
 /// Between such rows voltages go about straight, as means do; but read as means, psi_f is 0.3 % too large.
 #[test]
 fn voltages_that_act_while_a_row_is_sampled_in_mid_period_are_read() {
-    holds(&of_an_inverter(&TRUTH, HELD / 2, Logged::Acting, 0.0), VoltageTiming::MidPeriod { delay: 0 }, 0.15);
-}
-
-/// Beside dead time.
-#[test]
-fn voltages_that_act_in_mid_period_are_read_beside_dead_time() {
-    let log = of_an_inverter(&TRUTH, HELD / 2, Logged::Acting, 2.0);
-    let request = Request { model: Some(Model::OutputError), ..Request::default() };
-    for (parameter, verdict) in read_as(&TRUTH, &log, &request, VoltageTiming::MidPeriod { delay: 0 }, 0.5) {
-        assert_eq!(verdict, Verdict::Identified, "{parameter:?}");
-    }
+    holds(&of_an_inverter(&TRUTH, HELD / 2, Logged::Acting, 0.0), VoltageTiming::MidPeriod { later: false }, 0.15);
 }
 
 /// The time constant of this winding is four periods, so that the half that acts later counts for more. Where both count alike, another
@@ -229,16 +219,18 @@ fn voltages_that_act_in_mid_period_are_read_beside_dead_time() {
 #[test]
 fn voltages_half_a_period_later_are_read_of_a_fast_winding() {
     const FAST: Motor = Motor { rs: 5.0, ld: 2e-3, lq: 2e-3, psi_f: 0.1827 };
-    holds_for(&FAST, &of_an_inverter(&FAST, HELD / 2, Logged::Command, 0.0), VoltageTiming::MidPeriod { delay: 1 }, 0.3);
+    holds_for(&FAST, &of_an_inverter(&FAST, HELD / 2, Logged::Command, 0.0), VoltageTiming::MidPeriod { later: true }, 0.3);
 }
 
-/// Only beside the dead time is it ahead of the others.
+/// Only beside the dead time are they ahead of the others.
 #[test]
-fn voltages_half_a_period_later_are_read_beside_dead_time() {
-    let log = of_an_inverter(&TRUTH, HELD / 2, Logged::Command, 2.0);
+fn voltages_that_change_in_mid_period_are_read_beside_dead_time() {
     let request = Request { model: Some(Model::OutputError), ..Request::default() };
-    for (parameter, verdict) in read_as(&TRUTH, &log, &request, VoltageTiming::MidPeriod { delay: 1 }, 0.5) {
-        assert_eq!(verdict, Verdict::Identified, "{parameter:?}");
+    for (what, later) in [(Logged::Command, true), (Logged::Acting, false)] {
+        let log = of_an_inverter(&TRUTH, HELD / 2, what, 2.0);
+        for (parameter, verdict) in read_as(&TRUTH, &log, &request, VoltageTiming::MidPeriod { later }, 0.5) {
+            assert_eq!(verdict, Verdict::Identified, "{parameter:?}");
+        }
     }
 }
 

@@ -71,7 +71,7 @@ impl Begin {
         start: &Adjustable,
         (free, priors): (&[Unknown], &[PriorResidual]),
         tried: &[(usize, TimingTrial)],
-        is_possible: impl Fn(&Motor) -> bool,
+        is_possible: fn(&Motor) -> bool,
     ) -> Option<Self> {
         let (place, without) = tried.first()?;
         let turns = objectives[*place].1.turns();
@@ -283,9 +283,7 @@ pub(super) fn choose(
     };
     let may_have_loss = |best: &Searched| start.shows_dead_time && !is_answer(best) || is_hidden(best);
     if found.first().is_some_and(may_have_loss) {
-        found.extend(
-            with_loss(&objectives, &tried, is_a_motor as fn(&Motor) -> bool).and_then(|begin| search_from(begin, &objectives, &mut begun)),
-        );
+        found.extend(with_loss(&objectives, &tried, is_a_motor).and_then(|begin| search_from(begin, &objectives, &mut begun)));
         sort(&mut found);
     }
     // What a filter of the phase currents does while the rotor turns passes for much else beside an observer. A lag of the speed and
@@ -363,8 +361,7 @@ pub(super) fn choose(
         let is_possible = |rare: &Searched| is_better(rare) || told.contains(&rare.chosen.reading) && is_motor(rare);
         found_there.retain(is_possible);
         sort(&mut found_there);
-        let best = found_there.into_iter().next();
-        if let Some(searched) = best {
+        if let Some(searched) = found_there.into_iter().next() {
             found.insert(0, compared_with_all(searched)?);
         }
     }

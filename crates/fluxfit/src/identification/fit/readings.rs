@@ -77,14 +77,20 @@ pub(crate) fn suspected(best: VoltageTiming, tried: &[(VoltageTiming, OutputErro
     if may_be_means && request.voltage_timing.is_none() { of_commands() } else { Vec::new() }
 }
 
-/// A reading whose rows pass for those of the one that was found, and so must be tried beside it, unless it was tried.
+/// Means that pass for the rows of a reading that was found, and so must be tried beside it, unless they were.
 pub(super) fn alike(found: VoltageTiming, tried: &[VoltageTiming]) -> Vec<VoltageTiming> {
-    let may_pass = found == VoltageTiming::MidPeriod { delay: 1 } && !tried.contains(&MEAN_OF_TWO);
-    if may_pass { vec![MEAN_OF_TWO] } else { Vec::new() }
+    means_like(found).into_iter().filter(|means| !tried.contains(means)).collect()
 }
 
-/// What passes for [`VoltageTiming::MidPeriod { delay: 1 }`] in every other row of a usual drive.
-const MEAN_OF_TWO: VoltageTiming = VoltageTiming::Averaged { of: MeansOf::TwoCommands };
+/// Means that pass for the rows of a drive that samples in the middle of its period. Of two commands: every other row of a usual drive
+/// seems to act half a period later. Or of what acts: between such rows voltages go from one mean to the next.
+fn means_like(timing: VoltageTiming) -> Option<VoltageTiming> {
+    match timing {
+        VoltageTiming::MidPeriod { later: false } => Some(VoltageTiming::Averaged { of: MeansOf::Voltages }),
+        VoltageTiming::MidPeriod { .. } => Some(VoltageTiming::Averaged { of: MeansOf::TwoCommands }),
+        _ => None,
+    }
+}
 
 /// Mean square after one step, over that of the best reading, beyond which a reading is not fitted to the end: another step does not make
 /// up for it.
@@ -209,25 +215,15 @@ pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator
     tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)))
 }
 
-/// Means that pass for the rows of a drive that samples in the middle of its period. Of two commands: every other row of a usual drive
-/// seems to act half a period later. Or of what acts: between such rows voltages go from one mean to the next.
-fn means_like(timing: VoltageTiming) -> Option<VoltageTiming> {
-    match timing {
-        VoltageTiming::MidPeriod { delay: 0 } => Some(VoltageTiming::Averaged { of: MeansOf::Voltages }),
-        VoltageTiming::MidPeriod { .. } => Some(MEAN_OF_TWO),
-        _ => None,
-    }
-}
-
-/// They, where they fit about as well as the best. Neither is exact, so the evidence does not count.
+/// The means that pass for the best, where they fit about as well. Neither is exact, so the evidence does not count.
 fn means_in_doubt(tried: &[TimingTrial]) -> Option<&TimingTrial> {
     let best = tried.first()?;
     let means = means_like(best.timing)?;
     tried.iter().find(|other| other.timing == means && other.mean_square() <= (1.0 + AVERAGED) * best.mean_square())
 }
 
-/// Whether means that pass for it fit better than a reading: they differ by a twelfth of the square of a row's turn, and no other
-/// preference may decide between them.
+/// Whether means that pass for a reading fit better than it does. The two differ by a twelfth of the square of a row's turn, and only the
+/// fit may decide between them.
 pub(super) fn is_behind_means(reading: &TimingTrial, tried: &[(usize, TimingTrial)]) -> bool {
     let means = means_like(reading.timing);
     tried.iter().any(|(_, other)| means == Some(other.timing) && other.mean_square() <= reading.mean_square())
@@ -288,7 +284,7 @@ mod tests {
             TimingTrial { timing, polished, rows }
         };
         let of = |of| VoltageTiming::Averaged { of };
-        let later = trial(VoltageTiming::MidPeriod { delay: 1 }, 1.0, 1.0);
+        let later = trial(VoltageTiming::MidPeriod { later: true }, 1.0, 1.0);
         let moved = |tried: &[TimingTrial]| doubt(tried, (2 * rows) as f64)[0];
         assert!((moved(&[later, trial(of(MeansOf::TwoCommands), 1.5, 1.09)]) - 0.5).abs() < 1e-12);
         assert_eq!(moved(&[later, trial(of(MeansOf::TwoCommands), 1.5, 1.11), trial(of(MeansOf::Commands), 1.5, 1.09)]), 0.0);
