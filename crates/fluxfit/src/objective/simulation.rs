@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     faults::{Acting, Place, Winding},
-    frames::Turn,
+    frames::{Turn, turned},
     lanes::Number,
 };
 use pulp::NullaryFnOnce;
@@ -23,6 +23,9 @@ use std::ops::Range;
 
 /// Rows between two looks at what has died out.
 const BLOCK: usize = 64;
+
+/// The mean of a kink is a half of what it is half-way, that of a bend two thirds: the bend with a kink's mean is so much of it.
+const KINK: f64 = 0.75;
 
 /// A response to a first current of one ampere that is smaller than this, A, has died out: what it adds to a sum of squares is below
 /// rounding.
@@ -419,15 +422,19 @@ impl<V: Number> FaultyBlock<'_, V> {
     }
 
     /// How the current's way over a period is bent in the stator, A, `d, q`: four times what it is half-way beside the mean of its ends. A
-    /// voltage that stands still there leaves the magnets' to bend it, one that turns with the rotor takes the current along an arc.
+    /// voltage that stands still there leaves the magnets' to bend it, one that turns with the rotor takes the current along an arc. One
+    /// that changes half-way puts a kink there.
     #[inline(always)]
     fn bend(&self, i: [V; 2], place: &Place) -> [V; 2] {
         let square = i[0].constant(0.5 * (place.omega_e * place.length).powi(2));
         match self.held {
             Held::InStator => {
-                let along = -(square * self.motors.psi_f * self.winding.per_henry[0]);
+                let per_henry = self.winding.per_henry;
+                let [kink_d, kink_q] = place.changes.unwrap_or_default().map(|change| -KINK * change * place.length);
+                let along = (-square).mul_add(self.motors.psi_f, square.constant(kink_d)) * per_henry[0];
+                let across = per_henry[1].constant(kink_q) * per_henry[1];
                 let Turn { cos, sin } = place.middle.until(place.end);
-                [along * along.constant(cos), along * along.constant(-sin)]
+                turned([along, across], along.constant(cos), along.constant(-sin))
             }
             Held::InRotor | Held::WithSlope => [square * i[0], square * i[1]],
         }
