@@ -153,6 +153,12 @@ pub(crate) enum Problem {
     )]
     HighVoltage { channel: &'static str, most: f64 },
     #[error(
+        "id and iq are {} times the amplitude of {}, as of {}; write park = \"{}\" into a mapping file, which converts ud and uq too; if these are peak values, write scale = {} for id and iq instead",
+        significant(*.ratio, 3), list(&.headers.iter().map(|header| format!("'{}'", shorten(header))).collect::<Vec<_>>()),
+        if *.park == "rms" { "rms values" } else { "a power-invariant transform" }, .park, significant(*.factor, 4)
+    )]
+    DqScaling { ratio: f64, headers: Vec<String>, park: &'static str, factor: f64 },
+    #[error(
         "the currents come to {} A beside voltages of {} V, as if {} and {} were in m{unit}; state their unit, also if it is {unit}", significant(*.amperes, 3), significant(*.volts, 3), .channels[0], .channels[1]
     )]
     Thousandths { channels: [&'static str; 2], amperes: f64, volts: f64, unit: &'static str },
@@ -329,6 +335,7 @@ impl Problem {
             Self::RoundedTime { .. } => FileErrorKind::Data,
             Self::Rms { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
+            Self::DqScaling { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } | Self::OwnTimes { .. } => {
                 FileErrorKind::Data

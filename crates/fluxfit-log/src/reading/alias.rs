@@ -1,149 +1,16 @@
 //! Columns that are read by another name than the channel's own: `u_d`, `iq_meas`, `Drehzahl [1/min]`. The whole name has to be one of the
 //! usual ones, and one column alone has to have it; names that merely resemble one are only proposed.
 
-use super::resemblance::{is_reference, words};
+use super::{
+    resemblance::{is_reference, words},
+    vocabulary::{ANGLE, BEFORE_SPEED, BESIDE, CURRENT, ROTATION, SPEED, TIME, UDC, VOLTAGE, X},
+};
 use crate::{
     block::ColumnHead,
     channel::Channel,
     header_unit::{HeaderUnit, split_header, unit_in_row},
 };
 use fluxfit_units::Dimension;
-
-/// Words that say only that a value was measured, and where.
-const BESIDE: [&str; 26] = [
-    "meas",
-    "measured",
-    "measurement",
-    "act",
-    "actual",
-    "ist",
-    "istwert",
-    "fb",
-    "fbk",
-    "feedback",
-    "motor",
-    "mot",
-    "stator",
-    "foc",
-    "drive",
-    "inverter",
-    "inv",
-    "pmsm",
-    "mcu",
-    // Of several motors or axes, where one alone is logged.
-    "m1",
-    "m2",
-    "motor1",
-    "motor2",
-    "axis0",
-    "axis1",
-    "mtr",
-];
-
-/// Further ones beside a speed or an angle.
-const ROTATION: [&str; 22] = [
-    "rotor",
-    "revolution",
-    "rotation",
-    "shaft",
-    "angular",
-    "rotational",
-    "mech",
-    "mechanical",
-    "elec",
-    "electrical",
-    "el",
-    "e",
-    "mechanisch",
-    "elektrisch",
-    "m",
-    "r",
-    "est",
-    "estimate",
-    "estimated",
-    "encoder",
-    "enc",
-    "resolver",
-];
-
-const CURRENT: [&str; 10] = ["i", "is", "current", "strom", "courant", "corrente", "corriente", "stroem", "电流", "電流"];
-const VOLTAGE: [&str; 12] = ["u", "v", "us", "vs", "voltage", "volt", "spannung", "tension", "tensione", "voltaje", "电压", "電圧"];
-const TIME: [&str; 22] = [
-    "t",
-    "time",
-    "timestamp",
-    "timestamps",
-    "datetime",
-    "seconds",
-    "elapsedtime",
-    "elapsed",
-    "reltime",
-    "relativetime",
-    "testtime",
-    "zeit",
-    "zeitstempel",
-    "messzeit",
-    "temps",
-    "tempo",
-    "tiempo",
-    "xvalue",
-    // Of Simulink, and of loggers.
-    "tout",
-    "ts",
-    "时间",
-    "時間",
-];
-const SPEED: [&str; 26] = [
-    "omega",
-    "w",
-    "speed",
-    "velocity",
-    "vel",
-    "velo",
-    "rpm",
-    "erpm",
-    "n",
-    "wm",
-    "wr",
-    "we",
-    "omegam",
-    "omegar",
-    "omegae",
-    "omegael",
-    "freq",
-    "frequency",
-    "frequenz",
-    "drehzahl",
-    "vitesse",
-    "velocita",
-    "velocidad",
-    "winkelgeschwindigkeit",
-    "转速",
-    "回転数",
-];
-/// Names of the axis of a plot: the time, where no other unit is stated.
-const X: [&str; 2] = ["xaxis", "xachse"];
-
-const UDC: [&str; 15] = [
-    "udc",
-    "vdc",
-    "ubus",
-    "vbus",
-    "uzk",
-    "dcvoltage",
-    "dclinkvoltage",
-    "dcbusvoltage",
-    "busvoltage",
-    "zwischenkreisspannung",
-    "vdcbus",
-    "udcbus",
-    "vbusvoltage",
-    "vdclink",
-    "udclink",
-];
-
-const ANGLE: [&str; 12] =
-    ["thetam", "thetae", "thetar", "thetael", "theta", "angle", "phi", "epsilon", "winkel", "rotorwinkel", "position", "rotorangle"];
 
 /// The column of a channel, if exactly one has one of its usual names, and no other unit.
 pub(super) fn find(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
@@ -270,7 +137,10 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
             beside.is_empty() && (TIME.contains(&name.as_str()) || name.is_empty() || X.contains(&name.as_str()) || has_unit && name == "x")
         }
         // `f [Hz]`.
-        Channel::OmegaE => is_one_of(&name, "speed", &SPEED) || name.is_empty() || has_unit && name == "f",
+        Channel::OmegaE => {
+            let glued = BEFORE_SPEED.iter().find_map(|before| name.strip_prefix(before)).filter(|rest| rest.len() >= WORD);
+            is_one_of(glued.unwrap_or(&name), "speed", &SPEED) || name.is_empty() || has_unit && name == "f"
+        }
         Channel::ThetaE => is_one_of(&name, "angle", &ANGLE),
         // `d_V`: the unit says the quantity.
         Channel::Ud => is_of_axis(&name, "d", &VOLTAGE) || has_unit && name == "d",
@@ -328,7 +198,10 @@ fn named(channel: Channel, stem: &str, unit: HeaderUnit) -> Option<(String, Vec<
         BESIDE.contains(&word.as_str()) || matches!(dimension, Dimension::Speed | Dimension::Angle) && ROTATION.contains(&word.as_str())
     };
     let plain = |word: &String| {
-        let mut word = word.replace('α', "alpha").replace('β', "beta");
+        let mut word = word.clone();
+        [('α', "alpha"), ('β', "beta"), ('ω', "omega"), ('θ', "theta"), ('φ', "phi")]
+            .iter()
+            .for_each(|(from, to)| word = word.replace(*from, to));
         [('ä', "ae"), ('à', "a"), ('é', "e"), ('ó', "o"), ('ö', "oe")].iter().for_each(|(from, to)| word = word.replace(*from, to));
         word
     };
@@ -467,9 +340,12 @@ mod tests {
                     "w_e",
                     "n [U/min]",
                     "rpm",
+                    "Motordrehzahl [1/min]",
+                    "Istdrehzahl (min-1)",
+                    "ω_m [rad/s]",
                 ],
             ),
-            (Channel::ThetaE, &["theta", "theta_el", "Rotorwinkel [°]", "electrical_angle_deg"]),
+            (Channel::ThetaE, &["theta", "theta_el", "Rotorwinkel [°]", "electrical_angle_deg", "θ_e"]),
             (Channel::UDc, &["vbus", "V_dc", "dc_link_voltage [V]"]),
             (
                 Channel::IA,
@@ -564,7 +440,19 @@ mod tests {
                 ],
             ),
             (Channel::UA, &["Phase A Current", "U phase V", "Voltage phase A phase B", "phase angle u"]),
-            (Channel::OmegaE, &["speed_step", "speed setpoint", "speed_meters_per_sec", "Velocity (m/s)", "wind speed", "SO_N_SOLL"]),
+            (
+                Channel::OmegaE,
+                &[
+                    "speed_step",
+                    "speed setpoint",
+                    "speed_meters_per_sec",
+                    "Velocity (m/s)",
+                    "wind speed",
+                    "SO_N_SOLL",
+                    "Solldrehzahl",
+                    "Nenndrehzahl",
+                ],
+            ),
             (Channel::Ud, &["u_dc", "ud_ref", "vd [mA]", "u_d [°C]"]),
         ] {
             names.iter().for_each(|name| assert!(!is(channel, name), "{name} is not {}", channel.name()));

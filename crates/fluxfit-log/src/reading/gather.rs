@@ -9,6 +9,7 @@ use super::{
     lines::Lines,
     options::ResolvedOptions,
     own_times::OwnTimes,
+    scaling::Scaling,
     selection::{Features, Selected, Selection, mean_and_deviation},
     table::Table,
 };
@@ -117,7 +118,10 @@ fn one_group(
 ) -> Result<Gathered, FileError> {
     let place = |channel: Channel| columns.iter().position(|column| column.channel == channel);
     let mut own_times = OwnTimes::of(table.heads(), columns);
-    let wanted: Vec<WantedColumn> = columns.iter().map(ChosenColumn::wanted).chain(own_times.wanted(columns)).collect();
+    let mut scaling = Scaling::of(table.heads(), columns);
+    let of_phases = scaling.iter().flat_map(Scaling::wanted);
+    let wanted: Vec<WantedColumn> = columns.iter().map(ChosenColumn::wanted).chain(own_times.wanted(columns)).chain(of_phases).collect();
+    let times = columns.len() + own_times.len();
     let mut counted = period.filter(|_| place(T).is_none()).map(|period| Counted { period, t: -period, run: None });
     let mut selection = Selection::new(columns.len() + usize::from(counted.is_some()), features(&place), most_rows);
     let is_unit_stated = place(T).is_some_and(|t| columns[t].is_unit_stated);
@@ -132,6 +136,7 @@ fn one_group(
                         *first = later.take();
                     }
                 }
+                let mut phases = block.values.split_off(times);
                 let others = block.values.split_off(columns.len());
                 if !others.is_empty()
                     && let Some(t) = place(T)
@@ -140,6 +145,9 @@ fn one_group(
                 }
                 for (column, values) in columns.iter().zip(&mut block.values) {
                     column.to_si(values);
+                }
+                if let Some(scaling) = &mut scaling {
+                    scaling.compare(&block.values, &mut phases);
                 }
                 if let Some(t) = place(T) {
                     clock.settle(&mut block.values[t]);
@@ -157,6 +165,7 @@ fn one_group(
     if let Some(t) = place(T) {
         own_times.refuse(&columns[t].header)?;
     }
+    scaling.as_ref().map_or(Ok(()), Scaling::refuse)?;
     notes.extend(clock.notes().into_iter().map(Note::from));
     if let Some(step) = clock.unstated_step() {
         return Err(Problem::TimeUnit { step }.into());

@@ -38,11 +38,13 @@ mod resemblance;
 mod rms;
 mod rounded_time;
 mod runs;
+mod scaling;
 mod selection;
 mod steady_test;
 mod survey;
 mod table;
 mod turning;
+mod vocabulary;
 
 pub(crate) use called::channel_called;
 pub use characteristic::{ReadCharacteristic, read_characteristic};

@@ -112,6 +112,11 @@ impl OwnTimes {
         self.others.iter().filter_map(own).collect()
     }
 
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.others.len()
+    }
+
     /// Compares the times of a block, as the file writes them.
     pub(super) fn compare(&mut self, time: &[f64], others: &[Vec<f64>]) {
         for (row, t) in time.iter().enumerate() {

@@ -340,9 +340,12 @@ pub(super) fn choose(
             || leaves_much_less(rare, usual)
             || !usual.explained && (is_disturbed(usual) || !is_disturbed(rare)) && (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square
     };
-    // A filter counts there only if much less is left; and a small resistance may come out below zero.
+    // A filter counts there only beside dead time that the usual search misses, or if much less is left; then a small resistance may come
+    // out below zero, too.
     let counts = |rare: &Searched, usual: &Searched| {
-        is_motor(rare) && !has_filter(rare) || leaves_much_less(rare, usual) && has_inductances(&rare.chosen.drive.motor)
+        let may_be_filtered = has_loss(rare) && !has_loss(usual);
+        is_motor(rare) && (may_be_filtered || !has_filter(rare))
+            || leaves_much_less(rare, usual) && has_inductances(&rare.chosen.drive.motor)
     };
     if let (Some(alone), Some(usual)) = (&as_rare, found.first())
         && (is_ahead(&alone) || may_hide_it(usual) || usual.chosen.unknowns != free && is_ahead_beside(usual))

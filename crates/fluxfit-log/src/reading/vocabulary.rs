@@ -1,0 +1,142 @@
+//! The words that columns are usually called by, in the languages of the tools: lower case, without accents and marks.
+
+/// Words that say only that a value was measured, and where.
+pub(super) const BESIDE: [&str; 26] = [
+    "meas",
+    "measured",
+    "measurement",
+    "act",
+    "actual",
+    "ist",
+    "istwert",
+    "fb",
+    "fbk",
+    "feedback",
+    "motor",
+    "mot",
+    "stator",
+    "foc",
+    "drive",
+    "inverter",
+    "inv",
+    "pmsm",
+    "mcu",
+    // Of several motors or axes, where one alone is logged.
+    "m1",
+    "m2",
+    "motor1",
+    "motor2",
+    "axis0",
+    "axis1",
+    "mtr",
+];
+
+/// Further ones beside a speed or an angle.
+pub(super) const ROTATION: [&str; 22] = [
+    "rotor",
+    "revolution",
+    "rotation",
+    "shaft",
+    "angular",
+    "rotational",
+    "mech",
+    "mechanical",
+    "elec",
+    "electrical",
+    "el",
+    "e",
+    "mechanisch",
+    "elektrisch",
+    "m",
+    "r",
+    "est",
+    "estimate",
+    "estimated",
+    "encoder",
+    "enc",
+    "resolver",
+];
+
+pub(super) const CURRENT: [&str; 10] = ["i", "is", "current", "strom", "courant", "corrente", "corriente", "stroem", "电流", "電流"];
+pub(super) const VOLTAGE: [&str; 12] =
+    ["u", "v", "us", "vs", "voltage", "volt", "spannung", "tension", "tensione", "voltaje", "电压", "電圧"];
+pub(super) const TIME: [&str; 22] = [
+    "t",
+    "time",
+    "timestamp",
+    "timestamps",
+    "datetime",
+    "seconds",
+    "elapsedtime",
+    "elapsed",
+    "reltime",
+    "relativetime",
+    "testtime",
+    "zeit",
+    "zeitstempel",
+    "messzeit",
+    "temps",
+    "tempo",
+    "tiempo",
+    "xvalue",
+    // Of Simulink, and of loggers.
+    "tout",
+    "ts",
+    "时间",
+    "時間",
+];
+pub(super) const SPEED: [&str; 26] = [
+    "omega",
+    "w",
+    "speed",
+    "velocity",
+    "vel",
+    "velo",
+    "rpm",
+    "erpm",
+    "n",
+    "wm",
+    "wr",
+    "we",
+    "omegam",
+    "omegar",
+    "omegae",
+    "omegael",
+    "freq",
+    "frequency",
+    "frequenz",
+    "drehzahl",
+    "vitesse",
+    "velocita",
+    "velocidad",
+    "winkelgeschwindigkeit",
+    "转速",
+    "回転数",
+];
+
+/// Words that German writes in one with a speed: `Istdrehzahl`, `Motordrehzahl`.
+pub(super) const BEFORE_SPEED: [&str; 5] = ["ist", "motor", "rotor", "wellen", "antriebs"];
+
+/// Names of the axis of a plot: the time, where no other unit is stated.
+pub(super) const X: [&str; 2] = ["xaxis", "xachse"];
+
+pub(super) const UDC: [&str; 15] = [
+    "udc",
+    "vdc",
+    "ubus",
+    "vbus",
+    "uzk",
+    "dcvoltage",
+    "dclinkvoltage",
+    "dcbusvoltage",
+    "busvoltage",
+    "zwischenkreisspannung",
+    "vdcbus",
+    "udcbus",
+    "vbusvoltage",
+    "vdclink",
+    "udclink",
+];
+
+pub(super) const ANGLE: [&str; 12] =
+    ["thetam", "thetae", "thetar", "thetael", "theta", "angle", "phi", "epsilon", "winkel", "rotorwinkel", "position", "rotorangle"];
