@@ -39,12 +39,15 @@ const AS_GOOD: f64 = 1.5;
 /// By this factor the slopes of the currents must reduce what is left of the voltage's square, where the time is judged by them.
 const BY_SLOPES: f64 = 4.0;
 
-/// Least jump of a current from one row to the next, as a part of the largest current.
-const JUMP: f64 = 0.05;
-
-/// The same as a part of the current's change over a mean. Where rows are every n-th of a drive's periods, the voltage of such a row acted
-/// for a part of the time only, and the inductance of the slope comes out too large.
+/// A current jumps if so much of its change over a mean and the rows beside it is that of one row. Where rows are every n-th of a drive's
+/// periods, the voltage of such a row acted for a part of the time only, and the inductance of the slope comes out too large.
 const JUMP_OF_CHANGE: f64 = 0.4;
+
+/// A current changes if it does by more than so many standard deviations of its noise.
+const CHANGE: f64 = 6.0;
+
+/// Rows beside a jump that do not count either.
+const BESIDE_A_JUMP: usize = 2;
 
 /// The unknowns: R, L_d, L_q, psi, V; and the two inductances of the slopes, which may have any sign.
 const UNKNOWNS: usize = 7;
@@ -138,11 +141,23 @@ struct Fit {
     unknowns: [f64; UNKNOWNS],
 }
 
+/// Noise of a channel, by the median of its second differences, which have `sqrt 6` times its standard deviation and a median size of 0.6745
+/// of theirs; what changes steadily has none.
+fn noise(values: &[f64]) -> f64 {
+    let mut bends: Vec<f64> = values.windows(3).map(|row| (row[0] - 2.0 * row[1] + row[2]).abs()).collect();
+    if bends.is_empty() {
+        return 0.0;
+    }
+    let middle = bends.len() / 2;
+    *bends.select_nth_unstable_by(middle, f64::total_cmp).1 / (0.6745 * 6.0_f64.sqrt())
+}
+
 /// Means of consecutive rows that carry current at speed.
 fn means(log: &Log) -> Vec<Mean> {
     let columns = log.columns();
     let fastest = columns.omega_e.iter().fold(0.0_f64, |most, omega| most.max(omega.abs()));
     let peak = log.peak_current();
+    let noise = Dq { d: noise(&columns.id), q: noise(&columns.iq) };
     let rows = (log.rows() / ENOUGH).clamp(1, BLOCK);
     let mut means = Vec::new();
     for segment in log.segments() {
@@ -164,9 +179,16 @@ fn means(log: &Log) -> Vec<Mean> {
             }
             let change = |from: usize, to: usize| (columns.id[to] - columns.id[from]).hypot(columns.iq[to] - columns.iq[from]);
             let (end, span) = (start + rows, columns.t[start + rows] - columns.t[start]);
-            let largest = block.clone().map(|row| change(row, row + 1)).fold(0.0, f64::max);
-            mean.jumps = largest > (JUMP * peak).max(JUMP_OF_CHANGE * change(start, end));
-            mean.slope = Dq { d: (columns.id[end] - columns.id[start]) / span, q: (columns.iq[end] - columns.iq[start]) / span };
+            // A row that ends while a current jumps has a part of its change, or all the voltage that makes it.
+            let around = start.saturating_sub(BESIDE_A_JUMP).max(segment.rows.start)..(end + BESIDE_A_JUMP).min(segment.rows.end - 1);
+            let largest = around.clone().map(|row| change(row, row + 1)).fold(0.0, f64::max);
+            mean.jumps = largest > (CHANGE * noise.magnitude()).max(JUMP_OF_CHANGE * change(around.start, around.end));
+            // What a controller makes of noise is no voltage of a slope: it grows with the time between rows.
+            let slope = |values: &[f64], noise: f64| {
+                let change = values[end] - values[start];
+                if change.abs() > CHANGE * noise { change / span } else { 0.0 }
+            };
+            mean.slope = Dq { d: slope(&columns.id, noise.d), q: slope(&columns.iq, noise.q) };
             start = end;
             if mean.i.magnitude() >= SMALL * peak && mean.omega.abs() >= SMALL * fastest {
                 means.push(mean);
@@ -279,10 +301,13 @@ const POSSIBLE: f64 = 1.15;
 /// inductances of the slopes by less. In every fourth row of two drives the speed seemed 1.1 to 1.6 times too high.
 const LEAST_SCALE: f64 = 1.5;
 
-/// The same where rows lie further apart than a drive's periods and currents jump between them: where a row has the voltage of the first
-/// period of a jump, it stands for all of them, and the inductance of the slope comes out too large. In every tenth row the right speed of
-/// six drives seemed 1.6 to 3.4 times too high.
+/// The same where rows lie further apart than a drive's periods and currents jump between them, at least: where a row has the voltage of the
+/// first period of a jump, it stands for all of them, and the inductance of the slope comes out too large.
 const LEAST_SCALE_OF_JUMPS: f64 = 4.0;
+
+/// By how much, rad/s: a controller begins a jump with its bandwidth times the inductance times the jump, which a row's time makes larger
+/// than the mean. This is that of a tenth of 20 kHz; in every twentieth row of 8 kHz, with a twentieth, right speeds seemed 6 times too high.
+const FASTEST_CONTROLLER: f64 = 12_500.0;
 
 /// The speed as it is must leave this many times as much as the best higher factor. 37 drives with faults of every kind, and 40 with
 /// filters and means, leave at most 1.4 times as much; with a speed four times too high, mostly 2 to 4 times.
@@ -337,8 +362,9 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
         return of_slopes(log, &means, LEAST_SCALE);
     }
     let calm: Vec<Mean> = means.iter().copied().filter(|mean| !mean.jumps).collect();
+    let least_of_jumps = LEAST_SCALE_OF_JUMPS.max(FASTEST_CONTROLLER * log.slowest_period());
     // An angle that agrees with the speed is rarely wrong with it: there, more is asked.
-    let of_jumps = || if log.columns().theta_e.is_none() { of_slopes(log, &means, LEAST_SCALE_OF_JUMPS) } else { None };
+    let of_jumps = || if log.columns().theta_e.is_none() { of_slopes(log, &means, least_of_jumps) } else { None };
     of_slopes(log, &calm, LEAST_SCALE).filter(SpeedOfSlopes::is_certain).or_else(of_jumps)
 }
 
@@ -489,14 +515,14 @@ mod tests {
     use super::*;
     use crate::log::Columns;
 
-    /// Rows of 1 ms, every tenth of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps between 1 and 2 A, i_d
-    /// between 0 and -1 A. The drive made each change in the first part of the row, with so many times the voltage of a row's change, and
-    /// slopes ask for so many times the inductance.
-    fn jumps_between_rows(times: f64, has_angle: bool) -> Log {
-        let (rs, l, psi_f, omega_e, period, rows) = (6.0, 0.06, 0.3, 360.0, 1e-3, 900);
+    /// Rows of a time, s, that are every n-th of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps by 1 A and
+    /// i_d by -1 A, or a part of that. The drive made each change in the first part of the row, with so many times the voltage of a row's
+    /// change, and slopes ask for so many times the inductance.
+    fn jumps_between_rows(times: f64, has_angle: bool, (period, part): (f64, f64)) -> Log {
+        let (rs, l, psi_f, omega_e, rows) = (6.0, 0.06, 0.3, 360.0, 900);
         let current = |row: usize| Dq {
-            d: if (row / 40).is_multiple_of(2) { 0.0 } else { -1.0 },
-            q: if (row / 20).is_multiple_of(2) { 1.0 } else { 2.0 },
+            d: if (row / 40).is_multiple_of(2) { 0.0 } else { -part },
+            q: if (row / 20).is_multiple_of(2) { 1.0 } else { 1.0 + part },
         };
         let voltage = |row: usize| {
             let (i, next) = (current(row), current(row + 1));
@@ -517,14 +543,22 @@ mod tests {
         .unwrap()
     }
 
-    /// A speed alone may well be the shaft's, if the factor is larger than a part of a row makes it; one that an angle follows is believed
+    /// A speed alone may well be the shaft's, if the factor is larger than a fast controller makes it; one that an angle follows is believed
     /// before a voltage that acted for a part of its row.
     #[test]
     fn currents_that_jump_between_rows_contradict_a_speed_alone_by_large_factors() {
-        assert_eq!(speed_scale(&jumps_between_rows(10.0, true)), None);
-        assert_eq!(speed_scale(&jumps_between_rows(3.0, false)), None);
-        let alone = speed_scale(&jumps_between_rows(10.0, false));
+        let (close, far) = ((3e-4, 1.0), (1e-3, 1.0));
+        assert_eq!(speed_scale(&jumps_between_rows(10.0, true, close)), None);
+        assert_eq!(speed_scale(&jumps_between_rows(3.0, false, close)), None);
+        assert_eq!(speed_scale(&jumps_between_rows(10.0, false, far)), None);
+        let alone = speed_scale(&jumps_between_rows(10.0, false, close));
         assert!(matches!(alone, Some(ColumnFinding::SpeedScale { low, high, .. }) if low > 5.0 && high < 20.0), "{alone:?}");
+    }
+
+    /// A jump of a thirtieth of the current is one, too.
+    #[test]
+    fn small_jumps_say_as_little() {
+        assert_eq!(speed_scale(&jumps_between_rows(10.0, true, (1e-3, 0.03))), None);
     }
 
     /// 1200 rows at 10 kHz of a motor of 12 ohm, 65 and 150 mH and 0.45 Wb that is held at one point: all that moves is noise of its
