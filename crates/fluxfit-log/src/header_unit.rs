@@ -183,6 +183,11 @@ pub(crate) fn states_electrical(header: &str) -> bool {
     rotation(header) == Rotation::Electrical
 }
 
+/// Whether a header states that its speed or angle is that of the shaft.
+pub(crate) fn states_mechanical(header: &str) -> bool {
+    rotation(header) == Rotation::Mechanical
+}
+
 /// The unit that a header or a row of units states, in words, where the user's own one contradicts it. A root mean square does not
 /// contradict V or A, nor an electrical speed one that says r/min and no more.
 pub(crate) fn contradicted(named: HeaderUnit, header: &str, stated: Unit) -> Option<String> {
@@ -203,10 +208,12 @@ fn is_rms_text(text: &str) -> bool {
     ["rms", "arms", "vrms", "aeff", "veff", "eff"].contains(&text.trim().to_lowercase().as_str())
 }
 
+const ELECTRICAL: [&str; 8] = ["e", "el", "we", "wel", "omegae", "omegael", "thetae", "thetael"];
+
 fn rotation(header: &str) -> Rotation {
     let lower = header.to_lowercase();
     let words = || lower.split(|c: char| !c.is_alphanumeric());
-    let electrical = lower.contains("elec") || lower.contains("erpm") || words().any(|word| matches!(word, "e" | "el"));
+    let electrical = lower.contains("elec") || lower.contains("erpm") || words().any(|word| ELECTRICAL.contains(&word));
     match (lower.contains("mech"), electrical) {
         (true, false) => Rotation::Mechanical,
         (false, true) => Rotation::Electrical,

@@ -102,13 +102,13 @@ pub(crate) enum Problem {
     )]
     PolePairs { what: &'static str, channel: &'static str, unit: &'static str, electrical: &'static str, electrical_unit: &'static str },
 
-    #[error(
-        "nothing states the unit of this speed, or whether it is the electrical one; state it: rad/s is electrical, rad/s-mech and rpm-mech are those of the shaft"
-    )]
-    SpeedUnit { has_pole_pairs: bool },
+    #[error("{}", speed_unit(*.of_shaft))]
+    SpeedUnit { has_pole_pairs: bool, of_shaft: bool },
     #[error("this speed is in {}, and nothing states whether it is electrical or that of the shaft; state which", .electrical.prose().trim_start_matches("electrical "))]
     SpeedRotation { electrical: Unit, mechanical: Unit, has_pole_pairs: bool },
-    #[error("the times are whole numbers in steps of {step}, and nothing states their unit; state it")]
+    #[error(
+        "the times are whole numbers in steps of {step}, and nothing states their unit; state it; if they count the rows, write the time between these into a mapping file, as in sample_period = \"0.1 ms\""
+    )]
     TimeUnit { step: u64 },
     #[error(
         "the times are rounded to {step}, and about {rows} rows have the same; do not remove them: write the time between rows into a mapping file, sample_period = \"{period}\""
@@ -140,8 +140,8 @@ pub(crate) enum Problem {
     )]
     Standardized,
     #[error(
-        "{} are whole numbers up to {most:.0}, and nothing states their unit: digits of a converter, or thousandths; state the unit, or in a mapping file the scale to it",
-        columns(.headers)
+        "{} are whole numbers up to {most:.0}, and nothing states their unit: digits of a converter, or thousandths; state the unit, or write what a digit is into a mapping file, as in {channel} = {{ column = {:?}, scale = .. }}",
+        columns(.headers), .headers.first().map_or("", String::as_str)
     )]
     Digits { channel: &'static str, headers: Vec<String>, most: f64 },
     #[error(
@@ -153,15 +153,23 @@ pub(crate) enum Problem {
     )]
     HighVoltage { channel: &'static str, most: f64 },
     #[error(
-        "id and iq are {} times the amplitude of {}, as of {}; write park = \"{}\" into a mapping file, which converts ud and uq too; if these are peak values, write scale = {} for id and iq instead",
-        significant(*.ratio, 3), list(&.headers.iter().map(|header| format!("'{}'", shorten(header))).collect::<Vec<_>>()),
+        "{} and {} are {} times the amplitude of {}, as of {}; write park = \"{}\" into a mapping file, which converts the voltages too; if the voltages are peak values, write scale = {} for the currents alone",
+        .currents[0], .currents[1], significant(*.ratio, 3), list(&.headers.iter().map(|header| format!("'{}'", shorten(header))).collect::<Vec<_>>()),
         if *.park == "rms" { "rms values" } else { "a power-invariant transform" }, .park, significant(*.factor, 4)
     )]
-    DqScaling { ratio: f64, headers: Vec<String>, park: &'static str, factor: f64 },
+    Scaling { currents: [&'static str; 2], ratio: f64, headers: Vec<String>, park: &'static str, factor: f64 },
     #[error(
         "the currents come to {} A beside voltages of {} V, as if {} and {} were in m{unit}; state their unit, also if it is {unit}", significant(*.amperes, 3), significant(*.volts, 3), .channels[0], .channels[1]
     )]
     Thousandths { channels: [&'static str; 2], amperes: f64, volts: f64, unit: &'static str },
+    #[error(
+        "the currents come to {} A and the voltages to {} V, as of a drive of megawatts, or as if they were in mA and mV; state their units, also if they are A and V", significant(*.amperes, 3), significant(*.volts, 3)
+    )]
+    Megawatts { amperes: f64, volts: f64 },
+    #[error(
+        "by its name this column is a share of the DC voltage and no voltage; write into a mapping file {channel} = {{ column = {header:?}, scale = .., times = \"u_dc\" }}, with the scale 2/3 for ODrive, 1/2 if 1 is half of u_dc, 0.57735 if u_dc / sqrt 3; if it is in V, state that"
+    )]
+    Modulation { channel: &'static str, header: String },
     #[error("by its values, {low} to {high}, this column is no duty cycle from 0 to 1; write into a mapping file {} = {{ column = {header:?}, scale = .., times = \"u_dc\" }}", .channel)]
     Duty { channel: &'static str, header: String, low: String, high: String },
     #[error(
@@ -335,7 +343,7 @@ impl Problem {
             Self::RoundedTime { .. } => FileErrorKind::Data,
             Self::Rms { .. } => FileErrorKind::Unit,
             Self::Digits { .. } | Self::PerUnit { .. } | Self::HighVoltage { .. } | Self::Thousandths { .. } => FileErrorKind::Unit,
-            Self::DqScaling { .. } => FileErrorKind::Unit,
+            Self::Scaling { .. } | Self::Megawatts { .. } | Self::Modulation { .. } => FileErrorKind::Unit,
             Self::Duty { .. } | Self::AngleTurn { .. } => FileErrorKind::Unit,
             Self::Standardized | Self::ChannelsNotSimultaneous | Self::NoCommonInstants { .. } | Self::OwnTimes { .. } => {
                 FileErrorKind::Data
@@ -390,7 +398,12 @@ impl Problem {
                 has_pole_pairs: *has_pole_pairs,
             }],
             // The usual unit of either.
-            Self::SpeedUnit { has_pole_pairs } => vec![Advice::StateRotation {
+            Self::SpeedUnit { has_pole_pairs, of_shaft: true } => {
+                let unit = Advice::StateUnit { channel: "omega_e", unit: Some(Unit::RpmMechanical.name()) };
+                let pole_pairs = (!has_pole_pairs).then_some(Advice::StatePolePairs);
+                vec![Advice::Together(std::iter::once(unit).chain(pole_pairs).collect())]
+            }
+            Self::SpeedUnit { has_pole_pairs, of_shaft: false } => vec![Advice::StateRotation {
                 channel: "omega_e",
                 electrical: Unit::RadianPerSecond.name(),
                 mechanical: Unit::RpmMechanical.name(),
@@ -402,6 +415,11 @@ impl Problem {
                 let unit = Some(if *unit == "A" { "mA" } else { "mV" });
                 channels.iter().map(|channel| Advice::StateUnit { channel, unit }).collect()
             }
+            Self::Megawatts { .. } => {
+                // Which is right is not known.
+                ["id", "iq", "ud", "uq"].map(|channel| Advice::StateUnit { channel, unit: Some("UNIT") }).to_vec()
+            }
+            Self::Modulation { channel, .. } => vec![Advice::StateUnit { channel, unit: Some("V") }],
             Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
             Self::AngleTurn { scale, is_exact: true, .. } => vec![Advice::ScaleInMapping { channel: "theta_e", scale: scale.clone() }],
             Self::NoAngle => map(&["theta_e"]),
@@ -504,6 +522,14 @@ fn unclear(several: &[(&str, Vec<String>)], electrical: Option<&str>, direct_vol
         )
     });
     [map, of_shaft, points].into_iter().flatten().collect::<Vec<_>>().join("; and ")
+}
+
+fn speed_unit(of_shaft: bool) -> &'static str {
+    if of_shaft {
+        "by its name this is the speed of the shaft, and nothing states its unit; state it: rpm-mech, rad/s-mech or Hz-mech"
+    } else {
+        "nothing states the unit of this speed, or whether it is the electrical one; state it: rad/s is electrical, and rad/s-mech, rpm-mech and Hz-mech (turns a second) are those of the shaft"
+    }
 }
 
 /// What is to be said of a proposed speed whose name says its unit.

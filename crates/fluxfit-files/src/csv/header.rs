@@ -60,9 +60,18 @@ pub fn find(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
     if header.names.first().is_some_and(|name| name == "Label") && header.units.len() == header.names.len() {
         label(&mut header);
     }
+    if let [first, others @ ..] = &mut header.names[..]
+        && first.is_empty()
+        && others.iter().all(|name| !name.is_empty())
+    {
+        UNNAMED.clone_into(first);
+    }
     header.body_line = input::line_at(text.as_bytes(), header.body);
     Ok(header)
 }
+
+/// What pandas calls the index that it wrote without a name, where it reads it back.
+pub const UNNAMED: &str = "Unnamed: 0";
 
 /// The header of an export of TwinCAT Scope.
 ///
@@ -308,14 +317,18 @@ fn separator_line(line: &str) -> Option<u8> {
 /// The most frequent separator outside of quotes. On a tie the semicolon, which is rare in other roles, then the comma: tabs may only
 /// align the text.
 fn most_frequent_separator(line: &str) -> u8 {
-    let count = |separator: u8| {
+    let bytes = line.as_bytes();
+    let outside = |separator: u8, is_of_name: &dyn Fn(usize) -> bool| {
         let mut quoted = false;
-        let outside = |byte: &u8| {
-            quoted ^= *byte == b'"';
-            !quoted && *byte == separator
+        let is = |(place, byte): &(usize, &u8)| {
+            quoted ^= **byte == b'"';
+            !quoted && **byte == separator && !is_of_name(*place)
         };
-        line.as_bytes().iter().copied().filter(outside).count()
+        bytes.iter().enumerate().filter(is).count()
     };
+    // Beside several semicolons a comma before a space belongs to a name: `Strom, Istwert [A]`.
+    let has_names = outside(b';', &|_| false) > 1;
+    let count = |separator: u8| outside(separator, &|place| separator == b',' && has_names && bytes.get(place + 1) == Some(&b' '));
     // A semicolon at the end alone separates nothing.
     let ends = line.trim_end().ends_with(';') && count(b';') == 1 && count(b',') + count(b'\t') > 0;
     if ends {
@@ -372,7 +385,7 @@ mod tests {
         assert_eq!(found("Bench 3\nDrive A: 8 kHz\nt;ud;uq\n1;2;3"), (names(), 3, b';', "1;2;3"));
         assert_eq!(found("Bench 3;;\n29.11.2026;;\n;;\nt;ud;uq\n1;2;3"), (names(), 4, b';', "1;2;3"));
         // A column without a name, as pandas writes its index.
-        assert_eq!(found(",ud,uq\n0,1,2\n").0, ["", "ud", "uq"]);
+        assert_eq!(found(",ud,uq\n0,1,2\n").0, [UNNAMED, "ud", "uq"]);
     }
 
     #[test]
@@ -402,6 +415,7 @@ mod tests {
         assert_eq!(most_frequent_separator("\"a,b,c\";d"), b';');
         assert_eq!(most_frequent_separator("a,\tb,\tc"), b',');
         assert_eq!(most_frequent_separator("a, x;b"), b';');
+        assert_eq!(most_frequent_separator("t;S-0-0040, n, ist;P-0-0043, i, ist"), b';');
         assert_eq!(most_frequent_separator("a"), b';');
     }
 }

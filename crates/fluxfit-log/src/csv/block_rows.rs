@@ -187,6 +187,10 @@ impl<'a> BlockRows<'a> {
     fn take(&mut self, row: &Row) -> Result<Reading, FileError> {
         let Rules { expected, may_end_early, wanted, .. } = *self.rules;
         let found = row.cells.len();
+        // TwinCAT Scope writes it as the last line if it is asked to.
+        if may_end_early && found == 1 && row.cell(0) == b"EOF" {
+            return Ok(Reading::Blank);
+        }
         // Empty cells beyond the names are trailing separators.
         if found < expected && (!may_end_early || row.is_cut_off) || (expected..found).any(|index| !row.cell(index).is_empty()) {
             if row.is_blank() || row.is_comment() {

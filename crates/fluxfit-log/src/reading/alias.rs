@@ -3,7 +3,7 @@
 
 use super::{
     resemblance::{is_reference, words},
-    vocabulary::{ANGLE, BEFORE_SPEED, BESIDE, CURRENT, ROTATION, SPEED, TIME, UDC, VOLTAGE, X},
+    vocabulary::{ACROSS, ALONG, ANGLE, BEFORE_SPEED, BESIDE, CURRENT, ROTATION, SPEED, TIME, UDC, VOLTAGE, X},
 };
 use crate::{
     block::ColumnHead,
@@ -32,8 +32,9 @@ pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
     beside(0) == beside(1)
 }
 
-/// What the two elements of a vector of d and q are called: indices from 0 as in C, from 1 as in MATLAB, and the parts of a complex number.
-const ELEMENTS: [[&str; 2]; 4] = [["0", "1"], ["1", "2"], ["re", "im"], ["real", "imag"]];
+/// What the two elements of a vector of d and q are called: indices from 0 as in C, from 1 as in MATLAB, the parts of a complex number, and
+/// the fields of a structure.
+const ELEMENTS: [[&str; 2]; 5] = [["0", "1"], ["1", "2"], ["re", "im"], ["real", "imag"], ["d", "q"]];
 
 /// The column of a channel, if the log has one vector of its two axes, `v_dq[0]` and `v_dq[1]`, `Idq_in_A.value[0]`, `Vdq:1`, `i_dq_re`.
 fn named_by_vector(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
@@ -53,8 +54,14 @@ fn named_by_vector(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
 fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize> {
     let parts = words(name);
     let (last, stem) = parts.split_last()?;
-    let is_quantity =
-        |word: &str| quantities.iter().any(|quantity| [format!("{quantity}dq"), format!("{quantity}sdq")].iter().any(|name| name == word));
+    // ST's library has q first, and so only its fields are known.
+    let is_quantity = |word: &str| {
+        let of = |quantity: &&str| {
+            let is_structure = last == "d" && word == format!("{quantity}qd");
+            is_structure || word == format!("{quantity}dq") || word == format!("{quantity}sdq")
+        };
+        quantities.iter().any(of)
+    };
     let is_named = stem.iter().any(|word| is_quantity(word)) || stem.windows(2).any(|pair| is_quantity(&pair.concat()));
     // A unit is read from the end of a name, or before brackets.
     let has_hidden_unit =
@@ -91,6 +98,14 @@ pub(super) fn duties(heads: &[ColumnHead]) -> Option<[usize; 3]> {
         columns.next().filter(|_| columns.next().is_none())
     };
     Some([only(0)?, only(1)?, only(2)?])
+}
+
+/// Words for the modulation of the inverter, a share of the DC voltage: ODrive's `mod_d`.
+const MODULATION: [&str; 5] = ["mod", "modulation", "modulationsgrad", "duty", "dutycycle"];
+
+/// Whether a name says that a column is a modulation, and no voltage.
+pub(super) fn is_modulation(name: &str) -> bool {
+    words(field(name)).iter().any(|word| MODULATION.contains(&word.as_str()))
 }
 
 /// Whether a column is in percent.
@@ -143,10 +158,10 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
         }
         Channel::ThetaE => is_one_of(&name, "angle", &ANGLE),
         // `d_V`: the unit says the quantity.
-        Channel::Ud => is_of_axis(&name, "d", &VOLTAGE) || has_unit && name == "d",
-        Channel::Uq => is_of_axis(&name, "q", &VOLTAGE) || has_unit && name == "q",
-        Channel::Id => is_of_axis(&name, "d", &CURRENT) || has_unit && name == "d",
-        Channel::Iq => is_of_axis(&name, "q", &CURRENT) || has_unit && name == "q",
+        Channel::Ud => is_of_axis(&name, "d", &VOLTAGE) || is_german(&name, &ALONG, &VOLTAGE) || has_unit && name == "d",
+        Channel::Uq => is_of_axis(&name, "q", &VOLTAGE) || is_german(&name, &ACROSS, &VOLTAGE) || has_unit && name == "q",
+        Channel::Id => is_of_axis(&name, "d", &CURRENT) || is_german(&name, &ALONG, &CURRENT) || has_unit && name == "d",
+        Channel::Iq => is_of_axis(&name, "q", &CURRENT) || is_german(&name, &ACROSS, &CURRENT) || has_unit && name == "q",
         Channel::IA | Channel::IB | Channel::IC => is_of_phase(channel, &name, "i") || is_named_phase(),
         Channel::UA | Channel::UB | Channel::UC => is_of_phase(channel, &name, "u") || is_of_phase(channel, &name, "v") || is_named_phase(),
         Channel::UAlpha => is_of_axis(&name, "alpha", &VOLTAGE),
@@ -202,6 +217,10 @@ fn named(channel: Channel, stem: &str, unit: HeaderUnit) -> Option<(String, Vec<
         [('α', "alpha"), ('β', "beta"), ('ω', "omega"), ('θ', "theta"), ('φ', "phi")]
             .iter()
             .for_each(|(from, to)| word = word.replace(*from, to));
+        // German writes in one that a value was measured: `Drehzahlistwert`.
+        if let Some(measured) = word.strip_suffix("istwert").filter(|measured| measured.len() >= WORD) {
+            word = measured.to_owned();
+        }
         [('ä', "ae"), ('à', "a"), ('é', "e"), ('ó', "o"), ('ö', "oe")].iter().for_each(|(from, to)| word = word.replace(*from, to));
         word
     };
@@ -242,6 +261,15 @@ fn is_of_axis(name: &str, axis: &str, quantities: &[&str]) -> bool {
     let of_quantity = |word: &&&str| word.len() > 2;
     let beside_word = |word: &&str| name.strip_prefix(word).or_else(|| name.strip_suffix(word)).is_some_and(is);
     is(name) || quantities.iter().filter(of_quantity).any(beside_word)
+}
+
+/// Whether a name is a quantity and a German word for its axis: `Querstrom`, `Strom feldbildend`, `momentenbildender Strom`.
+fn is_german(name: &str, axis: &[&str], quantities: &[&str]) -> bool {
+    let is = |axis: &&str, quantity: &&str| {
+        let before = name.strip_prefix(axis).map(|rest| rest.trim_start_matches("er").trim_start_matches("e"));
+        before == Some(quantity) || name.strip_suffix(axis) == Some(quantity)
+    };
+    quantities.iter().filter(|quantity| quantity.len() > 2).any(|quantity| axis.iter().any(|axis| is(axis, quantity)))
 }
 
 /// Words that say that the letter beside them is a phase.
@@ -304,7 +332,22 @@ mod tests {
                 Channel::T,
                 &["Time [ms]", "Zeit", "timestamp", "Zeit (s)", "micros", "Time Stamp", "temps_s", "log.time", "tout", "时间(s)"][..],
             ),
-            (Channel::Ud, &["u_d", "Vd", "vd_meas", "Spannung d [V]", "motor_vd", "d_axis_voltage", "usd", "drive.foc.Vd", "d_V", "v_ds"]),
+            (
+                Channel::Ud,
+                &[
+                    "u_d",
+                    "Vd",
+                    "vd_meas",
+                    "Spannung d [V]",
+                    "motor_vd",
+                    "d_axis_voltage",
+                    "usd",
+                    "drive.foc.Vd",
+                    "d_V",
+                    "v_ds",
+                    "Längsspannung (V)",
+                ],
+            ),
             (
                 Channel::Id,
                 &[
@@ -319,7 +362,22 @@ mod tests {
                 ],
             ),
             (Channel::UAlpha, &["u_alpha", "Valpha [V]", "uα", "foc.v_alpha"]),
-            (Channel::Iq, &["i_q", "iq_meas", "Iq_measured (A)", "Strom_q [A]", "q-Achsen-Strom", "MotorIq", "iq_mA", "Courant q"]),
+            (
+                Channel::Iq,
+                &[
+                    "i_q",
+                    "iq_meas",
+                    "Iq_measured (A)",
+                    "Strom_q [A]",
+                    "q-Achsen-Strom",
+                    "Querstrom [A]",
+                    "Stromistwert momentenbildend [A]",
+                    "momentenbildender Strom",
+                    "MotorIq",
+                    "iq_mA",
+                    "Courant q",
+                ],
+            ),
             (
                 Channel::OmegaE,
                 &[
@@ -342,6 +400,8 @@ mod tests {
                     "rpm",
                     "Motordrehzahl [1/min]",
                     "Istdrehzahl (min-1)",
+                    "Drehzahlistwert [1/min]",
+                    "Drehzahl Welle (U/min)",
                     "ω_m [rad/s]",
                 ],
             ),
@@ -381,7 +441,7 @@ mod tests {
         }
     }
 
-    /// As TI's MotorControl SDK, PLECS, numpy and MATLAB name them; and what is no pair.
+    /// As the SDKs of TI and ST, PLECS, numpy and MATLAB name them; and what is no pair.
     #[test]
     fn elements_of_a_vector_are_d_and_q() {
         let found = |names: &[&str]| {
@@ -391,6 +451,8 @@ mod tests {
         };
         let all = [Some(0), Some(1), Some(2), Some(3)];
         assert_eq!(found(&["Vdq_out_V.value[0]", "Vdq_out_V.value[1]", "m.Idq_in_A.value[0]", "m.Idq_in_A.value[1]"]), all);
+        assert_eq!(found(&["FOCVars.Vqd.d", "FOCVars.Vqd.q", "FOCVars.Iqd.d", "FOCVars.Iqd.q"]), all);
+        assert_eq!(found(&["Vqd[0]", "Vqd[1]", "FOCVars.Iqdref.d", "FOCVars.Iqdref.q"]), [None; 4]);
         assert_eq!(found(&["Vdq:1", "Vdq:2", "Idq:1", "Idq:2"]), all);
         assert_eq!(found(&["v_dq[0]", "v_dq[1]", "i_dq[0]", "i_dq[1]"]), all);
         assert_eq!(found(&["udq(:,1)", "udq(:,2)", "i_sdq_re", "i_sdq_im"]), all);

@@ -33,6 +33,8 @@ pub(super) struct Clock {
     since_1970: Option<(f64, f64, &'static str)>,
     /// The times have a name that states no unit, so that s is an assumption.
     is_assumed: bool,
+    /// They may count the rows: then no whole number is in s.
+    may_count: bool,
     /// The usual step of the first times, if they are whole numbers.
     step: Option<f64>,
     /// What is added to times, s.
@@ -43,9 +45,9 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// Of times whose unit is stated or not, under their own name or one that says nothing of a unit.
-    pub(super) fn of(is_unit_stated: bool, is_alias: bool) -> Self {
-        Self { is_open: !is_unit_stated, is_assumed: !is_unit_stated && is_alias, ..Self::default() }
+    /// Of times whose unit is stated or not, under their own name or one that says nothing of a unit, or that may count the rows.
+    pub(super) fn of(is_unit_stated: bool, is_alias: bool, may_count: bool) -> Self {
+        Self { is_open: !is_unit_stated, is_assumed: !is_unit_stated && is_alias, may_count, ..Self::default() }
     }
 
     /// Makes times, s, continue where they wrapped around, in place. Those since 1970 count from the first one, so that their fractions
@@ -84,7 +86,8 @@ impl Clock {
 
     /// The step of times that are unlikely to be in s, if nothing states their unit.
     pub(super) fn unstated_step(&self) -> Option<u64> {
-        let step = self.step.filter(|step| self.is_assumed && self.since_1970.is_none() && *step >= LONG_STEP)?;
+        let least = if self.may_count { 0.0 } else { LONG_STEP };
+        let step = self.step.filter(|step| self.is_assumed && self.since_1970.is_none() && *step >= least)?;
         Some(step as u64)
     }
 
@@ -133,14 +136,14 @@ mod tests {
     /// 2023-03-15 is day 45000 of spreadsheets; 10 rows a second.
     #[test]
     fn days_of_a_spreadsheet_become_seconds() {
-        let mut clock = Clock::of(false, true);
+        let mut clock = Clock::of(false, true, false);
         let mut t: Vec<f64> = (0..50).map(|row| 45_000.25 + f64::from(row) * 0.1 / 86_400.0).collect();
         clock.settle(&mut t);
         assert!(t.iter().enumerate().all(|(row, t)| (t - row as f64 * 0.1).abs() < 1e-6), "{t:?}");
         assert_eq!(clock.notes(), ["t: by their size the times are days, as spreadsheets count them; t counts from the first one"]);
         let mut seconds: Vec<f64> = (0..50).map(|row| 45_000.0 + f64::from(row) * 1e-4).collect();
         let same = seconds.clone();
-        Clock::of(false, true).settle(&mut seconds);
+        Clock::of(false, true, false).settle(&mut seconds);
         assert_eq!(seconds, same);
     }
 
@@ -155,12 +158,12 @@ mod tests {
 
     #[test]
     fn times_since_1970_count_from_the_first() {
-        let mut clock = Clock::of(false, false);
+        let mut clock = Clock::of(false, false, false);
         let (mut first, mut more) = (vec![1_455_273_060_500.0, 1_455_273_060_501.0], vec![1_455_273_060_502.0]);
         clock.settle(&mut first);
         clock.settle(&mut more);
         assert_eq!((first, more), (vec![0.0, 0.001], vec![0.002]));
-        let mut stated = Clock::of(true, false);
+        let mut stated = Clock::of(true, false, false);
         let mut t = vec![1_455_273_060.0, 1_455_273_061.0];
         stated.settle(&mut t);
         assert_eq!((t[0], stated.notes()), (1_455_273_060.0, vec![]));

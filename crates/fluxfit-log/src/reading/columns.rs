@@ -156,17 +156,19 @@ mod tests {
                 "omega_e: column 'speed_rpm' read as mechanical r/min with 1 pole pair"
             ]
         );
-        let options = LogOptions { pole_pairs: Some(3), ..map(&[("omega_e", "speed"), ("ud", "v")]) };
+        let options = LogOptions { pole_pairs: Some(3), ..map(&[("omega_e", "el_speed"), ("ud", "v")]) };
         assert_eq!(
-            notes("t,v,uq,id,iq,speed", &options),
+            notes("t,v,uq,id,iq,el_speed", &options),
             [
-                "no header states these units, so SI is assumed: ud ('v') in V and omega_e ('speed') in electrical rad/s",
+                "no header states these units, so SI is assumed: ud ('v') in V and omega_e ('el_speed') in electrical rad/s",
                 "the number of pole pairs, 3, is not needed to read this: the speed is electrical already",
             ]
         );
         assert_eq!(
             notes("t,ud,uq,id,iq,speed_rad_s", &map(&[("omega_e", "speed_rad_s")])),
-            ["omega_e: column 'speed_rad_s' read as electrical rad/s; if it is mechanical, state its unit"]
+            [
+                "a.csv, line 1, column 'speed_rad_s': this speed is in rad/s, and nothing states whether it is electrical or that of the shaft; state which"
+            ]
         );
     }
 

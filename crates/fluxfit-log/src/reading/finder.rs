@@ -7,19 +7,19 @@ use super::{
     line_to_line,
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
-    proposal::{propose_needed, unit_of_speed},
+    proposal::{propose, propose_needed, unit_of_speed},
     resemblance::{fit, has_other_unit, is_reference},
 };
 use crate::{
     block::ColumnHead,
     channel::Channel,
-    header_unit::{HeaderUnit, contradicted, share, split_header, states_electrical, unit_in_row, unit_within},
+    header_unit::{HeaderUnit, contradicted, share, split_header, states_electrical, states_mechanical, unit_in_row, unit_within},
     instant::Instants,
     note::Note,
     problem::{LineToLine, Problem},
 };
 use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, OmegaE, T, ThetaE, UA, UAlpha, UB, UBeta, UC, UDc, Ud, Uq};
-use fluxfit_files::{Advice, FileError};
+use fluxfit_files::{Advice, FileError, csv::header::UNNAMED};
 use fluxfit_units::{Dimension, Unit, wording::shorten};
 
 /// Of a matrix over two quantities at least so many names are numbers.
@@ -232,9 +232,12 @@ impl Finder<'_> {
         let found = automatic(channel, self.heads)?;
         let is_time = || self.heads.iter().position(|head| head.is_time);
         let is_dated = || self.heads.iter().position(|head| head.instants.as_ref().is_some_and(Instants::is_date));
+        // The index of a table of pandas is its time, or counts its rows: then its whole numbers are refused.
+        let is_alone = || self.layout.is_none() && propose(&[T], self.heads, |index| index > 0).is_empty();
+        let is_index = || names.first().filter(|name| *name == UNNAMED && is_alone()).map(|_| 0);
         let usual = || self.layout.is_none().then(|| alias::find(channel, self.heads)).flatten();
         Ok(match channel {
-            T => found.or_else(is_time).or_else(usual).or_else(is_dated),
+            T => found.or_else(is_time).or_else(usual).or_else(is_dated).or_else(is_index),
             _ => found.or_else(usual),
         })
     }
@@ -306,7 +309,8 @@ impl Finder<'_> {
         let unit = self.unit(channel, head, unstated, notes)?;
         let is_unit_stated = unstated.len() == assumed && !(channel == T && unit == Unit::Second);
         let is_in_header = matches!(split_header(&head.name, channel.dimension()).1, HeaderUnit::Known(_)) || head.unit.is_some();
-        let is_unit_written = is_in_header || self.options.unit(channel).is_some() || scale != 1.0 || unit != channel.unit();
+        let is_unit_written =
+            is_in_header || self.options.unit(channel).is_some() || self.options.scale(channel) != 1.0 || unit != channel.unit();
         let (is_share, instants) = (is_given_share, None);
         Ok(ChosenColumn {
             channel,
@@ -451,6 +455,9 @@ impl Finder<'_> {
             (None, Some(column), _) if head.unit.is_none() => column.unit,
             (None, _, HeaderUnit::Known(unit)) if !is_canonical || head.unit.is_some() => unit,
             _ if is_canonical && head.unit.is_none() => si,
+            _ if dimension == Dimension::Voltage && self.options.scale(channel).abs() == 1.0 && alias::is_modulation(name) => {
+                return Err(Problem::Modulation { channel: canonical, header: name.to_owned() }.into());
+            }
             // The scale in a mapping file leads from there to SI.
             (None, _, HeaderUnit::Unknown(_)) if self.options.factor(channel).abs() != 1.0 => si,
             (None, _, HeaderUnit::Unknown(text)) => {
@@ -462,9 +469,14 @@ impl Finder<'_> {
                 let units = channel.units().map(Unit::name).collect();
                 return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), header, units }.into());
             }
-            _ if dimension == Dimension::Speed && self.is_alias(channel, name) && !states_electrical(name) => {
+            // Who maps a speed says which column it is, and not yet its unit.
+            _ if dimension == Dimension::Speed
+                && !is_canonical
+                && !states_electrical(name)
+                && !self.options.of_mapping_file.contains(&channel) =>
+            {
                 let has_pole_pairs = self.options.pole_pairs.is_some();
-                return Err(Problem::SpeedUnit { has_pole_pairs }.into());
+                return Err(Problem::SpeedUnit { has_pole_pairs, of_shaft: states_mechanical(name) }.into());
             }
             _ => {
                 unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));
@@ -472,7 +484,8 @@ impl Finder<'_> {
             }
         };
         let is_alias = stated.is_none() && self.is_alias(channel, name);
-        if is_alias && dimension == Dimension::Speed && !unit.is_mechanical() && !states_electrical(name) {
+        let is_open = stated.is_none() && !is_canonical && of_layout.is_none() && !self.options.of_mapping_file.contains(&channel);
+        if is_open && dimension == Dimension::Speed && !unit.is_mechanical() && !states_electrical(name) {
             let has_pole_pairs = self.options.pole_pairs.is_some();
             return Err(Problem::SpeedRotation { electrical: unit, mechanical: mechanical(unit), has_pole_pairs }.into());
         }

@@ -21,7 +21,7 @@ use crate::{
 };
 use Channel::{IA, IB, Id, Iq, OmegaE, Run, T, ThetaE};
 use fluxfit::frames::Abc;
-use fluxfit_files::FileError;
+use fluxfit_files::{FileError, csv::header::UNNAMED};
 use fluxfit_units::{Unit, wording::shorten};
 use std::f64::consts::{PI, TAU};
 
@@ -63,7 +63,7 @@ pub(super) fn gather(
         }
         // Each group would select different rows.
         let most_rows = if several { usize::MAX } else { options.most_rows };
-        let gathered = one_group(table, &columns, period, most_rows, notes)?;
+        let gathered = one_group(table, &columns, (period, most_rows, options), notes)?;
         all = Some(match all {
             None => gathered,
             Some(base) => join(base, gathered, notes)?,
@@ -112,13 +112,12 @@ fn lengths(chosen: &[ChosenColumn], heads: &[ColumnHead]) -> FileError {
 fn one_group(
     table: &mut Table,
     columns: &[ChosenColumn],
-    period: Option<f64>,
-    most_rows: usize,
+    (period, most_rows, options): (Option<f64>, usize, &ResolvedOptions),
     notes: &mut Vec<Note>,
 ) -> Result<Gathered, FileError> {
     let place = |channel: Channel| columns.iter().position(|column| column.channel == channel);
     let mut own_times = OwnTimes::of(table.heads(), columns);
-    let mut scaling = Scaling::of(table.heads(), columns);
+    let mut scaling = Scaling::of(table.heads(), columns, options);
     let of_phases = scaling.iter().flat_map(Scaling::wanted);
     let wanted: Vec<WantedColumn> = columns.iter().map(ChosenColumn::wanted).chain(own_times.wanted(columns)).chain(of_phases).collect();
     let times = columns.len() + own_times.len();
@@ -126,7 +125,8 @@ fn one_group(
     let mut selection = Selection::new(columns.len() + usize::from(counted.is_some()), features(&place), most_rows);
     let is_unit_stated = place(T).is_some_and(|t| columns[t].is_unit_stated);
     let is_alias = place(T).is_some_and(|t| columns[t].is_alias);
-    let mut clock = Clock::of(is_unit_stated, is_alias);
+    let may_count = place(T).is_some_and(|t| columns[t].header == UNNAMED);
+    let mut clock = Clock::of(is_unit_stated, is_alias, may_count);
     let mut refused: Vec<Option<FileError>> = vec![None; columns.len()];
     notes.extend(
         table

@@ -69,7 +69,9 @@ impl LiveLog {
         let sample_period = options.sample_period.or(layout.and_then(|layout| layout.sample_period));
         let has = |channel: &Channel| chosen.iter().any(|column| column.channel == *channel);
         let missing = Channel::NEEDED.into_iter().find(|channel| !has(channel) && (*channel != Channel::T || sample_period.is_none()));
-        if missing.is_some() || !options.shares_of_bus.is_empty() {
+        // An index without a name may count the rows, which is told of a whole log alone.
+        let is_index = |column: &ChosenColumn| column.channel == Channel::T && column.header == header::UNNAMED;
+        if missing.is_some() || !options.shares_of_bus.is_empty() || chosen.iter().any(is_index) {
             return Err(Problem::NotLive.into());
         }
         let described = chosen::describe(&chosen);

@@ -95,7 +95,7 @@ fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> St
         _ if is_instant || column.share.is_some() => None,
         Some((unit, _)) => Some(unit).filter(|unit| *unit != "1"),
         // To be filled in: a speed is not read without.
-        None => (is_taken && is_speed).then_some("?"),
+        None => is_speed.then_some("?"),
     };
     let by_name = if is_taken { "" } else { "by its name; check it" };
     let of_unit = match (column.read_as, channel) {

@@ -40,6 +40,7 @@ mod rounded_time;
 mod runs;
 mod scaling;
 mod selection;
+mod shaft_angle;
 mod steady_test;
 mod survey;
 mod table;

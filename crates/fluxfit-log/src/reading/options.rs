@@ -29,6 +29,10 @@ pub(super) struct ResolvedOptions {
     headers: Vec<(Channel, String)>,
     units: Vec<(Channel, Unit)>,
     factors: Vec<(Channel, f64)>,
+    /// What the scaling of the dq transform is.
+    of_park: Vec<(Channel, f64)>,
+    /// Channels whose column a mapping file names: who writes one sees the units.
+    pub(super) of_mapping_file: Vec<Channel>,
     /// Channels whose values are shares of the DC voltage of their row.
     pub(super) shares_of_bus: Vec<Channel>,
     /// Number of pole pairs.
@@ -73,10 +77,13 @@ impl ResolvedOptions {
         // The Clarke transform has the scaling; the Park transform only turns.
         let vectors =
             [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::UAlpha, Channel::UBeta, Channel::IAlpha, Channel::IBeta];
-        let mut factors: Vec<(Channel, f64)> = vectors.map(|channel| (channel, park.factor())).to_vec();
+        let of_park = vectors.map(|channel| (channel, park.factor())).to_vec();
+        let mut factors: Vec<(Channel, f64)> = Vec::new();
+        let mut of_mapping_file = Vec::new();
         for column in columns {
             if let Some(header) = column.header.clone().filter(|_| headers.iter().all(|(stated, _)| *stated != column.channel)) {
                 headers.push((column.channel, header));
+                of_mapping_file.push(column.channel);
             }
             if let Some(unit) = column.unit.filter(|_| units.iter().all(|(stated, _)| *stated != column.channel)) {
                 units.push((column.channel, unit));
@@ -89,6 +96,8 @@ impl ResolvedOptions {
             headers,
             units,
             factors,
+            of_park,
+            of_mapping_file,
             shares_of_bus,
             pole_pairs,
             sample_period: *sample_period,
@@ -119,6 +128,16 @@ impl ResolvedOptions {
 
     /// The factor besides the unit: scale, sign and scaling of the dq transform.
     pub(super) fn factor(&self, channel: Channel) -> f64 {
-        self.factors.iter().filter(|(stated, _)| *stated == channel).map(|(_, factor)| factor).product()
+        self.scale(channel) * product(&self.of_park, channel)
     }
+
+    /// Scale and sign alone, as a mapping file states them of a column.
+    pub(super) fn scale(&self, channel: Channel) -> f64 {
+        product(&self.factors, channel)
+    }
+}
+
+/// The product of the factors of a channel.
+fn product(factors: &[(Channel, f64)], channel: Channel) -> f64 {
+    factors.iter().filter(|(stated, _)| *stated == channel).map(|(_, factor)| factor).product()
 }

@@ -261,7 +261,10 @@ mod tests {
         assert_eq!(read("Time,ud,uq,Time.1,id,iq,omega_e", &[], |k| format!("{:.6}", f64::from(k) * 1e-4 + 1e-6)), Ok(40));
         // Temperatures, a clock that all channels share, and a number of the row.
         let warmer = |k: u32| format!("{:.3}", 25.0 + f64::from(k) * 1e-3);
-        assert_eq!(read("time,motor_ud,motor_uq,t_motor,motor_id,motor_iq,motor_speed", &[("omega_e", "motor_speed")], warmer), Ok(40));
+        assert_eq!(
+            read("time,motor_ud,motor_uq,t_motor,motor_id,motor_iq,motor_el_speed", &[("omega_e", "motor_el_speed")], warmer),
+            Ok(40)
+        );
         assert_eq!(read("t,ud,uq,T,id,iq,omega_e", &[("t", "t")], warmer), Ok(40));
         assert_eq!(read("t,ud,uq,Time [\u{b0}C],id,iq,omega_e", &[("t", "t")], warmer), Ok(40));
         let clock = |k: u32| format!("{:.4}", 5.0 + f64::from(k) * 1e-4);

@@ -127,6 +127,12 @@ const MOST_CURRENT: f64 = 12e3;
 /// Voltages of fewer V are not doubted.
 const LARGE_VOLTAGE: f64 = 2000.0;
 
+/// A drive of more, VA, and of more than [`HIGH`] states its units: with neither, mA and mV are more likely.
+const MEGAWATT: f64 = 1e6;
+
+/// Drives of cars and of most machines have less, V, at a phase.
+const HIGH: f64 = 1000.0;
+
 /// A for each V of a log with more than [`LARGE_VOLTAGE`]: a drive of 3.3 kV has 27 A or more with any load.
 const LEAST_ADMITTANCE: f64 = 0.01;
 
@@ -161,6 +167,10 @@ pub(super) fn refuse_thousandths(chosen: &[ChosenColumn], channels: &Channels) -
     if is_alone && volts > LARGE_VOLTAGE && amperes < LEAST_ADMITTANCE * volts && amperes > 0.0 && is_unwritten([Channel::Ud, Channel::Uq])
     {
         return Err(Problem::Thousandths { channels: ["ud", "uq"], amperes, volts, unit: "V" }.into());
+    }
+    let both = [[Channel::Id, Channel::Iq], [Channel::Ud, Channel::Uq]];
+    if is_alone && volts > HIGH && amperes * volts > MEGAWATT && both.into_iter().all(is_unwritten) {
+        return Err(Problem::Megawatts { amperes, volts }.into());
     }
     Ok(())
 }
@@ -288,7 +298,8 @@ mod tests {
         assert_eq!(refuse_high_voltage(&chosen, &spike), Ok(()));
     }
 
-    /// The paper's motor at 12 A and 100 V, in mA and in mV; an electric kart's 1100 A at 25 V; a wind turbine's 1400 A at 2700 V.
+    /// The paper's motor at 12 A and 100 V, in mA, in mV and in both; an electric kart's 1100 A at 25 V. A wind turbine's 1400 A at
+    /// 2700 V state their units.
     #[test]
     fn thousandths_are_told_by_both_sizes() {
         let refused = |volts: f64, amperes: f64| {
@@ -302,7 +313,10 @@ mod tests {
         };
         assert!(refused(100.0, 12e3).contains("id and iq were in mA"));
         assert!(refused(1e5, 12.0).contains("ud and uq were in mV"));
-        assert_eq!([refused(100.0, 12.0), refused(25.0, 1100.0), refused(2700.0, 1400.0), refused(400.0, 0.5)], [""; 4]);
+        assert!(refused(1e4, 3e3).contains("as if they were in mA and mV"));
+        assert!(refused(12e3, 800.0).contains("as if they were in mA and mV"));
+        assert!(refused(2700.0, 1400.0).contains("as of a drive of megawatts"));
+        assert_eq!([refused(100.0, 12.0), refused(25.0, 1100.0), refused(400.0, 0.5), refused(800.0, 1100.0)], [""; 4]);
     }
 
     #[test]

@@ -7,14 +7,16 @@ use fluxfit_units::{Dimension, Unit};
 /// Words for a root mean square; `eff` and `effektiv` are German, the others French and Spanish.
 const RMS: [&str; 8] = ["rms", "trms", "eff", "effektiv", "effektivwert", "efficace", "eficaz", "efficaz"];
 
-/// What `rms` is written behind without a mark between: `Arms`, `idrms`.
+/// What `rms` and `eff` are written behind without a mark between: `Arms`, `idrms`, `Aeff`.
 const BEFORE: [&str; 18] = ["a", "v", "ma", "mv", "ka", "kv", "i", "u", "is", "us", "vs", "id", "iq", "ud", "uq", "vd", "vq", "phase"];
 
 /// Whether the name or the unit of a column says that it holds root mean squares.
 pub(super) fn is_rms(head: &ColumnHead) -> bool {
     let says = |text: &str| {
-        let is_word =
-            |word: &String| RMS.contains(&word.as_str()) || word.strip_suffix("rms").is_some_and(|before| BEFORE.contains(&before));
+        let is_word = |word: &String| {
+            let before = word.strip_suffix("rms").or_else(|| word.strip_suffix("eff"));
+            RMS.contains(&word.as_str()) || before.is_some_and(|before| BEFORE.contains(&before))
+        };
         words(text).iter().any(is_word)
     };
     says(&head.name) || head.unit.as_deref().is_some_and(says)
@@ -52,6 +54,7 @@ mod tests {
             "Id eff. [A]",
             "i_d [A rms]",
             "ID_TRMS",
+            "Id [Aeff]",
         ] {
             assert!(is(name, None), "{name}");
         }

@@ -1,13 +1,13 @@
-//! The scaling of the dq currents, where the file has the currents of the phases too: the square of the dq vector is 2/3 of the sum of
-//! their squares at every instant and at any angle. RMS values and power-invariant transforms are smaller and larger than that.
+//! The scaling of the dq currents, or of those of the stator's frame, where the file has the phases too: the square of the vector is 2/3 of
+//! the sum of their squares at every instant and at any angle. RMS values and power-invariant transforms are smaller and larger than that.
 
-use super::{alias, chosen::ChosenColumn, mapping::Park, names::automatic, proposal::stated_unit, rms};
+use super::{alias, chosen::ChosenColumn, mapping::Park, names::automatic, options::ResolvedOptions, proposal::stated_unit, rms};
 use crate::{
     block::{ColumnHead, WantedColumn},
     channel::Channel,
     problem::Problem,
 };
-use Channel::{IA, IB, IC, Id, Iq};
+use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, UAlpha};
 use fluxfit_files::FileError;
 use fluxfit_units::Unit;
 
@@ -23,67 +23,102 @@ const LIKE: f64 = 0.03;
 /// Mean of a phase current over its root mean square below which the phases alternate: at rest they do not, nor do root mean squares.
 const ALTERNATES: f64 = 0.5;
 
-/// The currents of the phases beside those of the dq frame, and what was seen of both.
+/// The currents of the phases and the current vector, dq or in the stator's frame, and what was seen of both.
 pub(super) struct Scaling {
-    phases: Vec<ChosenPhase>,
-    /// Where id and iq are among the columns that are read.
-    dq: [usize; 2],
+    /// Columns that are read for this alone.
+    beside: Vec<Beside>,
+    vector: [(Channel, Source); 2],
+    phases: Vec<(String, Source)>,
     rows: usize,
-    /// Sums of the squared dq vector times itself, times that of the phases, and of that times itself.
+    /// Sums of the squared vector times itself, times that of the phases, and of that times itself.
     sums: [f64; 3],
     /// Sums of ia and of its square.
     of_a: [f64; 2],
 }
 
-struct ChosenPhase {
+/// Where the values of a quantity are.
+#[derive(Clone, Copy)]
+enum Source {
+    /// Among the columns of the log.
+    Read(usize),
+    /// Among those that are read beside them.
+    Beside(usize),
+}
+
+struct Beside {
     index: usize,
     header: String,
     unit: Unit,
+    factor: f64,
 }
 
 impl Scaling {
-    /// Finds the phase currents among the columns of the group that are not read otherwise.
-    pub(super) fn of(heads: &[ColumnHead], columns: &[ChosenColumn]) -> Option<Self> {
-        let place = |channel: Channel| columns.iter().position(|column| column.channel == channel);
-        let dq = [place(Id)?, place(Iq)?];
-        let phase = |channel: Channel| {
+    /// Finds both among the columns of the group; none if nothing is to be compared.
+    pub(super) fn of(heads: &[ColumnHead], columns: &[ChosenColumn], options: &ResolvedOptions) -> Option<Self> {
+        let group = heads[columns.first()?.index].group;
+        let mut beside: Vec<Beside> = Vec::new();
+        let mut source = |channel: Channel| {
+            if let Some(place) = columns.iter().position(|column| column.channel == channel) {
+                return Some((columns[place].header.clone(), Source::Read(place)));
+            }
             let index = automatic(channel, heads).ok().flatten().or_else(|| alias::find(channel, heads))?;
             let head = &heads[index];
-            let is_free = head.group == heads[columns[dq[0]].index].group && columns.iter().all(|column| column.index != index);
-            let unit = stated_unit(channel, head).unwrap_or(channel.unit());
-            (is_free && !rms::is_rms(head)).then(|| ChosenPhase { index, header: head.name.clone(), unit })
+            let is_free = head.group == group && columns.iter().all(|column| column.index != index) && !rms::is_rms(head);
+            let (header, unit) = (head.name.clone(), stated_unit(channel, head).unwrap_or(channel.unit()));
+            is_free.then(|| {
+                beside.push(Beside { index, header: header.clone(), unit, factor: options.factor(channel) });
+                (header, Source::Beside(beside.len() - 1))
+            })
         };
-        let phases: Vec<ChosenPhase> = [phase(IA)?, phase(IB)?].into_iter().chain(phase(IC)).collect();
-        Some(Self { phases, dq, rows: 0, sums: [0.0; 3], of_a: [0.0; 2] })
+        let mut pair = |[one, other]: [Channel; 2]| Some([(one, source(one)?.1), (other, source(other)?.1)]);
+        let is_read = |channel: Channel| columns.iter().any(|column| column.channel == channel);
+        // Where the phases are read and nothing of the vector, its scaling does not matter; what the user states counts.
+        let vector = match () {
+            () if is_read(Id) => [Id, Iq],
+            () if is_read(UAlpha) || is_read(IAlpha) => [IAlpha, IBeta],
+            () => return None,
+        };
+        if options.unit(vector[0]).is_some() {
+            return None;
+        }
+        let vector = pair(vector)?;
+        let phases: Vec<(String, Source)> = [source(IA)?, source(IB)?].into_iter().chain(source(IC)).collect();
+        Some(Self { beside, vector, phases, rows: 0, sums: [0.0; 3], of_a: [0.0; 2] })
     }
 
-    /// The phase currents as the table reads them.
+    /// The columns beside those of the log, as the table reads them.
     pub(super) fn wanted(&self) -> impl Iterator<Item = WantedColumn> {
-        let wanted = |phase: &ChosenPhase| WantedColumn {
-            index: phase.index,
-            header: phase.header.clone(),
+        let wanted = |column: &Beside| WantedColumn {
+            index: column.index,
+            header: column.header.clone(),
             is_time: false,
             is_optional: true,
             instants: None,
         };
-        self.phases.iter().map(wanted)
+        self.beside.iter().map(wanted)
     }
 
-    /// Compares the rows of a block: the columns that are read, in SI units, and the phase currents as they are in the file.
-    pub(super) fn compare(&mut self, columns: &[Vec<f64>], phases: &mut [Vec<f64>]) {
-        for (phase, values) in self.phases.iter().zip(phases.iter_mut()) {
-            phase.unit.to_si(values, 1);
+    /// Compares the rows of a block: the columns that are read, in SI units, and those beside them as they are in the file.
+    pub(super) fn compare(&mut self, columns: &[Vec<f64>], beside: &mut [Vec<f64>]) {
+        for (column, values) in self.beside.iter().zip(beside.iter_mut()) {
+            column.unit.to_si(values, 1);
+            values.iter_mut().for_each(|value| *value *= column.factor);
         }
-        let [on_d, on_q] = self.dq.map(|place| &columns[place]);
+        let values = |source: Source| match source {
+            Source::Read(place) => columns[place].as_slice(),
+            Source::Beside(place) => beside.get(place).map_or(&[][..], Vec::as_slice),
+        };
+        let [on_d, on_q] = self.vector.map(|(_, source)| values(source));
+        let phases: Vec<&[f64]> = self.phases.iter().map(|(_, source)| values(*source)).collect();
         for (row, (d, q)) in on_d.iter().zip(on_q).enumerate() {
             let of = |phase: usize| phases.get(phase).and_then(|values| values.get(row)).copied();
             let (Some(a), Some(b)) = (of(0), of(1)) else { continue };
             let c = of(2).unwrap_or(-a - b);
-            let (of_dq, of_phases) = (d * d + q * q, 2.0 / 3.0 * (a * a + b * b + c * c));
-            if of_dq.is_finite() && of_phases.is_finite() {
+            let (of_vector, of_phases) = (d * d + q * q, 2.0 / 3.0 * (a * a + b * b + c * c));
+            if of_vector.is_finite() && of_phases.is_finite() {
                 self.rows += 1;
-                self.sums[0] += of_dq * of_dq;
-                self.sums[1] += of_dq * of_phases;
+                self.sums[0] += of_vector * of_vector;
+                self.sums[1] += of_vector * of_phases;
                 self.sums[2] += of_phases * of_phases;
                 self.of_a[0] += a;
                 self.of_a[1] += a * a;
@@ -91,18 +126,19 @@ impl Scaling {
         }
     }
 
-    /// Refuses dq currents that are scaled otherwise than to the peak value of the phases.
+    /// Refuses a vector that is scaled otherwise than to the peak value of the phases.
     pub(super) fn refuse(&self) -> Result<(), FileError> {
-        let [of_dq, both, of_phases] = self.sums;
-        let is_same = self.rows >= FEWEST_ROWS && both > SAME * (of_dq * of_phases).sqrt();
+        let [of_vector, both, of_phases] = self.sums;
+        let is_same = self.rows >= FEWEST_ROWS && both > SAME * (of_vector * of_phases).sqrt();
         let alternates = self.of_a[0].abs() < ALTERNATES * (self.rows as f64 * self.of_a[1]).sqrt();
         // That of the vectors, not of their squares.
         let ratio = (both / of_phases).sqrt();
         let like = |park: &Park| (ratio * park.factor() - 1.0).abs() < LIKE;
         match [Park::Rms, Park::Power].into_iter().find(like).filter(|_| is_same && alternates) {
             Some(park) => {
-                let headers = self.phases.iter().map(|phase| phase.header.clone()).collect();
-                Err(Problem::DqScaling { ratio, headers, park: park.name(), factor: park.factor() }.into())
+                let headers = self.phases.iter().map(|(header, _)| header.clone()).collect();
+                let currents = self.vector.map(|(channel, _)| channel.name());
+                Err(Problem::Scaling { currents, ratio, headers, park: park.name(), factor: park.factor() }.into())
             }
             None => Ok(()),
         }
@@ -139,15 +175,34 @@ mod tests {
         assert_eq!(
             rms,
             "a.csv: id and iq are 0.707 times the amplitude of 'ia', 'ib' and 'ic', as of rms values; write park = \"rms\" into a mapping \
-             file, which converts ud and uq too; if these are peak values, write scale = 1.414 for id and iq instead"
+             file, which converts the voltages too; if the voltages are peak values, write scale = 1.414 for the currents alone"
         );
         let power = error(1.5_f64.sqrt(), 0.0, HEADER, &none);
         assert!(power.contains("a power-invariant transform; write park = \"power-invariant\""), "{power}");
         let without_third = "t,ud,uq,id,iq,omega_e,ia,ib,x";
         assert!(error(1.5_f64.sqrt(), 0.0, without_third, &none).contains("amplitude of 'ia' and 'ib', as"));
+        // Without an angle, which is computed from both.
+        let of_phases = "t,ua,uc,id,iq,omega_e,ia,ib,ub";
+        assert!(error(1.5_f64.sqrt(), 0.0, of_phases, &none).contains("as of a power-invariant transform"));
         // What the user does about it.
         let options = LogOptions { mapping: Mapping::parse("m.toml", b"park = \"rms\"\n").unwrap(), ..LogOptions::default() };
         assert_eq!(error(0.5_f64.sqrt(), 0.0, HEADER, &options), "");
+    }
+
+    /// The voltages of the stator's frame are those of the transform, too.
+    #[test]
+    fn a_vector_of_the_stator_is_compared_with_its_phases() {
+        let row = |k: usize| {
+            let (angle, third) = (0.1 * k as f64, std::f64::consts::TAU / 3.0);
+            let [a, b] = [angle.cos(), (angle - third).cos()];
+            let [alpha, beta] = [angle.cos(), angle.sin()].map(|of_vector| 1.5_f64.sqrt() * of_vector);
+            format!("{},{alpha},{beta},{alpha},{beta},{angle},{a},{b},{}\n", 1e-4 * k as f64, -a - b)
+        };
+        let text = format!("t,u_alpha,u_beta,i_alpha,i_beta,theta_e,ia,ib,ic\n{}", (0..200).map(row).collect::<String>());
+        let refused = parse_log("a.csv", text.as_bytes(), &LogOptions::default()).unwrap_err().to_string();
+        assert!(refused.contains("ialpha and ibeta are 1.22 times the amplitude of 'ia', 'ib' and 'ic'"), "{refused}");
+        let mapping = Mapping::parse("m.toml", b"park = \"power-invariant\"\n").unwrap();
+        assert!(parse_log("a.csv", text.as_bytes(), &LogOptions { mapping, ..LogOptions::default() }).is_ok());
     }
 
     #[test]

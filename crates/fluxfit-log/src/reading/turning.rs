@@ -4,8 +4,9 @@
 use super::{
     channels::Channels,
     chosen::{ChosenColumn, left_out},
+    shaft_angle,
 };
-use crate::{channel::Channel, note::Note, problem::Problem};
+use crate::{channel::Channel, header_unit::states_electrical, note::Note, problem::Problem};
 use Channel::{OmegaE, T, ThetaE};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_units::{Unit, significant, wording::shorten};
@@ -27,6 +28,20 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
     let Some(column) = chosen.iter().find(|column| column.channel == ThetaE) else { return Ok(()) };
     let Some(theta) = channels.get(ThetaE) else { return Ok(()) };
     let header = shorten(&column.header);
+    // Values were converted already where the unit is written.
+    let possible: &[f64] = if column.is_unit_written { &[1.0] } else { &[1.0, Unit::Degree.in_si()] };
+    let is_open = !column.unit.is_mechanical() && !states_electrical(&column.header);
+    if let Some((pole_pairs, unit)) = shaft_angle::pole_pairs(channels, possible).filter(|_| is_open) {
+        let is_stated = column.pole_pairs > 1 && column.pole_pairs != pole_pairs;
+        let stated = if is_stated { format!(", where you state {}", column.pole_pairs) } else { String::new() };
+        let sentence = format!(
+            "theta_e: column '{header}' read as the angle of the shaft, with {pole_pairs} pole pairs{stated}: the phase currents turn {pole_pairs} times as fast; its zero must lie on the d axis"
+        );
+        notes.push(sentence.into());
+        let electrical = theta.iter().map(|angle| angle * unit * f64::from(pole_pairs)).collect();
+        channels.set(ThetaE, electrical);
+        return Ok(());
+    }
     if !column.is_alias {
         return match turn(theta).filter(|turn| !column.is_unit_written && !is_in_rad(*turn)) {
             // With a speed, degrees are found where the columns are compared.

@@ -32,7 +32,9 @@ pub(super) const BESIDE: [&str; 26] = [
 ];
 
 /// Further ones beside a speed or an angle.
-pub(super) const ROTATION: [&str; 22] = [
+pub(super) const ROTATION: [&str; 24] = [
+    "welle",
+    "antrieb",
     "rotor",
     "revolution",
     "rotation",
@@ -140,3 +142,7 @@ pub(super) const UDC: [&str; 15] = [
 
 pub(super) const ANGLE: [&str; 12] =
     ["thetam", "thetae", "thetar", "thetael", "theta", "angle", "phi", "epsilon", "winkel", "rotorwinkel", "position", "rotorangle"];
+
+/// German words for the axes: along the field and across it, of the field and of the torque.
+pub(super) const ALONG: [&str; 2] = ["laengs", "feldbildend"];
+pub(super) const ACROSS: [&str; 4] = ["quer", "momentenbildend", "drehmomentbildend", "drehmomentenbildend"];

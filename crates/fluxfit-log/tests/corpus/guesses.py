@@ -109,7 +109,7 @@ def several(make):
     log = {f"result.{run}.{name}": values for run in ("id0", "mtpa") for name, values in columns(make, *names).items()}
     log |= {f"result.{run}.omega_m": make.FAST["omega_e"] for run in ("id0", "mtpa")}
     refuse(make, "several_logs.csv", "two runs, and each has two speeds", log, "2 logs, in 'result.id0' and 'result.mtpa'", "map the columns of one", line=1)
-    told = {"map": ["t=result.mtpa.t", "ud=result.mtpa.u_d", "uq=result.mtpa.u_q", "id=result.mtpa.id", "iq=result.mtpa.iq", "omega=result.mtpa.omega_m"]}
+    told = {"map": ["t=result.mtpa.t", "ud=result.mtpa.u_d", "uq=result.mtpa.u_q", "id=result.mtpa.id", "iq=result.mtpa.iq", "omega=result.mtpa.omega_m"], "units": ["omega=rad/s"]}
     make.put("several_logs_mapped.csv", make.table(log))
     make.read("several_logs_mapped.csv", "the second of two runs, mapped", make.part(make.FAST), make.MAPPED, told=told)
 

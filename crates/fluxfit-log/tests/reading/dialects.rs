@@ -46,8 +46,8 @@ fn every_dialect_gives_the_same_log() {
     // Columns of a matrix, as they are called of a MAT file.
     let matrix = LOG.replacen("ud,uq,id,iq", "\"out.vdq(:,1)\",\"out.vdq(:,2)\",\"idq(1,:)\",\"idq(2,:)\"", 1);
     assert_eq!(log_of(matrix.as_bytes(), &LogOptions::default()), expected);
-    let renamed = LOG.replace("ud", "V d").replace("omega_e", "speed");
-    assert_eq!(log_of(renamed.as_bytes(), &map(&["ud=V d", "omega=Speed"])), expected);
+    let renamed = LOG.replace("ud", "V d").replace("omega_e", "el speed");
+    assert_eq!(log_of(renamed.as_bytes(), &map(&["ud=V d", "omega=El Speed"])), expected);
 }
 
 #[test]
@@ -200,4 +200,30 @@ proptest! {
             }
         }
     }
+}
+
+/// pandas writes an index without a name in the first column: a time where it is one, and refused where it counts the rows.
+#[test]
+fn the_index_of_a_table_is_its_time_or_is_refused() {
+    let unnamed = LOG.replacen("t,", ",", 1);
+    assert_eq!(log_of(unnamed.as_bytes(), &LogOptions::default()), log_of(LOG.as_bytes(), &LogOptions::default()));
+    let counted =
+        |name: &str| format!("{name},ud,uq,id,iq,omega_e\n{}", (0..40).map(|row| format!("{row},1,20,0,3,400\n")).collect::<String>());
+    for name in ["", "Unnamed: 0"] {
+        let refused = fluxfit_log::parse_log("a.csv", counted(name).as_bytes(), &LogOptions::default()).unwrap_err().to_string();
+        assert!(refused.contains("whole numbers in steps of 1") && refused.contains("sample_period"), "{refused}");
+    }
+}
+
+/// The line that TwinCAT Scope writes at the end, if it is asked to.
+#[test]
+fn the_last_line_of_an_export_of_twincat_scope_is_no_row() {
+    let scope = |end: &str| {
+        let rows: String = (0..40).map(|row| format!("{row}\t{}\t{row}\t3\t{row}\t1\t{row}\t20\t{row}\t400\n", row % 3)).collect();
+        format!(
+            "Name\tScope\nFile\tC:\\a.svdx\nStarttime of export\t1\tx\nEndtime of export\t2\tx\n\nName\tid\t\tiq\t\tud\t\tuq\t\tomega_e\t\nSampleTime[ms]\t1\t\t1\t\t1\t\t1\t\t1\t\n{rows}{end}"
+        )
+    };
+    assert_eq!(log_of(scope("EOF\n").as_bytes(), &LogOptions::default()), log_of(scope("").as_bytes(), &LogOptions::default()));
+    assert_eq!(log_of(scope("EOF").as_bytes(), &LogOptions::default()).columns().t.len(), 40);
 }

@@ -234,8 +234,14 @@ fn errors_and_notes_carry_the_advice_as_facts() {
     let value = error("t,ud,uq,id,iq,omega_e\n0,1,x,3,4,5\n", &LogOptions::default());
     assert_eq!((value.kind(), value.advice()), (FileErrorKind::Value, &[][..]));
 
-    let read = parse_log("drive.csv", format!("t,ud,uq,id,iq,speed\n{ROWS}").as_bytes(), &map(&["omega=speed"])).unwrap();
+    let read = parse_log("drive.csv", format!("t,ud,uq,id,iq,w_el\n{ROWS}").as_bytes(), &map(&["omega=w_el"])).unwrap();
     assert_eq!(read.notes[0].advice, [Advice::StateUnit { channel: "omega_e", unit: None }]);
+    // Who maps a speed does not say its unit.
+    let of_shaft = error(&format!("t,ud,uq,id,iq,w_mech\n{ROWS}"), &map(&["omega=w_mech"]));
+    let unit = Advice::StateUnit { channel: "omega_e", unit: Some("rpm-mech") };
+    assert_eq!(of_shaft.advice(), [Advice::Together(vec![unit, Advice::StatePolePairs])]);
+    let speed = error(&format!("t,ud,uq,id,iq,speed\n{ROWS}"), &map(&["omega=speed"]));
+    assert!(matches!(speed.advice(), [Advice::StateRotation { channel: "omega_e", .. }]), "{speed}");
     // No sentence names an option of the command line.
     assert!(read.notes.iter().all(|note| !note.sentence.contains("--")), "{:?}", read.notes);
 }

@@ -60,6 +60,8 @@ const BOUNDED: usize = 5;
 struct Mean {
     /// Whether the current jumps from a row to the next.
     jumps: bool,
+    /// Whether the currents of d and q change by more than noise.
+    changes: [bool; 2],
     u: Dq,
     i: Dq,
     direction: Dq,
@@ -75,6 +77,7 @@ impl Mean {
         let of = |value: &dyn Fn(&Self) -> Dq| Dq { d: over(&|mean| value(mean).d), q: over(&|mean| value(mean).q) };
         Self {
             jumps: means.iter().any(|mean| mean.jumps),
+            changes: [0, 1].map(|axis| means.iter().any(|mean| mean.changes[axis])),
             u: of(&|mean| mean.u),
             i: of(&|mean| mean.i),
             direction: of(&|mean| mean.direction),
@@ -82,6 +85,14 @@ impl Mean {
             omega_i: of(&|mean| mean.omega_i),
             omega: over(&|mean| mean.omega),
         }
+    }
+}
+
+impl Mean {
+    /// Without the slopes of noise: what a controller makes of it is no voltage of theirs, and grows with the time between rows.
+    fn without_noise(self) -> Self {
+        let [d, q] = self.changes;
+        Self { slope: Dq { d: if d { self.slope.d } else { 0.0 }, q: if q { self.slope.q } else { 0.0 } }, ..self }
     }
 }
 
@@ -125,6 +136,7 @@ impl Frame {
         let omega_i = of_current(mean.omega_i);
         Mean {
             jumps: mean.jumps,
+            changes: mean.changes,
             u: turned(mean.u, self.swap_u, self.u),
             i: of_current(mean.i),
             direction: of_current(mean.direction),
@@ -141,15 +153,18 @@ struct Fit {
     unknowns: [f64; UNKNOWNS],
 }
 
-/// Noise of a channel, by the median of its second differences, which have `sqrt 6` times its standard deviation and a median size of 0.6745
-/// of theirs; what changes steadily has none.
+/// Noise of a channel, by the median of its second differences, which have `sqrt 6` times its standard deviation and a median size of
+/// 0.6745 of theirs; what changes steadily has none, but for its digits.
 fn noise(values: &[f64]) -> f64 {
     let mut bends: Vec<f64> = values.windows(3).map(|row| (row[0] - 2.0 * row[1] + row[2]).abs()).collect();
     if bends.is_empty() {
         return 0.0;
     }
     let middle = bends.len() / 2;
-    *bends.select_nth_unstable_by(middle, f64::total_cmp).1 / (0.6745 * 6.0_f64.sqrt())
+    let by_bends = *bends.select_nth_unstable_by(middle, f64::total_cmp).1 / (0.6745 * 6.0_f64.sqrt());
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let digit = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+    if digit.is_finite() { by_bends.max(digit / 12.0_f64.sqrt()) } else { by_bends }
 }
 
 /// Means of consecutive rows that carry current at speed.
@@ -183,12 +198,8 @@ fn means(log: &Log) -> Vec<Mean> {
             let around = start.saturating_sub(BESIDE_A_JUMP).max(segment.rows.start)..(end + BESIDE_A_JUMP).min(segment.rows.end - 1);
             let largest = around.clone().map(|row| change(row, row + 1)).fold(0.0, f64::max);
             mean.jumps = largest > (CHANGE * noise.magnitude()).max(JUMP_OF_CHANGE * change(around.start, around.end));
-            // What a controller makes of noise is no voltage of a slope: it grows with the time between rows.
-            let slope = |values: &[f64], noise: f64| {
-                let change = values[end] - values[start];
-                if change.abs() > CHANGE * noise { change / span } else { 0.0 }
-            };
-            mean.slope = Dq { d: slope(&columns.id, noise.d), q: slope(&columns.iq, noise.q) };
+            mean.slope = Dq { d: (columns.id[end] - columns.id[start]) / span, q: (columns.iq[end] - columns.iq[start]) / span };
+            mean.changes = [(mean.slope.d, noise.d), (mean.slope.q, noise.q)].map(|(slope, noise)| slope.abs() * span > CHANGE * noise);
             start = end;
             if mean.i.magnitude() >= SMALL * peak && mean.omega.abs() >= SMALL * fastest {
                 means.push(mean);
@@ -301,12 +312,13 @@ const POSSIBLE: f64 = 1.15;
 /// inductances of the slopes by less. In every fourth row of two drives the speed seemed 1.1 to 1.6 times too high.
 const LEAST_SCALE: f64 = 1.5;
 
-/// The same where rows lie further apart than a drive's periods and currents jump between them, at least: where a row has the voltage of the
-/// first period of a jump, it stands for all of them, and the inductance of the slope comes out too large.
+/// The same where rows lie further apart than a drive's periods and currents jump between them, at least: where a row has the voltage of
+/// the first period of a jump, it stands for all of them, and the inductance of the slope comes out too large.
 const LEAST_SCALE_OF_JUMPS: f64 = 4.0;
 
 /// By how much, rad/s: a controller begins a jump with its bandwidth times the inductance times the jump, which a row's time makes larger
-/// than the mean. This is that of a tenth of 20 kHz; in every twentieth row of 8 kHz, with a twentieth, right speeds seemed 6 times too high.
+/// than the mean. This is that of a tenth of 20 kHz; in every twentieth row of 8 kHz, with a twentieth, right speeds seemed 6 times too
+/// high.
 const FASTEST_CONTROLLER: f64 = 12_500.0;
 
 /// The speed as it is must leave this many times as much as the best higher factor. 37 drives with faults of every kind, and 40 with
@@ -357,7 +369,7 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
     if log.is_interpolated() {
         return None;
     }
-    let means = means(log);
+    let means: Vec<Mean> = means(log).into_iter().map(Mean::without_noise).collect();
     if log.is_control_rate() {
         return of_slopes(log, &means, LEAST_SCALE);
     }
@@ -515,9 +527,9 @@ mod tests {
     use super::*;
     use crate::log::Columns;
 
-    /// Rows of a time, s, that are every n-th of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps by 1 A and
-    /// i_d by -1 A, or a part of that. The drive made each change in the first part of the row, with so many times the voltage of a row's
-    /// change, and slopes ask for so many times the inductance.
+    /// Rows of a time, s, that are every n-th of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps by 1 A
+    /// and i_d by -1 A, or a part of that. The drive made each change in the first part of the row, with so many times the voltage of a
+    /// row's change, and slopes ask for so many times the inductance.
     fn jumps_between_rows(times: f64, has_angle: bool, (period, part): (f64, f64)) -> Log {
         let (rs, l, psi_f, omega_e, rows) = (6.0, 0.06, 0.3, 360.0, 900);
         let current = |row: usize| Dq {
@@ -543,7 +555,7 @@ mod tests {
         .unwrap()
     }
 
-    /// A speed alone may well be the shaft's, if the factor is larger than a fast controller makes it; one that an angle follows is believed
+    /// A speed alone may be the shaft's, if the factor is larger than a fast controller makes it; one that an angle follows is believed
     /// before a voltage that acted for a part of its row.
     #[test]
     fn currents_that_jump_between_rows_contradict_a_speed_alone_by_large_factors() {

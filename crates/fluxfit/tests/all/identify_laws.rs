@@ -233,6 +233,8 @@ proptest! {
         // values that do not.
         let is_recorders = free.steady.as_ref().unwrap().frame_lag.is_some();
         let value = if is_recorders { values(&free)[p] } else { off * drive.motor.to_array()[p] };
+        // A small resistance may come out below zero, where no one knows it.
+        prop_assume!(value > 0.0);
         let with = |known: Known| {
             let mut settings = settings(&columns);
             settings.known[p] = known;

@@ -340,10 +340,11 @@ pub(super) fn choose(
             || leaves_much_less(rare, usual)
             || !usual.explained && (is_disturbed(usual) || !is_disturbed(rare)) && (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square
     };
-    // A filter counts there only beside dead time that the usual search misses, or if much less is left; then a small resistance may come
+    let finds_loss = found.iter().any(has_loss);
+    // A filter counts there only beside dead time that the usual searches miss, or if much less is left; then a small resistance may come
     // out below zero, too.
     let counts = |rare: &Searched, usual: &Searched| {
-        let may_be_filtered = has_loss(rare) && !has_loss(usual);
+        let may_be_filtered = has_loss(rare) && !finds_loss;
         is_motor(rare) && (may_be_filtered || !has_filter(rare))
             || leaves_much_less(rare, usual) && has_inductances(&rare.chosen.drive.motor)
     };
