@@ -70,8 +70,8 @@ fn an_inspection_shows_columns_and_writes_a_mapping_that_identify_takes() {
     assert!(guessed.contains("ud = { column = \"Bench Vd\" }"), "{guessed}");
     let run = fluxfit(&["identify", log, "--mapping", mapping]);
     assert_eq!(run.status, 2, "its unit is unknown: {}", run.err);
-    fs::write(mapping, guessed.replace("column = \"Bench Speed [rad/s-elec]\"", "column = \"Bench Speed [rad/s-elec]\", unit = \"rad/s\""))
-        .unwrap();
+    assert!(guessed.contains("unit = \"?\" }  # by its name; check it, and state its unit"), "{guessed}");
+    fs::write(mapping, guessed.replace("unit = \"?\"", "unit = \"rad/s\"")).unwrap();
     let (_, document) = json(&["identify", log, "--mapping", mapping]);
     assert_eq!(document["parameters"], answer("slow.csv")["parameters"]);
 }

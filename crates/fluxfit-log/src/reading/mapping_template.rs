@@ -102,6 +102,7 @@ fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> St
         _ if is_instant || column.share.is_some() => "",
         (None, Channel::OmegaE) if is_taken => "nothing states its unit: rad/s, rpm-elec, rpm-mech, ..",
         (None, _) if is_taken => "nothing states its unit; check it, and add unit = .. unless it is SI",
+        (None, Channel::OmegaE) => ", and state its unit: rad/s, rpm-elec, rpm-mech, ..",
         (None, _) => ", and add unit = .. unless it is SI",
         (Some(_), _) if !column.is_unit_stated => "nothing states its unit; check it",
         (Some(_), Channel::OmegaE | Channel::ThetaE) if !column.is_rotation_stated => {
