@@ -71,6 +71,12 @@ struct Mean {
 }
 
 impl Mean {
+    /// Without the slopes of noise: what a controller makes of it is no voltage of theirs, and grows with the time between rows.
+    fn without_noise(self) -> Self {
+        let [d, q] = self.changes;
+        Self { slope: Dq { d: if d { self.slope.d } else { 0.0 }, q: if q { self.slope.q } else { 0.0 } }, ..self }
+    }
+
     /// Of neighbours that have as many rows each.
     fn of(means: &[Self]) -> Self {
         let over = |value: &dyn Fn(&Self) -> f64| means.iter().map(value).sum::<f64>() / means.len() as f64;
@@ -85,14 +91,6 @@ impl Mean {
             omega_i: of(&|mean| mean.omega_i),
             omega: over(&|mean| mean.omega),
         }
-    }
-}
-
-impl Mean {
-    /// Without the slopes of noise: what a controller makes of it is no voltage of theirs, and grows with the time between rows.
-    fn without_noise(self) -> Self {
-        let [d, q] = self.changes;
-        Self { slope: Dq { d: if d { self.slope.d } else { 0.0 }, q: if q { self.slope.q } else { 0.0 } }, ..self }
     }
 }
 
@@ -153,6 +151,9 @@ struct Fit {
     unknowns: [f64; UNKNOWNS],
 }
 
+/// A smallest step that is larger than this part of the largest value is no digit of a converter but a jump.
+const COARSE: f64 = 0.01;
+
 /// Noise of a channel, by the median of its second differences, which have `sqrt 6` times its standard deviation and a median size of
 /// 0.6745 of theirs; what changes steadily has none, but for its digits.
 fn noise(values: &[f64]) -> f64 {
@@ -164,7 +165,8 @@ fn noise(values: &[f64]) -> f64 {
     let by_bends = *bends.select_nth_unstable_by(middle, f64::total_cmp).1 / (0.6745 * 6.0_f64.sqrt());
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let digit = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
-    if digit.is_finite() { by_bends.max(digit / 12.0_f64.sqrt()) } else { by_bends }
+    let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    by_bends.max(digit.min(COARSE * largest) / 12.0_f64.sqrt())
 }
 
 /// Means of consecutive rows that carry current at speed.
