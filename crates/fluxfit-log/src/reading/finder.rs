@@ -442,6 +442,12 @@ impl Finder<'_> {
         let is_canonical = field.eq_ignore_ascii_case(canonical);
         let of_layout = self.layout.and_then(|layout| layout.column(channel)).filter(|column| is_called(name, column.header));
         let stated = self.options.unit(channel);
+        // Who maps a speed says which column it is, and not yet its unit.
+        let is_open_speed = dimension == Dimension::Speed
+            && !is_canonical
+            && of_layout.is_none()
+            && !states_electrical(name)
+            && !self.options.of_mapping_file.contains(&channel);
         if let Some(unit) = stated.filter(|_| self.options.factor(channel).abs() == 1.0)
             && let Some(of_header) = contradicted(named, name, unit)
         {
@@ -469,12 +475,7 @@ impl Finder<'_> {
                 let units = channel.units().map(Unit::name).collect();
                 return Err(Problem::HeaderUnit { channel: canonical, text: text.to_owned(), header, units }.into());
             }
-            // Who maps a speed says which column it is, and not yet its unit.
-            _ if dimension == Dimension::Speed
-                && !is_canonical
-                && !states_electrical(name)
-                && !self.options.of_mapping_file.contains(&channel) =>
-            {
+            _ if is_open_speed => {
                 let has_pole_pairs = self.options.pole_pairs.is_some();
                 return Err(Problem::SpeedUnit { has_pole_pairs, of_shaft: states_mechanical(name) }.into());
             }
@@ -484,8 +485,7 @@ impl Finder<'_> {
             }
         };
         let is_alias = stated.is_none() && self.is_alias(channel, name);
-        let is_open = stated.is_none() && !is_canonical && of_layout.is_none() && !self.options.of_mapping_file.contains(&channel);
-        if is_open && dimension == Dimension::Speed && !unit.is_mechanical() && !states_electrical(name) {
+        if is_open_speed && stated.is_none() && !unit.is_mechanical() {
             let has_pole_pairs = self.options.pole_pairs.is_some();
             return Err(Problem::SpeedRotation { electrical: unit, mechanical: mechanical(unit), has_pole_pairs }.into());
         }

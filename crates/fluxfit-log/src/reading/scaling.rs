@@ -53,7 +53,7 @@ struct Beside {
 }
 
 impl Scaling {
-    /// Finds both among the columns of the group; none if nothing is to be compared.
+    /// Finds both among the columns of the group.
     pub(super) fn of(heads: &[ColumnHead], columns: &[ChosenColumn], options: &ResolvedOptions) -> Option<Self> {
         let group = heads[columns.first()?.index].group;
         let mut beside: Vec<Beside> = Vec::new();
@@ -73,12 +73,9 @@ impl Scaling {
         let mut pair = |[one, other]: [Channel; 2]| Some([(one, source(one)?.1), (other, source(other)?.1)]);
         let is_read = |channel: Channel| columns.iter().any(|column| column.channel == channel);
         // Where the phases are read and nothing of the vector, its scaling does not matter; what the user states counts.
-        let vector = match () {
-            () if is_read(Id) => [Id, Iq],
-            () if is_read(UAlpha) || is_read(IAlpha) => [IAlpha, IBeta],
-            () => return None,
-        };
-        if options.unit(vector[0]).is_some() {
+        let vector = if is_read(Id) { [Id, Iq] } else { [IAlpha, IBeta] };
+        let matters = is_read(Id) || is_read(IAlpha) || is_read(UAlpha);
+        if !matters || options.unit(vector[0]).is_some() {
             return None;
         }
         let vector = pair(vector)?;

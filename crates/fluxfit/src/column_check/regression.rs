@@ -318,9 +318,8 @@ const LEAST_SCALE: f64 = 1.5;
 /// the first period of a jump, it stands for all of them, and the inductance of the slope comes out too large.
 const LEAST_SCALE_OF_JUMPS: f64 = 4.0;
 
-/// By how much, rad/s: a controller begins a jump with its bandwidth times the inductance times the jump, which a row's time makes larger
-/// than the mean. This is that of a tenth of 20 kHz; in every twentieth row of 8 kHz, with a twentieth, right speeds seemed 6 times too
-/// high.
+/// Largest bandwidth of a current controller, rad/s: a tenth of 20 kHz. It begins a jump with the bandwidth times the inductance times the
+/// jump; a row of T that has this voltage makes the inductance bandwidth times T times too large.
 const FASTEST_CONTROLLER: f64 = 12_500.0;
 
 /// The speed as it is must leave this many times as much as the best higher factor. 37 drives with faults of every kind, and 40 with
