@@ -100,6 +100,24 @@ impl Number for f64 {
     }
 }
 
+/// A formula for both axes, or for both ends: `both!(axis => a[axis] + b[axis])`. Not a closure: the compiler does not put those in place
+/// without optimization across crates, and then calls them for each instruction. A log with dead time took three times as long.
+macro_rules! both {
+    ($place:ident => $formula:expr) => {
+        [
+            {
+                let $place = 0;
+                $formula
+            },
+            {
+                let $place = 1;
+                $formula
+            },
+        ]
+    };
+}
+pub(crate) use both;
+
 /// Numbers in `K` of the processor's vectors: several keep it busy while one waits for its result.
 #[derive(Clone, Copy)]
 pub(crate) struct Lanes<S: Simd, const K: usize> {
@@ -138,7 +156,7 @@ impl<S: Simd, const K: usize> Lanes<S, K> {
 }
 
 // The wide instructions of a processor may be used only in functions that are compiled for it: everything between them and the call that
-// chose them is compiled in place. The standard library's functions over arrays are not; hence the loops.
+// chose them is compiled in place. Closures and the standard library's functions over arrays are not, except by luck; hence the loops.
 impl<S: Simd, const K: usize> Number for Lanes<S, K> {
     #[inline(always)]
     fn constant(self, value: f64) -> Self {

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     frames::{Dq, Turn, turned},
-    lanes::Number,
+    lanes::{Number, both},
 };
 
 /// The faults of one drive, or of one drive per lane, ready to act.
@@ -236,7 +236,8 @@ impl<V: Number> Acting<V> {
     #[inline(always)]
     pub(crate) fn lost(&self, commanded: [V; 2], [start, end]: [[V; 2]; 2], winding: &Winding<V>, place: &Place) -> [V; 2] {
         let late_by = place.rotor_late_by;
-        let [u, start, end] = [commanded, start, end].map(|vector| self.in_rotors_frame(vector, late_by));
+        let u = self.in_rotors_frame(commanded, late_by);
+        let (start, end) = (self.in_rotors_frame(start, late_by), self.in_rotors_frame(end, late_by));
         let phase = if self.kinds.phase { Some(self.phase) } else { None };
         let lost = self.dead_time.over(self.kinds.loss, u, [start, end], winding, phase, place);
         self.in_magnets_frame(lost, late_by)
@@ -272,7 +273,7 @@ impl<V: Number> Acting<V> {
         let warmer = resistance_drift::taken(self.resistance_change, i, place);
         let lagging = speed_lag::induced(self.speed_lag, linear_flux, place);
         let late = angle_delay::induced(self.angle_delay, linear_flux, place);
-        [0, 1].map(|axis| u[axis] - harmonics[axis] - warmer[axis] - lagging[axis] - late[axis])
+        both!(axis => u[axis] - harmonics[axis] - warmer[axis] - lagging[axis] - late[axis])
     }
 
     /// The amplitudes of the flux harmonics, which turn with the magnet, against an angle that is late: the sixth is so by six times the

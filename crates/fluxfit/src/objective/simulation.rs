@@ -16,7 +16,7 @@ use super::{
 use crate::{
     faults::{Acting, Place, Winding},
     frames::{Turn, turned},
-    lanes::Number,
+    lanes::{Number, both},
 };
 use pulp::NullaryFnOnce;
 use std::ops::Range;
@@ -389,7 +389,7 @@ impl<V: Number> FaultyBlock<'_, V> {
         if self.faults.kinds.loss.any() {
             let mut way = [start, transitions.after(start, u)];
             if beyond > 0.0 {
-                let further = [0, 1].map(|axis| zero.constant(beyond) * (way[1][axis] - way[0][axis]));
+                let further = both!(axis => zero.constant(beyond) * (way[1][axis] - way[0][axis]));
                 way = [[way[0][0] - further[0], way[0][1] - further[1]], [way[1][0] + further[0], way[1][1] + further[1]]];
             }
             let lost = self.faults.lost(commanded, way, &self.winding, &acting);
@@ -448,7 +448,7 @@ impl<V: Number> FaultyBlock<'_, V> {
         let mut end = linear;
         for _ in 0..EXTRA_FLUX_ROUNDS {
             let grown = self.faults.extra_flux(end);
-            end = [0, 1].map(|axis| self.winding.per_henry[axis].mul_add(flux[axis] - grown[axis], linear[axis]));
+            end = both!(axis => self.winding.per_henry[axis].mul_add(flux[axis] - grown[axis], linear[axis]));
         }
         end
     }

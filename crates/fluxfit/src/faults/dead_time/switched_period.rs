@@ -53,7 +53,7 @@ use super::{
 };
 use crate::{
     frames::{clarke, inverse_clarke, turned},
-    lanes::Number,
+    lanes::{Number, both},
 };
 
 /// What a period loses, a drive per lane.
@@ -152,13 +152,17 @@ impl<V: Number> SwitchedLoss<V> {
         place: &Place,
     ) -> [V; 2] {
         let sign = self.voltage.constant(if place.changes.is_some() { -1.0 } else { 1.0 });
-        let signed = |[d, q]: [V; 2]| [sign * d, sign * q];
-        let [u, start, end] = [u, currents[0], currents[1]].map(signed);
+        let u = both!(axis => sign * u[axis]);
+        let currents = both!(end => both!(axis => sign * currents[end][axis]));
         // Compiled twice, because one way for both takes a third longer.
-        signed(match place.changes {
-            None => self.beginning_low::<false>(kinds, (u, [sign; 2]), [start, end], winding, phase, place),
-            Some(change) => self.beginning_low::<true>(kinds, (u, signed(sign.constants(change))), [start, end], winding, phase, place),
-        })
+        let lost = match place.changes {
+            None => self.beginning_low::<false>(kinds, (u, [sign; 2]), currents, winding, phase, place),
+            Some(change) => {
+                let change = both!(axis => sign * sign.constant(change[axis]));
+                self.beginning_low::<true>(kinds, (u, change), currents, winding, phase, place)
+            }
+        };
+        both!(axis => sign * lost[axis])
     }
 
     /// The same of a period that begins where all legs are low, and of a voltage that changes so much half-way, V, if it does.
@@ -189,7 +193,6 @@ impl<V: Number> SwitchedLoss<V> {
         let amperes = by_volt_seconds(self.ripple * carrier * zero.constant(place.length), per_henry, phase, place);
         // The currents at the edges, but for what the others lose before.
         let (mut up, mut down) = ([zero; 3], [zero; 3]);
-        // No closure here: the compiler does not put them in place, and calls them without the processor's wide registers.
         let mut first = Half::of(v, per_bus, &amperes);
         let (mut second, mut kink) = (first, [zero; 3]);
         if CHANGES {
@@ -213,7 +216,9 @@ impl<V: Number> SwitchedLoss<V> {
         // Edge by edge: what the phases that switch before have lost, as far as their dead time is over. What is up later is down earlier.
         let ramp = self.ramp;
         let lost = self.voltage * (one - self.lasting);
-        let clamped = if kinds.edges { self.clamped(ramp.out(up), [v, first.together.map(|i| i * per_bus)], &amperes) } else { [zero; 3] };
+        let [a, b, c] = first.together;
+        let together = [a * per_bus, b * per_bus, c * per_bus];
+        let clamped = if kinds.edges { self.clamped(ramp.out(up), [v, together], &amperes) } else { [zero; 3] };
         for x in 0..3 {
             (up[x], down[x]) = (up[x] + clamped[x], down[x] + clamped[x]);
         }
@@ -256,7 +261,8 @@ impl<V: Number> SwitchedLoss<V> {
             }
         }
         let spared = if kinds.edges { self.spared(v, loss, late, place) } else { [zero; 2] };
-        let [spared, [d, q]] = [spared, clarke(loss)].map(|vector| back_by_phase(place.middle.backward(vector), phase));
+        let spared = back_by_phase(place.middle.backward(spared), phase);
+        let [d, q] = back_by_phase(place.middle.backward(clarke(loss)), phase);
         [self.voltage * d - rs * per_henry[0] * spared[0], self.voltage * q - rs * per_henry[1] * spared[1]]
     }
 
