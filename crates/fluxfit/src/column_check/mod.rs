@@ -6,12 +6,14 @@
 
 mod finding;
 mod regression;
+mod speed_of_slopes;
 mod turning;
 mod voltages;
 
 use crate::log::Log;
 pub use finding::{Change, ColumnFinding, Turning};
-pub(crate) use regression::{speed_in_doubt, turn_with_speed};
+pub(crate) use regression::turn_with_speed;
+pub(crate) use speed_of_slopes::speed_in_doubt;
 pub use voltages::{LEAST_BUS, MOST_SHARE, NEARLY_ALL};
 
 /// What the columns of a log contradict each other in. After the first contradiction of angle, time or axes no other of these is looked
@@ -24,7 +26,7 @@ pub fn check_columns(log: &Log) -> Vec<ColumnFinding> {
         })
         .or_else(|| turning::phase_order(log))
         .or_else(|| regression::time_unit(log))
-        .or_else(|| regression::speed_scale(log))
+        .or_else(|| speed_of_slopes::speed_scale(log))
         .or_else(|| regression::axes(log));
     let of_voltages = voltages::scale(log).or_else(|| voltages::share(log)).or_else(|| voltages::digits(log));
     of_frame.into_iter().chain(of_voltages).collect()

@@ -13,13 +13,13 @@ use crate::{frames::Dq, log::Log};
 use nalgebra::{DMatrix, DVector};
 
 /// Most rows of a mean.
-const BLOCK: usize = 10;
+pub(super) const BLOCK: usize = 10;
 
 /// Means that are enough: a short log has fewer rows in each.
-const ENOUGH: usize = 300;
+pub(super) const ENOUGH: usize = 300;
 
 /// Fewest means.
-const LEAST: usize = 30;
+pub(super) const LEAST: usize = 30;
 
 /// Rows with less current or speed than this share of the largest tell little.
 const SMALL: f64 = 0.05;
@@ -53,13 +53,13 @@ const BESIDE_A_JUMP: usize = 2;
 const UNKNOWNS: usize = 7;
 
 /// Unknowns that are not negative.
-const BOUNDED: usize = 5;
+pub(super) const BOUNDED: usize = 5;
 
 /// A mean of rows: voltage, current, the current's direction, its slope, omega i and omega.
 #[derive(Clone, Copy, Default)]
-struct Mean {
+pub(super) struct Mean {
     /// Whether the current jumps from a row to the next.
-    jumps: bool,
+    pub(super) jumps: bool,
     /// Whether the currents of d and q change by more than noise.
     changes: [bool; 2],
     u: Dq,
@@ -72,7 +72,7 @@ struct Mean {
 
 impl Mean {
     /// Without the slopes of noise: what a controller makes of it is no voltage of theirs, and grows with the time between rows.
-    fn without_noise(self) -> Self {
+    pub(super) fn without_noise(self) -> Self {
         let [d, q] = self.changes;
         Self { slope: Dq { d: if d { self.slope.d } else { 0.0 }, q: if q { self.slope.q } else { 0.0 } }, ..self }
     }
@@ -96,7 +96,7 @@ impl Mean {
 
 /// The signs and the order that the columns are given.
 #[derive(Clone, Copy)]
-struct Frame {
+pub(super) struct Frame {
     swap_u: bool,
     swap_i: bool,
     u: [f64; 2],
@@ -105,7 +105,7 @@ struct Frame {
 }
 
 impl Frame {
-    const AS_IT_IS: Self = Self { swap_u: false, swap_i: false, u: [1.0; 2], i: [1.0; 2], omega: 1.0 };
+    pub(super) const AS_IT_IS: Self = Self { swap_u: false, swap_i: false, u: [1.0; 2], i: [1.0; 2], omega: 1.0 };
 
     fn with(mut self, change: Change) -> Self {
         match change {
@@ -146,9 +146,9 @@ impl Frame {
 }
 
 /// What a fit leaves, as a fraction of the voltage's root mean square, and its unknowns.
-struct Fit {
-    left: f64,
-    unknowns: [f64; UNKNOWNS],
+pub(super) struct Fit {
+    pub(super) left: f64,
+    pub(super) unknowns: [f64; UNKNOWNS],
 }
 
 /// A smallest step that is larger than this part of the largest value is no digit of a converter but a jump.
@@ -170,7 +170,7 @@ fn noise(values: &[f64]) -> f64 {
 }
 
 /// Means of consecutive rows that carry current at speed.
-fn means(log: &Log) -> Vec<Mean> {
+pub(super) fn means(log: &Log) -> Vec<Mean> {
     let columns = log.columns();
     let fastest = columns.omega_e.iter().fold(0.0_f64, |most, omega| most.max(omega.abs()));
     let peak = log.peak_current();
@@ -217,7 +217,7 @@ fn fit(means: &[Mean], frame: &Frame, has_slopes: bool) -> Option<Fit> {
 }
 
 /// The normal equations of the unknowns, with the voltage behind them.
-fn normal(means: &[Mean], frame: &Frame, has_slopes: bool) -> DMatrix<f64> {
+pub(super) fn normal(means: &[Mean], frame: &Frame, has_slopes: bool) -> DMatrix<f64> {
     let mut normal = DMatrix::<f64>::zeros(UNKNOWNS + 1, UNKNOWNS + 1);
     for mean in means {
         let m = frame.of(mean);
@@ -233,7 +233,7 @@ fn normal(means: &[Mean], frame: &Frame, has_slopes: bool) -> DMatrix<f64> {
 }
 
 /// The unknowns with which these equations leave least. With few unknowns every set of bounds that hold is tried.
-fn solved(normal: &DMatrix<f64>) -> Option<Fit> {
+pub(super) fn solved(normal: &DMatrix<f64>) -> Option<Fit> {
     let whole = normal[(UNKNOWNS, UNKNOWNS)];
     if whole <= 0.0 {
         return None;
@@ -297,133 +297,6 @@ pub(super) fn time_unit(log: &Log) -> Option<ColumnFinding> {
 
 /// Noise of the slopes makes their inductance smaller, but not three times.
 const HALF_A_DECADE: f64 = 0.5;
-
-/// Factors of the speed that are tried lie between this and its inverse, in steps of
-const MOST_SCALE: f64 = 20.0;
-
-/// this.
-const SCALE_STEP: f64 = 1.05;
-
-/// What is left of the voltage, as a fraction, where the speed is judged.
-const WELL_EXPLAINED: f64 = 0.03;
-
-/// A factor that leaves at most this many times what the best one leaves is possible.
-const POSSIBLE: f64 = 1.15;
-
-/// Factors nearer to one than this are not looked for: saturation, noise, and voltages that act later than their row change the
-/// inductances of the slopes by less. In every fourth row of two drives the speed seemed 1.1 to 1.6 times too high.
-const LEAST_SCALE: f64 = 1.5;
-
-/// The same where rows lie further apart than a drive's periods and currents jump between them, at least: where a row has the voltage of
-/// the first period of a jump, it stands for all of them, and the inductance of the slope comes out too large.
-const LEAST_SCALE_OF_JUMPS: f64 = 4.0;
-
-/// Largest bandwidth of a current controller, rad/s: a tenth of 20 kHz. It begins a jump with the bandwidth times the inductance times the
-/// jump; a row of T that has this voltage makes the inductance bandwidth times T times too large.
-const FASTEST_CONTROLLER: f64 = 12_500.0;
-
-/// The speed as it is must leave this many times as much as the best higher factor. 37 drives with faults of every kind, and 40 with
-/// filters and means, leave at most 1.4 times as much; with a speed four times too high, mostly 2 to 4 times.
-const TOO_HIGH: f64 = 1.65;
-
-/// The same of a speed that is too low, as which noise and saturation look: right speeds leave up to 2.7 times as much, those a quarter as
-/// high 4 to 11 times.
-const TOO_LOW: f64 = 4.0;
-
-/// By which factor the speed is too high, or too low, for inductances that are those of the slopes of the currents, for certain.
-pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
-    let [low, high] = speed_of_slopes(log).filter(SpeedOfSlopes::is_certain)?.too_high;
-    Some(ColumnFinding::SpeedScale { low, high, angle: log.columns().theta_e.is_some() })
-}
-
-/// Factors by which the speed may be too high for inductances that are those of the slopes of the currents, the least and the largest,
-/// where they are far from one. By themselves they prove nothing: noise and saturation change the inductances of the slopes.
-/// A speed that an angle confirms is in doubt only where they are certain: then both are wrong.
-pub(crate) fn speed_in_doubt(log: &Log) -> Option<[f64; 2]> {
-    let slopes = speed_of_slopes(log)?;
-    let [low, high] = slopes.too_high;
-    let is_far = low > LEAST_SCALE || high < 1.0 / LEAST_SCALE;
-    let is_in_doubt = if log.columns().theta_e.is_some() { slopes.is_certain() } else { is_far };
-    is_in_doubt.then_some([low, high])
-}
-
-/// Which speed suits the slopes of the currents.
-struct SpeedOfSlopes {
-    /// By which factors the speed may be too high, the least and the largest.
-    too_high: [f64; 2],
-    /// What the speed as it is leaves of the voltages, over what the best of these leaves.
-    excess: f64,
-    /// Smaller factors may be of a speed that is right.
-    least_scale: f64,
-}
-
-impl SpeedOfSlopes {
-    /// Whether no log of the right speed looks like this.
-    fn is_certain(&self) -> bool {
-        let [low, high] = self.too_high;
-        low > self.least_scale && self.excess > TOO_HIGH || high < 1.0 / LEAST_SCALE && self.excess > TOO_LOW
-    }
-}
-
-/// Nothing where the slopes do not tell.
-fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
-    if log.is_interpolated() {
-        return None;
-    }
-    let means: Vec<Mean> = means(log).into_iter().map(Mean::without_noise).collect();
-    if log.is_control_rate() {
-        return of_slopes(log, &means, LEAST_SCALE);
-    }
-    let calm: Vec<Mean> = means.iter().copied().filter(|mean| !mean.jumps).collect();
-    let least_of_jumps = LEAST_SCALE_OF_JUMPS.max(FASTEST_CONTROLLER * log.slowest_period());
-    // An angle that agrees with the speed is rarely wrong with it: there, more is asked.
-    let of_jumps = || if log.columns().theta_e.is_none() { of_slopes(log, &means, least_of_jumps) } else { None };
-    of_slopes(log, &calm, LEAST_SCALE).filter(SpeedOfSlopes::is_certain).or_else(of_jumps)
-}
-
-/// The same of these means.
-fn of_slopes(log: &Log, means: &[Mean], least_scale: f64) -> Option<SpeedOfSlopes> {
-    if means.len() < LEAST {
-        return None;
-    }
-    let normal = normal(means, &Frame::AS_IT_IS, true);
-    let steps = (MOST_SCALE.ln() / SCALE_STEP.ln()) as i32;
-    let tried: Vec<(f64, f64)> = (-steps..=steps).map(|step| SCALE_STEP.powi(step)).map(|scale| (scale, left(&normal, scale))).collect();
-    let best = tried.iter().fold(f64::INFINITY, |best, (_, left)| best.min(*left));
-    let mut possible = tried.iter().filter(|(_, left)| *left <= POSSIBLE * best).map(|(scale, _)| *scale);
-    let low = possible.next()?;
-    let high = possible.next_back().unwrap_or(low);
-    // At the end of the range the slopes tell nothing: they are those of a log without transients.
-    if low <= tried[0].0 || high >= tried[tried.len() - 1].0 {
-        return None;
-    }
-    // The currents have to be seen while they change, in less than the time constant of the winding.
-    let [resistance, ld, lq, ..] = solved(&tied(&normal, (low * high).sqrt()))?.unknowns;
-    let inductance = ld.min(lq) * (low * high).sqrt();
-    let block = BLOCK.min(log.rows() / ENOUGH).max(1) as f64;
-    let is_seen = log.segments().iter().all(|segment| block * segment.sample_period * resistance < inductance);
-    let excess = left(&normal, 1.0) / best;
-    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess, least_scale })
-}
-
-/// What is left of the voltages, as a fraction, where the inductances of the slopes are those of the speed, times a factor.
-fn left(normal: &DMatrix<f64>, scale: f64) -> f64 {
-    solved(&tied(normal, scale)).map_or(f64::INFINITY, |fit| fit.left)
-}
-
-/// The equations in which the inductances of the slopes are those of the speed, times a factor.
-fn tied(normal: &DMatrix<f64>, scale: f64) -> DMatrix<f64> {
-    let mut tied = normal.clone();
-    for (of_speed, of_slope) in [(1, BOUNDED), (2, BOUNDED + 1)] {
-        let column = tied.column(of_slope) * scale;
-        tied.column_mut(of_speed).zip_apply(&column, |sum, more| *sum += more);
-        let row = tied.row(of_slope) * scale;
-        tied.row_mut(of_speed).zip_apply(&row, |sum, more| *sum += more);
-        tied.column_mut(of_slope).fill(0.0);
-        tied.row_mut(of_slope).fill(0.0);
-    }
-    tied
-}
 
 /// The changes of signs and order that are looked for, the usual ones first.
 const CHANGES: [Change; 11] = [
@@ -527,52 +400,6 @@ fn best_of(
 mod tests {
     use super::*;
     use crate::log::Columns;
-
-    /// Rows of a time, s, that are every n-th of a drive's periods, of a motor of 6 ohm, 60 mH and 0.3 Wb at 360 rad/s: i_q jumps by 1 A
-    /// and i_d by -1 A, or a part of that. The drive made each change in the first part of the row, with so many times the voltage of a
-    /// row's change, and slopes ask for so many times the inductance.
-    fn jumps_between_rows(times: f64, has_angle: bool, (period, part): (f64, f64)) -> Log {
-        let (rs, l, psi_f, omega_e, rows) = (6.0, 0.06, 0.3, 360.0, 900);
-        let current = |row: usize| Dq {
-            d: if (row / 40).is_multiple_of(2) { 0.0 } else { -part },
-            q: if (row / 20).is_multiple_of(2) { 1.0 } else { 1.0 + part },
-        };
-        let voltage = |row: usize| {
-            let (i, next) = (current(row), current(row + 1));
-            let kick = |from: f64, to: f64| times * l * (to - from) / period;
-            Dq { d: rs * i.d - omega_e * l * i.q + kick(i.d, next.d), q: rs * i.q + omega_e * (l * i.d + psi_f) + kick(i.q, next.q) }
-        };
-        let each = |value: &dyn Fn(usize) -> f64| (0..rows).map(value).collect::<Vec<f64>>();
-        Log::new(Columns {
-            t: each(&|row| period * row as f64),
-            ud: each(&|row| voltage(row).d),
-            uq: each(&|row| voltage(row).q),
-            id: each(&|row| current(row).d),
-            iq: each(&|row| current(row).q),
-            omega_e: each(&|_| omega_e),
-            theta_e: has_angle.then(|| each(&|row| (omega_e * period * row as f64).rem_euclid(std::f64::consts::TAU))),
-            ..Columns::default()
-        })
-        .unwrap()
-    }
-
-    /// A speed alone may be the shaft's, if the factor is larger than a fast controller makes it; one that an angle follows is believed
-    /// before a voltage that acted for a part of its row.
-    #[test]
-    fn currents_that_jump_between_rows_contradict_a_speed_alone_by_large_factors() {
-        let (close, far) = ((3e-4, 1.0), (1e-3, 1.0));
-        assert_eq!(speed_scale(&jumps_between_rows(10.0, true, close)), None);
-        assert_eq!(speed_scale(&jumps_between_rows(3.0, false, close)), None);
-        assert_eq!(speed_scale(&jumps_between_rows(10.0, false, far)), None);
-        let alone = speed_scale(&jumps_between_rows(10.0, false, close));
-        assert!(matches!(alone, Some(ColumnFinding::SpeedScale { low, high, .. }) if low > 5.0 && high < 20.0), "{alone:?}");
-    }
-
-    /// A jump of a thirtieth of the current is one, too.
-    #[test]
-    fn small_jumps_say_as_little() {
-        assert_eq!(speed_scale(&jumps_between_rows(10.0, true, (1e-3, 0.03))), None);
-    }
 
     /// 1200 rows at 10 kHz of a motor of 12 ohm, 65 and 150 mH and 0.45 Wb that is held at one point: all that moves is noise of its
     /// sensors, some percents of 1.25 A, and what a controller of 2600 rad/s makes of it.
