@@ -2,7 +2,7 @@
 //! usual ones, and one column alone has to have it; names that merely resemble one are only proposed.
 
 use super::{
-    resemblance::{is_reference, words},
+    resemblance::{is_parameter, is_reference, words},
     vocabulary::{ACROSS, ALONG, ANGLE, BEFORE_SPEED, BESIDE, CURRENT, ROTATION, SPEED, TIME, UDC, VOLTAGE, X},
 };
 use crate::{
@@ -18,10 +18,20 @@ pub(super) fn find(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
 }
 
 fn named_alone(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
-    let mut found = heads.iter().enumerate().filter(|(_, head)| is_alias(channel, head)).map(|(index, _)| index);
-    let first = found.next();
-    first.filter(|_| found.next().is_none())
+    let found = heads.iter().enumerate().filter(|(_, head)| is_alias(channel, head));
+    let of: Vec<usize> = found.map(|(index, _)| index).collect();
+    // Of two currents the one of a controller is its command: moteus has `servo_stats.d_A` and `servo_control.i_d_A`.
+    let is_command = |index: &&usize| words(&heads[**index].name).iter().any(|word| CONTROLLER.contains(&word.as_str()));
+    let measured: Vec<usize> = of.iter().filter(|index| !is_command(index)).copied().collect();
+    match (&of[..], &measured[..]) {
+        ([one], _) => Some(*one),
+        (_, [one]) if channel.dimension() == Dimension::Current => Some(*one),
+        _ => None,
+    }
 }
+
+/// Words for a controller, in the path of a name.
+const CONTROLLER: [&str; 3] = ["control", "controller", "ctrl"];
 
 /// Whether the names of the two axes differ in nothing but the axis: `motor_id` beside `iq` may be a number of the motor.
 pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
@@ -36,16 +46,21 @@ pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
 /// the fields of a structure.
 const ELEMENTS: [[&str; 2]; 5] = [["0", "1"], ["1", "2"], ["re", "im"], ["real", "imag"], ["d", "q"]];
 
-/// The column of a channel, if the log has one vector of its two axes, `v_dq[0]` and `v_dq[1]`, `Idq_in_A.value[0]`, `Vdq:1`, `i_dq_re`.
+/// What a vector is called, beside `dq`.
+const OF_VOLTAGES: [&str; 4] = ["v", "u", "voltage", "voltages"];
+const OF_CURRENTS: [&str; 4] = ["i", "current", "currents", "strom"];
+
+/// The column of a channel, if the log has one vector of its two axes, `v_dq[0]` and `v_dq[1]`, `Idq_in_A.value[0]`, `Vdq:1`, `i_dq_re`,
+/// `Stator currents (dq):1`.
 fn named_by_vector(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
     let (axis, names) = match channel {
-        Channel::Ud => (0, ["v", "u"]),
-        Channel::Uq => (1, ["v", "u"]),
-        Channel::Id => (0, ["i", "i"]),
-        Channel::Iq => (1, ["i", "i"]),
+        Channel::Ud => (0, &OF_VOLTAGES),
+        Channel::Uq => (1, &OF_VOLTAGES),
+        Channel::Id => (0, &OF_CURRENTS),
+        Channel::Iq => (1, &OF_CURRENTS),
         _ => return None,
     };
-    let mut found = (0..heads.len()).filter_map(|of_d| vector(&heads[of_d].name, heads, &names).map(|of_q| [of_d, of_q]));
+    let mut found = (0..heads.len()).filter_map(|of_d| vector(&heads[of_d].name, heads, names).map(|of_q| [of_d, of_q]));
     let first = found.next().filter(|_| found.next().is_none())?;
     Some(first[axis])
 }
@@ -76,7 +91,7 @@ fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize
 /// Whether two names are those of the elements of one vector.
 pub(super) fn are_elements(names: [&str; 2]) -> bool {
     let heads = [ColumnHead { name: names[1].to_owned(), ..ColumnHead::default() }];
-    vector(names[0], &heads, &["v", "u", "i"]).is_some()
+    vector(names[0], &heads, &[OF_VOLTAGES, OF_CURRENTS].concat()).is_some()
 }
 
 /// Words for the share of a period during which a leg of the inverter is switched to the upper rail.
@@ -210,7 +225,9 @@ fn stem(channel: Channel, name: &str) -> (&str, HeaderUnit<'_>) {
 fn named(channel: Channel, stem: &str, unit: HeaderUnit) -> Option<(String, Vec<String>)> {
     let dimension = channel.dimension();
     let is_beside = |word: &String| {
-        BESIDE.contains(&word.as_str()) || matches!(dimension, Dimension::Speed | Dimension::Angle) && ROTATION.contains(&word.as_str())
+        BESIDE.contains(&word.as_str())
+            || is_parameter(word)
+            || matches!(dimension, Dimension::Speed | Dimension::Angle) && ROTATION.contains(&word.as_str())
     };
     let plain = |word: &String| {
         let mut word = word.clone();
@@ -372,6 +389,7 @@ mod tests {
                     "q-Achsen-Strom",
                     "Querstrom [A]",
                     "Stromistwert momentenbildend [A]",
+                    "r0078 Stromistwert momentenbildend [A]",
                     "momentenbildender Strom",
                     "MotorIq",
                     "iq_mA",
@@ -399,6 +417,7 @@ mod tests {
                     "n [U/min]",
                     "rpm",
                     "Motordrehzahl [1/min]",
+                    "r0063 Drehzahlistwert [1/min]",
                     "Istdrehzahl (min-1)",
                     "Drehzahlistwert [1/min]",
                     "Drehzahl Welle (U/min)",
@@ -454,11 +473,25 @@ mod tests {
         assert_eq!(found(&["FOCVars.Vqd.d", "FOCVars.Vqd.q", "FOCVars.Iqd.d", "FOCVars.Iqd.q"]), all);
         assert_eq!(found(&["Vqd[0]", "Vqd[1]", "FOCVars.Iqdref.d", "FOCVars.Iqdref.q"]), [None; 4]);
         assert_eq!(found(&["Vdq:1", "Vdq:2", "Idq:1", "Idq:2"]), all);
+        assert_eq!(found(&["Voltages (dq):1", "Voltages (dq):2", "Stator currents (dq):1", "Stator currents (dq):2"]), all);
         assert_eq!(found(&["v_dq[0]", "v_dq[1]", "i_dq[0]", "i_dq[1]"]), all);
         assert_eq!(found(&["udq(:,1)", "udq(:,2)", "i_sdq_re", "i_sdq_im"]), all);
         assert_eq!(found(&["v_dq_mV[0]", "v_dq_mV[1]", "i_dq_mA_re", "i_dq_mA_im"]), [Some(0), Some(1), None, None]);
         assert_eq!(found(&["v_dq[0]", "v_dq[2]", "i_dq_ref[0]", "i_dq_ref[1]"]), [None; 4]);
         assert_eq!(found(&["a.idq[0]", "a.idq[1]", "b.idq[0]", "b.idq[1]"]), [None; 4]);
+    }
+
+    /// As moteus logs them; of one current alone the path says nothing.
+    #[test]
+    fn a_current_of_a_controller_is_its_command_beside_another() {
+        let heads = |names: &[&str]| -> Vec<ColumnHead> {
+            names.iter().map(|name| ColumnHead { name: (*name).to_owned(), ..ColumnHead::default() }).collect()
+        };
+        let moteus = heads(&["servo_stats.d_A", "servo_control.d_V", "servo_control.i_d_A"]);
+        assert_eq!([Channel::Id, Channel::Ud].map(|channel| find(channel, &moteus)), [Some(0), Some(1)]);
+        assert_eq!(find(Channel::Id, &heads(&["motor_control.id"])), Some(0));
+        assert_eq!(find(Channel::Id, &heads(&["a.id", "b.id", "control.id"])), None);
+        assert_eq!(find(Channel::Ud, &heads(&["stats.ud", "control.ud"])), None);
     }
 
     #[test]

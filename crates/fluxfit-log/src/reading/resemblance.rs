@@ -1,5 +1,6 @@
 //! Names that resemble those of a channel or of a reference: for proposals and warnings only, a column is never read because of them.
 
+use super::vocabulary::{ACROSS, ALONG};
 use crate::{
     block::ColumnHead,
     channel::Channel,
@@ -138,7 +139,9 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
         (similarity >= SIMILAR).then(fit)
     });
     // Of equal ones the first.
-    fits.chain(of_bus(channel, &words)).reduce(|best, next| if next.score > best.score { next } else { best })
+    fits.chain(of_bus(channel, &words))
+        .chain(of_german(channel, &words))
+        .reduce(|best, next| if next.score > best.score { next } else { best })
 }
 
 /// Words between the quantity and the axis of a signal of a bus: its frame, and what it is.
@@ -185,6 +188,31 @@ fn of_bus(channel: Channel, words: &[String]) -> Option<Fit> {
     let is_bus = is_signal && !(middle.is_empty() && frame.is_empty());
     is_bus.then(|| Fit { score: 1.0 - OTHER_WORDS * others, around: format!("{first} {}||", middle.join(" ")) })
 }
+
+/// How a name resembles a channel by a German word for its axis and one for its quantity, as in `r1732 Längsspannungssollwert`.
+fn of_german(channel: Channel, words: &[String]) -> Option<Fit> {
+    let (axis, quantity): (&[&str], &str) = match channel {
+        Channel::Ud => (&ALONG, "spannung"),
+        Channel::Uq => (&ACROSS, "spannung"),
+        Channel::Id => (&ALONG, "strom"),
+        Channel::Iq => (&ACROSS, "strom"),
+        _ => return None,
+    };
+    let name = words.iter().filter(|word| !is_parameter(word)).map(|word| word.replace('ä', "ae")).collect::<Vec<_>>().join(" ");
+    let axis = axis.iter().find(|axis| name.contains(**axis) && name.contains(quantity))?;
+    let around = name.replace(*axis, "|");
+    let others = 1.0 - (STEPS * (axis.len() + quantity.len()) as f64 / name.len() as f64).round() / STEPS;
+    Some(Fit { score: 1.0 - OTHER_WORDS * others, around })
+}
+
+/// Whether a word is the number of a converter's parameter, as before a name in Siemens' tools: `r0076 Stromistwert feldbildend`.
+pub(super) fn is_parameter(word: &str) -> bool {
+    let digits = word.strip_prefix(['r', 'p']).unwrap_or_default();
+    digits.len() == DIGITS && digits.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Digits of such a number.
+const DIGITS: usize = 4;
 
 /// Whether a name ends in the unit of a flux density, `Bmax_T`: that letter is no time.
 fn is_in_tesla(name: &str) -> bool {
@@ -241,6 +269,21 @@ pub(super) fn words(name: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As a trace of Siemens' STARTER names them.
+    #[test]
+    fn german_names_of_both_axes_are_of_one_motor() {
+        let around = |channel: Channel, name: &str| fit(channel, name).map(|fit| fit.around);
+        let names = [
+            (Channel::Ud, Channel::Uq, "r1732 Längsspannungssollwert [Veff]", "r1733 Querspannungssollwert [Veff]"),
+            (Channel::Id, Channel::Iq, "r0076 Stromistwert feldbildend [Aeff]", "r0078 Stromistwert momentenbildend [Aeff]"),
+        ];
+        for (d, q, of_d, of_q) in names {
+            assert!(around(d, of_d).is_some() && around(d, of_d) == around(q, of_q), "{of_d} {of_q}");
+            assert!(fit(q, of_d).is_none() && fit(d, of_q).is_none(), "{of_d} {of_q}");
+        }
+        assert!(fit(Channel::Ud, "Querstrom").is_none() && fit(Channel::Iq, "Querbeschleunigung").is_none());
+    }
 
     #[test]
     fn references_are_recognized_by_name() {

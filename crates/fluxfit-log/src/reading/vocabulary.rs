@@ -140,8 +140,21 @@ pub(super) const UDC: [&str; 15] = [
     "udclink",
 ];
 
-pub(super) const ANGLE: [&str; 12] =
-    ["thetam", "thetae", "thetar", "thetael", "theta", "angle", "phi", "epsilon", "winkel", "rotorwinkel", "position", "rotorangle"];
+pub(super) const ANGLE: [&str; 13] = [
+    "transformationswinkel",
+    "thetam",
+    "thetae",
+    "thetar",
+    "thetael",
+    "theta",
+    "angle",
+    "phi",
+    "epsilon",
+    "winkel",
+    "rotorwinkel",
+    "position",
+    "rotorangle",
+];
 
 /// German words for the axes: along the field and across it, of the field and of the torque.
 pub(super) const ALONG: [&str; 2] = ["laengs", "feldbildend"];
