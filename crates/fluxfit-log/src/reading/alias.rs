@@ -2,7 +2,7 @@
 //! usual ones, and one column alone has to have it; names that merely resemble one are only proposed.
 
 use super::{
-    resemblance::{is_parameter, is_reference, words},
+    resemblance::{is_parameter, is_reference, says_reference, words},
     vocabulary::{ACROSS, ALONG, ANGLE, BEFORE_SPEED, BESIDE, CURRENT, ROTATION, SPEED, TIME, UDC, VOLTAGE, X},
 };
 use crate::{
@@ -20,18 +20,25 @@ pub(super) fn find(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
 fn named_alone(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
     let found = heads.iter().enumerate().filter(|(_, head)| is_alias(channel, head));
     let of: Vec<usize> = found.map(|(index, _)| index).collect();
-    // Of two currents the one of a controller is its command: moteus has `servo_stats.d_A` and `servo_control.i_d_A`.
-    let is_command = |index: &&usize| words(&heads[**index].name).iter().any(|word| CONTROLLER.contains(&word.as_str()));
-    let measured: Vec<usize> = of.iter().filter(|index| !is_command(index)).copied().collect();
-    match (&of[..], &measured[..]) {
-        ([one], _) => Some(*one),
-        (_, [one]) if channel.dimension() == Dimension::Current => Some(*one),
+    match of[..] {
+        [one] => Some(one),
+        [one, other] if channel.dimension() == Dimension::Current => measured_one([one, other], heads),
         _ => None,
     }
 }
 
-/// Words for a controller, in the path of a name.
+/// Of two currents, one of a controller and one that was measured, the latter: moteus has its command `servo_control.i_d_A` beside
+/// `servo_stats.d_A`.
+fn measured_one(currents: [usize; 2], heads: &[ColumnHead]) -> Option<usize> {
+    let has = |index: usize, known: &[&str]| words(&heads[index].name).iter().any(|word| known.contains(&word.as_str()));
+    let is_it = |it: usize, other: usize| has(it, &MEASURED) && !has(it, &CONTROLLER) && has(other, &CONTROLLER) && !has(other, &MEASURED);
+    let [one, other] = currents;
+    [(one, other), (other, one)].into_iter().find(|(it, other)| is_it(*it, *other)).map(|(it, _)| it)
+}
+
+/// Words for a controller and for what is measured, in the path of a name.
 const CONTROLLER: [&str; 3] = ["control", "controller", "ctrl"];
+const MEASURED: [&str; 8] = ["stats", "status", "meas", "measured", "act", "actual", "fb", "feedback"];
 
 /// Whether the names of the two axes differ in nothing but the axis: `motor_id` beside `iq` may be a number of the motor.
 pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
@@ -77,14 +84,21 @@ fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize
         };
         quantities.iter().any(of)
     };
-    let is_named = stem.iter().any(|word| is_quantity(word)) || stem.windows(2).any(|pair| is_quantity(&pair.concat()));
+    // Where the quantity is a word, the others may only say that it is the motor's: there are grids and filters, too.
+    let is_beside = |word: &&String| BESIDE.contains(&word.as_str());
+    let names_the_motor = |place: usize| {
+        let (before, behind) = (&stem[..place], &stem[place + 2..]);
+        stem[place].len() <= 2 || before.iter().chain(behind).all(|word| is_beside(&word))
+    };
+    let pairs = || stem.windows(2).enumerate().filter(|(_, pair)| is_quantity(&pair.concat()));
+    let is_named = stem.iter().any(|word| word.len() <= 4 && is_quantity(word)) || pairs().any(|(place, _)| names_the_motor(place));
     // A unit is read from the end of a name, or before brackets.
     let has_hidden_unit =
         || name.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| ["mv", "ma", "kv", "ka", "pu"].contains(&word));
     let is_plain = name.ends_with([']', ')']) || !has_hidden_unit();
     let [_, second] = *ELEMENTS.iter().find(|[first, _]| last == first)?;
     let is_second = |head: &ColumnHead| words(&head.name).split_last().is_some_and(|(end, other)| end == second && other == stem);
-    let is_measured = is_named && is_plain && !is_reference(name);
+    let is_measured = is_named && is_plain && !is_reference(name) && !says_reference(&parts);
     is_measured.then(|| heads.iter().position(is_second)).flatten()
 }
 
@@ -226,8 +240,7 @@ fn named(channel: Channel, stem: &str, unit: HeaderUnit) -> Option<(String, Vec<
     let dimension = channel.dimension();
     let is_beside = |word: &String| {
         BESIDE.contains(&word.as_str())
-            || is_parameter(word)
-            || matches!(dimension, Dimension::Speed | Dimension::Angle) && ROTATION.contains(&word.as_str())
+            || matches!(dimension, Dimension::Speed | Dimension::Angle) && (ROTATION.contains(&word.as_str()) || is_parameter(word))
     };
     let plain = |word: &String| {
         let mut word = word.clone();
@@ -389,7 +402,6 @@ mod tests {
                     "q-Achsen-Strom",
                     "Querstrom [A]",
                     "Stromistwert momentenbildend [A]",
-                    "r0078 Stromistwert momentenbildend [A]",
                     "momentenbildender Strom",
                     "MotorIq",
                     "iq_mA",
@@ -476,6 +488,9 @@ mod tests {
         assert_eq!(found(&["Voltages (dq):1", "Voltages (dq):2", "Stator currents (dq):1", "Stator currents (dq):2"]), all);
         assert_eq!(found(&["v_dq[0]", "v_dq[1]", "i_dq[0]", "i_dq[1]"]), all);
         assert_eq!(found(&["udq(:,1)", "udq(:,2)", "i_sdq_re", "i_sdq_im"]), all);
+        for other in ["Currents (dq) ref", "Currents (dq, setpoint)", "Grid currents (dq)", "Commanded currents dq", "Filter current dq"] {
+            assert_eq!(found(&[&format!("{other}:1"), &format!("{other}:2")]), [None; 4], "{other}");
+        }
         assert_eq!(found(&["v_dq_mV[0]", "v_dq_mV[1]", "i_dq_mA_re", "i_dq_mA_im"]), [Some(0), Some(1), None, None]);
         assert_eq!(found(&["v_dq[0]", "v_dq[2]", "i_dq_ref[0]", "i_dq_ref[1]"]), [None; 4]);
         assert_eq!(found(&["a.idq[0]", "a.idq[1]", "b.idq[0]", "b.idq[1]"]), [None; 4]);
@@ -491,6 +506,7 @@ mod tests {
         assert_eq!([Channel::Id, Channel::Ud].map(|channel| find(channel, &moteus)), [Some(0), Some(1)]);
         assert_eq!(find(Channel::Id, &heads(&["motor_control.id"])), Some(0));
         assert_eq!(find(Channel::Id, &heads(&["a.id", "b.id", "control.id"])), None);
+        assert_eq!(find(Channel::Id, &heads(&["observer.id", "control.id"])), None);
         assert_eq!(find(Channel::Ud, &heads(&["stats.ud", "control.ud"])), None);
     }
 

@@ -29,9 +29,14 @@ const STEPS: f64 = 10.0;
 const WORDS: usize = 3;
 
 /// Words in the name of a column that mark it as a reference or another number that is no measurement; `soll` is German.
-const REFERENCE: [&str; 28] = [
+const REFERENCE: [&str; 33] = [
     "ref",
     "reference",
+    "references",
+    "setpoints",
+    "commanded",
+    "traj",
+    "trajectory",
     "req",
     "request",
     "requested",
@@ -91,8 +96,16 @@ pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
 pub(super) fn is_reference(header: &str) -> bool {
     // `id*`: the mark of a reference in a formula.
     let has_star = header.split(['[', '(']).next().unwrap_or(header).trim_end().ends_with('*');
-    has_star || without_unit(header).iter().any(|word| REFERENCE.contains(&word.as_str()))
+    has_star || says_reference(&without_unit(header))
 }
+
+/// The same of the words of a name.
+pub(super) fn says_reference(words: &[String]) -> bool {
+    words.iter().any(|word| REFERENCE.contains(&word.as_str()) || word.ends_with(SOLLWERT))
+}
+
+/// What German writes in one with the quantity of a reference: `Stromsollwert`.
+const SOLLWERT: &str = "sollwert";
 
 /// The words of a header before brackets: 1/min is no minimum.
 fn without_unit(header: &str) -> Vec<String> {
@@ -199,7 +212,13 @@ fn of_german(channel: Channel, words: &[String]) -> Option<Fit> {
         _ => return None,
     };
     let name = words.iter().filter(|word| !is_parameter(word)).map(|word| word.replace('ä', "ae")).collect::<Vec<_>>().join(" ");
-    let axis = axis.iter().find(|axis| name.contains(**axis) && name.contains(quantity))?;
+    let is_word = |axis: &str| words.iter().any(|word| word.strip_prefix(axis).is_some_and(|rest| ["", "e", "er"].contains(&rest)));
+    let has = |axis: &&&str| name.contains(&format!("{axis}{quantity}")) || is_word(axis) && name.contains(quantity);
+    let axis = axis.iter().find(has)?;
+    // The reference of a voltage is measured well enough, that of a current is not.
+    if quantity == "strom" && says_reference(words) {
+        return None;
+    }
     let around = name.replace(*axis, "|");
     let others = 1.0 - (STEPS * (axis.len() + quantity.len()) as f64 / name.len() as f64).round() / STEPS;
     Some(Fit { score: 1.0 - OTHER_WORDS * others, around })
@@ -282,6 +301,7 @@ mod tests {
             assert!(around(d, of_d).is_some() && around(d, of_d) == around(q, of_q), "{of_d} {of_q}");
             assert!(fit(q, of_d).is_none() && fit(d, of_q).is_none(), "{of_d} {of_q}");
         }
+        assert!(fit(Channel::Id, "r0075 Stromsollwert feldbildend").is_none() && fit(Channel::Iq, "query_strom").is_none());
         assert!(fit(Channel::Ud, "Querstrom").is_none() && fit(Channel::Iq, "Querbeschleunigung").is_none());
     }
 
