@@ -98,7 +98,7 @@ fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize
     let is_plain = name.ends_with([']', ')']) || !has_hidden_unit();
     let [_, second] = *ELEMENTS.iter().find(|[first, _]| last == first)?;
     let is_second = |head: &ColumnHead| words(&head.name).split_last().is_some_and(|(end, other)| end == second && other == stem);
-    let is_measured = is_named && is_plain && !is_reference(name) && !says_reference(&parts);
+    let is_measured = is_named && is_plain && !name.contains('*') && !says_reference(&parts);
     is_measured.then(|| heads.iter().position(is_second)).flatten()
 }
 
@@ -488,7 +488,14 @@ mod tests {
         assert_eq!(found(&["Voltages (dq):1", "Voltages (dq):2", "Stator currents (dq):1", "Stator currents (dq):2"]), all);
         assert_eq!(found(&["v_dq[0]", "v_dq[1]", "i_dq[0]", "i_dq[1]"]), all);
         assert_eq!(found(&["udq(:,1)", "udq(:,2)", "i_sdq_re", "i_sdq_im"]), all);
-        for other in ["Currents (dq) ref", "Currents (dq, setpoint)", "Grid currents (dq)", "Commanded currents dq", "Filter current dq"] {
+        for other in [
+            "Currents (dq) ref",
+            "Currents (dq)*",
+            "Currents (dq, setpoint)",
+            "Grid currents (dq)",
+            "Commanded currents dq",
+            "Filter current dq",
+        ] {
             assert_eq!(found(&[&format!("{other}:1"), &format!("{other}:2")]), [None; 4], "{other}");
         }
         assert_eq!(found(&["v_dq_mV[0]", "v_dq_mV[1]", "i_dq_mA_re", "i_dq_mA_im"]), [Some(0), Some(1), None, None]);

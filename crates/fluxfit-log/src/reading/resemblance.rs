@@ -29,7 +29,7 @@ const STEPS: f64 = 10.0;
 const WORDS: usize = 3;
 
 /// Words in the name of a column that mark it as a reference or another number that is no measurement; `soll` is German.
-const REFERENCE: [&str; 33] = [
+const REFERENCE: [&str; 32] = [
     "ref",
     "reference",
     "references",
@@ -49,7 +49,6 @@ const REFERENCE: [&str; 33] = [
     "desired",
     "set",
     "soll",
-    "sollwert",
     "step",
     "steps",
     "index",
