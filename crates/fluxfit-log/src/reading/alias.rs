@@ -3,7 +3,10 @@
 
 use super::{
     resemblance::{is_parameter, is_reference, says_reference, words},
-    vocabulary::{ACROSS, ALONG, ANGLE, BEFORE_SPEED, BESIDE, CURRENT, ROTATION, SPEED, TIME, UDC, VOLTAGE, X},
+    vocabulary::{
+        ACROSS, ALONG, ANGLE, BEFORE_SPEED, BESIDE, CONTROLLER, CURRENT, CURRENT_VECTOR, MEASURED, ROTATION, SPEED, TIME, UDC, VOLTAGE,
+        VOLTAGE_VECTOR, X,
+    },
 };
 use crate::{
     block::ColumnHead,
@@ -36,10 +39,6 @@ fn measured_one(currents: [usize; 2], heads: &[ColumnHead]) -> Option<usize> {
     [(one, other), (other, one)].into_iter().find(|(it, other)| is_it(*it, *other)).map(|(it, _)| it)
 }
 
-/// Words for a controller and for what is measured, in the path of a name.
-const CONTROLLER: [&str; 3] = ["control", "controller", "ctrl"];
-const MEASURED: [&str; 8] = ["stats", "status", "meas", "measured", "act", "actual", "fb", "feedback"];
-
 /// Whether the names of the two axes differ in nothing but the axis: `motor_id` beside `iq` may be a number of the motor.
 pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
     let beside = |k: usize| {
@@ -53,18 +52,14 @@ pub(super) fn are_pair(channels: [Channel; 2], names: [&str; 2]) -> bool {
 /// the fields of a structure.
 const ELEMENTS: [[&str; 2]; 5] = [["0", "1"], ["1", "2"], ["re", "im"], ["real", "imag"], ["d", "q"]];
 
-/// What a vector is called, beside `dq`.
-const OF_VOLTAGES: [&str; 4] = ["v", "u", "voltage", "voltages"];
-const OF_CURRENTS: [&str; 4] = ["i", "current", "currents", "strom"];
-
 /// The column of a channel, if the log has one vector of its two axes, `v_dq[0]` and `v_dq[1]`, `Idq_in_A.value[0]`, `Vdq:1`, `i_dq_re`,
 /// `Stator currents (dq):1`.
 fn named_by_vector(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
     let (axis, names) = match channel {
-        Channel::Ud => (0, &OF_VOLTAGES),
-        Channel::Uq => (1, &OF_VOLTAGES),
-        Channel::Id => (0, &OF_CURRENTS),
-        Channel::Iq => (1, &OF_CURRENTS),
+        Channel::Ud => (0, &VOLTAGE_VECTOR),
+        Channel::Uq => (1, &VOLTAGE_VECTOR),
+        Channel::Id => (0, &CURRENT_VECTOR),
+        Channel::Iq => (1, &CURRENT_VECTOR),
         _ => return None,
     };
     let mut found = (0..heads.len()).filter_map(|of_d| vector(&heads[of_d].name, heads, names).map(|of_q| [of_d, of_q]));
@@ -105,7 +100,7 @@ fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize
 /// Whether two names are those of the elements of one vector.
 pub(super) fn are_elements(names: [&str; 2]) -> bool {
     let heads = [ColumnHead { name: names[1].to_owned(), ..ColumnHead::default() }];
-    vector(names[0], &heads, &[OF_VOLTAGES, OF_CURRENTS].concat()).is_some()
+    vector(names[0], &heads, &[VOLTAGE_VECTOR, CURRENT_VECTOR].concat()).is_some()
 }
 
 /// Words for the share of a period during which a leg of the inverter is switched to the upper rail.

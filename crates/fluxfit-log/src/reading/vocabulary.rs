@@ -62,6 +62,15 @@ pub(super) const ROTATION: [&str; 24] = [
 pub(super) const CURRENT: [&str; 10] = ["i", "is", "current", "strom", "courant", "corrente", "corriente", "stroem", "电流", "電流"];
 pub(super) const VOLTAGE: [&str; 12] =
     ["u", "v", "us", "vs", "voltage", "volt", "spannung", "tension", "tensione", "voltaje", "电压", "電圧"];
+
+/// What a vector is called, beside `dq`.
+pub(super) const CURRENT_VECTOR: [&str; 4] = ["i", "current", "currents", "strom"];
+pub(super) const VOLTAGE_VECTOR: [&str; 4] = ["v", "u", "voltage", "voltages"];
+
+/// Words for a controller and for what is measured, in the path of a name.
+pub(super) const CONTROLLER: [&str; 3] = ["control", "controller", "ctrl"];
+pub(super) const MEASURED: [&str; 8] = ["stats", "status", "meas", "measured", "act", "actual", "fb", "feedback"];
+
 pub(super) const TIME: [&str; 22] = [
     "t",
     "time",
