@@ -80,10 +80,9 @@ fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize
         quantities.iter().any(of)
     };
     // Where the quantity is a word, the others may only say that it is the motor's: there are grids and filters, too.
-    let is_beside = |word: &&String| BESIDE.contains(&word.as_str());
     let names_the_motor = |place: usize| {
-        let (before, behind) = (&stem[..place], &stem[place + 2..]);
-        stem[place].len() <= 2 || before.iter().chain(behind).all(|word| is_beside(&word))
+        let mut others = stem[..place].iter().chain(&stem[place + 2..]);
+        stem[place].len() <= 2 || others.all(|word| BESIDE.contains(&word.as_str()))
     };
     let pairs = || stem.windows(2).enumerate().filter(|(_, pair)| is_quantity(&pair.concat()));
     let is_named = stem.iter().any(|word| word.len() <= 4 && is_quantity(word)) || pairs().any(|(place, _)| names_the_motor(place));
