@@ -44,7 +44,8 @@ impl Mending {
             ColumnFinding::PhaseOrder => phases(read),
             ColumnFinding::VoltageScale { ratio, rows, most } => voltages(*ratio, *rows, *most, read),
             ColumnFinding::VoltageShare { .. } => shares(SEEM_SHARES, 0.5, "", read),
-            ColumnFinding::VoltageDigits { .. } => digits(MAY_BE_DIGITS, read),
+            ColumnFinding::VoltageDigits { currents: false, .. } => digits(MAY_BE_DIGITS, read),
+            ColumnFinding::VoltageDigits { currents: true, .. } => digits(ALL_MAY_BE_DIGITS, read),
             _ => Self::default(),
         }
     }
@@ -301,6 +302,7 @@ const MOST_PER_CENT: f64 = 130.0;
 const SEEM_SHARES: &str = "they seem to be shares of u_dc (if they are V, add --unit ud=V,uq=V)";
 
 const MAY_BE_DIGITS: &str = "digits of a converter, or rounded V (if so, add --unit ud=V,uq=V)";
+const ALL_MAY_BE_DIGITS: &str = "digits of a converter, tenths, or rounded V and A (if so, add --unit ud=V,uq=V)";
 
 fn voltages(ratio: f64, rows: f64, most: f64, read: &[ReadColumn]) -> Mending {
     if ratio >= MILLI {

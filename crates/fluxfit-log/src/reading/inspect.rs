@@ -8,12 +8,12 @@ use super::{
     survey::{Surveyed, survey},
     table::Table,
 };
-use crate::{block::WantedColumn, instant::Instants, problem::Problem};
+use crate::{block::WantedColumn, channel::Channel, instant::Instants, problem::Problem};
 use fluxfit_files::{
-    FileError,
+    FileError, FileErrorKind,
     input::{self, Bytes},
 };
-use fluxfit_units::Unit;
+use fluxfit_units::{Dimension, Unit};
 use std::path::Path;
 
 /// How a file is read.
@@ -48,6 +48,8 @@ pub struct InspectedColumn {
     pub read_as: Option<(&'static str, &'static str)>,
     /// Whether the file, the layout, the user or its own name states its unit; otherwise SI is assumed of what is read.
     pub is_unit_stated: bool,
+    /// Whether the file, the layout of a tool or the user states it, and not its own name alone.
+    pub is_unit_written: bool,
     /// Whether one of them states that it is electrical or mechanical, if it is a speed or an angle.
     pub is_rotation_stated: bool,
     /// Its smallest and largest number, as the file has them; none if it has no numbers, or if the log came through a pipe.
@@ -81,6 +83,7 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
     let (kind, heads) = (table.kind(), table.heads().to_vec());
     let log = read(table, &resolved).map_err(|error| error.in_file(&name));
     let survey = if log.is_ok() { survey } else { survey.without_guesses() };
+    let is_of_units = log.as_ref().err().is_some_and(|error| error.kind() == FileErrorKind::Unit);
     // Numbers that may count from 1970 are shown as such only where they are read so; dates are no numbers.
     let is_read_as_instant = |index: usize| survey.taken.iter().any(|taken| taken.index == index && taken.is_instant);
     let instants = |index: usize| heads[index].instants.clone().filter(|instants| instants.is_date() || is_read_as_instant(index));
@@ -89,8 +92,11 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         let of = |columns: &[Surveyed]| columns.iter().find(|column| column.index == index).copied();
         let (taken, resembling) = (of(&survey.taken), of(&survey.resembling));
         let found = taken.or(resembling);
-        // Of what is read, SI is assumed where nothing states a unit; of what is not, nothing is.
-        let unit = found.filter(|found| found.is_unit_stated || log.is_ok()).and_then(|found| found.unit);
+        // Of what is read, SI is assumed where nothing states a unit; of what is not, nothing is. Nor is it what a name means, where the log
+        // is refused for its units.
+        let is_doubted = |found: &Surveyed| is_of_units && is_electrical(found.channel) && !found.is_unit_written;
+        let is_stated = |found: &Surveyed| found.is_unit_stated && !is_doubted(found);
+        let unit = found.filter(|found| is_stated(found) || log.is_ok()).and_then(|found| found.unit);
         InspectedColumn {
             header: head.name.clone(),
             unit: head.unit.clone(),
@@ -99,7 +105,8 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
                 true => Some((Unit::Second.name(), "s from the first row")),
                 false => unit.map(|unit| (unit.name(), unit.prose())),
             },
-            is_unit_stated: found.is_some_and(|found| found.is_unit_stated),
+            is_unit_stated: found.as_ref().is_some_and(is_stated),
+            is_unit_written: found.is_some_and(|found| found.is_unit_written),
             is_rotation_stated: found.is_some_and(|found| found.is_rotation_stated),
             resembles: resembling.filter(|_| taken.is_none()).map(|column| column.channel.name()),
             range: courses.get(index).and_then(Course::range),
@@ -122,6 +129,11 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         Err(error) => (None, Err(error)),
     };
     Ok(Inspection { kind, layout, columns, table, is_table, log })
+}
+
+/// Whether a channel is a voltage or a current.
+pub(super) fn is_electrical(channel: Channel) -> bool {
+    matches!(channel.dimension(), Dimension::Voltage | Dimension::Current)
 }
 
 /// Most stretches of a course; where there are more, each two become one.

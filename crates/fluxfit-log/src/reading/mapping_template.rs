@@ -1,7 +1,7 @@
 //! The mapping file that an inspection proposes.
 
 use super::{
-    inspect::{InspectedColumn, Inspection},
+    inspect::{InspectedColumn, Inspection, is_electrical},
     mapping::Park,
     options::LogOptions,
 };
@@ -91,14 +91,16 @@ fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> St
     let is_taken = column.channel.is_some();
     let is_instant = channel == Channel::T && column.is_instant;
     let is_speed = channel == Channel::OmegaE;
-    let unit = match column.read_as {
+    // What only the channel's name means would count as stated here, and digits or mV pass for V.
+    let read_as = column.read_as.filter(|_| column.is_unit_written || !is_electrical(channel));
+    let unit = match read_as {
         _ if is_instant || column.share.is_some() => None,
         Some((unit, _)) => Some(unit).filter(|unit| *unit != "1"),
         // To be filled in: a speed is not read without.
         None => is_speed.then_some("?"),
     };
     let by_name = if is_taken { "" } else { "by its name; check it" };
-    let of_unit = match (column.read_as, channel) {
+    let of_unit = match (read_as, channel) {
         _ if is_instant || column.share.is_some() => "",
         (None, Channel::OmegaE) if is_taken => "nothing states its unit: rad/s, rpm-elec, rpm-mech, ..",
         (None, _) if is_taken => "nothing states its unit; check it, and add unit = .. unless it is SI",
@@ -213,6 +215,30 @@ mod tests {
             mapping.contains("\nomega_e = { column = \"Motor.Load speed_rpm\", unit = \"rpm-mech\" }  # by its name; check it\n"),
             "{mapping}"
         );
+    }
+
+    /// Columns in mA and mV under the channels' own names: refused, also with the mapping that was written, until the units are filled in.
+    #[test]
+    fn a_written_mapping_does_not_state_the_units_of_names() {
+        let rows: String =
+            (0..300).map(|row| format!("{row},{},{},-130,{},900\n", -4600 + row, 21_000 + 7 * row, 4065 + row % 9)).collect();
+        let text = format!("t,ud,uq,id,iq,omega_e\n{rows}");
+        let first = inspected(&text, &LogOptions::default());
+        assert_eq!(first.columns.iter().filter(|column| column.read_as.is_none()).count(), 4);
+        let mapping = first.mapping(&LogOptions::default());
+        let read = |mapping: &str| {
+            let options = LogOptions { mapping: Mapping::parse("m.toml", mapping.as_bytes()).unwrap(), ..LogOptions::default() };
+            inspected(&text, &options).log
+        };
+        let again = read(&mapping).unwrap_err().to_string();
+        assert!(again.contains("are whole numbers up to 23093"), "{again}");
+        let of = |channel: &str| format!("\n{channel} = {{ column = \"{channel}\" }}");
+        let filled_in = ["ud", "uq", "id", "iq"].iter().fold(mapping, |mapping, channel| {
+            let unit = if channel.starts_with('u') { "mV" } else { "mA" };
+            assert!(mapping.contains(&of(channel)), "{mapping}");
+            mapping.replace(&of(channel), &format!("\n{channel} = {{ column = \"{channel}\", unit = \"{unit}\" }}"))
+        });
+        assert!((read(&filled_in).unwrap().log.columns().iq[0] - 4.065).abs() < 1e-12);
     }
 
     /// Whole numbers of ns are those of the file, unless they count from 1970: then they are seconds from the first row.

@@ -23,6 +23,8 @@ pub(super) struct Surveyed {
     pub(super) unit: Option<Unit>,
     /// The file, the layout, the user or the channel's own name states the unit.
     pub(super) is_unit_stated: bool,
+    /// The file or the user states it, and not the channel's own name alone.
+    pub(super) is_unit_written: bool,
     /// One of them states whether a speed or an angle is electrical; true of other channels.
     pub(super) is_rotation_stated: bool,
     /// It is the time, and its cells are read as instants.
@@ -128,11 +130,14 @@ fn surveyed(channel: Channel, index: usize, head: &ColumnHead, layout: Option<&'
     let is_turning = matches!(channel.dimension(), Dimension::Speed | Dimension::Angle);
     let unit = of_user.or(of_file).or(of_layout.map(|column| column.unit));
     let is_known = of_user.is_some() || of_layout.is_some() || is_own_name;
+    // The layout of a tool has units; the one of the channels' own names has what the names mean.
+    let has_units = of_layout.is_some() && !layout.is_some_and(Layout::is_canonical);
     Surveyed {
         channel,
         index,
         unit: unit.or((is_own_name && !is_instant).then_some(channel.unit())),
         is_unit_stated: is_known || of_file.is_some() || is_instant || is_scaled || channel.dimension() == Dimension::Ratio,
+        is_unit_written: of_user.is_some() || of_file.is_some() || has_units || is_scaled,
         is_rotation_stated: !is_turning || is_known || states_electrical(&head.name) || unit.is_some_and(Unit::is_mechanical),
         is_instant: false,
         is_named: false,

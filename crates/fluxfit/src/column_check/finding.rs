@@ -62,10 +62,12 @@ pub enum ColumnFinding {
         /// Whether no motor comes to that speed.
         is_certain: bool,
     },
-    /// Voltages that are whole numbers while the currents are not: digits of a converter, or V that were rounded.
+    /// Voltages that are whole numbers: digits of a converter, tenths, or V that were rounded.
     VoltageDigits {
         /// The largest |u|.
         most: f64,
+        /// Whether the currents are whole numbers, too.
+        currents: bool,
     },
 }
 

@@ -31,6 +31,10 @@ const MOST_TURN: f64 = 2.5;
 /// Share of rows that may turn more: the end of a mechanical turn, a lost row.
 const FEW: f64 = 0.02;
 
+/// What an angle turns beyond the speed's turns, rad and on average, in rows so far apart that whole turns lie between them: less than this
+/// if it is the speed's angle, a quarter of a turn if it is none.
+const OF_SPEED: f64 = 0.5;
+
 /// A log that turns less than this in all, rad, tells no ratio.
 const LEAST_TURN: f64 = PI;
 
@@ -72,6 +76,8 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
     // Over blocks of rows: by how much the angle turns, by how much it should by the speed, and by how much that changes.
     let mut blocks: Vec<[f64; 3]> = Vec::new();
     let (mut rows, mut far) = (0, 0);
+    // Rows between which the rotor turns by more than half a turn, by the speed, and what the angle turns beyond that, but for whole turns.
+    let (mut apart, mut beside) = (0, 0.0);
     for segment in log.segments() {
         let mut block = [0.0; 3];
         for (count, row) in (segment.rows.start + 1..segment.rows.end).enumerate() {
@@ -80,11 +86,19 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
             let by_speed = 0.5 * (columns.omega_e[row] + columns.omega_e[row - 1]) * (columns.t[row] - columns.t[row - 1]);
             rows += 1;
             far += usize::from(step.abs() > MOST_TURN / TAU * period);
+            if by_speed.abs() > PI {
+                let turns = step / period - by_speed / TAU;
+                apart += 1;
+                beside += TAU * (turns - turns.round()).abs();
+            }
             block = [block[0] + step, block[1] + by_speed, block[2] + columns.omega_e[row] - columns.omega_e[row - 1]];
             if (count + 1) % BLOCK == 0 {
                 blocks.push(std::mem::take(&mut block));
             }
         }
+    }
+    if 2 * apart > rows && beside < OF_SPEED * apart as f64 {
+        return Some(1.0);
     }
     // By the angle or by the speed: an angle in turns turns less than it says.
     let turned: f64 = blocks.iter().map(|[angle, speed, _]| (angle.abs() * TAU / period).max(speed.abs())).sum();
@@ -146,4 +160,34 @@ pub(super) fn phase_order(log: &Log) -> Option<ColumnFinding> {
         }
     }
     (pairs >= LEAST_ROWS && own < TURNS * length && backward > STANDS * length).then_some(ColumnFinding::PhaseOrder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Columns;
+
+    /// A recorder of 83 Hz at three speeds of 80 to 390 Hz: one to four turns lie between two rows, and the angle goes on by what is left.
+    /// A speed that is a thirtieth too low does not tell where the angle is.
+    #[test]
+    fn an_angle_between_whose_rows_lie_whole_turns_is_that_of_the_speed() {
+        let log = |factor: f64| {
+            const PERIOD: f64 = 0.012;
+            let (mut columns, mut theta) = (Columns::default(), 0.0);
+            let mut angles = Vec::new();
+            for row in 0..600 {
+                let omega_e = TAU * [81.0, 207.0, 390.0][row / 200] * (1.0 + 1e-3 * (0.7 * row as f64).sin());
+                theta += omega_e * PERIOD;
+                angles.push(theta.rem_euclid(TAU));
+                columns.t.push(PERIOD * row as f64);
+                columns.omega_e.push(factor * omega_e);
+                let channels = [&mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq];
+                channels.into_iter().for_each(|channel| channel.push(1.0 + (0.3 * row as f64).sin()));
+            }
+            Log::new(Columns { theta_e: Some(angles), ..columns }).unwrap()
+        };
+        assert_eq!(angle_against_speed(&log(1.0)), None);
+        let of_speed = |factor: f64| ratio(&log(factor), log(factor).columns().theta_e.as_ref().unwrap(), TAU);
+        assert_eq!((of_speed(1.0), of_speed(29.0 / 30.0)), (Some(1.0), None));
+    }
 }

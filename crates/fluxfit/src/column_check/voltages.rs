@@ -129,19 +129,20 @@ const LEAST_DIGITS: f64 = 50.0;
 const ROWS_OF_DIGITS: usize = 100;
 const DIFFERENT: usize = 16;
 
-/// Whether the voltages are whole numbers, as digits of a converter or of a register are, while the currents are none: a log that is
-/// rounded to V and A is not meant.
+/// Whether the voltages are whole numbers, as digits of a converter or of a register are; so may the currents be. A bus that rounds to V
+/// and A has such columns too: it is for the user to say.
 pub(super) fn digits(log: &Log) -> Option<ColumnFinding> {
     let columns = log.columns();
     let are_whole = |values: &[f64]| values.iter().all(|value| value.fract() == 0.0);
-    if log.rows() < ROWS_OF_DIGITS || !are_whole(&columns.ud) || !are_whole(&columns.uq) || are_whole(&columns.iq) {
+    if log.rows() < ROWS_OF_DIGITS || !are_whole(&columns.ud) || !are_whole(&columns.uq) {
         return None;
     }
+    let currents = are_whole(&columns.id) && are_whole(&columns.iq);
     let most = largest(log);
     let mut values: Vec<f64> = columns.ud.iter().chain(&columns.uq).copied().collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
-    (most >= LEAST_DIGITS && values.len() >= DIFFERENT).then_some(ColumnFinding::VoltageDigits { most })
+    (most >= LEAST_DIGITS && values.len() >= DIFFERENT).then_some(ColumnFinding::VoltageDigits { most, currents })
 }
 
 #[cfg(test)]
@@ -232,14 +233,21 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_beside_currents_with_decimals_are_digits() {
-        let digits_of = |factor: f64| {
+    fn whole_numbers_may_be_digits() {
+        let digits_of = |factor: f64, of_current: Option<f64>| {
             let mut columns = Drive::SERVO.log(factor).columns().clone();
             columns.ud.iter_mut().chain(&mut columns.uq).for_each(|value| *value = value.round());
+            if let Some(digit) = of_current {
+                columns.id.iter_mut().chain(&mut columns.iq).for_each(|value| *value = (digit * *value).round());
+            }
             digits(&Log::new(columns).unwrap())
         };
-        assert!(matches!(digits_of(2048.0 / 560.0), Some(ColumnFinding::VoltageDigits { most }) if most.fract() < 1.0 && most > 400.0));
-        assert_eq!(digits_of(0.1), None);
+        for (of_current, expected) in [(None, false), (Some(10.0), true)] {
+            let found = digits_of(2048.0 / 560.0, of_current);
+            let is_expected = |most: f64, currents: bool| most > 400.0 && currents == expected;
+            assert!(matches!(found, Some(ColumnFinding::VoltageDigits { most, currents }) if is_expected(most, currents)), "{found:?}");
+        }
+        assert_eq!(digits_of(0.1, None), None);
         assert_eq!(digits(&Drive::SERVO.log(1.0)), None);
     }
 }

@@ -63,9 +63,10 @@ impl Display for ColumnFinding {
                     None => write!(f, "as volts less than one step of an inverter"),
                 }
             }
-            Self::VoltageDigits { most } => {
+            Self::VoltageDigits { most, currents: false } => {
                 write!(f, "u_d and u_q are whole numbers, up to {most:.0}, while the currents are not")
             }
+            Self::VoltageDigits { most, currents: true } => write!(f, "voltages and currents are whole numbers, up to {most:.0}"),
         }
     }
 }
