@@ -315,6 +315,40 @@ fn torque_direct_current_and_duty_cycle_tell_their_parts_within_their_intervals(
     assert!(drawn == 60 && held >= 52, "{held} of {drawn}");
 }
 
+/// A dynamometer's map: 4 speeds and 9 currents, voltages that err by up to 50 mV and of which the inverter loses 0.4 V.
+fn operating_points(folder: &Path, noise: &mut Noise, with_id: bool) -> String {
+    let points = (0..36).map(|k| {
+        let (speed, size, angle) = ([500.0, 1000.0, 2000.0, 3000.0][k / 9], [20.0, 50.0, 90.0][k % 3], [0.0, 0.4, 0.9][k / 3 % 3]);
+        let (omega_e, angle) = (speed * std::f64::consts::TAU / 60.0 * PAIRS, if with_id { angle } else { 0.0 });
+        let (id, iq) = (-size * f64::sin(angle), size * f64::cos(angle));
+        let (ud, uq) = (RS * id - omega_e * LQ * iq, RS * iq + omega_e * (LD * id + PSI_F));
+        vec![speed, id, iq, ud + 0.4 * id / size + 0.05 * noise.next(), uq + 0.4 * iq / size + 0.05 * noise.next()]
+    });
+    table_of(folder, "points.csv", "n [rpm],Id [A],Iq [A],Ud [V],Uq [V]", points)
+}
+
+#[test]
+fn operating_points_tell_the_motor_within_their_intervals() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut held, mut drawn) = (0, 0);
+    for seed in 1..=20 {
+        let table = operating_points(folder.path(), &mut Noise(seed), true);
+        let (status, document) = json(&["identify", &table, "--pole-pairs", "3"]);
+        assert_eq!((status, document["tables"][0]["kind"].as_str()), (0, Some("operating-points")), "{document}");
+        for (key, truth) in [("rs", RS), ("ld", LD), ("lq", LQ), ("psi_f", PSI_F)] {
+            let ci95 = [0, 1].map(|end| document["parameters"][key]["ci95"][end].as_f64().unwrap());
+            (held, drawn) = (held + usize::from((ci95[0]..=ci95[1]).contains(&truth)), drawn + 1);
+        }
+    }
+    // Of 80 intervals of 95 %, fewer than 71 hold with a probability of 1 in 100.
+    assert!(drawn == 80 && held >= 71, "{held} of {drawn}");
+    // Without a current of the d axis nothing depends on its inductance.
+    let (_, document) = json(&["identify", &operating_points(folder.path(), &mut Noise(1), false), "--pole-pairs", "3"]);
+    assert!(document["parameters"]["ld"]["value"].is_null(), "{document}");
+    let lq = document["parameters"]["lq"]["value"].as_f64().unwrap();
+    assert!((lq / LQ - 1.0).abs() < 0.01, "{lq}");
+}
+
 /// u_dc / 2 is sqrt 3 / 2 of u_dc / sqrt 3: by so much all voltages, and all parameters with them, are smaller, 13.4 %.
 #[test]
 fn what_a_duty_of_1_may_stand_for_is_told_below_the_numbers() {

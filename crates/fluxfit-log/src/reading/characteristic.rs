@@ -8,7 +8,7 @@ use super::{
     layout::NotALog,
     options::LogOptions,
     resemblance::words,
-    steady_test::{self, SteadyTest},
+    steady_points, steady_test,
     table::Table,
 };
 use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem, quantity::Quantity};
@@ -31,18 +31,35 @@ pub struct ReadCharacteristic {
 
 /// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. What can be read only once
 /// (standard input, a pipe) is always taken for a log, and so is a file of which the options name the columns of a log.
-/// [`map`](LogOptions::map) may name those of a table: `speed`, `voltage`, `current`, `torque`.
+/// [`map`](LogOptions::map) may name those of a table: `speed`, `voltage`, `current`, `torque`; of operating points those of the dq frame.
 ///
 /// # Errors
 /// If it is one, but cannot be read as such.
 pub fn read_characteristic(path: &Path, options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
     let of_table = |(name, header): &'_ (String, String)| Quantity::from_name(name).map(|quantity| (quantity, header.clone()));
-    let map: Option<Vec<(Quantity, String)>> = options.map.iter().map(of_table).collect();
-    let Some(map) = map.filter(|_| options.mapping.columns.is_empty() && path.is_file()) else { return Ok(None) };
+    let of_points = |(name, header): &'_ (String, String)| {
+        let channel = Channel::from_name(name).ok().filter(|channel| steady_points::CHANNELS.contains(channel));
+        channel.map(|channel| (channel, header.clone()))
+    };
+    let (map, points): (Option<Vec<_>>, Option<Vec<_>>) =
+        (options.map.iter().map(of_table).collect(), options.map.iter().map(of_points).collect());
+    let is_file = options.mapping.columns.is_empty() && path.is_file();
+    if !is_file || map.is_none() && points.is_none() {
+        return Ok(None);
+    }
     let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
     // What cannot be opened is told by whoever reads it as a log.
-    let Ok(table) = input::open(path).and_then(|bytes| Table::open(bytes, None)) else { return Ok(None) };
-    read(table, pole_pairs, &map).map_err(|error| error.in_file(&input::name(path)))
+    let Ok(mut table) = input::open(path).and_then(|bytes| Table::open(bytes, None)) else { return Ok(None) };
+    // With the time between rows stated, they are those of a log.
+    let points = match points.filter(|_| options.mapping.sample_period.is_none()) {
+        Some(map) => steady_points::read(&mut table, pole_pairs, &map),
+        None => Ok(None),
+    };
+    let test = match (points, map) {
+        (Ok(None), Some(map)) => read(table, pole_pairs, &map),
+        (points, _) => points,
+    };
+    test.map_err(|error| error.in_file(&input::name(path)))
 }
 
 /// The quantity that a column of such a table may hold.
@@ -64,8 +81,8 @@ fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -
             || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
     };
     let columns = found_all(&heads, map)?;
-    if let Some(SteadyTest { table, columns, notes, has_electrical_speed }) = steady_test::read(&mut table, &columns, pole_pairs)? {
-        return Ok(Some(ReadCharacteristic { columns, table, notes, has_electrical_speed }));
+    if let Some(test) = steady_test::read(&mut table, &columns, pole_pairs)? {
+        return Ok(Some(test));
     }
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
     if heads.iter().any(is_of_log) || NotALog::by_names(&names).is_some() {
@@ -176,8 +193,8 @@ fn channel(columns: &[(Found, Vec<f64>)], quantity: Quantity, pole_pairs: Option
 
 /// From a text, for tests of this module and of the one for further tests.
 #[cfg(test)]
-pub(super) fn parse_characteristic(text: &'static str, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
-    read(Table::open(input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes()))), None)?, pole_pairs, &[])
+pub(super) fn parse_characteristic(text: &str, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
+    read(Table::open(input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes().to_vec()))), None)?, pole_pairs, &[])
 }
 
 #[cfg(test)]

@@ -41,6 +41,7 @@ mod runs;
 mod scaling;
 mod selection;
 mod shaft_angle;
+mod steady_points;
 mod steady_test;
 mod survey;
 mod table;

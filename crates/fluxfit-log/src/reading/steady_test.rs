@@ -5,6 +5,7 @@
 use super::{
     alias,
     bench_columns::{DRIVEN, Found, INSTANT, across, convention, refuse_unclear, values_of},
+    characteristic::ReadCharacteristic,
     layout::NotALog,
     resemblance::{is_reference, words},
     rms,
@@ -24,17 +25,8 @@ use fluxfit::{
 use fluxfit_files::FileError;
 use fluxfit_units::wording::quote;
 
-/// A table that is such a test.
-pub(super) struct SteadyTest {
-    pub(super) table: Characteristic,
-    /// The quantities and the columns that they were taken from.
-    pub(super) columns: Vec<(&'static str, String)>,
-    pub(super) notes: Vec<Note>,
-    pub(super) has_electrical_speed: bool,
-}
-
 /// Whether a column may be a channel.
-fn is(channel: Channel, head: &ColumnHead) -> bool {
+pub(super) fn is(channel: Channel, head: &ColumnHead) -> bool {
     alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel)
 }
 
@@ -46,7 +38,7 @@ fn has_word(head: &ColumnHead, some: &[&str]) -> bool {
 const DUTY_OF_VESC: [&str; 2] = ["dutyCycleNow", "duty_cycle_now"];
 
 /// Reads such a table, if it is one.
-pub(super) fn read(table: &mut Table, columns: &[Found], pole_pairs: Option<u32>) -> Result<Option<SteadyTest>, FileError> {
+pub(super) fn read(table: &mut Table, columns: &[Found], pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
     let has = |channel: Channel| heads.iter().any(|head| is(channel, head));
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
@@ -94,7 +86,7 @@ fn rows<const N: usize>(table: &mut Table, columns: [(usize, f64); N]) -> Result
 }
 
 /// The factor to SI of a column of this channel.
-fn in_si(head: &ColumnHead, channel: Channel) -> f64 {
+pub(super) fn in_si(head: &ColumnHead, channel: Channel) -> f64 {
     let dimension = channel.dimension();
     if let Some(unit) = rms::unit(channel).filter(|_| rms::is_rms(head)) {
         return unit.in_si();
@@ -106,7 +98,7 @@ fn in_si(head: &ColumnHead, channel: Channel) -> f64 {
     }
 }
 
-fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Found) -> Result<SteadyTest, FileError> {
+fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Found) -> Result<ReadCharacteristic, FileError> {
     let heads = table.heads().to_vec();
     let factor = in_si(&heads[q], Channel::Iq);
     // Without a column of i_d it is taken as zero.
@@ -129,10 +121,10 @@ fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Fou
         None => notes.push("i_d is taken as zero: no column has it".to_owned().into()),
     }
     let table = Characteristic::TorqueOfCurrent(TorqueOfCurrent { rows });
-    Ok(SteadyTest { table, columns: used, notes, has_electrical_speed: false })
+    Ok(ReadCharacteristic { table, columns: used, notes, has_electrical_speed: false })
 }
 
-fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<Option<SteadyTest>, FileError> {
+fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<Option<ReadCharacteristic>, FileError> {
     let Some(across) = across(&[&voltage.header]) else { return Ok(None) };
     let rows: Vec<DirectCurrentRow> = rows(table, [(voltage.index, voltage.in_si), (current.index, current.in_si)])?
         .into_iter()
@@ -142,7 +134,7 @@ fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result
     let used = vec![("voltage", voltage.header.clone()), ("current", current.header.clone())];
     let note = "voltage and current are read as those of a direct current, the rotor at rest".to_owned();
     let table = Characteristic::DirectCurrent(DirectCurrent { rows, across });
-    Ok(Some(SteadyTest { table, columns: used, notes: vec![note.into()], has_electrical_speed: false }))
+    Ok(Some(ReadCharacteristic { table, columns: used, notes: vec![note.into()], has_electrical_speed: false }))
 }
 
 /// Words of the DC voltage beside a duty cycle.
@@ -161,7 +153,7 @@ fn duty_cycle(
     input: usize,
     speed: &Found,
     pole_pairs: Option<u32>,
-) -> Result<Option<SteadyTest>, FileError> {
+) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
     // The current of the supply is not that of the motor.
     let is_of_motor =
@@ -199,7 +191,7 @@ fn duty_cycle(
     let named = [("duty", Some(duty)), ("input voltage", Some(input)), ("speed", Some(speed.index)), ("current", current)];
     let used = named.into_iter().filter_map(|(what, index)| Some((what, heads[index?].name.trim().to_owned())));
     let used = used.collect();
-    Ok(Some(SteadyTest { table: Characteristic::DutyCycle(DutyCycle { rows }), columns: used, notes, has_electrical_speed }))
+    Ok(Some(ReadCharacteristic { table: Characteristic::DutyCycle(DutyCycle { rows }), columns: used, notes, has_electrical_speed }))
 }
 
 #[cfg(test)]

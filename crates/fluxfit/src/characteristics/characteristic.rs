@@ -2,7 +2,7 @@
 
 use super::{
     direct_current::DirectCurrent, duty_cycle::DutyCycle, open_circuit::OpenCircuit, short_circuit::ShortCircuit,
-    torque_of_current::TorqueOfCurrent,
+    steady_points::SteadyPoints, torque_of_current::TorqueOfCurrent,
 };
 
 /// A table.
@@ -18,6 +18,8 @@ pub enum Characteristic {
     DirectCurrent(DirectCurrent),
     /// Duty cycles in place of voltages.
     DutyCycle(DutyCycle),
+    /// Voltages and currents of the dq frame.
+    SteadyPoints(SteadyPoints),
 }
 
 impl Characteristic {
@@ -29,6 +31,7 @@ impl Characteristic {
             Self::TorqueOfCurrent(_) => "torque against current",
             Self::DirectCurrent(_) => "voltage against direct current",
             Self::DutyCycle(_) => "duty cycle against speed",
+            Self::SteadyPoints(_) => "operating points",
         }
     }
 
@@ -40,6 +43,7 @@ impl Characteristic {
             Self::TorqueOfCurrent(_) => "torque-of-current",
             Self::DirectCurrent(_) => "direct-current",
             Self::DutyCycle(_) => "duty-cycle",
+            Self::SteadyPoints(_) => "operating-points",
         }
     }
 
@@ -47,7 +51,7 @@ impl Characteristic {
     pub fn describe(&self) -> String {
         let of = match self {
             Self::OpenCircuit(_) | Self::ShortCircuit(_) => "speeds",
-            Self::TorqueOfCurrent(_) | Self::DirectCurrent(_) | Self::DutyCycle(_) => "rows",
+            Self::TorqueOfCurrent(_) | Self::DirectCurrent(_) | Self::DutyCycle(_) | Self::SteadyPoints(_) => "rows",
         };
         format!("{} of {} {of}", self.label(), self.rows())
     }
@@ -60,6 +64,7 @@ impl Characteristic {
             Self::TorqueOfCurrent(table) => table.rows.len(),
             Self::DirectCurrent(table) => table.rows.len(),
             Self::DutyCycle(table) => table.rows.len(),
+            Self::SteadyPoints(table) => table.rows.len(),
         }
     }
 }

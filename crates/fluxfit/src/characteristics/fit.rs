@@ -115,7 +115,7 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
     if let Some(missed) = fit.residual_rms[0].filter(|missed| *missed > LARGEST_MISS) {
         return Err(ErrorKind::NoOpenCircuit { missed }.into());
     }
-    for residual in [Residual::Torque, Residual::DirectVoltage, Residual::DutyVoltage] {
+    for residual in [Residual::Torque, Residual::DirectVoltage, Residual::DutyVoltage, Residual::PointVoltage] {
         if let Some(missed) =
             fit.residual_rms[residual as usize].map(|left| left / rows.unit(residual)).filter(|missed| *missed > LARGEST_MISS)
         {

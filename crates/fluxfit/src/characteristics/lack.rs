@@ -68,7 +68,11 @@ impl Lack {
     /// Of a number that tables of one current alone would tell: what a meter's noise makes of such rows is no value, however well it fits.
     pub(super) fn of_one_current(parameter: Parameter, rows: &Rows) -> Option<Self> {
         // Other tables tell it too.
-        if !rows.shorted.is_empty() || !rows.duty.is_empty() || parameter == Parameter::PsiF && !rows.open.is_empty() {
+        if !rows.shorted.is_empty()
+            || !rows.duty.is_empty()
+            || !rows.points.is_empty()
+            || parameter == Parameter::PsiF && !rows.open.is_empty()
+        {
             return None;
         }
         match parameter {
@@ -97,6 +101,7 @@ fn telling(parameter: Parameter, rows: &Rows) -> Residual {
         Parameter::Rs if !rows.direct.is_empty() => Residual::DirectVoltage,
         Parameter::PsiF if !rows.open.is_empty() => Residual::OpenVoltage,
         _ if !rows.shorted.is_empty() => Residual::ShortCurrent,
+        _ if !rows.points.is_empty() => Residual::PointVoltage,
         Parameter::PsiF if !rows.torque.is_empty() => Residual::Torque,
         _ => Residual::DutyVoltage,
     }

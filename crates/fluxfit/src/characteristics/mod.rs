@@ -10,6 +10,7 @@
 //! | current and torque against speed, terminals shorted | [`short_circuit`](ShortCircuit): all, with torque or an open-circuit table |
 //! | torque against the current of the q axis | [`torque_of_current`](TorqueOfCurrent): `p psi_f` |
 //! | voltage against direct current, rotor at rest | [`direct_current`](DirectCurrent): `R_s` |
+//! | dq voltages and currents of operating points | [`steady_points`](SteadyPoints): all |
 //! | duty cycle and input voltage against speed | [`duty_cycle`](DutyCycle): `p psi_f`, with current perhaps `R_s` and `p L_q` |
 //!
 //! Tables of one motor are fitted together: `rows.rs` has them by kind, `problem.rs` is the least squares problem, `fit.rs` judges.
@@ -24,6 +25,7 @@ mod open_circuit;
 mod problem;
 mod rows;
 mod short_circuit;
+mod steady_points;
 mod torque_of_current;
 
 pub use characteristic::Characteristic;
@@ -36,4 +38,5 @@ pub use lack::Lack;
 pub use open_circuit::{Across, OpenCircuit, OpenCircuitRow};
 pub use rows::{Instrument, Residual};
 pub use short_circuit::{ShortCircuit, ShortCircuitRow};
+pub use steady_points::{SteadyPoint, SteadyPoints};
 pub use torque_of_current::{TorqueOfCurrent, TorqueOfCurrentRow};

@@ -6,13 +6,17 @@ use super::{
     machine::Machine,
     rows::{Extra, RESIDUALS, Residual, Rows},
     short_circuit::ShortCircuitRow,
+    steady_points::SteadyPoint,
 };
-use crate::motor::{PARAMETERS, Parameter};
+use crate::{
+    frames::Dq,
+    motor::{PARAMETERS, Parameter},
+};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
 /// Errors that a fit starts with: half a percent, and of a table's largest value a percent.
-pub(super) const USUAL_ERRORS: [f64; RESIDUALS] = [0.005, 0.005, 0.01, 0.01, 0.01, 0.01];
+pub(super) const USUAL_ERRORS: [f64; RESIDUALS] = [0.005, 0.005, 0.01, 0.01, 0.01, 0.01, 0.01];
 
 /// Errors below this part of a value are rounding.
 const LEAST_ERROR: f64 = 1e-7;
@@ -66,7 +70,7 @@ impl<'a> Problem<'a> {
     pub(super) fn groups(&self) -> [Vec<f64>; RESIDUALS] {
         let (machine, rows) = (self.machine(), self.rows);
         let unit = Residual::ALL.map(|residual| rows.unit(residual));
-        let [.., short_torque, torque, direct, duty] = unit;
+        let [.., short_torque, torque, direct, duty, points] = unit;
         let [drag, of_speed] = [Extra::Drag, Extra::DragOfSpeed].map(|extra| short_torque * self.extra(extra));
         let drag = |speed: f64| drag + if of_speed == 0.0 { 0.0 } else { of_speed * speed.abs() / rows.largest_speed() };
         let braking = |row: &ShortCircuitRow| row.torque.map(|torque| torque.abs() - row.torque_of(&machine) - drag(row.speed));
@@ -75,6 +79,12 @@ impl<'a> Problem<'a> {
         let offset = torque * self.extra(Extra::TorqueOffset);
         let drop = direct * self.extra(Extra::Drop);
         let lost = duty * self.extra(Extra::Lost);
+        let lost_of_points = points * self.extra(Extra::LostOfPoints);
+        let missed = |point: &SteadyPoint| {
+            let Dq { d, q } = point.voltage_of(&machine, lost_of_points);
+            Dq { d: point.voltage.d - d, q: point.voltage.q - q }
+        };
+        let missed: Vec<Dq> = rows.points.iter().map(missed).collect();
         [
             rows.open.iter().map(|row| 1.0 - row.voltage_of(&machine) / row.voltage).collect(),
             rows.shorted.iter().map(|row| 1.0 - row.current_of(&machine) / row.current).collect(),
@@ -82,6 +92,7 @@ impl<'a> Problem<'a> {
             rows.torque.iter().map(|row| row.torque - row.torque_of(&machine, saliency) - offset).collect(),
             rows.direct.iter().map(|row| row.voltage - row.voltage_of(&machine, drop)).collect(),
             rows.duty.iter().map(|row| row.voltage() - lost - row.voltage_of(&machine)).collect(),
+            missed.iter().map(|u| u.d).chain(missed.iter().map(|u| u.q)).collect(),
         ]
     }
 
@@ -96,6 +107,7 @@ impl<'a> Problem<'a> {
             alike(Residual::Torque, self.rows.torque.len()),
             alike(Residual::DirectVoltage, self.rows.direct.len()),
             alike(Residual::DutyVoltage, self.rows.duty.len()),
+            alike(Residual::PointVoltage, 2 * self.rows.points.len()),
         ]
     }
 
@@ -116,15 +128,23 @@ impl<'a> Problem<'a> {
 
     /// Logarithms of the numbers that duty cycles alone depend on, over their vague errors.
     fn vague(&self) -> impl Iterator<Item = f64> {
-        let is_vague = |p: Parameter| self.rows.shorted.is_empty() && (p != Parameter::Rs || self.rows.direct.is_empty());
+        let is_vague = |p: Parameter| {
+            self.rows.shorted.is_empty() && self.rows.points.is_empty() && (p != Parameter::Rs || self.rows.direct.is_empty())
+        };
         let free = Parameter::ALL.into_iter().filter(|p| self.is_free[*p as usize]).enumerate();
         let vague = free.filter(move |(_, p)| !self.rows.duty.is_empty() && matches!(p, Parameter::Rs | Parameter::Lq) && is_vague(*p));
         vague.map(|(place, _)| self.unknowns[place] / VAGUE)
     }
 
+    /// What an inverter loses, over the largest voltage: no more than that. Operating points of one current do not tell it from the
+    /// resistance, and the fit has to end all the same.
+    fn lost_at_most(&self) -> Option<f64> {
+        self.extras.contains(&Extra::LostOfPoints).then(|| self.extra(Extra::LostOfPoints))
+    }
+
     fn weighted(&self) -> DVector<f64> {
         let pairs = self.groups().into_iter().flatten().zip(self.errors_of_rows().into_iter().flatten());
-        let weighted: Vec<f64> = pairs.map(|(left, error)| left / error).chain(self.vague()).collect();
+        let weighted: Vec<f64> = pairs.map(|(left, error)| left / error).chain(self.vague()).chain(self.lost_at_most()).collect();
         DVector::from_vec(weighted)
     }
 
@@ -151,6 +171,9 @@ pub(super) fn start(rows: &Rows) -> Machine {
     if let (Some(slowest), Some(fastest)) = (rows.shorted.first(), rows.shorted.last()) {
         return start_of_short_circuit(rows, slowest, fastest, flux, of_direct);
     }
+    if !rows.points.is_empty() {
+        return start_of_points(rows);
+    }
     // A tenth of the voltage across the resistance, and as much across the inductance.
     let largest = rows.duty.iter().filter_map(|row| row.current).fold(0.0, |largest: f64, current| current.abs().max(largest));
     let tenth = |row: &DutyCycleRow| 0.1 * row.voltage() / largest.max(f64::MIN_POSITIVE);
@@ -174,6 +197,15 @@ fn start_of_short_circuit(
     let p_psi_f = flux.unwrap_or(rs * 2.0_f64.sqrt() * slowest.current / slowest.speed.abs());
     let p_ld = p_psi_f / (2.0_f64.sqrt() * fastest.current);
     Machine { rs, p_ld, p_lq: p_ld, p_psi_f }
+}
+
+/// A tenth of the largest voltage across the resistance, half of it across either inductance, the largest current and speed together.
+fn start_of_points(rows: &Rows) -> Machine {
+    let largest = |size: fn(&SteadyPoint) -> f64| rows.points.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+    let (u, i, speed) =
+        (largest(|point| point.voltage.magnitude()), largest(|point| point.current.magnitude()), largest(|point| point.speed.abs()));
+    let p_l = 0.5 * u / (speed * i);
+    Machine { rs: 0.1 * u / i, p_ld: p_l, p_lq: p_l, p_psi_f: u / speed }
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {

@@ -6,10 +6,12 @@ use super::{
     duty_cycle::DutyCycleRow,
     open_circuit::{Across, OpenCircuitRow, SQRT_3},
     short_circuit::ShortCircuitRow,
+    steady_points::SteadyPoint,
     torque_of_current::TorqueOfCurrentRow,
 };
 use crate::{
     error::{Error, ErrorKind},
+    frames::Dq,
     motor::PARAMETERS,
 };
 use std::ops::Range;
@@ -47,12 +49,21 @@ pub enum Residual {
     DirectVoltage,
     /// Voltages of duty cycles, V, amplitude of a phase.
     DutyVoltage,
+    /// Voltages of operating points, V: all of d, then all of q.
+    PointVoltage,
 }
 
 impl Residual {
     /// All of them.
-    pub const ALL: [Self; RESIDUALS] =
-        [Self::OpenVoltage, Self::ShortCurrent, Self::ShortTorque, Self::Torque, Self::DirectVoltage, Self::DutyVoltage];
+    pub const ALL: [Self; RESIDUALS] = [
+        Self::OpenVoltage,
+        Self::ShortCurrent,
+        Self::ShortTorque,
+        Self::Torque,
+        Self::DirectVoltage,
+        Self::DutyVoltage,
+        Self::PointVoltage,
+    ];
 
     /// Whether it is a fraction of each value.
     pub fn is_relative(self) -> bool {
@@ -67,12 +78,13 @@ impl Residual {
             Self::ShortTorque | Self::Torque => "torques",
             Self::DirectVoltage => "voltages at rest",
             Self::DutyVoltage => "voltages of the duty cycles",
+            Self::PointVoltage => "voltages of the operating points",
         }
     }
 }
 
 /// Number of kinds of residuals.
-pub(super) const RESIDUALS: usize = 6;
+pub(super) const RESIDUALS: usize = 7;
 
 /// What is fitted beside the motor, as part of the largest torque or voltage of its table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,6 +101,8 @@ pub(super) enum Extra {
     Drop,
     /// What switches lose of the duty's voltage.
     Lost,
+    /// What an inverter loses of the voltages of operating points, against the current.
+    LostOfPoints,
 }
 
 /// Fewest rows of a short-circuit characteristic: the motor and the drag have six numbers, and a row gives one or two.
@@ -99,6 +113,9 @@ const LEAST: usize = 3;
 
 /// Fewest rows of duty cycles: flux, resistance, inductance and what the switches lose, and one more.
 const LEAST_DUTY: usize = 5;
+
+/// Fewest operating points, of two voltages each: the motor and what is lost are five numbers.
+const LEAST_POINTS: usize = 4;
 
 /// Most parts of a table that are left out in turn: enough for a standard error to a sixth of itself.
 const MOST_PARTS: usize = 20;
@@ -113,6 +130,7 @@ pub(super) struct Rows {
     /// Voltages of one phase.
     pub(super) direct: Vec<DirectCurrentRow>,
     pub(super) duty: Vec<DutyCycleRow>,
+    pub(super) points: Vec<SteadyPoint>,
     /// Whether all tables state between which points their open-circuit voltages were measured.
     pub(super) are_voltages_stated: bool,
 }
@@ -134,6 +152,7 @@ impl Rows {
                     rows.direct.extend(table.rows.iter().map(of_phase));
                 }
                 Characteristic::DutyCycle(table) => rows.duty.extend(&table.rows),
+                Characteristic::SteadyPoints(table) => rows.points.extend(&table.rows),
             }
         }
         // Neighbours in speed or current err alike, whatever their order in the file; those of duty cycles are neighbours in time.
@@ -141,24 +160,27 @@ impl Rows {
         rows.shorted.sort_by(|one, other| one.speed.abs().total_cmp(&other.speed.abs()));
         rows.torque.sort_by(|one, other| one.current.q.total_cmp(&other.current.q));
         rows.direct.sort_by(|one, other| one.current.total_cmp(&other.current));
+        let by_current = |one: &SteadyPoint, other: &SteadyPoint| one.current.q.total_cmp(&other.current.q);
+        rows.points.sort_by(|one, other| by_current(one, other).then(one.current.d.total_cmp(&other.current.d)));
         let counts = [
             (rows.open.len(), LEAST, Residual::OpenVoltage),
             (rows.shorted.len(), LEAST_SHORTED, Residual::ShortCurrent),
             (rows.torque.len(), LEAST, Residual::Torque),
             (rows.direct.len(), LEAST, Residual::DirectVoltage),
             (rows.duty.len(), LEAST_DUTY, Residual::DutyVoltage),
+            (rows.points.len(), LEAST_POINTS, Residual::PointVoltage),
         ];
         for (count, least, test) in counts {
             if (1..least).contains(&count) {
                 return Err(match test {
-                    Residual::Torque | Residual::DirectVoltage => ErrorKind::FewCurrents { rows: count, least },
+                    Residual::Torque | Residual::DirectVoltage | Residual::PointVoltage => ErrorKind::FewCurrents { rows: count, least },
                     _ => ErrorKind::ShortCharacteristic { rows: count, least },
                 }
                 .into());
             }
         }
-        let has_scale =
-            rows.has_torque() || ![rows.open.len(), rows.torque.len(), rows.direct.len(), rows.duty.len()].iter().all(|n| *n == 0);
+        let with_scale = [rows.open.len(), rows.torque.len(), rows.direct.len(), rows.duty.len(), rows.points.len()];
+        let has_scale = rows.has_torque() || with_scale.iter().any(|rows| *rows > 0);
         if has_scale { Ok(rows) } else { Err(ErrorKind::NoScale.into()) }
     }
 
@@ -181,6 +203,7 @@ impl Rows {
             parts(self.torque.len(), LEAST, &|rest, part| drop(rest.torque.drain(part))),
             parts(self.direct.len(), LEAST, &|rest, part| drop(rest.direct.drain(part))),
             parts(self.duty.len(), LEAST_DUTY, &|rest, part| drop(rest.duty.drain(part))),
+            parts(self.points.len(), LEAST_POINTS, &|rest, part| drop(rest.points.drain(part))),
         ]
     }
 
@@ -198,7 +221,8 @@ impl Rows {
 
     /// Whether a torque tells the flux, or the resistance that of a short circuit, whatever the open-circuit voltages are.
     pub(super) fn tells_flux(&self) -> bool {
-        self.has_torque() || !self.torque.is_empty() || !(self.direct.is_empty() || self.shorted.is_empty())
+        let has_heat = !(self.direct.is_empty() || self.shorted.is_empty());
+        self.has_torque() || !self.torque.is_empty() || !self.points.is_empty() || has_heat
     }
 
     fn has_current_of_duty(&self) -> bool {
@@ -208,9 +232,10 @@ impl Rows {
     pub(super) fn has(&self, instrument: Instrument) -> bool {
         match instrument {
             Instrument::DutyScale => !self.duty.is_empty(),
-            Instrument::Voltage => !(self.open.is_empty() && self.direct.is_empty() && self.duty.is_empty()),
+            Instrument::Voltage => !(self.open.is_empty() && self.direct.is_empty() && self.duty.is_empty() && self.points.is_empty()),
             Instrument::Current => {
-                !(self.shorted.is_empty() && self.torque.is_empty() && self.direct.is_empty()) || self.has_current_of_duty()
+                !(self.shorted.is_empty() && self.torque.is_empty() && self.direct.is_empty() && self.points.is_empty())
+                    || self.has_current_of_duty()
             }
             Instrument::Torque => self.has_torque() || !self.torque.is_empty(),
         }
@@ -221,6 +246,7 @@ impl Rows {
         const TOO_LARGE: f64 = 1.01;
         /// `u_dc / 2` in place of `u_dc / sqrt 3`.
         const HALF_OF_BUS: f64 = SQRT_3 / 2.0;
+        let scaled = |vector: Dq| Dq { d: TOO_LARGE * vector.d, q: TOO_LARGE * vector.q };
         let mut rows = self.clone();
         match instrument {
             Instrument::DutyScale => rows.duty.iter_mut().for_each(|row| row.duty *= HALF_OF_BUS),
@@ -228,14 +254,14 @@ impl Rows {
                 rows.open.iter_mut().for_each(|row| row.voltage *= TOO_LARGE);
                 rows.direct.iter_mut().for_each(|row| row.voltage *= TOO_LARGE);
                 rows.duty.iter_mut().for_each(|row| row.input_voltage *= TOO_LARGE);
+                rows.points.iter_mut().for_each(|point| point.voltage = scaled(point.voltage));
             }
             Instrument::Current => {
                 rows.shorted.iter_mut().for_each(|row| row.current *= TOO_LARGE);
                 rows.direct.iter_mut().for_each(|row| row.current *= TOO_LARGE);
                 rows.duty.iter_mut().for_each(|row| row.current = row.current.map(|current| TOO_LARGE * current));
-                for current in rows.torque.iter_mut().map(|row| &mut row.current) {
-                    (current.d, current.q) = (TOO_LARGE * current.d, TOO_LARGE * current.q);
-                }
+                rows.torque.iter_mut().for_each(|row| row.current = scaled(row.current));
+                rows.points.iter_mut().for_each(|point| point.current = scaled(point.current));
             }
             Instrument::Torque => {
                 rows.shorted.iter_mut().for_each(|row| row.torque = row.torque.map(|torque| TOO_LARGE * torque));
@@ -247,9 +273,10 @@ impl Rows {
 
     /// Which numbers of the motor some table depends on.
     pub(super) fn free(&self) -> [bool; PARAMETERS] {
-        let (shorted, duty) = (!self.shorted.is_empty(), self.has_current_of_duty());
-        let flux = shorted || !(self.open.is_empty() && self.torque.is_empty() && self.duty.is_empty());
-        [shorted || duty || !self.direct.is_empty(), shorted, shorted || duty, flux]
+        let (shorted, duty, points) = (!self.shorted.is_empty(), self.has_current_of_duty(), !self.points.is_empty());
+        let flux = shorted || points || !(self.open.is_empty() && self.torque.is_empty() && self.duty.is_empty());
+        let [on_d, on_q] = [|i: Dq| i.d, |i: Dq| i.q].map(|on| self.points.iter().any(|point| on(point.current) != 0.0));
+        [shorted || duty || points || !self.direct.is_empty(), shorted || on_d, shorted || duty || on_q, flux]
     }
 
     /// What is fitted beside the motor.
@@ -262,6 +289,7 @@ impl Rows {
             (is_salient, Extra::Saliency),
             (!self.direct.is_empty(), Extra::Drop),
             (!self.duty.is_empty(), Extra::Lost),
+            (!self.points.is_empty(), Extra::LostOfPoints),
         ];
         extras.into_iter().filter(|(is_fitted, _)| *is_fitted).map(|(_, extra)| extra).collect()
     }
@@ -275,6 +303,7 @@ impl Rows {
             Residual::Torque => largest(&mut self.torque.iter().map(|row| row.torque)),
             Residual::DirectVoltage => largest(&mut self.direct.iter().map(|row| row.voltage)),
             Residual::DutyVoltage => largest(&mut self.duty.iter().map(DutyCycleRow::voltage)),
+            Residual::PointVoltage => largest(&mut self.points.iter().map(|point| point.voltage.magnitude())),
         }
     }
 

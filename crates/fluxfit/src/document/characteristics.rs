@@ -49,6 +49,8 @@ pub struct CharacteristicsDocument {
     pub residual_direct_voltage: Option<f64>,
     /// What is left of the voltages of duty cycles, V, amplitude of a phase, root mean square.
     pub residual_duty_voltage: Option<f64>,
+    /// What is left of the voltages of operating points, V of either axis, root mean square.
+    pub residual_point_voltage: Option<f64>,
     /// Relative change of each parameter by the error of an instrument, which the intervals do not count.
     pub unseen: Vec<InstrumentEntry>,
 }
@@ -58,7 +60,7 @@ pub struct CharacteristicsDocument {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct TableEntry {
-    /// Which test: `open-circuit`, `short-circuit`, `torque-of-current`, `direct-current` or `duty-cycle`.
+    /// Which test: `open-circuit`, `short-circuit`, `torque-of-current`, `direct-current`, `duty-cycle` or `operating-points`.
     pub kind: &'static str,
     /// Number of rows.
     pub rows: usize,
@@ -172,6 +174,7 @@ impl CharacteristicsDocument {
             residual_torque_of_current: left(Residual::Torque),
             residual_direct_voltage: left(Residual::DirectVoltage),
             residual_duty_voltage: left(Residual::DutyVoltage),
+            residual_point_voltage: left(Residual::PointVoltage),
             unseen: answer.unseen.iter().map(instrument).collect(),
         }
     }

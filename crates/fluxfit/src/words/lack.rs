@@ -70,6 +70,7 @@ fn more(test: Residual) -> &'static str {
             "measure at more currents and at larger ones, and take the mean of several readings at each"
         }
         Residual::DutyVoltage => "log more speeds and loads, with the current of the motor",
+        Residual::PointVoltage => "measure at more speeds and at currents of other sizes, with i_d and without",
     }
 }
 

@@ -153,7 +153,7 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
     let left = Residual::ALL.iter().zip(answer.residual_rms).filter_map(|(residual, rms)| {
         let (factor, unit) = match residual {
             Residual::ShortTorque | Residual::Torque => (1.0, "N m"),
-            Residual::DirectVoltage | Residual::DutyVoltage => (1.0, "V"),
+            Residual::DirectVoltage | Residual::DutyVoltage | Residual::PointVoltage => (1.0, "V"),
             Residual::OpenVoltage | Residual::ShortCurrent => (100.0, "%"),
         };
         Some(format!("{} by {} {unit}", residual.label(), significant(factor * rms?, 2)))

@@ -1,0 +1,167 @@
+//! A dynamometer's table of operating points: dq voltages, dq currents and speed, a row each, and no time.
+
+use super::{
+    alias,
+    bench_columns::{Found, INSTANT, convention, found_all, refuse_unclear, values_of},
+    characteristic::ReadCharacteristic,
+    layout::Layout,
+    names::automatic,
+    resemblance::words,
+    steady_test::{in_si, is},
+    table::Table,
+};
+use crate::{
+    block::ColumnHead,
+    channel::Channel,
+    header_unit::{HeaderUnit, split_header},
+    quantity::Quantity,
+};
+use fluxfit::{
+    characteristics::{Characteristic, SteadyPoint, SteadyPoints},
+    frames::Dq,
+};
+use fluxfit_files::FileError;
+
+/// More rows are those of a log whose time is missing: a map of a motor has a few hundred points.
+const MOST_POINTS: usize = 1000;
+
+/// Of the currents' variance, the part that their changes from row to row have at least: of a sweep of 24 currents at each speed it is as
+/// much. In the rows of a drive, currents that are held hardly change.
+const LEAST_CHANGE: f64 = 0.02;
+
+/// The channels of such a table, which a user may map.
+pub(super) const CHANNELS: [Channel; 5] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::OmegaE];
+
+/// Reads such a table, if it is one.
+///
+/// # Errors
+/// If several columns could be the speed.
+pub(super) fn read(table: &mut Table, pole_pairs: Option<u32>, map: &[(Channel, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
+    let heads = table.heads().to_vec();
+    let columns = found_all(&heads, &[])?;
+    let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
+    let is_instant = |head: &ColumnHead| {
+        let of_row = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
+        head.is_time || head.instants.is_some() || is(Channel::T, head) || of_row
+    };
+    // The layout of a tool is that of a log.
+    if heads.iter().any(is_instant) || Layout::recognize(&names).is_some() {
+        return Ok(None);
+    }
+    let mapped = |channel: Channel| {
+        let (_, header) = map.iter().find(|(of, _)| *of == channel)?;
+        heads.iter().position(|head| head.name.trim().eq_ignore_ascii_case(header.trim()))
+    };
+    let find = |channel: Channel| {
+        let index = mapped(channel).or_else(|| automatic(channel, &heads).ok().flatten()).or_else(|| alias::find(channel, &heads))?;
+        // In a unit that is not known it has no size.
+        let is_known = !matches!(split_header(&heads[index].name, channel.dimension()).1, HeaderUnit::Unknown(_));
+        is_known.then(|| (index, in_si(&heads[index], channel)))
+    };
+    let [Some(ud), Some(uq), Some(id), Some(iq)] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(find) else {
+        return Ok(None);
+    };
+    let own = automatic(Channel::OmegaE, &heads).ok().flatten();
+    let is_meant = |column: &&Found| mapped(Channel::OmegaE).is_none_or(|index| index == column.index);
+    let is_speed = |column: &&Found| column.quantity == Quantity::Speed && (column.has_unit || own == Some(column.index));
+    let of_speed: Vec<&Found> = columns.iter().filter(is_speed).filter(is_meant).collect();
+    let Some(speed) = of_speed.first() else { return Ok(None) };
+    refuse_unclear([of_speed.clone()].into_iter(), None, None)?;
+    let mut notes = vec!["a row is an operating point, because no column is a time".to_owned().into()];
+    // The channel's own name is that of electrical rad/s.
+    let is_own = own == Some(speed.index) && !speed.has_unit;
+    let per_turn = match is_own {
+        true => 1.0 / f64::from(pole_pairs.unwrap_or(1)),
+        false => speed.in_si * convention(speed, Quantity::Speed, pole_pairs, &mut notes),
+    };
+    let of = [ud, uq, id, iq, (speed.index, per_turn)];
+    let wanted = of.map(|(index, _)| (index, heads[index].name.as_str()));
+    // What cannot be read, or is too long, is told by whoever reads it as a log.
+    let Ok(values) = values_of(table, &wanted) else { return Ok(None) };
+    let count = values.first().map_or(0, Vec::len);
+    let row = |row: usize| {
+        let [ud, uq, id, iq, speed] = std::array::from_fn(|k| of[k].1 * values[k][row]);
+        SteadyPoint { speed, voltage: Dq { d: ud, q: uq }, current: Dq { d: id, q: iq } }
+    };
+    let is_whole = |point: &SteadyPoint| {
+        let SteadyPoint { speed, voltage, current } = *point;
+        (speed + voltage.d + voltage.q + current.d + current.q).is_finite()
+    };
+    let rows: Vec<SteadyPoint> = (0..count).map(row).filter(is_whole).collect();
+    if rows.len() > MOST_POINTS || !are_points(&rows) {
+        return Ok(None);
+    }
+    if rows.len() < count {
+        notes.push(format!("{} of {count} rows are not whole and are left out", count - rows.len()).into());
+    }
+    let named = [("voltage", ud.0), ("voltage", uq.0), ("current", id.0), ("current", iq.0), ("speed", speed.index)];
+    let columns = named.map(|(quantity, index)| (quantity, heads[index].name.trim().to_owned())).to_vec();
+    let has_electrical_speed = pole_pairs.is_none() && (is_own || speed.is_electrical);
+    let table = Characteristic::SteadyPoints(SteadyPoints { rows });
+    Ok(Some(ReadCharacteristic { columns, table, notes, has_electrical_speed }))
+}
+
+/// Whether the currents change from row to row as those of different points do.
+fn are_points(rows: &[SteadyPoint]) -> bool {
+    let count = rows.len() as f64;
+    let mean = |of: fn(&SteadyPoint) -> f64| rows.iter().map(of).sum::<f64>() / count;
+    let (d, q) = (mean(|row| row.current.d), mean(|row| row.current.q));
+    let variance: f64 = rows.iter().map(|row| (row.current.d - d).powi(2) + (row.current.q - q).powi(2)).sum();
+    let change = |pair: &[SteadyPoint]| (pair[1].current.d - pair[0].current.d).powi(2) + (pair[1].current.q - pair[0].current.q).powi(2);
+    variance > 0.0 && rows.windows(2).map(change).sum::<f64>() > LEAST_CHANGE * variance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fluxfit_files::input;
+
+    fn of(text: &str, pole_pairs: Option<u32>, map: &[(Channel, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
+        let bytes = input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes().to_vec())));
+        read(&mut Table::open(bytes, None)?, pole_pairs, map)
+    }
+
+    /// Points of 500 to 4000 r/min and some currents.
+    fn points(header: &str, row: impl Fn(f64, f64, f64) -> String) -> String {
+        let rows = [500.0, 1000.0, 2000.0, 4000.0].into_iter().flat_map(|speed| {
+            let row = &row;
+            [(0.0, 10.0), (-5.0, 10.0), (0.0, 20.0), (-10.0, 20.0)].map(|(id, iq)| row(speed, id, iq)).into_iter()
+        });
+        format!("{header}\n{}", rows.collect::<String>())
+    }
+
+    #[test]
+    fn a_row_without_a_time_is_an_operating_point() {
+        let row = |speed: f64, id: f64, iq: f64| format!("{speed};{iq};{};{iq};{};{}\n", 1000.0 * id, -0.1 * iq, 0.01 * speed);
+        let text = points("n [rpm];T [Nm];Id [mA];Iq [A];Ud [V];Uq [V]", row);
+        let read = of(&text, Some(4), &[]).unwrap().unwrap();
+        let Characteristic::SteadyPoints(table) = read.table else { panic!() };
+        let SteadyPoint { speed, voltage, current } = table.rows[3];
+        assert!((speed - 500.0 * std::f64::consts::TAU / 60.0).abs() < 1e-9);
+        assert_eq!((table.rows.len(), voltage, current), (16, Dq { d: -2.0, q: 5.0 }, Dq { d: -10.0, q: 20.0 }));
+        // Electrical rad/s by its name: of the shaft a quarter.
+        let text = points("omega_e,id,iq,ud,uq", |speed, id, iq| format!("{speed},{id},{iq},1,2\n"));
+        let Characteristic::SteadyPoints(table) = of(&text, Some(4), &[]).unwrap().unwrap().table else { panic!() };
+        assert_eq!(table.rows[0].speed, 125.0);
+        assert!(of(&text, None, &[]).unwrap().unwrap().has_electrical_speed);
+    }
+
+    #[test]
+    fn its_columns_may_be_mapped() {
+        let text = points("n [rpm],d current [A],q current [A],ud,uq", |speed, id, iq| format!("{speed},{id},{iq},1,2\n"));
+        let map = [(Channel::Id, "d current [A]".to_owned()), (Channel::Iq, "q current [A]".to_owned())];
+        let Characteristic::SteadyPoints(table) = of(&text, None, &map).unwrap().unwrap().table else { panic!() };
+        assert_eq!(table.rows[1].current, Dq { d: -5.0, q: 10.0 });
+    }
+
+    /// Rows with a time or a sample number, in per cent, with a speed in no unit; and a log whose currents are held for many rows.
+    #[test]
+    fn what_may_be_a_log_is_none() {
+        let row = |speed: f64, id: f64, iq: f64| format!("{speed},{id},{iq},1,2,3\n");
+        for header in ["rpm_mech,id,iq,ud,uq,t", "rpm_mech,id,iq,ud,uq,sample", "rpm_mech,id,iq,ud [%],uq [%],x", "speed,id,iq,ud,uq,x"] {
+            assert!(matches!(of(&points(header, row), None, &[]), Ok(None)), "{header}");
+        }
+        let held: String = (0..900).map(|k| format!("1000,0,{},1,2\n", f64::from(1 + k / 300) + 0.01 * f64::from(k % 2))).collect();
+        assert!(matches!(of(&format!("speed_rpm,id,iq,ud,uq\n{held}"), None, &[]), Ok(None)));
+    }
+}
