@@ -8,26 +8,14 @@ use super::{
     layout::NotALog,
     options::LogOptions,
     resemblance::words,
-    steady_points, steady_test,
+    steady_points,
+    steady_test::{self, ReadCharacteristic},
     table::Table,
 };
 use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem, quantity::Quantity};
 use fluxfit::characteristics::{Characteristic, OpenCircuit, OpenCircuitRow, ShortCircuit, ShortCircuitRow};
 use fluxfit_files::{FileError, input};
 use std::path::Path;
-
-/// A characteristic, and what had to be inferred to read it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ReadCharacteristic {
-    /// The quantities and the columns that they were taken from.
-    pub columns: Vec<(&'static str, String)>,
-    /// The table, in SI units.
-    pub table: Characteristic,
-    /// What was inferred or left out.
-    pub notes: Vec<Note>,
-    /// The speeds are electrical, because nobody says how many pole pairs the motor has: the table tells the motor's own values.
-    pub has_electrical_speed: bool,
-}
 
 /// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. What can be read only once
 /// (standard input, a pipe) is always taken for a log, and so is a file of which the options name the columns of a log.

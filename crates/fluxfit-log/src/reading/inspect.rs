@@ -1,10 +1,11 @@
 //! Inspection of a file: its columns, and how they are read, whether they make a log or not.
 
 use super::{
-    characteristic::{ReadCharacteristic, quantity, read_characteristic},
+    characteristic::{quantity, read_characteristic},
     layout::Layout,
     options::{LogOptions, ResolvedOptions},
     read::{ReadLog, read},
+    steady_test::ReadCharacteristic,
     survey::{Surveyed, survey},
     table::Table,
 };
@@ -92,8 +93,8 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         let of = |columns: &[Surveyed]| columns.iter().find(|column| column.index == index).copied();
         let (taken, resembling) = (of(&survey.taken), of(&survey.resembling));
         let found = taken.or(resembling);
-        // Of what is read, SI is assumed where nothing states a unit; of what is not, nothing is. Nor is it what a name means, where the log
-        // is refused for its units.
+        // Of what is read, SI is assumed where nothing states a unit; of what is not, nothing is. Where the log is refused for its units, a
+        // name states none either.
         let is_doubted = |found: &Surveyed| is_of_units && is_electrical(found.channel) && !found.is_unit_written;
         let is_stated = |found: &Surveyed| found.is_unit_stated && !is_doubted(found);
         let unit = found.filter(|found| is_stated(found) || log.is_ok()).and_then(|found| found.unit);

@@ -49,7 +49,7 @@ mod turning;
 mod vocabulary;
 
 pub(crate) use called::channel_called;
-pub use characteristic::{ReadCharacteristic, read_characteristic};
+pub use characteristic::read_characteristic;
 pub use inspect::{InspectedColumn, Inspection, inspect};
 pub use layout::{LAYOUTS, Layout};
 pub use live::LiveLog;
@@ -59,3 +59,4 @@ pub use read::{
     ReadColumn, ReadLog, are_volts_written, column_findings, parse_log, read_log, read_log_from, read_log_with_progress, read_part,
     read_table,
 };
+pub use steady_test::ReadCharacteristic;

@@ -3,11 +3,10 @@
 use super::{
     alias,
     bench_columns::{Found, INSTANT, convention, found_all, refuse_unclear, values_of},
-    characteristic::ReadCharacteristic,
     layout::Layout,
     names::automatic,
     resemblance::words,
-    steady_test::{in_si, is},
+    steady_test::{ReadCharacteristic, in_si, is},
     table::Table,
 };
 use crate::{

@@ -5,7 +5,6 @@
 use super::{
     alias,
     bench_columns::{DRIVEN, Found, INSTANT, across, convention, refuse_unclear, values_of},
-    characteristic::ReadCharacteristic,
     layout::NotALog,
     resemblance::{is_reference, words},
     rms,
@@ -24,6 +23,19 @@ use fluxfit::{
 };
 use fluxfit_files::FileError;
 use fluxfit_units::wording::quote;
+
+/// A characteristic, and what had to be inferred to read it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadCharacteristic {
+    /// The quantities and the columns that they were taken from.
+    pub columns: Vec<(&'static str, String)>,
+    /// The table, in SI units.
+    pub table: Characteristic,
+    /// What was inferred or left out.
+    pub notes: Vec<Note>,
+    /// The speeds are electrical, because nobody says how many pole pairs the motor has: the table tells the motor's own values.
+    pub has_electrical_speed: bool,
+}
 
 /// Whether a column may be a channel.
 pub(super) fn is(channel: Channel, head: &ColumnHead) -> bool {
