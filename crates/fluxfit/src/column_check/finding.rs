@@ -62,6 +62,11 @@ pub enum ColumnFinding {
         /// Whether no motor comes to that speed.
         is_certain: bool,
     },
+    /// Voltages and currents that do not stand in the rows in which they were.
+    LateColumns {
+        /// By so many rows the voltages are late; negative, the currents.
+        rows: isize,
+    },
     /// Voltages that are whole numbers: digits of a converter, tenths, or V that were rounded.
     VoltageDigits {
         /// The largest |u|.
@@ -117,6 +122,7 @@ impl ColumnFinding {
             Self::TimeUnit { .. } => "time-unit",
             Self::Axes { .. } => "column-signs",
             Self::PhaseOrder => "phase-order",
+            Self::LateColumns { .. } => "late-columns",
             Self::VoltageScale { .. } | Self::VoltageDigits { .. } => "voltage-scale",
             Self::VoltageShare { .. } => "voltage-share",
         }
@@ -133,6 +139,6 @@ impl ColumnFinding {
     }
 
     /// The codes of all findings.
-    pub const CODES: [&'static str; 7] =
-        ["speed-unit", "speed-sign", "time-unit", "column-signs", "phase-order", "voltage-scale", "voltage-share"];
+    pub const CODES: [&'static str; 8] =
+        ["speed-unit", "speed-sign", "time-unit", "column-signs", "phase-order", "late-columns", "voltage-scale", "voltage-share"];
 }

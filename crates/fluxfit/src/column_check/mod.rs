@@ -5,6 +5,7 @@
 //! `words`.
 
 mod finding;
+mod late_columns;
 mod regression;
 mod speed_of_slopes;
 mod turning;
@@ -25,6 +26,7 @@ pub fn check_columns(log: &Log) -> Vec<ColumnFinding> {
             finding => finding,
         })
         .or_else(|| turning::phase_order(log))
+        .or_else(|| late_columns::late_columns(log))
         .or_else(|| regression::time_unit(log))
         .or_else(|| speed_of_slopes::speed_scale(log))
         .or_else(|| regression::axes(log));

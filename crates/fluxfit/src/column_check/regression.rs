@@ -71,6 +71,13 @@ pub(super) struct Mean {
 }
 
 impl Mean {
+    /// A single row.
+    pub(super) fn of_row(u: Dq, i: Dq, slope: Dq, omega: f64) -> Self {
+        let length = i.magnitude();
+        let direction = if length > 0.0 { Dq { d: i.d / length, q: i.q / length } } else { i };
+        Self { u, i, direction, slope, omega_i: Dq { d: omega * i.d, q: omega * i.q }, omega, ..Self::default() }
+    }
+
     /// Without the slopes of noise: what a controller makes of it is no voltage of theirs, and grows with the time between rows.
     pub(super) fn without_noise(self) -> Self {
         let [d, q] = self.changes;

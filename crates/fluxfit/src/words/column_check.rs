@@ -45,6 +45,14 @@ impl Display for ColumnFinding {
                 )
             }
             Self::PhaseOrder => write!(f, "the current turns backward in the frame of theta_e: two phases have changed places"),
+            Self::LateColumns { rows } => {
+                let [late, other] = if *rows > 0 { ["u_d and u_q", "i_d and i_q"] } else { ["i_d and i_q", "u_d and u_q"] };
+                let rows = rows.abs();
+                write!(
+                    f,
+                    "{late} stand {rows} rows late beside {other}; log all at one instant, or move them up by {rows} rows in the file"
+                )
+            }
             Self::VoltageScale { ratio, rows, .. } => {
                 let rows = if *rows < NEARLY_ALL {
                     format!("in {} of the rows, and the currents follow them", percent(*rows))

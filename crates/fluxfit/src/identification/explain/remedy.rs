@@ -233,7 +233,8 @@ fn longer(parameter: Parameter, finding: &Finding) -> Option<(f64, f64)> {
     if finding.trust.correlation_of_neighbours > CORRELATED || rest > MOST_REST * allowed {
         return None;
     }
-    let times = (noise * noise / (allowed * allowed - rest * rest)).ceil();
+    // At least twice: by rounding of the allowed width it may be once.
+    let times = (noise * noise / (allowed * allowed - rest * rest)).ceil().max(2.0);
     (times < MUCH_LONGER).then(|| (times, HALF_WIDTH * (noise / times.sqrt()).hypot(rest) / value))
 }
 
