@@ -95,8 +95,8 @@ mod tests {
     use super::*;
     use crate::log::Columns;
 
-    /// A motor of 0.9 ohm, 4.1 and 6.2 mH, 0.117 Wb at 250 rad/s whose controller steps its current every 50 rows; voltages act one row after
-    /// they are logged, and stand so many rows late in the log.
+    /// A motor of 0.9 ohm, 4.1 and 6.2 mH, 0.117 Wb at 250 rad/s whose controller steps its current every 50 rows; voltages act one row
+    /// after their command, and stand so many rows late in the log.
     fn log(late: usize) -> Log {
         const PERIOD: f64 = 1e-4;
         let (rs, ld, lq, psi_f, omega_e) = (0.9, 4.1e-3, 6.2e-3, 0.117, 250.0);
