@@ -51,6 +51,7 @@ mod problem;
 mod quantity;
 mod reading;
 mod records;
+mod unclear_table;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container, guarded};

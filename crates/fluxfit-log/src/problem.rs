@@ -1,5 +1,6 @@
 //! What can be wrong with a log, or with what is stated about it.
 
+use crate::unclear_table::UnclearTable;
 use fluxfit_files::{Advice, FileError, FileErrorKind};
 use fluxfit_units::wording::{choice, columns, did_you_mean, list, quote, shorten};
 use fluxfit_units::{Unit, significant};
@@ -118,15 +119,8 @@ pub(crate) enum Problem {
     NoAngle,
 
     // Characteristics
-    #[error("{}", unclear(.several, .electrical.as_deref(), .direct_voltage.as_deref()))]
-    UnclearTable {
-        /// Quantities that several columns could be.
-        several: Vec<(&'static str, Vec<String>)>,
-        /// An electrical speed beside a torque of the shaft.
-        electrical: Option<String>,
-        /// A voltage of a direct current that does not say between which points it was measured.
-        direct_voltage: Option<String>,
-    },
+    #[error("{0}")]
+    UnclearTable(UnclearTable),
     #[error(
         "this is the curve of a motor that drives a load, speed and torque with power: R_s, L_d, L_q and psi_f need dq voltages and currents over time, or tables with open and shorted terminals; log one of them"
     )]
@@ -333,7 +327,7 @@ impl Problem {
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
-            Self::UnclearTable { .. } | Self::LoadCurve => FileErrorKind::Columns,
+            Self::UnclearTable(_) | Self::LoadCurve => FileErrorKind::Columns,
             Self::HeaderUnit { .. }
             | Self::Share { .. }
             | Self::PolePairs { .. }
@@ -380,12 +374,7 @@ impl Problem {
             Self::MappedHeader { channel, nearest: Some(header), .. } => vec![Advice::MapColumns(vec![(channel, Some(header.clone()))])],
             Self::NotALog { advice, .. } => advice.iter().cloned().collect(),
             Self::HeaderUnit { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
-            Self::UnclearTable { several, electrical, .. } => {
-                let first = |(quantity, headers): &(&'static str, Vec<String>)| (*quantity, headers.first().cloned());
-                let map = (!several.is_empty()).then(|| Advice::MapColumns(several.iter().map(first).collect()));
-                let all: Vec<Advice> = map.into_iter().chain(electrical.as_ref().map(|_| Advice::StatePolePairs)).collect();
-                if all.len() > 1 { vec![Advice::Together(all)] } else { all }
-            }
+            Self::UnclearTable(unclear) => unclear.advice(),
             Self::PolePairs { channel, electrical, .. } => {
                 vec![Advice::StatePolePairs, Advice::StateUnit { channel, unit: Some(electrical) }]
             }
@@ -501,27 +490,6 @@ fn without_time(missing: &[&str], proposals: &[(&str, String)]) -> String {
     }
     "; if no column is the time and all rows are equally far apart, write the time between them into a mapping file, as in sample_period = \"0.1 ms\""
         .to_owned()
-}
-
-/// What has to be stated of a table of a test bench.
-fn unclear(several: &[(&str, Vec<String>)], electrical: Option<&str>, direct_voltage: Option<&str>) -> String {
-    let could_be = several.iter().map(|(quantity, headers)| format!("the columns {} could each be the {quantity}", columns(headers)));
-    let could_be: Vec<String> = could_be.collect();
-    let map = match could_be.as_slice() {
-        [] => None,
-        [one] => Some(format!("{one}; map the one that is, or leave it alone in the table")),
-        all => Some(format!("{}; map the one of each that is, or leave it alone in the table", list(all))),
-    };
-    let of_shaft = electrical.map(|header| {
-        format!("the speed {} is electrical, and the torque is that of the shaft; state the number of pole pairs", quote(header))
-    });
-    let points = direct_voltage.map(|header| {
-        format!(
-            "the name of the voltage {} does not say between which points it was measured; put 'll' (two terminals in series) or 'phase' (a terminal and the star point) into it",
-            quote(header)
-        )
-    });
-    [map, of_shaft, points].into_iter().flatten().collect::<Vec<_>>().join("; and ")
 }
 
 fn speed_unit(of_shaft: bool) -> &'static str {

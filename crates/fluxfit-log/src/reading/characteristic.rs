@@ -4,14 +4,15 @@
 //! makes power (a DC supply, shaft power, efficiency) belongs to a motor that is driven, and its table is no characteristic.
 
 use super::{
-    bench_columns::{DRIVEN, Found, INSTANT, across, convention, found, found_all, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, found, found_all, is_direct, is_driven, refuse_unclear, values_of},
+    bench_convention::{across, convention},
     layout::NotALog,
     options::LogOptions,
     resemblance::words,
     steady_test::{self, SteadyTest},
     table::Table,
 };
-use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem, quantity::Quantity};
+use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem, quantity::Quantity, unclear_table::UnclearTable};
 use fluxfit::characteristics::{Characteristic, OpenCircuit, OpenCircuitRow, ShortCircuit, ShortCircuitRow};
 use fluxfit_files::{FileError, input};
 use std::path::Path;
@@ -52,7 +53,6 @@ pub(super) fn quantity(index: usize, head: &ColumnHead) -> Option<&'static str> 
 
 fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
-    let is_driven = |head: &ColumnHead| words(&head.name).iter().any(|word| DRIVEN.contains(&word.as_str()));
     let is_of_log = |head: &ColumnHead| {
         let channel = |channel: Channel| {
             super::alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel)
@@ -72,7 +72,7 @@ fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -
         return Ok(None);
     }
     let has = |quantity: Quantity| columns.iter().any(|column| column.quantity == quantity);
-    if heads.iter().any(is_driven) {
+    if heads.iter().any(|head| is_driven(head) || is_direct(head)) {
         let is_curve = has(Quantity::Speed) && has(Quantity::Torque) && turns_and_pulls(&mut table, &columns);
         return if is_curve { Err(Problem::LoadCurve.into()) } else { Ok(None) };
     }
@@ -95,12 +95,16 @@ fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -
     let has_shaft = [Quantity::Torque, Quantity::Current].iter().all(|quantity| !of_all[*quantity as usize].is_empty());
     let of_frequency = of_all[Quantity::Speed as usize].first().filter(|(column, _)| column.is_electrical && has_shaft);
     let electrical = of_frequency.filter(|_| pole_pairs.is_none()).map(|(column, _)| column.header.clone());
-    refuse_unclear(of_all.iter().map(|of_one| of_one.iter().map(|(column, _)| column).collect()), electrical, None)?;
+    refuse_unclear(
+        of_all.iter().map(|of_one| of_one.iter().map(|(column, _)| column).collect()),
+        UnclearTable { electrical, ..UnclearTable::default() },
+    )?;
     let mut notes = Vec::new();
     let speed = channel(&columns, Quantity::Speed, pole_pairs, &mut notes);
     let torque = channel(&columns, Quantity::Torque, pole_pairs, &mut notes);
     let voltage = channel(&columns, Quantity::Voltage, pole_pairs, &mut notes);
-    let across = across(&headers(&columns, Quantity::Voltage));
+    let voltages = candidates(&columns, Quantity::Voltage);
+    let across = across(&voltages.iter().map(|(column, _)| column.described.as_str()).collect::<Vec<_>>());
     let current = channel(&columns, Quantity::Current, pole_pairs, &mut notes);
     let Some(speed) = speed else { return Ok(None) };
     let of_row = |k: usize| torque.as_ref().map(|torque| torque[k].0).filter(|torque| torque.is_finite());
@@ -209,6 +213,55 @@ mod tests {
         assert_eq!(table.across, Some(Across::Phase));
     }
 
+    /// Of psi_f = 10 mWb at 1000 electrical rad/s: 10 V amplitude of a phase, sqrt 3 times as much between lines, rms 1 / sqrt 2, peak to peak
+    /// twice. So much rms has every reading of it.
+    #[test]
+    fn units_say_what_of_a_wave_was_measured_and_names_between_which_points() {
+        let (amplitude, lines) = (10.0, 3.0_f64.sqrt());
+        for (voltage, factor, across) in [
+            ("U_ll [Vpp]", 2.0 * lines, Some(Across::Lines)),
+            ("Vpp line-line", 2.0 * lines, Some(Across::Lines)),
+            ("Phase Voltage (Vpk)", 1.0, Some(Across::Phase)),
+            ("V_AB (Vrms)", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("Line to Line Voltage (VAC)", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("motor phase-phase voltage (V) rms", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("vll_rms", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("L-N (V rms)", 0.5_f64.sqrt(), Some(Across::Phase)),
+            ("Voltage (V AC)", 0.5_f64.sqrt(), None),
+            ("Vpp", 2.0, None),
+        ] {
+            let rows = [1.0, 2.0, 3.0].map(|k| format!("{},{}\n", 1000.0 * k, k * factor * amplitude)).concat();
+            let read = of(format!("speed [rad/s],{voltage}\n{rows}").leak()).unwrap().unwrap();
+            let Characteristic::OpenCircuit(table) = read.table else { panic!("{voltage}") };
+            let of_phase = if across == Some(Across::Lines) { 1.0 / lines } else { 1.0 };
+            let rms = table.rows[2].voltage * of_phase;
+            assert!((rms - 30.0 * 0.5_f64.sqrt()).abs() < 1e-9, "{voltage}: {rms}");
+            assert_eq!(table.across, across, "{voltage}");
+        }
+    }
+
+    /// 10 A rms are 14.1 A at their peak, and 2 N m are 17.7 pounds of force at an inch.
+    #[test]
+    fn shorted_terminals_have_the_units_of_their_meters() {
+        for (current, of_ten) in [("Isc [A rms]", 10.0), ("Isc [Arms]", 10.0), ("Current [Apk]", 10.0 * 2.0_f64.sqrt()), ("I [mArms]", 1e4)]
+        {
+            let inch_pounds = 2.0 / (0.453_592_37 * 9.80665 * 0.0254);
+            let text = format!("n [rpm],{current},Torque [lbf-in]\n1000,{of_ten},{inch_pounds}\n2000,{of_ten},{inch_pounds}\n");
+            let Characteristic::ShortCircuit(table) = of(text.leak()).unwrap().unwrap().table else { panic!("{current}") };
+            assert!((table.rows[0].current - 10.0).abs() < 1e-9 && (table.rows[0].torque.unwrap() - 2.0).abs() < 1e-9, "{current}");
+        }
+    }
+
+    /// 250 r/min/V is no voltage of 250 kV.
+    #[test]
+    fn a_constant_beside_the_voltages_is_left_alone() {
+        for constant in ["Kv", "KV", "kt", "Ke"] {
+            let read = of(format!("rpm,U_ll (V),{constant}\n500,2,250\n1000,4,250\n").leak()).unwrap().unwrap();
+            let Characteristic::OpenCircuit(table) = read.table else { panic!("{constant}") };
+            assert_eq!(table.rows.iter().map(|row| row.voltage).collect::<Vec<_>>(), [2.0, 4.0], "{constant}");
+        }
+    }
+
     #[test]
     fn shorted_terminals_have_current_and_torque() {
         let Some(ReadCharacteristic { table: Characteristic::ShortCircuit(table), .. }) =
@@ -231,6 +284,8 @@ mod tests {
             "speed_rpm,voltage_V\n1,2\n2,-2\n",
             "timestep,speed_rpm,voltage_V\n0,1,2\n1,2,4\n",
             "speed [m/s],voltage_V\n1,2\n2,4\n",
+            // Behind a rectifier.
+            "speed [rpm],U_ll [VDC]\n1,2\n2,4\n",
         ] {
             assert_eq!(of(text).unwrap(), None, "{text}");
         }

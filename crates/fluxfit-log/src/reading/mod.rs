@@ -10,6 +10,8 @@ mod alias;
 mod align;
 mod back_emf;
 mod bench_columns;
+mod bench_convention;
+mod bench_units;
 mod called;
 mod channels;
 mod characteristic;
