@@ -122,6 +122,14 @@ pub(crate) enum Problem {
     #[error("{0}")]
     UnclearTable(UnclearTable),
     #[error(
+        "the mapped columns make no table of a test bench: that has speed and voltage (open terminals), speed and current (shorted terminals), voltage and current (a direct one, at rest), or torque and iq or current; rms values and amplitudes have one sign"
+    )]
+    NoTable,
+    #[error("'{}' is mapped to {column}, which a table of {table} has no place for; leave it out", shorten(.header))]
+    UnusedColumn { column: &'static str, header: String, table: &'static str },
+    #[error("the name '{}' states another unit than one of {column}, or a constant; write its unit into the name", shorten(.header))]
+    MappedUnit { column: &'static str, header: String },
+    #[error(
         "this is the curve of a motor that drives a load, speed and torque with power: R_s, L_d, L_q and psi_f need dq voltages and currents over time, or tables with open and shorted terminals; log one of them"
     )]
     LoadCurve,
@@ -327,7 +335,9 @@ impl Problem {
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
-            Self::UnclearTable(_) | Self::LoadCurve => FileErrorKind::Columns,
+            Self::UnclearTable(_) | Self::LoadCurve | Self::NoTable | Self::UnusedColumn { .. } | Self::MappedUnit { .. } => {
+                FileErrorKind::Columns
+            }
             Self::HeaderUnit { .. }
             | Self::Share { .. }
             | Self::PolePairs { .. }
@@ -360,7 +370,10 @@ impl Problem {
             Self::SeveralLogs { first, .. } => {
                 vec![Advice::MapColumns(first.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect())]
             }
-            Self::Missing { missing, present, proposals, .. } if are_not_in_it(missing, present, proposals) => Vec::new(),
+            Self::Missing { missing, present, proposals, .. } if are_not_in_it(missing, present, proposals) => {
+                let of_table = may_be_table(missing, present) && !has_d_alone(missing);
+                if of_table { map(&["speed", "voltage", "current", "torque"]) } else { Vec::new() }
+            }
             Self::Missing { proposals, line_to_line, .. } if proposals.is_empty() && *line_to_line != LineToLine::default() => Vec::new(),
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
             Self::Missing { proposals, rms, speed, .. } => {
@@ -455,6 +468,17 @@ fn has_d_alone(missing: &[&str]) -> bool {
     ["uq", "iq"].iter().all(|channel| missing.contains(channel)) && !["ud", "id"].iter().any(|channel| missing.contains(channel))
 }
 
+/// Columns of a table of a test bench: there are at least two, and not many.
+const COLUMNS_OF_TABLE: std::ops::RangeInclusive<usize> = 2..=4;
+
+/// Whether a file is so small that it may be a table of a test bench, whose rows have no time.
+fn may_be_table(missing: &[&str], present: &[String]) -> bool {
+    missing.contains(&"t") && COLUMNS_OF_TABLE.contains(&present.len())
+}
+
+/// What is said of such a file.
+const OF_TABLE: &str = "; if it is a table of a test bench to identify from, map what it has: speed and voltage (open terminals), speed and current (shorted terminals), voltage and current (a direct one, at rest), or torque and current";
+
 fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> String {
     let (noun, are, they_have, names) =
         if missing.len() == 1 { ("column", "is", "it has", "another name") } else { ("columns", "are", "they have", "other names") };
@@ -466,7 +490,8 @@ fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, Str
     }
     let it = if missing.len() == 1 { "it" } else { "them" };
     if are_not_in_it(missing, present, proposals) {
-        return format!("{what}, too few other columns for {it} to be in it; log {it} too");
+        let of_table = if may_be_table(missing, present) { OF_TABLE } else { "" };
+        return format!("{what}, too few other columns for {it} to be in it; log {it} too{of_table}");
     }
     if proposals.is_empty() {
         return format!("{what}; map {it} if {they_have} {names}, else log {it} too");

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     block::{ColumnHead, WantedColumn},
     problem::Problem,
-    quantity::Quantity,
+    quantity::{Quantity, TableColumn},
     unclear_table::UnclearTable,
 };
 use fluxfit_files::FileError;
@@ -68,6 +68,8 @@ pub(super) struct Found {
     pub(super) has_unit: bool,
     pub(super) in_si: f64,
     pub(super) is_electrical: bool,
+    /// What the user says that it is.
+    pub(super) mapped: Option<TableColumn>,
 }
 
 pub(super) fn found(index: usize, head: &ColumnHead) -> Option<Found> {
@@ -76,7 +78,7 @@ pub(super) fn found(index: usize, head: &ColumnHead) -> Option<Found> {
         return None;
     }
     let of = |quantity, has_unit, in_si, is_electrical| {
-        Some(Found { index, header: header.clone(), described: described(head), quantity, has_unit, in_si, is_electrical })
+        Some(Found { index, header: header.clone(), described: described(head), quantity, has_unit, in_si, is_electrical, mapped: None })
     };
     match stated_unit(head) {
         StatedUnit::Of(quantity, in_si, is_electrical) => return of(quantity, true, in_si, is_electrical),
@@ -95,32 +97,87 @@ fn described(head: &ColumnHead) -> String {
     format!("{}{unit}", head.name.trim())
 }
 
-/// The columns of a table. Of a quantity that the user mapped that column alone, in the unit of its header, or in SI and r/min.
+/// What is stated of a table besides its file.
+#[derive(Default)]
+pub(super) struct Stated {
+    pub(super) pole_pairs: Option<u32>,
+    /// The unit of the speed.
+    pub(super) speed: Option<Unit>,
+    /// What columns are, by their names.
+    pub(super) map: Vec<(TableColumn, String)>,
+}
+
+impl Stated {
+    /// Whether a column is said to be one of some quantities, and not a current of the rotor's frame.
+    pub(super) fn maps(&self, some: &[Quantity]) -> bool {
+        self.map.iter().any(|(column, _)| !column.is_axis() && some.contains(&column.quantity()))
+    }
+}
+
+/// The columns of a table: of a quantity that the user mapped that column alone, in the unit of its name, or in SI and r/min. What the
+/// mapped ones leave no place for is left out: beside speed and voltage a current is that of another test.
 ///
 /// # Errors
-/// If the table has no such column.
-pub(super) fn found_all(heads: &[ColumnHead], map: &[(Quantity, String)]) -> Result<Vec<Found>, FileError> {
+/// If the table has no such column, its name states a unit of something else, or two are mapped to one quantity.
+pub(super) fn found_all(heads: &[ColumnHead], stated: &Stated) -> Result<Vec<Found>, FileError> {
     let mut columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
-    for (quantity, header) in map {
-        let is_named = |head: &ColumnHead| head.name.trim().eq_ignore_ascii_case(header.trim());
-        let Some(index) = heads.iter().position(is_named) else {
-            let present = heads.iter().map(|head| head.name.clone()).collect();
-            return Err(Problem::MappedHeader { channel: quantity.name(), header: header.clone(), present, nearest: None }.into());
-        };
-        let own = columns.iter().position(|column| column.index == index).map(|place| columns.swap_remove(place));
-        columns.retain(|column| column.quantity != *quantity);
-        columns.push(own.filter(|own| own.quantity == *quantity).unwrap_or_else(|| Found {
-            index,
-            header: heads[index].name.trim().to_owned(),
-            described: described(&heads[index]),
-            quantity: *quantity,
-            has_unit: true,
-            in_si: quantity.assumed_unit(),
-            is_electrical: false,
-        }));
+    for (column, header) in &stated.map {
+        map(&mut columns, heads, *column, header)?;
+    }
+    let is_axis = stated.map.iter().any(|(column, _)| column.is_axis());
+    let mapped = [Quantity::Speed, Quantity::Voltage, Quantity::Current].map(|quantity| stated.maps(&[quantity]));
+    let others: &[Quantity] = match mapped {
+        _ if is_axis => &[Quantity::Speed, Quantity::Voltage, Quantity::Current],
+        [_, true, true] => &[Quantity::Speed, Quantity::Torque],
+        [true, true, false] => &[Quantity::Current, Quantity::Torque],
+        [true, false, true] => &[Quantity::Voltage],
+        _ => &[],
+    };
+    columns.retain(|column| column.mapped.is_some() || !others.contains(&column.quantity));
+    if let Some(unit) = stated.speed {
+        for speed in columns.iter_mut().filter(|column| column.quantity == Quantity::Speed) {
+            (speed.has_unit, speed.in_si, speed.is_electrical) = (true, unit.in_si(), !unit.is_mechanical());
+        }
     }
     columns.sort_by_key(|column| column.index);
     Ok(columns)
+}
+
+/// Takes the column with a name for what the user says that it is.
+fn map(columns: &mut Vec<Found>, heads: &[ColumnHead], column: TableColumn, header: &str) -> Result<(), FileError> {
+    let quantity = column.quantity();
+    let Some(index) = place(heads, header) else {
+        let present = heads.iter().map(|head| head.name.clone()).collect();
+        return Err(Problem::MappedHeader { channel: column.name(), header: header.to_owned(), present, nearest: None }.into());
+    };
+    let is_same = |other: TableColumn| other == column || !other.is_axis() && !column.is_axis() && other.quantity() == quantity;
+    if let Some(other) = columns.iter().find(|other| other.index != index && other.mapped.is_some_and(is_same)) {
+        // Of three phases all are mapped with one.
+        let are_phases = other.mapped == Some(column) && column.across().is_some();
+        return if are_phases { Ok(()) } else { Err(Problem::Twice { channel: column.name() }.into()) };
+    }
+    let (in_si, is_electrical, has_unit) = match stated_unit(&heads[index]) {
+        StatedUnit::Of(own, in_si, is_electrical) if own == quantity => (in_si, is_electrical, true),
+        StatedUnit::None => (quantity.assumed_unit(), false, false),
+        _ => return Err(Problem::MappedUnit { column: column.name(), header: header.to_owned() }.into()),
+    };
+    // What holds of the terminals of one phase holds of all three that are averaged.
+    let phases: Vec<usize> = columns.iter().filter(|other| other.quantity == quantity).map(|other| other.index).collect();
+    let names: Vec<&str> = phases.iter().map(|index| heads[*index].name.trim()).collect();
+    let are_phases = names.first_chunk::<3>().is_some_and(|three| names.len() == 3 && are_phases(*three));
+    if column.across().is_some() && are_phases && phases.contains(&index) {
+        columns.iter_mut().filter(|other| other.quantity == quantity).for_each(|other| other.mapped = Some(column));
+        return Ok(());
+    }
+    columns.retain(|other| other.index != index && (other.quantity != quantity || other.mapped.is_some_and(TableColumn::is_axis)));
+    let (header, described) = (heads[index].name.trim().to_owned(), described(&heads[index]));
+    columns.push(Found { index, header, described, quantity, has_unit, in_si, is_electrical, mapped: Some(column) });
+    Ok(())
+}
+
+/// The column with a name, in whatever case.
+pub(super) fn place(heads: &[ColumnHead], header: &str) -> Option<usize> {
+    heads.iter().position(|head| head.name.trim().eq_ignore_ascii_case(header.trim()))
 }
 
 /// The values of columns, by their places and names.

@@ -5,7 +5,11 @@ use super::{
     line_to_line,
     resemblance::words,
 };
-use crate::{header_unit::states_electrical, note::Note, quantity::Quantity};
+use crate::{
+    header_unit::states_electrical,
+    note::Note,
+    quantity::{Quantity, TableColumn},
+};
 use fluxfit::characteristics::Across;
 use fluxfit_units::wording::quote;
 
@@ -68,9 +72,24 @@ pub(super) fn states_wave(name: &str) -> bool {
     to_rms(name).2
 }
 
+/// Words of a speed that are its unit, or in which a speed is always r/min.
+const REVOLUTIONS: [&str; 5] = ["rpm", "drehzahl", "upm", "转速", "回転数"];
+
+/// Whether nothing states the unit of a speed.
+pub(super) fn lacks_unit(column: &Found) -> bool {
+    let is_in_rpm = || words(&column.header).iter().any(|word| REVOLUTIONS.contains(&word.as_str()));
+    column.quantity == Quantity::Speed && !column.has_unit && !is_in_rpm()
+}
+
+/// Between which points voltages were measured, by what the user says, or else by their names.
+pub(super) fn points(columns: &[&Found]) -> Option<Across> {
+    let stated = columns.first()?.mapped.and_then(TableColumn::across);
+    stated.or_else(|| across(&columns.iter().map(|column| column.described.as_str()).collect::<Vec<_>>()))
+}
+
 /// Between which points voltages were measured, by the names of their columns: `U_12`, `Uab` and `line voltage` between lines, `U_a`,
 /// `U_1N` and `phase voltage` of a phase. Channels of an instrument, `U1` to `U3`, say nothing.
-pub(super) fn across(names: &[&str]) -> Option<Across> {
+fn across(names: &[&str]) -> Option<Across> {
     let name = names.first()?;
     let words = words(name);
     let count = |some: &[&str]| words.iter().filter(|word| some.iter().any(|one| word.contains(one))).count();

@@ -50,7 +50,7 @@ mod turning;
 mod vocabulary;
 
 pub(crate) use called::channel_called;
-pub use characteristic::{ReadCharacteristic, read_characteristic};
+pub use characteristic::{ReadCharacteristic, read_characteristic, read_characteristic_among};
 pub use inspect::{InspectedColumn, Inspection, inspect};
 pub use layout::{LAYOUTS, Layout};
 pub use live::LiveLog;

@@ -4,8 +4,8 @@
 
 use super::{
     alias,
-    bench_columns::{Found, INSTANT, is_direct, is_driven, refuse_unclear, values_of},
-    bench_convention::{across, convention, states_wave},
+    bench_columns::{Found, INSTANT, Stated, is_direct, is_driven, refuse_unclear, values_of},
+    bench_convention::{convention, lacks_unit, points, states_wave},
     layout::NotALog,
     resemblance::{is_reference, words},
     rms,
@@ -16,7 +16,7 @@ use crate::{
     channel::Channel,
     header_unit::{HeaderUnit, split_header, unit_in_row},
     note::Note,
-    quantity::Quantity,
+    quantity::{Quantity, TableColumn},
     unclear_table::UnclearTable,
 };
 use fluxfit::{
@@ -60,53 +60,63 @@ fn has_word(head: &ColumnHead, some: &[&str]) -> bool {
 const DUTY_OF_VESC: [&str; 2] = ["dutyCycleNow", "duty_cycle_now"];
 
 /// Reads such a table, if it is one.
-pub(super) fn read(table: &mut Table, columns: &[Found], pole_pairs: Option<u32>) -> Result<Option<SteadyTest>, FileError> {
+pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Result<Option<SteadyTest>, FileError> {
+    let is_mapped = !stated.map.is_empty();
     let heads = table.heads().to_vec();
     let has = |channel: Channel| heads.iter().any(|head| is(channel, head));
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
-    if NotALog::by_names(&names).is_some()
-        || has(Channel::Ud)
-        || has(Channel::Uq)
-        || has_several_phases(&heads)
-        || alias::duties(&heads).is_some()
-    {
+    let is_of_log = || {
+        NotALog::by_names(&names).is_some()
+            || has(Channel::Ud)
+            || has(Channel::Uq)
+            || has_several_phases(&heads)
+            || alias::duties(&heads).is_some()
+    };
+    if !is_mapped && is_of_log() {
         return Ok(None);
     }
     let all = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<_>>();
     let [speeds, voltages, currents, torques] = Quantity::ALL.map(all);
-    let is_time = heads.iter().any(|head| head.is_time || head.instants.is_some() || is(Channel::T, head));
+    let is_time = !is_mapped && heads.iter().any(|head| head.is_time || head.instants.is_some() || is(Channel::T, head));
     let place = |channel: Channel| heads.iter().position(|head| is(channel, head));
-    if let (Some(q), Some(torque), false) = (place(Channel::Iq), torques.first(), is_time) {
+    let mapped = |column: TableColumn| columns.iter().find(|found| found.mapped == Some(column)).map(|found| found.index);
+    // Columns of another test are mapped: it is not this one.
+    let is_other = |some: &[Quantity]| stated.maps(some);
+    let of_q = mapped(TableColumn::AxisQ)
+        .or_else(|| place(Channel::Iq).filter(|_| !is_other(&[Quantity::Speed, Quantity::Voltage, Quantity::Current])));
+    if let (Some(q), Some(torque), false) = (of_q, torques.first(), is_time) {
         refuse_unclear([torques.clone()].into_iter(), UnclearTable::default())?;
         let of = |index: usize| axis(index, &heads, columns);
-        return torque_of_current(table, place(Channel::Id).map(of), of(q), torque).map(Some);
+        let d = mapped(TableColumn::AxisD).or_else(|| place(Channel::Id)).filter(|d| *d != q);
+        return torque_of_current(table, d.map(of), of(q), torque).map(Some);
     }
     let duty = heads.iter().position(|head| has_word(head, &["duty", "dutycycle"]) && !is_reference(&head.name));
-    if let (Some(duty), Some(speed), Some(input)) = (duty, speeds.first(), heads.iter().position(is_input)) {
-        refuse_unclear([speeds.clone()].into_iter(), UnclearTable::default())?;
-        return duty_cycle(table, duty, input, speed, pole_pairs);
+    let is_duty = !is_other(&[Quantity::Voltage, Quantity::Current, Quantity::Torque]);
+    if let (Some(duty), Some(speed), Some(input), true) = (duty, speeds.first(), heads.iter().position(is_input), is_duty) {
+        let unit = lacks_unit(speed).then(|| speed.header.clone());
+        refuse_unclear([speeds.clone()].into_iter(), UnclearTable { speed: unit, ..UnclearTable::default() })?;
+        return duty_cycle(table, duty, input, speed, stated.pole_pairs);
     }
-    // A direct voltage belongs to a test at rest.
-    let is_driven = heads.iter().any(is_driven);
-    let is_direct = heads.iter().any(is_direct);
-    let is_instant = heads.iter().any(|head| has_word(head, &INSTANT));
-    match (voltages.first(), currents.first()) {
-        (Some(voltage), Some(current)) if speeds.is_empty() && torques.is_empty() && !is_time && !is_driven && !is_instant => {
-            let unnamed = across(&[&voltage.described]).is_none().then(|| voltage.header.clone());
-            refuse_unclear(
-                [voltages.clone(), currents.clone()].into_iter(),
-                UnclearTable { direct_voltage: unnamed, ..UnclearTable::default() },
-            )?;
+    if !speeds.is_empty() || is_time || !is_mapped && heads.iter().any(|head| is_driven(head) || has_word(head, &INSTANT)) {
+        return Ok(None);
+    }
+    match (voltages.first(), currents.first(), torques.first()) {
+        (Some(voltage), Some(current), None) => {
+            let direct_voltage = points(&[voltage]).is_none().then(|| voltage.header.clone());
+            refuse_unclear([voltages.clone(), currents.clone()].into_iter(), UnclearTable { direct_voltage, ..UnclearTable::default() })?;
             direct_current(table, voltage, current)
         }
-        // The current of a phase, where the rotor's frame is not known: all of it is i_q.
-        (None, Some(current)) if speeds.is_empty() && !is_time && !is_driven && !is_direct && !is_instant => {
-            let Some(torque) = torques.first() else { return Ok(None) };
-            let is_open = !states_wave(&current.described);
-            let unnamed = UnclearTable { current: is_open.then(|| current.header.clone()), ..UnclearTable::default() };
-            refuse_unclear([currents.clone(), torques.clone()].into_iter(), unnamed)?;
-            let factor = current.in_si * convention(current, Quantity::Current, None, &mut Vec::new()) * SQRT_2;
-            torque_of_current(table, None, Axis { index: current.index, factor, is_rms: true }, torque).map(Some)
+        // The current of a phase, where the rotor's frame is not known: all of it is i_q. A direct current is that of a supply.
+        (None, Some(current), Some(torque)) if is_mapped || !heads.iter().any(is_direct) => {
+            let is_open = current.mapped.is_none() && !states_wave(&current.described);
+            let current_and_torque = is_open.then(|| [current.header.clone(), torque.header.clone()]);
+            let unclear = UnclearTable { current_and_torque, ..UnclearTable::default() };
+            refuse_unclear([currents.clone(), torques.clone()].into_iter(), unclear)?;
+            let mut notes = Vec::new();
+            let factor = current.in_si * convention(current, Quantity::Current, None, &mut notes) * SQRT_2;
+            let read = torque_of_current(table, None, Axis { index: current.index, factor, is_rms: true }, torque)?;
+            let notes = notes.into_iter().chain(read.notes.into_iter().skip(1)).collect();
+            Ok(Some(SteadyTest { notes, ..read }))
         }
         _ => Ok(None),
     }
@@ -175,7 +185,7 @@ fn torque_of_current(table: &mut Table, d: Option<Axis>, q: Axis, torque: &Found
 }
 
 fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<Option<SteadyTest>, FileError> {
-    let Some(across) = across(&[&voltage.described]) else { return Ok(None) };
+    let Some(across) = points(&[voltage]) else { return Ok(None) };
     let rows: Vec<DirectCurrentRow> = rows(table, [(voltage.index, voltage.in_si), (current.index, current.in_si)])?
         .into_iter()
         .filter(|[_, current]| *current != 0.0)
@@ -309,7 +319,7 @@ mod tests {
             assert!((read.rows[0].current.q - size).abs() < 1e-12 && read.rows[0].current.d == 0.0, "{name}: {:?}", read.rows[0]);
         }
         let refusal = of("Current (A),Torque (Nm)\n3,1\n6,2\n", None).unwrap_err().to_string();
-        assert!(refusal.contains("call it 'Iq'") && refusal.contains("'phase rms'"), "{refusal}");
+        assert!(refusal.contains("map it as iq") && refusal.contains("as current"), "{refusal}");
     }
 
     #[test]
