@@ -127,6 +127,10 @@ pub(crate) enum Problem {
     NoTable,
     #[error("'{}' is mapped to {column}, which a table of {table} has no place for; leave it out", shorten(.header))]
     UnusedColumn { column: &'static str, header: String, table: &'static str },
+    #[error(
+        "the unit of {channel} is stated, and of a table of a test bench only that of its speed can be; write it into the column's name"
+    )]
+    UnitOfTable { channel: String },
     #[error("the name '{}' states another unit than one of {column}, or a constant; write its unit into the name", shorten(.header))]
     MappedUnit { column: &'static str, header: String },
     #[error(
@@ -339,6 +343,7 @@ impl Problem {
                 FileErrorKind::Columns
             }
             Self::HeaderUnit { .. }
+            | Self::UnitOfTable { .. }
             | Self::Share { .. }
             | Self::PolePairs { .. }
             | Self::SpeedUnit { .. }

@@ -535,6 +535,8 @@ fn a_small_file_that_is_no_log_can_be_mapped_as_a_table() {
     let (_, document) = json(&["identify", &open, "--map", map, "--unit", "speed=rpm-mech", "--pole-pairs", "3"]);
     let psi_f = document["parameters"]["psi_f"]["value"].as_f64().unwrap();
     assert!((psi_f / PSI_F - 1.0).abs() < 1e-6, "{psi_f}");
+    let run = fluxfit(&["identify", &open, "--map", map, "--unit", "speed=rpm-mech,ud=mV"]);
+    assert!(run.status == 2 && run.err.contains("the unit of ud is stated, and of a table"), "{}", run.err);
     let run = fluxfit(&["identify", &open, "--map", "speed=Umdrehungen,torque=Messgeraet 2"]);
     assert!(run.status == 2 && run.err.contains("make no table of a test bench"), "{}", run.err);
 }

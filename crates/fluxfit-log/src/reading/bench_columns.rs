@@ -130,7 +130,7 @@ pub(super) fn found_all(heads: &[ColumnHead], stated: &Stated) -> Result<Vec<Fou
         _ if is_axis => &[Quantity::Speed, Quantity::Voltage, Quantity::Current],
         [_, true, true] => &[Quantity::Speed, Quantity::Torque],
         [true, true, false] => &[Quantity::Current, Quantity::Torque],
-        [true, false, true] => &[Quantity::Voltage],
+        [_, false, true] => &[Quantity::Voltage],
         _ => &[],
     };
     columns.retain(|column| column.mapped.is_some() || !others.contains(&column.quantity));

@@ -65,7 +65,13 @@ pub fn read_characteristic_among(path: &Path, all: &[PathBuf], options: &LogOpti
     map.retain(|(_, header)| place(table.heads(), header).is_some() || !is_of_other(header));
     let speed = options.units.iter().find(|(channel, _)| channel == Channel::OmegaE.name()).map(|(_, unit)| *unit);
     let stated = Stated { pole_pairs: options.pole_pairs.or(options.mapping.pole_pairs), speed, map };
-    read(table, &stated).map_err(|error| error.in_file(&input::name(path)))
+    let read = read(table, &stated).map_err(|error| error.in_file(&input::name(path)))?;
+    match options.units.iter().find(|(channel, _)| channel != Channel::OmegaE.name()) {
+        Some((channel, _)) if read.is_some() => {
+            Err(FileError::from(Problem::UnitOfTable { channel: channel.clone() }).in_file(&input::name(path)))
+        }
+        _ => Ok(read),
+    }
 }
 
 /// The quantity that a column of such a table may hold.
