@@ -131,6 +131,11 @@ pub(crate) enum Problem {
         "the unit of {channel} is stated, and of a table of a test bench only that of its speed can be; write it into the column's name"
     )]
     UnitOfTable { channel: String },
+    #[error(
+        "'{}' is a direct one by its name, as of a supply or behind a rectifier, and a table of speeds takes what alternates at the terminals; map that",
+        shorten(.header)
+    )]
+    DirectQuantity { header: String },
     #[error("the name '{}' states another unit than one of {column}, or a constant; write its unit into the name", shorten(.header))]
     MappedUnit { column: &'static str, header: String },
     #[error(
@@ -339,9 +344,12 @@ impl Problem {
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
-            Self::UnclearTable(_) | Self::LoadCurve | Self::NoTable | Self::UnusedColumn { .. } | Self::MappedUnit { .. } => {
-                FileErrorKind::Columns
-            }
+            Self::UnclearTable(_)
+            | Self::LoadCurve
+            | Self::NoTable
+            | Self::DirectQuantity { .. }
+            | Self::UnusedColumn { .. }
+            | Self::MappedUnit { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. }
             | Self::UnitOfTable { .. }
             | Self::Share { .. }

@@ -177,6 +177,11 @@ fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Resu
     let speed = of_all[Quantity::Speed as usize].iter().find(|(column, _)| lacks_unit(column)).map(|(column, _)| column.header.clone());
     let unclear = UnclearTable { electrical, speed, ..UnclearTable::default() };
     refuse_unclear(of_all.iter().map(|of_one| of_one.iter().map(|(column, _)| column).collect()), unclear)?;
+    // Only mapped ones come here.
+    let is_of_motor = |column: &Found| matches!(column.quantity, Quantity::Voltage | Quantity::Current);
+    if let Some((direct, _)) = columns.iter().find(|(column, _)| is_of_motor(column) && is_direct(&heads[column.index])) {
+        return Err(Problem::DirectQuantity { header: direct.header.clone() }.into());
+    }
     let mut notes = Vec::new();
     let speed = channel(&columns, Quantity::Speed, pole_pairs, &mut notes);
     let torque = channel(&columns, Quantity::Torque, pole_pairs, &mut notes);
@@ -363,7 +368,7 @@ mod tests {
         // A column of a log, of a supply, of a quantity of another test beside.
         let supply = mapped("U_DC [V],I_DC [A],power\n1,10,10\n2,20,40\n", &[("voltage_ll", "U_DC [V]"), ("current", "I_DC [A]")], None);
         assert!(matches!(supply.unwrap().unwrap().table, Characteristic::DirectCurrent(DirectCurrent { across: Across::Lines, .. })));
-        let dyno = "rpm,T (Nm),bus i (A),motor phase-phase voltage (V) rms,iq (A)\n100,1,1,2,3\n200,2,1,4,6\n";
+        let dyno = "rpm,T (Nm),bus i (A),motor phase-phase voltage (V) rms,iq (A),V_dc [V]\n100,1,1,2,3,3\n200,2,1,4,6,6\n";
         let voltage = "motor phase-phase voltage (V) rms";
         let open = mapped(dyno, &[("speed", "rpm"), ("voltage", voltage)], None).unwrap().unwrap();
         assert!(matches!(open.table, Characteristic::OpenCircuit(OpenCircuit { across: Some(Across::Lines), .. })));
@@ -382,6 +387,7 @@ mod tests {
             ),
             (&[("speed", "rpm"), ("voltage", "iq (A)")], "states another unit than one of voltage"),
             (&[("speed", "rpm"), ("voltage", "no")], "which the file does not have"),
+            (&[("speed", "rpm"), ("voltage_ll", "V_dc [V]")], "is a direct one by its name"),
             (&[("voltage", voltage), ("voltage_ll", "rpm")], "given twice"),
         ] {
             let refusal = mapped(dyno, map, None).unwrap_err().to_string();
