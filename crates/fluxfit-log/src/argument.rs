@@ -1,17 +1,17 @@
 //! Arguments of the form `channel=value`: `omega=rpm-mech`, `ud=motor_vd`.
 
-use crate::{channel::Channel, problem::Problem, quantity::Quantity, reading::channel_called};
+use crate::{channel::Channel, problem::Problem, quantity::TableColumn, reading::channel_called};
 use fluxfit_files::FileError;
 use fluxfit_units::{Unit, key_value};
 
 /// `ud=motor_vd`: the canonical name of a channel, and the header of its column in the file. `omega` is `omega_e`. Of a table of a test
-/// bench, `speed`, `voltage`, `current` or `torque`.
+/// bench, `speed`, `voltage` (`voltage_ll` between two terminals, `voltage_phase` to the star point), `current` or `torque`.
 ///
 /// # Errors
 /// If there is no `=` with text on both sides, or the name on the left is neither.
 pub fn parse_map(text: &str) -> Result<(String, String), FileError> {
     let (name, header) = key_value(text, "COLUMN=HEADER", "omega_e=motor_speed")?;
-    let name = Quantity::from_name(name).map_or_else(|| Channel::from_name(name).map(Channel::name), |quantity| Ok(quantity.name()))?;
+    let name = TableColumn::from_name(name).map_or_else(|| Channel::from_name(name).map(Channel::name), |column| Ok(column.name()))?;
     Ok((name.to_owned(), header.to_owned()))
 }
 

@@ -106,9 +106,9 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
     if let Some(unit) = header.rsplit(['_', ' ']).next().filter(|last| *last != header && NO_SI.contains(&last.to_lowercase().as_str())) {
         return (without_preposition(&header[..header.len() - unit.len()]), HeaderUnit::Unknown(unit));
     }
-    // A header may be a unit and nothing else; a single letter is more likely a phase.
+    // A header may be a unit and nothing else; a single letter is more likely a phase, and `Kv` a constant of the motor.
     match spelled(header, dimension, rotation) {
-        Some(unit) if header.len() > 1 => ("", HeaderUnit::Known(unit)),
+        Some(unit) if header.len() > 1 && (unit != Unit::Kilovolt || header == "kV") => ("", HeaderUnit::Known(unit)),
         _ => (header, HeaderUnit::None),
     }
 }
@@ -246,6 +246,8 @@ mod tests {
             ("speed_krpm", Speed, ("speed", HeaderUnit::Known(Unit::KrpmMechanical))),
             ("Vd_pu", Voltage, ("Vd", HeaderUnit::Unknown("pu"))),
             ("pu", Voltage, ("pu", HeaderUnit::None)),
+            ("Kv", Voltage, ("Kv", HeaderUnit::None)),
+            ("kV", Voltage, ("", HeaderUnit::Known(Unit::Kilovolt))),
             ("id_rms", Current, ("id", HeaderUnit::Unknown("rms"))),
             ("Vitesse (tr/min)", Speed, ("Vitesse", HeaderUnit::Known(Unit::RpmMechanical))),
             ("Iq（mA）", Current, ("Iq", HeaderUnit::Known(Unit::Milliampere))),

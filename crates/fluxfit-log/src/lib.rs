@@ -51,6 +51,7 @@ mod problem;
 mod quantity;
 mod reading;
 mod records;
+mod unclear_table;
 
 pub use argument::{parse_map, parse_maps, parse_unit};
 pub use container::{CONTAINERS, Container, guarded};
@@ -60,6 +61,6 @@ pub use memory_table::{MemoryColumn, MemoryTable, ReadRows};
 pub use note::Note;
 pub use reading::{
     InspectedColumn, Inspection, LAYOUTS, Layout, LiveLog, LogOptions, Mapping, Park, ReadCharacteristic, ReadColumn, ReadLog,
-    are_volts_written, column_findings, inspect, parse_log, read_characteristic, read_log, read_log_from, read_log_with_progress,
-    read_mapping, read_part, read_table,
+    are_volts_written, column_findings, inspect, parse_log, read_characteristic, read_characteristic_among, read_log, read_log_from,
+    read_log_with_progress, read_mapping, read_part, read_table,
 };

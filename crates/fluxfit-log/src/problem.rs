@@ -1,5 +1,6 @@
 //! What can be wrong with a log, or with what is stated about it.
 
+use crate::unclear_table::UnclearTable;
 use fluxfit_files::{Advice, FileError, FileErrorKind};
 use fluxfit_units::wording::{choice, columns, did_you_mean, list, quote, shorten};
 use fluxfit_units::{Unit, significant};
@@ -118,15 +119,25 @@ pub(crate) enum Problem {
     NoAngle,
 
     // Characteristics
-    #[error("{}", unclear(.several, .electrical.as_deref(), .direct_voltage.as_deref()))]
-    UnclearTable {
-        /// Quantities that several columns could be.
-        several: Vec<(&'static str, Vec<String>)>,
-        /// An electrical speed beside a torque of the shaft.
-        electrical: Option<String>,
-        /// A voltage of a direct current that does not say between which points it was measured.
-        direct_voltage: Option<String>,
-    },
+    #[error("{0}")]
+    UnclearTable(UnclearTable),
+    #[error(
+        "the mapped columns make no table of a test bench: that has speed and voltage (open terminals), speed and current (shorted terminals), voltage and current (a direct one, at rest), or torque and iq or current; rms values and amplitudes have one sign"
+    )]
+    NoTable,
+    #[error("'{}' is mapped to {column}, which a table of {table} has no place for; leave it out", shorten(.header))]
+    UnusedColumn { column: &'static str, header: String, table: &'static str },
+    #[error(
+        "the unit of {channel} is stated, and of a table of a test bench only that of its speed can be; write it into the column's name"
+    )]
+    UnitOfTable { channel: String },
+    #[error(
+        "'{}' is a direct one by its name, as of a supply or behind a rectifier, and a table of speeds takes what alternates at the terminals; map that",
+        shorten(.header)
+    )]
+    DirectQuantity { header: String },
+    #[error("the name '{}' states another unit than one of {column}, or a constant; write its unit into the name", shorten(.header))]
+    MappedUnit { column: &'static str, header: String },
     #[error(
         "this is the curve of a motor that drives a load, speed and torque with power: R_s, L_d, L_q and psi_f need dq voltages and currents over time, or tables with open and shorted terminals; log one of them"
     )]
@@ -333,8 +344,14 @@ impl Problem {
             Self::Ambiguous { .. } | Self::Shared { .. } | Self::MappedHeader { .. } | Self::NoAngle | Self::NotLive => {
                 FileErrorKind::Columns
             }
-            Self::UnclearTable { .. } | Self::LoadCurve => FileErrorKind::Columns,
+            Self::UnclearTable(_)
+            | Self::LoadCurve
+            | Self::NoTable
+            | Self::DirectQuantity { .. }
+            | Self::UnusedColumn { .. }
+            | Self::MappedUnit { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. }
+            | Self::UnitOfTable { .. }
             | Self::Share { .. }
             | Self::PolePairs { .. }
             | Self::SpeedUnit { .. }
@@ -366,7 +383,10 @@ impl Problem {
             Self::SeveralLogs { first, .. } => {
                 vec![Advice::MapColumns(first.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect())]
             }
-            Self::Missing { missing, present, proposals, .. } if are_not_in_it(missing, present, proposals) => Vec::new(),
+            Self::Missing { missing, present, proposals, .. } if are_not_in_it(missing, present, proposals) => {
+                let of_table = may_be_table(missing, present) && !has_d_alone(missing);
+                if of_table { map(&["speed", "voltage", "current", "torque"]) } else { Vec::new() }
+            }
             Self::Missing { proposals, line_to_line, .. } if proposals.is_empty() && *line_to_line != LineToLine::default() => Vec::new(),
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
             Self::Missing { proposals, rms, speed, .. } => {
@@ -380,12 +400,7 @@ impl Problem {
             Self::MappedHeader { channel, nearest: Some(header), .. } => vec![Advice::MapColumns(vec![(channel, Some(header.clone()))])],
             Self::NotALog { advice, .. } => advice.iter().cloned().collect(),
             Self::HeaderUnit { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
-            Self::UnclearTable { several, electrical, .. } => {
-                let first = |(quantity, headers): &(&'static str, Vec<String>)| (*quantity, headers.first().cloned());
-                let map = (!several.is_empty()).then(|| Advice::MapColumns(several.iter().map(first).collect()));
-                let all: Vec<Advice> = map.into_iter().chain(electrical.as_ref().map(|_| Advice::StatePolePairs)).collect();
-                if all.len() > 1 { vec![Advice::Together(all)] } else { all }
-            }
+            Self::UnclearTable(unclear) => unclear.advice(),
             Self::PolePairs { channel, electrical, .. } => {
                 vec![Advice::StatePolePairs, Advice::StateUnit { channel, unit: Some(electrical) }]
             }
@@ -466,6 +481,17 @@ fn has_d_alone(missing: &[&str]) -> bool {
     ["uq", "iq"].iter().all(|channel| missing.contains(channel)) && !["ud", "id"].iter().any(|channel| missing.contains(channel))
 }
 
+/// Columns of a table of a test bench: there are at least two, and not many.
+const COLUMNS_OF_TABLE: std::ops::RangeInclusive<usize> = 2..=4;
+
+/// Whether a file is so small that it may be a table of a test bench, whose rows have no time.
+fn may_be_table(missing: &[&str], present: &[String]) -> bool {
+    missing.contains(&"t") && COLUMNS_OF_TABLE.contains(&present.len())
+}
+
+/// What is said of such a file.
+const OF_TABLE: &str = "; if it is a table of a test bench to identify from, map what it has: speed and voltage (open terminals), speed and current (shorted terminals), voltage and current (a direct one, at rest), or torque and current";
+
 fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> String {
     let (noun, are, they_have, names) =
         if missing.len() == 1 { ("column", "is", "it has", "another name") } else { ("columns", "are", "they have", "other names") };
@@ -477,7 +503,8 @@ fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, Str
     }
     let it = if missing.len() == 1 { "it" } else { "them" };
     if are_not_in_it(missing, present, proposals) {
-        return format!("{what}, too few other columns for {it} to be in it; log {it} too");
+        let of_table = if may_be_table(missing, present) { OF_TABLE } else { "" };
+        return format!("{what}, too few other columns for {it} to be in it; log {it} too{of_table}");
     }
     if proposals.is_empty() {
         return format!("{what}; map {it} if {they_have} {names}, else log {it} too");
@@ -501,27 +528,6 @@ fn without_time(missing: &[&str], proposals: &[(&str, String)]) -> String {
     }
     "; if no column is the time and all rows are equally far apart, write the time between them into a mapping file, as in sample_period = \"0.1 ms\""
         .to_owned()
-}
-
-/// What has to be stated of a table of a test bench.
-fn unclear(several: &[(&str, Vec<String>)], electrical: Option<&str>, direct_voltage: Option<&str>) -> String {
-    let could_be = several.iter().map(|(quantity, headers)| format!("the columns {} could each be the {quantity}", columns(headers)));
-    let could_be: Vec<String> = could_be.collect();
-    let map = match could_be.as_slice() {
-        [] => None,
-        [one] => Some(format!("{one}; map the one that is, or leave it alone in the table")),
-        all => Some(format!("{}; map the one of each that is, or leave it alone in the table", list(all))),
-    };
-    let of_shaft = electrical.map(|header| {
-        format!("the speed {} is electrical, and the torque is that of the shaft; state the number of pole pairs", quote(header))
-    });
-    let points = direct_voltage.map(|header| {
-        format!(
-            "the name of the voltage {} does not say between which points it was measured; put 'll' (two terminals in series) or 'phase' (a terminal and the star point) into it",
-            quote(header)
-        )
-    });
-    [map, of_shaft, points].into_iter().flatten().collect::<Vec<_>>().join("; and ")
 }
 
 fn speed_unit(of_shaft: bool) -> &'static str {

@@ -495,7 +495,11 @@ fn all_that_is_unclear_of_a_table_is_asked_for_at_once() {
     let torques = table_of(folder.path(), "torque.csv", "Iq [A],M1 [Nm],M2 [Nm]", torques);
     for (table, said, options) in [
         (&shorted, ["'I_1 [A]' and 'I_4 [A]'", "'M1 [Nm]' and 'M2 [Nm]'"], "--map 'current=I_1 [A],torque=M1 [Nm]' --pole-pairs N"),
-        (&direct, ["'U1 [V]' and 'U2 [V]'", "put 'll'"], "--map 'voltage=U1 [V],current=I1 [A]'"),
+        (
+            &direct,
+            ["'U1 [V]' and 'U2 [V]'", "put 'll'"],
+            "--map 'current=I1 [A],voltage_ll=U1 [V]', or --map 'current=I1 [A],voltage_phase=U1 [V]'",
+        ),
         (&torques, ["'M1 [Nm]' and 'M2 [Nm]'", "the torque"], "--map 'torque=M1 [Nm]'"),
     ] {
         let run = fluxfit(&["identify", table]);
@@ -517,4 +521,56 @@ fn all_that_is_unclear_of_a_table_is_asked_for_at_once() {
     // What is mapped to channels of a log is read as one.
     let run = fluxfit(&["identify", &torques, "--map", "ud=M1 [Nm]"]);
     assert!(run.status == 2 && run.err.contains("are missing"), "{}", run.err);
+}
+
+/// What a refusal or an answer says to map is read so: line to line the flux is 60 mWb, and of a phase sqrt 3 times as much; in series the
+/// resistance is half of that from a terminal to the star point. Of several tables a column has to be in one.
+#[test]
+fn between_which_points_voltages_were_measured_can_be_said_without_editing_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = &mut Noise(8);
+    let open = open_circuit_named(folder.path(), noise, "U [V]", 1.0);
+    let shown = fluxfit(&["identify", &open, "--pole-pairs", "3"]).out;
+    let direct = (1..9).map(|k| 10.0 * f64::from(k)).map(|current| vec![2.0 * RS * current, current]);
+    let direct = table_of(folder.path(), "direct.csv", "U_DC [V],I_DC [A]", direct);
+    let refused = fluxfit(&["identify", &direct]).err;
+    for (name, factor) in [("voltage_ll", 1.0), ("voltage_phase", 3.0_f64.sqrt())] {
+        let map = format!("{name}=U [V]");
+        assert!(shown.lines().any(|line| line == format!("    --map '{map}'")), "{shown}");
+        let (_, document) = json(&["identify", &open, "--pole-pairs", "3", "--map", &map]);
+        let psi_f = document["parameters"]["psi_f"]["value"].as_f64().unwrap();
+        assert!((psi_f / (factor * PSI_F) - 1.0).abs() < 0.003 && document["voltages"] == "stated", "{psi_f}");
+        let map = format!("{name}=U_DC [V]");
+        assert!(refused.contains(&format!("--map '{map}'")), "{refused}");
+        let (_, document) = json(&["identify", &direct, "--map", &map]);
+        let rs = document["parameters"]["rs"]["value"].as_f64().unwrap();
+        assert!((rs / if name == "voltage_ll" { RS } else { 2.0 * RS } - 1.0).abs() < 1e-6, "{rs}");
+    }
+    let short = short_circuit(folder.path(), noise, false);
+    let (status, document) = json(&["identify", &open, &short, "--pole-pairs", "3", "--map", "voltage_ll=U [V]"]);
+    let rs = document["parameters"]["rs"]["value"].as_f64().unwrap();
+    assert!(status == 0 && (rs / RS - 1.0).abs() < 0.02, "{document}");
+    let run = fluxfit(&["identify", &open, &short, "--map", "voltage_ll=no"]);
+    assert!(run.status == 2 && run.err.contains("which the file does not have"), "{}", run.err);
+}
+
+/// A file of a few columns may be a table under other names: the refusal says how they are mapped, and what is mapped is a table.
+#[test]
+fn a_small_file_that_is_no_log_can_be_mapped_as_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = SPEEDS.map(|rpm| vec![rpm, 1.5_f64.sqrt() * PAIRS * rpm * std::f64::consts::TAU / 60.0 * PSI_F]);
+    let open = table_of(folder.path(), "open.csv", "Umdrehungen,Messgeraet 2", rows.into_iter());
+    let run = fluxfit(&["identify", &open]);
+    assert!(run.status == 2 && run.err.contains("if it is a table of a test bench"), "{}", run.err);
+    assert!(run.err.contains("--map speed=COLUMN,voltage=COLUMN,current=COLUMN,torque=COLUMN"), "{}", run.err);
+    let map = "speed=Umdrehungen,voltage_ll=Messgeraet 2";
+    let run = fluxfit(&["identify", &open, "--map", map]);
+    assert!(run.status == 2 && run.err.contains("--unit speed=UNIT"), "{}", run.err);
+    let (_, document) = json(&["identify", &open, "--map", map, "--unit", "speed=rpm-mech", "--pole-pairs", "3"]);
+    let psi_f = document["parameters"]["psi_f"]["value"].as_f64().unwrap();
+    assert!((psi_f / PSI_F - 1.0).abs() < 1e-6, "{psi_f}");
+    let run = fluxfit(&["identify", &open, "--map", map, "--unit", "speed=rpm-mech,ud=mV"]);
+    assert!(run.status == 2 && run.err.contains("the unit of ud is stated, and of a table"), "{}", run.err);
+    let run = fluxfit(&["identify", &open, "--map", "speed=Umdrehungen,torque=Messgeraet 2"]);
+    assert!(run.status == 2 && run.err.contains("make no table of a test bench"), "{}", run.err);
 }

@@ -4,50 +4,70 @@
 //! makes power (a DC supply, shaft power, efficiency) belongs to a motor that is driven, and its table is no characteristic.
 
 use super::{
-    bench_columns::{DRIVEN, Found, INSTANT, across, convention, found, found_all, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, Stated, found, found_all, is_direct, is_driven, place, refuse_unclear, values_of},
+    bench_convention::{convention, lacks_unit, points},
     layout::NotALog,
+    mapping::Mapping,
     options::LogOptions,
     resemblance::words,
     steady_points,
     steady_test::{self, ReadCharacteristic},
     table::Table,
 };
-use crate::{block::ColumnHead, channel::Channel, note::Note, problem::Problem, quantity::Quantity};
+use crate::{
+    block::ColumnHead,
+    channel::Channel,
+    note::Note,
+    problem::Problem,
+    quantity::{Quantity, TableColumn},
+    unclear_table::UnclearTable,
+};
 use fluxfit::characteristics::{Characteristic, OpenCircuit, OpenCircuitRow, ShortCircuit, ShortCircuitRow};
 use fluxfit_files::{FileError, input};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads a table if it is a characteristic; `None` if it is something else, or nothing that can be read. What can be read only once
 /// (standard input, a pipe) is always taken for a log, and so is a file of which the options name the columns of a log.
-/// [`map`](LogOptions::map) may name those of a table: `speed`, `voltage`, `current`, `torque`; of operating points those of the dq frame.
+/// [`map`](LogOptions::map) may name those of a table: `speed`, `voltage` (`voltage_ll`, `voltage_phase`), `current` or `iq` and `id`,
+/// `torque`; of operating points those of the dq frame. Then the file is one.
 ///
 /// # Errors
 /// If it is one, but cannot be read as such.
 pub fn read_characteristic(path: &Path, options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
-    let of_table = |(name, header): &'_ (String, String)| Quantity::from_name(name).map(|quantity| (quantity, header.clone()));
-    let of_points = |(name, header): &'_ (String, String)| {
-        let channel = Channel::from_name(name).ok().filter(|channel| steady_points::CHANNELS.contains(channel));
-        channel.map(|channel| (channel, header.clone()))
-    };
-    let (map, points): (Option<Vec<_>>, Option<Vec<_>>) =
-        (options.map.iter().map(of_table).collect(), options.map.iter().map(of_points).collect());
-    let is_file = options.mapping.columns.is_empty() && path.is_file();
-    if !is_file || map.is_none() && points.is_none() {
-        return Ok(None);
-    }
-    let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
+    read_characteristic_among(path, &[], options)
+}
+
+/// The same of one of several files: a mapped column has to be in one of them alone.
+///
+/// # Errors
+/// As [`read_characteristic`].
+pub fn read_characteristic_among(path: &Path, all: &[PathBuf], options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
     // What cannot be opened is told by whoever reads it as a log.
-    let Ok(mut table) = input::open(path).and_then(|bytes| Table::open(bytes, None)) else { return Ok(None) };
-    // With the time between rows stated, they are those of a log.
-    let points = match points.filter(|_| options.mapping.sample_period.is_none()) {
-        Some(map) => steady_points::read(&mut table, pole_pairs, &map),
-        None => Ok(None),
-    };
-    let test = match (points, map) {
-        (Ok(None), Some(map)) => read(table, pole_pairs, &map),
-        (points, _) => points,
-    };
-    test.map_err(|error| error.in_file(&input::name(path)))
+    let open = |path: &Path| input::open(path).and_then(|bytes| Table::open(bytes, None));
+    let may_be_points = options.mapping == Mapping { pole_pairs: options.mapping.pole_pairs, ..Mapping::default() } && path.is_file();
+    if may_be_points
+        && let Ok(table) = open(path)
+        && let Some(points) = steady_points::read(table, options).map_err(|error| error.in_file(&input::name(path)))?
+    {
+        return Ok(Some(points));
+    }
+    let of_table = |(name, header): &'_ (String, String)| TableColumn::from_name(name).map(|column| (column, header.clone()));
+    let map: Option<Vec<(TableColumn, String)>> = options.map.iter().map(of_table).collect();
+    let is_of_table = |map: &Vec<(TableColumn, String)>| map.is_empty() || map.iter().any(|(column, _)| !column.is_axis());
+    let map = map.filter(|map| is_of_table(map) && options.mapping.columns.is_empty() && path.is_file());
+    let Some(mut map) = map else { return Ok(None) };
+    let Ok(table) = open(path) else { return Ok(None) };
+    let is_of_other = |header: &str| all.iter().any(|other| open(other).is_ok_and(|other| place(other.heads(), header).is_some()));
+    map.retain(|(_, header)| place(table.heads(), header).is_some() || !is_of_other(header));
+    let speed = options.units.iter().find(|(channel, _)| channel == Channel::OmegaE.name()).map(|(_, unit)| *unit);
+    let stated = Stated { pole_pairs: options.pole_pairs.or(options.mapping.pole_pairs), speed, map };
+    let read = read(table, &stated).map_err(|error| error.in_file(&input::name(path)))?;
+    match options.units.iter().find(|(channel, _)| channel != Channel::OmegaE.name()) {
+        Some((channel, _)) if read.is_some() => {
+            Err(FileError::from(Problem::UnitOfTable { channel: channel.clone() }).in_file(&input::name(path)))
+        }
+        _ => Ok(read),
+    }
 }
 
 /// The quantity that a column of such a table may hold.
@@ -55,37 +75,87 @@ pub(super) fn quantity(index: usize, head: &ColumnHead) -> Option<&'static str> 
     found(index, head).map(|found| found.quantity.name())
 }
 
-fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
+/// Reads a table. Of a file of which the user maps columns it has to be one, and all that is mapped has to be used.
+fn read(mut table: Table, stated: &Stated) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
-    let is_driven = |head: &ColumnHead| words(&head.name).iter().any(|word| DRIVEN.contains(&word.as_str()));
-    let is_of_log = |head: &ColumnHead| {
-        let channel = |channel: Channel| {
-            super::alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel)
-        };
-        let is_instant = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
-        is_instant
-            || head.is_time
-            || head.instants.is_some()
-            || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
+    let columns = found_all(&heads, stated)?;
+    let mapped: Vec<(&'static str, String)> =
+        columns.iter().filter_map(|column| Some((column.mapped?.name(), column.header.clone()))).collect();
+    let Some(read) = read_columns(&mut table, columns, stated)? else {
+        return if mapped.is_empty() { unnamed(&heads) } else { Err(Problem::NoTable.into()) };
     };
-    let columns = found_all(&heads, map)?;
-    if let Some(test) = steady_test::read(&mut table, &columns, pole_pairs)? {
-        return Ok(Some(test));
+    match mapped.into_iter().find(|(_, header)| read.columns.iter().all(|(_, used)| used != header)) {
+        Some((column, header)) => Err(Problem::UnusedColumn { column, header, table: read.table.label() }.into()),
+        None => Ok(Some(read)),
     }
-    let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
-    if heads.iter().any(is_of_log) || NotALog::by_names(&names).is_some() {
+}
+
+/// Refuses a table of which some names are the symbol of a quantity and nothing else: its unit is open.
+fn unnamed(heads: &[ColumnHead]) -> Result<Option<ReadCharacteristic>, FileError> {
+    let symbol = |head: &ColumnHead| match head.name.trim() {
+        "n" | "N" => Some(Quantity::Speed),
+        "U" | "V" | "E" => Some(Quantity::Voltage),
+        "I" => Some(Quantity::Current),
+        "M" | "T" => Some(Quantity::Torque),
+        _ => None,
+    };
+    let found = |(index, head): (usize, &ColumnHead)| symbol(head).or_else(|| found(index, head).map(|found| found.quantity));
+    let Some(quantities) = heads.iter().enumerate().map(found).collect::<Option<Vec<Quantity>>>() else { return Ok(None) };
+    let are = |some: &[Quantity]| some.len() == quantities.len() && some.iter().all(|one| quantities.contains(one));
+    let is_table = are(&[Quantity::Speed, Quantity::Voltage])
+        || are(&[Quantity::Speed, Quantity::Current])
+        || are(&[Quantity::Speed, Quantity::Current, Quantity::Torque])
+        || are(&[Quantity::Voltage, Quantity::Current]);
+    if !is_table || heads.iter().any(|head| head.unit.is_some() || head.is_time || head.instants.is_some()) {
         return Ok(None);
     }
+    let symbols: Vec<(&'static str, String)> =
+        heads.iter().filter_map(|head| symbol(head).map(|quantity| (quantity.name(), head.name.trim().to_owned()))).collect();
+    match symbols.is_empty() {
+        true => Ok(None),
+        false => {
+            let is_direct = !quantities.contains(&Quantity::Speed);
+            let direct_voltage = symbols.iter().find(|(quantity, _)| is_direct && *quantity == Quantity::Voltage.name());
+            let direct_voltage = direct_voltage.map(|(_, header)| header.clone());
+            Err(Problem::UnclearTable(UnclearTable { symbols, direct_voltage, ..UnclearTable::default() }).into())
+        }
+    }
+}
+
+/// Whether a column is one of a log: its time, a quantity of the rotor's frame, an angle.
+fn is_of_log(head: &ColumnHead) -> bool {
+    let channel =
+        |channel: Channel| super::alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel);
+    let is_instant = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
+    is_instant
+        || head.is_time
+        || head.instants.is_some()
+        || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
+}
+
+fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Result<Option<ReadCharacteristic>, FileError> {
+    let heads = table.heads().to_vec();
+    let pole_pairs = stated.pole_pairs;
+    if let Some(test) = steady_test::read(table, &columns, stated)? {
+        return Ok(Some(test));
+    }
     let has = |quantity: Quantity| columns.iter().any(|column| column.quantity == quantity);
-    if heads.iter().any(is_driven) {
-        let is_curve = has(Quantity::Speed) && has(Quantity::Torque) && turns_and_pulls(&mut table, &columns);
-        return if is_curve { Err(Problem::LoadCurve.into()) } else { Ok(None) };
+    // What the user says is no matter of the other names.
+    if stated.map.is_empty() {
+        let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
+        if heads.iter().any(is_of_log) || NotALog::by_names(&names).is_some() {
+            return Ok(None);
+        }
+        if heads.iter().any(|head| is_driven(head) || is_direct(head)) {
+            let is_curve = has(Quantity::Speed) && has(Quantity::Torque) && turns_and_pulls(table, &columns);
+            return if is_curve { Err(Problem::LoadCurve.into()) } else { Ok(None) };
+        }
     }
     if !has(Quantity::Speed) || has(Quantity::Voltage) == has(Quantity::Current) {
         return Ok(None);
     }
     let wanted: Vec<(usize, &str)> = columns.iter().map(|column| (column.index, column.header.as_str())).collect();
-    let values = values_of(&mut table, &wanted)?;
+    let values = values_of(table, &wanted)?;
     // Rms values have one sign; a column with both is a wave.
     let is_wave = |(column, values): (&Found, &Vec<f64>)| {
         matches!(column.quantity, Quantity::Voltage | Quantity::Current) && values.iter().any(|value| *value < 0.0)
@@ -100,12 +170,20 @@ fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -
     let has_shaft = [Quantity::Torque, Quantity::Current].iter().all(|quantity| !of_all[*quantity as usize].is_empty());
     let of_frequency = of_all[Quantity::Speed as usize].first().filter(|(column, _)| column.is_electrical && has_shaft);
     let electrical = of_frequency.filter(|_| pole_pairs.is_none()).map(|(column, _)| column.header.clone());
-    refuse_unclear(of_all.iter().map(|of_one| of_one.iter().map(|(column, _)| column).collect()), electrical, None)?;
+    let speed = of_all[Quantity::Speed as usize].iter().find(|(column, _)| lacks_unit(column)).map(|(column, _)| column.header.clone());
+    let unclear = UnclearTable { electrical, speed, ..UnclearTable::default() };
+    refuse_unclear(of_all.iter().map(|of_one| of_one.iter().map(|(column, _)| column).collect()), unclear)?;
+    // Only mapped ones come here.
+    let is_of_motor = |column: &Found| matches!(column.quantity, Quantity::Voltage | Quantity::Current);
+    if let Some((direct, _)) = columns.iter().find(|(column, _)| is_of_motor(column) && is_direct(&heads[column.index])) {
+        return Err(Problem::DirectQuantity { header: direct.header.clone() }.into());
+    }
     let mut notes = Vec::new();
     let speed = channel(&columns, Quantity::Speed, pole_pairs, &mut notes);
     let torque = channel(&columns, Quantity::Torque, pole_pairs, &mut notes);
     let voltage = channel(&columns, Quantity::Voltage, pole_pairs, &mut notes);
-    let across = across(&headers(&columns, Quantity::Voltage));
+    let voltages = candidates(&columns, Quantity::Voltage);
+    let across = points(&voltages.iter().map(|(column, _)| column).collect::<Vec<_>>());
     let current = channel(&columns, Quantity::Current, pole_pairs, &mut notes);
     let Some(speed) = speed else { return Ok(None) };
     let of_row = |k: usize| torque.as_ref().map(|torque| torque[k].0).filter(|torque| torque.is_finite());
@@ -131,8 +209,10 @@ fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -
     if left_out > 0 {
         notes.push(format!("{left_out} of {} rows have no speed or no value above zero and are left out", speed.len()).into());
     }
-    let used =
-        Quantity::ALL.into_iter().flat_map(|quantity| headers(&columns, quantity).into_iter().map(move |name| (quantity.name(), name)));
+    // Of open terminals a torque is only what the bench loses.
+    let is_used = |quantity: &Quantity| *quantity != Quantity::Torque || matches!(table, Characteristic::ShortCircuit(_));
+    let used = Quantity::ALL.into_iter().filter(is_used);
+    let used = used.flat_map(|quantity| headers(&columns, quantity).into_iter().map(move |name| (quantity.name(), name)));
     let used = used.map(|(quantity, header)| (quantity, header.to_owned())).collect();
     Ok(Some(ReadCharacteristic { columns: used, table, notes, has_electrical_speed: electrical.is_some() }))
 }
@@ -181,14 +261,21 @@ fn channel(columns: &[(Found, Vec<f64>)], quantity: Quantity, pole_pairs: Option
 
 /// From a text, for tests of this module and of the one for further tests.
 #[cfg(test)]
-pub(super) fn parse_characteristic(text: &str, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
-    read(Table::open(input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes().to_vec()))), None)?, pole_pairs, &[])
+pub(super) fn parse_characteristic(text: &'static str, pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
+    parse_stated(text, &Stated { pole_pairs, ..Stated::default() })
+}
+
+/// The same, with what the user says.
+#[cfg(test)]
+pub(super) fn parse_stated(text: &'static str, stated: &Stated) -> Result<Option<ReadCharacteristic>, FileError> {
+    read(Table::open(input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes()))), None)?, stated)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fluxfit::characteristics::Across;
+    use fluxfit::characteristics::{Across, DirectCurrent};
+    use fluxfit_units::Unit;
 
     fn of(text: &'static str) -> Result<Option<ReadCharacteristic>, FileError> {
         parse_characteristic(text, None)
@@ -214,6 +301,127 @@ mod tests {
         assert_eq!(table.across, Some(Across::Phase));
     }
 
+    /// Of psi_f = 10 mWb at 1000 electrical rad/s: 10 V amplitude of a phase, sqrt 3 times as much between lines, rms 1 / sqrt 2, peak to
+    /// peak twice. So much rms has every reading of it.
+    #[test]
+    fn units_say_what_of_a_wave_was_measured_and_names_between_which_points() {
+        let (amplitude, lines) = (10.0, 3.0_f64.sqrt());
+        for (voltage, factor, across) in [
+            ("U_ll [Vpp]", 2.0 * lines, Some(Across::Lines)),
+            ("Vpp line-line", 2.0 * lines, Some(Across::Lines)),
+            ("Phase Voltage (Vpk)", 1.0, Some(Across::Phase)),
+            ("V_AB (Vrms)", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("Line to Line Voltage (VAC)", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("motor phase-phase voltage (V) rms", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("vll_rms", lines * 0.5_f64.sqrt(), Some(Across::Lines)),
+            ("L-N (V rms)", 0.5_f64.sqrt(), Some(Across::Phase)),
+            ("Voltage (V AC)", 0.5_f64.sqrt(), None),
+            ("Vpp", 2.0, None),
+        ] {
+            let rows = [1.0, 2.0, 3.0].map(|k| format!("{},{}\n", 1000.0 * k, k * factor * amplitude)).concat();
+            let read = of(format!("speed [rad/s],{voltage}\n{rows}").leak()).unwrap().unwrap();
+            let Characteristic::OpenCircuit(table) = read.table else { panic!("{voltage}") };
+            let of_phase = if across == Some(Across::Lines) { 1.0 / lines } else { 1.0 };
+            let rms = table.rows[2].voltage * of_phase;
+            assert!((rms - 30.0 * 0.5_f64.sqrt()).abs() < 1e-9, "{voltage}: {rms}");
+            assert_eq!(table.across, across, "{voltage}");
+        }
+    }
+
+    /// 10 A rms are 14.1 A at their peak, and 2 N m are 17.7 pounds of force at an inch.
+    #[test]
+    fn shorted_terminals_have_the_units_of_their_meters() {
+        for (current, of_ten) in [("Isc [A rms]", 10.0), ("Isc [Arms]", 10.0), ("Current [Apk]", 10.0 * 2.0_f64.sqrt()), ("I [mArms]", 1e4)]
+        {
+            let inch_pounds = 2.0 / (0.453_592_37 * 9.80665 * 0.0254);
+            let text = format!("n [rpm],{current},Torque [lbf-in]\n1000,{of_ten},{inch_pounds}\n2000,{of_ten},{inch_pounds}\n");
+            let Characteristic::ShortCircuit(table) = of(text.leak()).unwrap().unwrap().table else { panic!("{current}") };
+            assert!((table.rows[0].current - 10.0).abs() < 1e-9 && (table.rows[0].torque.unwrap() - 2.0).abs() < 1e-9, "{current}");
+        }
+    }
+
+    /// 250 r/min/V is no voltage of 250 kV.
+    #[test]
+    fn a_constant_beside_the_voltages_is_left_alone() {
+        for constant in ["Kv", "KV", "kt", "Ke"] {
+            let read = of(format!("rpm,U_ll (V),{constant}\n500,2,250\n1000,4,250\n").leak()).unwrap().unwrap();
+            let Characteristic::OpenCircuit(table) = read.table else { panic!("{constant}") };
+            assert_eq!(table.rows.iter().map(|row| row.voltage).collect::<Vec<_>>(), [2.0, 4.0], "{constant}");
+        }
+    }
+
+    fn mapped(text: &str, map: &[(&str, &str)], speed: Option<Unit>) -> Result<Option<ReadCharacteristic>, FileError> {
+        let map = map.iter().map(|(name, header)| (TableColumn::from_name(name).unwrap(), (*header).to_owned())).collect();
+        parse_stated(text.to_owned().leak(), &Stated { speed, map, ..Stated::default() })
+    }
+
+    /// What is mapped has to be a table, whatever else the names say; 20 V of a phase are 20 V.
+    #[test]
+    fn mapped_columns_are_a_table_and_all_of_them_are_used() {
+        let phase = mapped("n,x\n100,10\n200,20\n", &[("speed", "n"), ("voltage_phase", "X")], Some(Unit::RadianPerSecondMechanical));
+        let Characteristic::OpenCircuit(phase) = phase.unwrap().unwrap().table else { panic!() };
+        assert_eq!((phase.rows[1], phase.across), (OpenCircuitRow { speed: 200.0, voltage: 20.0 }, Some(Across::Phase)));
+        // A column of a log, of a supply, of a quantity of another test beside.
+        let supply = mapped("U_DC [V],I_DC [A],power\n1,10,10\n2,20,40\n", &[("voltage_ll", "U_DC [V]"), ("current", "I_DC [A]")], None);
+        assert!(matches!(supply.unwrap().unwrap().table, Characteristic::DirectCurrent(DirectCurrent { across: Across::Lines, .. })));
+        let dyno = "rpm,T (Nm),bus i (A),motor phase-phase voltage (V) rms,iq (A),V_dc [V]\n100,1,1,2,3,3\n200,2,1,4,6,6\n";
+        let voltage = "motor phase-phase voltage (V) rms";
+        let open = mapped(dyno, &[("speed", "rpm"), ("voltage", voltage)], None).unwrap().unwrap();
+        assert!(matches!(open.table, Characteristic::OpenCircuit(OpenCircuit { across: Some(Across::Lines), .. })));
+        let torques = mapped(dyno, &[("iq", "iq (A)"), ("torque", "T (Nm)")], None).unwrap().unwrap();
+        assert!(matches!(torques.table, Characteristic::TorqueOfCurrent(_)));
+        // What no table has a place for is refused, not passed over.
+        for (map, said) in [
+            (&[("voltage", voltage), ("torque", "T (Nm)")][..], "make no table"),
+            (
+                &[("iq", "iq (A)"), ("torque", "T (Nm)"), ("speed", "rpm")],
+                "'rpm' is mapped to speed, which a table of torque against current",
+            ),
+            (
+                &[("speed", "rpm"), ("voltage", voltage), ("torque", "T (Nm)")],
+                "'T (Nm)' is mapped to torque, which a table of open-circuit",
+            ),
+            (&[("speed", "rpm"), ("voltage", "iq (A)")], "states another unit than one of voltage"),
+            (&[("speed", "rpm"), ("voltage", "no")], "which the file does not have"),
+            (&[("speed", "rpm"), ("voltage_ll", "V_dc [V]")], "is a direct one by its name"),
+            (&[("voltage", voltage), ("voltage_ll", "rpm")], "given twice"),
+        ] {
+            let refusal = mapped(dyno, map, None).unwrap_err().to_string();
+            assert!(refusal.contains(said), "{map:?}: {refusal}");
+        }
+    }
+
+    /// Of three phases the mean is taken: 11 V.
+    #[test]
+    fn one_of_three_phases_is_mapped_for_all_of_them() {
+        let text = "n [rpm],U1 [V],U2 [V],U3 [V]\n100,10,11,12\n200,20,22,24\n";
+        let read = mapped(text, &[("voltage_ll", "U1 [V]")], None).unwrap().unwrap();
+        let Characteristic::OpenCircuit(table) = read.table else { panic!() };
+        assert_eq!((table.rows[0].voltage, table.across), (11.0, Some(Across::Lines)));
+    }
+
+    #[test]
+    fn what_states_no_unit_is_asked_for_it() {
+        for text in ["n,U\n1,2\n2,4\n", "n,I,M\n1,2,3\n2,2,3\n", "V,I\n1,2\n2,4\n", "n,U_ll [V]\n1,2\n2,4\n"] {
+            let refusal = of(text).unwrap_err().to_string();
+            assert!(refusal.contains("state no units") && refusal.contains("of a table of a test bench"), "{text}: {refusal}");
+        }
+        for speed in ["speed", "omega", "velocity"] {
+            let text = format!("{speed},U_ll [V]\n1,2\n2,4\n");
+            let refusal = of(text.clone().leak()).unwrap_err().to_string();
+            assert!(refusal.contains(&format!("nothing states the unit of the speed \"{speed}\"")), "{refusal}");
+            let map = [("speed", speed), ("voltage", "U_ll [V]")];
+            let of_unit = |unit: Unit| {
+                let read = mapped(&text, &map, Some(unit)).unwrap().unwrap();
+                let Characteristic::OpenCircuit(table) = read.table else { panic!() };
+                (table.rows[1].speed, read.has_electrical_speed)
+            };
+            // 2 r/min of the shaft are 2 pi / 30 rad/s.
+            assert!((of_unit(Unit::RpmMechanical).0 - std::f64::consts::TAU / 30.0).abs() < 1e-12);
+            assert_eq!(of_unit(Unit::RadianPerSecond), (2.0, true));
+        }
+    }
+
     #[test]
     fn shorted_terminals_have_current_and_torque() {
         let Some(ReadCharacteristic { table: Characteristic::ShortCircuit(table), .. }) =
@@ -236,6 +444,8 @@ mod tests {
             "speed_rpm,voltage_V\n1,2\n2,-2\n",
             "timestep,speed_rpm,voltage_V\n0,1,2\n1,2,4\n",
             "speed [m/s],voltage_V\n1,2\n2,4\n",
+            // Behind a rectifier.
+            "speed [rpm],U_ll [VDC]\n1,2\n2,4\n",
         ] {
             assert_eq!(of(text).unwrap(), None, "{text}");
         }

@@ -47,6 +47,28 @@ pub(super) fn is_line_to_line(name: &str) -> bool {
     runs.into_iter().any(|run| WORDS.contains(&run.as_str()))
 }
 
+/// What a voltage is called before the letters of its points.
+const BEFORE: [&str; 8] = ["u", "v", "e", "voltage", "spannung", "emf", "bemf", "volt"];
+
+/// Whether some words of a name are a voltage with the letters of its two phases: `U_12`, `Uab`, `V A-B`.
+pub(super) fn is_pair(name: &str) -> bool {
+    has_points(name, |points| PAIRS.iter().flatten().any(|pair| *pair == points))
+}
+
+/// Whether some words of a name are a voltage with the letter of its phase and an n: `U1N`, `V_an`.
+pub(super) fn is_to_star(name: &str) -> bool {
+    has_points(name, |points| points.strip_suffix('n').is_some_and(|phase| PHASES.contains(&phase)))
+}
+
+/// The three phases, by each of their names.
+const PHASES: [&str; 12] = ["a", "b", "c", "u", "v", "w", "1", "2", "3", "l1", "l2", "l3"];
+
+fn has_points(name: &str, are_points: impl Fn(&str) -> bool) -> bool {
+    let words = words(name.split(['[', '(']).next().unwrap_or(name));
+    let mut runs = (1..=3).flat_map(|length| words.windows(length).map(<[String]>::concat));
+    runs.any(|run| BEFORE.iter().any(|before| run.strip_prefix(before).is_some_and(&are_points)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,6 +10,8 @@ mod alias;
 mod align;
 mod back_emf;
 mod bench_columns;
+mod bench_convention;
+mod bench_units;
 mod called;
 mod channels;
 mod characteristic;
@@ -49,7 +51,7 @@ mod turning;
 mod vocabulary;
 
 pub(crate) use called::channel_called;
-pub use characteristic::read_characteristic;
+pub use characteristic::{read_characteristic, read_characteristic_among};
 pub use inspect::{InspectedColumn, Inspection, inspect};
 pub use layout::{LAYOUTS, Layout};
 pub use live::LiveLog;

@@ -22,6 +22,14 @@ pub(super) fn is_rms(head: &ColumnHead) -> bool {
     says(&head.name) || head.unit.as_deref().is_some_and(says)
 }
 
+/// A column that holds root mean squares, named as without them: `Iq` of `Iq [Arms]` and of `Iq_rms (A)`.
+pub(super) fn without(head: &ColumnHead) -> Option<ColumnHead> {
+    let name = head.name.split(['[', '(']).next().unwrap_or(&head.name);
+    let others: Vec<String> = words(name).into_iter().filter(|word| !RMS.contains(&word.as_str())).collect();
+    let unit = head.unit.clone().filter(|unit| !words(unit).iter().any(|word| RMS.contains(&word.as_str())));
+    is_rms(head).then(|| ColumnHead { name: others.join("_"), unit, ..head.clone() })
+}
+
 /// Whether a column holds root mean squares by its name, and the user states neither a unit nor a scale.
 pub(super) fn is_unstated(channel: Channel, head: &ColumnHead, options: &ResolvedOptions) -> bool {
     is_rms(head) && options.unit(channel).is_none() && options.factor(channel).abs() == 1.0

@@ -2,9 +2,11 @@
 
 use super::{
     alias,
-    bench_columns::{Found, INSTANT, convention, found_all, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, Stated, found_all, place, refuse_unclear, values_of},
+    bench_convention::convention,
     layout::Layout,
     names::automatic,
+    options::LogOptions,
     resemblance::words,
     steady_test::{ReadCharacteristic, in_si, is},
     table::Table,
@@ -14,12 +16,14 @@ use crate::{
     channel::Channel,
     header_unit::{HeaderUnit, split_header},
     quantity::Quantity,
+    unclear_table::UnclearTable,
 };
 use fluxfit::{
     characteristics::{Characteristic, SteadyPoint, SteadyPoints},
     frames::Dq,
 };
 use fluxfit_files::FileError;
+use fluxfit_units::Unit;
 
 /// More rows are those of a log whose time is missing: a map of a motor has a few hundred points.
 const MOST_POINTS: usize = 1000;
@@ -29,43 +33,48 @@ const MOST_POINTS: usize = 1000;
 const LEAST_CHANGE: f64 = 0.02;
 
 /// The channels of such a table, which a user may map.
-pub(super) const CHANNELS: [Channel; 5] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::OmegaE];
+const CHANNELS: [Channel; 5] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::OmegaE];
 
-/// Reads such a table, if it is one.
+/// Reads such a table, if it is one. A file of which the user maps other channels is none.
 ///
 /// # Errors
 /// If several columns could be the speed.
-pub(super) fn read(table: &mut Table, pole_pairs: Option<u32>, map: &[(Channel, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
+pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
-    let columns = found_all(&heads, &[])?;
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
     let is_instant = |head: &ColumnHead| {
         let of_row = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
         head.is_time || head.instants.is_some() || is(Channel::T, head) || of_row
     };
+    let channel = |name: &str| Channel::from_name(name).ok().filter(|channel| CHANNELS.contains(channel));
+    let is_other = options.map.iter().any(|(name, _)| channel(name).is_none());
     // The layout of a tool is that of a log.
-    if heads.iter().any(is_instant) || Layout::recognize(&names).is_some() {
+    if is_other || heads.iter().any(is_instant) || Layout::recognize(&names).is_some() {
         return Ok(None);
     }
-    let mapped = |channel: Channel| {
-        let (_, header) = map.iter().find(|(of, _)| *of == channel)?;
-        heads.iter().position(|head| head.name.trim().eq_ignore_ascii_case(header.trim()))
+    let mapped = |of: Channel| {
+        let (_, header) = options.map.iter().find(|(name, _)| channel(name) == Some(of))?;
+        place(&heads, header)
     };
+    let unit = |of: Channel| options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit);
     let find = |channel: Channel| {
         let index = mapped(channel).or_else(|| automatic(channel, &heads).ok().flatten()).or_else(|| alias::find(channel, &heads))?;
         // In a unit that is not known it has no size.
-        let is_known = !matches!(split_header(&heads[index].name, channel.dimension()).1, HeaderUnit::Unknown(_));
-        is_known.then(|| (index, in_si(&heads[index], channel)))
+        let is_known =
+            unit(channel).is_some() || !matches!(split_header(&heads[index].name, channel.dimension()).1, HeaderUnit::Unknown(_));
+        is_known.then(|| (index, unit(channel).map_or_else(|| in_si(&heads[index], channel), Unit::in_si)))
     };
     let [Some(ud), Some(uq), Some(id), Some(iq)] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(find) else {
         return Ok(None);
     };
+    let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
+    let columns = found_all(&heads, &Stated { pole_pairs, speed: unit(Channel::OmegaE), ..Stated::default() })?;
     let own = automatic(Channel::OmegaE, &heads).ok().flatten();
     let is_meant = |column: &&Found| mapped(Channel::OmegaE).is_none_or(|index| index == column.index);
     let is_speed = |column: &&Found| column.quantity == Quantity::Speed && (column.has_unit || own == Some(column.index));
     let of_speed: Vec<&Found> = columns.iter().filter(is_speed).filter(is_meant).collect();
     let Some(speed) = of_speed.first() else { return Ok(None) };
-    refuse_unclear([of_speed.clone()].into_iter(), None, None)?;
+    refuse_unclear([of_speed.clone()].into_iter(), UnclearTable::default())?;
     let mut notes = vec!["a row is an operating point, because no column is a time".to_owned().into()];
     // The channel's own name is that of electrical rad/s.
     let is_own = own == Some(speed.index) && !speed.has_unit;
@@ -76,7 +85,7 @@ pub(super) fn read(table: &mut Table, pole_pairs: Option<u32>, map: &[(Channel, 
     let of = [ud, uq, id, iq, (speed.index, per_turn)];
     let wanted = of.map(|(index, _)| (index, heads[index].name.as_str()));
     // What cannot be read, or is too long, is told by whoever reads it as a log.
-    let Ok(values) = values_of(table, &wanted) else { return Ok(None) };
+    let Ok(values) = values_of(&mut table, &wanted) else { return Ok(None) };
     let count = values.first().map_or(0, Vec::len);
     let row = |row: usize| {
         let [ud, uq, id, iq, speed] = std::array::from_fn(|k| of[k].1 * values[k][row]);
@@ -115,9 +124,10 @@ mod tests {
     use super::*;
     use fluxfit_files::input;
 
-    fn of(text: &str, pole_pairs: Option<u32>, map: &[(Channel, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
+    fn of(text: &str, pole_pairs: Option<u32>, map: &[(&str, &str)]) -> Result<Option<ReadCharacteristic>, FileError> {
         let bytes = input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes().to_vec())));
-        read(&mut Table::open(bytes, None)?, pole_pairs, map)
+        let map = map.iter().map(|(name, header)| ((*name).to_owned(), (*header).to_owned())).collect();
+        read(Table::open(bytes, None)?, &LogOptions { pole_pairs, map, ..LogOptions::default() })
     }
 
     /// Points of 500 to 4000 r/min and some currents.
@@ -148,7 +158,7 @@ mod tests {
     #[test]
     fn its_columns_may_be_mapped() {
         let text = points("n [rpm],d current [A],q current [A],ud,uq", |speed, id, iq| format!("{speed},{id},{iq},1,2\n"));
-        let map = [(Channel::Id, "d current [A]".to_owned()), (Channel::Iq, "q current [A]".to_owned())];
+        let map = [("id", "d current [A]"), ("iq", "q current [A]")];
         let Characteristic::SteadyPoints(table) = of(&text, None, &map).unwrap().unwrap().table else { panic!() };
         assert_eq!(table.rows[1].current, Dq { d: -5.0, q: 10.0 });
     }

@@ -4,7 +4,8 @@
 
 use super::{
     alias,
-    bench_columns::{DRIVEN, Found, INSTANT, across, convention, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, Stated, is_direct, is_driven, refuse_unclear, values_of},
+    bench_convention::{convention, lacks_unit, points, states_wave},
     layout::NotALog,
     resemblance::{is_reference, words},
     rms,
@@ -15,14 +16,16 @@ use crate::{
     channel::Channel,
     header_unit::{HeaderUnit, split_header, unit_in_row},
     note::Note,
-    quantity::Quantity,
+    quantity::{Quantity, TableColumn},
+    unclear_table::UnclearTable,
 };
 use fluxfit::{
     characteristics::{Characteristic, DirectCurrent, DirectCurrentRow, DutyCycle, DutyCycleRow, TorqueOfCurrent, TorqueOfCurrentRow},
     frames::Dq,
 };
 use fluxfit_files::FileError;
-use fluxfit_units::wording::quote;
+use fluxfit_units::{Dimension, wording::quote};
+use std::f64::consts::SQRT_2;
 
 /// A characteristic, and what had to be inferred to read it.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,9 +40,20 @@ pub struct ReadCharacteristic {
     pub has_electrical_speed: bool,
 }
 
-/// Whether a column may be a channel.
+/// Whether a column may be a channel, also as a root mean square.
 pub(super) fn is(channel: Channel, head: &ColumnHead) -> bool {
-    alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel)
+    let is_named =
+        |head: &ColumnHead| alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel);
+    is_named(head) || rms::without(head).is_some_and(|head| is_named(&head))
+}
+
+/// Whether two columns or more are currents, or voltages, of phases or of the stator's frame: one alone may be that of a test at rest.
+fn has_several_phases(heads: &[ColumnHead]) -> bool {
+    let of = |dimension: Dimension| {
+        let channels = || Channel::PHASES.into_iter().filter(move |channel| channel.dimension() == dimension);
+        heads.iter().filter(|head| channels().any(|channel| is(channel, head))).count()
+    };
+    of(Dimension::Current) > 1 || of(Dimension::Voltage) > 1
 }
 
 fn has_word(head: &ColumnHead, some: &[&str]) -> bool {
@@ -50,38 +64,63 @@ fn has_word(head: &ColumnHead, some: &[&str]) -> bool {
 const DUTY_OF_VESC: [&str; 2] = ["dutyCycleNow", "duty_cycle_now"];
 
 /// Reads such a table, if it is one.
-pub(super) fn read(table: &mut Table, columns: &[Found], pole_pairs: Option<u32>) -> Result<Option<ReadCharacteristic>, FileError> {
+pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Result<Option<ReadCharacteristic>, FileError> {
+    let is_mapped = !stated.map.is_empty();
     let heads = table.heads().to_vec();
     let has = |channel: Channel| heads.iter().any(|head| is(channel, head));
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
-    if NotALog::by_names(&names).is_some()
-        || has(Channel::Ud)
-        || has(Channel::Uq)
-        || Channel::PHASES.into_iter().any(has)
-        || alias::duties(&heads).is_some()
-    {
+    let is_of_log = || {
+        NotALog::by_names(&names).is_some()
+            || has(Channel::Ud)
+            || has(Channel::Uq)
+            || has_several_phases(&heads)
+            || alias::duties(&heads).is_some()
+    };
+    if !is_mapped && is_of_log() {
         return Ok(None);
     }
     let all = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<_>>();
     let [speeds, voltages, currents, torques] = Quantity::ALL.map(all);
-    let is_time = heads.iter().any(|head| head.is_time || head.instants.is_some() || is(Channel::T, head));
+    let is_time = !is_mapped && heads.iter().any(|head| head.is_time || head.instants.is_some() || is(Channel::T, head));
     let place = |channel: Channel| heads.iter().position(|head| is(channel, head));
-    if let (Some(q), Some(torque), false) = (place(Channel::Iq), torques.first(), is_time) {
-        refuse_unclear([torques.clone()].into_iter(), None, None)?;
-        return torque_of_current(table, place(Channel::Id), q, torque).map(Some);
+    let mapped = |column: TableColumn| columns.iter().find(|found| found.mapped == Some(column)).map(|found| found.index);
+    // Columns of another test are mapped: it is not this one.
+    let is_other = |some: &[Quantity]| stated.maps(some);
+    let of_q = mapped(TableColumn::AxisQ)
+        .or_else(|| place(Channel::Iq).filter(|_| !is_other(&[Quantity::Speed, Quantity::Voltage, Quantity::Current])));
+    if let (Some(q), Some(torque), false) = (of_q, torques.first(), is_time) {
+        refuse_unclear([torques.clone()].into_iter(), UnclearTable::default())?;
+        let of = |index: usize| axis(index, &heads, columns);
+        let d = mapped(TableColumn::AxisD).or_else(|| place(Channel::Id)).filter(|d| *d != q);
+        return torque_of_current(table, d.map(of), of(q), torque).map(Some);
     }
     let duty = heads.iter().position(|head| has_word(head, &["duty", "dutycycle"]) && !is_reference(&head.name));
-    if let (Some(duty), Some(speed), Some(input)) = (duty, speeds.first(), heads.iter().position(is_input)) {
-        refuse_unclear([speeds.clone()].into_iter(), None, None)?;
-        return duty_cycle(table, duty, input, speed, pole_pairs);
+    let is_duty = !is_other(&[Quantity::Voltage, Quantity::Current, Quantity::Torque]);
+    if let (Some(duty), Some(speed), Some(input), true) = (duty, speeds.first(), heads.iter().position(is_input), is_duty) {
+        let unit = lacks_unit(speed).then(|| speed.header.clone());
+        refuse_unclear([speeds.clone()].into_iter(), UnclearTable { speed: unit, ..UnclearTable::default() })?;
+        return duty_cycle(table, duty, input, speed, stated.pole_pairs);
     }
-    let is_driven = heads.iter().any(|head| has_word(head, &DRIVEN));
-    let is_instant = heads.iter().any(|head| has_word(head, &INSTANT));
-    match (voltages.first(), currents.first()) {
-        (Some(voltage), Some(current)) if speeds.is_empty() && torques.is_empty() && !is_time && !is_driven && !is_instant => {
-            let unnamed = across(&[&voltage.header]).is_none().then(|| voltage.header.clone());
-            refuse_unclear([voltages.clone(), currents.clone()].into_iter(), None, unnamed)?;
+    if !speeds.is_empty() || is_time || !is_mapped && heads.iter().any(|head| is_driven(head) || has_word(head, &INSTANT)) {
+        return Ok(None);
+    }
+    match (voltages.first(), currents.first(), torques.first()) {
+        (Some(voltage), Some(current), None) => {
+            let direct_voltage = points(&[voltage]).is_none().then(|| voltage.header.clone());
+            refuse_unclear([voltages.clone(), currents.clone()].into_iter(), UnclearTable { direct_voltage, ..UnclearTable::default() })?;
             direct_current(table, voltage, current)
+        }
+        // The current of a phase, where the rotor's frame is not known: all of it is i_q. A direct current is that of a supply.
+        (None, Some(current), Some(torque)) if is_mapped || !heads.iter().any(is_direct) => {
+            let is_open = current.mapped.is_none() && !states_wave(&current.described);
+            let current_and_torque = is_open.then(|| [current.header.clone(), torque.header.clone()]);
+            let unclear = UnclearTable { current_and_torque, ..UnclearTable::default() };
+            refuse_unclear([currents.clone(), torques.clone()].into_iter(), unclear)?;
+            let mut notes = Vec::new();
+            let factor = current.in_si * convention(current, Quantity::Current, None, &mut notes) * SQRT_2;
+            let read = torque_of_current(table, None, Axis { index: current.index, factor, is_rms: true }, torque)?;
+            let notes = notes.into_iter().chain(read.notes.into_iter().skip(1)).collect();
+            Ok(Some(ReadCharacteristic { notes, ..read }))
         }
         _ => Ok(None),
     }
@@ -110,12 +149,25 @@ pub(super) fn in_si(head: &ColumnHead, channel: Channel) -> f64 {
     }
 }
 
-fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Found) -> Result<ReadCharacteristic, FileError> {
+/// A current of the rotor's frame: its column, and the factor to a peak value in A.
+struct Axis {
+    index: usize,
+    factor: f64,
+    is_rms: bool,
+}
+
+/// The current of an axis by its column: a peak value of the phases, unless its name says that it is a root mean square.
+fn axis(index: usize, heads: &[ColumnHead], columns: &[Found]) -> Axis {
+    let in_si = columns.iter().find(|column| column.index == index && column.quantity == Quantity::Current).map_or(1.0, |own| own.in_si);
+    let is_rms = rms::is_rms(&heads[index]);
+    Axis { index, factor: if is_rms { in_si * SQRT_2 } else { in_si }, is_rms }
+}
+
+fn torque_of_current(table: &mut Table, d: Option<Axis>, q: Axis, torque: &Found) -> Result<ReadCharacteristic, FileError> {
     let heads = table.heads().to_vec();
-    let factor = in_si(&heads[q], Channel::Iq);
     // Without a column of i_d it is taken as zero.
-    let of_d = d.map_or((q, 0.0), |d| (d, in_si(&heads[d], Channel::Id)));
-    let mut rows: Vec<TorqueOfCurrentRow> = rows(table, [of_d, (q, factor), (torque.index, torque.in_si)])?
+    let of_d = d.as_ref().map_or((q.index, 0.0), |d| (d.index, d.factor));
+    let mut rows: Vec<TorqueOfCurrentRow> = rows(table, [of_d, (q.index, q.factor), (torque.index, torque.in_si)])?
         .into_iter()
         .map(|[d, q, torque]| TorqueOfCurrentRow { current: Dq { d, q }, torque })
         .collect();
@@ -124,12 +176,12 @@ fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Fou
     if slope < 0.0 {
         rows.iter_mut().for_each(|row| row.torque = -row.torque);
     }
-    let q_name = heads[q].name.trim().to_owned();
-    let how = if rms::is_rms(&heads[q]) { "an rms value of a phase" } else { "the peak value of a phase, as of all dq currents here" };
-    let mut notes: Vec<Note> = vec![format!("the current {} is read as {how}", quote(&q_name)).into()];
-    let mut used = vec![("current", q_name), ("torque", torque.header.clone())];
+    let name = |axis: &Axis| heads[axis.index].name.trim().to_owned();
+    let how = if q.is_rms { "an rms value of a phase" } else { "the peak value of a phase, as of all dq currents here" };
+    let mut notes: Vec<Note> = vec![format!("the current {} is read as {how}", quote(&name(&q))).into()];
+    let mut used = vec![("current", name(&q)), ("torque", torque.header.clone())];
     match d {
-        Some(d) => used.push(("current", heads[d].name.trim().to_owned())),
+        Some(d) => used.push(("current", name(&d))),
         None => notes.push("i_d is taken as zero: no column has it".to_owned().into()),
     }
     let table = Characteristic::TorqueOfCurrent(TorqueOfCurrent { rows });
@@ -137,7 +189,7 @@ fn torque_of_current(table: &mut Table, d: Option<usize>, q: usize, torque: &Fou
 }
 
 fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<Option<ReadCharacteristic>, FileError> {
-    let Some(across) = across(&[&voltage.header]) else { return Ok(None) };
+    let Some(across) = points(&[voltage]) else { return Ok(None) };
     let rows: Vec<DirectCurrentRow> = rows(table, [(voltage.index, voltage.in_si), (current.index, current.in_si)])?
         .into_iter()
         .filter(|[_, current]| *current != 0.0)
@@ -210,6 +262,7 @@ fn duty_cycle(
 mod tests {
     use super::super::characteristic::parse_characteristic as of;
     use super::*;
+    use fluxfit::characteristics::Across;
 
     fn table(text: &'static str) -> Characteristic {
         of(text, Some(2)).unwrap().unwrap().table
@@ -225,8 +278,52 @@ mod tests {
     fn a_direct_current_needs_to_know_its_terminals() {
         let Characteristic::DirectCurrent(read) = table("U_ll [V],I [A]\n1,10\n0,0\n-2,-20\n") else { panic!() };
         assert_eq!(read.rows, [DirectCurrentRow { current: 10.0, voltage: 1.0 }, DirectCurrentRow { current: -20.0, voltage: -2.0 }]);
-        assert_eq!(read.across, fluxfit::characteristics::Across::Lines);
+        assert_eq!(read.across, Across::Lines);
         assert!(of("U [V],I [A]\n1,10\n2,20\n", None).unwrap_err().to_string().contains("two terminals in series"));
+    }
+
+    /// 24 mV for each A.
+    #[test]
+    fn a_direct_current_is_read_under_the_names_that_a_refusal_asks_for() {
+        for (names, across) in [
+            ("V_phase [V],I [A]", Across::Phase),
+            ("U_phase [V],I_DC [A]", Across::Phase),
+            ("V phase (V),I (A)", Across::Phase),
+            ("phase voltage (V),current (A)", Across::Phase),
+            ("U_DC_phase [V],I_DC [A]", Across::Phase),
+            ("U_DC_ll [V],I_DC [A]", Across::Lines),
+            ("Vdc_ll [VDC],Idc [ADC]", Across::Lines),
+            ("Uab [V],Ia [A]", Across::Lines),
+        ] {
+            let text = format!("{names}\n0.24,10\n0.48,20\n0.96,40\n");
+            let Characteristic::DirectCurrent(read) = table(text.leak()) else { panic!("{names}") };
+            assert_eq!((read.rows[2], read.across), (DirectCurrentRow { current: 40.0, voltage: 0.96 }, across), "{names}");
+        }
+        for names in ["U_DC [V],I_DC [A]", "Vdc (V),Idc (A)", "voltage,current"] {
+            let refusal = of(format!("{names}\n0.24,10\n0.48,20\n").leak(), None).unwrap_err().to_string();
+            assert!(refusal.contains("put 'll'"), "{names}: {refusal}");
+        }
+        assert_eq!(of("bus voltage (V),bus current (A)\n1,10\n2,20\n", None), Ok(None));
+    }
+
+    /// 3 A rms are an amplitude of 3 sqrt 2 A.
+    #[test]
+    fn a_torque_may_stand_beside_rms_values() {
+        let peak = 3.0 * 2.0_f64.sqrt();
+        for (name, size) in [
+            ("Iq [Arms]", peak),
+            ("Iq rms (A)", peak),
+            ("Iq_rms [mA]", 1e-3 * peak),
+            ("Phase current rms [A]", peak),
+            ("Current [Arms]", peak),
+            ("phase current [Apk]", 3.0),
+            ("Iq [A]", 3.0),
+        ] {
+            let Characteristic::TorqueOfCurrent(read) = table(format!("{name},torque [Nm]\n3,1\n6,2\n").leak()) else { panic!("{name}") };
+            assert!((read.rows[0].current.q - size).abs() < 1e-12 && read.rows[0].current.d == 0.0, "{name}: {:?}", read.rows[0]);
+        }
+        let refusal = of("Current (A),Torque (Nm)\n3,1\n6,2\n", None).unwrap_err().to_string();
+        assert!(refusal.contains("map it as iq") && refusal.contains("as current"), "{refusal}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::{
     arguments::LogArguments,
     commands::{input, not_a_log, status::Status},
     error::CommandError,
-    json,
+    json, shell,
     terminal::{self, BAD, DIM, GOOD, WARNING, table, wrapped},
 };
 use fluxfit::{
@@ -16,15 +16,15 @@ use fluxfit::{
     document::CharacteristicsDocument,
     motor::Parameter,
 };
-use fluxfit_log::{LogOptions, read_characteristic};
-use fluxfit_units::{Scale, significant};
+use fluxfit_log::{LogOptions, ReadCharacteristic, read_characteristic_among};
+use fluxfit_units::{Scale, significant, wording::one_line};
 
 /// Identifies from tables, if tables are what is given; `None` of logs. `stated` are options that were given and are for logs alone.
 pub(super) fn run(arguments: &LogArguments, stated: &[&str], options: &LogOptions) -> Result<Option<Status>, CommandError> {
     let (logs, pole_pairs) = (&arguments.logs, options.pole_pairs);
     let mut read = Vec::new();
     for path in logs {
-        let table = not_a_log::or_what_it_is(read_characteristic(path, options), path)?;
+        let table = not_a_log::or_what_it_is(read_characteristic_among(path, logs, options), path)?;
         read.extend(table.map(|read| (input::name(path), read)));
     }
     if read.is_empty() {
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &LogArguments, stated: &[&str], options: &LogOption
     if arguments.json {
         terminal::print(&json::text(&CharacteristicsDocument::of(&tables, notes, &answer))?)?;
     } else {
-        show(&names, &answer)?;
+        show(&names, &unclear_voltages(&read), &answer)?;
     }
     Ok(Some(if answer.is_complete() { Status::Complete } else { Status::Incomplete }))
 }
@@ -92,7 +92,20 @@ fn lacking(answer: &CharacteristicsAnswer, say: impl Fn(&Lack) -> String) -> Vec
     said
 }
 
-fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()> {
+/// Of each table whose voltages do not say between which points they were measured the first column of them.
+fn unclear_voltages(read: &[(String, ReadCharacteristic)]) -> Vec<&str> {
+    let is_unclear = |read: &ReadCharacteristic| matches!(&read.table, Characteristic::OpenCircuit(table) if table.across.is_none());
+    let of_unclear = read.iter().filter(|(_, read)| is_unclear(read));
+    let mut columns: Vec<&str> = of_unclear
+        .filter_map(|(_, read)| read.columns.iter().find(|(quantity, _)| *quantity == "voltage").map(|(_, header)| header.as_str()))
+        // What would not print as it is cannot be pasted.
+        .filter(|header| one_line(header) == *header)
+        .collect();
+    columns.dedup();
+    columns
+}
+
+fn show(names: &[String], unclear_voltages: &[&str], answer: &CharacteristicsAnswer) -> std::io::Result<()> {
     let of = |verdict: Verdict| answer.parameters.iter().filter(move |estimate| estimate.verdict == verdict);
     let identified = of(Verdict::Identified).count();
     let style = match identified {
@@ -130,11 +143,16 @@ fn show(names: &[String], answer: &CharacteristicsAnswer) -> std::io::Result<()>
                 ""
             };
             let sentence = format!(
-                "Line to line: {}. Of a phase: {}. The columns' names do not say which; put 'll' or 'phase' into them{or}.",
+                "Line to line: {}. Of a phase: {}. The columns' names do not say which; say it by one of the options below, put 'll' or 'phase' into them{or}.",
                 values(1.0),
                 values(3.0_f64.sqrt())
             );
             text += &format!("\n{WARNING}{}{WARNING:#}\n", wrapped("", &sentence).trim_end());
+            // Each on a line of its own, so that it can be pasted.
+            for name in ["voltage_ll", "voltage_phase"].iter().filter(|_| !unclear_voltages.is_empty()) {
+                let pairs: Vec<String> = unclear_voltages.iter().map(|header| format!("{name}={header}")).collect();
+                text += &format!("    --map {}\n", shell::word(pairs.join(",").as_ref()));
+            }
         }
         Some(VoltageReading::ByTorque(across)) => {
             let across = if across == Across::Lines { "line to line" } else { "of a phase" };
