@@ -7,6 +7,7 @@ use super::{
     bench_columns::{DRIVEN, Found, INSTANT, across, convention, found, found_all, refuse_unclear, values_of},
     layout::NotALog,
     options::LogOptions,
+    proposal::propose,
     resemblance::words,
     steady_test::{self, SteadyTest},
     table::Table,
@@ -50,6 +51,9 @@ pub(super) fn quantity(index: usize, head: &ColumnHead) -> Option<&'static str> 
     found(index, head).map(|found| found.quantity.name())
 }
 
+/// What makes a table a log.
+const LOG: [Channel; 5] = [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq];
+
 fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
     let is_driven = |head: &ColumnHead| words(&head.name).iter().any(|word| DRIVEN.contains(&word.as_str()));
@@ -63,6 +67,10 @@ fn read(mut table: Table, pole_pairs: Option<u32>, map: &[(Quantity, String)]) -
             || head.instants.is_some()
             || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
     };
+    // The dq quantities over time are a log, whatever else is beside them: a duty cycle and a DC voltage, as of a VESC.
+    if propose(&LOG, &heads, |_, _| Some(0.0)).len() == LOG.len() {
+        return Ok(None);
+    }
     let columns = found_all(&heads, map)?;
     if let Some(SteadyTest { table, columns, notes, has_electrical_speed }) = steady_test::read(&mut table, &columns, pole_pairs)? {
         return Ok(Some(ReadCharacteristic { columns, table, notes, has_electrical_speed }));
@@ -231,6 +239,8 @@ mod tests {
             "speed_rpm,voltage_V\n1,2\n2,-2\n",
             "timestep,speed_rpm,voltage_V\n0,1,2\n1,2,4\n",
             "speed [m/s],voltage_V\n1,2\n2,4\n",
+            // A duty cycle beside what makes a log.
+            "t_day,Duty,RPM,Input Voltage,my vd,my vq,my id,my iq\n1,0.1,900,46,0,2,0,3\n2,0.2,1800,46,0,4,0,3\n",
         ] {
             assert_eq!(of(text).unwrap(), None, "{text}");
         }

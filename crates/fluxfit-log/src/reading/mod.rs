@@ -16,6 +16,8 @@ mod characteristic;
 mod chosen;
 mod clock;
 mod columns;
+mod doubt;
+mod duty;
 mod even_time;
 mod finder;
 mod gather;

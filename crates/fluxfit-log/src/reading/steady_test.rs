@@ -5,6 +5,7 @@
 use super::{
     alias,
     bench_columns::{DRIVEN, Found, INSTANT, across, convention, refuse_unclear, values_of},
+    duty,
     layout::NotALog,
     resemblance::{is_reference, words},
     rms,
@@ -54,7 +55,7 @@ pub(super) fn read(table: &mut Table, columns: &[Found], pole_pairs: Option<u32>
         || has(Channel::Ud)
         || has(Channel::Uq)
         || Channel::PHASES.into_iter().any(has)
-        || alias::duties(&heads).is_some()
+        || duty::duties(&heads).is_some()
     {
         return Ok(None);
     }
