@@ -46,6 +46,7 @@ mod header_unit;
 mod in_order;
 mod instant;
 mod memory_table;
+mod missing_columns;
 mod note;
 mod problem;
 mod quantity;

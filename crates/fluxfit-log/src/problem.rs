@@ -1,10 +1,13 @@
 //! What can be wrong with a log, or with what is stated about it.
 
+use crate::missing_columns::{
+    LineToLine, MODULATION, are_lists, are_not_in_it, are_rms, equal_axes, has_d_alone, may_be_table, missing_columns, not_measured,
+    proposed_rms, shares, speed_by_name, without_time,
+};
 use crate::unclear_table::UnclearTable;
 use fluxfit_files::{Advice, FileError, FileErrorKind};
 use fluxfit_units::wording::{choice, columns, did_you_mean, list, quote, shorten};
 use fluxfit_units::{Unit, significant};
-use std::fmt;
 
 /// Most columns that a sentence lists.
 const MOST_NAMES: usize = 20;
@@ -43,11 +46,15 @@ pub(crate) enum Problem {
     OtherMark { other: u64 },
 
     // Columns
-    #[error("{}{}{}{}{}{}", missing_columns(.missing, .present, .proposals), speed_by_name(.speed.as_ref().map(|(_, unit)| *unit)), .line_to_line, without_time(.missing, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
+    #[error("{}{}{}{}{}{}{}{}", missing_columns(.missing, .present, .proposals, .equal), equal_axes(.equal), shares(.modulations), speed_by_name(.speed.as_ref().map(|(_, unit)| *unit)), .line_to_line, without_time(.missing, .proposals), proposed_rms(.proposals, .rms), not_measured(.references, .unreadable, .lists))]
     Missing {
         missing: Vec<&'static str>,
         present: Vec<String>,
         proposals: Vec<(&'static str, String)>,
+        /// Channels that several columns could be whose names differ in a number, and these.
+        equal: Vec<(&'static str, Vec<String>)>,
+        /// Where voltages are missing, columns that are shares of the DC voltage, and the voltages.
+        modulations: Vec<(&'static str, String)>,
         /// The proposed channels whose columns hold root mean squares, and their units.
         rms: Vec<(&'static str, &'static str)>,
         references: Vec<String>,
@@ -69,6 +76,10 @@ pub(crate) enum Problem {
         "this is a trace of voltages alone, as of a motor that is turned with open terminals: it tells psi_f alone, by waves of {} Hz and {} V rms; write such a row for each of three or more speeds into a table with the columns 'f [Hz]' and 'U_ll_rms [V]' (of a phase, 'U_phase_rms [V]'), and give that", significant(*.hertz, 4), significant(*.volts, 4)
     )]
     OpenTerminals { hertz: f64, volts: f64 },
+    #[error(
+        "this is a trace of an oscilloscope, {}, and a log needs voltages and currents of the motor with its speed or angle; of voltages of a motor that is turned with open terminals, write frequency and rms voltage of each speed into a table with the columns 'f [Hz]' and 'U_ll_rms [V]'; of a direct current through two terminals, write voltage and current into one with the columns 'U_ll [V]' and 'I [A]'; give that", columns(.names)
+    )]
+    Trace { names: Vec<String> },
     #[error(
         "the names of its columns are numbers, as of a matrix over two quantities: of a flux linkage over i_d and i_q (a flux map, as of Motor-CAD or FEM) nothing is identified, and as the motor of a simulation it needs a row for each point, with columns id, iq, psi_d and psi_q (flux_map in a scenario)"
     )]
@@ -103,8 +114,13 @@ pub(crate) enum Problem {
     )]
     PolePairs { what: &'static str, channel: &'static str, unit: &'static str, electrical: &'static str, electrical_unit: &'static str },
 
-    #[error("{}", speed_unit(*.of_shaft))]
-    SpeedUnit { has_pole_pairs: bool, of_shaft: bool },
+    #[error("{}{}", speed_unit(*.of_shaft), speed_of_tool(.usual.as_ref()))]
+    SpeedUnit {
+        has_pole_pairs: bool,
+        of_shaft: bool,
+        /// What writes speeds of this name, and their unit there.
+        usual: Option<(&'static str, Unit)>,
+    },
     #[error("this speed is in {}, and nothing states whether it is electrical or that of the shaft; state which", .electrical.prose().trim_start_matches("electrical "))]
     SpeedRotation { electrical: Unit, mechanical: Unit, has_pole_pairs: bool },
     #[error(
@@ -281,54 +297,13 @@ pub(crate) enum Problem {
     ZeroPolePairs,
 }
 
-/// Columns of line-to-line voltages in a file that lacks those of the phases.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct LineToLine {
-    /// Channels, and the columns that would be these but for the word.
-    pub(crate) scaled: Vec<(&'static str, String)>,
-    /// Voltages between two phases.
-    pub(crate) pairs: Vec<String>,
-}
-
-/// Scale of a line-to-line voltage to that of a phase, 1 over sqrt 3.
-const PHASE_OF_LINE: &str = "0.57735";
-
-impl fmt::Display for LineToLine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.scaled.is_empty() {
-            let headers: Vec<String> = self.scaled.iter().map(|(_, header)| header.clone()).collect();
-            let entry = |(channel, header): &(&str, String)| format!("{channel} = {{ column = {header:?}, scale = {PHASE_OF_LINE} }}");
-            let entries: Vec<String> = self.scaled.iter().map(entry).collect();
-            let (are, they) = if headers.len() == 1 {
-                ("is a line-to-line voltage by its name", "it is")
-            } else {
-                ("are line-to-line voltages by their names", "they are")
-            };
-            write!(
-                f,
-                "; {} {are}: if {they} sqrt 3 times as large as of a phase, write into a mapping file {}",
-                columns(&headers),
-                list(&entries)
-            )?;
-        }
-        if !self.pairs.is_empty() {
-            write!(
-                f,
-                "; {} are line-to-line voltages by their names, and those of the phases are needed: compute ua = (2 uab + ubc) / 3, ub = (ubc - uab) / 3",
-                columns(&self.pairs)
-            )?;
-        }
-        Ok(())
-    }
-}
-
 impl Problem {
     fn kind(&self) -> FileErrorKind {
         match self {
             Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
             Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
             Self::CanLog { .. } | Self::NoFrameTimes => FileErrorKind::Unsupported,
-            Self::OpenTerminals { .. } | Self::Matrix => FileErrorKind::Columns,
+            Self::OpenTerminals { .. } | Self::Trace { .. } | Self::Matrix => FileErrorKind::Columns,
             Self::Gzip { .. } | Self::Document { .. } | Self::Npz | Self::NoRows => FileErrorKind::Format,
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::Lists { .. } | Self::ManyColumns { .. } => {
                 FileErrorKind::Format
@@ -388,6 +363,9 @@ impl Problem {
                 if of_table { map(&["speed", "voltage", "current", "torque"]) } else { Vec::new() }
             }
             Self::Missing { proposals, line_to_line, .. } if proposals.is_empty() && *line_to_line != LineToLine::default() => Vec::new(),
+            Self::Missing { modulations, proposals, .. } if proposals.is_empty() && !modulations.is_empty() => {
+                modulations.iter().take(1).map(|(channel, _)| Advice::ScaleInMapping { channel, scale: MODULATION.to_owned() }).collect()
+            }
             Self::Missing { missing, proposals, .. } if proposals.is_empty() => map(&missing[..missing.len().min(1)]),
             Self::Missing { proposals, rms, speed, .. } => {
                 let columns = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect();
@@ -413,12 +391,15 @@ impl Problem {
                 has_pole_pairs: *has_pole_pairs,
             }],
             // The usual unit of either.
-            Self::SpeedUnit { has_pole_pairs, of_shaft: true } => {
-                let unit = Advice::StateUnit { channel: "omega_e", unit: Some(Unit::RpmMechanical.name()) };
+            Self::SpeedUnit { has_pole_pairs, of_shaft, usual } if *of_shaft || usual.is_some() => {
+                let unit = usual.map_or(Unit::RpmMechanical, |(_, unit)| unit);
+                let first = Advice::StateUnit { channel: "omega_e", unit: Some(unit.name()) };
                 let pole_pairs = (!has_pole_pairs).then_some(Advice::StatePolePairs);
-                vec![Advice::Together(std::iter::once(unit).chain(pole_pairs).collect())]
+                let electrical = Advice::StateUnit { channel: "omega_e", unit: Some(Unit::RadianPerSecond.name()) };
+                let first = Advice::Together(std::iter::once(first).chain(pole_pairs).collect());
+                std::iter::once(first).chain(Some(electrical).filter(|_| !of_shaft)).collect()
             }
-            Self::SpeedUnit { has_pole_pairs, of_shaft: false } => vec![Advice::StateRotation {
+            Self::SpeedUnit { has_pole_pairs, .. } => vec![Advice::StateRotation {
                 channel: "omega_e",
                 electrical: Unit::RadianPerSecond.name(),
                 mechanical: Unit::RpmMechanical.name(),
@@ -467,69 +448,6 @@ fn object_remedy(name: &str, class: &str) -> String {
     }
 }
 
-/// Channels that every log has.
-const NEEDED: usize = 6;
-
-/// Whether a file has fewer columns than it lacks, or none beside those that were found, and none that resembles one of the missing.
-fn are_not_in_it(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> bool {
-    let found = NEEDED.saturating_sub(missing.len());
-    (present.len() < missing.len() || present.len() <= found) && proposals.is_empty()
-}
-
-/// Whether a file has the d axis and nothing of q, as a test at standstill.
-fn has_d_alone(missing: &[&str]) -> bool {
-    ["uq", "iq"].iter().all(|channel| missing.contains(channel)) && !["ud", "id"].iter().any(|channel| missing.contains(channel))
-}
-
-/// Columns of a table of a test bench: there are at least two, and not many.
-const COLUMNS_OF_TABLE: std::ops::RangeInclusive<usize> = 2..=4;
-
-/// Whether a file is so small that it may be a table of a test bench, whose rows have no time.
-fn may_be_table(missing: &[&str], present: &[String]) -> bool {
-    missing.contains(&"t") && COLUMNS_OF_TABLE.contains(&present.len())
-}
-
-/// What is said of such a file.
-const OF_TABLE: &str = "; if it is a table of a test bench to identify from, map what it has: speed and voltage (open terminals), speed and current (shorted terminals), voltage and current (a direct one, at rest), or torque and current";
-
-fn missing_columns(missing: &[&str], present: &[String], proposals: &[(&str, String)]) -> String {
-    let (noun, are, they_have, names) =
-        if missing.len() == 1 { ("column", "is", "it has", "another name") } else { ("columns", "are", "they have", "other names") };
-    let what = format!("the {noun} {} {are} missing; the file has {}", list(missing), columns(present));
-    if has_d_alone(missing) && are_not_in_it(missing, present, proposals) {
-        return format!(
-            "{what}; of a rotor at rest with current along d alone they are zero: add them as columns of zeros; else log them too"
-        );
-    }
-    let it = if missing.len() == 1 { "it" } else { "them" };
-    if are_not_in_it(missing, present, proposals) {
-        let of_table = if may_be_table(missing, present) { OF_TABLE } else { "" };
-        return format!("{what}, too few other columns for {it} to be in it; log {it} too{of_table}");
-    }
-    if proposals.is_empty() {
-        return format!("{what}; map {it} if {they_have} {names}, else log {it} too");
-    }
-    let pairs: Vec<String> = proposals.iter().map(|(channel, header)| format!("'{}' may be {channel}", shorten(header))).collect();
-    let rest: Vec<&str> = missing.iter().filter(|channel| proposals.iter().all(|(proposed, _)| proposed != *channel)).copied().collect();
-    let lacking = if rest.is_empty() { String::new() } else { format!("; no column resembles {}", list(&rest)) };
-    let (by, if_so) = if pairs.len() == 1 { ("its name", "map it if it is") } else { ("their names", "map them if they are") };
-    format!("{what}; by {by}, {}: {if_so}{lacking}", list(&pairs))
-}
-
-/// Of the columns that a log lacks beside the time at most so many may be open where the time between its rows would make it one.
-const OPEN_BESIDE_TIME: usize = 1;
-
-/// What to do where a log has no column of times.
-fn without_time(missing: &[&str], proposals: &[(&str, String)]) -> String {
-    let is_proposed = |channel: &str| proposals.iter().any(|(proposed, _)| *proposed == channel);
-    let open = missing.iter().filter(|channel| !is_proposed(channel)).count();
-    if !missing.contains(&"t") || is_proposed("t") || open > 1 + OPEN_BESIDE_TIME {
-        return String::new();
-    }
-    "; if no column is the time and all rows are equally far apart, write the time between them into a mapping file, as in sample_period = \"0.1 ms\""
-        .to_owned()
-}
-
 fn speed_unit(of_shaft: bool) -> &'static str {
     if of_shaft {
         "by its name this is the speed of the shaft, and nothing states its unit; state it: rpm-mech, rad/s-mech or Hz-mech"
@@ -538,46 +456,12 @@ fn speed_unit(of_shaft: bool) -> &'static str {
     }
 }
 
-/// What is to be said of a proposed speed whose name says its unit.
-fn speed_by_name(unit: Option<Unit>) -> String {
-    unit.map_or_else(String::new, |unit| format!("; a speed of this name is usually in {}: state its unit", unit.prose()))
-}
-
-/// What is to be said of proposed columns that hold root mean squares.
-fn proposed_rms(proposals: &[(&str, String)], rms: &[(&str, &str)]) -> String {
-    let is_rms = |channel: &str| rms.iter().any(|(of, _)| *of == channel);
-    let headers: Vec<&str> = proposals.iter().filter(|(channel, _)| is_rms(channel)).map(|(_, header)| header.as_str()).collect();
-    if headers.is_empty() {
-        return String::new();
-    }
-    format!("; {}, so state their units too, and check whether the others are rms values", are_rms(&headers))
-}
-
-fn are_rms(headers: &[&str]) -> String {
-    let quoted: Vec<String> = headers.iter().map(|header| format!("'{}'", shorten(header))).collect();
-    let are = if headers.len() == 1 { "is an rms value" } else { "are rms values" };
-    format!("{} {are} by name, where dq values are peak values, sqrt 2 times as large", list(&quoted))
-}
-
-fn not_measured(references: &[String], unreadable: &[String], lists: &[String]) -> String {
-    let of_references = match references {
-        [] => String::new(),
-        [one] => format!("; '{}' is a reference, not a measured current", shorten(one)),
-        several => format!("; {} are references, not measured currents", columns(several)),
-    };
-    let of_others = match unreadable {
-        [] => String::new(),
-        [one] => format!("; '{}' holds no numbers", shorten(one)),
-        several => format!("; {} hold no numbers", columns(several)),
-    };
-    let of_lists = match lists {
-        [] => String::new(),
-        _ => format!("; {}, where a log has one number for each instant", are_lists(lists)),
-    };
-    of_references + &of_others + &of_lists
-}
-
-fn are_lists(names: &[String]) -> String {
-    let hold = if names.len() == 1 { "holds" } else { "hold" };
-    format!("{} {hold} a list in each row", columns(names))
+/// What is to be said of a speed that a known tool writes.
+fn speed_of_tool(usual: Option<&(&str, Unit)>) -> String {
+    usual.map_or_else(String::new, |(tool, unit)| {
+        format!(
+            "; {tool} writes {}",
+            if *unit == Unit::HertzMechanical { "turns of the shaft a second, Hz-mech" } else { "rad/s of the shaft, rad/s-mech" }
+        )
+    })
 }

@@ -59,15 +59,43 @@ fn join<S: AsRef<str>>(items: &[S], conjunction: &str) -> String {
     }
 }
 
-/// Names of columns, each in single quotes; of a wide file the first ones only.
+/// Names of columns, each in single quotes; of a wide file the first ones only, and of the columns of a matrix the first and the last.
 pub fn columns(names: &[String]) -> String {
-    let named = names.iter().filter(|name| !name.is_empty());
-    let mut shown: Vec<String> = named.clone().take(LISTED).map(|name| format!("'{}'", cut(name, NAME))).collect();
-    let more = named.count().saturating_sub(LISTED);
+    let named: Vec<&str> = names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+    let quoted = |name: &str| format!("'{}'", cut(name, NAME));
+    let entries: Vec<&[&str]> = named.chunk_by(|name, next| matrix(name).is_some_and(|of| matrix(next) == Some(of))).collect();
+    let entries: Vec<&[&str]> =
+        entries.into_iter().flat_map(|of| if of.len() < COLUMNS { of.chunks(1) } else { of.chunks(of.len()) }).collect();
+    let show = |entry: &&[&str]| match entry {
+        [first, .., last] => format!("{} to {}", quoted(first), quoted(last)),
+        entry => entry.iter().map(|name| quoted(name)).collect(),
+    };
+    let mut shown: Vec<String> = entries.iter().take(LISTED).map(show).collect();
+    let more: usize = entries.iter().skip(LISTED).map(|entry| entry.len()).sum();
     if more > 0 {
         shown.push(format!("{more} more"));
     }
     list(&shown)
+}
+
+/// Fewest columns of one matrix that are listed as one entry.
+const COLUMNS: usize = 3;
+
+/// The matrix of which a name is a column: `psi` of `psi(:,3)`.
+fn matrix(name: &str) -> Option<&str> {
+    let (stem, index) = name.strip_suffix([')', ']'])?.rsplit_once(['(', '['])?;
+    (!stem.is_empty() && index.contains(|c: char| c.is_ascii_digit()) && index.chars().all(|c| c.is_ascii_digit() || ":, ".contains(c)))
+        .then_some(stem)
+}
+
+/// A name of a column, on one line and short: the middle is left out of a long one, for paths begin and units of signals end alike.
+pub fn shorten_name(name: &str) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= QUOTATION {
+        return one_line(name);
+    }
+    let (first, last) = (QUOTATION / 2 - 1, letters.len() - QUOTATION / 2);
+    one_line(&letters[..first].iter().chain(['…'].iter()).chain(&letters[last..]).collect::<String>())
 }
 
 /// The candidate most similar to `wanted`, if any is similar enough.
@@ -106,6 +134,24 @@ mod tests {
         // Names are there to be copied.
         let long = "SERVO_02.r1732[0] Spannungssollwert direkt [Veff]".to_owned();
         assert_eq!(columns(&[long.clone(), "ü".repeat(81)]), format!("'{long}' and '{}…'", "ü".repeat(80)));
+    }
+
+    #[test]
+    fn the_columns_of_a_matrix_are_one_entry() {
+        let names = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        let wide = names(&["t", "psi(:,1)", "psi(:,2)", "psi(:,3)", "psi(:,4)", "v[0]", "v[1]", "x"]);
+        assert_eq!(columns(&wide), "'t', 'psi(:,1)' to 'psi(:,4)', 'v[0]', 'v[1]' and 'x'");
+        assert_eq!(columns(&names(&["I(A)", "I(B)", "I(C)"])), "'I(A)', 'I(B)' and 'I(C)'");
+        assert_eq!(columns(&names(&["a(1)", "a(2)", "a(3)"])), "'a(1)' to 'a(3)'");
+    }
+
+    #[test]
+    fn a_long_name_loses_its_middle() {
+        let [d, q] = ["d", "q"].map(|axis| format!("axis0.motor.foc.v_current_control_integral_{axis}"));
+        assert_eq!(shorten_name(&d), "axis0.motor.foc.v_c…_control_integral_d");
+        assert_ne!(shorten_name(&d), shorten_name(&q));
+        assert_eq!(shorten_name(&d).chars().count(), QUOTATION);
+        assert_eq!(shorten_name("a\u{202e}b"), "a\\u{202e}b");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The header of a table of text: where it is, and what separates its names.
 
 use super::{
+    beside_settings::{self, Samples},
     record::{self, lines},
     scope::{self, Export},
     tidy::RowStyle,
@@ -146,6 +147,10 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
             break (start, line);
         }
     };
+    if let Some(Samples { names, units }) = beside_settings::find(text, start) {
+        notes.push("the columns are those of the samples beside the settings of an oscilloscope".to_owned());
+        return Ok(Header { names, units, body: start, ..at(text, start, b',') });
+    }
     if !titles.is_empty() {
         notes.push(format!("read as titles above the header: {}", list(&titles)));
     }
@@ -236,19 +241,21 @@ fn from_comments(text: &str, comments: &[(usize, &str)], body: usize, first: Hea
 
 /// Whether a line is a title, a timestamp or a line of information above the header: it has one cell, and some line below has more; or it
 /// begins with a digit, and the next line has more cells; or it has at most half as many cells as the first row of numbers below; or it has
-/// empty cells, and the line below has fewer and is no row of numbers either; or it belongs to a preamble.
+/// empty cells, and a line below has fewer and is no row of numbers either; or it is a remark above each name; or it belongs to a preamble.
 fn is_title(text: &str, start: usize, line: &str) -> bool {
     let header = at(text, start, most_frequent_separator(line));
     let cells = header.names.len();
     let dated = header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name));
     let below = || lines(&text[header.body..]).filter(|(_, line)| !line.trim().is_empty());
     let cells_of = |line: &str| record::first_record(line, most_frequent_separator(line)).0;
+    let is_above_names = || header.names.iter().any(String::is_empty) && is_above_names(&header, text);
+    if cells > 1 && is_above_names() {
+        return true;
+    }
     if cells > 1 && !dated {
         let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell)).count() * 2 > cells.len();
         let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
-        return row.is_some_and(|row| 2 * cells <= row.len())
-            || header.names.iter().any(String::is_empty) && is_above_names(&header, text)
-            || is_preamble(&header, text);
+        return row.is_some_and(|row| 2 * cells <= row.len()) || are_remarks(&header, text) || is_preamble(&header, text);
     }
     let mut below = below().map(|(_, line)| cells_of(line));
     let Some(next) = below.next() else { return false };
@@ -258,6 +265,23 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
     // Above others of one cell, too, if there is a table below.
     let mut below = below.take(TITLES).skip_while(|line| line.len() <= cells).skip(1);
     below.by_ref().take(NAMES_AND_UNITS).any(|line| line.len() > 1 && line.iter().filter(|cell| is_number(cell)).count() * 2 > line.len())
+}
+
+/// Whether a line has a remark above each name: the next one has as many texts, and stands above numbers. Of the two the names are shorter.
+/// Short texts below names are their units.
+fn are_remarks(line: &Header, text: &str) -> bool {
+    let mut below = lines(&text[line.body..]).map(|(_, below)| below.trim()).filter(|below| !below.is_empty());
+    let mut next =
+        || below.next().map(|below| record::first_record(below, line.separator).0).filter(|cells| cells.len() == line.names.len());
+    let (Some(names), Some(row)) = (next(), next()) else { return false };
+    let are_texts = |cells: &[String]| cells.iter().all(|cell| !cell.is_empty() && !is_number(cell));
+    let longest = |cells: &[String]| cells.iter().map(|cell| cell.chars().count()).max().unwrap_or_default();
+    let are_units = longest(&names) <= LONGEST_UNIT;
+    are_texts(&line.names)
+        && are_texts(&names)
+        && !are_units
+        && longest(&line.names) > longest(&names)
+        && row.iter().all(|cell| is_number(cell))
 }
 
 /// Whether a line belongs to a preamble: above the rows of numbers another line has as many names as these have cells, and this one has
@@ -275,11 +299,13 @@ fn is_preamble(line: &Header, text: &str) -> bool {
     let body = cells.windows(2).position(|pair| is_row(&pair[0]) && is_row(&pair[1]) && pair[0].len() == pair[1].len());
     let Some((above, width)) = body.map(|at| (&cells[..at], cells[at].len())) else { return false };
     let has_names = above.iter().any(|cells| cells.len() == width && filled(cells) == width && numbers(cells) == 0);
-    let are_units = line.names.iter().filter(|name| UNITS.contains(&name.to_lowercase().as_str())).count() * 2 > line.names.len();
+    let are_units = |names: &[String]| names.iter().filter(|name| UNITS.contains(&name.to_lowercase().as_str())).count() * 2 > names.len();
     // Of an oscilloscope: settings, some of which happen to have the width of the rows. The names are in the last two lines.
     let settings = above.iter().filter(|cells| cells.len() != width).count();
     let is_setting = above.len() >= NAMES_AND_UNITS && (settings >= SETTINGS || numbers(&line.names) > 0);
-    has_names && (line.names.len() != width || are_units || is_setting)
+    // As wide as the rows, where one channel is stored: more lines than names have below them.
+    let are_many = above.len() > NAMES_AND_UNITS || above.len() == NAMES_AND_UNITS && above.last().is_some_and(|last| are_units(last));
+    has_names && (line.names.len() != width || are_units(&line.names) || is_setting || are_many)
 }
 
 /// Lines at the end of a preamble that may be names, and labels above or units below them.
@@ -289,8 +315,10 @@ const NAMES_AND_UNITS: usize = 2;
 const SETTINGS: usize = 3;
 
 /// What a row above the names that holds their units has in most of its cells.
-const UNITS: [&str; 19] =
-    ["s", "ms", "us", "v", "mv", "kv", "a", "ma", "ka", "rpm", "krpm", "1/min", "min^-1", "rad/s", "rad", "deg", "°", "nm", "hz"];
+const UNITS: [&str; 22] = [
+    "second", "volt", "ampere", "s", "ms", "us", "v", "mv", "kv", "a", "ma", "ka", "rpm", "krpm", "1/min", "min^-1", "rad/s", "rad", "deg",
+    "°", "nm", "hz",
+];
 
 /// Whether a line below a line with empty cells, and above the first row of numbers, has more names in it.
 fn is_above_names(line: &Header, text: &str) -> bool {
@@ -394,13 +422,47 @@ mod tests {
         let lecroy =
             "LECROY,12345,Waveform\nSegments,1,SegmentSize,9000\nSegment,TrigTime,Since\n#1,14-Aug-2012,0\nTime,Ampl\n0.1,1\n0.2,2\n";
         assert_eq!(found(lecroy), (names(), 5, b',', "0.1,1\n0.2,2\n"));
+        let siglent = "Record Length,Analog:9000\nVertical Units,CH1:V\nHorizontal Units,S\nSource,CH1\nSecond,Volt\n0.1,1\n0.2,2\n";
+        assert_eq!(found(siglent), (vec!["Source".into(), "CH1".into()], 4, b',', "0.1,1\n0.2,2\n"));
         let dspace = "unit,s,V\n\npath,,Root/a\n\nnames,Time,Ampl\n,0.1,1\n,0.2,2\n";
         assert_eq!(found(dspace), (vec!["names".into(), "Time".into(), "Ampl".into()], 5, b',', ",0.1,1\n,0.2,2\n"));
         // Settings beside the samples, and no names at all.
-        let beside = "Record Length,2500,,0.0,1.2\nSample Interval,4e-6,,0.1,1.3\n";
+        let beside = "Points,2500,,0.0,1.2\nSample Interval,4e-6,,0.1,1.3\n";
         assert!(find(beside, &mut Vec::new()).is_err_and(|error| error.to_string().contains("in place of a header")));
         // A wider row of data has no other line of names above it.
         assert_eq!(found("a,b\n1,2,3\n1,2,3\n").1, 1);
+    }
+
+    #[test]
+    fn remarks_as_wide_as_the_table_are_titles() {
+        let names = ["rpm", "brake (V)", "T measured (Nm)", "phase-phase voltage (V) rms"].map(str::to_owned).to_vec();
+        let header = "rpm,brake (V),T measured (Nm),phase-phase voltage (V) rms";
+        let rows = "100,0,0.07,0.33\n200,0,0.1,0.7\n";
+        for above in [
+            "2/12/2016,,run ~/projects/speed_test/ramp_test,\n,,layout: ~/projects/motor_tests.sml,\n,,meter,\"be sure, in DC\"\n",
+            "read from the drive's display,set by hand at the supply,\"of the torque meter, zeroed before\",77 IV multimeter\n",
+        ] {
+            let text = format!("{above}{header}\n{rows}");
+            let found = found(&text);
+            assert_eq!((found.0, found.3), (names.clone(), rows), "{above}");
+        }
+        // Units, or what a column is, stand below its name.
+        let units = find(&format!("{header}\nr/min,V,Nm,V\n{rows}"), &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((&units.names, units.units.concat().as_str()), (&names, "r/minVNmV"));
+        let described = "speed of the shaft in r/min,voltage of the brake,torque of the sensor,voltage between two terminals of the motor";
+        assert_eq!(found(&format!("{header}\n{described}\n{rows}")).1, 1);
+    }
+
+    /// As a TDS 2012 writes it.
+    #[test]
+    fn samples_beside_settings_are_columns() {
+        let text = "Record Length,2.5e+03,,  -0.0500,   0.01,\nSample Interval,4e-05,,  -0.0499,   0.02,\nSource,CH1,,-00.0498,  0.03,\nVertical Units,V,,-00.0497,  0.04,\nHorizontal Units,s,,-00.0496,  0.05,\n,,,-00.0495,  0.06,\n";
+        let header = find(text, &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(
+            (header.names, header.units),
+            (["", "", "", "TIME", "CH1"].map(str::to_owned).to_vec(), ["", "", "", "s", "V"].map(str::to_owned).to_vec())
+        );
+        assert_eq!((header.body, header.body_line), (0, 1));
     }
 
     #[test]

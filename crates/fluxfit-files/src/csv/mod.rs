@@ -1,5 +1,6 @@
 //! Tables of text: the header with what separates its cells, and the records.
 
+mod beside_settings;
 pub mod header;
 pub mod record;
 mod scope;

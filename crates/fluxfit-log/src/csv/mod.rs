@@ -18,12 +18,14 @@ mod rows;
 #[cfg(test)]
 mod tests;
 mod text;
+mod vesc_express;
 
 use crate::{
     block::{Block, ColumnHead, WantedColumn},
     container::MOST_COLUMNS,
     problem::Problem,
 };
+pub(crate) use first_rows::FirstCells;
 use fluxfit_files::{
     FileError,
     csv::{
@@ -63,13 +65,16 @@ impl TextTable {
     /// If it has no header.
     pub(crate) fn of(mut text: Text) -> Result<Self, FileError> {
         let mut notes = std::mem::take(&mut text.notes);
-        let header = header::find(&text.head, &mut notes)?;
+        let mut header = header::find(&text.head, &mut notes)?;
         let is_cut = text.has_rest() && header.body >= text.head.len();
         if is_cut || header.names.len() > MOST_COLUMNS {
             return Err(FileError::from(Problem::ManyColumns { most: MOST_COLUMNS }).at_line(header.line));
         }
         if header.rows != RowStyle::Plain {
             text = text.with_rows(header.rows, header.body);
+        }
+        if let Some(fields) = vesc_express::fields(&header.names) {
+            (header.names, header.units) = fields.into_iter().map(|(name, unit)| (name, unit.unwrap_or_default())).unzip();
         }
         let mut instants = first_rows::instants(&text.head, &header);
         let unit = |place: usize| header.units.get(place).filter(|unit| !unit.is_empty()).cloned();
@@ -82,10 +87,10 @@ impl TextTable {
         Ok(Self { heads: heads.collect(), header, text: Some(text), block_size: blocks::BLOCK, notes })
     }
 
-    /// The columns that hold no numbers, by the first rows; none once the rows are read.
-    pub(crate) fn without_numbers(&self) -> Vec<usize> {
-        let found = self.text.as_ref().map_or(Vec::new(), |text| first_rows::without_numbers(&text.head, &self.header));
-        found.into_iter().filter(|place| self.heads.get(*place).is_some_and(|head| head.instants.is_none())).collect()
+    /// What the first rows tell of each column; nothing once the rows are read.
+    pub(crate) fn first_cells(&self) -> Vec<FirstCells> {
+        let is_instant = |place: usize| self.heads.get(place).is_some_and(|head| head.instants.is_some());
+        self.text.as_ref().map_or(Vec::new(), |text| first_rows::cells(&text.head, &self.header, is_instant))
     }
 
     /// The line of the header.

@@ -102,42 +102,6 @@ pub(super) fn are_elements(names: [&str; 2]) -> bool {
     vector(names[0], &heads, &[VOLTAGE_VECTOR, CURRENT_VECTOR].concat()).is_some()
 }
 
-/// Words for the share of a period during which a leg of the inverter is switched to the upper rail.
-const DUTY: [&str; 4] = ["duty", "dutycycle", "tastgrad", "pwmduty"];
-
-/// The duty cycles of the phases a, b, c, if exactly one column has the name of each: `duty_a`, `Duty U [%]`, `dutyCycle1`.
-pub(super) fn duties(heads: &[ColumnHead]) -> Option<[usize; 3]> {
-    let phase = |head: &ColumnHead| {
-        let name = words(field(head.name.split(['[', '(', '%']).next().unwrap_or(&head.name))).concat();
-        let phases = [["a", "u", "1"], ["b", "v", "2"], ["c", "w", "3"]];
-        phases.iter().position(|letters| {
-            let is = |duty: &&str| letters.iter().any(|letter| name == format!("{duty}{letter}") || name == format!("{letter}{duty}"));
-            !is_reference(&head.name) && DUTY.iter().any(is)
-        })
-    };
-    let of: Vec<Option<usize>> = heads.iter().map(phase).collect();
-    let only = |phase: usize| {
-        let mut columns = (0..of.len()).filter(|index| of[*index] == Some(phase));
-        columns.next().filter(|_| columns.next().is_none())
-    };
-    Some([only(0)?, only(1)?, only(2)?])
-}
-
-/// Words for the modulation of the inverter, a share of the DC voltage: ODrive's `mod_d`.
-const MODULATION: [&str; 5] = ["mod", "modulation", "modulationsgrad", "duty", "dutycycle"];
-
-/// Whether a name says that a column is a modulation, and no voltage.
-pub(super) fn is_modulation(name: &str) -> bool {
-    words(field(name)).iter().any(|word| MODULATION.contains(&word.as_str()))
-}
-
-/// Whether a column is in percent.
-pub(super) fn is_percent(head: &ColumnHead) -> bool {
-    head.name.contains('%')
-        || head.unit.as_deref().is_some_and(|unit| unit.contains('%'))
-        || words(&head.name).iter().any(|word| word == "pct")
-}
-
 /// Whether two names, without their units, are the same but for d in one where q is in the other: `I_d` and `I_q`, not `ID` and `I_q`.
 pub(super) fn differ_in_axis(dimension: Dimension, names: [&str; 2]) -> bool {
     let [of_d, of_q] = names.map(|name| split_header(name, dimension).0.to_lowercase());
@@ -199,7 +163,7 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
 
 /// The last part of a structure or of a path that names something: `log.id`, `Model Root/FOC/id/Out1`, `Machine: i_d`. A mark before a
 /// digit belongs to the name.
-fn field(name: &str) -> &str {
+pub(super) fn field(name: &str) -> &str {
     let name = name.trim().trim_matches(['<', '>', '"']);
     let Some(at) = name.rfind(['.', '/', ':', '|', '\\']) else { return name };
     let last = name[at + 1..].trim();
@@ -569,19 +533,6 @@ mod tests {
         ] {
             names.iter().for_each(|name| assert!(!is(channel, name), "{name} is not {}", channel.name()));
         }
-    }
-
-    #[test]
-    fn duty_cycles_of_three_phases_are_found_together_or_not_at_all() {
-        let of = |names: &[&str]| {
-            duties(&names.iter().map(|name| ColumnHead { name: (*name).to_owned(), ..ColumnHead::default() }).collect::<Vec<_>>())
-        };
-        assert_eq!(of(&["t", "duty_a", "duty_b", "duty_c"]), Some([1, 2, 3]));
-        assert_eq!(of(&["Duty W [%]", "Duty U [%]", "Duty V [%]"]), Some([1, 2, 0]));
-        assert_eq!(of(&["foc.dutyCycle1", "foc.dutyCycle2", "foc.dutyCycle3", "duty"]), Some([0, 1, 2]));
-        assert_eq!(of(&["duty_a", "duty_b"]), None);
-        assert_eq!(of(&["duty_a", "duty_a", "duty_b", "duty_c"]), None);
-        assert_eq!(of(&["duty_cycle", "duty_d", "duty_q"]), None);
     }
 
     #[test]

@@ -1,14 +1,15 @@
-//! Traces of an oscilloscope: the time and voltages, and nothing else, as between the terminals of a motor that something turns. They are
-//! no log; but what they tell, frequency and size of the voltages, is a row of an open-circuit table.
+//! Traces of an oscilloscope: the time and its channels. They are no log; but of voltages alone, as between the terminals of a motor that
+//! something turns, frequency and size are a row of an open-circuit table.
 
-use super::{finder::Finder, options::ResolvedOptions, proposal::stated_unit, resemblance, table::Table};
+use super::{alias, finder::Finder, options::ResolvedOptions, proposal::stated_unit, resemblance, table::Table};
 use crate::{
     block::{ColumnHead, WantedColumn},
     channel::Channel,
+    header_unit::split_header,
     problem::Problem,
 };
 use fluxfit_files::{FileError, FileErrorKind};
-use fluxfit_units::Unit;
+use fluxfit_units::{Dimension, Unit};
 
 /// Most voltages: those of three phases.
 const MOST: usize = 3;
@@ -20,8 +21,20 @@ const MOST_ROWS: usize = 1 << 20;
 const FEWEST_TURNS: usize = 3;
 
 /// Names of voltages that state no unit, before at most two letters or numbers of terminals; and of an instrument's channels.
-const VOLTAGES: [&str; 10] = ["volt", "volts", "voltage", "spannung", "tension", "emf", "bemf", "backemf", "u", "v"];
-const INPUTS: [&str; 5] = ["ch", "channel", "kanal", "c", "trace"];
+const VOLTAGES: [&str; 11] = ["volt", "volts", "voltage", "ampl", "spannung", "tension", "emf", "bemf", "backemf", "u", "v"];
+const INPUTS: [&str; 6] = ["ch", "channel", "kanal", "c", "chan", "trace"];
+
+/// Letters of an instrument's channels.
+const LETTERS: &str = "abcdefgh";
+
+/// What an oscilloscope calls its horizontal axis, and a number of the sample on it, where the time is not stated in so many words.
+const HORIZONTAL: [&str; 5] = ["x", "xaxis", "source", "sequence", "second"];
+
+/// Further columns of Rigol's traces: the time of the first sample, and that between two.
+const START_AND_STEP: [&str; 2] = ["start", "increment"];
+
+/// Most channels of an instrument.
+const MOST_INPUTS: usize = 16;
 
 /// Letters and numbers of terminals.
 const TERMINALS: &str = "abcuvwrstnxyz123";
@@ -30,16 +43,48 @@ const TERMINALS: &str = "abcuvwrstnxyz123";
 pub(super) fn named(table: &mut Table, options: &ResolvedOptions, refusal: FileError) -> FileError {
     let is_mapped = options.has_headers() || refusal.kind() != FileErrorKind::Columns;
     let waves = if is_mapped { None } else { waves(table, options) };
-    waves.map_or(refusal, |[hertz, volts]| Problem::OpenTerminals { hertz, volts }.into())
+    match waves {
+        Some([hertz, volts]) => Problem::OpenTerminals { hertz, volts }.into(),
+        None if !is_mapped && is_trace(table.heads()) => {
+            let names = table.heads().iter().map(|head| head.name.clone()).collect();
+            Problem::Trace { names }.into()
+        }
+        None => refusal,
+    }
+}
+
+/// Whether the columns are a time and an instrument's channels, and nothing else.
+fn is_trace(heads: &[ColumnHead]) -> bool {
+    let name = |head: &ColumnHead| resemblance::words(&head.name).concat();
+    let named = |head: &&ColumnHead| !head.name.is_empty() && !START_AND_STEP.contains(&name(head).as_str());
+    let mut columns = heads.iter().filter(named);
+    let is_time = |head: &ColumnHead| {
+        HORIZONTAL.contains(&name(head).as_str()) || alias::is_alias(Channel::T, head) || stated_unit(Channel::T, head).is_some()
+    };
+    let first = columns.next().is_some_and(is_time);
+    let others: Vec<&ColumnHead> = columns.collect();
+    first && (1..=MOST_INPUTS).contains(&others.len()) && others.into_iter().all(is_input)
+}
+
+/// Whether a column has the name of an instrument's channel, whatever it is in: `CH1`, `C2 in V`, `Channel 0`, `1`.
+fn is_input(head: &ColumnHead) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.len() <= 2 && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is = |dimension: Dimension| {
+        let stem = resemblance::words(split_header(&head.name, dimension).0).concat();
+        let is_end = |end: &str| is_number(end) || end.len() == 1 && LETTERS.contains(end);
+        is_number(&stem) || stem == "ampl" || INPUTS.iter().any(|input| stem.strip_prefix(input).is_some_and(is_end))
+    };
+    [Dimension::Voltage, Dimension::Current].into_iter().any(is)
 }
 
 /// Frequency and root mean square of the voltages, if there are a time and these alone.
 fn waves(table: &mut Table, options: &ResolvedOptions) -> Option<[f64; 2]> {
     let heads = table.heads().to_vec();
-    let finder =
-        Finder { heads: &heads, unreadable: &[], lists: &[], without_numbers: &Vec::new, passed_over: None, layout: None, options };
-    let time = finder.index(Channel::T).ok()??;
-    let others: Vec<usize> = (0..heads.len()).filter(|index| *index != time).collect();
+    let finder = Finder { heads: &heads, unreadable: &[], lists: &[], first_cells: &Vec::new, passed_over: None, layout: None, options };
+    // The first one may have the unit of a time and no name: `in s`.
+    let is_time = || heads.iter().position(|head| !head.name.is_empty()).filter(|index| stated_unit(Channel::T, &heads[*index]).is_some());
+    let time = finder.index(Channel::T).ok()?.or_else(is_time)?;
+    let others: Vec<usize> = (0..heads.len()).filter(|index| *index != time && !heads[*index].name.is_empty()).collect();
     let is_one_group = heads.iter().all(|head| head.group == heads[time].group);
     if !(1..=MOST).contains(&others.len()) || !is_one_group || !others.iter().all(|index| is_voltage(&heads[*index])) {
         return None;
@@ -78,7 +123,7 @@ fn is_voltage(head: &ColumnHead) -> bool {
     let ends = |start: &&str, most: usize| {
         name.strip_prefix(*start).is_some_and(|end| end.len() <= most && end.chars().all(|letter| TERMINALS.contains(letter)))
     };
-    let is_named = VOLTAGES.iter().any(|start| ends(start, 2)) || INPUTS.iter().any(|start| ends(start, 1) && name.len() > start.len());
+    let is_named = VOLTAGES.iter().any(|start| ends(start, 2)) || is_input(head);
     let is_other = [Channel::Ud, Channel::Uq, Channel::UDc].iter().any(|channel| resemblance::fit(*channel, &head.name).is_some());
     !is_other && (stated_unit(Channel::UDc, head).is_some() || is_named && !resemblance::has_other_unit(Channel::UDc, head))
 }
@@ -140,7 +185,18 @@ mod tests {
 
     #[test]
     fn voltages_of_open_terminals_are_named_with_what_they_tell() {
-        for header in ["Time (s),CH1 (V)", "t,U_ab [V]", "TIME,CH1", "t,v", "Second,Volt", "t,Back-EMF [V]", "t,U12"] {
+        for header in [
+            "Time (s),CH1 (V)",
+            "in s,C1 in V",
+            "Time [s],Channel 0",
+            "Time,Ampl",
+            "t,U_ab [V]",
+            "TIME,CH1",
+            "t,v",
+            "Second,Volt",
+            "t,Back-EMF [V]",
+            "t,U12",
+        ] {
             let sentence = refusal(header, |t| vec![phase(t, 0.0)]);
             assert!(sentence.contains("53.20 Hz and 12.3") && sentence.contains("psi_f alone"), "{header}: {sentence}");
         }
@@ -149,20 +205,45 @@ mod tests {
             assert!(sentence.contains("53.20 Hz and 12.3"), "{header}: {sentence}");
         }
         let in_thousandths = refusal("t [ms],CH1 [mV]", |t| vec![phase(1e-3 * t, 0.0)]);
-        assert!(in_thousandths.contains("are missing"), "too few turns: {in_thousandths}");
+        assert!(in_thousandths.contains("a trace of an oscilloscope"), "too few turns: {in_thousandths}");
     }
 
     #[test]
     fn what_has_currents_or_is_switched_or_does_not_swing_is_no_such_trace() {
         let square = |t: f64| if phase(37.0 * t, 0.0) > 0.0 { 24.0 } else { -24.0 };
         for sentence in [
-            refusal("t,CH1 [V],CH2 [A]", |t| vec![phase(t, 0.0), phase(t, 1.0)]),
-            refusal("t,CH1 [V]", |t| vec![square(t)]),
+            refusal("t,U_ab [V],I_a [A]", |t| vec![phase(t, 0.0), phase(t, 1.0)]),
+            refusal("t,U_ab [V]", |t| vec![square(t)]),
             refusal("t,U_dc [V]", |t| vec![phase(t, 0.0)]),
-            refusal("t,CH1 [V]", |t| vec![48.0 + 0.1 * phase(t, 0.0)]),
+            refusal("t,U_ab [V]", |t| vec![48.0 + 0.1 * phase(t, 0.0)]),
             refusal("t,ud,uq", |t| vec![phase(t, 0.0), phase(t, 1.0)]),
         ] {
             assert!(sentence.contains("missing"), "{sentence}");
+        }
+        for sentence in [
+            refusal("t,CH1 [V],CH2 [A]", |t| vec![phase(t, 0.0), phase(t, 1.0)]),
+            refusal("TIME,CH1", |t| vec![square(t)]),
+            refusal("in s,C1 in V", |t| vec![48.0 + 0.1 * phase(t, 0.0)]),
+        ] {
+            assert!(sentence.contains("a trace of an oscilloscope"), "{sentence}");
+        }
+    }
+
+    /// As Rigol, Siglent and Keysight write them.
+    #[test]
+    fn channels_of_an_oscilloscope_are_named() {
+        for text in [
+            "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,0.0e+00,1.0e-04\n0,2.5e-02,-1.0e+01,,\n1,4.0e-01,-1.1e+01,,\n",
+            "Source,CH1,CH2\nSecond,Volt,Volt\n0.0,0.02,-10.3\n0.1,0.4,-10.5\n",
+            "x-axis,1,2\nsecond,Volt,Ampere\n-1.0E-03,0.0,0.0\n-0.9E-03,0.0,0.0\n",
+        ] {
+            let sentence = parse_log("scope.csv", text.as_bytes(), &LogOptions::default()).unwrap_err().to_string();
+            assert!(sentence.contains("a trace of an oscilloscope"), "{sentence}");
+        }
+        for header in ["t,C1,speed", "CH1,CH2", "position,CH1", "t,channel"] {
+            let sentence =
+                parse_log("a.csv", format!("{header}\n1,2,3\n2,3,4\n").as_bytes(), &LogOptions::default()).unwrap_err().to_string();
+            assert!(!sentence.contains("oscilloscope"), "{header}: {sentence}");
         }
     }
 }

@@ -9,6 +9,7 @@ use super::{
     layout::NotALog,
     mapping::Mapping,
     options::LogOptions,
+    proposal::propose,
     resemblance::words,
     steady_points,
     steady_test::{self, ReadCharacteristic},
@@ -75,9 +76,16 @@ pub(super) fn quantity(index: usize, head: &ColumnHead) -> Option<&'static str> 
     found(index, head).map(|found| found.quantity.name())
 }
 
+/// What makes a table a log.
+const LOG: [Channel; 5] = [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq];
+
 /// Reads a table. Of a file of which the user maps columns it has to be one, and all that is mapped has to be used.
 fn read(mut table: Table, stated: &Stated) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
+    // The dq quantities over time are a log, whatever else is beside them: a duty cycle and a DC voltage, as of a VESC.
+    if stated.map.is_empty() && propose(&LOG, &heads, |_, _| Some(0.0)).len() == LOG.len() {
+        return Ok(None);
+    }
     let columns = found_all(&heads, stated)?;
     let mapped: Vec<(&'static str, String)> =
         columns.iter().filter_map(|column| Some((column.mapped?.name(), column.header.clone()))).collect();
@@ -446,6 +454,8 @@ mod tests {
             "speed [m/s],voltage_V\n1,2\n2,4\n",
             // Behind a rectifier.
             "speed [rpm],U_ll [VDC]\n1,2\n2,4\n",
+            // A duty cycle beside what makes a log.
+            "t_day,Duty,RPM,Input Voltage,my vd,my vq,my id,my iq\n1,0.1,900,46,0,2,0,3\n2,0.2,1800,46,0,4,0,3\n",
         ] {
             assert_eq!(of(text).unwrap(), None, "{text}");
         }

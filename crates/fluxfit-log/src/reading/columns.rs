@@ -20,9 +20,9 @@ pub(super) fn choose(
 ) -> Result<Vec<ChosenColumn>, FileError> {
     let (heads, line) = (table.heads(), table.line());
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
-    let without_numbers = || table.without_numbers();
+    let first_cells = || table.first_cells();
     let (unreadable, lists, passed_over) = (table.unreadable(), table.lists(), table.passed_over());
-    let finder = Finder { heads, unreadable, lists, without_numbers: &without_numbers, passed_over, layout, options };
+    let finder = Finder { heads, unreadable, lists, first_cells: &first_cells, passed_over, layout, options };
     let several = |error: FileError| finder.several_logs().map_or(error, FileError::from);
     let found = finder.needed().map_err(several).map_err(at_header)?;
     refuse_rms(&found, heads, options).map_err(at_header)?;

@@ -3,20 +3,24 @@
 use super::{
     alias,
     chosen::ChosenColumn,
+    doubt::doubt,
+    duty,
     layout::{Layout, NotALog, is_called},
     line_to_line,
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
-    proposal::{propose, propose_needed, unit_of_speed},
+    proposal::{Proposed, propose, propose_needed, unit_of_speed, unit_of_tool},
     resemblance::{fit, has_other_unit, is_reference},
 };
 use crate::{
     block::ColumnHead,
     channel::Channel,
+    csv::FirstCells,
     header_unit::{HeaderUnit, contradicted, share, split_header, states_electrical, states_mechanical, unit_in_row, unit_within},
     instant::Instants,
+    missing_columns::LineToLine,
     note::Note,
-    problem::{LineToLine, Problem},
+    problem::Problem,
 };
 use Channel::{IA, IAlpha, IB, IBeta, IC, Id, Iq, OmegaE, T, ThetaE, UA, UAlpha, UB, UBeta, UC, UDc, Ud, Uq};
 use fluxfit_files::{Advice, FileError, csv::header::UNNAMED};
@@ -32,8 +36,8 @@ pub(super) struct Finder<'a> {
     pub(super) unreadable: &'a [String],
     /// Names of columns that hold a list in each row and are not among `heads`.
     pub(super) lists: &'a [String],
-    /// Columns of `heads` that hold no numbers.
-    pub(super) without_numbers: &'a dyn Fn() -> Vec<usize>,
+    /// What the first rows tell of the columns of `heads`.
+    pub(super) first_cells: &'a dyn Fn() -> Vec<FirstCells>,
     /// Why the log itself cannot be read, if it seems to be in a part of the file that cannot.
     pub(super) passed_over: Option<&'a Problem>,
     pub(super) layout: Option<&'static Layout>,
@@ -198,7 +202,7 @@ impl Finder<'_> {
     /// The duty cycles of the three phases, if the log has them and no voltages.
     pub(super) fn duties(&self) -> Option<[usize; 3]> {
         let is_free = self.layout.is_none() && [UA, UB, UC].iter().all(|channel| !self.is_given(*channel));
-        is_free.then(|| alias::duties(self.heads)).flatten()
+        is_free.then(|| duty::duties(self.heads)).flatten()
     }
 
     /// The time between rows, s, of a log without a time column, from the options or the layout.
@@ -233,7 +237,7 @@ impl Finder<'_> {
         let is_time = || self.heads.iter().position(|head| head.is_time);
         let is_dated = || self.heads.iter().position(|head| head.instants.as_ref().is_some_and(Instants::is_date));
         // The index of a table of pandas is its time, or counts its rows: then its whole numbers are refused.
-        let is_alone = || self.layout.is_none() && propose(&[T], self.heads, |index| index > 0).is_empty();
+        let is_alone = || self.layout.is_none() && propose(&[T], self.heads, |_, index| (index > 0).then_some(0.0)).is_empty();
         let is_index = || names.first().filter(|name| *name == UNNAMED && is_alone()).map(|_| 0);
         let usual = || self.layout.is_none().then(|| alias::find(channel, self.heads)).flatten();
         Ok(match channel {
@@ -268,7 +272,7 @@ impl Finder<'_> {
         let is_given_share = self.options.shares_of_bus.contains(&channel);
         let is_duty = || [UA, UB, UC].contains(&channel) && self.duties().is_some_and(|duties| duties.contains(&index));
         if is_duty() {
-            let percent = alias::is_percent(head);
+            let percent = duty::is_percent(head);
             let (unit, instants, scale) = (channel.unit(), None, if percent { scale / 100.0 } else { scale });
             let (is_unit_stated, is_unit_written, is_share) = (true, true, true);
             return Ok(ChosenColumn {
@@ -386,23 +390,43 @@ impl Finder<'_> {
             let may_be = missing.iter().any(|channel| !has_other_unit(*channel, head));
             !is_used(index) && may_be && is_reference(&head.name) && resembles(&currents, &head.name)
         };
-        let without_numbers = (self.without_numbers)();
+        let first_cells = (self.first_cells)();
+        let without_numbers: Vec<usize> = (0..first_cells.len()).filter(|index| !first_cells[*index].has_numbers).collect();
         let references: Vec<usize> = (0..present.len()).filter(|index| is_reference_of_current(*index)).collect();
         let has_angle = matches!(self.index(ThetaE), Ok(Some(_)));
-        let is_free = |index: usize| !is_used(index) && !references.contains(&index) && !without_numbers.contains(&index);
-        let (missing, proposals) = propose_needed(missing, self.heads, has_angle, is_free);
+        let is_free = |index: usize| !is_used(index) && !references.contains(&index);
+        let doubt = |channel: Channel, index: usize| if is_free(index) { doubt(channel, index, self.heads, &first_cells) } else { None };
+        let Proposed { missing, proposals, equal } = propose_needed(missing, self.heads, has_angle, doubt);
         let rms = proposals.iter().filter(|proposal| proposal.is_rms());
         let rms = rms.filter_map(|proposal| Some((proposal.channel.name(), proposal.unit?.name()))).collect();
         let speed = proposals.iter().find(|proposal| proposal.channel == OmegaE);
         let speed = speed.and_then(|proposal| unit_of_speed(&self.heads[proposal.index])).map(|unit| (OmegaE.name(), unit));
+        let is_proposed = |channel: Channel| proposals.iter().any(|proposal| proposal.channel == channel);
+        let lacks_voltages = [Ud, Uq].iter().all(|channel| missing.contains(channel) && !is_proposed(*channel));
         let proposals = proposals.into_iter().map(|proposal| (proposal.channel.name(), present[proposal.index].clone())).collect();
-        let references = references.into_iter().map(|index| present[index].clone()).collect();
+        let name_of = |index: usize| present[index].clone();
+        let equal = equal.into_iter().map(|(channel, of)| (channel.name(), of.into_iter().map(name_of).collect())).collect();
+        let names_of_references = references.iter().map(|index| name_of(*index)).collect();
         let texts = without_numbers.iter().map(|index| &present[*index]);
         let unreadable = self.unreadable.iter().chain(texts).filter(|name| resembles(&missing, name)).cloned().collect();
         let line_to_line = self.line_to_line(&missing);
+        let modulations = duty::modulations(self.heads).filter(|pair| lacks_voltages && pair.iter().all(|index| is_free(*index)));
+        let modulations = modulations.map_or(Vec::new(), |[d, q]| vec![(Ud.name(), name_of(d)), (Uq.name(), name_of(q))]);
         let missing = missing.iter().map(|channel| channel.name()).collect();
-        Problem::Missing { missing, present, proposals, rms, references, unreadable, lists: self.lists.to_vec(), line_to_line, speed }
-            .into()
+        Problem::Missing {
+            missing,
+            present,
+            proposals,
+            equal,
+            modulations,
+            rms,
+            references: names_of_references,
+            unreadable,
+            lists: self.lists.to_vec(),
+            line_to_line,
+            speed,
+        }
+        .into()
     }
 
     /// The columns of line-to-line voltages, where voltages are missing.
@@ -433,6 +457,8 @@ impl Finder<'_> {
         }
         let (stem, in_name) = split_header(name, dimension);
         let named = match (in_name, head.unit.as_deref()) {
+            // `RPM` in erpm.
+            (_, Some(unit)) if states_electrical(unit) => unit_in_row(unit, name, dimension),
             (HeaderUnit::None, None) => unit_within(name, dimension),
             (HeaderUnit::Known(_), _) | (_, None) => in_name,
             (_, Some(unit)) => unit_in_row(unit, name, dimension),
@@ -442,11 +468,12 @@ impl Finder<'_> {
         let is_canonical = field.eq_ignore_ascii_case(canonical);
         let of_layout = self.layout.and_then(|layout| layout.column(channel)).filter(|column| is_called(name, column.header));
         let stated = self.options.unit(channel);
+        let is_electrical = states_electrical(name) || head.unit.as_deref().is_some_and(states_electrical);
         // Who maps a speed says which column it is, and not yet its unit.
         let is_open_speed = dimension == Dimension::Speed
             && !is_canonical
             && of_layout.is_none()
-            && !states_electrical(name)
+            && !is_electrical
             && !self.options.of_mapping_file.contains(&channel);
         if let Some(unit) = stated.filter(|_| self.options.factor(channel).abs() == 1.0)
             && let Some(of_header) = contradicted(named, name, unit)
@@ -456,12 +483,13 @@ impl Finder<'_> {
         }
         let unit = match (stated, of_layout, named) {
             (Some(unit), ..) => unit,
-            // A unit in the header is more reliable than the usual unit of a layout.
+            (None, Some(column), _) if head.unit.is_none() && name.trim().eq_ignore_ascii_case(column.header) => column.unit,
+            // A unit that the header has besides is more reliable than the usual one of a layout.
             (None, Some(_), HeaderUnit::Known(unit)) if !is_canonical => unit,
             (None, Some(column), _) if head.unit.is_none() => column.unit,
             (None, _, HeaderUnit::Known(unit)) if !is_canonical || head.unit.is_some() => unit,
             _ if is_canonical && head.unit.is_none() => si,
-            _ if dimension == Dimension::Voltage && self.options.scale(channel).abs() == 1.0 && alias::is_modulation(name) => {
+            _ if dimension == Dimension::Voltage && self.options.scale(channel).abs() == 1.0 && duty::is_modulation(name) => {
                 return Err(Problem::Modulation { channel: canonical, header: name.to_owned() }.into());
             }
             // The scale in a mapping file leads from there to SI.
@@ -477,7 +505,8 @@ impl Finder<'_> {
             }
             _ if is_open_speed => {
                 let has_pole_pairs = self.options.pole_pairs.is_some();
-                return Err(Problem::SpeedUnit { has_pole_pairs, of_shaft: states_mechanical(name) }.into());
+                let usual = unit_of_tool(name, self.heads);
+                return Err(Problem::SpeedUnit { has_pole_pairs, of_shaft: states_mechanical(name), usual }.into());
             }
             _ => {
                 unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));
@@ -494,7 +523,7 @@ impl Finder<'_> {
         }
         let column = format!("{canonical}: column '{}'", shorten(name));
         let turning = matches!(unit, Unit::RadianPerSecond | Unit::DegreePerSecond | Unit::HertzElectrical | Unit::Radian | Unit::Degree);
-        let is_sure = stated.is_some() || is_canonical || of_layout.is_some() || states_electrical(name);
+        let is_sure = stated.is_some() || is_canonical || of_layout.is_some() || is_electrical;
         if turning && !is_sure && !(is_alias && dimension == Dimension::Angle) {
             let sentence = format!("{column} read as {}; if it is mechanical, state its unit", unit.prose());
             let advice = Advice::StateUnit { channel: canonical, unit: Some(mechanical(unit).name()) };

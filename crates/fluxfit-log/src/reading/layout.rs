@@ -140,6 +140,22 @@ pub const LAYOUTS: &[Layout] = &[
         ..LOG
     },
     Layout {
+        name: "VESC Express",
+        source: "github.com/vedderb/vesc_pkg, logui: what the logger of VESC Express stores",
+        signature: &["RPM", "Temp Fet", "iq", "id", "vq", "vd"],
+        columns: &[
+            column(T, "t_day", Unit::Second),
+            column(Ud, "vd", Unit::Volt),
+            column(Uq, "vq", Unit::Volt),
+            column(Id, "id", Unit::Ampere),
+            column(Iq, "iq", Unit::Ampere),
+            column(OmegaE, "RPM", Unit::RpmElectrical),
+            column(UDc, "Input Voltage", Unit::Volt),
+        ],
+        remark: "filtered values some ten times a second; the header may also have name, unit and digits of each column, `RPM:RPM::2:0:0`",
+        ..LOG
+    },
+    Layout {
         name: "VESC sampled data",
         source: "github.com/vedderb/vesc_tool, pages/pagesampleddata.cpp",
         signature: &["T", "I1", "I2", "I3", "V1", "V2", "V3", "Phase"],
@@ -361,6 +377,9 @@ mod tests {
         assert_eq!(recognized("t;ud;uq;id;iq;omega_e"), Some("canonical"));
         let vesc = "ms_today;input_voltage;temp_mos_max;current_motor;d_axis_current;q_axis_current;erpm;duty_cycle;d_axis_voltage;q_axis_voltage;ms_today_setup";
         assert_eq!(recognized(vesc), Some("VESC Tool"));
+        let express = "Input Voltage;Current;Duty;RPM;Temp Fet;kmh_vesc;cnt_ah;iq;id;vq;vd;Fault;t_day";
+        assert_eq!(recognized(express), Some("VESC Express"));
+        assert_eq!(recognized("t;RPM;iq;id;vq;vd"), None);
         assert_eq!(recognized("T;I1;I2;I3;V1;V2;V3;I_tot;V_zero;Phase"), Some("VESC sampled data"));
         assert_eq!(recognized("time@s;IA@A;lu_ID@A;lu_IQ@A;lu_WS_RPM@rpm"), Some("phobia"));
         assert_eq!(recognized("Time;BusVoltage (V);MotorId (A);MotorIq (A);MotorVd (V);MotorVq (V);MotorVelocity (rpm)"), Some("Tritium"));

@@ -63,6 +63,7 @@ impl Inspection {
             Advice::ScaleInMapping { channel: of, scale } if *of == channel.name() => Some(scale),
             _ => None,
         });
+        let scale = scale.filter(|_| column.share.is_none());
         scale.map_or_else(|| entry(channel, column, options), |scale| scaled_entry(channel, column, scale))
     }
 
@@ -101,6 +102,7 @@ fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> St
     };
     let by_name = if is_taken { "" } else { "by its name; check it" };
     let of_unit = match (read_as, channel) {
+        _ if column.share.is_some() && !is_taken => ": 2/3 is the scale of ODrive",
         _ if is_instant || column.share.is_some() => "",
         (None, Channel::OmegaE) if is_taken => "nothing states its unit: rad/s, rpm-elec, rpm-mech, ..",
         (None, _) if is_taken => "nothing states its unit; check it, and add unit = .. unless it is SI",
@@ -120,7 +122,7 @@ fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> St
     let of_unit = of_share.as_deref().filter(|_| column.read_as.is_none() && column.share.is_none()).unwrap_or(of_unit);
     let remark = if by_name.is_empty() && of_unit.is_empty() { String::new() } else { format!("  # {by_name}{of_unit}") };
     let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default();
-    let factor = factor(Some(column).filter(|_| is_taken), channel, options);
+    let factor = factor(Some(column).filter(|column| is_taken || column.share.is_some()), channel, options);
     format!("{} = {{ column = {}{unit}{factor} }}{remark}\n", channel.name(), quoted(&column.header))
 }
 
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_share_of_a_base_value_is_asked_for_its_scale() {
-        let rows: String = (0..30).map(|row| format!("{row},3,4,1,2,{}\n", 500 + row)).collect();
+        let rows: String = (0..30).map(|row| format!("{row},3,4,1.{row},2.{row},{}\n", 500 + row)).collect();
         let options = LogOptions::default();
         let mapping = inspected(&format!("t,ud [%],uq [%],id_pu,iq_pu,omega_e\n{rows}"), &options).mapping(&options);
         for line in [

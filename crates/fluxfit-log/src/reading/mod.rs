@@ -18,6 +18,8 @@ mod characteristic;
 mod chosen;
 mod clock;
 mod columns;
+mod doubt;
+mod duty;
 mod even_time;
 mod finder;
 mod gather;

@@ -21,8 +21,11 @@ const SHORTEST_MISSPELT: usize = 5;
 pub(super) fn mapped(channel: Channel, header: &str, heads: &[ColumnHead]) -> Result<usize, FileError> {
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
     let names = names.as_slice();
-    // As a message has it, which cuts long names.
-    let is_cut = |name: &str| header.strip_suffix('…').is_some_and(|start| !start.is_empty() && name.starts_with(start));
+    // As a message has it, which cuts long names at the end, or in the middle.
+    let is_cut = |name: &str| {
+        let parts = header.split_once('…');
+        parts.is_some_and(|(start, end)| !start.is_empty() && name.starts_with(start) && name.ends_with(end))
+    };
     let tiers = [
         positions(names, |name| name == header),
         positions(names, |name| name.to_lowercase() == header.to_lowercase()),
@@ -32,7 +35,7 @@ pub(super) fn mapped(channel: Channel, header: &str, heads: &[ColumnHead]) -> Re
         return Ok(index);
     }
     let containing = names.iter().find(|name| name.to_lowercase().contains(&header.to_lowercase()));
-    let proposed = || propose(&[channel], heads, |_| true).first().map(|proposal| &names[proposal.index]);
+    let proposed = || propose(&[channel], heads, |_, _| Some(0.0)).first().map(|proposal| &names[proposal.index]);
     let likely = containing.or_else(proposed).map(String::as_str);
     let nearest = likely.or_else(|| nearest(header, names.iter().map(String::as_str).filter(|name| name.len() >= SHORTEST_MISSPELT)));
     Err(Problem::MappedHeader {

@@ -25,6 +25,9 @@ const OTHER_WORDS: f64 = 0.2;
 /// preferred to `Test motor speed`.
 const STEPS: f64 = 10.0;
 
+/// Most words of a name in which `nm` is a speed.
+const MOST_BESIDE_NM: usize = 2;
+
 /// Maximum number of words of a header that make one name, as in `q-axis current`.
 const WORDS: usize = 3;
 
@@ -140,6 +143,10 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     let runs = (0..words.len()).flat_map(|start| (start + 1..=(start + WORDS).min(words.len())).map(move |end| start..end));
     let fits = runs.filter_map(|run| {
         let joined = words[run.clone()].concat();
+        // A speed that PSIM calls `nm`; among other words it is an abbreviation.
+        if joined == "nm" && words.len() > MOST_BESIDE_NM {
+            return None;
+        }
         let (bare, number) = without_number(&joined);
         let of = |text: &str| channel.spellings().iter().map(|spelling| similarity(channel, text, spelling)).fold(0.0, f64::max);
         let (similarity, named, number) = match of(bare) {

@@ -32,10 +32,10 @@ impl Finder<'_> {
     /// The columns of the log whose names begin so, if it has all that are needed, or columns that resemble them.
     fn columns_of(&self, begin: &str) -> Option<Vec<(&'static str, String)>> {
         let heads: Vec<ColumnHead> = self.heads.iter().filter(|head| is_within(&head.name, begin)).cloned().collect();
-        let finder = Finder { heads: &heads, without_numbers: &Vec::new, ..*self };
+        let finder = Finder { heads: &heads, first_cells: &Vec::new, ..*self };
         let Needed { found, missing } = finder.found_and_missing().ok()?;
         let is_free = |index: usize| found.iter().all(|(_, used)| *used != index) && !is_reference(&heads[index].name);
-        let proposed = propose(&missing, &heads, is_free);
+        let proposed = propose(&missing, &heads, |_, index| is_free(index).then_some(0.0));
         let columns = found.iter().copied().chain(proposed.iter().map(|proposal| (proposal.channel, proposal.index)));
         (proposed.len() == missing.len()).then(|| columns.map(|(channel, index)| (channel.name(), heads[index].name.clone())).collect())
     }

@@ -6,6 +6,7 @@ use super::{
     alias,
     bench_columns::{Found, INSTANT, Stated, is_direct, is_driven, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points, states_wave},
+    duty,
     layout::NotALog,
     resemblance::{is_reference, words},
     rms,
@@ -74,7 +75,7 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
             || has(Channel::Ud)
             || has(Channel::Uq)
             || has_several_phases(&heads)
-            || alias::duties(&heads).is_some()
+            || duty::duties(&heads).is_some()
     };
     if !is_mapped && is_of_log() {
         return Ok(None);

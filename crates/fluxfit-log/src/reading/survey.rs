@@ -1,7 +1,8 @@
 //! What the columns of a table seem to be, whether they make a log or not: for an inspection.
 
 use super::{
-    alias,
+    doubt::doubt,
+    duty,
     finder::Finder,
     layout::{Layout, is_called},
     options::ResolvedOptions,
@@ -57,12 +58,12 @@ impl Survey {
 
 /// Looks for every channel, and for columns that resemble a needed channel that was not found.
 pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &ResolvedOptions) -> Survey {
-    let (heads, without_numbers) = (table.heads(), table.without_numbers());
+    let (heads, first_cells) = (table.heads(), table.first_cells());
     // With pole pairs given, mechanical units are not an error.
     let mut with_pole_pairs = options.clone();
     with_pole_pairs.pole_pairs.get_or_insert(1);
     let finder =
-        Finder { heads, unreadable: &[], lists: &[], without_numbers: &Vec::new, passed_over: None, layout, options: &with_pole_pairs };
+        Finder { heads, unreadable: &[], lists: &[], first_cells: &Vec::new, passed_over: None, layout, options: &with_pole_pairs };
     let mut survey = Survey::default();
     let [voltages, currents] = [[Ud, Uq], [Id, Iq]].map(|pair| finder.pair(pair).unwrap_or_default());
     let duties = if voltages.iter().all(Option::is_some) { None } else { finder.duties() };
@@ -85,7 +86,7 @@ pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &R
             let head = &heads[index];
             let is_share = share(channel) == Some(index) || options.shares_of_bus.contains(&channel);
             if is_share {
-                let percent = if share(channel) == Some(index) && alias::is_percent(head) { 0.01 } else { 1.0 };
+                let percent = if share(channel) == Some(index) && duty::is_percent(head) { 0.01 } else { 1.0 };
                 survey.shares.push((index, percent * options.factor(channel)));
             }
             let of_rms = rms::unit(channel).filter(|_| rms::is_unstated(channel, head, options));
@@ -103,17 +104,34 @@ pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &R
     }
     let is_missing = |channel: &Channel| survey.taken.iter().all(|taken| taken.channel != *channel);
     let missing: Vec<Channel> = Channel::NEEDED.into_iter().filter(is_missing).collect();
-    let is_free = |index: usize| survey.taken.iter().all(|taken| taken.index != index) && !without_numbers.contains(&index);
+    let is_free = |index: usize| survey.taken.iter().all(|taken| taken.index != index);
     // As where columns are missing: a reference is not proposed for a measured current.
     let is_reference_of_current = |index: usize| {
         let name = &heads[index].name;
         let mut currents = Channel::all().filter(|channel| channel.dimension() == Dimension::Current);
         is_reference(name) && currents.any(|channel| fit(channel, name).is_some())
     };
-    let is_free = |index: usize| is_free(index) && !is_reference_of_current(index);
+    let doubt = |channel: Channel, index: usize| {
+        if is_free(index) && !is_reference_of_current(index) { doubt(channel, index, heads, &first_cells) } else { None }
+    };
     let has_angle = !is_missing(&Channel::ThetaE);
-    let resembling = propose_needed(&missing, heads, has_angle, is_free).1.into_iter();
+    let resembling = propose_needed(&missing, heads, has_angle, doubt).proposals.into_iter();
     survey.resembling = resembling.map(|found| surveyed(found.channel, found.index, &heads[found.index], layout, options)).collect();
+    // Where nothing resembles the voltages, the modulations are they, times the DC voltage.
+    let has_voltages = survey
+        .taken
+        .iter()
+        .chain(&survey.resembling)
+        .any(|column| column.channel.dimension() == Dimension::Voltage && column.channel != Channel::UDc);
+    if let Some(pair) = duty::modulations(heads).filter(|pair| !has_voltages && pair.iter().all(|index| is_open(&survey, *index))) {
+        let found = [Ud, Uq].into_iter().zip(pair).map(|(channel, index)| Surveyed {
+            unit: None,
+            is_unit_stated: true,
+            ..surveyed(channel, index, &heads[index], layout, options)
+        });
+        survey.resembling.extend(found);
+        survey.shares.extend(pair.map(|index| (index, duty::SHARE_OF_ODRIVE)));
+    }
     survey
 }
 
@@ -129,6 +147,7 @@ fn surveyed(channel: Channel, index: usize, head: &ColumnHead, layout: Option<&'
     let is_scaled = options.factor(channel).abs() != 1.0;
     let is_turning = matches!(channel.dimension(), Dimension::Speed | Dimension::Angle);
     let unit = of_user.or(of_file).or(of_layout.map(|column| column.unit));
+    let is_electrical = states_electrical(&head.name) || head.unit.as_deref().is_some_and(states_electrical);
     let is_known = of_user.is_some() || of_layout.is_some() || is_own_name;
     // The layout of a tool has units; the one of the channels' own names has what the names mean.
     let has_units = of_layout.is_some() && !layout.is_some_and(Layout::is_canonical);
@@ -138,8 +157,13 @@ fn surveyed(channel: Channel, index: usize, head: &ColumnHead, layout: Option<&'
         unit: unit.or((is_own_name && !is_instant).then_some(channel.unit())),
         is_unit_stated: is_known || of_file.is_some() || is_instant || is_scaled || channel.dimension() == Dimension::Ratio,
         is_unit_written: of_user.is_some() || of_file.is_some() || has_units || is_scaled,
-        is_rotation_stated: !is_turning || is_known || states_electrical(&head.name) || unit.is_some_and(Unit::is_mechanical),
+        is_rotation_stated: !is_turning || is_known || is_electrical || unit.is_some_and(Unit::is_mechanical),
         is_instant: false,
         is_named: false,
     }
+}
+
+/// Whether a column is nothing yet.
+fn is_open(survey: &Survey, index: usize) -> bool {
+    survey.taken.iter().chain(&survey.resembling).all(|column| column.index != index)
 }

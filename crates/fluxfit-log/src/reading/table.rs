@@ -3,7 +3,7 @@
 use crate::{
     block::{Block, ColumnHead, WantedColumn},
     container::{self, Binary, RandomAccess},
-    csv::{Text, TextTable},
+    csv::{FirstCells, Text, TextTable},
     file_part::{FilePart, PartRows},
     memory_table::Held,
     problem::Problem,
@@ -109,10 +109,10 @@ impl Table<'_> {
         }
     }
 
-    /// Columns of a text that hold no numbers, by the first rows. They are looked at only when this is asked for.
-    pub(super) fn without_numbers(&self) -> Vec<usize> {
+    /// What the first rows of a text tell of each column; nothing of another format. They are looked at only when this is asked for.
+    pub(super) fn first_cells(&self) -> Vec<FirstCells> {
         match self {
-            Self::Text(table) => table.without_numbers(),
+            Self::Text(table) => table.first_cells(),
             _ => Vec::new(),
         }
     }

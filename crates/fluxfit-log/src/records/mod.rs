@@ -16,6 +16,17 @@ use fluxfit_files::FileError;
 const OTHERS: [(&str, &str); 2] =
     [("date ", "a Vector ASC log of CAN frames"), ("timestamp,arbitration_id,", "a log of CAN frames as CSV")];
 
+/// Names of the columns of CAN frames in a table, as SavvyCAN, PCAN and others write them: the identifier, the number of bytes, and these.
+const FRAMES: [&[&str]; 3] =
+    [&["id", "can id", "can_id", "canid", "identifier", "message id"], &["len", "dlc", "length"], &["d1", "b1", "byte1", "data1", "data"]];
+
+/// Whether the columns of a table are those of CAN frames: its `ID` is then no current.
+fn is_table_of_frames(head: &str) -> bool {
+    let names = head.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default().split([',', ';', '\t']);
+    let names: Vec<String> = names.map(|name| name.trim_matches([' ', '"']).to_lowercase()).collect();
+    FRAMES.iter().all(|any| any.iter().any(|wanted| names.iter().any(|name| name == wanted)))
+}
+
 /// A log whose columns are known, and whose rows may not be read yet.
 pub(crate) enum Records {
     Json(Box<json::Json>),
@@ -31,6 +42,9 @@ impl Records {
         let head = text.head.as_str();
         if let Some((_, what)) = OTHERS.iter().find(|(start, _)| head.starts_with(start) && (*start != "date " || head.contains("base "))) {
             return Err(Problem::CanLog { what }.into());
+        }
+        if is_table_of_frames(head) {
+            return Err(Problem::CanLog { what: "a log of CAN frames as CSV" }.into());
         }
         if candump::is_without_times(head) {
             return Err(Problem::NoFrameTimes.into());
@@ -100,6 +114,25 @@ impl Records {
         match self {
             Self::Json(json) => json.read(wanted, take),
             Self::Memory { table, .. } => table.read(wanted, take).map(|()| Vec::new()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_of_frames_are_told_from_logs() {
+        for header in [
+            "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8",
+            "\"Time\";\"CAN ID\";\"DLC\";\"Data\"",
+            "\ntime\tid\tdlc\tb0\tb1",
+        ] {
+            assert!(is_table_of_frames(header), "{header}");
+        }
+        for header in ["t,id,iq,ud,uq,omega_e", "ID,length,width", "t,d1,id"] {
+            assert!(!is_table_of_frames(header), "{header}");
         }
     }
 }

@@ -15,7 +15,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists, nested):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists, nested, unmeasured, axes, modulation, frames, traces, remarks):
         part(make)
 
 
@@ -142,3 +142,68 @@ def nested(make):
     lists = {name: [float(value) for value in make.FAST[name][:ROWS]] for name in make.NAMES}
     text = json.dumps({"motor": "a", "runs": {"first": {"signals": lists}}})
     make.refuse(make.put("nested_lists.json", text), "lists of columns within objects", "'runs.first.signals'", "outermost level")
+
+
+def unmeasured(make):
+    """Columns that resemble a channel and cannot be it: a meter's 'no value', a constant, a flag, a time that falls."""
+    rows = 40
+    log = {name: values[:rows] for name, values in columns(make, "bench t", "bench ud", "bench uq", "bench id", "bench iq", "bench speed").items()}
+    stop = np.where(np.arange(rows) % 2 == 0, 3.5, 2.5)
+    never = {"STOP_T [s]": stop, "PA1_U1 [V]": np.full(rows, 9.9e37), "PA1_U2 [V]": np.full(rows, 9.9e37), "PA1_I1 [A]": np.full(rows, 2.0),
+             "PA1_I2 [A]": np.full(rows, 2.0), "NM_DCDC_Wakeup": np.ones(rows)}
+    make.put("unmeasured.csv", make.table(never | {"n_HM [1/min]": log["bench speed"]}))
+    make.refuse("unmeasured.csv", "columns that no instrument measured", "map them if they have other names, else log them too", line=1)
+    make.put("unmeasured_beside.csv", make.table(never | log))
+    make.refuse("unmeasured_beside.csv", "the same beside those of a log", "'bench t' may be t", "'bench ud' may be ud", "'bench uq' may be uq", "'bench id' may be id",
+                "'bench iq' may be iq", "'bench speed' may be omega_e", line=1)
+
+
+def axes(make):
+    """Several axes, of which nothing says which is the motor's."""
+    log = columns(make, "time", "Drive 0 Velocity", "Drive 1 Velocity", "Drive 2 Velocity", "Drive 0 Current", "Drive 1 Current")
+    refuse(make, "several_axes.csv", "the velocities of several axes", log, "'Drive 0 Velocity', 'Drive 1 Velocity' and 'Drive 2 Velocity' could each be omega_e",
+           "map the one of the motor", line=1)
+
+
+def modulation(make):
+    """ODrive logs shares of the DC voltage in place of voltages."""
+    path = "axis0.motor.foc."
+    log = columns(make, "time", path + "mod_d", path + "mod_q", path + "Id_measured", path + "Iq_measured", "omega_e")
+    log = log | {name: log[name] / (2.0 / 3.0 * make.U_DC) for name in (path + "mod_d", path + "mod_q")} | {"vbus_voltage": np.full(len(log["time"]), make.U_DC)}
+    refuse(make, "modulation_alone.csv", "a modulation in place of voltages", log, "'axis0.motor.foc.mod_d' and 'axis0.motor.foc.mod_q' are shares of the DC voltage",
+           'ud = { column = "axis0.motor.foc.mod_d", scale = 0.66667, times = "u_dc" }', line=1)
+
+
+def frames(make):
+    """Frames of a CAN bus as a table: the column ID is no current."""
+    header = "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8,"
+    rows = [f"{10000 * k},000000A7,false,Rx,0,8,{k:02X},00,{3 * k:02X},00,10,0B,00,00," for k in range(ROWS)]
+    make.refuse(make.put("frames_of_savvycan.csv", "\n".join([header, *rows]) + "\n"), "frames as SavvyCAN stores them", "a log of CAN frames as CSV", "candump")
+
+
+def traces(make):
+    """Oscilloscopes and their channels: two terminals of a motor that is turned, 53.2 Hz and 12.3 V rms."""
+    t = np.arange(1000) * 1e-4
+    volts = np.array([f"{17.4 * np.cos(2.0 * np.pi * 53.2 * time):.4f}" for time in t])
+    rows = [f"{time:.4f},{volt}" for time, volt in zip(t, volts)]
+    waves = ["53.20 Hz and 12.3", "psi_f alone"]
+    for file, says, above in [
+        ("scope_of_rohde.csv", "a time without a name, as Rohde & Schwarz write it", ["in s,C1 in V"]),
+        ("scope_of_saleae.csv", "channels that count from 0", ["Time [s],Channel 0"]),
+        ("scope_of_lecroy.csv", "an amplitude, below a preamble", ["LECROYWS3024,1,Waveform", "Segments,1,SegmentSize,1000", "Segment,TrigTime,TimeSinceSegment1", "#1,03-Mar-2024 14:22:10,0", "Time,Ampl"]),
+        ("scope_of_siglent.csv", "names of channels above names of units", ["Record Length,Analog:1000", "Sample Interval,Analog:0.0001", "Vertical Units,CH1:V", "Horizontal Units,S", "Source,CH1", "Second,Volt"]),
+    ]:
+        make.refuse(make.put(file, "\n".join([*above, *rows]) + "\n"), says, *waves)
+    settings = ["Record Length,1.0e+03", "Sample Interval,1.0e-04", "Trigger Point,5.0e+02", ",", "Source,CH1", "Vertical Units,V", "Horizontal Units,s", "Model Number,TDS2012B"]
+    beside = [f"{settings[k] if k < len(settings) else ','},,{row.replace(',', ',  ')}," for k, row in enumerate(rows)]
+    make.refuse(make.put("scope_of_tds.csv", "\n".join(beside) + "\n"), "samples beside the settings, as Tektronix' TDS write them", *waves)
+    counted = [f"{k},{volt},," for k, volt in enumerate(volts[:ROWS])]
+    make.refuse(make.put("scope_of_rigol.csv", "\n".join(["X,CH1,Start,Increment,", "Sequence,Volt,0.0e+00,1.0e-04", *counted]) + "\n"), "samples that are counted, as Rigol writes them", "a trace of an oscilloscope")
+
+
+def remarks(make):
+    """Remarks above a header that are as wide as the table."""
+    log = make.part(make.FAST)
+    above = ["2/12/2016,,run ~/projects/ramp_test,,,", ",,layout: ~/projects/motor_tests.sml,,,", ',,of the controller,"be sure, both are measured",of the encoder,']
+    make.put("remarks_above.csv", "\n".join(above) + "\n" + make.table(log))
+    make.read("remarks_above.csv", "remarks above the header in a part of its columns, a date first", log, same_as="canonical.csv")

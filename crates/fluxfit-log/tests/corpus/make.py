@@ -44,8 +44,8 @@ RS, LD, LQ, PSI_F, POLE_PAIRS = 0.958, 5.25e-3, 12e-3, 0.1827, 4
 U_DC = 310.0
 
 # What the reader calls each layout: one place to rename them.
-CANONICAL, VESC_TOOL, VESC_SAMPLED, PHOBIA, ST_MCSDK, TRITIUM, PADERBORN, PHASES, MAPPED = (
-    "canonical", "VESC Tool", "VESC sampled data", "phobia", "ST MCSDK", "Tritium", "Paderborn", "phase quantities", "none")
+CANONICAL, VESC_TOOL, VESC_EXPRESS, VESC_SAMPLED, PHOBIA, ST_MCSDK, TRITIUM, PADERBORN, PHASES, MAPPED = (
+    "canonical", "VESC Tool", "VESC Express", "VESC sampled data", "phobia", "ST MCSDK", "Tritium", "Paderborn", "phase quantities", "none")
 
 RPM = 60.0 / (2.0 * math.pi)
 NAMES = ["t", "ud", "uq", "id", "iq", "omega_e"]
@@ -271,6 +271,21 @@ def drives():
         # After midnight, adding a day may round once more than here.
         tolerances = {"omega_e": 0.05 / RPM, "t": 0.0 if start < midnight / 2 + 1 else 2e-11}
         read(file, says, columns, VESC_TOOL, tolerances, names=[*NAMES, "u_dc"], segments=1, notes=notes)
+
+    # What VESC Express stores: key:name:unit:precision:relative:timestamp of each field, or the keys alone.
+    fields = {"Input Voltage": ("V", SLOW["u_dc"]), "Current": ("A", np.hypot(SLOW["id"], SLOW["iq"])), "Duty": ("", np.full(len(SLOW["t"]), 0.2)),
+              "RPM": ("", SLOW["omega_e"] * RPM), "Temp Fet": ("degC", np.full(len(SLOW["t"]), 41.2)), "kmh_vesc": ("km/h", SLOW["omega_e"] / 30.0),
+              "iq": ("A", SLOW["iq"]), "id": ("A", SLOW["id"]), "vq": ("V", SLOW["uq"]), "vd": ("V", SLOW["ud"]), "t_day": ("s", 43_000.0 + SLOW["t"])}
+    log = {key: values for key, (_, values) in fields.items()}
+    for file, says, header in [
+        ("vesc_express.csv", "VESC Express: six properties in each name, electrical r/min without a unit", [f"{key}:{key}:{unit}:2:0:{int(key == 't_day')}" for key, (unit, _) in fields.items()]),
+        ("vesc_express_keys.csv", "the same with the keys alone, beside a duty cycle and the DC voltage", None),
+    ]:
+        put(file, table(log, header=header, separator=";"))
+        read(file, says, {**slow, "t": log["t_day"], "u_dc": SLOW["u_dc"]}, VESC_EXPRESS, {"omega_e": 1e-12}, names=[*NAMES, "u_dc"], notes=["electrical r/min"])
+    described = {f"{key}:{key}:{unit}:2:0:0": log[key] for key, (unit, _) in fields.items() if key not in ("Temp Fet", "t_day")}
+    put("vesc_express_fields.csv", table({"t_day:Time:s:3:0:1": log["t_day"], **described}, separator=";"))
+    read("vesc_express_fields.csv", "other fields of VESC Express, with the time mapped", slow, MAPPED, {"omega_e": 1e-12, "t": 1e-9}, names=NAMES[1:], told={"map": ["t=t_day"]}, notes=["electrical r/min"])
 
     # VESC Tool's sampled data: six digits, an angle in 250 steps (cut, not rounded), rows with a semicolon at the end, the header and the last
     # row's end without.

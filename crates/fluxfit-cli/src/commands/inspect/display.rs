@@ -3,7 +3,7 @@
 use crate::terminal::{self, BAD, DIM, GOOD, HEADING, frequency, plot, table, told::Told};
 use fluxfit::log::Log;
 use fluxfit_log::{InspectedColumn, Inspection, ReadCharacteristic, ReadLog};
-use fluxfit_units::significant;
+use fluxfit_units::{significant, wording::shorten_name};
 
 /// Most columns that are listed.
 const LISTED: usize = 60;
@@ -54,7 +54,7 @@ pub(crate) fn show_table(name: &str, inspection: &Inspection, read: &ReadCharact
     let rows = inspection.columns.iter().take(LISTED).map(|column| {
         let taken = read.columns.iter().find(|(_, header)| *header == column.header.trim()).map_or("-", |(quantity, _)| quantity);
         let of_range = column.range.map(range).unwrap_or_default();
-        vec![column.header.chars().take(40).collect(), taken.to_owned(), of_range]
+        vec![shorten_name(&column.header), taken.to_owned(), of_range]
     });
     text += &table(&["column", "taken for", "range in the file"], 2, rows);
     terminal::print(&text)?;
@@ -86,7 +86,7 @@ fn columns(inspection: &Inspection, log: Option<&Log>) -> String {
         let range = column.range.or_else(of_log).map(range).unwrap_or_default();
         // A quantity of a table has the unit of its name.
         let unit = if inspection.is_table { column.unit.clone().unwrap_or_default() } else { unit(column, log.is_some()) };
-        vec![column.header.chars().take(40).collect(), taken, unit, range]
+        vec![shorten_name(&column.header), taken, unit, range]
     });
     let mut text = table(&["column", "taken for", "in", "range in the file"], 3, rows);
     if inspection.is_table {
