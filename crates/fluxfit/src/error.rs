@@ -165,9 +165,17 @@ pub enum ErrorKind {
         /// By how much, as a fraction of the largest.
         missed: f64,
     },
-    /// Open-circuit voltages that the torque of the short circuit contradicts.
+    /// A torque that operating points do not have.
     #[error(
-        "the voltages with open terminals and the torque with shorted ones contradict each other, and would agree if the voltages were {factor:.4} times as large: check their unit, and whether they are line to line or of a phase, rms or amplitudes (state it in the column's name: 'U_ll_rms [V]', 'U_phase_peak [V]')"
+        "the torque is {ratio:.3} times what voltages, currents and speed make of it: about 2 if the dq values are rms and not peak values, 2/3 if the transform is power-invariant, the number of pole pairs if the speed is electrical, another sign if one is counted the other way; state units and pole pairs, or leave the torque out of the table"
+    )]
+    TorqueOfPoints {
+        /// Of both.
+        ratio: f64,
+    },
+    /// Open-circuit voltages that the torque of the short circuit contradicts, or another table.
+    #[error(
+        "the voltages with open terminals and the other tables (torque, resistance, operating points) contradict each other, and would agree if the voltages were {factor:.4} times as large: check their unit, and whether they are line to line or of a phase, rms or amplitudes (state it in the column's name: 'U_ll_rms [V]', 'U_phase_peak [V]')"
     )]
     VoltagesAgainstTorque {
         /// What the voltages would have to be multiplied by.

@@ -302,7 +302,7 @@ const MOST_PER_CENT: f64 = 130.0;
 const SEEM_SHARES: &str = "they seem to be shares of u_dc (if they are V, add --unit ud=V,uq=V)";
 
 const MAY_BE_DIGITS: &str = "digits of a converter, or rounded V (if so, add --unit ud=V,uq=V)";
-const ALL_MAY_BE_DIGITS: &str = "digits of a converter, tenths, or rounded V and A (if so, add --unit ud=V,uq=V)";
+const ALL_MAY_BE_DIGITS: &str = "digits of a converter, tenths, or rounded V and A (if so, add --unit ud=V,uq=V,id=A,iq=A)";
 
 fn voltages(ratio: f64, rows: f64, most: f64, read: &[ReadColumn]) -> Mending {
     if ratio >= MILLI {

@@ -1,6 +1,10 @@
 //! A column of the file that is read: its channel, its unit and its factor.
 
-use crate::{block::WantedColumn, channel::Channel, instant::Instants};
+use crate::{
+    block::{ColumnHead, WantedColumn},
+    channel::Channel,
+    instant::Instants,
+};
 use fluxfit_files::FileError;
 use fluxfit_units::{Unit, significant, wording::shorten};
 
@@ -30,6 +34,24 @@ pub(super) struct ChosenColumn {
 }
 
 impl ChosenColumn {
+    /// A column in SI by its name alone.
+    pub(super) fn of(channel: Channel, index: usize, head: &ColumnHead) -> Self {
+        Self {
+            channel,
+            index,
+            header: head.name.clone(),
+            unit: channel.unit(),
+            pole_pairs: 1,
+            scale: 1.0,
+            is_optional: false,
+            is_unit_stated: false,
+            is_unit_written: false,
+            is_share: false,
+            is_alias: false,
+            instants: None,
+        }
+    }
+
     /// Converts values of the file to SI units, in place.
     pub(super) fn to_si(&self, values: &mut [f64]) {
         self.unit.to_si(values, self.pole_pairs);

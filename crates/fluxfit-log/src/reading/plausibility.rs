@@ -91,6 +91,9 @@ pub(super) fn refuse_per_unit(chosen: &[ChosenColumn], channels: &Channels) -> R
     if is_small && five.iter().all(is_unwritten) { Err(Problem::PerUnit { most: MOST_PER_UNIT }.into()) } else { Ok(()) }
 }
 
+/// Fewest rows whose size says something: a table of operating points has no more.
+const SIZED_ROWS: usize = 4;
+
 /// No drive of a PMSM has more, V: those of ships and wind turbines have up to 15 kV.
 const MOST_VOLTAGE: f64 = 30e3;
 
@@ -107,7 +110,7 @@ pub(super) fn refuse_high_voltage(chosen: &[ChosenColumn], channels: &Channels) 
         // Not the largest: a spike is left out later.
         let upper = sizes.len() * 3 / 4;
         let size = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 };
-        if sizes.len() >= NORMALIZED_ROWS && size > MOST_VOLTAGE {
+        if sizes.len() >= SIZED_ROWS && size > MOST_VOLTAGE {
             return Err(FileError::from(Problem::HighVoltage { channel: column.channel.name(), most: size }).in_column(&column.header));
         }
     }
@@ -143,7 +146,7 @@ pub(super) fn refuse_thousandths(chosen: &[ChosenColumn], channels: &Channels) -
         let mut sizes: Vec<f64> = values.map(|value| value.abs()).filter(|size| size.is_finite()).collect();
         // Not the largest: a spike is left out later.
         let upper = sizes.len() * 9 / 10;
-        if sizes.len() < NORMALIZED_ROWS { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 }
+        if sizes.len() < SIZED_ROWS { 0.0 } else { *sizes.select_nth_unstable_by(upper, f64::total_cmp).1 }
     };
     // Most logs have no value beyond these limits; that is seen much faster than a percentile.
     let exceeds = |pair: [Channel; 2], limit: f64| {

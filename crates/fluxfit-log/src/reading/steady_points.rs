@@ -3,12 +3,16 @@
 use super::{
     alias,
     bench_columns::{Found, INSTANT, Stated, found_all, place, refuse_unclear, values_of},
-    bench_convention::convention,
+    bench_convention::{convention, lacks_unit},
+    channels::Channels,
+    chosen::ChosenColumn,
     layout::Layout,
     names::automatic,
     options::LogOptions,
+    plausibility,
+    proposal::stated_unit,
     resemblance::words,
-    steady_test::{ReadCharacteristic, in_si, is},
+    steady_test::{ReadCharacteristic, is},
     table::Table,
 };
 use crate::{
@@ -23,22 +27,27 @@ use fluxfit::{
     frames::Dq,
 };
 use fluxfit_files::FileError;
-use fluxfit_units::Unit;
 
 /// More rows are those of a log whose time is missing: a map of a motor has a few hundred points.
-const MOST_POINTS: usize = 1000;
+const MOST_POINTS: usize = 500;
 
 /// Of the currents' variance, the part that their changes from row to row have at least: of a sweep of 24 currents at each speed it is as
 /// much. In the rows of a drive, currents that are held hardly change.
 const LEAST_CHANGE: f64 = 0.02;
 
-/// The channels of such a table, which a user may map.
+/// The channels of such a table, in the order of their columns.
 const CHANNELS: [Channel; 5] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::OmegaE];
+
+/// The channel that a user calls so: the speed by its name in tables too.
+fn channel(name: &str) -> Option<Channel> {
+    let of_table = (name == Quantity::Speed.name()).then_some(Channel::OmegaE);
+    of_table.or_else(|| Channel::from_name(name).ok().filter(|channel| CHANNELS.contains(channel)))
+}
 
 /// Reads such a table, if it is one. A file of which the user maps other channels is none.
 ///
 /// # Errors
-/// If several columns could be the speed.
+/// If several columns could be the speed, or its unit is open; if the values are none in the units that are assumed.
 pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
     let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
@@ -46,7 +55,6 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         let of_row = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
         head.is_time || head.instants.is_some() || is(Channel::T, head) || of_row
     };
-    let channel = |name: &str| Channel::from_name(name).ok().filter(|channel| CHANNELS.contains(channel));
     let is_other = options.map.iter().any(|(name, _)| channel(name).is_none());
     // The layout of a tool is that of a log.
     if is_other || heads.iter().any(is_instant) || Layout::recognize(&names).is_some() {
@@ -56,57 +64,94 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         let (_, header) = options.map.iter().find(|(name, _)| channel(name) == Some(of))?;
         place(&heads, header)
     };
-    let unit = |of: Channel| options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit);
+    let stated = |of: Channel| options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit);
     let find = |channel: Channel| {
         let index = mapped(channel).or_else(|| automatic(channel, &heads).ok().flatten()).or_else(|| alias::find(channel, &heads))?;
-        // In a unit that is not known it has no size.
-        let is_known =
-            unit(channel).is_some() || !matches!(split_header(&heads[index].name, channel.dimension()).1, HeaderUnit::Unknown(_));
-        is_known.then(|| (index, unit(channel).map_or_else(|| in_si(&heads[index], channel), Unit::in_si)))
+        let unit = stated(channel).or_else(|| stated_unit(channel, &heads[index]));
+        // Whoever reads it as a log says what is wrong with another unit.
+        (unit.is_some() || has_no_unit(channel, &heads[index])).then(|| (index, unit))
     };
     let [Some(ud), Some(uq), Some(id), Some(iq)] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(find) else {
         return Ok(None);
     };
     let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
-    let columns = found_all(&heads, &Stated { pole_pairs, speed: unit(Channel::OmegaE), ..Stated::default() })?;
-    let own = automatic(Channel::OmegaE, &heads).ok().flatten();
+    let columns = found_all(&heads, &Stated { pole_pairs, speed: stated(Channel::OmegaE), ..Stated::default() })?;
+    let of = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<&Found>>();
     let is_meant = |column: &&Found| mapped(Channel::OmegaE).is_none_or(|index| index == column.index);
-    let is_speed = |column: &&Found| column.quantity == Quantity::Speed && (column.has_unit || own == Some(column.index));
-    let of_speed: Vec<&Found> = columns.iter().filter(is_speed).filter(is_meant).collect();
-    let Some(speed) = of_speed.first() else { return Ok(None) };
-    refuse_unclear([of_speed.clone()].into_iter(), UnclearTable::default())?;
-    let mut notes = vec!["a row is an operating point, because no column is a time".to_owned().into()];
+    let speeds: Vec<&Found> = of(Quantity::Speed).into_iter().filter(is_meant).collect();
+    let Some(speed) = speeds.first() else { return Ok(None) };
     // The channel's own name is that of electrical rad/s.
-    let is_own = own == Some(speed.index) && !speed.has_unit;
+    let is_own = automatic(Channel::OmegaE, &heads).ok().flatten() == Some(speed.index) && !speed.has_unit;
+    let mut notes = vec![
+        "a row is an operating point, because no column is a time; if the rows are samples of a drive, write the time between them into a \
+         mapping file, as in sample_period = \"0.1 ms\""
+            .to_owned()
+            .into(),
+        "voltages and currents are read as peak values of a phase, unless a unit says rms".to_owned().into(),
+    ];
     let per_turn = match is_own {
         true => 1.0 / f64::from(pole_pairs.unwrap_or(1)),
         false => speed.in_si * convention(speed, Quantity::Speed, pole_pairs, &mut notes),
     };
-    let of = [ud, uq, id, iq, (speed.index, per_turn)];
-    let wanted = of.map(|(index, _)| (index, heads[index].name.as_str()));
+    let torques = of(Quantity::Torque);
+    let torque = torques.first().filter(|_| torques.len() == 1);
+    let wanted: Vec<usize> = [ud.0, uq.0, id.0, iq.0, speed.index].into_iter().chain(torque.map(|torque| torque.index)).collect();
+    let wanted: Vec<(usize, &str)> = wanted.into_iter().map(|index| (index, heads[index].name.as_str())).collect();
     // What cannot be read, or is too long, is told by whoever reads it as a log.
-    let Ok(values) = values_of(&mut table, &wanted) else { return Ok(None) };
+    let Ok(mut values) = values_of(&mut table, &wanted) else { return Ok(None) };
+    let chosen = [(Channel::Ud, ud), (Channel::Uq, uq), (Channel::Id, id), (Channel::Iq, iq)].map(|(channel, (index, unit))| {
+        let is_unit_written = unit.is_some();
+        ChosenColumn { is_unit_written, unit: unit.unwrap_or(channel.unit()), ..ChosenColumn::of(channel, index, &heads[index]) }
+    });
+    for (column, values) in chosen.iter().zip(&mut values) {
+        column.to_si(values);
+    }
+    let factors = [per_turn].into_iter().chain(torque.map(|torque| torque.in_si));
+    values[chosen.len()..].iter_mut().zip(factors).for_each(|(values, factor)| values.iter_mut().for_each(|value| *value *= factor));
     let count = values.first().map_or(0, Vec::len);
-    let row = |row: usize| {
-        let [ud, uq, id, iq, speed] = std::array::from_fn(|k| of[k].1 * values[k][row]);
-        SteadyPoint { speed, voltage: Dq { d: ud, q: uq }, current: Dq { d: id, q: iq } }
+    let row = |row: usize| SteadyPoint {
+        speed: values[4][row],
+        voltage: Dq { d: values[0][row], q: values[1][row] },
+        current: Dq { d: values[2][row], q: values[3][row] },
+        torque: values.get(5).map(|torque| torque[row]).filter(|torque| torque.is_finite()),
     };
     let is_whole = |point: &SteadyPoint| {
-        let SteadyPoint { speed, voltage, current } = *point;
+        let SteadyPoint { speed, voltage, current, .. } = *point;
         (speed + voltage.d + voltage.q + current.d + current.q).is_finite()
     };
     let rows: Vec<SteadyPoint> = (0..count).map(row).filter(is_whole).collect();
     if rows.len() > MOST_POINTS || !are_points(&rows) {
         return Ok(None);
     }
+    let unit = (!is_own && lacks_unit(speed)).then(|| speed.header.clone());
+    refuse_unclear([speeds.clone()].into_iter(), UnclearTable { speed: unit, ..UnclearTable::default() })?;
+    refuse_unlikely(&chosen, &values, is_own.then(|| ChosenColumn::of(Channel::OmegaE, speed.index, &heads[speed.index])))?;
     if rows.len() < count {
         notes.push(format!("{} of {count} rows are not whole and are left out", count - rows.len()).into());
     }
     let named = [("voltage", ud.0), ("voltage", uq.0), ("current", id.0), ("current", iq.0), ("speed", speed.index)];
-    let columns = named.map(|(quantity, index)| (quantity, heads[index].name.trim().to_owned())).to_vec();
+    let named = named.into_iter().chain(torque.map(|torque| ("torque", torque.index)));
+    let columns = named.map(|(quantity, index)| (quantity, heads[index].name.trim().to_owned())).collect();
     let has_electrical_speed = pole_pairs.is_none() && (is_own || speed.is_electrical);
     let table = Characteristic::SteadyPoints(SteadyPoints { rows });
     Ok(Some(ReadCharacteristic { columns, table, notes, has_electrical_speed }))
+}
+
+/// Whether neither the name nor a row of units has a unit.
+fn has_no_unit(channel: Channel, head: &ColumnHead) -> bool {
+    let is_blank = |text: &str| text.trim().trim_matches(['[', ']', '(', ')', '-', '#']).is_empty();
+    !matches!(split_header(&head.name, channel.dimension()).1, HeaderUnit::Unknown(_)) && head.unit.as_deref().is_none_or(is_blank)
+}
+
+/// Refuses what a log is refused for by the size of its numbers: digits, mA and mV, values per unit.
+fn refuse_unlikely(chosen: &[ChosenColumn], values: &[Vec<f64>], speed: Option<ChosenColumn>) -> Result<(), FileError> {
+    let mut channels = Channels::default();
+    CHANNELS.into_iter().zip(values).for_each(|(channel, values)| channels.set(channel, values.clone()));
+    let chosen: Vec<ChosenColumn> = chosen.iter().cloned().chain(speed).collect();
+    plausibility::refuse_digits(&chosen, &channels)?;
+    plausibility::refuse_per_unit(&chosen, &channels)?;
+    plausibility::refuse_high_voltage(&chosen, &channels)?;
+    plausibility::refuse_thousandths(&chosen, &channels)
 }
 
 /// Whether the currents change from row to row as those of different points do.
@@ -123,6 +168,7 @@ fn are_points(rows: &[SteadyPoint]) -> bool {
 mod tests {
     use super::*;
     use fluxfit_files::input;
+    use fluxfit_units::Unit;
 
     fn of(text: &str, pole_pairs: Option<u32>, map: &[(&str, &str)]) -> Result<Option<ReadCharacteristic>, FileError> {
         let bytes = input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes().to_vec())));
@@ -145,9 +191,9 @@ mod tests {
         let text = points("n [rpm];T [Nm];Id [mA];Iq [A];Ud [V];Uq [V]", row);
         let read = of(&text, Some(4), &[]).unwrap().unwrap();
         let Characteristic::SteadyPoints(table) = read.table else { panic!() };
-        let SteadyPoint { speed, voltage, current } = table.rows[3];
+        let SteadyPoint { speed, voltage, current, torque } = table.rows[3];
         assert!((speed - 500.0 * std::f64::consts::TAU / 60.0).abs() < 1e-9);
-        assert_eq!((table.rows.len(), voltage, current), (16, Dq { d: -2.0, q: 5.0 }, Dq { d: -10.0, q: 20.0 }));
+        assert_eq!((table.rows.len(), voltage, current, torque), (16, Dq { d: -2.0, q: 5.0 }, Dq { d: -10.0, q: 20.0 }, Some(20.0)));
         // Electrical rad/s by its name: of the shaft a quarter.
         let text = points("omega_e,id,iq,ud,uq", |speed, id, iq| format!("{speed},{id},{iq},1,2\n"));
         let Characteristic::SteadyPoints(table) = of(&text, Some(4), &[]).unwrap().unwrap().table else { panic!() };
@@ -163,11 +209,44 @@ mod tests {
         assert_eq!(table.rows[1].current, Dq { d: -5.0, q: 10.0 });
     }
 
-    /// Rows with a time or a sample number, in per cent, with a speed in no unit; and a log whose currents are held for many rows.
+    /// mA under the channels' names, digits, values per unit; and a speed whose unit nobody says.
+    #[test]
+    fn what_is_open_is_asked() {
+        let table = |volts: f64, amperes: f64, speed: &str| {
+            let row =
+                |n: f64, id: f64, iq: f64| format!("{n},{},{},{:.3},{:.3}\n", amperes * id, amperes * iq, volts * 0.011 * n, volts * iq);
+            points(&format!("{speed},id,iq,ud,uq"), row)
+        };
+        for (text, expected) in [
+            (table(1.0, 1000.0, "n [rpm]"), "whole numbers"),
+            (table(1.0, 1000.37, "n [rpm]"), "mA"),
+            (table(5000.37, 1.37, "n [rpm]"), "kV"),
+            (table(1.0, 1.0, "speed"), "unit"),
+        ] {
+            let refused = of(&text, None, &[]).unwrap_err().to_string();
+            assert!(refused.contains(expected), "{refused}");
+        }
+        assert!(of(&table(1.0, 1.0, "n [rpm]"), None, &[]).unwrap().is_some());
+        let options =
+            LogOptions { units: vec![("id".into(), Unit::Milliampere), ("iq".into(), Unit::Milliampere)], ..LogOptions::default() };
+        let text = table(1.0, 1000.0, "n [rpm]");
+        let bytes = input::Bytes::Stream(Box::new(std::io::Cursor::new(text.into_bytes())));
+        let Characteristic::SteadyPoints(table) = read(Table::open(bytes, None).unwrap(), &options).unwrap().unwrap().table else {
+            panic!()
+        };
+        assert_eq!(table.rows[1].current, Dq { d: -5.0, q: 10.0 });
+    }
+
+    /// Rows with a time or a sample number, or in per cent; and a log whose currents are held for many rows.
     #[test]
     fn what_may_be_a_log_is_none() {
         let row = |speed: f64, id: f64, iq: f64| format!("{speed},{id},{iq},1,2,3\n");
-        for header in ["rpm_mech,id,iq,ud,uq,t", "rpm_mech,id,iq,ud,uq,sample", "rpm_mech,id,iq,ud [%],uq [%],x", "speed,id,iq,ud,uq,x"] {
+        for header in [
+            "rpm_mech,id,iq,ud,uq,t",
+            "rpm_mech,id,iq,ud,uq,sample",
+            "rpm_mech,id,iq,ud [%],uq [%],x",
+            "rpm_mech,id,iq,ud,uq,x\nrpm,%,%,%,%,-",
+        ] {
             assert!(matches!(of(&points(header, row), None, &[]), Ok(None)), "{header}");
         }
         let held: String = (0..900).map(|k| format!("1000,0,{},1,2\n", f64::from(1 + k / 300) + 0.01 * f64::from(k % 2))).collect();

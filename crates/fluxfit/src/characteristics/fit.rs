@@ -13,6 +13,7 @@ use super::{
     open_circuit::{Across, SQRT_3},
     problem::{Problem, start},
     rows::{Instrument, RESIDUALS, Residual, Rows},
+    steady_points::SteadyPoint,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -108,6 +109,7 @@ pub enum VoltageReading {
 pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u32>) -> Result<CharacteristicsAnswer, Error> {
     let (rows, voltages) = with_told_voltages(Rows::of(tables)?)?;
     let fit = Fit::of(&rows, rows.has_torque())?;
+    let (rows, fit, of_loss) = without_gain(rows, fit)?;
     let jackknife = fit.jackknife(&rows);
     if let Some(missed) = fit.residual_rms[1].filter(|missed| *missed > LARGEST_MISS) {
         return Err(ErrorKind::NoShortCircuit { missed }.into());
@@ -116,14 +118,17 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
         return Err(ErrorKind::NoOpenCircuit { missed }.into());
     }
     for residual in [Residual::Torque, Residual::DirectVoltage, Residual::DutyVoltage, Residual::PointVoltage] {
-        if let Some(missed) =
-            fit.residual_rms[residual as usize].map(|left| left / rows.unit(residual)).filter(|missed| *missed > LARGEST_MISS)
-        {
+        let most = if residual == Residual::PointVoltage { LARGEST_MISS_OF_POINTS } else { LARGEST_MISS };
+        if let Some(missed) = fit.residual_rms[residual as usize].map(|left| left / rows.unit(residual)).filter(|missed| *missed > most) {
             return Err(ErrorKind::NoSuchTable { what: residual.label(), missed }.into());
         }
     }
+    if let Some(ratio) = fit.torque_ratio(&rows).filter(|ratio| !TORQUE_OF_POINTS.contains(ratio)) {
+        return Err(ErrorKind::TorqueOfPoints { ratio }.into());
+    }
     let of_drag = if rows.has_torque() { fit.distance(&Fit::of(&rows, false)?) } else { [0.0; PARAMETERS] };
-    let doubt: [f64; PARAMETERS] = std::array::from_fn(|p| of_drag[p].hypot(fit.doubt_of_minima[p]));
+    let of_tables = fit.contradiction_of_points(&rows)?;
+    let doubt: [f64; PARAMETERS] = std::array::from_fn(|p| of_drag[p].hypot(fit.doubt_of_minima[p]).hypot(of_loss[p]).hypot(of_tables[p]));
     let pairs = f64::from(pole_pairs.unwrap_or(1));
     let mut parameters =
         Parameter::ALL.map(|parameter| fit.estimate(parameter, &rows, jackknife[parameter as usize], doubt[parameter as usize], pairs));
@@ -170,6 +175,29 @@ pub fn identify_electrical_characteristics(tables: &[Characteristic]) -> Result<
 /// What a short circuit's currents, or voltages of open terminals, are missed by at most, as a fraction: a motor that saturates by half is
 /// missed by less.
 const LARGEST_MISS: f64 = 0.2;
+
+/// The same of operating points: with currents or angles of the wrong sign a fifth is missed, with half the inductance lost to saturation a
+/// twentieth.
+const LARGEST_MISS_OF_POINTS: f64 = 0.1;
+
+/// The torque of operating points over that of the air gap: bearings and iron take a tenth at most of large ones. Rms values in place of
+/// peak values make it 2, a power-invariant transform 2/3, an electrical speed the pole pairs.
+const TORQUE_OF_POINTS: std::ops::RangeInclusive<f64> = 0.8..=1.15;
+
+/// Points that contradict other tables by more standard errors than this count: less is noise.
+const CONTRADICTION: f64 = 3.0;
+
+/// An inverter takes voltage and never adds any: where the fit has it add some, as of a winding that warms with the current, the fit
+/// without is the answer, and how far it moves is doubt.
+fn without_gain(rows: Rows, fit: Fit) -> Result<(Rows, Fit, [f64; PARAMETERS]), Error> {
+    if fit.lost_of_points >= 0.0 {
+        return Ok((rows, fit, [0.0; PARAMETERS]));
+    }
+    let rows = Rows { are_points_lossless: true, ..rows };
+    let without = Fit::of(&rows, rows.has_torque())?;
+    let distance = without.distance(&fit);
+    Ok((rows, without, distance))
+}
 
 /// The rows with their voltages as they were measured, by what the tables state or by the other tables: the power of the shaft heats
 /// the winding, which gives the resistance whatever the voltages are.
@@ -221,9 +249,32 @@ struct Fit {
     covariance: DMatrix<f64>,
     degrees_of_freedom: f64,
     residual_rms: [Option<f64>; RESIDUALS],
+    /// V, that an inverter takes of operating points.
+    lost_of_points: f64,
 }
 
 impl Fit {
+    /// The torque of operating points over what voltages, currents and speed make of it, by least squares; none where none is measured.
+    fn torque_ratio(&self, rows: &Rows) -> Option<f64> {
+        let of = |point: &SteadyPoint| point.torque.zip(point.torque_of(self.machine.rs, self.lost_of_points));
+        let (both, square) =
+            rows.points.iter().filter_map(of).fold((0.0, 0.0), |(both, square), (torque, own)| (both + torque * own, square + own * own));
+        (square > 0.0).then(|| both / square)
+    }
+
+    /// How far each number lies from that of the operating points alone, where these contradict the other tables.
+    fn contradiction_of_points(&self, rows: &Rows) -> Result<[f64; PARAMETERS], Error> {
+        if !rows.has_points_and_others() {
+            return Ok([0.0; PARAMETERS]);
+        }
+        let alone = Self::of(&rows.points_alone(), false)?;
+        let distance = self.distance(&alone);
+        let place = |p: usize| alone.is_free[..p].iter().filter(|free| **free).count();
+        let error = |p: usize| alone.covariance[(place(p), place(p))].max(0.0).sqrt() * alone.values()[p];
+        let is_contradicted = |p: usize| alone.is_free[p] && self.is_free[p] && distance[p] > CONTRADICTION * error(p);
+        Ok(std::array::from_fn(|p| if is_contradicted(p) { distance[p] } else { 0.0 }))
+    }
+
     /// The best of the fits from several starts: a motor with less L_q than L_d has about the same currents as one with more.
     fn of(rows: &Rows, with_drag: bool) -> Result<Self, Error> {
         let start = start(rows);
@@ -271,6 +322,7 @@ impl Fit {
             is_free,
             covariance: covariance.unwrap_or_else(|| DMatrix::from_element(count, count, f64::INFINITY)),
             degrees_of_freedom: (independent.iter().sum::<f64>() - count as f64).max(1.0),
+            lost_of_points: problem.lost_of_points(),
             residual_rms: std::array::from_fn(|k| rms(&of_groups[k], errors[k] * rows.unit(Residual::ALL[k]))),
         })
     }

@@ -68,11 +68,9 @@ impl Lack {
     /// Of a number that tables of one current alone would tell: what a meter's noise makes of such rows is no value, however well it fits.
     pub(super) fn of_one_current(parameter: Parameter, rows: &Rows) -> Option<Self> {
         // Other tables tell it too.
-        if !rows.shorted.is_empty()
-            || !rows.duty.is_empty()
-            || !rows.points.is_empty()
-            || parameter == Parameter::PsiF && !rows.open.is_empty()
-        {
+        let sizes = || rows.points.iter().map(|point| point.current.magnitude());
+        let by_points = !rows.points.is_empty() && (parameter == Parameter::PsiF || one_size(sizes()).is_none());
+        if !rows.shorted.is_empty() || !rows.duty.is_empty() || by_points || parameter == Parameter::PsiF && !rows.open.is_empty() {
             return None;
         }
         match parameter {

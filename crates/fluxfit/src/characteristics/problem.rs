@@ -4,9 +4,9 @@
 use super::{
     duty_cycle::DutyCycleRow,
     machine::Machine,
-    rows::{Extra, RESIDUALS, Residual, Rows},
+    rows::{ANGLE_OF_POINTS, Extra, RESIDUALS, Residual, Rows},
     short_circuit::ShortCircuitRow,
-    steady_points::SteadyPoint,
+    steady_points::{Drive, SteadyPoint},
 };
 use crate::{
     frames::Dq,
@@ -66,6 +66,21 @@ impl<'a> Problem<'a> {
         place.map_or(0.0, |place| self.unknowns[self.count() - self.extras.len() + place])
     }
 
+    /// What lies between the motor and its operating points, whose largest voltage is so many V.
+    fn drive_of_points(&self, unit: f64) -> Drive {
+        let speed = self.rows.largest_speed_of_points();
+        Drive {
+            lost: unit * self.extra(Extra::LostOfPoints),
+            angle: ANGLE_OF_POINTS * self.extra(Extra::AngleOfPoints),
+            lag: if speed > 0.0 { ANGLE_OF_POINTS / speed * self.extra(Extra::LagOfPoints) } else { 0.0 },
+        }
+    }
+
+    /// What the inverter loses of the voltages of operating points, V.
+    pub(super) fn lost_of_points(&self) -> f64 {
+        self.drive_of_points(self.rows.unit(Residual::PointVoltage)).lost
+    }
+
     /// What is left, by kind.
     pub(super) fn groups(&self) -> [Vec<f64>; RESIDUALS] {
         let (machine, rows) = (self.machine(), self.rows);
@@ -79,9 +94,9 @@ impl<'a> Problem<'a> {
         let offset = torque * self.extra(Extra::TorqueOffset);
         let drop = direct * self.extra(Extra::Drop);
         let lost = duty * self.extra(Extra::Lost);
-        let lost_of_points = points * self.extra(Extra::LostOfPoints);
+        let drive = self.drive_of_points(points);
         let missed = |point: &SteadyPoint| {
-            let Dq { d, q } = point.voltage_of(&machine, lost_of_points);
+            let Dq { d, q } = point.voltage_of(&machine, &drive);
             Dq { d: point.voltage.d - d, q: point.voltage.q - q }
         };
         let missed: Vec<Dq> = rows.points.iter().map(missed).collect();
@@ -136,15 +151,16 @@ impl<'a> Problem<'a> {
         vague.map(|(place, _)| self.unknowns[place] / VAGUE)
     }
 
-    /// What an inverter loses, over the largest voltage: no more than that. Operating points of one current do not tell it from the
-    /// resistance, and the fit has to end all the same.
-    fn lost_at_most(&self) -> Option<f64> {
-        self.extras.contains(&Extra::LostOfPoints).then(|| self.extra(Extra::LostOfPoints))
+    /// What is known of the drive of operating points, over its standard error. What an inverter loses is no more than the largest voltage:
+    /// points of one current do not tell it from the resistance, and the fit has to end all the same.
+    fn of_points(&self) -> impl Iterator<Item = f64> {
+        let of_points = [Extra::LostOfPoints, Extra::AngleOfPoints, Extra::LagOfPoints];
+        of_points.into_iter().filter(|extra| self.extras.contains(extra)).map(|extra| self.extra(extra))
     }
 
     fn weighted(&self) -> DVector<f64> {
         let pairs = self.groups().into_iter().flatten().zip(self.errors_of_rows().into_iter().flatten());
-        let weighted: Vec<f64> = pairs.map(|(left, error)| left / error).chain(self.vague()).chain(self.lost_at_most()).collect();
+        let weighted: Vec<f64> = pairs.map(|(left, error)| left / error).chain(self.vague()).chain(self.of_points()).collect();
         DVector::from_vec(weighted)
     }
 

@@ -103,7 +103,14 @@ pub(super) enum Extra {
     Lost,
     /// What an inverter loses of the voltages of operating points, against the current.
     LostOfPoints,
+    /// The angle of their frame, as part of [`ANGLE_OF_POINTS`].
+    AngleOfPoints,
+    /// How much further their voltages are turned at the largest speed, as part of that.
+    LagOfPoints,
 }
+
+/// Standard error of the angle of a table's frame, and of what its voltages lag at the largest speed, rad: an encoder is set to 3 degrees.
+pub(super) const ANGLE_OF_POINTS: f64 = 0.05;
 
 /// Fewest rows of a short-circuit characteristic: the motor and the drag have six numbers, and a row gives one or two.
 const LEAST_SHORTED: usize = 6;
@@ -131,6 +138,8 @@ pub(super) struct Rows {
     pub(super) direct: Vec<DirectCurrentRow>,
     pub(super) duty: Vec<DutyCycleRow>,
     pub(super) points: Vec<SteadyPoint>,
+    /// Their inverter loses nothing: what it loses would be negative.
+    pub(super) are_points_lossless: bool,
     /// Whether all tables state between which points their open-circuit voltages were measured.
     pub(super) are_voltages_stated: bool,
 }
@@ -225,6 +234,22 @@ impl Rows {
         self.has_torque() || !self.torque.is_empty() || !self.points.is_empty() || has_heat
     }
 
+    /// Whether some operating point is not at rest.
+    fn do_points_turn(&self) -> bool {
+        self.points.iter().any(|point| point.speed != 0.0)
+    }
+
+    /// The operating points alone.
+    pub(super) fn points_alone(&self) -> Self {
+        Self { points: self.points.clone(), are_points_lossless: self.are_points_lossless, are_voltages_stated: true, ..Self::default() }
+    }
+
+    /// Whether there are operating points and other rows.
+    pub(super) fn has_points_and_others(&self) -> bool {
+        let others = [self.open.len(), self.shorted.len(), self.torque.len(), self.direct.len(), self.duty.len()];
+        !self.points.is_empty() && others.iter().any(|rows| *rows > 0)
+    }
+
     fn has_current_of_duty(&self) -> bool {
         self.duty.iter().any(|row| row.current.is_some_and(|current| current != 0.0))
     }
@@ -274,8 +299,8 @@ impl Rows {
     /// Which numbers of the motor some table depends on.
     pub(super) fn free(&self) -> [bool; PARAMETERS] {
         let (shorted, duty, points) = (!self.shorted.is_empty(), self.has_current_of_duty(), !self.points.is_empty());
-        let flux = shorted || points || !(self.open.is_empty() && self.torque.is_empty() && self.duty.is_empty());
-        let [on_d, on_q] = [|i: Dq| i.d, |i: Dq| i.q].map(|on| self.points.iter().any(|point| on(point.current) != 0.0));
+        let flux = shorted || self.do_points_turn() || !(self.open.is_empty() && self.torque.is_empty() && self.duty.is_empty());
+        let [on_d, on_q] = [|i: Dq| i.d, |i: Dq| i.q].map(|on| self.points.iter().any(|point| point.speed * on(point.current) != 0.0));
         [shorted || duty || points || !self.direct.is_empty(), shorted || on_d, shorted || duty || on_q, flux]
     }
 
@@ -289,7 +314,9 @@ impl Rows {
             (is_salient, Extra::Saliency),
             (!self.direct.is_empty(), Extra::Drop),
             (!self.duty.is_empty(), Extra::Lost),
-            (!self.points.is_empty(), Extra::LostOfPoints),
+            (!self.points.is_empty() && !self.are_points_lossless, Extra::LostOfPoints),
+            (self.do_points_turn(), Extra::AngleOfPoints),
+            (self.do_points_turn(), Extra::LagOfPoints),
         ];
         extras.into_iter().filter(|(is_fitted, _)| *is_fitted).map(|(_, extra)| extra).collect()
     }
@@ -309,6 +336,11 @@ impl Rows {
 
     pub(super) fn largest_speed(&self) -> f64 {
         self.shorted.iter().fold(0.0, |largest, row| row.speed.abs().max(largest))
+    }
+
+    /// The largest speed of an operating point, rad/s.
+    pub(super) fn largest_speed_of_points(&self) -> f64 {
+        self.points.iter().fold(0.0, |largest, point| point.speed.abs().max(largest))
     }
 
     /// The largest product of the currents of a torque, A².

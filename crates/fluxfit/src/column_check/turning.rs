@@ -35,6 +35,13 @@ const FEW: f64 = 0.02;
 /// if it is the speed's angle, a quarter of a turn if it is none.
 const OF_SPEED: f64 = 0.5;
 
+/// Length of the mean of the turns between rows, whole turns left out, above which they are nearly the same all the time: then the angle
+/// may go with them by chance.
+const ALL_ALIKE: f64 = 0.7;
+
+/// Most pole pairs by which a speed is taken to be wrong.
+const MOST_PAIRS: f64 = 64.0;
+
 /// A log that turns less than this in all, rad, tells no ratio.
 const LEAST_TURN: f64 = PI;
 
@@ -77,7 +84,7 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
     let mut blocks: Vec<[f64; 3]> = Vec::new();
     let (mut rows, mut far) = (0, 0);
     // Rows between which the rotor turns by more than half a turn, by the speed, and what the angle turns beyond that, but for whole turns.
-    let (mut apart, mut beside) = (0, 0.0);
+    let (mut apart, mut beside, mut mean) = (0, 0.0, Dq { d: 0.0, q: 0.0 });
     for segment in log.segments() {
         let mut block = [0.0; 3];
         for (count, row) in (segment.rows.start + 1..segment.rows.end).enumerate() {
@@ -90,6 +97,7 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
                 let turns = step / period - by_speed / TAU;
                 apart += 1;
                 beside += TAU * (turns - turns.round()).abs();
+                mean = Dq { d: mean.d + by_speed.cos(), q: mean.q + by_speed.sin() };
             }
             block = [block[0] + step, block[1] + by_speed, block[2] + columns.omega_e[row] - columns.omega_e[row - 1]];
             if (count + 1) % BLOCK == 0 {
@@ -97,9 +105,8 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
             }
         }
     }
-    if 2 * apart > rows && beside < OF_SPEED * apart as f64 {
-        return Some(1.0);
-    }
+    let is_in_step = 2 * apart > rows && beside < OF_SPEED * apart as f64;
+    let are_all_alike = mean.magnitude() > ALL_ALIKE * apart as f64;
     // By the angle or by the speed: an angle in turns turns less than it says.
     let turned: f64 = blocks.iter().map(|[angle, speed, _]| (angle.abs() * TAU / period).max(speed.abs())).sum();
     let of = |one: &dyn Fn(&[f64; 3]) -> f64, other: &dyn Fn(&[f64; 3]) -> f64| -> f64 { blocks.iter().map(|k| one(k) * other(k)).sum() };
@@ -116,7 +123,16 @@ fn ratio(log: &Log, theta: &[f64], period: f64) -> Option<f64> {
     let left_by_lag = of(&beyond, &beyond) - if of_change > 0.0 { lagging * lagging / of_change } else { 0.0 };
     let left_by_ratio = of_angle - of_both * of_both / of_speed;
     let is_lag = lagging > 0.0 && TIMES_WORSE * left_by_lag < left_by_ratio;
-    Some(if is_lag { 1.0 } else { of_both / of_speed })
+    let ratio = if is_lag { 1.0 } else { of_both / of_speed };
+    // Whole turns lie between the rows, unless pole pairs or a unit explain the angle as well: then it turns forward.
+    let is_aliased = is_in_step && !is_of_pairs(ratio) && (ratio < 0.0 || !are_all_alike);
+    (!is_aliased).then_some(ratio)
+}
+
+/// Whether a ratio is that of a speed or an angle of the shaft.
+fn is_of_pairs(ratio: f64) -> bool {
+    let is_whole = |number: f64| (1.0 - TOLERANCE..=MOST_PAIRS).contains(&number) && (number / number.round() - 1.0).abs() <= TOLERANCE;
+    is_whole(ratio) || is_whole(1.0 / ratio)
 }
 
 /// Rows with less current than this share of the largest are not counted.
@@ -167,27 +183,36 @@ mod tests {
     use super::*;
     use crate::log::Columns;
 
-    /// A recorder of 83 Hz at three speeds of 80 to 390 Hz: one to four turns lie between two rows, and the angle goes on by what is left.
-    /// A speed that is a thirtieth too low does not tell where the angle is.
+    /// Rows so many seconds apart, at so many electrical Hz for a third each, with a speed that is so many times as large in the log.
+    fn log(period: f64, hertz: [f64; 3], factor: f64) -> Log {
+        let (mut columns, mut theta, mut angles) = (Columns::default(), 0.0, Vec::new());
+        for row in 0..600 {
+            let omega_e = TAU * hertz[row / 200] * (1.0 + 1e-3 * (0.7 * row as f64).sin());
+            theta += omega_e * period;
+            angles.push(theta.rem_euclid(TAU));
+            columns.t.push(period * row as f64);
+            columns.omega_e.push(factor * omega_e);
+            let channels = [&mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq];
+            channels.into_iter().for_each(|channel| channel.push(1.0 + (0.3 * row as f64).sin()));
+        }
+        Log::new(Columns { theta_e: Some(angles), ..columns }).unwrap()
+    }
+
+    /// A recorder of 83 Hz at three speeds of 81 to 390 Hz: one to four turns lie between two rows, and the angle goes on by what is left,
+    /// here a few hundredths of a turn.
     #[test]
     fn an_angle_between_whose_rows_lie_whole_turns_is_that_of_the_speed() {
-        let log = |factor: f64| {
-            const PERIOD: f64 = 0.012;
-            let (mut columns, mut theta) = (Columns::default(), 0.0);
-            let mut angles = Vec::new();
-            for row in 0..600 {
-                let omega_e = TAU * [81.0, 207.0, 390.0][row / 200] * (1.0 + 1e-3 * (0.7 * row as f64).sin());
-                theta += omega_e * PERIOD;
-                angles.push(theta.rem_euclid(TAU));
-                columns.t.push(PERIOD * row as f64);
-                columns.omega_e.push(factor * omega_e);
-                let channels = [&mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq];
-                channels.into_iter().for_each(|channel| channel.push(1.0 + (0.3 * row as f64).sin()));
-            }
-            Log::new(Columns { theta_e: Some(angles), ..columns }).unwrap()
-        };
-        assert_eq!(angle_against_speed(&log(1.0)), None);
-        let of_speed = |factor: f64| ratio(&log(factor), log(factor).columns().theta_e.as_ref().unwrap(), TAU);
-        assert_eq!((of_speed(1.0), of_speed(29.0 / 30.0)), (Some(1.0), None));
+        for hertz in [[81.0, 207.0, 390.0], [80.0, 240.0, 400.0]] {
+            assert_eq!(angle_against_speed(&log(0.012, hertz, 1.0)), None, "{hertz:?}");
+        }
+    }
+
+    /// A quarter of a turn between rows, and a speed with five pole pairs too many: exactly a turn more, or one to three.
+    #[test]
+    fn a_speed_that_is_whole_turns_too_large_is_told() {
+        for hertz in [[50.0; 3], [16.0, 32.0, 48.0]] {
+            let found = angle_against_speed(&log(0.005, hertz, 5.0));
+            assert!(matches!(found, Some(ColumnFinding::SpeedUnit { ratio }) if (ratio - 0.2).abs() < 0.01), "{hertz:?} {found:?}");
+        }
     }
 }

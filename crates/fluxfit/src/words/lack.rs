@@ -46,7 +46,7 @@ impl Lack {
             Self::Absent { parameter: Parameter::PsiF } => {
                 "add an open-circuit table, or a short-circuit table, of the same motor".to_owned()
             }
-            Self::Absent { .. } => "add a short-circuit table of the same motor".to_owned(),
+            Self::Absent { .. } => "add a short-circuit table of the same motor, or operating points with i_d".to_owned(),
             Self::PolePairs => "state the pole pairs".to_owned(),
             Self::Voltages => "put 'll' or 'phase' into the name of the voltage's column".to_owned(),
             Self::OneDirectCurrent { current } => format!("measure at a second current too, such as {} A", three_digits(current / 2.0)),

@@ -156,7 +156,7 @@ fn show(names: &[String], unclear_voltages: &[&str], answer: &CharacteristicsAns
         }
         Some(VoltageReading::ByTorque(across)) => {
             let across = if across == Across::Lines { "line to line" } else { "of a phase" };
-            text += &format!("{DIM}{}{DIM:#}\n", wrapped("", &format!("Voltages: {across}, as the torque tells.")).trim_end());
+            text += &format!("{DIM}{}{DIM:#}\n", wrapped("", &format!("Voltages: {across}, as the other tables tell.")).trim_end());
         }
         Some(VoltageReading::Stated) | None => {}
     }
