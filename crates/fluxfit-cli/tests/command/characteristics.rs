@@ -317,18 +317,18 @@ fn torque_direct_current_and_duty_cycle_tell_their_parts_within_their_intervals(
 
 /// A dynamometer's map: 4 speeds and 9 currents, voltages that err by up to 50 mV and of which the inverter loses 0.4 V.
 fn operating_points(folder: &Path, noise: &mut Noise, with_id: bool) -> String {
-    points_of(folder, noise, with_id, &|_| RS, 1.0)
+    points_of(folder, noise, with_id, (&|_| RS, 0.4), 1.0)
 }
 
-/// The same of a resistance that depends on the current, and with a torque that is so many times that of the motor.
-fn points_of(folder: &Path, noise: &mut Noise, with_id: bool, rs: &dyn Fn(f64) -> f64, of_torque: f64) -> String {
+/// The same of a resistance that depends on the current and so many V lost, and with a torque that is so many times that of the motor.
+fn points_of(folder: &Path, noise: &mut Noise, with_id: bool, (rs, lost): (&dyn Fn(f64) -> f64, f64), of_torque: f64) -> String {
     let points = (0..36).map(|k| {
         let (speed, size, angle) = ([500.0, 1000.0, 2000.0, 3000.0][k / 9], [20.0, 50.0, 90.0][k % 3], [0.0, 0.4, 0.9][k / 3 % 3]);
         let (omega_e, angle) = (speed * std::f64::consts::TAU / 60.0 * PAIRS, if with_id { angle } else { 0.0 });
         let (id, iq) = (-size * f64::sin(angle), size * f64::cos(angle));
         let (ud, uq) = (rs(size) * id - omega_e * LQ * iq, rs(size) * iq + omega_e * (LD * id + PSI_F));
         let torque = of_torque * 1.5 * PAIRS * (PSI_F * iq + (LD - LQ) * id * iq) - 0.1;
-        vec![speed, id, iq, ud + 0.4 * id / size + 0.05 * noise.next(), uq + 0.4 * iq / size + 0.05 * noise.next(), torque]
+        vec![speed, id, iq, ud + lost * id / size + 0.05 * noise.next(), uq + lost * iq / size + 0.05 * noise.next(), torque]
     });
     table_of(folder, "points.csv", "n [rpm],Id [A],Iq [A],Ud [V],Uq [V],M [Nm]", points)
 }
@@ -355,16 +355,16 @@ fn operating_points_tell_the_motor_within_their_intervals() {
     assert!((lq / LQ - 1.0).abs() < 0.01, "{lq}");
 }
 
-/// Rms values have half the power, and a winding that warms by the square of the current, up to 20 %, has no voltage that the inverter adds:
-/// its resistance is somewhere between.
+/// Rms values have half the power. A winding that warms by the square of the current, up to 20 %, passes for an inverter that adds voltage;
+/// without, its resistance is somewhere between.
 #[test]
 fn operating_points_are_compared_with_their_torque_and_gain_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let table = points_of(folder.path(), &mut Noise(3), true, &|_| RS, 2.0);
+    let table = points_of(folder.path(), &mut Noise(3), true, (&|_| RS, 0.4), 2.0);
     let refused = fluxfit(&["identify", &table, "--pole-pairs", "3"]);
     assert!(refused.status == 2 && refused.err.contains("the torque is 1.9") && refused.err.contains("rms"), "{}", refused.err);
     for seed in 1..=8 {
-        let table = points_of(folder.path(), &mut Noise(seed), true, &|i| RS * (1.0 + 0.2 * (i / 90.0).powi(2)), 1.0);
+        let table = points_of(folder.path(), &mut Noise(seed), true, (&|i| RS * (1.0 + 0.2 * (i / 90.0).powi(2)), 0.0), 1.0);
         let (_, document) = json(&["identify", &table, "--pole-pairs", "3"]);
         let rs = &document["parameters"]["rs"];
         if let [Some(low), Some(high)] = [0, 1].map(|end| rs["ci95"][end].as_f64()) {
@@ -463,7 +463,7 @@ fn a_direct_current_of_one_size_asks_for_a_second_one() {
         let run = fluxfit(&["identify", &table]);
         let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(words.contains("For R_s: measure at a second current too, such as 5.00 A."), "{words}");
-        assert!(words.contains("For p L_d, p L_q: add a short-circuit table of the same motor."), "{words}");
+        assert!(words.contains("For p L_d, p L_q: add a short-circuit table of the same motor, or operating points with i_d."), "{words}");
     }
     let one = table_of(folder.path(), "one.csv", "U_ll [V],I [A]", [vec![0.26, 10.0]].into_iter());
     let run = fluxfit(&["identify", &one]);

@@ -69,7 +69,7 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         let index = mapped(channel).or_else(|| automatic(channel, &heads).ok().flatten()).or_else(|| alias::find(channel, &heads))?;
         let unit = stated(channel).or_else(|| stated_unit(channel, &heads[index]));
         // Whoever reads it as a log says what is wrong with another unit.
-        (unit.is_some() || has_no_unit(channel, &heads[index])).then(|| (index, unit))
+        (unit.is_some() || has_no_unit(channel, &heads[index])).then_some((index, unit))
     };
     let [Some(ud), Some(uq), Some(id), Some(iq)] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(find) else {
         return Ok(None);
