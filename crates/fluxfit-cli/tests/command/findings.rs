@@ -485,7 +485,7 @@ fn a_late_angle_is_not_taken_for_a_delay_that_is_not_compensated() {
 /// Names of columns that a motor may have, but no time: there is no log, and a plot all the same.
 #[test]
 fn a_file_that_is_no_log_yet_is_plotted_too() {
-    let text = "ud,uq,id,iq,speed_rpm\n".to_owned() + &(0..500).map(|k| format!("{k},20,0,{},500\n", k % 7)).collect::<String>();
+    let text = "ud,uq,id,iq,speed_rpm\n".to_owned() + &(0..600).map(|k| format!("{k},20,0,{},500\n", k % 7)).collect::<String>();
     let file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
     fs::write(file.path(), text).unwrap();
     let run = fluxfit(&["inspect", file.path().to_str().unwrap()]);
