@@ -38,17 +38,23 @@ pub(crate) struct FirstCells {
     pub(crate) is_flag: bool,
     /// They fall, as a time does not.
     pub(crate) falls: bool,
+    /// They rise by the same step from row to row, as the numbers of the rows do.
+    pub(crate) counts: bool,
 }
 
 impl FirstCells {
     fn of(numbers: &[f64], is_instant: bool) -> Self {
         let has = |number: f64| numbers.contains(&number);
         let first = numbers.first().copied();
+        let step = numbers.get(1).zip(first).map_or(0.0, |(second, first)| second - first);
+        let counts =
+            numbers.len() >= FEWEST_EQUAL && step > 0.0 && numbers.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-6 * step);
         Self {
             has_numbers: first.is_some() || is_instant,
             constant: first.filter(|first| numbers.len() >= FEWEST_EQUAL && numbers.iter().all(|number| number == first)),
             has_no_value: numbers.iter().any(|number| number.abs() > NO_VALUE),
             is_flag: has(0.0) && has(1.0) && numbers.iter().all(|number| [0.0, 1.0].contains(number)),
+            counts,
             falls: numbers.windows(2).filter(|pair| pair[1] < pair[0]).count() > MOST_FALLS,
         }
     }

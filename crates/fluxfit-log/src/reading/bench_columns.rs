@@ -21,7 +21,7 @@ impl Quantity {
     }
 
     /// Words of names that have no unit beside them, in several languages.
-    fn words(self) -> &'static [&'static str] {
+    pub(super) fn words(self) -> &'static [&'static str] {
         match self {
             Self::Speed => &["speed", "rpm", "drehzahl", "omega", "velocity", "vitesse", "velocita", "velocidad"],
             Self::Voltage => {

@@ -49,11 +49,20 @@ fn to_rms(name: &str) -> (f64, &'static str, bool) {
     let are_two = |one: &str| words.windows(2).any(|pair| pair[0].ends_with(one) && pair[1] == one);
     // `[Vp]` is a unit, where `Vp` may be the voltage of a phase.
     let in_brackets = self::words(name.split_once(['[', '(']).map_or("", |(_, text)| text));
-    let is_peak = in_brackets.iter().any(|word| ["vp", "ap", "mvp", "map"].contains(&word.as_str()));
+    let is_volts = |word: &str| ["v", "a", "mv", "ma"].contains(&word);
+    let is_peak = in_brackets.iter().any(|word| ["vp", "ap", "mvp", "map"].contains(&word.as_str()))
+        || in_brackets.windows(2).any(|pair| is_volts(&pair[0]) && pair[1] == "p");
+    // `Vpp`, but not `V_app`; in brackets amperes, too.
+    let is_pp = |word: &String| word == "pp" || ["vpp", "upp", "ipp", "epp"].iter().any(|end| word.ends_with(end));
+    let between = |one: &str| words.windows(3).any(|of| of[0].ends_with(one) && of[1] == "to" && of[2] == one);
     let is_from_zero = words.windows(2).any(|pair| pair[0] == "0" && pair[1] == "p");
-    if ends(&["pp", "pkpk", "p2p", "pk2pk", "peak2peak", "峰峰值"])
+    if words.iter().any(is_pp)
+        || in_brackets.iter().any(|word| word.ends_with("pp"))
+        || ends(&["pkpk", "p2p", "ptp", "pk2pk", "pktopk", "peak2peak", "peaktopeak", "peakpeak", "峰峰值"])
         || are_two("pk")
         || are_two("p")
+        || between("pk")
+        || between("p")
         || words.windows(3).any(|of| of[0] == "peak" && of[2] == "peak")
     {
         (0.125_f64.sqrt(), "peak to peak", true)
@@ -95,18 +104,23 @@ fn across(names: &[&str]) -> Option<Across> {
     let count = |some: &[&str]| words.iter().filter(|word| some.iter().any(|one| word.contains(one))).count();
     let has = |some: &[&str]| words.iter().any(|word| some.contains(&word.as_str()));
     let pairs = |of: &[[&str; 2]]| words.windows(2).any(|pair| of.iter().any(|[one, other]| pair[0] == *one && pair[1] == *other));
-    let to_star = has(&["ph", "ln", "vln", "uln", "phn", "star"]) || pairs(&[["l", "n"], ["ph", "n"]]) || line_to_line::is_to_star(name);
-    let of_phase = count(&["phase", "strang", "stern", "neutral", "相电压", "相電圧"]) + usize::from(to_star);
-    let between_lines = pairs(&[["l", "l"], ["ph", "ph"]])
-        || of_phase > 1
-        || count(&["verkettet", "leiter", "line", "线电压", "线间电压", "線間電圧"]) > 0
-        || has(&["ll", "vll", "ull", "ell"])
+    // To the star point, whatever else the name says: `Phase voltage L-N`, `Line 1 to N`.
+    let to_star = count(&["neutral", "stern"]) > 0
+        || has(&["ln", "vln", "uln", "phn", "star"])
+        || pairs(&[["l", "n"], ["ph", "n"], ["to", "n"]])
+        || line_to_line::is_to_star(name);
+    let is_between = |word: &str| words.windows(2).any(|pair| pair.iter().all(|one| one == word));
+    let is_to = |word: &str| words.windows(3).any(|of| of[0] == word && of[1] == "to" && of[2] == word);
+    let between_lines = ["l", "ph", "phase", "line"].into_iter().any(|word| is_between(word) || is_to(word))
+        || count(&["verkettet", "leiter", "线电压", "线间电压", "線間電圧"]) > 0
+        || has(&["ll", "vll", "ull", "ell", "line", "lines", "phph", "linetoline", "lineline"])
         || line_to_line::is_pair(name);
-    match (of_phase, between_lines) {
-        // Phase to phase is from line to line; line to neutral is of a phase.
-        (_, true) if !words.iter().any(|word| ["neutral", "star", "stern"].contains(&word.as_str())) => Some(Across::Lines),
-        (1.., _) => Some(Across::Phase),
-        (0, _) => names.first_chunk::<3>().filter(|_| names.len() == 3).and_then(|names| across_by_letters(*names)),
+    let of_phase = count(&["phase", "strang", "相电压", "相電圧"]) > 0 || has(&["ph"]);
+    match (to_star, between_lines, of_phase) {
+        (true, ..) => Some(Across::Phase),
+        (_, true, _) => Some(Across::Lines),
+        (.., true) => Some(Across::Phase),
+        _ => names.first_chunk::<3>().filter(|_| names.len() == 3).and_then(|names| across_by_letters(*names)),
     }
 }
 
@@ -159,6 +173,14 @@ mod tests {
             (vec!["V_an (V)"], Some(Across::Phase)),
             (vec!["U1N [V]"], Some(Across::Phase)),
             (vec!["Phase-neutral voltage (V)"], Some(Across::Phase)),
+            (vec!["phase_voltage_L-N_rms_V"], Some(Across::Phase)),
+            (vec!["Phase voltage (L-N) [V rms]"], Some(Across::Phase)),
+            (vec!["phase voltage V_an [Vrms]"], Some(Across::Phase)),
+            (vec!["Strangspannung U1N [Vrms]"], Some(Across::Phase)),
+            (vec!["Strangspannung Phase U [Vrms]"], Some(Across::Phase)),
+            (vec!["Phase A phase voltage [Vrms]"], Some(Across::Phase)),
+            (vec!["Line 1 to N [Vrms]"], Some(Across::Phase)),
+            (vec!["Baseline phase voltage [Vrms]"], Some(Across::Phase)),
             (vec!["V_A (V)"], None),
             (vec!["Voltage (V AC)"], None),
             (vec!["Vac"], None),
@@ -181,6 +203,17 @@ mod tests {
             ("current [A]", 1.0, false),
             ("U_ll [V p-p]", eighth, true),
             ("U_ll [Vp-p]", eighth, true),
+            ("U_ll [Vptp]", eighth, true),
+            ("U_ll [V ptp]", eighth, true),
+            ("U_ll ptp [V]", eighth, true),
+            ("U_ll [Vpktopk]", eighth, true),
+            ("U_ll [V pk to pk]", eighth, true),
+            ("U_ll [Vpeaktopeak]", eighth, true),
+            ("V_ll_peakpeak [V]", eighth, true),
+            ("I [App]", eighth, true),
+            ("V_ll_app [V]", 1.0, false),
+            ("U [V p]", 2.0 * eighth, true),
+            ("U [V_p]", 2.0 * eighth, true),
             ("Phase Voltage (Vpk)", 2.0 * eighth, true),
             ("U [Vp]", 2.0 * eighth, true),
             ("U [V 0-p]", 2.0 * eighth, true),

@@ -27,12 +27,13 @@ pub(super) fn stated_unit(head: &ColumnHead) -> StatedUnit {
         return StatedUnit::Other;
     }
     let groups = brackets(header);
-    if let Some(stated) = groups.iter().rev().find_map(|(text, _)| unit_of(text, header)) {
+    let is_phase = |text: &str| is_letter_of_phase(text, header, groups.iter().map(|(text, _)| *text));
+    if let Some(stated) = groups.iter().rev().filter(|(text, _)| !is_phase(text)).find_map(|(text, _)| unit_of(text, header)) {
         return stated;
     }
     // Of brackets at the end that hold no unit, some say what of a wave is meant, `(line-line)`: what is before them may have one.
     let (name, is_other) = match groups.last().filter(|(_, is_last)| *is_last) {
-        Some((text, _)) if base_of(text).is_empty() => (&header[..header.len() - text.len() - 2], false),
+        Some((text, _)) if base_of(text).is_empty() || is_phase(text) => (&header[..header.len() - text.len() - 2], false),
         group => (header, group.is_some()),
     };
     let dimensions =
@@ -63,6 +64,23 @@ pub(super) fn stated_unit(head: &ColumnHead) -> StatedUnit {
         HeaderUnit::Unknown(text) if !base_of(text).is_empty() => StatedUnit::Other,
         _ => StatedUnit::None,
     })
+}
+
+/// Whether a text in brackets is the letter of a phase and no unit: `(A phase)`, or `(A)` behind a name of a voltage or beside its unit.
+fn is_letter_of_phase<'a>(text: &str, header: &str, mut brackets: impl Iterator<Item = &'a str>) -> bool {
+    let plain = text.trim().to_lowercase();
+    let letter = plain.strip_suffix("phase").or_else(|| plain.strip_suffix("ph")).map(|letter| letter.trim_matches([' ', '-', '_']));
+    if letter.is_some_and(|letter| ["a", "v"].contains(&letter)) {
+        return true;
+    }
+    let (other, symbols) = match plain.as_str() {
+        "a" => (Quantity::Voltage, ["u", "v", "e"]),
+        "v" => (Quantity::Current, ["i", "i", "i"]),
+        _ => return false,
+    };
+    let name = header.split(['[', '(']).next().unwrap_or_default();
+    let is_named = words(name).iter().any(|word| symbols.contains(&word.as_str()) || other.words().contains(&word.as_str()));
+    is_named || brackets.any(|own| matches!(unit_of(own, header), Some(StatedUnit::Of(quantity, ..)) if quantity == other))
 }
 
 /// The texts in brackets, in order, and whether the name ends with each.
@@ -231,6 +249,11 @@ mod tests {
         assert_eq!(stated("I [mArms]"), StatedUnit::Of(Quantity::Current, 1e-3, false));
         let in_row = ColumnHead { name: "U_ll".to_owned(), unit: Some("[V rms]".to_owned()), ..ColumnHead::default() };
         assert_eq!(stated_unit(&in_row), StatedUnit::Of(Quantity::Voltage, 1.0, false));
+        // Phases, not amperes and volts.
+        for name in ["Voltage (A phase)", "Voltage (A)", "Current (V phase)", "V (A)"] {
+            assert_eq!(stated(name), StatedUnit::None, "{name}");
+        }
+        assert_eq!(stated("Back-EMF [V] (A)"), StatedUnit::Of(Quantity::Voltage, 1.0, false));
         for name in ["vll_rms", "Voltage (line-line)", "voltage", "U", "Iq"] {
             assert_eq!(stated(name), StatedUnit::None, "{name}");
         }

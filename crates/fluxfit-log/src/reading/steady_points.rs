@@ -12,6 +12,7 @@ use super::{
     plausibility,
     proposal::stated_unit,
     resemblance::words,
+    rms,
     steady_test::{ReadCharacteristic, is},
     table::Table,
 };
@@ -19,7 +20,7 @@ use crate::{
     block::ColumnHead,
     channel::Channel,
     header_unit::{HeaderUnit, split_header},
-    quantity::Quantity,
+    quantity::{Quantity, TableColumn},
     unclear_table::UnclearTable,
 };
 use fluxfit::{
@@ -27,6 +28,7 @@ use fluxfit::{
     frames::Dq,
 };
 use fluxfit_files::FileError;
+use fluxfit_units::{Unit, wording::quote};
 
 /// More rows are those of a log whose time is missing: a map of a motor has a few hundred points.
 const MOST_POINTS: usize = 500;
@@ -34,6 +36,10 @@ const MOST_POINTS: usize = 500;
 /// Of the currents' variance, the part that their changes from row to row have at least: of a sweep of 24 currents at each speed it is as
 /// much. In the rows of a drive, currents that are held hardly change.
 const LEAST_CHANGE: f64 = 0.02;
+
+/// The same of more points than [`FEW_POINTS`], or beside a column that counts the rows: these may be samples of a drive.
+const LEAST_CHANGE_OF_MANY: f64 = 0.2;
+const FEW_POINTS: usize = 100;
 
 /// The channels of such a table, in the order of their columns.
 const CHANNELS: [Channel; 5] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq, Channel::OmegaE];
@@ -55,7 +61,9 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         let of_row = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
         head.is_time || head.instants.is_some() || is(Channel::T, head) || of_row
     };
-    let is_other = options.map.iter().any(|(name, _)| channel(name).is_none());
+    let is_torque = |name: &str| name == Quantity::Torque.name();
+    let is_other = options.map.iter().any(|(name, _)| channel(name).is_none() && !is_torque(name));
+    let first_cells = table.first_cells();
     // The layout of a tool is that of a log.
     if is_other || heads.iter().any(is_instant) || Layout::recognize(&names).is_some() {
         return Ok(None);
@@ -66,8 +74,11 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
     };
     let stated = |of: Channel| options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit);
     let find = |channel: Channel| {
-        let index = mapped(channel).or_else(|| automatic(channel, &heads).ok().flatten()).or_else(|| alias::find(channel, &heads))?;
-        let unit = stated(channel).or_else(|| stated_unit(channel, &heads[index]));
+        let index = mapped(channel).or_else(|| automatic(channel, &heads).ok().flatten()).or_else(|| alias::find(channel, &heads));
+        // Root mean squares that say so are none of these.
+        let index = index.or_else(|| heads.iter().position(|head| is(channel, head)))?;
+        let of_rms = rms::unit(channel).filter(|_| rms::is_rms(&heads[index]));
+        let unit = stated(channel).or(of_rms).or_else(|| stated_unit(channel, &heads[index]));
         // Whoever reads it as a log says what is wrong with another unit.
         (unit.is_some() || has_no_unit(channel, &heads[index])).then_some((index, unit))
     };
@@ -75,10 +86,15 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         return Ok(None);
     };
     let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
-    let columns = found_all(&heads, &Stated { pole_pairs, speed: stated(Channel::OmegaE), ..Stated::default() })?;
+    let of_table = |(name, header): &(String, String)| {
+        let quantity = if is_torque(name) { Some(Quantity::Torque) } else { None };
+        let quantity = quantity.or((channel(name) == Some(Channel::OmegaE)).then_some(Quantity::Speed))?;
+        Some((TableColumn::Of(quantity), header.clone()))
+    };
+    let map = options.map.iter().filter_map(of_table).collect();
+    let columns = found_all(&heads, &Stated { pole_pairs, speed: stated(Channel::OmegaE), map })?;
     let of = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<&Found>>();
-    let is_meant = |column: &&Found| mapped(Channel::OmegaE).is_none_or(|index| index == column.index);
-    let speeds: Vec<&Found> = of(Quantity::Speed).into_iter().filter(is_meant).collect();
+    let speeds = of(Quantity::Speed);
     let Some(speed) = speeds.first() else { return Ok(None) };
     // The channel's own name is that of electrical rad/s.
     let is_own = automatic(Channel::OmegaE, &heads).ok().flatten() == Some(speed.index) && !speed.has_unit;
@@ -120,10 +136,24 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         (speed + voltage.d + voltage.q + current.d + current.q).is_finite()
     };
     let rows: Vec<SteadyPoint> = (0..count).map(row).filter(is_whole).collect();
-    if rows.len() > MOST_POINTS || !are_points(&rows) {
+    let used: Vec<usize> = wanted.iter().map(|(index, _)| *index).collect();
+    let is_counted = (0..heads.len()).any(|k| !used.contains(&k) && first_cells.get(k).is_some_and(|cells| cells.counts));
+    let are_many = rows.len() > FEW_POINTS;
+    // A current that counts the rows is the number of the row.
+    let is_row = values[2..4].iter().any(|values| counts(values) && values.iter().all(|value| value.fract() == 0.0));
+    let least = if are_many || is_counted { LEAST_CHANGE_OF_MANY } else { LEAST_CHANGE };
+    if rows.len() > MOST_POINTS || is_counted && are_many || is_row || !are_points(&rows, least) {
         return Ok(None);
     }
-    let unit = (!is_own && lacks_unit(speed)).then(|| speed.header.clone());
+    if torques.len() > 1 {
+        let names = torques.iter().map(|torque| quote(&torque.header)).collect::<Vec<_>>().join(" and ");
+        notes.push(format!("{names} could each be the torque: none is compared until one of them is mapped").into());
+    }
+    // Of a shaft or electrical: in a log rad/s is the latter.
+    let is_open = stated(Channel::OmegaE).is_none()
+        && !speed.is_electrical
+        && matches!(stated_unit(Channel::OmegaE, &heads[speed.index]), Some(Unit::RadianPerSecond | Unit::DegreePerSecond));
+    let unit = (!is_own && (lacks_unit(speed) || is_open)).then(|| speed.header.clone());
     refuse_unclear([speeds.clone()].into_iter(), UnclearTable { speed: unit, ..UnclearTable::default() })?;
     refuse_unlikely(&chosen, &values, is_own.then(|| ChosenColumn::of(Channel::OmegaE, speed.index, &heads[speed.index])))?;
     if rows.len() < count {
@@ -154,21 +184,26 @@ fn refuse_unlikely(chosen: &[ChosenColumn], values: &[Vec<f64>], speed: Option<C
     plausibility::refuse_thousandths(&chosen, &channels)
 }
 
+/// Whether numbers rise by the same step from row to row, as those of the rows do.
+fn counts(values: &[f64]) -> bool {
+    let step = values.get(1).zip(values.first()).map_or(0.0, |(second, first)| second - first);
+    step > 0.0 && values.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-9 * step)
+}
+
 /// Whether the currents change from row to row as those of different points do.
-fn are_points(rows: &[SteadyPoint]) -> bool {
+fn are_points(rows: &[SteadyPoint], least: f64) -> bool {
     let count = rows.len() as f64;
     let mean = |of: fn(&SteadyPoint) -> f64| rows.iter().map(of).sum::<f64>() / count;
     let (d, q) = (mean(|row| row.current.d), mean(|row| row.current.q));
     let variance: f64 = rows.iter().map(|row| (row.current.d - d).powi(2) + (row.current.q - q).powi(2)).sum();
     let change = |pair: &[SteadyPoint]| (pair[1].current.d - pair[0].current.d).powi(2) + (pair[1].current.q - pair[0].current.q).powi(2);
-    variance > 0.0 && rows.windows(2).map(change).sum::<f64>() > LEAST_CHANGE * variance
+    variance > 0.0 && rows.windows(2).map(change).sum::<f64>() > least * variance
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use fluxfit_files::input;
-    use fluxfit_units::Unit;
 
     fn of(text: &str, pole_pairs: Option<u32>, map: &[(&str, &str)]) -> Result<Option<ReadCharacteristic>, FileError> {
         let bytes = input::Bytes::Stream(Box::new(std::io::Cursor::new(text.as_bytes().to_vec())));
@@ -207,6 +242,15 @@ mod tests {
         let map = [("id", "d current [A]"), ("iq", "q current [A]")];
         let Characteristic::SteadyPoints(table) = of(&text, None, &map).unwrap().unwrap().table else { panic!() };
         assert_eq!(table.rows[1].current, Dq { d: -5.0, q: 10.0 });
+        // A speed and a torque whose names say nothing.
+        let text = points("n,id,iq,ud,uq,load", |speed, id, iq| format!("{speed},{id},{iq},1,2,{iq}\n"));
+        let map = [("speed", "n"), ("torque", "load")].map(|(name, header)| (name.to_owned(), header.to_owned())).to_vec();
+        let bytes = input::Bytes::Stream(Box::new(std::io::Cursor::new(text.into_bytes())));
+        let options = LogOptions { map, units: vec![("omega_e".into(), Unit::RpmMechanical)], ..LogOptions::default() };
+        let Characteristic::SteadyPoints(table) = read(Table::open(bytes, None).unwrap(), &options).unwrap().unwrap().table else {
+            panic!()
+        };
+        assert!((table.rows[0].speed - 500.0 * std::f64::consts::TAU / 60.0).abs() < 1e-9 && table.rows[0].torque == Some(10.0));
     }
 
     /// mA under the channels' names, digits, values per unit; and a speed whose unit nobody says.
@@ -222,6 +266,7 @@ mod tests {
             (table(1.0, 1000.37, "n [rpm]"), "mA"),
             (table(5000.37, 1.37, "n [rpm]"), "kV"),
             (table(1.0, 1.0, "speed"), "unit"),
+            (table(1.0, 1.0, "omega [rad/s]"), "unit"),
         ] {
             let refused = of(&text, None, &[]).unwrap_err().to_string();
             assert!(refused.contains(expected), "{refused}");
@@ -248,6 +293,12 @@ mod tests {
             "rpm_mech,id,iq,ud,uq,x\nrpm,%,%,%,%,-",
         ] {
             assert!(matches!(of(&points(header, row), None, &[]), Ok(None)), "{header}");
+        }
+        // Samples that are counted; and a number of the row that is called ID.
+        for header in ["tick,rpm_mech,id,iq,ud,uq", "rpm_mech,ID,q_current,ud,uq,d_current"] {
+            let row = |k: i32| format!("{k},{k},{},{},1,2\n", f64::from(k % 7), f64::from(k % 5));
+            let text = format!("{header}\n{}", (0..120).map(row).collect::<String>());
+            assert!(matches!(of(&text, None, &[]), Ok(None)), "{header}");
         }
         let held: String = (0..900).map(|k| format!("1000,0,{},1,2\n", f64::from(1 + k / 300) + 0.01 * f64::from(k % 2))).collect();
         assert!(matches!(of(&format!("speed_rpm,id,iq,ud,uq\n{held}"), None, &[]), Ok(None)));

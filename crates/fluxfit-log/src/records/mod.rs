@@ -24,7 +24,9 @@ const FRAMES: [&[&str]; 3] =
 fn is_table_of_frames(head: &str) -> bool {
     let names = head.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default().split([',', ';', '\t']);
     let names: Vec<String> = names.map(|name| name.trim_matches([' ', '"']).to_lowercase()).collect();
-    FRAMES.iter().all(|any| any.iter().any(|wanted| names.iter().any(|name| name == wanted)))
+    let has = |any: &[&str]| any.iter().any(|wanted| names.iter().any(|name| name == wanted));
+    // Beside a current or voltage of the other axis `ID` is a current.
+    FRAMES.iter().all(|any| has(any)) && !has(&["iq", "uq", "vq", "i_q", "u_q", "v_q"])
 }
 
 /// A log whose columns are known, and whose rows may not be read yet.
