@@ -46,18 +46,24 @@ impl FirstCells {
     fn of(numbers: &[f64], is_instant: bool) -> Self {
         let has = |number: f64| numbers.contains(&number);
         let first = numbers.first().copied();
-        let step = numbers.get(1).zip(first).map_or(0.0, |(second, first)| second - first);
-        let counts =
-            numbers.len() >= FEWEST_EQUAL && step > 0.0 && numbers.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-6 * step);
         Self {
             has_numbers: first.is_some() || is_instant,
             constant: first.filter(|first| numbers.len() >= FEWEST_EQUAL && numbers.iter().all(|number| number == first)),
             has_no_value: numbers.iter().any(|number| number.abs() > NO_VALUE),
             is_flag: has(0.0) && has(1.0) && numbers.iter().all(|number| [0.0, 1.0].contains(number)),
-            counts,
+            counts: numbers.len() >= FEWEST_EQUAL && counts(numbers),
             falls: numbers.windows(2).filter(|pair| pair[1] < pair[0]).count() > MOST_FALLS,
         }
     }
+}
+
+/// Steps that differ by a smaller part are the same: the digits of a time leave more.
+const SAME_STEP: f64 = 1e-6;
+
+/// Whether numbers rise by the same step from row to row, as the numbers of the rows do.
+pub(crate) fn counts(numbers: &[f64]) -> bool {
+    let step = numbers.get(1).zip(numbers.first()).map_or(0.0, |(second, first)| second - first);
+    step > 0.0 && numbers.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < SAME_STEP * step)
 }
 
 /// What the first rows tell of each column; nothing of a table without rows.
@@ -123,5 +129,8 @@ mod tests {
         assert_eq!(of(&[86_399.0, 86_400.0, 1.0, 2.0]), all);
         assert_eq!(of(&[2.0, 1.0, 3.0, 2.0]), FirstCells { falls: true, ..all });
         assert!(FirstCells::of(&[], true).has_numbers);
+        let numbers: Vec<f64> = (1..=50).map(f64::from).collect();
+        assert_eq!(of(&numbers), FirstCells { counts: true, ..all });
+        assert_eq!(of(&[&numbers[..], &[51.5]].concat()), all);
     }
 }

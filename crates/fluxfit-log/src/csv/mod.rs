@@ -25,7 +25,7 @@ use crate::{
     container::MOST_COLUMNS,
     problem::Problem,
 };
-pub(crate) use first_rows::FirstCells;
+pub(crate) use first_rows::{FirstCells, counts};
 use fluxfit_files::{
     FileError,
     csv::{

@@ -8,7 +8,6 @@
 
 mod alias;
 mod align;
-mod back_emf;
 mod bench_columns;
 mod bench_convention;
 mod bench_units;
@@ -43,6 +42,7 @@ mod rms;
 mod rounded_time;
 mod runs;
 mod scaling;
+mod scope_trace;
 mod selection;
 mod shaft_angle;
 mod steady_points;

@@ -5,7 +5,7 @@
 //! ```
 
 use super::{
-    align, back_emf,
+    align,
     channels::Channels,
     chosen::{self, ChosenColumn},
     columns, even_time,
@@ -13,7 +13,7 @@ use super::{
     layout::Layout,
     lines::Lines,
     options::{LogOptions, ResolvedOptions},
-    phases, plausibility, repair, rounded_time,
+    phases, plausibility, repair, rounded_time, scope_trace,
     table::Table,
     turning,
 };
@@ -196,7 +196,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let at_header = |error: FileError| line.map_or(error.clone(), |line| error.at_line(line));
     let layout = recognize(table.heads(), &mut notes).map_err(at_header)?;
     let named = layout.filter(|layout| !layout.is_canonical());
-    let chosen = columns::choose(&table, named, options, &mut notes).map_err(|error| back_emf::named(&mut table, options, error))?;
+    let chosen = columns::choose(&table, named, options, &mut notes).map_err(|error| scope_trace::named(&mut table, options, error))?;
     let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     rounded_time::refuse(&chosen, &channels)?;
     notes.extend(even_time::settle(&mut channels).map(Note::from));

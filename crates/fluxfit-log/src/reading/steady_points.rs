@@ -19,6 +19,7 @@ use super::{
 use crate::{
     block::ColumnHead,
     channel::Channel,
+    csv::counts,
     header_unit::{HeaderUnit, split_header},
     quantity::{Quantity, TableColumn},
     unclear_table::UnclearTable,
@@ -50,52 +51,34 @@ fn channel(name: &str) -> Option<Channel> {
     of_table.or_else(|| Channel::from_name(name).ok().filter(|channel| CHANNELS.contains(channel)))
 }
 
+/// What a user calls so, of the quantities that every table has.
+fn quantity(name: &str) -> Option<Quantity> {
+    let is_speed = channel(name) == Some(Channel::OmegaE);
+    is_speed.then_some(Quantity::Speed).or((name == Quantity::Torque.name()).then_some(Quantity::Torque))
+}
+
+/// The unit that the user states of a channel.
+fn said_unit(of: Channel, options: &LogOptions) -> Option<Unit> {
+    options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit)
+}
+
 /// Reads such a table, if it is one. A file of which the user maps other channels is none.
 ///
 /// # Errors
 /// If several columns could be the speed, or its unit is open; if the values are none in the units that are assumed.
 pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
-    let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
-    let is_instant = |head: &ColumnHead| {
-        let of_row = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
-        head.is_time || head.instants.is_some() || is(Channel::T, head) || of_row
-    };
-    let is_torque = |name: &str| name == Quantity::Torque.name();
-    let is_other = options.map.iter().any(|(name, _)| channel(name).is_none() && !is_torque(name));
-    let first_cells = table.first_cells();
-    // The layout of a tool is that of a log.
-    if is_other || heads.iter().any(is_instant) || Layout::recognize(&names).is_some() {
-        return Ok(None);
-    }
-    let mapped = |of: Channel| {
-        let (_, header) = options.map.iter().find(|(name, _)| channel(name) == Some(of))?;
-        place(&heads, header)
-    };
-    let stated = |of: Channel| options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit);
-    let find = |channel: Channel| {
-        let index = mapped(channel).or_else(|| automatic(channel, &heads).ok().flatten()).or_else(|| alias::find(channel, &heads));
-        // Root mean squares that say so are none of these.
-        let index = index.or_else(|| heads.iter().position(|head| is(channel, head)))?;
-        let of_rms = rms::unit(channel).filter(|_| rms::is_rms(&heads[index]));
-        let unit = stated(channel).or(of_rms).or_else(|| stated_unit(channel, &heads[index]));
-        // Whoever reads it as a log says what is wrong with another unit.
-        (unit.is_some() || has_no_unit(channel, &heads[index])).then_some((index, unit))
-    };
+    let find = |channel: Channel| if is_of_log(&heads, options) { None } else { find(channel, &heads, options) };
     let [Some(ud), Some(uq), Some(id), Some(iq)] = [Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].map(find) else {
         return Ok(None);
     };
     let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
-    let of_table = |(name, header): &(String, String)| {
-        let quantity = if is_torque(name) { Some(Quantity::Torque) } else { None };
-        let quantity = quantity.or((channel(name) == Some(Channel::OmegaE)).then_some(Quantity::Speed))?;
-        Some((TableColumn::Of(quantity), header.clone()))
-    };
-    let map = options.map.iter().filter_map(of_table).collect();
-    let columns = found_all(&heads, &Stated { pole_pairs, speed: stated(Channel::OmegaE), map })?;
+    let map = options.map.iter().filter_map(|(name, header)| Some((TableColumn::Of(quantity(name)?), header.clone()))).collect();
+    let columns = found_all(&heads, &Stated { pole_pairs, speed: said_unit(Channel::OmegaE, options), map })?;
     let of = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<&Found>>();
-    let speeds = of(Quantity::Speed);
+    let (speeds, torques) = (of(Quantity::Speed), of(Quantity::Torque));
     let Some(speed) = speeds.first() else { return Ok(None) };
+    let torque = torques.first().filter(|_| torques.len() == 1);
     // The channel's own name is that of electrical rad/s.
     let is_own = automatic(Channel::OmegaE, &heads).ok().flatten() == Some(speed.index) && !speed.has_unit;
     let mut notes = vec![
@@ -109,62 +92,85 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         true => 1.0 / f64::from(pole_pairs.unwrap_or(1)),
         false => speed.in_si * convention(speed, Quantity::Speed, pole_pairs, &mut notes),
     };
-    let torques = of(Quantity::Torque);
-    let torque = torques.first().filter(|_| torques.len() == 1);
-    let wanted: Vec<usize> = [ud.0, uq.0, id.0, iq.0, speed.index].into_iter().chain(torque.map(|torque| torque.index)).collect();
-    let wanted: Vec<(usize, &str)> = wanted.into_iter().map(|index| (index, heads[index].name.as_str())).collect();
+    let used: Vec<usize> = [ud.index, uq.index, id.index, iq.index, speed.index].into_iter().chain(torque.map(|own| own.index)).collect();
+    let wanted: Vec<(usize, &str)> = used.iter().map(|index| (*index, heads[*index].name.as_str())).collect();
+    let first_cells = table.first_cells();
     // What cannot be read, or is too long, is told by whoever reads it as a log.
     let Ok(mut values) = values_of(&mut table, &wanted) else { return Ok(None) };
-    let chosen = [(Channel::Ud, ud), (Channel::Uq, uq), (Channel::Id, id), (Channel::Iq, iq)].map(|(channel, (index, unit))| {
-        let is_unit_written = unit.is_some();
-        ChosenColumn { is_unit_written, unit: unit.unwrap_or(channel.unit()), ..ChosenColumn::of(channel, index, &heads[index]) }
-    });
+    let chosen = [ud, uq, id, iq];
     for (column, values) in chosen.iter().zip(&mut values) {
         column.to_si(values);
     }
     let factors = [per_turn].into_iter().chain(torque.map(|torque| torque.in_si));
     values[chosen.len()..].iter_mut().zip(factors).for_each(|(values, factor)| values.iter_mut().for_each(|value| *value *= factor));
-    let count = values.first().map_or(0, Vec::len);
-    let row = |row: usize| SteadyPoint {
-        speed: values[4][row],
-        voltage: Dq { d: values[0][row], q: values[1][row] },
-        current: Dq { d: values[2][row], q: values[3][row] },
-        torque: values.get(5).map(|torque| torque[row]).filter(|torque| torque.is_finite()),
-    };
-    let is_whole = |point: &SteadyPoint| {
-        let SteadyPoint { speed, voltage, current, .. } = *point;
-        (speed + voltage.d + voltage.q + current.d + current.q).is_finite()
-    };
-    let rows: Vec<SteadyPoint> = (0..count).map(row).filter(is_whole).collect();
-    let used: Vec<usize> = wanted.iter().map(|(index, _)| *index).collect();
+    let rows = rows(&values);
     let is_counted = (0..heads.len()).any(|k| !used.contains(&k) && first_cells.get(k).is_some_and(|cells| cells.counts));
-    let are_many = rows.len() > FEW_POINTS;
     // A current that counts the rows is the number of the row.
     let is_row = values[2..4].iter().any(|values| counts(values) && values.iter().all(|value| value.fract() == 0.0));
-    let least = if are_many || is_counted { LEAST_CHANGE_OF_MANY } else { LEAST_CHANGE };
-    if rows.len() > MOST_POINTS || is_counted && are_many || is_row || !are_points(&rows, least) {
+    if is_row || !are_points(&rows, is_counted) {
         return Ok(None);
     }
     if torques.len() > 1 {
         let names = torques.iter().map(|torque| quote(&torque.header)).collect::<Vec<_>>().join(" and ");
         notes.push(format!("{names} could each be the torque: none is compared until one of them is mapped").into());
     }
-    // Of a shaft or electrical: in a log rad/s is the latter.
-    let is_open = stated(Channel::OmegaE).is_none()
-        && !speed.is_electrical
-        && matches!(stated_unit(Channel::OmegaE, &heads[speed.index]), Some(Unit::RadianPerSecond | Unit::DegreePerSecond));
-    let unit = (!is_own && (lacks_unit(speed) || is_open)).then(|| speed.header.clone());
+    let unit = (!is_own && is_open(speed, &heads, options)).then(|| speed.header.clone());
     refuse_unclear([speeds.clone()].into_iter(), UnclearTable { speed: unit, ..UnclearTable::default() })?;
     refuse_unlikely(&chosen, &values, is_own.then(|| ChosenColumn::of(Channel::OmegaE, speed.index, &heads[speed.index])))?;
+    let count = values[0].len();
     if rows.len() < count {
         notes.push(format!("{} of {count} rows are not whole and are left out", count - rows.len()).into());
     }
-    let named = [("voltage", ud.0), ("voltage", uq.0), ("current", id.0), ("current", iq.0), ("speed", speed.index)];
-    let named = named.into_iter().chain(torque.map(|torque| ("torque", torque.index)));
-    let columns = named.map(|(quantity, index)| (quantity, heads[index].name.trim().to_owned())).collect();
+    let names = ["voltage", "voltage", "current", "current", "speed", "torque"];
+    let columns = names.into_iter().zip(wanted).map(|(quantity, (_, header))| (quantity, header.trim().to_owned())).collect();
     let has_electrical_speed = pole_pairs.is_none() && (is_own || speed.is_electrical);
     let table = Characteristic::SteadyPoints(SteadyPoints { rows });
     Ok(Some(ReadCharacteristic { columns, table, notes, has_electrical_speed }))
+}
+
+/// Whether the columns, or what the user says of them, are those of a log or of another table.
+fn is_of_log(heads: &[ColumnHead], options: &LogOptions) -> bool {
+    let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
+    let is_instant = |head: &ColumnHead| {
+        let of_row = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
+        head.is_time || head.instants.is_some() || is(Channel::T, head) || of_row
+    };
+    let is_other = |name: &str| channel(name).is_none() && quantity(name).is_none();
+    // The layout of a tool is that of a log.
+    options.map.iter().any(|(name, _)| is_other(name)) || heads.iter().any(is_instant) || Layout::recognize(&names).is_some()
+}
+
+/// The column of a channel with its unit: the one that the user maps, or that has one of its names, also as a root mean square.
+fn find(of: Channel, heads: &[ColumnHead], options: &LogOptions) -> Option<ChosenColumn> {
+    let mapped = options.map.iter().find(|(name, _)| channel(name) == Some(of)).and_then(|(_, header)| place(heads, header));
+    let index = mapped.or_else(|| automatic(of, heads).ok().flatten()).or_else(|| alias::find(of, heads));
+    let index = index.or_else(|| heads.iter().position(|head| is(of, head)))?;
+    let head = &heads[index];
+    let of_rms = rms::unit(of).filter(|_| rms::is_rms(head));
+    let unit = said_unit(of, options).or(of_rms).or_else(|| stated_unit(of, head));
+    // Whoever reads it as a log says what is wrong with another unit.
+    let is_readable = unit.is_some() || has_no_unit(of, head);
+    let column = ChosenColumn { is_unit_written: unit.is_some(), unit: unit.unwrap_or(of.unit()), ..ChosenColumn::of(of, index, head) };
+    is_readable.then_some(column)
+}
+
+/// Whether nothing states the unit of a speed, or whether it is that of the shaft: in a log rad/s is the electrical one.
+fn is_open(speed: &Found, heads: &[ColumnHead], options: &LogOptions) -> bool {
+    let unit = stated_unit(Channel::OmegaE, &heads[speed.index]);
+    let is_of_either = !speed.is_electrical && matches!(unit, Some(Unit::RadianPerSecond | Unit::DegreePerSecond));
+    lacks_unit(speed) || is_of_either && said_unit(Channel::OmegaE, options).is_none()
+}
+
+/// The rows that are whole, in SI; the torque is the last column, if there is one.
+fn rows(values: &[Vec<f64>]) -> Vec<SteadyPoint> {
+    let row = |row: usize| SteadyPoint {
+        voltage: Dq { d: values[0][row], q: values[1][row] },
+        current: Dq { d: values[2][row], q: values[3][row] },
+        speed: values[4][row],
+        torque: values.get(5).map(|torque| torque[row]).filter(|torque| torque.is_finite()),
+    };
+    let is_whole = |row: &usize| values[..CHANNELS.len()].iter().all(|values| values[*row].is_finite());
+    (0..values[0].len()).filter(is_whole).map(row).collect()
 }
 
 /// Whether neither the name nor a row of units has a unit.
@@ -184,14 +190,13 @@ fn refuse_unlikely(chosen: &[ChosenColumn], values: &[Vec<f64>], speed: Option<C
     plausibility::refuse_thousandths(&chosen, &channels)
 }
 
-/// Whether numbers rise by the same step from row to row, as those of the rows do.
-fn counts(values: &[f64]) -> bool {
-    let step = values.get(1).zip(values.first()).map_or(0.0, |(second, first)| second - first);
-    step > 0.0 && values.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-9 * step)
-}
-
-/// Whether the currents change from row to row as those of different points do.
-fn are_points(rows: &[SteadyPoint], least: f64) -> bool {
+/// Whether the currents change from row to row as those of different points do; beside a column that counts the rows, or not.
+fn are_points(rows: &[SteadyPoint], is_counted: bool) -> bool {
+    let are_many = rows.len() > FEW_POINTS;
+    if rows.len() > MOST_POINTS || is_counted && are_many {
+        return false;
+    }
+    let least = if are_many || is_counted { LEAST_CHANGE_OF_MANY } else { LEAST_CHANGE };
     let count = rows.len() as f64;
     let mean = |of: fn(&SteadyPoint) -> f64| rows.iter().map(of).sum::<f64>() / count;
     let (d, q) = (mean(|row| row.current.d), mean(|row| row.current.q));
