@@ -7,7 +7,7 @@ use super::{
     bench_columns::{Found, INSTANT, Stated, found, found_all, is_direct, is_driven, place, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points},
     layout::NotALog,
-    mapping::Mapping,
+    mapping::Park,
     options::LogOptions,
     proposal::propose,
     resemblance::words,
@@ -45,7 +45,8 @@ pub fn read_characteristic(path: &Path, options: &LogOptions) -> Result<Option<R
 pub fn read_characteristic_among(path: &Path, all: &[PathBuf], options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
     // What cannot be opened is told by whoever reads it as a log.
     let open = |path: &Path| input::open(path).and_then(|bytes| Table::open(bytes, None));
-    let may_be_points = options.mapping == Mapping { pole_pairs: options.mapping.pole_pairs, ..Mapping::default() } && path.is_file();
+    // With the time between rows stated they are those of a log; another scaling of the transform is one of logs alone.
+    let may_be_points = options.mapping.sample_period.is_none() && options.mapping.park == Park::default() && path.is_file();
     if may_be_points
         && let Ok(table) = open(path)
         && let Some(points) = steady_points::read(table, options).map_err(|error| error.in_file(&input::name(path)))?

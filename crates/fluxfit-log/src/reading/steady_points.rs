@@ -7,6 +7,7 @@ use super::{
     channels::Channels,
     chosen::ChosenColumn,
     layout::Layout,
+    mapping::MappedColumn,
     names::automatic,
     options::LogOptions,
     plausibility,
@@ -51,15 +52,26 @@ fn channel(name: &str) -> Option<Channel> {
     of_table.or_else(|| Channel::from_name(name).ok().filter(|channel| CHANNELS.contains(channel)))
 }
 
-/// What a user calls so, of the quantities that every table has.
-fn quantity(name: &str) -> Option<Quantity> {
-    let is_speed = channel(name) == Some(Channel::OmegaE);
-    is_speed.then_some(Quantity::Speed).or((name == Quantity::Torque.name()).then_some(Quantity::Torque))
+/// Whether a user calls the torque so.
+fn is_torque(name: &str) -> bool {
+    name == Quantity::Torque.name()
+}
+
+/// The entry of a channel in the mapping file.
+fn entry(of: Channel, options: &LogOptions) -> Option<&MappedColumn> {
+    options.mapping.columns.iter().find(|column| column.channel == of)
+}
+
+/// The column that the user names for a channel.
+fn said_header(of: Channel, options: &LogOptions) -> Option<&String> {
+    let by_option = options.map.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, header)| header);
+    by_option.or_else(|| entry(of, options)?.header.as_ref())
 }
 
 /// The unit that the user states of a channel.
 fn said_unit(of: Channel, options: &LogOptions) -> Option<Unit> {
-    options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit)
+    let by_option = options.units.iter().find(|(name, _)| channel(name) == Some(of)).map(|(_, unit)| *unit);
+    by_option.or_else(|| entry(of, options)?.unit)
 }
 
 /// Reads such a table, if it is one. A file of which the user maps other channels is none.
@@ -73,7 +85,9 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
         return Ok(None);
     };
     let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs);
-    let map = options.map.iter().filter_map(|(name, header)| Some((TableColumn::Of(quantity(name)?), header.clone()))).collect();
+    let torque = options.map.iter().filter(|(name, _)| is_torque(name)).map(|(_, header)| (Quantity::Torque, header));
+    let said = said_header(Channel::OmegaE, options).map(|header| (Quantity::Speed, header));
+    let map = said.into_iter().chain(torque).map(|(quantity, header)| (TableColumn::Of(quantity), header.clone())).collect();
     let columns = found_all(&heads, &Stated { pole_pairs, speed: said_unit(Channel::OmegaE, options), map })?;
     let of = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<&Found>>();
     let (speeds, torques) = (of(Quantity::Speed), of(Quantity::Torque));
@@ -101,6 +115,7 @@ pub(super) fn read(mut table: Table, options: &LogOptions) -> Result<Option<Read
     for (column, values) in chosen.iter().zip(&mut values) {
         column.to_si(values);
     }
+    let per_turn = per_turn * entry(Channel::OmegaE, options).map_or(1.0, |entry| entry.factor);
     let factors = [per_turn].into_iter().chain(torque.map(|torque| torque.in_si));
     values[chosen.len()..].iter_mut().zip(factors).for_each(|(values, factor)| values.iter_mut().for_each(|value| *value *= factor));
     let rows = rows(&values);
@@ -135,22 +150,29 @@ fn is_of_log(heads: &[ColumnHead], options: &LogOptions) -> bool {
         let of_row = words(&head.name).iter().any(|word| INSTANT.contains(&word.as_str()));
         head.is_time || head.instants.is_some() || is(Channel::T, head) || of_row
     };
-    let is_other = |name: &str| channel(name).is_none() && quantity(name).is_none();
+    let is_other = |name: &str| channel(name).is_none() && !is_torque(name);
+    let is_entry_of_log = |column: &MappedColumn| column.is_times_u_dc || !CHANNELS.contains(&column.channel);
     // The layout of a tool is that of a log.
-    options.map.iter().any(|(name, _)| is_other(name)) || heads.iter().any(is_instant) || Layout::recognize(&names).is_some()
+    options.map.iter().any(|(name, _)| is_other(name))
+        || options.mapping.columns.iter().any(is_entry_of_log)
+        || heads.iter().any(is_instant)
+        || Layout::recognize(&names).is_some()
 }
 
 /// The column of a channel with its unit: the one that the user maps, or that has one of its names, also as a root mean square.
 fn find(of: Channel, heads: &[ColumnHead], options: &LogOptions) -> Option<ChosenColumn> {
-    let mapped = options.map.iter().find(|(name, _)| channel(name) == Some(of)).and_then(|(_, header)| place(heads, header));
-    let index = mapped.or_else(|| automatic(of, heads).ok().flatten()).or_else(|| alias::find(of, heads));
-    let index = index.or_else(|| heads.iter().position(|head| is(of, head)))?;
+    let by_name = || automatic(of, heads).ok().flatten().or_else(|| alias::find(of, heads));
+    let by_name = || by_name().or_else(|| heads.iter().position(|head| is(of, head)));
+    // Whoever reads it as a log says that a column is not there.
+    let index = said_header(of, options).map_or_else(by_name, |header| place(heads, header))?;
     let head = &heads[index];
     let of_rms = rms::unit(of).filter(|_| rms::is_rms(head));
     let unit = said_unit(of, options).or(of_rms).or_else(|| stated_unit(of, head));
     // Whoever reads it as a log says what is wrong with another unit.
     let is_readable = unit.is_some() || has_no_unit(of, head);
-    let column = ChosenColumn { is_unit_written: unit.is_some(), unit: unit.unwrap_or(of.unit()), ..ChosenColumn::of(of, index, head) };
+    let scale = entry(of, options).map_or(1.0, |entry| entry.factor);
+    let is_unit_written = unit.is_some() || scale != 1.0;
+    let column = ChosenColumn { is_unit_written, unit: unit.unwrap_or(of.unit()), scale, ..ChosenColumn::of(of, index, head) };
     is_readable.then_some(column)
 }
 
@@ -207,7 +229,7 @@ fn are_points(rows: &[SteadyPoint], is_counted: bool) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::mapping::Mapping, *};
     use fluxfit_files::input;
 
     fn of(text: &str, pole_pairs: Option<u32>, map: &[(&str, &str)]) -> Result<Option<ReadCharacteristic>, FileError> {
@@ -256,6 +278,26 @@ mod tests {
             panic!()
         };
         assert!((table.rows[0].speed - 500.0 * std::f64::consts::TAU / 60.0).abs() < 1e-9 && table.rows[0].torque == Some(10.0));
+    }
+
+    /// Voltages in digits of 5 mV by a mapping file; a column that is not there is for the log to name.
+    #[test]
+    fn a_mapping_file_may_have_its_scales() {
+        let text = points("n [rpm],id [A],iq [A],ud,uq", |n, id, iq| format!("{n},{id},{iq},{},{}\n", 200.0 * id, 20.0 * n));
+        let read = |columns: &str| {
+            let mapping = Mapping::parse("m.toml", format!("[columns]\n{columns}").as_bytes()).unwrap();
+            let bytes = input::Bytes::Stream(Box::new(std::io::Cursor::new(text.clone().into_bytes())));
+            read(Table::open(bytes, None).unwrap(), &LogOptions { mapping, ..LogOptions::default() })
+        };
+        assert!(read("").unwrap_err().to_string().contains("whole numbers"));
+        let scaled = read("ud = { column = \"ud\", scale = 0.005 }\nuq = { column = \"uq\", scale = 0.005 }\n").unwrap().unwrap();
+        let Characteristic::SteadyPoints(table) = scaled.table else { panic!() };
+        assert_eq!(table.rows[1].voltage, Dq { d: -5.0, q: 50.0 });
+        let reversed =
+            read("ud = { scale = 0.005 }\nuq = { scale = 0.005 }\nomega_e = { column = \"n [rpm]\", unit = \"rpm-mech\", sign = -1 }\n");
+        let Characteristic::SteadyPoints(table) = reversed.unwrap().unwrap().table else { panic!() };
+        assert!((table.rows[1].speed + 500.0 * std::f64::consts::TAU / 60.0).abs() < 1e-9);
+        assert!(matches!(read("ud = \"vd\"\n"), Ok(None)));
     }
 
     /// mA under the channels' names, digits, values per unit; and a speed whose unit nobody says.

@@ -31,12 +31,12 @@ const MOST_TURN: f64 = 2.5;
 /// Share of rows that may turn more: the end of a mechanical turn, a lost row.
 const FEW: f64 = 0.02;
 
-/// What an angle turns beyond the speed's turns, rad and on average, in rows so far apart that whole turns lie between them: less than this
-/// if it is the speed's angle, a quarter of a turn if it is none.
+/// Where whole turns lie between rows, the angle goes on by what the speed says but for whole turns: within this on average, rad. An angle
+/// that is not the speed's is a quarter of a turn away on average.
 const OF_SPEED: f64 = 0.5;
 
-/// Length of the mean of the turns between rows, whole turns left out, above which they are nearly the same all the time: then the angle
-/// may go with them by chance.
+/// Where the turns between rows, as vectors of length one, have a mean longer than this, they are nearly the same in all rows: then an angle
+/// may fit them by chance.
 const ALL_ALIKE: f64 = 0.7;
 
 /// Most pole pairs by which a speed is taken to be wrong.
