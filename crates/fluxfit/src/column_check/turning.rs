@@ -31,8 +31,8 @@ const MOST_TURN: f64 = 2.5;
 /// Share of rows that may turn more: the end of a mechanical turn, a lost row.
 const FEW: f64 = 0.02;
 
-/// Where whole turns lie between rows, the angle goes on by what the speed says but for whole turns: within this on average, rad. An angle
-/// that is not the speed's is a quarter of a turn away on average.
+/// Where whole turns lie between rows, the angle goes on by what the speed says but for whole turns: within this on average, rad. An
+/// angle that is not the speed's is a quarter of a turn away on average.
 const OF_SPEED: f64 = 0.5;
 
 /// Where the turns between rows, as vectors of length one, have a mean longer than this, they are nearly the same in all rows: then an angle
