@@ -35,8 +35,8 @@ const FEW: f64 = 0.02;
 /// angle that is not the speed's is a quarter of a turn away on average.
 const OF_SPEED: f64 = 0.5;
 
-/// Where the turns between rows, as vectors of length one, have a mean longer than this, they are nearly the same in all rows: then an angle
-/// may fit them by chance.
+/// Where the turns between rows, as vectors of length one, have a mean longer than this, they are nearly the same in all rows: then an
+/// angle may fit them by chance.
 const ALL_ALIKE: f64 = 0.7;
 
 /// Most pole pairs by which a speed is taken to be wrong.
