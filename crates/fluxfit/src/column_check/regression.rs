@@ -178,6 +178,11 @@ fn noise(values: &[f64]) -> f64 {
 
 /// Means of consecutive rows that carry current at speed.
 pub(super) fn means(log: &Log) -> Vec<Mean> {
+    means_of_voltages(log, 0)
+}
+
+/// The same with the voltages of so many rows later, or earlier where negative.
+pub(super) fn means_of_voltages(log: &Log, later: isize) -> Vec<Mean> {
     let columns = log.columns();
     let fastest = columns.omega_e.iter().fold(0.0_f64, |most, omega| most.max(omega.abs()));
     let peak = log.peak_current();
@@ -195,7 +200,8 @@ pub(super) fn means(log: &Log) -> Vec<Mean> {
                 let omega = columns.omega_e[row];
                 let direction = if length > 0.0 { Dq { d: i.d / length, q: i.q / length } } else { i };
                 let add = |sum: Dq, d: f64, q: f64| Dq { d: sum.d + d / rows as f64, q: sum.q + q / rows as f64 };
-                mean.u = add(mean.u, columns.ud[row], columns.uq[row]);
+                let of_voltage = row.saturating_add_signed(later).clamp(segment.rows.start, segment.rows.end - 1);
+                mean.u = add(mean.u, columns.ud[of_voltage], columns.uq[of_voltage]);
                 mean.i = add(mean.i, i.d, i.q);
                 mean.direction = add(mean.direction, direction.d, direction.q);
                 mean.omega_i = add(mean.omega_i, omega * i.d, omega * i.q);
