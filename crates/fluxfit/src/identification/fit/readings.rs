@@ -203,8 +203,9 @@ pub(super) fn is_better(other: &TimingTrial, tried: &[TimingTrial], independent:
 }
 
 /// The readings that are not ruled out, given how many independent residuals there are. The best one first. Beside one of a drive that logs
-/// each of its periods no other kind is possible; voltages that act at once are of no such drive. Steps by Euler's rule are listed among
-/// those of a drive only if they fit better for certain, though not by enough to be taken.
+/// each of its periods no other kind is possible, but the same one held in the rotor's frame, as simulators and a few drives have it: it
+/// differs by a twenty-fourth of the square of a period's turn, which few logs tell. Voltages that act at once are of no such drive.
+/// Steps by Euler's rule are listed among those of a drive only if they fit better for certain, though not by enough to be taken.
 pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator<Item = &TimingTrial> {
     let least = tried.first().map_or(0.0, TimingTrial::mean_square);
     let any_kind = tried.first().is_some_and(|best| best.timing.is_unusual() || best.timing.acts_at_once());
@@ -212,7 +213,9 @@ pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator
     let is_possible =
         move |other: &TimingTrial| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG;
     let is_steps = |other: &TimingTrial| VoltageTiming::BY_EULERS_RULE.contains(&other.timing);
-    tried.iter().filter(move |other| is_possible(other) && (any_kind || !other.timing.is_unusual() || is_steps(other)))
+    let of_best = tried.first().map(|best| best.timing);
+    let is_of_kind = move |timing: VoltageTiming| !timing.is_unusual() || of_best.is_some_and(|best| best.is_held_elsewhere(timing));
+    tried.iter().filter(move |other| is_possible(other) && (any_kind || is_of_kind(other.timing) || is_steps(other)))
 }
 
 /// The means that pass for the best, where they fit about as well. Neither is exact, so the evidence does not count.
@@ -272,6 +275,20 @@ mod tests {
         assert_eq!(suspected(once, &tried(&with_one), &auto), VoltageTiming::MEANS_OF_COMMANDS[1..]);
         let stated = Request { voltage_timing: Some(once), ..Request::default() };
         assert_eq!(suspected(once, &tried(&[once]), &stated), []);
+    }
+
+    /// Simulators hold a voltage in the rotor's frame where inverters hold it in the stator; no other reading of theirs is possible.
+    #[test]
+    fn where_a_voltage_is_held_is_in_doubt_unless_the_log_tells() {
+        let trial = |delay, frame, mean_square| {
+            let drive = Adjustable::from(Motor { rs: 1.0, ld: 1e-3, lq: 1e-3, psi_f: 0.1 });
+            let polished = Polished { drive, cost: 200.0 * mean_square, converged: true };
+            TimingTrial { timing: VoltageTiming::Delayed { delay, frame }, polished, rows: 100 }
+        };
+        let (middle, rotor) = (VoltageFrame::Middle, VoltageFrame::Rotor);
+        let best = trial(1, middle, 1.0);
+        let count = |other| possible(&[best, other], 200.0).count();
+        assert_eq!([count(trial(1, rotor, 1.04)), count(trial(1, rotor, 1.06)), count(trial(0, rotor, 1.04))], [2, 1, 1]);
     }
 
     /// Its distance is doubt however strong the evidence against it is. That of other means is not, nor its own beside another reading.
