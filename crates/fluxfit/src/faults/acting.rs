@@ -219,6 +219,14 @@ impl<V: Number> Acting<V> {
         if self.kinds.filter { filtered(self.current_filter, y, i, bend, place) } else { i[1] }
     }
 
+    /// One where there is no filter of the currents, else zero.
+    #[inline(always)]
+    pub(crate) fn unfiltered_part(&self) -> V {
+        let [kept, ..] = self.current_filter;
+        let (zero, one) = (kept.constant(0.0), kept.constant(1.0));
+        zero.if_less(kept, zero, one)
+    }
+
     /// The voltage that the drive means to act on the motor over a period, V, in the frame of its magnet, where `logged` was logged, and
     /// `before` for the period before.
     #[inline(always)]

@@ -298,8 +298,9 @@ fn lanes<'a, S: Simd, const K: usize, const C: usize>(
 /// The linear unknowns of a lane that fit best, and the part of the cost that is left.
 fn linear_unknowns<S: Simd, const K: usize>(sums: &Sums<Lanes<S, K>>, lane: usize, alternates: bool) -> ([f64; LINEAR_UNKNOWNS], f64) {
     let unknowns = if alternates { LINEAR_UNKNOWNS } else { LINEAR_UNKNOWNS / 2 };
-    // Unknowns that there are not are held at zero by the identity.
-    let normal = SMatrix::<f64, LINEAR_UNKNOWNS, LINEAR_UNKNOWNS>::from_fn(|row, column| match row.max(column) < unknowns {
+    // Unknowns that there are not, or that no row shows, are held at zero by the identity.
+    let is_shown = |unknown: usize| unknown < unknowns && sums.normal(unknown, unknown).lane(lane) != 0.0;
+    let normal = SMatrix::<f64, LINEAR_UNKNOWNS, LINEAR_UNKNOWNS>::from_fn(|row, column| match is_shown(row) && is_shown(column) {
         true => sums.normal(row, column).lane(lane),
         false => f64::from(u8::from(row == column)),
     });

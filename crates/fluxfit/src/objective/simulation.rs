@@ -113,11 +113,13 @@ impl<V: Number, const C: usize> Drives<V, C> {
     /// Simulates a segment and sums its squares and products; what [`errors`](Self::errors) will need of it goes into a trace.
     #[inline(always)]
     pub(super) fn sums(&self, segment: &SimulatedSegment, trace: Option<&mut Trace>) -> Sums<V> {
-        let (zero, one) = (self.motors.rs.constant(0.0), self.motors.rs.constant(1.0));
+        let zero = self.motors.rs.constant(0.0);
         let mut sums = Sums { total: zero, right: [zero; LINEAR_UNKNOWNS], normal: [zero; PAIRS] };
-        // The first row's error is zero by definition; a first current changes it one for one.
-        (sums.normal[pair(0, 0)], sums.normal[pair(1, 1)]) = (one, one);
         let mut state = self.start(segment);
+        // The first row's error is zero by definition; a first current changes it one for one, but behind a filter.
+        for k in 0..FIRST_CURRENT {
+            sums.normal[pair(k, k)] = state.response[k][k] * state.response[k][k];
+        }
         if !self.take_the_short_path() {
             self.faulty_rows(segment, &mut state, &mut sums, trace);
             return sums;
@@ -140,11 +142,12 @@ impl<V: Number, const C: usize> Drives<V, C> {
     pub(super) fn errors(&self, segment: &SimulatedSegment, linear: &[V; LINEAR_UNKNOWNS], trace: &mut Trace) {
         let lanes = trace.lanes;
         let (first, errors) = trace.errors.split_at_mut(2 * lanes);
-        store([-linear[0], -linear[1]], first);
+        let start = self.start(segment);
+        store([-(linear[0] * start.response[0][0]), -(linear[1] * start.response[1][1])], first);
         let errors = errors.chunks_exact_mut(2 * lanes);
         if self.take_the_short_path() {
-            let i = self.start(segment).i;
-            perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, [i[0] + linear[0], i[1] + linear[1]], errors);
+            let i = [start.i[0] + linear[0], start.i[1] + linear[1]];
+            perfect_errors(&segment.rows_of_periods, &self.polynomials, linear, i, errors);
             return;
         }
         for (errors, responses) in errors.zip(trace.responses[..trace.alive].chunks_exact(2 * lanes * LINEAR_UNKNOWNS)) {
@@ -170,9 +173,13 @@ impl<V: Number, const C: usize> Drives<V, C> {
         let measured = segment.measured[0];
         let late_by = segment.periods.first().map_or(0.0, |period| period.late_by);
         let i = self.faults.motor_current([zero.constant(measured.d), zero.constant(measured.q)], segment.turns[0], late_by);
-        let response = [[one, zero], [zero, one], [zero; 2], [zero; 2]];
-        // A filter is taken to have settled.
-        let motor_response = if self.faults.kinds.filter { response } else { [[zero; 2]; LINEAR_UNKNOWNS] };
+        let unit = |one: V| [[one, zero], [zero, one], [zero; 2], [zero; 2]];
+        // A filter's output is what was logged, whatever the current behind it: it need not have settled, as where a log begins with a
+        // drive that starts.
+        let (response, motor_response) = match self.faults.kinds.filter {
+            true => (unit(self.faults.unfiltered_part()), unit(one)),
+            false => (unit(one), [[zero; 2]; LINEAR_UNKNOWNS]),
+        };
         State { i, error: [zero; 2], response, filtered: i, motor_response }
     }
 

@@ -100,7 +100,7 @@ fn of_an_inverter(motor: &Motor, sampled: usize, what: Logged, lost: f64) -> Log
     behind_filters(motor, sampled, what, lost, 0.0)
 }
 
-/// The same where the logged currents passed a filter of this time constant, s, in each phase.
+/// The same where the logged currents passed a filter of this time constant, s, in each phase. It starts with none of the current.
 fn behind_filters(motor: &Motor, sampled: usize, what: Logged, lost: f64, time_constant: f64) -> Log {
     const STEPS: usize = 40_000;
     let (mut draws, mut noise) = (Draws::seeded(5, 0), Draws::seeded(6, 0));
@@ -146,12 +146,6 @@ fn behind_filters(motor: &Motor, sampled: usize, what: Logged, lost: f64, time_c
         logged = Dq { d: filtered(held.d, old.d, i.d), q: filtered(held.q, old.q, i.q) };
         before = i;
     }
-    // The log begins when the filter holds what it will: it starts with none of the current.
-    let begin = if time_constant > 0.0 { 50 } else { 0 };
-    for column in [&mut columns.t, &mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq, &mut columns.omega_e] {
-        column.drain(..begin);
-    }
-    columns.theta_e.iter_mut().for_each(|theta_e| drop(theta_e.drain(..begin)));
     Log::new(columns).unwrap()
 }
 
@@ -171,7 +165,11 @@ fn log(course: &Course, steps: usize, value: impl Fn(&[Dq]) -> Dq) -> Log {
     Log::new(columns).unwrap()
 }
 
-/// The reading, and every parameter identified, within this percentage of the truth and one and a half of its 95 % half-widths.
+/// What a number may be beside one and a half of its 95 % half-widths, as a part of it, before it counts as wrong, here as in the table of
+/// drives: of noise as small as here, the chords of a filtered current leave 0.01 %.
+const BESIDE_THE_INTERVAL: f64 = 5e-4;
+
+/// The reading, and every parameter identified, within this percentage of the truth and not wrong.
 fn holds(log: &Log, timing: VoltageTiming, percent: f64) {
     holds_for(&TRUTH, log, timing, percent);
 }
@@ -196,7 +194,8 @@ fn read_as(motor: &Motor, log: &Log, request: &Request, timing: VoltageTiming, p
         let (judgement, truth) = (found.parameter(parameter), motor.get(parameter));
         let error = judgement.raw - truth;
         println!("{}: {:+.3} %, {:?}", parameter.key(), 100.0 * error / truth, judgement.verdict);
-        assert!(error.abs() < 0.01 * percent * truth && error.abs() < 1.5 * judgement.uncertainty.half_width, "{judgement:?}");
+        let is_wrong = error.abs() > 1.5 * judgement.uncertainty.half_width + BESIDE_THE_INTERVAL * truth;
+        assert!(error.abs() < 0.01 * percent * truth && !is_wrong, "{judgement:?}");
         (parameter, judgement.verdict)
     };
     Parameter::ALL.map(judged).to_vec()

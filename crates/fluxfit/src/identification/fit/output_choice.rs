@@ -519,7 +519,7 @@ impl Attempt {
     fn of(start: &FaultSearch, ruled_out: &[Fault], observer: Option<&FaultTrial>) -> Self {
         let mut search = FaultSearch { ruled_out: ruled_out.to_vec(), ..start.clone() };
         let terms = search.run(observer);
-        let unphysical = search.unphysical(&terms);
+        let unphysical = search.unphysical(&terms).or_else(|| search.stand_in(&terms));
         let contested = search.contested;
         let searched = Searched::of(search, terms);
         Self { searched, is_unphysical: unphysical.is_some(), in_doubt: unphysical.or(contested) }
