@@ -49,6 +49,9 @@ const CHANGE: f64 = 6.0;
 /// Rows beside a jump that do not count either.
 const BESIDE_A_JUMP: usize = 2;
 
+/// Rows after which a filter has forgotten what it held at the start of a log: four time constants of eight rows.
+const FIRST_ROWS: usize = 30;
+
 /// The unknowns: R, L_d, L_q, psi, V; and the two inductances of the slopes, which may have any sign.
 const UNKNOWNS: usize = 7;
 
@@ -60,6 +63,8 @@ pub(super) const BOUNDED: usize = 5;
 pub(super) struct Mean {
     /// Whether the current jumps from a row to the next.
     pub(super) jumps: bool,
+    /// Whether it has some of the first rows of the log, or after a gap.
+    pub(super) begins: bool,
     /// Whether the currents of d and q change by more than noise.
     changes: [bool; 2],
     u: Dq,
@@ -90,6 +95,7 @@ impl Mean {
         let of = |value: &dyn Fn(&Self) -> Dq| Dq { d: over(&|mean| value(mean).d), q: over(&|mean| value(mean).q) };
         Self {
             jumps: means.iter().any(|mean| mean.jumps),
+            begins: means.iter().any(|mean| mean.begins),
             changes: [0, 1].map(|axis| means.iter().any(|mean| mean.changes[axis])),
             u: of(&|mean| mean.u),
             i: of(&|mean| mean.i),
@@ -141,6 +147,7 @@ impl Frame {
         let omega_i = of_current(mean.omega_i);
         Mean {
             jumps: mean.jumps,
+            begins: mean.begins,
             changes: mean.changes,
             u: turned(mean.u, self.swap_u, self.u),
             i: of_current(mean.i),
@@ -178,11 +185,6 @@ fn noise(values: &[f64]) -> f64 {
 
 /// Means of consecutive rows that carry current at speed.
 pub(super) fn means(log: &Log) -> Vec<Mean> {
-    means_of_voltages(log, 0)
-}
-
-/// The same with the voltages of so many rows later, or earlier where negative.
-pub(super) fn means_of_voltages(log: &Log, later: isize) -> Vec<Mean> {
     let columns = log.columns();
     let fastest = columns.omega_e.iter().fold(0.0_f64, |most, omega| most.max(omega.abs()));
     let peak = log.peak_current();
@@ -193,15 +195,14 @@ pub(super) fn means_of_voltages(log: &Log, later: isize) -> Vec<Mean> {
         let mut start = segment.rows.start;
         while start + rows < segment.rows.end {
             let block = start..start + rows;
-            let mut mean = Mean::default();
+            let mut mean = Mean { begins: start < segment.rows.start + FIRST_ROWS, ..Mean::default() };
             for row in block.clone() {
                 let i = Dq { d: columns.id[row], q: columns.iq[row] };
                 let length = i.magnitude();
                 let omega = columns.omega_e[row];
                 let direction = if length > 0.0 { Dq { d: i.d / length, q: i.q / length } } else { i };
                 let add = |sum: Dq, d: f64, q: f64| Dq { d: sum.d + d / rows as f64, q: sum.q + q / rows as f64 };
-                let of_voltage = row.saturating_add_signed(later).clamp(segment.rows.start, segment.rows.end - 1);
-                mean.u = add(mean.u, columns.ud[of_voltage], columns.uq[of_voltage]);
+                mean.u = add(mean.u, columns.ud[row], columns.uq[row]);
                 mean.i = add(mean.i, i.d, i.q);
                 mean.direction = add(mean.direction, direction.d, direction.q);
                 mean.omega_i = add(mean.omega_i, omega * i.d, omega * i.q);

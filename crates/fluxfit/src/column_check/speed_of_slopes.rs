@@ -3,7 +3,7 @@
 
 use super::{
     finding::ColumnFinding,
-    regression::{BLOCK, BOUNDED, ENOUGH, Frame, LEAST, Mean, means_of_voltages, normal, solved},
+    regression::{BLOCK, BOUNDED, ENOUGH, Frame, LEAST, Mean, means, normal, solved},
 };
 use crate::log::Log;
 use nalgebra::DMatrix;
@@ -40,6 +40,10 @@ const TOO_HIGH: f64 = 1.65;
 /// high 4 to 11 times.
 const TOO_LOW: f64 = 4.0;
 
+/// The same where the first rows count: where a log begins with the drive's start, filters hold nothing yet of what they will, and right
+/// speeds seemed 1.6 to 2.2 times too high.
+const LEAST_SCALE_OF_START: f64 = 2.5;
+
 /// By which factor the speed is too high, or too low, for inductances that are those of the slopes of the currents, for certain.
 pub(super) fn speed_scale(log: &Log) -> Option<ColumnFinding> {
     let [low, high] = speed_of_slopes(log).filter(SpeedOfSlopes::is_certain)?.too_high;
@@ -63,8 +67,6 @@ struct SpeedOfSlopes {
     too_high: [f64; 2],
     /// What the speed as it is leaves of the voltages, over what the best of these leaves.
     excess: f64,
-    /// What the best leaves of the voltages, as a fraction.
-    best: f64,
     /// Smaller factors may be of a speed that is right.
     least_scale: f64,
 }
@@ -82,54 +84,17 @@ fn speed_of_slopes(log: &Log) -> Option<SpeedOfSlopes> {
     if log.is_interpolated() {
         return None;
     }
-    let means = means(log, 0);
+    let means: Vec<Mean> = means(log).into_iter().map(Mean::without_noise).collect();
     if log.is_control_rate() {
-        let as_logged = of_slopes(log, &means, LEAST_SCALE)?;
-        let is_little = (1.0..MOST_BY_LATE_VOLTAGES).contains(&as_logged.too_high[0]);
-        let may_be_late = is_little && as_logged.is_certain() && has_one_speed(log);
-        return if may_be_late { of_slopes_of_late_voltages(log) } else { Some(as_logged) };
+        let later: Vec<Mean> = means.iter().copied().filter(|mean| !mean.begins).collect();
+        let with_start = || of_slopes(log, &means, LEAST_SCALE_OF_START);
+        return of_slopes(log, &later, LEAST_SCALE).filter(SpeedOfSlopes::is_certain).or_else(with_start);
     }
     let calm: Vec<Mean> = means.iter().copied().filter(|mean| !mean.jumps).collect();
     let least_of_jumps = LEAST_SCALE_OF_JUMPS.max(FASTEST_CONTROLLER * log.slowest_period());
     // An angle that agrees with the speed is rarely wrong with it: there, more is asked.
     let of_jumps = || if log.columns().theta_e.is_none() { of_slopes(log, &means, least_of_jumps) } else { None };
     of_slopes(log, &calm, LEAST_SCALE).filter(SpeedOfSlopes::is_certain).or_else(of_jumps)
-}
-
-/// Rows by which the voltages of a drive may be logged late against its currents, behind a filter: beside a jump of the currents,
-/// voltages that are not of their time change the inductances of the slopes. Behind filters of 480 to 2500 Hz, in rows 40 to 80 us apart,
-/// speeds that were right seemed 1.7 to 2 times too high, by a single jump.
-const LATER: std::ops::RangeInclusive<isize> = 0..=5;
-
-/// Least factor that such voltages do not explain.
-const MOST_BY_LATE_VOLTAGES: f64 = 2.5;
-
-/// A speed that changes by less than this part tells the inductances by hardly more than the steps of the currents.
-const ONE_SPEED: f64 = 0.05;
-
-/// Whether the log has one speed only.
-fn has_one_speed(log: &Log) -> bool {
-    let speeds = || log.columns().omega_e.iter().copied();
-    let (low, high) = (speeds().fold(f64::INFINITY, f64::min), speeds().fold(f64::NEG_INFINITY, f64::max));
-    high - low < ONE_SPEED * high.abs().max(low.abs())
-}
-
-/// Voltages of other rows are possible that leave at most this many times what the best leave.
-const POSSIBLE_LATER: f64 = 3.0;
-
-/// The same with voltages of later rows in place of those of the same row, all that are possible together.
-fn of_slopes_of_late_voltages(log: &Log) -> Option<SpeedOfSlopes> {
-    let each: Vec<SpeedOfSlopes> = LATER.filter_map(|later| of_slopes(log, &means(log, later), LEAST_SCALE)).collect();
-    let best = each.iter().map(|slopes| slopes.best).fold(f64::INFINITY, f64::min);
-    each.into_iter().filter(|slopes| slopes.best <= POSSIBLE_LATER * best).reduce(|one, other| SpeedOfSlopes {
-        too_high: [one.too_high[0].min(other.too_high[0]), one.too_high[1].max(other.too_high[1])],
-        excess: one.excess.min(other.excess),
-        ..one
-    })
-}
-
-fn means(log: &Log, later: isize) -> Vec<Mean> {
-    means_of_voltages(log, later).into_iter().map(Mean::without_noise).collect()
 }
 
 /// The same of these means.
@@ -154,7 +119,7 @@ fn of_slopes(log: &Log, means: &[Mean], least_scale: f64) -> Option<SpeedOfSlope
     let block = BLOCK.min(log.rows() / ENOUGH).max(1) as f64;
     let is_seen = log.segments().iter().all(|segment| block * segment.sample_period * resistance < inductance);
     let excess = left(&normal, 1.0) / best;
-    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess, best, least_scale })
+    (is_seen && best < WELL_EXPLAINED).then_some(SpeedOfSlopes { too_high: [low, high], excess, least_scale })
 }
 
 /// What is left of the voltages, as a fraction, where the inductances of the slopes are those of the speed, times a factor.
@@ -227,44 +192,45 @@ mod tests {
         assert_eq!(speed_scale(&jumps_between_rows(10.0, true, (1e-3, 0.03))), None);
     }
 
-    /// Rows of a period of 70 us at one speed of 1140 rad/s, of a motor of 40 mohm, 70 uH and 10 mWb, whose i_q rises once by 26 A and i_d
-    /// falls by as much as a controller lets it, behind a filter of the voltages of so many rows.
-    fn one_rise_behind_a_filter(filter: f64, speed_is: f64) -> Log {
-        let (rs, l, psi_f, omega_e, period, rows) = (0.04, 70e-6, 0.01, 1140.0, 70e-6, 3000);
-        let risen = |row: i32, at: i32| if row < at { 0.0 } else { 1.0 - (-f64::from(row - at) / 8.0).exp() };
-        let current = |row: i32| Dq { d: -20.0 * risen(row, 1500), q: 26.0 * risen(row, 300) };
+    /// Rows of a period of 70 us, of a motor of 40 mohm, 70 uH and 10 mWb at 500 rad/s. The drive starts with the log: i_q rises by 26 A in
+    /// a few rows, later i_d by -20 A. Voltages and currents passed filters that began with the first row's values.
+    fn start_behind_filters(speed_is: f64) -> Log {
+        let (rs, l, psi_f, omega_e, period, rows) = (0.04, 70e-6, 0.01, 500.0, 70e-6, 3000);
+        let risen = |row: i32, at: i32| if row < at { 0.0 } else { 1.0 - (-0.5 * f64::from(row - at)).exp() };
+        let current = |row: i32| Dq { d: -20.0 * risen(row, 1500), q: 26.0 * risen(row, 0) };
+        // A command acts one period later.
         let voltage = |row: i32| {
-            let (i, next) = (current(row), current(row + 1));
+            let (i, next) = (current(row + 1), current(row + 2));
             let rises = |from: f64, to: f64| l * (to - from) / period;
             Dq { d: rs * i.d - omega_e * l * i.q + rises(i.d, next.d), q: rs * i.q + omega_e * (l * i.d + psi_f) + rises(i.q, next.q) }
         };
-        let kept = (-1.0 / filter).exp();
-        let mut logged = voltage(0);
-        let filtered: Vec<Dq> = (0..rows)
-            .map(|row| {
-                let u = voltage(row);
-                logged = Dq { d: kept * logged.d + (1.0 - kept) * u.d, q: kept * logged.q + (1.0 - kept) * u.q };
-                logged
-            })
-            .collect();
-        let each = |value: &dyn Fn(i32) -> f64| (0..rows).map(value).collect::<Vec<f64>>();
+        let filtered = |value: &dyn Fn(i32) -> Dq| {
+            let (kept, mut held) = ((-0.2_f64).exp(), value(0));
+            let next = |row| {
+                let new = value(row);
+                held = Dq { d: kept * held.d + (1.0 - kept) * new.d, q: kept * held.q + (1.0 - kept) * new.q };
+                held
+            };
+            (0..rows).map(next).collect::<Vec<Dq>>()
+        };
+        let (u, i) = (filtered(&voltage), filtered(&current));
         Log::new(Columns {
-            t: each(&|row| period * f64::from(row)),
-            ud: filtered.iter().map(|u| u.d).collect(),
-            uq: filtered.iter().map(|u| u.q).collect(),
-            id: each(&|row| current(row).d),
-            iq: each(&|row| current(row).q),
-            omega_e: each(&|_| speed_is * omega_e),
+            t: (0..rows).map(|row| period * f64::from(row)).collect(),
+            ud: u.iter().map(|u| u.d).collect(),
+            uq: u.iter().map(|u| u.q).collect(),
+            id: i.iter().map(|i| i.d).collect(),
+            iq: i.iter().map(|i| i.q).collect(),
+            omega_e: vec![speed_is * omega_e; u.len()],
             ..Columns::default()
         })
         .unwrap()
     }
 
-    /// Voltages that are late at the one jump of a log say nothing of its speed; a speed that is far too high is seen all the same.
+    /// A right speed seemed 1.6 times too high there; one that is four times too high is seen all the same.
     #[test]
-    fn a_filter_of_the_voltages_does_not_contradict_the_speed() {
-        assert_eq!(speed_scale(&one_rise_behind_a_filter(4.0, 1.0)), None);
-        let four_times = speed_scale(&one_rise_behind_a_filter(0.1, 4.0));
-        assert!(matches!(four_times, Some(ColumnFinding::SpeedScale { low, high, .. }) if low > 3.0 && high < 5.0), "{four_times:?}");
+    fn filters_at_the_start_of_a_log_do_not_contradict_the_speed() {
+        assert_eq!(speed_scale(&start_behind_filters(1.0)), None);
+        let four_times = speed_scale(&start_behind_filters(4.0));
+        assert!(matches!(four_times, Some(ColumnFinding::SpeedScale { low, high, .. }) if low > 2.5 && high < 8.0), "{four_times:?}");
     }
 }
