@@ -63,8 +63,8 @@ fn starts(filter: impl Fn(f64) -> Filter) -> Vec<Filter> {
 /// Most of the noise, with freedom for a fit whose other faults are not found yet.
 const MOST_NOISE: f64 = 3.0;
 
-/// By how much a part of the noise may come out below zero or above one. Behind 80 filters of simulated drives it came out between -0.4 and
-/// 1.3 but in five; where there was none, beside rows that are every n-th of a drive's, mostly beyond.
+/// By how much a part of the noise may come out below zero or above one. Of 88 filters of simulated drives it came out further beyond in
+/// five. Where there was no filter and the rows were every n-th of a drive's, it mostly did.
 const BEYOND_A_PART: f64 = 0.35;
 
 const NOISE: NumberDescription<Filter> = NumberDescription {

@@ -256,11 +256,12 @@ impl VoltageTiming {
         !self.tells_lag() && !self.is_in_frame_of_row()
     }
 
-    /// Whether the other one differs from it only in where the voltage stands still over a period: in the stator, or in the rotor's frame.
-    pub(crate) fn is_held_elsewhere(self, other: Self) -> bool {
-        let (Self::Delayed { delay, frame }, Self::Delayed { delay: of_other, frame: other }) = (self, other) else { return false };
-        delay == of_other
-            && matches!((frame, other), (VoltageFrame::Middle, VoltageFrame::Rotor) | (VoltageFrame::Rotor, VoltageFrame::Middle))
+    /// The same delay with the voltage held in the rotor's frame, of one that an inverter holds in the stator.
+    pub(crate) fn held_in_rotor(self) -> Option<Self> {
+        match self {
+            Self::Delayed { delay, frame: VoltageFrame::Middle } => Some(Self::Delayed { delay, frame: VoltageFrame::Rotor }),
+            _ => None,
+        }
     }
 
     /// Whether no inverter that logs each of its periods does so.

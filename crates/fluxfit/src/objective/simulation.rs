@@ -116,7 +116,7 @@ impl<V: Number, const C: usize> Drives<V, C> {
         let zero = self.motors.rs.constant(0.0);
         let mut sums = Sums { total: zero, right: [zero; LINEAR_UNKNOWNS], normal: [zero; PAIRS] };
         let mut state = self.start(segment);
-        // The first row's error is zero by definition; a first current changes it one for one, but behind a filter.
+        // The first row's error is zero by definition; a first current changes it one for one, except behind a filter.
         for k in 0..FIRST_CURRENT {
             sums.normal[pair(k, k)] = state.response[k][k] * state.response[k][k];
         }

@@ -104,7 +104,7 @@ impl FaultSearch<'_> {
         self.unphysical_in(&self.drive, trials)
     }
 
-    /// The filter of currents that stands in for something else at the end of a search: what it passes on of the noise is no part of it.
+    /// The filter of currents that stands in for something else, as the end of a search tells: what it passes of the noise is no part.
     pub(crate) fn stand_in(&self, trials: &[FaultTrial]) -> Option<Fault> {
         let mut taken = trials.iter().filter(|trial| trial.outcome == FaultOutcome::Taken).map(|trial| trial.fault);
         taken.find(|fault| fault.is_filter() && fault.alters_measured_current()).filter(|_| !self.drive.faults.filter.passes_a_part())

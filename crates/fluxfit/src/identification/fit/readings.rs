@@ -213,9 +213,9 @@ pub(crate) fn possible(tried: &[TimingTrial], independent: f64) -> impl Iterator
     let is_possible =
         move |other: &TimingTrial| other.mean_square() <= least || independent * (other.mean_square() / least).ln() < VERY_STRONG;
     let is_steps = |other: &TimingTrial| VoltageTiming::BY_EULERS_RULE.contains(&other.timing);
-    let of_best = tried.first().map(|best| best.timing);
-    let is_of_kind = move |timing: VoltageTiming| !timing.is_unusual() || of_best.is_some_and(|best| best.is_held_elsewhere(timing));
-    tried.iter().filter(move |other| is_possible(other) && (any_kind || is_of_kind(other.timing) || is_steps(other)))
+    let in_rotor = tried.first().and_then(|best| best.timing.held_in_rotor());
+    let is_of_kind = move |other: &TimingTrial| !other.timing.is_unusual() || in_rotor == Some(other.timing) || is_steps(other);
+    tried.iter().filter(move |other| is_possible(other) && (any_kind || is_of_kind(other)))
 }
 
 /// The means that pass for the best, where they fit about as well. Neither is exact, so the evidence does not count.
