@@ -37,7 +37,7 @@
 //! | [`Promised`], [`Measurement`], [`Place`], [`Also`] | of a remedy: what to measure, where, and what it would bring |
 //! | [`IdentificationError`], [`Error`], [`ErrorKind`] | misuse, or data that is no log; what a log cannot tell is no error but a verdict |
 //! | [`characteristics`] | tables of tests on a bench instead of a log: open and shorted terminals |
-//! | [`check_columns`], [`ColumnFinding`] | what the columns contradict each other in, before anything is fitted |
+//! | [`check_columns`], [`ColumnFinding`], [`turned_frame`] | what the columns contradict each other in, before anything is fitted |
 //! | [`check_samples`], [`SampleFinding`] | outliers and stale samples |
 //! | [`Progress`], [`Step`] | a callback during the work, which can stop a search |
 //! | `document` | the JSON documents of all that, where the feature `serde` is on |
@@ -80,7 +80,7 @@ pub mod validation;
 mod words;
 
 pub use answer::{Answer, HeldOut, IdentificationError, identify, identify_with_progress};
-pub use column_check::{ColumnFinding, check_columns};
+pub use column_check::{ColumnFinding, check_columns, turned_frame};
 pub use error::{Error, ErrorKind};
 pub use fluxfit_optimize as optimizer;
 pub use identification::{

@@ -292,20 +292,20 @@ mod tests {
         }
     }
 
-    /// Alpha and beta, or phases, with an angle in turns: refused, until the file that was written is given. The dq quantities are those
-    /// that the rows were made of.
+    /// Voltages in alpha and beta, with an angle in turns that no currents of the stator confirm: refused, until the file that was written is
+    /// given. The dq quantities are those that the rows were made of.
     #[test]
     fn a_log_of_the_stator_frame_with_an_angle_in_turns_is_read_with_the_mapping_that_was_written() {
-        let vectors = [["u_alpha", "u_beta", "i_alpha", "i_beta"], ["V_alpha [V]", "V_beta [V]", "I_alpha [mA]", "I_beta [mA]"]];
+        let vectors = [["u_alpha", "u_beta", "i_d", "i_q"], ["V_alpha [V]", "V_beta [V]", "I_d [mA]", "I_q [mA]"]];
         for (names, angle) in [(vectors[0], "theta"), (vectors[0], "theta_e"), (vectors[1], "theta_e")] {
             let ampere = if names[2].ends_with("[mA]") { 1e3 } else { 1.0 };
             let row = |k: i32| {
                 let turns = 0.3 + 0.0123 * f64::from(k);
                 let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
                 // u_d = -3 V, u_q = 20 V, i_d = -1 A, i_q = 4 A.
-                let (of_u, of_i) = ([-3.0 * cos - 20.0 * sin, -3.0 * sin + 20.0 * cos], [-cos - 4.0 * sin, -sin + 4.0 * cos]);
-                let [i_alpha, i_beta] = of_i.map(|i| i * ampere);
-                format!("{:.4},{},{},{i_alpha},{i_beta},{:.9}\n", f64::from(k) * 1e-4, of_u[0], of_u[1], turns.rem_euclid(1.0))
+                let [u_alpha, u_beta] = [-3.0 * cos - 20.0 * sin, -3.0 * sin + 20.0 * cos];
+                let [id, iq] = [-1.0, 4.0].map(|i| i * ampere);
+                format!("{:.4},{u_alpha},{u_beta},{id},{iq},{:.9}\n", f64::from(k) * 1e-4, turns.rem_euclid(1.0))
             };
             let text = format!("t,{},{angle}\n{}", names.join(","), (0..600).map(row).collect::<String>());
             let first = inspected(&text, &LogOptions::default());

@@ -20,6 +20,7 @@ mod columns;
 mod doubt;
 mod duty;
 mod even_time;
+mod event_times;
 mod finder;
 mod gather;
 mod inspect;
@@ -49,6 +50,7 @@ mod steady_points;
 mod steady_test;
 mod survey;
 mod table;
+mod turned_frame;
 mod turning;
 mod vocabulary;
 

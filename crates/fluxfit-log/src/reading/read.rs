@@ -8,14 +8,14 @@ use super::{
     align,
     channels::Channels,
     chosen::{self, ChosenColumn},
-    columns, even_time,
+    columns, even_time, event_times,
     gather::{Gathered, gather},
     layout::Layout,
     lines::Lines,
     options::{LogOptions, ResolvedOptions},
     phases, plausibility, repair, rounded_time, scope_trace,
     table::Table,
-    turning,
+    turned_frame, turning,
 };
 use crate::{
     block::ColumnHead,
@@ -199,6 +199,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let chosen = columns::choose(&table, named, options, &mut notes).map_err(|error| scope_trace::named(&mut table, options, error))?;
     let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
     rounded_time::refuse(&chosen, &channels)?;
+    notes.extend(event_times::settle(&mut channels).map(Note::from));
     notes.extend(even_time::settle(&mut channels).map(Note::from));
     let aligned = align::align(&mut channels, &lines)?;
     let gaps = gaps_of_file(&channels, &dropped_before);
@@ -214,10 +215,11 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     phases::of_stator_frame(&mut channels);
     turning::settle(&mut channels, &chosen, &mut notes)?;
     more.extend(repair::repair(&mut channels));
+    let of_phases = phases::give_axes(&channels);
     more.extend(phases::transform(&mut channels));
     more.extend(plausibility::note_references(&channels));
     notes.extend(more.into_iter().map(Note::from));
-    let log = log(channels, &chosen, &lines, &mut notes)?;
+    let log = turned_frame::undone(log(channels, &chosen, &lines, &mut notes)?, of_phases, &mut notes);
     if !log.spikes().is_empty() {
         notes.push(log.spikes().to_string().into());
     }

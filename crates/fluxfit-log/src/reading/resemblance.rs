@@ -73,6 +73,9 @@ const OTHER_UNITS: [&str; 22] = [
     "ah",
 ];
 
+/// Words for a torque, whose unit in `torque_nm` is PSIM's name of a speed.
+const TORQUES: [&str; 5] = ["torque", "torq", "trq", "moment", "drehmoment"];
+
 /// Whether a header states the unit of another quantity than the channel's.
 pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
     let dimension = channel.dimension();
@@ -137,6 +140,9 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     }
     // `Nm` is the unit of a torque.
     if channel == Channel::T && is_in_tesla(name) || channel == Channel::OmegaE && name.contains("Nm") {
+        return None;
+    }
+    if channel == Channel::OmegaE && words.iter().any(|word| TORQUES.contains(&word.as_str())) {
         return None;
     }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();

@@ -38,6 +38,11 @@ pub(super) fn pole_pairs(channels: &Channels, units: &[f64]) -> Option<(u32, f64
     Some((ratio.round() as u32, unit))
 }
 
+/// Whether the currents of the phases turn as fast as the angle in a unit of so many rad.
+pub(super) fn is_electrical(channels: &Channels, unit: f64) -> bool {
+    ratio(channels, unit).is_some_and(|ratio| (ratio - 1.0).abs() < WHOLE)
+}
+
 /// How many times as fast as the angle, in a `unit` of rad, the currents of the phases turn, in either direction.
 fn ratio(channels: &Channels, unit: f64) -> Option<f64> {
     let [theta, a, b] = [Channel::ThetaE, Channel::IA, Channel::IB].map(|channel| channels.get(channel));

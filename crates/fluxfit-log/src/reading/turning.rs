@@ -29,9 +29,15 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
     let Some(theta) = channels.get(ThetaE) else { return Ok(()) };
     let header = shorten(&column.header);
     // Values were converted already where the unit is written.
-    let possible: &[f64] = if column.is_unit_written { &[1.0] } else { &[1.0, Unit::Degree.in_si()] };
+    let other_turn_than_known = turn(theta).filter(|turn| !column.is_unit_written && !is_in_rad(*turn) && !DEGREES.contains(turn));
+    let of_round_turn = other_turn_than_known.and_then(round_turn).map(|turn| (turn, TAU / turn));
+    let possible: Vec<f64> = match (column.is_unit_written, other_turn_than_known) {
+        (true, _) => vec![1.0],
+        (_, None) => vec![1.0, Unit::Degree.in_si()],
+        (_, Some(_)) => of_round_turn.iter().map(|(_, unit)| *unit).collect(),
+    };
     let is_open = !column.unit.is_mechanical() && !states_electrical(&column.header);
-    if let Some((pole_pairs, unit)) = shaft_angle::pole_pairs(channels, possible).filter(|_| is_open) {
+    if let Some((pole_pairs, unit)) = shaft_angle::pole_pairs(channels, &possible).filter(|_| is_open) {
         let is_stated = column.pole_pairs > 1 && column.pole_pairs != pole_pairs;
         let stated = if is_stated { format!(", where you state {}", column.pole_pairs) } else { String::new() };
         let sentence = format!(
@@ -40,6 +46,13 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
         notes.push(sentence.into());
         let electrical = theta.iter().map(|angle| angle * unit * f64::from(pole_pairs)).collect();
         channels.set(ThetaE, electrical);
+        return Ok(());
+    }
+    if let Some((turn, unit)) = of_round_turn.filter(|(_, unit)| shaft_angle::is_electrical(channels, *unit)) {
+        let sentence = format!("theta_e: column '{header}' read as an angle whose turn is {turn}: so the phase currents turn");
+        notes.push(sentence.into());
+        let scaled = theta.iter().map(|angle| angle * unit).collect();
+        channels.set(ThetaE, scaled);
         return Ok(());
     }
     if !column.is_alias {
@@ -110,8 +123,11 @@ fn other_turn(column: &ChosenColumn, span: f64) -> Problem {
     Problem::AngleTurn { header: column.header.clone(), turn, scale, is_exact }
 }
 
-/// Digits of a turn that encoders have besides powers of two, and the turn itself.
-const TURN_DIGITS: [f64; 12] = [1.0, 100.0, 360.0, 400.0, 1000.0, 2000.0, 3600.0, 4000.0, 5000.0, 8000.0, 10_000.0, 36_000.0];
+/// Digits of a turn that encoders have besides powers of two, and the turn itself, as 1 or from -1 to 1.
+const TURN_DIGITS: [f64; 13] = [1.0, 2.0, 100.0, 360.0, 400.0, 1000.0, 2000.0, 3600.0, 4000.0, 5000.0, 8000.0, 10_000.0, 36_000.0];
+
+/// A turn of fewer is none of digits.
+const FEWEST_DIGITS: f64 = 10.0;
 
 /// By this share a turn may be larger than what the rows span: they miss its end.
 const MISSED: f64 = 0.03;
@@ -119,10 +135,9 @@ const MISSED: f64 = 0.03;
 /// The one round number at which an angle that spans this winds around.
 fn round_turn(span: f64) -> Option<f64> {
     let powers = (4..=24).map(|power| f64::from(1_u32 << power));
-    let mut near = TURN_DIGITS
-        .into_iter()
-        .chain(powers)
-        .filter(|turn| (span..span * (1.0 + MISSED) + 1.0).contains(turn) && (*turn > 1.0 || span < 1.0));
+    // Of digits, the last one is missing too.
+    let most = |turn: f64| span * (1.0 + MISSED) + if turn < FEWEST_DIGITS { 0.0 } else { 1.0 };
+    let mut near = TURN_DIGITS.into_iter().chain(powers).filter(|turn| (span..=most(*turn)).contains(turn));
     near.next().filter(|_| near.next().is_none())
 }
 
@@ -233,7 +248,8 @@ mod tests {
             let found = turn(&angle(full)).unwrap();
             assert!((found / full - 1.0).abs() < 0.02 && is_in_rad(found) == is_known, "{full} {found}");
         }
-        assert_eq!([4074.0, 0.993, 65_535.0, 777.0].map(round_turn), [Some(4096.0), Some(1.0), Some(65_536.0), None]);
+        let turns = [4074.0, 0.993, 1.0, 1.99, 1.5, 65_535.0, 777.0].map(round_turn);
+        assert_eq!(turns, [Some(4096.0), Some(1.0), Some(1.0), Some(2.0), None, Some(65_536.0), None]);
         assert_eq!(turn(&(0..1000).map(f64::from).collect::<Vec<_>>()), None);
     }
 

@@ -8,6 +8,7 @@
     reason = "a test may fail, and says why it was skipped"
 )]
 
+mod angles;
 mod characteristics;
 mod corpus;
 mod dialects;

@@ -25,7 +25,7 @@ pub(super) const LEAST: usize = 30;
 const SMALL: f64 = 0.05;
 
 /// What no motor explains of the voltage as it is, as a fraction, before a change is looked for.
-const UNEXPLAINED: f64 = 0.03;
+pub(super) const UNEXPLAINED: f64 = 0.03;
 
 /// What is left of the voltage, as a fraction, where the time is judged.
 const EXPLAINED: f64 = 0.15;
@@ -87,6 +87,23 @@ impl Mean {
     pub(super) fn without_noise(self) -> Self {
         let [d, q] = self.changes;
         Self { slope: Dq { d: if d { self.slope.d } else { 0.0 }, q: if q { self.slope.q } else { 0.0 } }, ..self }
+    }
+
+    /// Its speed, rad/s.
+    pub(super) fn speed(&self) -> f64 {
+        self.omega
+    }
+
+    /// In a frame that an angle, rad, is behind this one, with the voltage turned further.
+    pub(super) fn in_frame_behind(&self, angle: f64, of_voltage: f64) -> Self {
+        Self {
+            u: self.u.turned(angle + of_voltage),
+            i: self.i.turned(angle),
+            direction: self.direction.turned(angle),
+            slope: self.slope.turned(angle),
+            omega_i: self.omega_i.turned(angle),
+            ..*self
+        }
     }
 
     /// Of neighbours that have as many rows each.
@@ -165,6 +182,13 @@ pub(super) struct Fit {
     pub(super) unknowns: [f64; UNKNOWNS],
 }
 
+impl Fit {
+    /// The inductance of the q axis, H, as the speed shows it.
+    pub(super) fn lq(&self) -> f64 {
+        self.unknowns[2]
+    }
+}
+
 /// A smallest step that is larger than this part of the largest value is no digit of a converter but a jump.
 const COARSE: f64 = 0.01;
 
@@ -226,7 +250,7 @@ pub(super) fn means(log: &Log) -> Vec<Mean> {
 }
 
 /// Fits the unknowns to the voltages of a frame.
-fn fit(means: &[Mean], frame: &Frame, has_slopes: bool) -> Option<Fit> {
+pub(super) fn fit(means: &[Mean], frame: &Frame, has_slopes: bool) -> Option<Fit> {
     if means.len() < LEAST { None } else { solved(&normal(means, frame, has_slopes)) }
 }
 

@@ -6,7 +6,10 @@ use super::{
     short_circuit,
     spikes::Spikes,
 };
-use crate::error::{Error, ErrorKind};
+use crate::{
+    error::{Error, ErrorKind},
+    frames::Dq,
+};
 use std::{f64::consts::FRAC_PI_3, ops::Range, sync::Arc};
 
 /// A checked log: [`Log::new`] makes one of [`Columns`], [`LogBuilder`](super::LogBuilder) of rows as they arrive, and [`Log::join`] of
@@ -106,6 +109,21 @@ impl Log {
     /// The same log with another speed, electrical rad/s.
     pub(crate) fn with_speed(&self, omega_e: Vec<f64>) -> Self {
         Self { columns: Arc::new(Columns { omega_e, ..Columns::clone(&self.columns) }), ..self.clone() }
+    }
+
+    /// The same log, whose angle was read too large by an angle, rad, in the frame behind it by that.
+    #[must_use]
+    pub fn in_frame_behind(&self, angle: f64) -> Self {
+        let mut columns = Columns::clone(&self.columns);
+        let Columns { ud, uq, id, iq, theta_e, .. } = &mut columns;
+        for (of_d, of_q) in [(ud, uq), (id, iq)] {
+            for (d, q) in of_d.iter_mut().zip(of_q) {
+                let turned = Dq { d: *d, q: *q }.turned(angle);
+                (*d, *q) = (turned.d, turned.q);
+            }
+        }
+        theta_e.iter_mut().flatten().for_each(|theta| *theta -= angle);
+        Self { columns: Arc::new(columns), ..self.clone() }
     }
 
     /// The same log without its rows.
