@@ -53,7 +53,15 @@ impl Inspection {
                 text += &self.entry(channel, column, options);
             }
         }
+        if self.lacks_angle() {
+            let _ = writeln!(text, "{} = {{ column = \"\" }}  # no column resembles it", Channel::ThetaE.name());
+        }
         text
+    }
+
+    /// Whether there are quantities of the stator without the angle that makes those of the axes of them.
+    fn lacks_angle(&self) -> bool {
+        !self.has(Channel::ThetaE.name(), true) && ["ua", "ualpha", "ia", "ialpha"].iter().any(|name| self.has(name, true))
     }
 
     /// The entry of a channel: with the scale that the refusal of the log asks for, if it does.
@@ -67,17 +75,21 @@ impl Inspection {
         scale.map_or_else(|| entry(channel, column, options), |scale| scaled_entry(channel, column, scale))
     }
 
-    /// Whether a dq quantity or the speed is computed from phase quantities and an angle that the file has; `by_names` counts those that
+    /// Whether a dq quantity or the speed is computed from phase quantities and an angle; `by_names` counts those that
     /// are known by their names alone, as all are where there is no log yet.
     fn is_computed(&self, channel: Channel, by_names: bool) -> bool {
-        let is = |column: &InspectedColumn, name: &str| column.channel == Some(name) || by_names && column.resembles == Some(name);
-        let has = |name: &str| self.columns.iter().any(|column| is(column, name));
+        let has = |name: &str| self.has(name, by_names);
         match channel {
-            Channel::Ud | Channel::Uq => (has("ua") || has("ualpha")) && has("theta_e"),
-            Channel::Id | Channel::Iq => (has("ia") || has("ialpha")) && has("theta_e"),
+            Channel::Ud | Channel::Uq => has("ua") || has("ualpha"),
+            Channel::Id | Channel::Iq => has("ia") || has("ialpha"),
             Channel::OmegaE => has("theta_e"),
             _ => false,
         }
+    }
+
+    /// Whether the file has a column of this channel; `by_names` counts those that only resemble it.
+    fn has(&self, name: &str, by_names: bool) -> bool {
+        self.columns.iter().any(|column| column.channel == Some(name) || by_names && column.resembles == Some(name))
     }
 }
 
@@ -292,8 +304,8 @@ mod tests {
         }
     }
 
-    /// Voltages in alpha and beta, with an angle in turns that no currents of the stator confirm: refused, until the file that was written is
-    /// given. The dq quantities are those that the rows were made of.
+    /// Voltages in alpha and beta, with an angle in turns that no currents of the stator confirm: refused, until the file that was
+    /// written is given. The dq quantities are those that the rows were made of.
     #[test]
     fn a_log_of_the_stator_frame_with_an_angle_in_turns_is_read_with_the_mapping_that_was_written() {
         let vectors = [["u_alpha", "u_beta", "i_d", "i_q"], ["V_alpha [V]", "V_beta [V]", "I_d [mA]", "I_q [mA]"]];

@@ -51,8 +51,8 @@ fn a_log_whose_angle_begins_elsewhere_is_turned_into_the_magnets_frame() {
     assert_eq!(read(&log(|theta| theta.rem_euclid(TAU)), &LogOptions::default()).0, [""; 0]);
 }
 
-/// From 0 to 1, as fixed-point firmware counts it, from -1 to 1, and in steps of an encoder: the phase currents turn as fast. Three times as
-/// fast as a shaft whose turn is 1.
+/// From 0 to 1, as fixed-point firmware counts it, from -1 to 1, and in steps of an encoder: the phase currents turn as fast. Three times
+/// as fast as a shaft whose turn is 1.
 #[test]
 fn an_angle_in_other_units_is_told_by_the_phase_currents() {
     let turns = |theta: f64| (theta / TAU).rem_euclid(1.0);

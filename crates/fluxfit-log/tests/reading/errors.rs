@@ -56,10 +56,16 @@ fn headers_are_refused_in_one_sentence() {
              along d alone they are zero: add them as columns of zeros; else log them too",
         ),
         (
-            format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
+            format!("u_d,motor_speed,i_d,i_q,torque,profile\n{ROWS}"),
             "drive.csv, line 1: the columns t and uq are missing; the file has 'u_d', 'motor_speed', 'i_d', 'i_q', 'torque' and \
-             'profile_id'; map them if they have other names, else log them too; if no column is the time and all rows are equally far \
+             'profile'; map them if they have other names, else log them too; if no column is the time and all rows are equally far \
              apart, write the time between them into a mapping file, as in sample_period = \"0.1 ms\"",
+        ),
+        // A copy of the Paderborn data without some of its columns is read as that: two rows a second.
+        (
+            format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
+            "drive.csv, line 1: the column uq is missing; the file has 'u_d', 'motor_speed', 'i_d', 'i_q', 'torque' and 'profile_id'; map \
+             it if it has another name, else log it too",
         ),
         (
             format!("tiem,a q-axis voltage,ud,id,iq,omega_e\n{ROWS}"),
