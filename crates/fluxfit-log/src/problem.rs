@@ -64,6 +64,8 @@ pub(crate) enum Problem {
         /// The speed among the proposed channels, and its unit by its name.
         speed: Option<(&'static str, Unit)>,
     },
+    #[error("each row has one value, in '{}', of the quantity that '{}' names; write a row for each instant with a column for each quantity (pandas: pivot, InfluxDB: pivot(), SQL: PIVOT)", shorten(.value), shorten(.quantity))]
+    ARowPerValue { quantity: String, value: String },
     #[error("by its name this column is a reference, not the measured current; map {channel} to the measured current, or log it")]
     Reference { channel: &'static str },
     #[error("{}; state their unit, also if they are peak values", are_rms(&.columns.iter().map(|(_, header, _)| header.as_str()).collect::<Vec<_>>()))]
@@ -311,6 +313,7 @@ impl Problem {
             Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
             Self::DecimalMarks { .. } | Self::OtherMark { .. } | Self::UnclearComma => FileErrorKind::Value,
             Self::Missing { .. }
+            | Self::ARowPerValue { .. }
             | Self::Reference { .. }
             | Self::NotALog { .. }
             | Self::PhaseRms

@@ -13,6 +13,7 @@ mod block_rows;
 mod blocks;
 mod first_rows;
 mod marks;
+mod padding;
 mod plain;
 mod rows;
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Text: decompressed, decoded to UTF-8.
 
+use super::padding::Unpadded;
 use crate::problem::Problem;
 use encoding_rs::{BIG5, EUC_JP, EUC_KR, Encoding, GBK, SHIFT_JIS, WINDOWS_1252};
 use encoding_rs_io::DecodeReaderBytesBuilder;
@@ -83,7 +84,7 @@ impl Text {
         let is_gzip = magic == GZIP;
         let raw: Box<dyn Read> = Box::new(Cursor::new(magic).chain(raw));
         let raw: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(raw)) } else { raw };
-        let mut decoded = DecodeReaderBytesBuilder::new().utf8_passthru(true).strip_bom(true).build(raw);
+        let mut decoded = Unpadded::new(DecodeReaderBytesBuilder::new().utf8_passthru(true).strip_bom(true).build(raw));
         let mut head = Vec::new();
         read_up_to(&mut decoded, HEAD, is_gzip, &mut head)?;
         if is_npz(&head) {

@@ -29,6 +29,12 @@ use fluxfit_units::{Dimension, Unit, wording::shorten};
 /// Of a matrix over two quantities at least so many names are numbers.
 const FEWEST_NUMBERS: usize = 3;
 
+/// What the columns of a table with a row for each value are called, as time series databases and data frames write them: that of the
+/// values, and that of their quantities' names.
+const VALUES: [&str; 3] = ["value", "values", "val"];
+const QUANTITIES: [&str; 11] =
+    ["field", "variable", "name", "signal", "signal_name", "channel", "metric", "tag", "sensor", "parameter", "series"];
+
 /// Finds columns by mapping, layout and name.
 pub(super) struct Finder<'a> {
     pub(super) heads: &'a [ColumnHead],
@@ -365,6 +371,17 @@ impl Finder<'_> {
         head.instants.clone().filter(|instants| channel == T && agrees(instants))
     }
 
+    /// The problem of a table that has each value in a row of its own, with the name of its quantity beside it.
+    fn a_row_per_value(&self) -> Option<Problem> {
+        let names = self.names();
+        let called = |words: &[&str], name: &str| words.contains(&name.trim_matches('_').to_lowercase().as_str());
+        let value = names.iter().find(|name| called(&VALUES, name))?;
+        let first_cells = (self.first_cells)();
+        let without_numbers = (0..first_cells.len()).filter(|index| !first_cells[*index].has_numbers).map(|index| &names[index]);
+        let quantity = self.unreadable.iter().chain(without_numbers).find(|name| called(&QUANTITIES, name))?;
+        Some(Problem::ARowPerValue { quantity: quantity.clone(), value: value.clone() })
+    }
+
     fn refuse_missing(&self, missing: &[Channel], found: &[(Channel, usize)]) -> FileError {
         if [Ud, Uq].iter().all(|channel| missing.contains(channel))
             && let Some((layout, refusal)) = NotALog::by_names(&self.names())
@@ -375,8 +392,8 @@ impl Finder<'_> {
         if numbers >= FEWEST_NUMBERS && numbers + 1 >= self.heads.len() {
             return Problem::Matrix.into();
         }
-        if let Some(problem) = self.passed_over {
-            return problem.clone().into();
+        if let Some(problem) = self.passed_over.cloned().or_else(|| self.a_row_per_value()) {
+            return problem.into();
         }
         // References are not proposed for measured currents.
         let present = self.names();

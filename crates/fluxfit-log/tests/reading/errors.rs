@@ -61,6 +61,12 @@ fn headers_are_refused_in_one_sentence() {
              'profile'; map them if they have other names, else log them too; if no column is the time and all rows are equally far \
              apart, write the time between them into a mapping file, as in sample_period = \"0.1 ms\"",
         ),
+        // As data frames and time series databases write a row for each value.
+        (
+            "time,variable,value\n0,ud,1\n0,uq,2\n1,ud,1\n".into(),
+            "drive.csv, line 1: each row has one value, in 'value', of the quantity that 'variable' names; write a row for each instant with \
+             a column for each quantity (pandas: pivot, InfluxDB: pivot(), SQL: PIVOT)",
+        ),
         // A copy of the Paderborn data without some of its columns is read as that: two rows a second.
         (
             format!("u_d,motor_speed,i_d,i_q,torque,profile_id\n{ROWS}"),
