@@ -147,6 +147,14 @@ pub enum ErrorKind {
         /// What the fit misses, as a fraction.
         missed: f64,
     },
+    /// Currents that grow with the speed as those of a load do.
+    #[error(
+        "the currents grow with the power {power:.1} of the speed, as of a motor that drives a load (a propeller, a fan); those of shorted terminals grow in proportion at most, and level off; identify from a log of its drive (voltages, currents, speed over time), or from tables with open and shorted terminals"
+    )]
+    CurrentOfLoad {
+        /// Of the faster half of the speeds.
+        power: f64,
+    },
     /// Voltages that no motor with open terminals has.
     #[error(
         "the voltages do not grow with the speed as those of open terminals do: they miss the best line by {:.0} % rms; if the motor is driven in this table, identify from a log of its drive (voltages, currents, speed over time)", 100.0 * .missed
@@ -154,6 +162,16 @@ pub enum ErrorKind {
     NoOpenCircuit {
         /// What the line misses, as a fraction.
         missed: f64,
+    },
+    /// Voltages that do not change with the speed.
+    #[error(
+        "the voltages are nearly the same at all speeds, where those of open terminals grow with the speed: a line misses them by {:.2} % rms, a constant by {:.2} %; if the motor is driven in this table, identify from a log of its drive (voltages, currents, speed over time)", 100.0 * .of_line, 100.0 * .of_constant
+    )]
+    ConstantVoltage {
+        /// What the best line through zero misses, as a fraction.
+        of_line: f64,
+        /// What the best constant misses.
+        of_constant: f64,
     },
     /// Rows that no motor has in such a test.
     #[error(

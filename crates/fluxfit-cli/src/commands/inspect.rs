@@ -12,7 +12,7 @@ use crate::{
 use clap::Args;
 use fluxfit::check_samples;
 use fluxfit_files::{check_writable, write_atomically};
-use fluxfit_log::{Inspection, LogOptions, column_findings, document::InspectionDocument, inspect};
+use fluxfit_log::{Inspection, LogOptions, ReadCharacteristic, column_findings, document::InspectionDocument, inspect};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
     } else if arguments.output.as_deref() != Some(Path::new("-")) {
         let name = input::name(&arguments.log);
         match &inspection.table {
-            Some(read) => display::show_table(&name, &inspection, read, &command_for_table(arguments, &options))?,
+            Some(read) => display::show_table(&name, &inspection, read, &command_for_table(arguments, &options, read))?,
             None => display::show(&name, &inspection, &findings(&inspection, options.pole_pairs), &samples(&inspection))?,
         }
     }
@@ -68,14 +68,15 @@ pub(crate) fn run(arguments: &Inspect) -> Result<Status, CommandError> {
 }
 
 /// What identifies from a table, to be pasted: of the options that read logs, two are for tables too.
-fn command_for_table(arguments: &Inspect, options: &LogOptions) -> String {
+fn command_for_table(arguments: &Inspect, options: &LogOptions, read: &ReadCharacteristic) -> String {
     // A name with a dash in front would be an option.
     let is_dashed = arguments.log.as_os_str().as_encoded_bytes().starts_with(b"-");
     let log = if is_dashed { Path::new(".").join(&arguments.log) } else { arguments.log.clone() };
     let pole_pairs = options.pole_pairs.or(options.mapping.pole_pairs).map(|pole_pairs| format!(" --pole-pairs {pole_pairs}"));
     let pairs = options.map.iter().map(|(quantity, header)| format!("{quantity}={header}")).collect::<Vec<_>>().join(",");
     let map = if pairs.is_empty() { String::new() } else { format!(" --map {}", shell::word(pairs.as_ref())) };
-    format!("fluxfit identify {}{map}{}", shell::word(log.as_os_str()), pole_pairs.unwrap_or_default())
+    let other = if read.table.needs_another() { " OPEN_CIRCUIT.csv" } else { "" };
+    format!("fluxfit identify {}{other}{map}{}", shell::word(log.as_os_str()), pole_pairs.unwrap_or_default())
 }
 
 /// What the columns contradict each other in, with what mends it.

@@ -10,6 +10,7 @@ use super::{
     table::Table,
 };
 use crate::{block::WantedColumn, channel::Channel, instant::Instants, problem::Problem};
+use fluxfit::characteristics::check_characteristics;
 use fluxfit_files::{
     FileError, FileErrorKind,
     input::{self, Bytes},
@@ -73,7 +74,7 @@ pub struct InspectedColumn {
 pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileError> {
     let name = input::name(path);
     // In the order of an identification: what is a table of a test bench is no log.
-    let of_bench = read_characteristic(path, options);
+    let of_bench = read_characteristic(path, options).and_then(|read| check(read, &name));
     let is_table = !matches!(of_bench, Ok(None));
     let of_log = LogOptions { map: if is_table { Vec::new() } else { options.map.clone() }, ..options.clone() };
     let resolved = ResolvedOptions::resolve(&of_log)?;
@@ -130,6 +131,12 @@ pub fn inspect(path: &Path, options: &LogOptions) -> Result<Inspection, FileErro
         Err(error) => (None, Err(error)),
     };
     Ok(Inspection { kind, layout, columns, table, is_table, log })
+}
+
+/// A table that is what it is taken for, by the check of an identification.
+fn check(read: Option<ReadCharacteristic>, name: &str) -> Result<Option<ReadCharacteristic>, FileError> {
+    let checked = read.as_ref().map_or(Ok(()), |read| check_characteristics(std::slice::from_ref(&read.table)));
+    checked.map(|()| read).map_err(|error| FileError::from(Problem::Log(error)).in_file(name))
 }
 
 /// Whether a channel is a voltage or a current.

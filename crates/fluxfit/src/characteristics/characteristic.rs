@@ -50,10 +50,16 @@ impl Characteristic {
     /// In prose, with its rows.
     pub fn describe(&self) -> String {
         let of = match self {
-            Self::OpenCircuit(_) | Self::ShortCircuit(_) => "speeds",
-            Self::TorqueOfCurrent(_) | Self::DirectCurrent(_) | Self::DutyCycle(_) | Self::SteadyPoints(_) => "rows",
+            Self::OpenCircuit(_) | Self::ShortCircuit(_) => "speed",
+            Self::TorqueOfCurrent(_) | Self::DirectCurrent(_) | Self::DutyCycle(_) | Self::SteadyPoints(_) => "row",
         };
-        format!("{} of {} {of}", self.label(), self.rows())
+        let s = if self.rows() == 1 { "" } else { "s" };
+        format!("{} of {} {of}{s}", self.label(), self.rows())
+    }
+
+    /// Whether it tells no parameter without another table: a short circuit without torque gives ratios alone.
+    pub fn needs_another(&self) -> bool {
+        matches!(self, Self::ShortCircuit(table) if table.rows.iter().all(|row| row.torque.is_none()))
     }
 
     /// Number of rows.
@@ -66,5 +72,20 @@ impl Characteristic {
             Self::DutyCycle(table) => table.rows.len(),
             Self::SteadyPoints(table) => table.rows.len(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::characteristics::OpenCircuitRow;
+
+    #[test]
+    fn one_row_is_one_speed() {
+        let of = |count: usize| {
+            let rows = vec![OpenCircuitRow { speed: 1.0, voltage: 1.0 }; count];
+            Characteristic::OpenCircuit(OpenCircuit { rows, across: None }).describe()
+        };
+        assert_eq!([of(1), of(2)], ["open-circuit characteristic of 1 speed", "open-circuit characteristic of 2 speeds"]);
     }
 }

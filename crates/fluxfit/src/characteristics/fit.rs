@@ -10,7 +10,7 @@ use super::{
     characteristic::Characteristic,
     lack::{Lack, Parts},
     machine::Machine,
-    open_circuit::{Across, SQRT_3},
+    open_circuit::{Across, SQRT_3, constant_voltage},
     problem::{Problem, start},
     rows::{Instrument, RESIDUALS, Residual, Rows},
     steady_points::SteadyPoint,
@@ -107,25 +107,8 @@ pub enum VoltageReading {
 /// # Errors
 /// If a table is too short, or the tables together hold neither voltage nor torque.
 pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u32>) -> Result<CharacteristicsAnswer, Error> {
-    let (rows, voltages) = with_told_voltages(Rows::of(tables)?)?;
-    let fit = Fit::of(&rows, rows.has_torque())?;
-    let (rows, fit, of_loss) = without_gain(rows, fit)?;
+    let Checked { rows, voltages, fit, of_loss } = Checked::of(tables)?;
     let jackknife = fit.jackknife(&rows);
-    if let Some(missed) = fit.residual_rms[1].filter(|missed| *missed > LARGEST_MISS) {
-        return Err(ErrorKind::NoShortCircuit { missed }.into());
-    }
-    if let Some(missed) = fit.residual_rms[0].filter(|missed| *missed > LARGEST_MISS) {
-        return Err(ErrorKind::NoOpenCircuit { missed }.into());
-    }
-    for residual in [Residual::Torque, Residual::DirectVoltage, Residual::DutyVoltage, Residual::PointVoltage] {
-        let most = if residual == Residual::PointVoltage { LARGEST_MISS_OF_POINTS } else { LARGEST_MISS };
-        if let Some(missed) = fit.residual_rms[residual as usize].map(|left| left / rows.unit(residual)).filter(|missed| *missed > most) {
-            return Err(ErrorKind::NoSuchTable { what: residual.label(), missed }.into());
-        }
-    }
-    if let Some(ratio) = fit.torque_ratio(&rows).filter(|ratio| !TORQUE_OF_POINTS.contains(ratio)) {
-        return Err(ErrorKind::TorqueOfPoints { ratio }.into());
-    }
     let of_drag = if rows.has_torque() { fit.distance(&Fit::of(&rows, false)?) } else { [0.0; PARAMETERS] };
     let of_tables = fit.contradiction_of_points(&rows)?;
     let doubt: [f64; PARAMETERS] = std::array::from_fn(|p| of_drag[p].hypot(fit.doubt_of_minima[p]).hypot(of_loss[p]).hypot(of_tables[p]));
@@ -170,6 +153,55 @@ pub fn identify_characteristics(tables: &[Characteristic], pole_pairs: Option<u3
 pub fn identify_electrical_characteristics(tables: &[Characteristic]) -> Result<CharacteristicsAnswer, Error> {
     let answer = identify_characteristics(tables, Some(1))?;
     Ok(CharacteristicsAnswer { pole_pairs: None, has_electrical_speeds: true, ..answer })
+}
+
+/// Whether some tables are what they are taken for, so far as they tell it: the same check that an identification begins with. Of a table
+/// that [needs another](Characteristic::needs_another), that one may be missing.
+///
+/// # Errors
+/// As [`identify_characteristics`].
+pub fn check_characteristics(tables: &[Characteristic]) -> Result<(), Error> {
+    match Checked::of(tables) {
+        Err(error) if *error.kind() != ErrorKind::NoScale => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// The fit of tables that are what they are taken for.
+struct Checked {
+    rows: Rows,
+    voltages: Option<VoltageReading>,
+    fit: Fit,
+    /// How far each number moves where an inverter is kept from adding voltage.
+    of_loss: [f64; PARAMETERS],
+}
+
+impl Checked {
+    fn of(tables: &[Characteristic]) -> Result<Self, Error> {
+        let (rows, voltages) = with_told_voltages(Rows::of(tables)?)?;
+        let fit = Fit::of(&rows, rows.has_torque())?;
+        let (rows, fit, of_loss) = without_gain(rows, fit)?;
+        if let Some(missed) = fit.residual_rms[1].filter(|missed| *missed > LARGEST_MISS) {
+            return Err(ErrorKind::NoShortCircuit { missed }.into());
+        }
+        if let Some(missed) = fit.residual_rms[0].filter(|missed| *missed > LARGEST_MISS) {
+            return Err(ErrorKind::NoOpenCircuit { missed }.into());
+        }
+        if let Some((of_line, of_constant)) = constant_voltage(&rows.open) {
+            return Err(ErrorKind::ConstantVoltage { of_line, of_constant }.into());
+        }
+        for residual in [Residual::Torque, Residual::DirectVoltage, Residual::DutyVoltage, Residual::PointVoltage] {
+            let most = if residual == Residual::PointVoltage { LARGEST_MISS_OF_POINTS } else { LARGEST_MISS };
+            if let Some(missed) = fit.residual_rms[residual as usize].map(|left| left / rows.unit(residual)).filter(|missed| *missed > most)
+            {
+                return Err(ErrorKind::NoSuchTable { what: residual.label(), missed }.into());
+            }
+        }
+        match fit.torque_ratio(&rows).filter(|ratio| !TORQUE_OF_POINTS.contains(ratio)) {
+            Some(ratio) => Err(ErrorKind::TorqueOfPoints { ratio }.into()),
+            None => Ok(Self { rows, voltages, fit, of_loss }),
+        }
+    }
 }
 
 /// What a short circuit's currents, or voltages of open terminals, are missed by at most, as a fraction: a motor that saturates by half is

@@ -32,7 +32,8 @@ pub use characteristic::Characteristic;
 pub use direct_current::{DirectCurrent, DirectCurrentRow};
 pub use duty_cycle::{DutyCycle, DutyCycleRow};
 pub use fit::{
-    CharacteristicEstimate, CharacteristicsAnswer, VoltageReading, identify_characteristics, identify_electrical_characteristics,
+    CharacteristicEstimate, CharacteristicsAnswer, VoltageReading, check_characteristics, identify_characteristics,
+    identify_electrical_characteristics,
 };
 pub use lack::Lack;
 pub use open_circuit::{Across, OpenCircuit, OpenCircuitRow};

@@ -53,9 +53,37 @@ impl OpenCircuitRow {
     }
 }
 
+/// What a line misses voltages by at least, as a fraction, before a constant is preferred: within it speeds are one speed.
+const LEAST_MISS: f64 = 0.005;
+
+/// How many times as much a line misses as a constant does where the voltages do not grow with the speed.
+const CONSTANT: f64 = 2.0;
+
+/// What the best line through zero and the best constant miss the voltages by, rms, as fractions, if it is a constant that these follow: as
+/// those of a supply.
+pub(super) fn constant_voltage(rows: &[OpenCircuitRow]) -> Option<(f64, f64)> {
+    let missed = |size: &dyn Fn(&OpenCircuitRow) -> f64| {
+        let parts: Vec<f64> = rows.iter().map(|row| size(row) / row.voltage).collect();
+        let factor = parts.iter().sum::<f64>() / parts.iter().map(|part| part.powi(2)).sum::<f64>();
+        (parts.iter().map(|part| (1.0 - factor * part).powi(2)).sum::<f64>() / parts.len() as f64).sqrt()
+    };
+    let (of_line, of_constant) = (missed(&|row| row.speed.abs()), missed(&|_| 1.0));
+    (of_line > LEAST_MISS.max(CONSTANT * of_constant)).then_some((of_line, of_constant))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn voltages_of_a_supply_are_constant() {
+        let of = |rows: [(f64, f64); 3]| constant_voltage(&rows.map(|(speed, voltage)| OpenCircuitRow { speed, voltage }));
+        let (of_line, of_constant) = of([(359.0, 219.8), (353.0, 219.9), (346.0, 220.0)]).unwrap();
+        assert!((0.01..0.02).contains(&of_line) && of_constant < 1e-3);
+        // Of open terminals, also with a reading that is 2 % off; of one speed, with the resolution of its meters.
+        assert_eq!(of([(100.0, 10.2), (110.0, 11.0), (120.0, 12.0)]), None);
+        assert_eq!(of([(100.1, 10.0), (100.0, 10.0), (99.9, 10.0)]), None);
+    }
 
     /// A phase's amplitude is `omega_e psi_f`; line to line it is sqrt 3 times that, and rms the part 1 / sqrt 2 of it.
     #[test]

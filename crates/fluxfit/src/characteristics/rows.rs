@@ -5,7 +5,7 @@ use super::{
     direct_current::DirectCurrentRow,
     duty_cycle::DutyCycleRow,
     open_circuit::{Across, OpenCircuitRow, SQRT_3},
-    short_circuit::ShortCircuitRow,
+    short_circuit::{ShortCircuitRow, too_large_power},
     steady_points::SteadyPoint,
     torque_of_current::TorqueOfCurrentRow,
 };
@@ -187,6 +187,9 @@ impl Rows {
                 }
                 .into());
             }
+        }
+        if let Some(power) = too_large_power(&rows.shorted) {
+            return Err(ErrorKind::CurrentOfLoad { power }.into());
         }
         let with_scale = [rows.open.len(), rows.torque.len(), rows.direct.len(), rows.duty.len(), rows.points.len()];
         let has_scale = rows.has_torque() || with_scale.iter().any(|rows| *rows > 0);

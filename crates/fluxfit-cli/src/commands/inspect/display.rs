@@ -48,7 +48,8 @@ pub(crate) fn show(name: &str, inspection: &Inspection, findings: &[Told], sampl
 
 /// Shows a table of a test bench: its columns, what each is taken for, and the command that identifies from it, on a line of its own.
 pub(crate) fn show_table(name: &str, inspection: &Inspection, read: &ReadCharacteristic, next: &str) -> std::io::Result<()> {
-    let status = format!("A table of a test bench: {}. Next:", read.table.describe());
+    let next_step = if read.table.needs_another() { "Next, with the open-circuit table of the same motor:" } else { "Next:" };
+    let status = format!("A table of a test bench: {}. {next_step}", read.table.describe());
     let mut text = format!("{GOOD}{}{GOOD:#}\n    {next}\n\n", terminal::wrapped("", &status).trim_end());
     text += &format!("{}\n", terminal::wrapped("", &format!("{HEADING}{name}{HEADING:#}: {}", inspection.kind)));
     let rows = inspection.columns.iter().take(LISTED).map(|column| {
