@@ -15,10 +15,49 @@ pub(crate) struct UnclearTable {
     pub(crate) direct_voltage: Option<String>,
     /// A current that does not say what of a wave it is, and the torque beside it.
     pub(crate) current_and_torque: Option<[String; 2]>,
+    /// Columns that only resemble i_q, beside a torque.
+    pub(crate) axis_currents: Option<AxisCurrents>,
     /// A speed of which nothing states the unit.
     pub(crate) speed: Option<String>,
     /// Quantities and columns that are called by their symbols alone.
     pub(crate) symbols: Vec<(&'static str, String)>,
+}
+
+/// Columns beside a torque that may be the currents of the rotor's frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct AxisCurrents {
+    /// Those that may be i_q.
+    pub(crate) q: Vec<String>,
+    /// The one that is i_d, if the first of these is i_q.
+    pub(crate) d: Option<String>,
+    pub(crate) torque: String,
+}
+
+impl AxisCurrents {
+    /// What to map if the first one is i_q.
+    fn map(&self) -> Vec<(&'static str, &String)> {
+        let pairs = [self.q.first().map(|q| ("iq", q)), self.d.as_ref().map(|d| ("id", d)), Some(("torque", &self.torque))];
+        pairs.into_iter().flatten().collect()
+    }
+}
+
+impl fmt::Display for AxisCurrents {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (beside, d) = (quote(&self.torque), self.d.as_ref().map(|d| quote(d)));
+        match (self.q.as_slice(), d) {
+            ([one], None) => write!(f, "by name, {} may be i_q beside the torque {beside}; map it as iq if it is", quote(one)),
+            ([one], Some(d)) => {
+                write!(f, "by name, {} and {d} may be i_q and i_d beside the torque {beside}; map them if they are", quote(one))
+            }
+            (all, _) => {
+                write!(
+                    f,
+                    "the columns {} could each be i_q beside the torque {beside}; map that of the motor as iq, and its i_d as id",
+                    columns(all)
+                )
+            }
+        }
+    }
 }
 
 impl UnclearTable {
@@ -32,6 +71,7 @@ impl UnclearTable {
             pairs.map(|(name, header)| (name, Some(header))).collect::<Vec<_>>()
         };
         let maps = match (&self.direct_voltage, &self.current_and_torque) {
+            _ if self.axis_currents.is_some() => self.axis_currents.iter().map(|axes| with(&axes.map())).collect(),
             (Some(voltage), _) => vec![with(&[("voltage_ll", voltage)]), with(&[("voltage_phase", voltage)])],
             (_, Some([current, torque])) => {
                 vec![with(&[("iq", current), ("torque", torque)]), with(&[("current", current), ("torque", torque)])]
@@ -56,7 +96,7 @@ impl UnclearTable {
 
 /// Whether a column that is mapped so is one of a quantity.
 fn covers(name: &str, quantity: &str) -> bool {
-    name.starts_with(quantity) || name == "iq" && quantity == "current"
+    name.starts_with(quantity) || ["iq", "id"].contains(&name) && quantity == "current"
 }
 
 impl fmt::Display for UnclearTable {
@@ -83,6 +123,7 @@ impl fmt::Display for UnclearTable {
                 quote(header)
             )
         });
+        let axes = self.axis_currents.as_ref().map(ToString::to_string);
         let speed = self.speed.as_ref().map(|header| {
             format!("nothing states the unit of the speed {}; state it, or put it into the name, as in 'speed [rpm]'", quote(header))
         });
@@ -93,6 +134,6 @@ impl fmt::Display for UnclearTable {
                 columns(&headers), list(&quantities)
             )
         });
-        f.write_str(&[symbols, map, of_shaft, points, wave, speed].into_iter().flatten().collect::<Vec<_>>().join("; and "))
+        f.write_str(&[symbols, map, of_shaft, points, wave, axes, speed].into_iter().flatten().collect::<Vec<_>>().join("; and "))
     }
 }

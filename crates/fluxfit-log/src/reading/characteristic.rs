@@ -4,6 +4,7 @@
 //! makes power (a DC supply, shaft power, efficiency) belongs to a motor that is driven, and its table is no characteristic.
 
 use super::{
+    axis_currents::is_axis,
     bench_columns::{Found, INSTANT, Stated, found, found_all, is_direct, is_driven, place, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points},
     layout::NotALog,
@@ -139,7 +140,8 @@ fn is_of_log(head: &ColumnHead) -> bool {
     is_instant
         || head.is_time
         || head.instants.is_some()
-        || [Channel::T, Channel::Ud, Channel::Uq, Channel::Id, Channel::Iq].into_iter().any(channel)
+        || [Channel::T, Channel::Ud, Channel::Uq].into_iter().any(channel)
+        || [Channel::Id, Channel::Iq].into_iter().any(|axis| is_axis(axis, head))
 }
 
 fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Result<Option<ReadCharacteristic>, FileError> {

@@ -8,6 +8,7 @@
 
 mod alias;
 mod align;
+mod axis_currents;
 mod bench_columns;
 mod bench_convention;
 mod bench_units;

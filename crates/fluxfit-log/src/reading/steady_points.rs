@@ -2,6 +2,7 @@
 
 use super::{
     alias,
+    axis_currents::is,
     bench_columns::{Found, INSTANT, Stated, found_all, place, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit},
     channels::Channels,
@@ -14,7 +15,7 @@ use super::{
     proposal::stated_unit,
     resemblance::words,
     rms,
-    steady_test::{ReadCharacteristic, is},
+    steady_test::ReadCharacteristic,
     table::Table,
 };
 use crate::{

@@ -3,7 +3,7 @@
 //! Each is recognized by what it has and by what it lacks: without the voltages of a dq frame it is no log.
 
 use super::{
-    alias,
+    axis_currents::{self, OfD, OfQ, is},
     bench_columns::{Found, INSTANT, Stated, is_direct, is_driven, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points, states_wave},
     duty,
@@ -41,13 +41,6 @@ pub struct ReadCharacteristic {
     pub has_electrical_speed: bool,
 }
 
-/// Whether a column may be a channel, also as a root mean square.
-pub(super) fn is(channel: Channel, head: &ColumnHead) -> bool {
-    let is_named =
-        |head: &ColumnHead| alias::is_alias(channel, head) || Channel::from_name(head.name.trim()).is_ok_and(|own| own == channel);
-    is_named(head) || rms::without(head).is_some_and(|head| is_named(&head))
-}
-
 /// Whether two columns or more are currents, or voltages, of phases or of the stator's frame: one alone may be that of a test at rest.
 fn has_several_phases(heads: &[ColumnHead]) -> bool {
     let of = |dimension: Dimension| {
@@ -83,17 +76,20 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
     let all = |quantity: Quantity| columns.iter().filter(|column| column.quantity == quantity).collect::<Vec<_>>();
     let [speeds, voltages, currents, torques] = Quantity::ALL.map(all);
     let is_time = !is_mapped && heads.iter().any(|head| head.is_time || head.instants.is_some() || is(Channel::T, head));
-    let place = |channel: Channel| heads.iter().position(|head| is(channel, head));
-    let mapped = |column: TableColumn| columns.iter().find(|found| found.mapped == Some(column)).map(|found| found.index);
     // Columns of another test are mapped: it is not this one.
     let is_other = |some: &[Quantity]| stated.maps(some);
-    let of_q = mapped(TableColumn::AxisQ)
-        .or_else(|| place(Channel::Iq).filter(|_| !is_other(&[Quantity::Speed, Quantity::Voltage, Quantity::Current])));
-    if let (Some(q), Some(torque), false) = (of_q, torques.first(), is_time) {
-        refuse_unclear([torques.clone()].into_iter(), UnclearTable::default())?;
-        let of = |index: usize| axis(index, &heads, columns);
-        let d = mapped(TableColumn::AxisD).or_else(|| place(Channel::Id)).filter(|d| *d != q);
-        return torque_of_current(table, d.map(of), of(q), torque).map(Some);
+    let is_of_q = stated.map.iter().any(|(column, _)| *column == TableColumn::AxisQ)
+        || !is_other(&[Quantity::Speed, Quantity::Voltage, Quantity::Current]);
+    if let (Some(torque), true) = (torques.first(), is_of_q && !is_time) {
+        let of_q = axis_currents::of_q(&heads, columns);
+        let axis_currents = if let OfQ::MayBe(some) = &of_q { Some(axis_currents::to_map(&heads, some, torque)) } else { None };
+        if of_q != OfQ::Absent {
+            refuse_unclear([torques.clone()].into_iter(), UnclearTable { axis_currents, ..UnclearTable::default() })?;
+        }
+        if let OfQ::Is(q) = of_q {
+            let d = axis_currents::of_d(&heads, columns, Some(q));
+            return torque_of_current(table, &d, axis(q, &heads, columns), columns, torque).map(Some);
+        }
     }
     let duty = heads.iter().position(|head| has_word(head, &["duty", "dutycycle"]) && !is_reference(&head.name));
     let is_duty = !is_other(&[Quantity::Voltage, Quantity::Current, Quantity::Torque]);
@@ -119,7 +115,8 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
             refuse_unclear([currents.clone(), torques.clone()].into_iter(), unclear)?;
             let mut notes = Vec::new();
             let factor = current.in_si * convention(current, Quantity::Current, None, &mut notes) * SQRT_2;
-            let read = torque_of_current(table, None, Axis { index: current.index, factor, is_rms: true }, torque)?;
+            let d = axis_currents::of_d(&heads, columns, None);
+            let read = torque_of_current(table, &d, Axis { index: current.index, factor, is_rms: true }, columns, torque)?;
             let notes = notes.into_iter().chain(read.notes.into_iter().skip(1)).collect();
             Ok(Some(ReadCharacteristic { notes, ..read }))
         }
@@ -164,10 +161,9 @@ fn axis(index: usize, heads: &[ColumnHead], columns: &[Found]) -> Axis {
     Axis { index, factor: if is_rms { in_si * SQRT_2 } else { in_si }, is_rms }
 }
 
-fn torque_of_current(table: &mut Table, d: Option<Axis>, q: Axis, torque: &Found) -> Result<ReadCharacteristic, FileError> {
+fn torque_of_current(table: &mut Table, d: &OfD, q: Axis, columns: &[Found], torque: &Found) -> Result<ReadCharacteristic, FileError> {
     let heads = table.heads().to_vec();
-    // Without a column of i_d it is taken as zero.
-    let of_d = d.as_ref().map_or((q.index, 0.0), |d| (d.index, d.factor));
+    let of_d = d.index().map(|index| axis(index, &heads, columns)).map_or((q.index, 0.0), |d| (d.index, d.factor));
     let mut rows: Vec<TorqueOfCurrentRow> = rows(table, [of_d, (q.index, q.factor), (torque.index, torque.in_si)])?
         .into_iter()
         .map(|[d, q, torque]| TorqueOfCurrentRow { current: Dq { d, q }, torque })
@@ -177,16 +173,15 @@ fn torque_of_current(table: &mut Table, d: Option<Axis>, q: Axis, torque: &Found
     if slope < 0.0 {
         rows.iter_mut().for_each(|row| row.torque = -row.torque);
     }
-    let name = |axis: &Axis| heads[axis.index].name.trim().to_owned();
+    let name = |index: usize| heads[index].name.trim().to_owned();
     let how = if q.is_rms { "an rms value of a phase" } else { "the peak value of a phase, as of all dq currents here" };
-    let mut notes: Vec<Note> = vec![format!("the current {} is read as {how}", quote(&name(&q))).into()];
-    let mut used = vec![("current", name(&q)), ("torque", torque.header.clone())];
-    match d {
-        Some(d) => used.push(("current", name(&d))),
-        None => notes.push("i_d is taken as zero: no column has it".to_owned().into()),
-    }
+    let mut notes: Vec<Note> = vec![format!("the current {} is read as {how}", quote(&name(q.index))).into()];
+    notes.extend(d.note(&heads));
+    let of_d = d.index().map(name);
+    let used = [Some(("current", name(q.index))), Some(("torque", torque.header.clone())), of_d.map(|name| ("current", name))];
     let table = Characteristic::TorqueOfCurrent(TorqueOfCurrent { rows });
-    Ok(ReadCharacteristic { table, columns: used, notes, has_electrical_speed: false })
+    let columns = used.into_iter().flatten().collect();
+    Ok(ReadCharacteristic { table, columns, notes, has_electrical_speed: false })
 }
 
 fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<Option<ReadCharacteristic>, FileError> {

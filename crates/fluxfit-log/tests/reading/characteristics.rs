@@ -1,10 +1,16 @@
 //! Tables of a test bench: what is taken for one, and what a file is that is none. No log is taken for one.
 
-use fluxfit_log::{Inspection, LogOptions, inspect, read_characteristic};
+use crate::fixtures::map;
+use fluxfit::characteristics::{Characteristic, TorqueOfCurrent};
+use fluxfit_files::{Advice, FileError};
+use fluxfit_log::{Inspection, LogOptions, ReadCharacteristic, inspect, read_characteristic};
 use std::{fs, path::Path};
 
 /// The one file of the corpus that is such a table, and no log.
 const TABLE: &str = "table_beside_timetable.mat";
+
+/// The one that is asked to be mapped as such a table: of i_q beside a torque its names only say that they may be it.
+const DYNAMOMETER: &str = "odrive_dyno.csv";
 
 #[test]
 fn no_log_of_the_corpus_is_a_characteristic() {
@@ -14,6 +20,10 @@ fn no_log_of_the_corpus_is_a_characteristic() {
         let path = file.unwrap().path();
         if path.ends_with(TABLE) {
             assert!(read_characteristic(&path, &LogOptions { pole_pairs: Some(3), ..LogOptions::default() }).unwrap().is_some());
+            continue;
+        }
+        if path.ends_with(DYNAMOMETER) {
+            assert!(read_characteristic(&path, &LogOptions::default()).is_err());
             continue;
         }
         assert_eq!(read_characteristic(&path, &LogOptions::default()), Ok(None), "{}", path.display());
@@ -29,8 +39,58 @@ fn with_file<T>(text: &str, act: impl Fn(&Path) -> T) -> T {
     act(&path)
 }
 
+fn of(text: &str, options: &LogOptions) -> Result<Option<ReadCharacteristic>, FileError> {
+    with_file(text, |path| read_characteristic(path, options))
+}
+
 fn inspected(text: &str) -> Inspection {
     with_file(text, |path| inspect(path, &LogOptions::default()).unwrap())
+}
+
+/// The largest currents of d and q of torques, and what is said of i_d.
+fn torques(text: &str, options: &LogOptions) -> ([f64; 2], String) {
+    let read = of(text, options).unwrap().unwrap();
+    let Characteristic::TorqueOfCurrent(TorqueOfCurrent { rows }) = &read.table else { panic!("{:?}", read.table) };
+    let last = rows.last().unwrap().current;
+    let notes = read.notes.iter().map(|note| note.sentence.as_str()).filter(|note| note.contains("i_d"));
+    ([last.d, last.q], notes.collect::<Vec<_>>().join("; "))
+}
+
+const ROWS: &str = "1000,5,1,-1\n1000,10,2,-2\n2000,20,4,-4\n";
+
+/// Whatever is beside it: a speed, powers, losses. Of what only resembles i_q it is asked, with what to paste.
+#[test]
+fn a_q_current_beside_a_torque_is_torque_against_current() {
+    for names in ["rpm,iq_peak_a,avg_torque_nm,efficiency", "rpm,Iq avg [A],torque_nm,loss_w", "rpm_ss,iq_ss,torque_ss,x"] {
+        assert_eq!(torques(&format!("{names}\n{ROWS}"), &LogOptions::default()).0, [0.0, 20.0], "{names}");
+    }
+    let bench = format!("Output Speed [rpm],Test motor q-axis current,Output Torque [Nm],Test motor d-axis current\n{ROWS}");
+    let refusal = of(&bench, &LogOptions::default()).unwrap_err();
+    assert!(refusal.to_string().contains("may be i_q and i_d beside the torque"), "{refusal}");
+    let pairs = [("iq", "Test motor q-axis current"), ("id", "Test motor d-axis current"), ("torque", "Output Torque [Nm]")];
+    let pairs = pairs.map(|(name, header)| (name, Some(header.to_owned())));
+    assert_eq!(refusal.advice(), [Advice::MapColumns(pairs.to_vec())]);
+    let mapped = map(&["iq=Test motor q-axis current", "id=Test motor d-axis current", "torque=Output Torque [Nm]"]);
+    assert_eq!(torques(&bench, &mapped).0, [-4.0, 20.0]);
+    let two = format!("Power [W],Test motor q-axis current,Torque [Nm],Absorber q-axis current\n{ROWS}");
+    assert!(of(&two, &LogOptions::default()).unwrap_err().to_string().contains("could each be i_q"));
+    // With the voltages of the frame it is a log, or operating points.
+    let log = format!("motor_x_vd,motor_x_iq,torque_nm,motor_x_vq\n{ROWS}");
+    assert_eq!(of(&log, &LogOptions::default()), Ok(None));
+}
+
+#[test]
+fn no_column_of_i_d_is_passed_over_without_a_word() {
+    let of = |d: &str, mapped: &[&str]| torques(&format!("speed,Test motor q-axis current,M [Nm],{d}\n{ROWS}"), &map(mapped));
+    let mapped = ["iq=Test motor q-axis current", "torque=M [Nm]"];
+    let ([d, _], note) = of("Test motor d-axis current", &mapped);
+    assert!(d == -4.0 && note.contains("is read as i_d, because its name differs"), "{note}");
+    for name in ["Absorber d-axis current", "motor d-axis current reference"] {
+        let ([d, _], note) = of(name, &mapped);
+        assert!(d == 0.0 && note.contains(&format!("'{name}' may be i_d")), "{note}");
+    }
+    let (_, note) = of("temperature", &mapped);
+    assert!(note.contains("no column is named as it"), "{note}");
 }
 
 /// What an identification refuses, an inspection does not call a table to identify from.
@@ -39,7 +99,7 @@ fn an_inspection_checks_a_table_as_an_identification_does() {
     let propeller = [2.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0].map(|speed: f64| format!("{speed},{},{}\n", speed.powi(2), speed.powi(2)));
     let refused = [
         (format!("RPM,Torque_Nm,Current_A\n{}", propeller.concat()), "propeller"),
-        ("rpm,I [A]\n1000,15\n".to_owned(), "too few speeds (1"),
+        ("rpm,iq_peak_a,torque_nm\n1000,15,0.01\n".to_owned(), "too few currents"),
         ("rpm,U_ll [V]\n3000,5\n3060,5\n3120,5.01\n".to_owned(), "same at all speeds"),
     ];
     for (text, sentence) in refused {
