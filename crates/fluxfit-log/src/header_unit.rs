@@ -170,13 +170,23 @@ fn without_preposition(name: &str) -> &str {
 
 /// The unit that a row of units, or a container, states for a column with this header.
 pub(crate) fn unit_in_row<'a>(text: &'a str, header: &str, dimension: Dimension) -> HeaderUnit<'a> {
-    let bare = text.trim().trim_matches(['[', ']', '(', ')']);
+    let bare = unit_of_cell(text);
     let rotation = match (rotation(text), rotation(header)) {
         (Rotation::Unstated, of_header) => of_header,
         (of_text, _) => of_text,
     };
     spelled(bare, dimension, rotation).map_or(HeaderUnit::Unknown(text), HeaderUnit::Known)
 }
+
+/// The unit in a cell of a row of units, without brackets and without the quantity in Chinese or Japanese before it: `轉速rpm`, `電壓V`.
+pub(crate) fn unit_of_cell(text: &str) -> &str {
+    let bare = text.trim().trim_matches(['[', ']', '(', ')']);
+    let unit = bare.trim_start_matches(|c: char| c >= FIRST_OF_EAST_ASIA && c.is_alphabetic()).trim_matches([' ', '[', ']', '(', ')']);
+    if unit.is_empty() { bare } else { unit }
+}
+
+/// The first character of the scripts of East Asia; Greek letters and accents, as in `µs`, come before it.
+const FIRST_OF_EAST_ASIA: char = '\u{2e80}';
 
 /// Whether a header states that its speed or angle is electrical.
 pub(crate) fn states_electrical(header: &str) -> bool {

@@ -154,12 +154,18 @@ pub(crate) enum Problem {
         shorten(.header)
     )]
     DirectQuantity { header: String },
-    #[error("the name '{}' states another unit than one of {column}, or a constant; write its unit into the name", shorten(.header))]
-    MappedUnit { column: &'static str, header: String },
+    #[error("{}", mapped_unit(column, header, .of_row.as_deref()))]
+    MappedUnit {
+        column: &'static str,
+        header: String,
+        /// What the row of units has.
+        of_row: Option<String>,
+    },
     #[error(
-        "this is the curve of a motor that drives a load, speed and torque with power: R_s, L_d, L_q and psi_f need dq voltages and currents over time, or tables with open and shorted terminals; log one of them"
+        "this is the curve of a motor that drives a load, by its columns {}: R_s, L_d, L_q and psi_f need dq voltages and currents with the speed (a log, or operating points), or tables with open and shorted terminals; log one of them, or i_q beside the torque, which tells psi_f alone; if the terminals were open or shorted, map speed and voltage, or speed and current",
+        columns(.names)
     )]
-    LoadCurve,
+    LoadCurve { names: Vec<String> },
     #[error("this table of speeds has more than {most} rows; leave a row for each speed")]
     LongCharacteristic { most: usize },
 
@@ -323,7 +329,7 @@ impl Problem {
                 FileErrorKind::Columns
             }
             Self::UnclearTable(_)
-            | Self::LoadCurve
+            | Self::LoadCurve { .. }
             | Self::NoTable
             | Self::DirectQuantity { .. }
             | Self::UnusedColumn { .. }
@@ -382,6 +388,7 @@ impl Problem {
             Self::NotALog { advice, .. } => advice.iter().cloned().collect(),
             Self::HeaderUnit { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
             Self::UnclearTable(unclear) => unclear.advice(),
+            Self::MappedUnit { column: "speed", .. } => vec![Advice::StateUnit { channel: "speed", unit: None }],
             Self::PolePairs { channel, electrical, .. } => {
                 vec![Advice::StatePolePairs, Advice::StateUnit { channel, unit: Some(electrical) }]
             }
@@ -448,6 +455,17 @@ fn object_remedy(name: &str, class: &str) -> String {
         }
         "timeseries" => format!("save its numbers with s = struct('Time', {name}.Time, 'Data', {name}.Data); save('log.mat', 's')"),
         _ => "save its numbers as vectors, or as a structure of vectors".to_owned(),
+    }
+}
+
+fn mapped_unit(column: &str, header: &str, of_row: Option<&str>) -> String {
+    let (state, header) = (if column == "speed" { ", or state it" } else { "" }, shorten(header));
+    match of_row {
+        None => format!("the name '{header}' states another unit than one of {column}, or a constant; write its unit into the name{state}"),
+        Some(unit) => format!(
+            "'{header}' is mapped to {column}, but the row of units has {} below it, which is not read as a unit of {column}; write the unit there{state}",
+            quote(unit)
+        ),
     }
 }
 

@@ -37,6 +37,27 @@ impl Quantity {
 const DRIVEN: [&str; 11] =
     ["power", "efficiency", "leistung", "wirkungsgrad", "puissance", "bus", "battery", "supply", "throttle", "duty", "pwm"];
 
+/// Words of what a motor loses while it is driven, where current and torque are beside it; with open terminals a bench measures it too.
+const LOSS: [&str; 5] = ["loss", "losses", "verlust", "verluste", "verlustleistung"];
+
+/// Words of the two sides of a machine that transmits power.
+const SIDES: [[&str; 2]; 2] = [["input", "output"], ["eingang", "ausgang"]];
+
+/// The column that makes speed and torque those of a motor that drives a load, by its name.
+pub(super) fn driven<'a>(heads: &'a [ColumnHead], columns: &[Found]) -> Option<&'a ColumnHead> {
+    let has = |quantity: Quantity| columns.iter().any(|column| column.quantity == quantity);
+    let is_loss = |head: &ColumnHead| has(Quantity::Current) && has(Quantity::Torque) && has_word(head, &LOSS);
+    let of = |quantity: Quantity, word: &str| {
+        columns.iter().find(|column| column.quantity == quantity && has_word(&heads[column.index], &[word])).map(|column| column.index)
+    };
+    let output = || {
+        let sides = || SIDES.into_iter().flat_map(|sides| [Quantity::Speed, Quantity::Torque].map(|quantity| (quantity, sides)));
+        sides().find_map(|(quantity, [input, output])| of(quantity, input).and(of(quantity, output)))
+    };
+    let by_name = heads.iter().find(|head| is_driven(head) || is_direct(head) || is_loss(head));
+    by_name.or_else(|| output().map(|index| &heads[index]))
+}
+
 /// Words of a direct voltage or current: of a supply, or of a test at rest.
 const DIRECT: [&str; 7] = ["dc", "udc", "vdc", "adc", "idc", "mvdc", "madc"];
 
@@ -122,7 +143,7 @@ impl Stated {
 pub(super) fn found_all(heads: &[ColumnHead], stated: &Stated) -> Result<Vec<Found>, FileError> {
     let mut columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
     for (column, header) in &stated.map {
-        map(&mut columns, heads, *column, header)?;
+        map(&mut columns, heads, *column, header, stated.speed)?;
     }
     let is_axis = stated.map.iter().any(|(column, _)| column.is_axis());
     let mapped = [Quantity::Speed, Quantity::Voltage, Quantity::Current].map(|quantity| stated.maps(&[quantity]));
@@ -143,8 +164,14 @@ pub(super) fn found_all(heads: &[ColumnHead], stated: &Stated) -> Result<Vec<Fou
     Ok(columns)
 }
 
-/// Takes the column with a name for what the user says that it is.
-fn map(columns: &mut Vec<Found>, heads: &[ColumnHead], column: TableColumn, header: &str) -> Result<(), FileError> {
+/// Takes the column with a name for what the user says that it is, and a speed to be in the unit that the user states.
+fn map(
+    columns: &mut Vec<Found>,
+    heads: &[ColumnHead],
+    column: TableColumn,
+    header: &str,
+    unit_of_speed: Option<Unit>,
+) -> Result<(), FileError> {
     let quantity = column.quantity();
     let Some(index) = place(heads, header) else {
         let present = heads.iter().map(|head| head.name.clone()).collect();
@@ -159,7 +186,12 @@ fn map(columns: &mut Vec<Found>, heads: &[ColumnHead], column: TableColumn, head
     let (in_si, is_electrical, has_unit) = match stated_unit(&heads[index]) {
         StatedUnit::Of(own, in_si, is_electrical) if own == quantity => (in_si, is_electrical, true),
         StatedUnit::None => (quantity.assumed_unit(), false, false),
-        _ => return Err(Problem::MappedUnit { column: column.name(), header: header.to_owned() }.into()),
+        _ if quantity == Quantity::Speed && unit_of_speed.is_some() => (quantity.assumed_unit(), false, false),
+        _ => {
+            let of_name = stated_unit(&ColumnHead { unit: None, ..heads[index].clone() });
+            let of_row = heads[index].unit.as_deref().filter(|_| of_name == StatedUnit::None).map(|unit| unit.trim().to_owned());
+            return Err(Problem::MappedUnit { column: column.name(), header: header.to_owned(), of_row }.into());
+        }
     };
     // What holds of the terminals of one phase holds of all three that are averaged.
     let phases: Vec<usize> = columns.iter().filter(|other| other.quantity == quantity).map(|other| other.index).collect();

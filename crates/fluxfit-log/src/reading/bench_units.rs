@@ -4,7 +4,7 @@
 use super::{resemblance::words, vocabulary::VOLTAGE};
 use crate::{
     block::ColumnHead,
-    header_unit::{HeaderUnit, split_header, states_electrical, unit_in_row},
+    header_unit::{HeaderUnit, split_header, states_electrical, unit_in_row, unit_of_cell},
     quantity::Quantity,
 };
 use fluxfit_units::{Dimension, Unit};
@@ -49,7 +49,7 @@ pub(super) fn stated_unit(head: &ColumnHead) -> StatedUnit {
     if let Some(stated) = torque().or_else(|| dimensions.into_iter().find_map(at_end)) {
         return stated;
     }
-    let row = head.unit.as_deref().map(|text| text.trim().trim_matches(['[', ']', '(', ')', '-', '#'])).filter(|text| !text.is_empty());
+    let row = head.unit.as_deref().map(|text| unit_of_cell(text).trim_matches(['-', '#'])).filter(|text| !text.is_empty());
     if let Some(text) = row {
         return unit_of(text, header).unwrap_or(StatedUnit::Other);
     }

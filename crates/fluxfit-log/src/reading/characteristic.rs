@@ -5,7 +5,7 @@
 
 use super::{
     axis_currents::is_axis,
-    bench_columns::{Found, INSTANT, Stated, found, found_all, is_direct, is_driven, place, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, Stated, driven, found, found_all, is_direct, place, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points},
     layout::NotALog,
     mapping::Park,
@@ -157,10 +157,15 @@ fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Resu
         if heads.iter().any(is_of_log) || NotALog::by_names(&names).is_some() {
             return Ok(None);
         }
-        if heads.iter().any(|head| is_driven(head) || is_direct(head)) {
+        if let Some(driven) = driven(&heads, &columns) {
             let is_curve = has(Quantity::Speed) && has(Quantity::Torque) && turns_and_pulls(table, &columns);
-            return if is_curve { Err(Problem::LoadCurve.into()) } else { Ok(None) };
+            return if is_curve { Err(load_curve(&columns, driven.name.trim())) } else { Ok(None) };
         }
+    } else if stated.maps(&[Quantity::Torque])
+        && !stated.maps(&[Quantity::Voltage])
+        && let Some(voltage) = columns.iter().find(|column| column.quantity == Quantity::Voltage).filter(|_| !has(Quantity::Current))
+    {
+        return Err(load_curve(&columns, &voltage.header));
     }
     if !has(Quantity::Speed) || has(Quantity::Voltage) == has(Quantity::Current) {
         return Ok(None);
@@ -183,7 +188,10 @@ fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Resu
     let electrical = of_frequency.filter(|_| pole_pairs.is_none()).map(|(column, _)| column.header.clone());
     let speed = of_all[Quantity::Speed as usize].iter().find(|(column, _)| lacks_unit(column)).map(|(column, _)| column.header.clone());
     let unclear = UnclearTable { electrical, speed, ..UnclearTable::default() };
-    refuse_unclear(of_all.iter().map(|of_one| of_one.iter().map(|(column, _)| column).collect()), unclear)?;
+    // Of open terminals no torque is used.
+    let asked =
+        Quantity::ALL.into_iter().filter(|quantity| *quantity != Quantity::Torque || !of_all[Quantity::Current as usize].is_empty());
+    refuse_unclear(asked.map(|quantity| of_all[quantity as usize].iter().map(|(column, _)| column).collect()), unclear)?;
     // Only mapped ones come here.
     let is_of_motor = |column: &Found| matches!(column.quantity, Quantity::Voltage | Quantity::Current);
     if let Some((direct, _)) = columns.iter().find(|(column, _)| is_of_motor(column) && is_direct(&heads[column.index])) {
@@ -226,6 +234,13 @@ fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Resu
     let used = used.flat_map(|quantity| headers(&columns, quantity).into_iter().map(move |name| (quantity.name(), name)));
     let used = used.map(|(quantity, header)| (quantity, header.to_owned())).collect();
     Ok(Some(ReadCharacteristic { columns: used, table, notes, has_electrical_speed: electrical.is_some() }))
+}
+
+/// Refuses speed and torque that this column makes those of a load.
+fn load_curve(columns: &[Found], header: &str) -> FileError {
+    let first = |quantity: Quantity| columns.iter().find(|column| column.quantity == quantity).map(|column| column.header.clone());
+    let names = [Quantity::Speed, Quantity::Torque].into_iter().filter_map(first).chain([header.to_owned()]);
+    Problem::LoadCurve { names: names.collect() }.into()
 }
 
 /// Whether speed and torque have two rows or more that are not zero: of a curve there are some. What cannot be read is left to the names.

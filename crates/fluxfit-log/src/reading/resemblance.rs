@@ -4,7 +4,7 @@ use super::vocabulary::{ACROSS, ALONG};
 use crate::{
     block::ColumnHead,
     channel::Channel,
-    header_unit::{HeaderUnit, share, split_header, unit_in_row},
+    header_unit::{HeaderUnit, share, split_header, unit_in_row, unit_of_cell},
 };
 use fluxfit_units::Dimension;
 
@@ -87,7 +87,7 @@ pub(super) fn has_other_unit(channel: Channel, head: &ColumnHead) -> bool {
         },
         _ => None,
     };
-    let Some(text) = own.map(|text| text.trim().trim_matches(['[', ']', '(', ')']).to_lowercase()) else { return false };
+    let Some(text) = own.map(|text| unit_of_cell(text).to_lowercase()) else { return false };
     let is_of =
         |other: Channel| other.dimension() != dimension && matches!(unit_in_row(&text, "", other.dimension()), HeaderUnit::Known(_));
     // Voltages, currents and speeds may be shares of base values.

@@ -4,6 +4,7 @@ use crate::fixtures::map;
 use fluxfit::characteristics::{Characteristic, TorqueOfCurrent};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_log::{Inspection, LogOptions, ReadCharacteristic, inspect, read_characteristic};
+use fluxfit_units::Unit;
 use std::{fs, path::Path};
 
 /// The one file of the corpus that is such a table, and no log.
@@ -111,4 +112,40 @@ fn an_inspection_checks_a_table_as_an_identification_does() {
     let shorted = "rpm,I [A]\n100,1\n200,2\n400,3.8\n800,7\n1600,11\n3200,14\n";
     let table = inspected(shorted).table.unwrap().table;
     assert!(table.needs_another() && table.describe() == "short-circuit characteristic of 6 speeds");
+}
+
+#[test]
+fn the_curve_of_a_load_is_named_whatever_is_mapped() {
+    let actuator = format!("input_speed,input_torque,voltage,output_speed,output_torque\n{}", "1,2,3,4,5\n2,2,3,8,5\n");
+    for options in [LogOptions::default(), map(&["speed=input_speed", "torque=input_torque"])] {
+        let refusal = of(&actuator, &options).unwrap_err().to_string();
+        assert!(refusal.contains("a motor that drives a load, by its columns 'input_speed'"), "{refusal}");
+    }
+    let loss = format!("rpm,I [A],torque_nm,avg_loss_w\n{ROWS}");
+    assert!(
+        of(&loss, &LogOptions::default())
+            .unwrap_err()
+            .to_string()
+            .contains("drives a load, by its columns 'rpm', 'torque_nm' and 'avg_loss_w'")
+    );
+    // A bench measures what an open motor loses, and its torques: none of them is asked for.
+    let open = format!("rpm,U_ll [V],torque 1 [Nm],torque 2 [Nm],iron loss [W]\n{}", "100,1,1,1,1\n200,2,1,1,2\n");
+    assert!(matches!(of(&open, &LogOptions::default()), Ok(Some(ReadCharacteristic { table: Characteristic::OpenCircuit(_), .. }))));
+}
+
+/// A row of names with units: 3600 r/min are 377 rad/s.
+#[test]
+fn units_stand_behind_names_in_chinese_and_those_that_are_stated_win() {
+    let open = "voltage,speed\n電壓V,轉速rpm\n10,1800\n20,3600\n30,5400\n";
+    let speed = |text: &str, options: &LogOptions| match of(text, options).unwrap().unwrap().table {
+        Characteristic::OpenCircuit(table) => table.rows[1].speed,
+        other => panic!("{other:?}"),
+    };
+    assert!((speed(open, &LogOptions::default()) - 376.991).abs() < 1e-3);
+    let mapped = map(&["speed=speed", "voltage=voltage"]);
+    let other = open.replace("轉速rpm", "turns");
+    let refusal = of(&other, &mapped).unwrap_err();
+    assert!(refusal.to_string().contains("the row of units has \"turns\" below it") && !refusal.advice().is_empty(), "{refusal}");
+    let stated = LogOptions { units: vec![("omega_e".to_owned(), Unit::HertzMechanical)], ..mapped };
+    assert!((speed(&other, &stated) - 3600.0 * std::f64::consts::TAU).abs() < 1e-6);
 }
