@@ -83,6 +83,11 @@ pub(crate) enum Problem {
     )]
     Trace { names: Vec<String> },
     #[error(
+        "{} are readings of a power meter, rms values and powers of one of its elements, and a log has the values of each instant with a speed or an angle; of a motor that is turned with open terminals map speed and voltage, with shorted ones speed and current, of a direct current through the motor at rest voltage and current",
+        columns(.names)
+    )]
+    PowerMeter { names: Vec<String> },
+    #[error(
         "the names of its columns are numbers, as of a matrix over two quantities: of a flux linkage over i_d and i_q (a flux map, as of Motor-CAD or FEM) nothing is identified, and as the motor of a simulation it needs a row for each point, with columns id, iq, psi_d and psi_q (flux_map in a scenario)"
     )]
     Matrix,
@@ -311,7 +316,7 @@ impl Problem {
             Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
             Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
             Self::CanLog { .. } | Self::NoFrameTimes => FileErrorKind::Unsupported,
-            Self::OpenTerminals { .. } | Self::Trace { .. } | Self::Matrix => FileErrorKind::Columns,
+            Self::OpenTerminals { .. } | Self::Trace { .. } | Self::Matrix | Self::PowerMeter { .. } => FileErrorKind::Columns,
             Self::Gzip { .. } | Self::Document { .. } | Self::Npz | Self::NoRows => FileErrorKind::Format,
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::Lists { .. } | Self::ManyColumns { .. } => {
                 FileErrorKind::Format
@@ -380,6 +385,12 @@ impl Problem {
                 let columns = proposals.iter().map(|(channel, header)| (*channel, Some(header.clone()))).collect();
                 let units: Vec<_> = rms.iter().copied().chain(speed.map(|(channel, unit)| (channel, unit.name()))).collect();
                 vec![if units.is_empty() { Advice::MapColumns(columns) } else { Advice::MapInUnits { columns, units } }]
+            }
+            Self::PowerMeter { names } => {
+                let header = |place: usize| names.get(place).cloned();
+                let [speed, voltage, current] = [("speed", None), ("voltage", header(0)), ("current", header(1))];
+                let pairs = [[speed.clone(), voltage.clone()], [speed, current.clone()], [voltage, current]];
+                pairs.map(|pair| Advice::MapColumns(pair.to_vec())).to_vec()
             }
             Self::Rms { columns } => columns.iter().map(|(channel, _, unit)| Advice::StateUnit { channel, unit: Some(unit) }).collect(),
             Self::Reference { channel } | Self::Ambiguous { channel, .. } => map(&[channel]),

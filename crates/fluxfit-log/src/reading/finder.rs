@@ -9,6 +9,7 @@ use super::{
     line_to_line,
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
+    power_meter,
     proposal::{Proposed, propose, propose_needed, unit_of_speed, unit_of_tool},
     resemblance::{fit, has_other_unit, is_reference},
 };
@@ -394,6 +395,9 @@ impl Finder<'_> {
         }
         if let Some(problem) = self.passed_over.cloned().or_else(|| self.a_row_per_value()) {
             return problem.into();
+        }
+        if let Some(names) = power_meter::element(self.heads).filter(|_| missing.iter().any(|channel| [Ud, Uq, UA, UB].contains(channel))) {
+            return Problem::PowerMeter { names }.into();
         }
         // References are not proposed for measured currents.
         let present = self.names();

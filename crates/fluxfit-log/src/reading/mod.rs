@@ -36,6 +36,7 @@ mod options;
 mod own_times;
 mod phases;
 mod plausibility;
+mod power_meter;
 mod proposal;
 mod read;
 mod repair;

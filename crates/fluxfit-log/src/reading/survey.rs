@@ -6,6 +6,7 @@ use super::{
     finder::Finder,
     layout::{Layout, is_called},
     options::ResolvedOptions,
+    power_meter,
     proposal::{propose_needed, stated_unit},
     resemblance::{fit, is_reference},
     rms,
@@ -115,7 +116,9 @@ pub(super) fn survey(table: &Table, layout: Option<&'static Layout>, options: &R
         if is_free(index) && !is_reference_of_current(index) { doubt(channel, index, heads, &first_cells) } else { None }
     };
     let has_angle = !is_missing(&Channel::ThetaE);
+    let is_of_meter = power_meter::element(heads).is_some();
     let resembling = propose_needed(&missing, heads, has_angle, doubt).proposals.into_iter();
+    let resembling = resembling.filter(|found| !(is_of_meter && Channel::PHASES.contains(&found.channel)));
     survey.resembling = resembling.map(|found| surveyed(found.channel, found.index, &heads[found.index], layout, options)).collect();
     // Where nothing resembles the voltages, the modulations are they, times the DC voltage.
     let has_voltages = survey

@@ -1,6 +1,6 @@
 //! Tables of a test bench: what is taken for one, and what a file is that is none. No log is taken for one.
 
-use crate::fixtures::map;
+use crate::fixtures::{map, refusal};
 use fluxfit::characteristics::{Characteristic, TorqueOfCurrent};
 use fluxfit_files::{Advice, FileError};
 use fluxfit_log::{Inspection, LogOptions, ReadCharacteristic, inspect, read_characteristic};
@@ -148,4 +148,13 @@ fn units_stand_behind_names_in_chinese_and_those_that_are_stated_win() {
     assert!(refusal.to_string().contains("the row of units has \"turns\" below it") && !refusal.advice().is_empty(), "{refusal}");
     let stated = LogOptions { units: vec![("omega_e".to_owned(), Unit::HertzMechanical)], ..mapped };
     assert!((speed(&other, &stated) - 3600.0 * std::f64::consts::TAU).abs() < 1e-6);
+}
+
+#[test]
+fn readings_of_a_power_meter_are_no_phases_of_a_log() {
+    let text =
+        "V1,I1,P1,S1,LAMBDA1,V2,I2,P2,S2,LAMBDA2,V3,I3,P3,S3,LAMBDA3\n1,2,2,2,1,1,2,2,2,1,1,2,2,2,1\n1,2,2,2,1,1,2,2,2,1,1,2,2,2,1\n";
+    let sentence = refusal(text.as_bytes(), &LogOptions::default());
+    assert!(sentence.contains("'V1', 'I1', 'P1' and 'S1' are readings of a power meter") && !sentence.contains("may be ua"), "{sentence}");
+    assert!(inspected(text).columns.iter().all(|column| column.resembles.is_none()));
 }
