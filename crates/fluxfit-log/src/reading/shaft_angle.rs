@@ -61,12 +61,15 @@ fn ratio(channels: &Channels, unit: f64) -> Option<f64> {
     let largest = vectors.iter().fold(0.0, |most: f64, (length, _)| most.max(*length));
     let within = |turn: f64| (turn + PI).rem_euclid(TAU) - PI;
     let (mut of_currents, mut of_angle) = (0.0, 0.0);
+    // An angle in digits stands still in some rows while the rotor turns.
+    let mut direction = 1.0_f64;
     for (row, step) in steps().enumerate() {
         let [before, now] = [vectors[row], vectors[row + 1]];
         let turn = within(now.1 - before.1);
         if before.0.min(now.0) > LARGE * largest && turn.abs() < MOST_TURN {
             let step = within(step);
-            of_currents += turn * step.signum();
+            direction = if step == 0.0 { direction } else { step.signum() };
+            of_currents += turn * direction;
             of_angle += step.abs();
         }
     }

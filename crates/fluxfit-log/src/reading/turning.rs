@@ -135,7 +135,10 @@ const MISSED: f64 = 0.03;
 /// The one round number at which an angle that spans this winds around.
 fn round_turn(span: f64) -> Option<f64> {
     let powers = (4..=24).map(|power| f64::from(1_u32 << power));
-    // Of digits, the last one is missing too.
+    // Of digits, the last one is missing.
+    if let Some(of_digits) = TURN_DIGITS.into_iter().chain(powers.clone()).find(|turn| *turn >= FEWEST_DIGITS && *turn == span + 1.0) {
+        return Some(of_digits);
+    }
     let most = |turn: f64| span * (1.0 + MISSED) + if turn < FEWEST_DIGITS { 0.0 } else { 1.0 };
     let mut near = TURN_DIGITS.into_iter().chain(powers).filter(|turn| (span..=most(*turn)).contains(turn));
     near.next().filter(|_| near.next().is_none())
@@ -248,8 +251,9 @@ mod tests {
             let found = turn(&angle(full)).unwrap();
             assert!((found / full - 1.0).abs() < 0.02 && is_in_rad(found) == is_known, "{full} {found}");
         }
-        let turns = [4074.0, 0.993, 1.0, 1.99, 1.5, 65_535.0, 777.0].map(round_turn);
-        assert_eq!(turns, [Some(4096.0), Some(1.0), Some(1.0), Some(2.0), None, Some(65_536.0), None]);
+        let turns = [4074.0, 0.993, 1.0, 1.99, 1.5, 65_535.0, 777.0, 999.0, 1023.0].map(round_turn);
+        let expected = [Some(4096.0), Some(1.0), Some(1.0), Some(2.0), None, Some(65_536.0), None, Some(1000.0), Some(1024.0)];
+        assert_eq!(turns, expected);
         assert_eq!(turn(&(0..1000).map(f64::from).collect::<Vec<_>>()), None);
     }
 

@@ -94,6 +94,11 @@ impl Mean {
         self.omega
     }
 
+    /// With its voltage and speed alone.
+    pub(super) fn without_current(&self) -> Self {
+        Self { u: self.u, omega: self.omega, ..Self::default() }
+    }
+
     /// In a frame that an angle, rad, is behind this one, with the voltage turned further.
     pub(super) fn in_frame_behind(&self, angle: f64, of_voltage: f64) -> Self {
         Self {

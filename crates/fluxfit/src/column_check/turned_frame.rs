@@ -28,7 +28,11 @@ const MOST_LATE: f64 = 0.5;
 /// An angle that is read too large by this, rad, is usual.
 const USUAL: f64 = 15.0 * DEGREE;
 
-/// What a frame leaves of the voltages, as a fraction, beside what the usual ones do: filters and lags are found with the motor too.
+/// By so much, rad, voltages may be late at the largest speed in a usual frame: three rows at 14 rows a turn.
+const LATEST: f64 = 1.44;
+
+/// What a frame leaves of the voltages, as a fraction, beside what the usual ones do, because filters and lags are found with the motor
+/// too; and beside what the magnets alone do, without any current.
 const MUCH_LESS: f64 = 0.4;
 
 /// Most that the best frame leaves of the voltages, as a fraction. Filters of the currents left 0.09; voltages whose phases are in another
@@ -46,8 +50,17 @@ const ENOUGH: usize = 300;
 
 const DEGREE: f64 = PI / 180.0;
 
-/// By how much the angle is read too large, rad, from -pi to pi: by [`LEAST_OFFSET`] or more, or nothing.
-pub fn turned_frame(log: &Log) -> Option<f64> {
+/// A frame in which a motor explains the voltages.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurnedFrame {
+    /// By how much the angle is read too large, rad, from -pi to pi.
+    pub angle: f64,
+    /// What no motor explains of the voltages in it, as a fraction.
+    pub left: f64,
+}
+
+/// The frame of the magnets, where the log's is [`LEAST_OFFSET`] or more away.
+pub fn turned_frame(log: &Log) -> Option<TurnedFrame> {
     let all = means(log);
     let means: Vec<Mean> = all.iter().step_by(all.len().div_ceil(ENOUGH).max(1)).copied().collect();
     let as_it_is = fit(&means, &Frame::AS_IT_IS, true)?.left;
@@ -55,18 +68,20 @@ pub fn turned_frame(log: &Log) -> Option<f64> {
         return None;
     }
     let fastest = means.iter().fold(0.0_f64, |most, mean| most.max(mean.speed().abs()));
-    let left = |offset: f64, late: f64| {
-        let turned: Vec<Mean> = means.iter().map(|mean| mean.in_frame_behind(offset, late * mean.speed() / fastest)).collect();
-        // Without an inductance it is the voltage of the magnets alone, with the currents anywhere: then only the voltages are turned.
-        let fit = fit(&turned, &Frame::AS_IT_IS, true).filter(|fit| fit.lq() > 0.0 && late.abs() <= MOST_LATE);
+    let turned = |offset: f64, late: f64| -> Vec<Mean> {
+        means.iter().map(|mean| mean.in_frame_behind(offset, late * mean.speed() / fastest)).collect()
+    };
+    // Without an inductance it is the voltage of the magnets alone, with the currents anywhere: then only the voltages are turned.
+    let explained = |offset: f64, late: f64| {
+        let fit = fit(&turned(offset, late), &Frame::AS_IT_IS, true).filter(|fit| fit.lq() > 0.0);
         fit.map_or(f64::INFINITY, |fit| fit.left)
     };
+    let left = |offset: f64, late: f64| if late.abs() <= MOST_LATE { explained(offset, late) } else { f64::INFINITY };
     let steps = (PI / STEP) as i32;
     let offsets = || (1 - steps..=steps).map(|k| f64::from(k) * STEP);
+    let tried = |offset: f64, late: f64| Tried { left: left(offset, late), offset, late };
     let with = |lates: &[f64]| -> Vec<Tried> {
-        offsets()
-            .filter_map(|offset| lates.iter().map(|late| Tried { left: left(offset, *late), offset, late: *late }).min_by(by_left))
-            .collect()
+        offsets().filter_map(|offset| lates.iter().map(|late| tried(offset, *late)).min_by(by_left)).collect()
     };
     let lates = with(&[-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| k * LATE));
     if lates.iter().copied().min_by(by_left)?.offset.abs() < LEAST_OFFSET {
@@ -77,11 +92,21 @@ pub fn turned_frame(log: &Log) -> Option<f64> {
     let exact = finest(&in_time, &left, 0.0)?;
     let (best, rivals) = if exact.left <= AS_GOOD * late.left { (exact, &in_time) } else { (late, &lates) };
     let distance = |other: f64| ((other - best.offset + PI).rem_euclid(2.0 * PI) - PI).abs();
-    let is_usual = |other: &Tried| other.offset.abs() <= USUAL && best.left > MUCH_LESS * other.left;
     let is_rival = |other: &Tried| distance(other.offset) > FAR && other.left <= AS_GOOD * best.left;
-    let is_told =
-        best.left <= MOST_LEFT && best.offset.abs() >= LEAST_OFFSET && !lates.iter().any(is_usual) && !rivals.iter().any(is_rival);
-    is_told.then(|| (best.offset + PI).rem_euclid(2.0 * PI) - PI)
+    if best.left > MOST_LEFT || best.offset.abs() < LEAST_OFFSET || rivals.iter().any(is_rival) {
+        return None;
+    }
+    // A usual frame with voltages that act later than any of these is another matter.
+    let is_usual = |offset: f64, late: f64| offset.abs() <= USUAL && late.abs() <= LATEST;
+    let usual = |offset: f64, late: f64| if is_usual(offset, late) { explained(offset, late) } else { f64::INFINITY };
+    let most = (LATEST / LATE) as i32;
+    let around_usual = [-USUAL, 0.0, USUAL].into_iter().flat_map(|offset| (-most..=most).map(move |k| (offset, f64::from(k) * LATE)));
+    let of_usual: Vec<Tried> = around_usual.map(|(offset, late)| Tried { left: usual(offset, late), offset, late }).collect();
+    let by_magnets: Vec<Mean> = turned(best.offset, best.late).iter().map(Mean::without_current).collect();
+    let by_magnets = fit(&by_magnets, &Frame::AS_IT_IS, true).map_or(1.0, |fit| fit.left);
+    let beside = finest(&of_usual, &usual, LATE)?.left.min(by_magnets);
+    let angle = (best.offset + PI).rem_euclid(2.0 * PI) - PI;
+    (best.left <= MUCH_LESS * beside).then_some(TurnedFrame { angle, left: best.left })
 }
 
 /// A frame, and what it leaves of the voltages, as a fraction.
@@ -147,7 +172,7 @@ mod tests {
     fn a_large_offset_is_found_in_any_direction() {
         for degrees in (-170..180).step_by(25).map(f64::from).filter(|degrees| degrees.abs() > 35.0) {
             for late in [0.0, 0.15] {
-                let found = turned_frame(&log(degrees, late, true)).map_or(0.0, f64::to_degrees);
+                let found = turned_frame(&log(degrees, late, true)).map_or(0.0, |found| found.angle.to_degrees());
                 let miss = (found - degrees + 180.0).rem_euclid(360.0) - 180.0;
                 assert!(miss.abs() < 0.5, "{degrees} {late}: {found}");
             }
@@ -159,6 +184,26 @@ mod tests {
     fn nothing_else_is_an_offset() {
         for (degrees, late, are_currents_turned) in [(0.0, 0.0, true), (20.0, 0.1, true), (0.0, 0.45, true), (120.0, 0.0, false)] {
             assert_eq!(turned_frame(&log(degrees, late, are_currents_turned)), None, "{degrees} {late}");
+        }
+    }
+
+    /// At one speed late voltages turn an isotropic motor's impedance, as another frame does: neither is told.
+    #[test]
+    fn late_voltages_at_one_speed_are_no_offset() {
+        for late in [-1.0, -0.6, 0.6, 1.0] {
+            let all = log(0.0, late, true);
+            let half = |column: &Vec<f64>| column[400..].to_vec();
+            let Columns { t, ud, uq, id, iq, omega_e, .. } = all.columns();
+            let columns = Columns {
+                t: half(t),
+                ud: half(ud),
+                uq: half(uq),
+                id: half(id),
+                iq: half(iq),
+                omega_e: half(omega_e),
+                ..Columns::default()
+            };
+            assert_eq!(turned_frame(&Log::new(columns).unwrap()), None, "{late}");
         }
     }
 
