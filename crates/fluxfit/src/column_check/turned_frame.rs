@@ -59,7 +59,7 @@ pub struct TurnedFrame {
     pub left: f64,
 }
 
-/// The frame of the magnets, where the log's is [`LEAST_OFFSET`] or more away.
+/// The frame of the magnets, where the log's is 30 degrees or more away from it.
 pub fn turned_frame(log: &Log) -> Option<TurnedFrame> {
     let all = means(log);
     let means: Vec<Mean> = all.iter().step_by(all.len().div_ceil(ENOUGH).max(1)).copied().collect();
