@@ -80,7 +80,7 @@ pub mod validation;
 mod words;
 
 pub use answer::{Answer, HeldOut, IdentificationError, identify, identify_with_progress};
-pub use column_check::{ColumnFinding, TurnedFrame, check_columns, turned_frame};
+pub use column_check::{ColumnFinding, check_columns, turned_frame};
 pub use error::{Error, ErrorKind};
 pub use fluxfit_optimize as optimizer;
 pub use identification::{

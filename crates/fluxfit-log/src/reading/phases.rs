@@ -38,9 +38,9 @@ pub(super) fn of_stator_frame(channels: &mut Channels) {
     }
 }
 
-/// For voltages and for currents, whether [`transform`] will compute them.
-pub(super) fn give_axes(channels: &Channels) -> [bool; 2] {
-    [(Channel::Ud, Channel::UA), (Channel::Id, Channel::IA)].map(|(d, a)| channels.get(d).is_none() && channels.get(a).is_some())
+/// Whether [`transform`] will compute both voltages and currents of the axes.
+pub(super) fn give_all_axes(channels: &Channels) -> bool {
+    [(Channel::Ud, Channel::UA), (Channel::Id, Channel::IA)].iter().all(|(d, a)| channels.get(*d).is_none() && channels.get(*a).is_some())
 }
 
 /// Applies the Clarke and Park transforms where only phase quantities are logged, and computes the speed from the angle where no

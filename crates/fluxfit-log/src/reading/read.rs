@@ -215,7 +215,7 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     phases::of_stator_frame(&mut channels);
     turning::settle(&mut channels, &chosen, &mut notes)?;
     more.extend(repair::repair(&mut channels));
-    let of_phases = phases::give_axes(&channels);
+    let of_phases = phases::give_all_axes(&channels);
     more.extend(phases::transform(&mut channels));
     more.extend(plausibility::note_references(&channels));
     notes.extend(more.into_iter().map(Note::from));

@@ -16,7 +16,7 @@ use crate::log::Log;
 pub use finding::{Change, ColumnFinding, Turning};
 pub(crate) use regression::turn_with_speed;
 pub(crate) use speed_of_slopes::speed_in_doubt;
-pub use turned_frame::{TurnedFrame, turned_frame};
+pub use turned_frame::turned_frame;
 pub use voltages::{LEAST_BUS, MOST_SHARE, NEARLY_ALL};
 
 /// What the columns of a log contradict each other in. After the first contradiction of angle, time or axes no other of these is looked

@@ -4,7 +4,7 @@
 //! the voltages is cheap enough to be tried in frames all around, beside voltages that turn with the speed because they act late. The
 //! flux of the magnets, which is positive along the d axis, tells one frame from its opposite.
 
-use super::regression::{Frame, LEAST, Mean, UNEXPLAINED, fit, means};
+use super::regression::{Frame, Mean, UNEXPLAINED, fit, means};
 use crate::log::Log;
 use std::{cmp::Ordering, f64::consts::PI};
 
@@ -28,43 +28,34 @@ const MOST_LATE: f64 = 0.5;
 /// An angle that is read too large by this, rad, is usual.
 const USUAL: f64 = 15.0 * DEGREE;
 
-/// By so much, rad, voltages may be late at the largest speed in a usual frame: three rows at 14 rows a turn.
-const LATEST: f64 = 1.44;
+/// The same in other frames that are to be ruled out: three rows at 14 rows a turn.
+const MOST_LATE_OF_OTHERS: f64 = 1.44;
 
 /// What a frame leaves of the voltages, as a fraction, beside what the usual ones do, because filters and lags are found with the motor
 /// too; and beside what the magnets alone do, without any current.
 const MUCH_LESS: f64 = 0.4;
 
-/// Most that the best frame leaves of the voltages, as a fraction. Filters of the currents left 0.09; voltages whose phases are in another
-/// order than the currents' 0.13 in a frame that is none.
+/// Most that the best frame leaves of the voltages, as a fraction. Filters of the currents left 0.09.
 const MOST_LEFT: f64 = 0.1;
 
-/// A frame that leaves at most this many times what the best does is as good; then none may be far from the best.
+/// A frame that leaves at most this many times what the best does is as good.
 const AS_GOOD: f64 = 1.5;
 
-/// How far is far, rad.
-const FAR: f64 = 20.0 * DEGREE;
+/// No frame this far from the best, rad, or further, may be as good: so well the angle of a drive is known otherwise, within two of the
+/// standard errors that operating points take it with.
+const NEXT: f64 = 6.0 * DEGREE;
 
 /// Means that are enough: a long log has many that say the same.
 const ENOUGH: usize = 300;
 
 const DEGREE: f64 = PI / 180.0;
 
-/// A frame in which a motor explains the voltages.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TurnedFrame {
-    /// By how much the angle is read too large, rad, from -pi to pi.
-    pub angle: f64,
-    /// What no motor explains of the voltages in it, as a fraction.
-    pub left: f64,
-}
-
-/// The frame of the magnets, where the log's is 30 degrees or more away from it.
-pub fn turned_frame(log: &Log) -> Option<TurnedFrame> {
+/// By how much the angle is read too large, rad, from -pi to pi, where it is by 30 degrees or more and the log tells.
+pub fn turned_frame(log: &Log) -> Option<f64> {
     let all = means(log);
     let means: Vec<Mean> = all.iter().step_by(all.len().div_ceil(ENOUGH).max(1)).copied().collect();
     let as_it_is = fit(&means, &Frame::AS_IT_IS, true)?.left;
-    if means.len() < LEAST || as_it_is < UNEXPLAINED {
+    if as_it_is < UNEXPLAINED {
         return None;
     }
     let fastest = means.iter().fold(0.0_f64, |most, mean| most.max(mean.speed().abs()));
@@ -78,35 +69,32 @@ pub fn turned_frame(log: &Log) -> Option<TurnedFrame> {
     };
     let left = |offset: f64, late: f64| if late.abs() <= MOST_LATE { explained(offset, late) } else { f64::INFINITY };
     let steps = (PI / STEP) as i32;
-    let offsets = || (1 - steps..=steps).map(|k| f64::from(k) * STEP);
-    let tried = |offset: f64, late: f64| Tried { left: left(offset, late), offset, late };
-    let with = |lates: &[f64]| -> Vec<Tried> {
-        offsets().filter_map(|offset| lates.iter().map(|late| tried(offset, *late)).min_by(by_left)).collect()
-    };
-    let lates = with(&[-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| k * LATE));
-    if lates.iter().copied().min_by(by_left)?.offset.abs() < LEAST_OFFSET {
+    let lates = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| k * LATE);
+    let frames = (1 - steps..=steps).flat_map(|k| lates.map(|late| (f64::from(k) * STEP, late)));
+    let tried: Vec<Tried> = frames.map(|(offset, late)| Tried { left: left(offset, late), offset, late }).collect();
+    if tried.iter().copied().min_by(by_left)?.offset.abs() < LEAST_OFFSET {
         return None;
     }
-    let (late, in_time) = (finest(&lates, &left, LATE)?, with(&[0.0]));
-    // At one speed voltages that act late are like another offset: the one without is meant where it explains as much.
-    let exact = finest(&in_time, &left, 0.0)?;
-    let (best, rivals) = if exact.left <= AS_GOOD * late.left { (exact, &in_time) } else { (late, &lates) };
-    let distance = |other: f64| ((other - best.offset + PI).rem_euclid(2.0 * PI) - PI).abs();
-    let is_rival = |other: &Tried| distance(other.offset) > FAR && other.left <= AS_GOOD * best.left;
-    if best.left > MOST_LEFT || best.offset.abs() < LEAST_OFFSET || rivals.iter().any(is_rival) {
+    let best = finest(&tried, &left, [STEP, LATE])?;
+    if best.left > MOST_LEFT || best.offset.abs() < LEAST_OFFSET {
         return None;
     }
-    // A usual frame with voltages that act later than any of these is another matter.
-    let is_usual = |offset: f64, late: f64| offset.abs() <= USUAL && late.abs() <= LATEST;
-    let usual = |offset: f64, late: f64| if is_usual(offset, late) { explained(offset, late) } else { f64::INFINITY };
-    let most = (LATEST / LATE) as i32;
-    let around_usual = [-USUAL, 0.0, USUAL].into_iter().flat_map(|offset| (-most..=most).map(move |k| (offset, f64::from(k) * LATE)));
-    let of_usual: Vec<Tried> = around_usual.map(|(offset, late)| Tried { left: usual(offset, late), offset, late }).collect();
+    // Any voltages may act late: at one speed those of an isotropic motor are like another offset, and at i_d = 0 an offset is like another
+    // inductance.
+    let most = (MOST_LATE_OF_OTHERS / LATE) as i32;
+    let any = |offset: f64, late: f64| if late.abs() <= MOST_LATE_OF_OTHERS { explained(offset, late) } else { f64::INFINITY };
+    let at =
+        |offset: f64| (-most..=most).map(move |k| f64::from(k) * LATE).map(move |late| Tried { left: any(offset, late), offset, late });
+    let least = |offset: f64| finest(&at(offset).collect::<Vec<_>>(), &any, [0.0, LATE]).map_or(f64::INFINITY, |tried| tried.left);
+    let mut around = (1..).map(|k| f64::from(k) * NEXT).take_while(|distance| *distance <= PI);
+    let is_as_good = |distance: f64| [-distance, distance].into_iter().any(|by| least(best.offset + by) <= AS_GOOD * best.left);
+    if around.any(is_as_good) {
+        return None;
+    }
     let by_magnets: Vec<Mean> = turned(best.offset, best.late).iter().map(Mean::without_current).collect();
     let by_magnets = fit(&by_magnets, &Frame::AS_IT_IS, true).map_or(1.0, |fit| fit.left);
-    let beside = finest(&of_usual, &usual, LATE)?.left.min(by_magnets);
-    let angle = (best.offset + PI).rem_euclid(2.0 * PI) - PI;
-    (best.left <= MUCH_LESS * beside).then_some(TurnedFrame { angle, left: best.left })
+    let beside = [-USUAL, 0.0, USUAL].into_iter().map(least).fold(by_magnets, f64::min);
+    (best.left <= MUCH_LESS * beside).then(|| (best.offset + PI).rem_euclid(2.0 * PI) - PI)
 }
 
 /// A frame, and what it leaves of the voltages, as a fraction.
@@ -119,15 +107,16 @@ struct Tried {
     late: f64,
 }
 
-/// The best of them, and around it with smaller and smaller steps, from this one of the lag.
-fn finest(tried: &[Tried], left: &impl Fn(f64, f64) -> f64, late_step: f64) -> Option<Tried> {
+/// The best of them, and around it with smaller and smaller steps, from these of the offset and of the lag.
+fn finest(tried: &[Tried], left: &impl Fn(f64, f64) -> f64, [step, late_step]: [f64; 2]) -> Option<Tried> {
     let mut best = tried.iter().copied().min_by(by_left)?;
     for halvings in 1..=HALVINGS {
         let part = 0.5_f64.powi(halvings as i32);
         for _ in 0..MOVES {
             let Tried { left: before, offset, late } = best;
-            let beside = |k: i32| (offset + f64::from(k / 3 - 1) * part * STEP, late + f64::from(k % 3 - 1) * part * late_step);
-            let tried = (0..9).map(beside).map(|(offset, late)| Tried { left: left(offset, late), offset, late });
+            let beside = |k: i32| (offset + f64::from(k / 3 - 1) * part * step, late + f64::from(k % 3 - 1) * part * late_step);
+            let is_other = |k: &i32| (step > 0.0 || k / 3 == 1) && *k != 4;
+            let tried = (0..9).filter(is_other).map(beside).map(|(offset, late)| Tried { left: left(offset, late), offset, late });
             best = tried.chain([best]).min_by(by_left)?;
             if best.left >= before {
                 break;
@@ -172,7 +161,7 @@ mod tests {
     fn a_large_offset_is_found_in_any_direction() {
         for degrees in (-170..180).step_by(25).map(f64::from).filter(|degrees| degrees.abs() > 35.0) {
             for late in [0.0, 0.15] {
-                let found = turned_frame(&log(degrees, late, true)).map_or(0.0, |found| found.angle.to_degrees());
+                let found = turned_frame(&log(degrees, late, true)).map_or(0.0, f64::to_degrees);
                 let miss = (found - degrees + 180.0).rem_euclid(360.0) - 180.0;
                 assert!(miss.abs() < 0.5, "{degrees} {late}: {found}");
             }
