@@ -35,3 +35,10 @@ impl<V: Number> Half<V> {
         it
     }
 }
+
+/// Phase voltages as space vector modulation makes them: all shifted alike, so that the highest is as far from its limit as the lowest.
+#[inline(always)]
+pub(super) fn modulated<V: Number>(u: [V; 3]) -> [V; 3] {
+    let middle = u[0].constant(0.5) * (u[0].lower(u[1].lower(u[2])) + u[0].higher(u[1].higher(u[2])));
+    [u[0] - middle, u[1] - middle, u[2] - middle]
+}

@@ -48,7 +48,7 @@
 use super::{
     super::Place,
     DeadTime,
-    half::Half,
+    half::{Half, modulated},
     ramp::{NARROWEST, Ramp},
 };
 use crate::{
@@ -213,12 +213,48 @@ impl<V: Number> SwitchedLoss<V> {
             up[x] = to_up.mul_add(way, start[x]) + at_up + first.commanded[x];
             down[x] = (one - from_down).mul_add(way, start[x]) + at_down - second.commanded[x];
         }
-        // Edge by edge: what the phases that switch before have lost, as far as their dead time is over. What is up later is down earlier.
-        let ramp = self.ramp;
-        let lost = self.voltage * (one - self.lasting);
-        let [a, b, c] = first.together;
-        let together = [a * per_bus, b * per_bus, c * per_bus];
-        let clamped = if kinds.edges { self.clamped(ramp.out(up), [v, together], &amperes) } else { [zero; 3] };
+        let (ramp, mut clamped) = (self.ramp, [zero; 3]);
+        if kinds.edges {
+            let [a, b, c] = first.together;
+            clamped = self.clamped(ramp.out(up), [v, [a * per_bus, b * per_bus, c * per_bus]], &amperes);
+            [up, down] = self.edge_by_edge([up, down], clamped, [&first, &second], &amperes);
+        }
+        let (mut loss, mut late) = ([zero; 3], [zero; 3]);
+        for x in 0..3 {
+            let (up, down) = (up[x], down[x]);
+            if kinds.edges {
+                let (at_up, at_down) = (ramp.at(up), ramp.at(down));
+                let at_edges = rising.mul_add(at_up - at_down, at_down);
+                loss[x] = (one - self.lasting) * at_edges;
+                late[x] = half.mul_add(at_up - at_down, one);
+            }
+            if kinds.lasting {
+                let (up, down) = (up - clamped[x], down - clamped[x]);
+                let half_way = half * carrier * (end[x] - start[x]);
+                let (top, bottom) = (start[x] + half_way, end[x] - half_way);
+                let of_up = ramp.means([start[x], up, top], [first.low[x], one - first.low[x]]);
+                let of_down = ramp.means([bottom, down, end[x]], [one - second.low[x], second.low[x]]);
+                loss[x] = loss[x] + self.lasting * of_up.times(rising).plus(of_down.times(one - rising)).value();
+            }
+        }
+        let spared = if kinds.edges { self.spared(v, loss, late, place) } else { [zero; 2] };
+        let spared = back_by_phase(place.middle.backward(spared), phase);
+        let [d, q] = back_by_phase(place.middle.backward(clarke(loss)), phase);
+        [self.voltage * d - rs * per_henry[0] * spared[0], self.voltage * q - rs * per_henry[1] * spared[1]]
+    }
+
+    /// The currents at the edges: what the phases that switch before have lost, as far as their dead time is over. What is up later is down
+    /// earlier.
+    #[inline(always)]
+    fn edge_by_edge(
+        &self,
+        [mut up, mut down]: [[V; 3]; 2],
+        clamped: [V; 3],
+        [first, second]: [&Half<V>; 2],
+        amperes: &[[V; 3]; 3],
+    ) -> [[V; 3]; 2] {
+        let (zero, half, one) = (self.voltage.constant(0.0), self.voltage.constant(0.5), self.voltage.constant(1.0));
+        let (ramp, lost) = (self.ramp, self.voltage * (one - self.lasting));
         for x in 0..3 {
             (up[x], down[x]) = (up[x] + clamped[x], down[x] + clamped[x]);
         }
@@ -241,29 +277,8 @@ impl<V: Number> SwitchedLoss<V> {
             }
         }
         // An edge down gives where an edge up takes.
-        let mirrored = after_others(mirrored, before_down, ramp);
-        let (mut loss, mut late) = ([zero; 3], [zero; 3]);
-        for x in 0..3 {
-            let (up, down) = (up[x], -mirrored[x]);
-            if kinds.edges {
-                let (at_up, at_down) = (ramp.at(up), ramp.at(down));
-                let at_edges = rising.mul_add(at_up - at_down, at_down);
-                loss[x] = (one - self.lasting) * at_edges;
-                late[x] = half.mul_add(at_up - at_down, one);
-            }
-            if kinds.lasting {
-                let (up, down) = (up - clamped[x], down - clamped[x]);
-                let half_way = half * carrier * (end[x] - start[x]);
-                let (top, bottom) = (start[x] + half_way, end[x] - half_way);
-                let of_up = ramp.means([start[x], up, top], [first.low[x], one - first.low[x]]);
-                let of_down = ramp.means([bottom, down, end[x]], [one - second.low[x], second.low[x]]);
-                loss[x] = loss[x] + self.lasting * of_up.times(rising).plus(of_down.times(one - rising)).value();
-            }
-        }
-        let spared = if kinds.edges { self.spared(v, loss, late, place) } else { [zero; 2] };
-        let spared = back_by_phase(place.middle.backward(spared), phase);
-        let [d, q] = back_by_phase(place.middle.backward(clarke(loss)), phase);
-        [self.voltage * d - rs * per_henry[0] * spared[0], self.voltage * q - rs * per_henry[1] * spared[1]]
+        let [a, b, c] = after_others(mirrored, before_down, ramp);
+        [up, [-a, -b, -c]]
     }
 
     /// How far the middle of each edge's way from no loss to all of it lies below zero, A, given out of which legs current flows, and the
@@ -335,13 +350,6 @@ fn after_others<V: Number>(alone: [V; 3], missed: [[V; 3]; 3], ramp: Ramp<V>) ->
         }
     }
     i
-}
-
-/// Phase voltages as space vector modulation makes them: all shifted alike, so that the highest is as far from its limit as the lowest.
-#[inline(always)]
-fn modulated<V: Number>(u: [V; 3]) -> [V; 3] {
-    let middle = u[0].constant(0.5) * (u[0].lower(u[1].lower(u[2])) + u[0].higher(u[1].higher(u[2])));
-    [u[0] - middle, u[1] - middle, u[2] - middle]
 }
 
 /// Phase currents, A, that a volt over so many seconds on each phase makes: those of phase `x` by phase `y` at `[x][y]`.
