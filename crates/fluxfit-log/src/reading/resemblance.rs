@@ -73,6 +73,12 @@ const OTHER_UNITS: [&str; 22] = [
     "ah",
 ];
 
+/// Words before `id` that make it the number of something.
+const NUMBERED: [&str; 16] = [
+    "data", "device", "node", "can", "msg", "message", "frame", "packet", "row", "sample", "sensor", "session", "profile", "user",
+    "vehicle", "trip",
+];
+
 /// Words for a torque, whose unit in `torque_nm` is PSIM's name of a speed.
 const TORQUES: [&str; 5] = ["torque", "torq", "trq", "moment", "drehmoment"];
 
@@ -132,6 +138,10 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     if matches!(channel.dimension(), Dimension::Time | Dimension::Speed)
         && (is_reference(name) || NO_TIME.contains(&without_unit(name).concat().as_str()))
     {
+        return None;
+    }
+    let is_number = |pair: &[String]| pair[1] == "id" && NUMBERED.contains(&pair[0].as_str());
+    if channel == Channel::Id && words.windows(2).any(is_number) {
         return None;
     }
     // The time of a structure: `uq.Time`.
@@ -315,6 +325,16 @@ mod tests {
         }
         assert!(fit(Channel::Id, "r0075 Stromsollwert feldbildend").is_none() && fit(Channel::Iq, "query_strom").is_none());
         assert!(fit(Channel::Ud, "Querstrom").is_none() && fit(Channel::Iq, "Querbeschleunigung").is_none());
+    }
+
+    #[test]
+    fn the_number_of_something_is_no_current() {
+        for name in ["data_id", "CAN ID", "node_id", "Sample id"] {
+            assert!(fit(Channel::Id, name).is_none(), "{name}");
+        }
+        for name in ["motor_id", "my id", "test_id"] {
+            assert!(fit(Channel::Id, name).is_some(), "{name}");
+        }
     }
 
     #[test]

@@ -4,8 +4,9 @@
 
 use super::{
     axis_currents::{self, OfD, OfQ, is},
-    bench_columns::{Found, INSTANT, Stated, is_direct, is_driven, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, Stated, found, is_direct, is_driven, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points, states_wave},
+    bench_units::{StatedUnit, stated_unit},
     duty,
     layout::NotALog,
     resemblance::{is_reference, words},
@@ -115,8 +116,13 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
             refuse_unclear([currents.clone(), torques.clone()].into_iter(), unclear)?;
             let mut notes = Vec::new();
             let factor = current.in_si * convention(current, Quantity::Current, None, &mut notes) * SQRT_2;
+            let speed = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).find(|own| own.quantity == Quantity::Speed);
+            notes.extend(speed.map(|speed| {
+                format!("the speed {} is not used; if the terminals were shorted, map it too (speed)", quote(&speed.header)).into()
+            }));
             let d = axis_currents::of_d(&heads, columns, None);
-            let read = torque_of_current(table, &d, Axis { index: current.index, factor, is_rms: true }, columns, torque)?;
+            let read =
+                torque_of_current(table, &d, Axis { index: current.index, factor, is_rms: true, tells_unit: true }, columns, torque)?;
             let notes = notes.into_iter().chain(read.notes.into_iter().skip(1)).collect();
             Ok(Some(ReadCharacteristic { notes, ..read }))
         }
@@ -152,13 +158,16 @@ struct Axis {
     index: usize,
     factor: f64,
     is_rms: bool,
+    /// Whether it is said already which unit is assumed, or that is stated.
+    tells_unit: bool,
 }
 
 /// The current of an axis by its column: a peak value of the phases, unless its name says that it is a root mean square.
 fn axis(index: usize, heads: &[ColumnHead], columns: &[Found]) -> Axis {
     let in_si = columns.iter().find(|column| column.index == index && column.quantity == Quantity::Current).map_or(1.0, |own| own.in_si);
     let is_rms = rms::is_rms(&heads[index]);
-    Axis { index, factor: if is_rms { in_si * SQRT_2 } else { in_si }, is_rms }
+    let tells_unit = matches!(stated_unit(&heads[index]), StatedUnit::Of(..));
+    Axis { index, factor: if is_rms { in_si * SQRT_2 } else { in_si }, is_rms, tells_unit }
 }
 
 fn torque_of_current(table: &mut Table, d: &OfD, q: Axis, columns: &[Found], torque: &Found) -> Result<ReadCharacteristic, FileError> {
@@ -177,6 +186,16 @@ fn torque_of_current(table: &mut Table, d: &OfD, q: Axis, columns: &[Found], tor
     let how = if q.is_rms { "an rms value of a phase" } else { "the peak value of a phase, as of all dq currents here" };
     let mut notes: Vec<Note> = vec![format!("the current {} is read as {how}", quote(&name(q.index))).into()];
     notes.extend(d.note(&heads));
+    let assumed = |header: &str, unit: &str| {
+        let example = format!("{header} [m{}]", unit.replace(' ', ""));
+        format!(
+            "nothing states the unit of {}, so {unit} is assumed; if it is another, write it into the name, as in {}",
+            quote(header),
+            quote(&example)
+        )
+    };
+    notes.extend((!q.tells_unit).then(|| assumed(&name(q.index), "A").into()));
+    notes.extend((!torque.has_unit).then(|| assumed(&torque.header, "N m").into()));
     let of_d = d.index().map(name);
     let used = [Some(("current", name(q.index))), Some(("torque", torque.header.clone())), of_d.map(|name| ("current", name))];
     let table = Characteristic::TorqueOfCurrent(TorqueOfCurrent { rows });
@@ -320,6 +339,24 @@ mod tests {
         }
         let refusal = of("Current (A),Torque (Nm)\n3,1\n6,2\n", None).unwrap_err().to_string();
         assert!(refusal.contains("map it as iq") && refusal.contains("as current"), "{refusal}");
+    }
+
+    /// A torque in N mm would make a flux a thousand times too large: what is assumed is said.
+    #[test]
+    fn units_of_torque_and_current_that_nothing_states_are_said() {
+        for (names, assumed) in [
+            ("Iq [A],torque [Nm]", &[][..]),
+            ("Iq [A],torque", &["\"torque\", so N m"][..]),
+            ("iq,torque [mNm]", &["\"iq\", so A"]),
+            ("iq,torque", &["\"iq\", so A", "\"torque\", so N m"]),
+        ] {
+            let read = of(format!("{names}\n3,1\n6,2\n").leak(), None).unwrap().unwrap();
+            let notes: Vec<String> = read.notes.iter().map(ToString::to_string).filter(|note| note.contains("nothing states")).collect();
+            assert!(
+                notes.len() == assumed.len() && notes.iter().zip(assumed).all(|(note, said)| note.contains(said)),
+                "{names}: {notes:?}"
+            );
+        }
     }
 
     #[test]
