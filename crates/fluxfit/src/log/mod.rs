@@ -12,7 +12,7 @@ mod checked;
 mod columns;
 mod segment;
 mod short_circuit;
-mod speed_lag;
+pub(crate) mod speed_lag;
 mod spikes;
 mod standstill;
 

@@ -26,7 +26,7 @@ const MIN_SIGNAL_TO_NOISE: f64 = 5.0;
 const COEFFICIENT_ACCURACY: f64 = 1e-4;
 
 /// Voltages, currents and speeds below this, SI, are none: a window of a standing or idle drive must not make a scale overflow.
-const NOTHING: f64 = 1e-30;
+pub(super) const NOTHING: f64 = 1e-30;
 
 /// A parameter is open if this part of its axis, or more, lies in unexcited directions. Noise mixes directions by far less.
 const OPEN_PART: f64 = 0.1;

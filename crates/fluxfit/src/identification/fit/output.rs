@@ -11,8 +11,7 @@ use super::{
         request::{Provenance, Request, Resolved},
     },
     all_rows::AllRows,
-    excitation::Excitation,
-    fault_search::RIPPLE,
+    fault_search::{RIPPLE, schwarz},
     fault_trial::{FaultOutcome, FaultTrial},
     faults_in_doubt,
     finding::{Bench, Finding, Trust, covariance},
@@ -32,7 +31,7 @@ use crate::{
     error::Error,
     faults::Fault,
     frames::Dq,
-    log::Log,
+    log::{Log, speed_lag::LagByAngle},
     motor::Motor,
     objective::{acting_voltage::VoltageTiming, adjustable::Adjustable, output_error::OutputError},
     optimizer::{Bounds, Method},
@@ -96,7 +95,7 @@ impl OutputFit {
     ) -> Result<Self, Error> {
         let stretches = stretches::fitted(log, &request.windows)?;
         let whole = stretches::as_points(log, &stretches);
-        let scale = Excitation::of(&whole, &request.known).scale;
+        let scale = output_start::scale(log, &stretches, request);
         let start = output_start::start(log, &stretches, steady, request, &scale);
         let Advanced { log: advanced, lag, chosen } = match known {
             Some(known) => known.refitted(log, &stretches, request)?,
@@ -280,14 +279,11 @@ fn with_speed_in_time(
     choose: impl Fn(&Log, f64) -> Result<Vec<Chosen>, Error>,
     again: impl Fn(Chosen, &Log) -> Result<Chosen, Error>,
 ) -> Result<Advanced, Error> {
-    let mut found = choose(log, 0.0)?.into_iter();
-    let first = found.next().ok_or_else(Error::no_rows)?;
     let lags = |chosen: &Chosen| {
         let is_lag = |trial: &&FaultTrial| trial.fault == Fault::SpeedLag && trial.outcome == FaultOutcome::Taken;
         chosen.terms.iter().find(is_lag).cloned()
     };
-    let in_time = |chosen: &Chosen, lags: FaultTrial| {
-        let lag = chosen.drive.faults.speed_lag.time;
+    let in_time = |lag: f64, lags: FaultTrial| {
         let chosen = choose(&log.without_speed_lag(lag), lag)?.into_iter().next().ok_or_else(Error::no_rows)?;
         let lag = lag + chosen.drive.faults.speed_lag.time;
         let advanced = log.without_speed_lag(lag);
@@ -295,13 +291,29 @@ fn with_speed_in_time(
         chosen.terms.insert(0, lags);
         Ok(Advanced { log: Some(advanced), lag, chosen })
     };
-    if let Some(lag) = lags(&first) {
-        return in_time(&first, lag);
+    // What the angle shows needs no fit.
+    if let Some(lag) = log.speed_lag_by_angle() {
+        return in_time(lag.time, of_lag_by_angle(&lag));
+    }
+    let mut found = choose(log, 0.0)?.into_iter();
+    let first = found.next().ok_or_else(Error::no_rows)?;
+    let found_lag = |chosen: &Chosen| chosen.drive.faults.speed_lag.time;
+    if let Some(lags) = lags(&first) {
+        return in_time(found_lag(&first), lags);
     }
     let as_logged = Advanced { log: None, lag: 0.0, chosen: first };
-    let Some((second, lag)) = found.find_map(|chosen| lags(&chosen).map(|lag| (chosen, lag))) else { return Ok(as_logged) };
-    let second = in_time(&second, lag)?;
+    let Some((lag, lags)) = found.find_map(|chosen| lags(&chosen).map(|lags| (found_lag(&chosen), lags))) else { return Ok(as_logged) };
+    let second = in_time(lag, lags)?;
     Ok(if second.chosen.criterion < as_logged.chosen.criterion { second } else { as_logged })
+}
+
+/// A lag of the speed that the angle tells, before anything is fitted: what it gains there.
+fn of_lag_by_angle(lag: &LagByAngle) -> FaultTrial {
+    let rows = lag.left.len();
+    let left = lag.left.iter().map(|left| left * left).sum::<f64>() / rows as f64;
+    let rho = long_run::first_correlation(&lag.left, &[rows]).max(0.0);
+    let independent = (rows as f64 * (1.0 - rho) / (1.0 + rho)).max(1.0);
+    FaultTrial { gain: schwarz(lag.variance, left, 1, independent), ..FaultTrial::not_judged(Fault::SpeedLag, FaultOutcome::Taken) }
 }
 
 /// The lag as a whole, where a part of it was undone.

@@ -12,14 +12,11 @@
 //! to steps of the other axis; where rows come slower than the drive controls, or are means, those are between the rows, and its
 //! inductance is open. So it is where a filter was found: rows that are means pass for filtered ones.
 
-use super::{excitation::Excitation, fault_search::LEAST_RESIDUAL, long_run, output::OutputFit};
+use super::{fault_search::LEAST_RESIDUAL, long_run, output::OutputFit, output_start};
 use crate::{
     error::Error,
     frames::Dq,
-    identification::{
-        prepare::stretches,
-        request::{Known, Request},
-    },
+    identification::request::{Known, Request},
     levenberg_marquardt::{MOTOR, jacobian},
     log::Log,
     motor::{PARAMETERS, Parameter},
@@ -50,7 +47,8 @@ const OPEN_PART: f64 = 0.1;
 pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], request: &Request) -> Result<[bool; PARAMETERS], Error> {
     let objective = OutputError::of_rows(log, &fit.stretches, fit.voltage_timing.value)?;
     let scale = reach(log, fit, request);
-    let free: Vec<usize> = (0..PARAMETERS).filter(|p| !matches!(request.known[*p], Known::Fixed(_))).collect();
+    let free: Vec<usize> =
+        output_start::free(log, request).into_iter().filter_map(|unknown| MOTOR.iter().position(|own| *own == unknown)).collect();
     let faults: Vec<Unknown> = fit.fault_estimates.iter().map(|estimate| estimate.unknown).collect();
     let unknowns: Vec<Unknown> = faults.iter().copied().chain(free.iter().map(|p| MOTOR[*p])).collect();
     let mut drive = fit.drive;
@@ -99,12 +97,15 @@ pub(crate) fn open(log: &Log, fit: &OutputFit, of_points: &[bool; PARAMETERS], r
             free.iter().zip(&direction).for_each(|(p, component)| part[*p] += component * component);
         }
     }
-    Ok(Parameter::ALL.map(|parameter| held == Some(parameter) || part[parameter as usize].sqrt() > OPEN_PART))
+    // That a rotor stands, and tells no flux, is known without a fit: it leaves no combination open.
+    let is_absent = |parameter: Parameter| parameter != Parameter::PsiF && output_start::is_absent(log, parameter);
+    let is_open = |parameter: Parameter| held == Some(parameter) || is_absent(parameter) || part[parameter as usize].sqrt() > OPEN_PART;
+    Ok(Parameter::ALL.map(is_open))
 }
 
 /// How far a parameter reaches that is open: what the voltage allows, SI.
 pub(crate) fn reach(log: &Log, fit: &OutputFit, request: &Request) -> [f64; PARAMETERS] {
-    Excitation::of(&stretches::as_points(log, &fit.stretches), &request.known).scale
+    output_start::scale(log, &fit.stretches, request)
 }
 
 /// A current is held at zero if its root mean square is below this part of the largest current: noise and short transients.

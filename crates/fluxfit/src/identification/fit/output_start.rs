@@ -1,7 +1,11 @@
 //! Where the fit of simulated currents starts, and with what knowledge.
 
 use super::{
-    super::request::{Known, Request},
+    super::{
+        prepare::stretches,
+        request::{Known, Request},
+    },
+    excitation::{Excitation, NOTHING},
     steady::SteadyFit,
 };
 use crate::{
@@ -14,11 +18,32 @@ use crate::{
 };
 use std::ops::Range;
 
-/// Parameters that are not fixed; at rest the flux is none, because no current depends on it.
+/// A voltage along an axis below this part of the other's is none: a simulator leaves rounding there.
+const NO_VOLTAGE: f64 = 1e-9;
+
+/// A current without voltage is noise, and none that dies out, if it is below this part of the other axis'.
+const NO_CURRENT: f64 = 0.01;
+
+/// Whether no row of the log depends on a parameter: at rest on the flux, nor on the inductance of an axis without voltage and current.
+pub(super) fn is_absent(log: &Log, parameter: Parameter) -> bool {
+    let columns = log.columns();
+    let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let is_below = |part: f64, own: &[f64], other: &[f64]| largest(own) <= part * largest(other);
+    let is_idle = |u: [&[f64]; 2], i: [&[f64]; 2]| is_below(NO_VOLTAGE, u[0], u[1]) && is_below(NO_CURRENT, i[0], i[1]);
+    log.is_at_rest()
+        && match parameter {
+            Parameter::PsiF => true,
+            Parameter::Ld => is_idle([&columns.ud, &columns.uq], [&columns.id, &columns.iq]),
+            Parameter::Lq => is_idle([&columns.uq, &columns.ud], [&columns.iq, &columns.id]),
+            Parameter::Rs => false,
+        }
+}
+
+/// Parameters that are not fixed, and on which some row depends.
 pub(super) fn free(log: &Log, request: &Request) -> Vec<Unknown> {
-    let at_rest = log.is_at_rest();
     let is_free = |(unknown, known): &(Unknown, &Known)| {
-        !(matches!(known, Known::Fixed(_)) || at_rest && *unknown == Unknown::Motor(Parameter::PsiF))
+        let absent = matches!(unknown, Unknown::Motor(parameter) if is_absent(log, *parameter));
+        !(matches!(known, Known::Fixed(_)) || absent)
     };
     MOTOR.into_iter().zip(&request.known).filter(is_free).map(|(unknown, _)| unknown).collect()
 }
@@ -72,6 +97,33 @@ pub(crate) fn part_of_rows(points: &SteadyFit, stretches: &[Range<usize>]) -> f6
     of_points as f64 / compared as f64
 }
 
+/// A parameter is no more than so many times what the voltages and currents allow on the whole.
+const FARTHEST: f64 = 100.0;
+
+/// What voltages and currents allow of each parameter, SI: by their means, as of operating points, while the rotor turns.
+pub(super) fn scale(log: &Log, stretches: &[Range<usize>], request: &Request) -> [f64; PARAMETERS] {
+    if log.is_at_rest() {
+        return scale_at_rest(log, stretches);
+    }
+    Excitation::of(&stretches::as_points(log, stretches), &request.known).scale
+}
+
+/// The same by root mean squares: tests at rest swing about zero, and their means are nothing. Inductances show in the slopes of the
+/// currents alone.
+fn scale_at_rest(log: &Log, stretches: &[Range<usize>]) -> [f64; PARAMETERS] {
+    let columns = log.columns();
+    let count = stretches.iter().map(ExactSizeIterator::len).sum::<usize>() as f64;
+    let rms = |square: &dyn Fn(usize) -> f64| (stretches.iter().flat_map(Clone::clone).map(square).sum::<f64>() / count).sqrt();
+    let square = |d: &[f64], q: &[f64], row: usize| d[row].powi(2) + q[row].powi(2);
+    let (u, i) = (rms(&|row| square(&columns.ud, &columns.uq, row)), rms(&|row| square(&columns.id, &columns.iq, row)));
+    let spans = stretches.iter().flat_map(spans);
+    let slope =
+        |current: &[f64], span: &Range<usize>| (current[span.end] - current[span.start]) / (columns.t[span.end] - columns.t[span.start]);
+    let slopes: Vec<f64> = spans.map(|span| slope(&columns.id, &span).powi(2) + slope(&columns.iq, &span).powi(2)).collect();
+    let slope = (slopes.iter().sum::<f64>() / slopes.len().max(1) as f64).sqrt().max(NOTHING);
+    [u / i.max(NOTHING), u / slope, u / slope, u / NOTHING]
+}
+
 /// Where the polish begins: the operating points' motor where it is one, else that of the rows' own voltage equations. Where the
 /// points leave one inductance open, it starts as large as the other: from differences of a current that is held it comes out too small by
 /// their noise.
@@ -86,8 +138,10 @@ pub(super) fn start(
     let mut values: [f64; PARAMETERS] = std::array::from_fn(|p| {
         let parameter = Parameter::ALL[p];
         let of_points = steady.filter(|fit| !fit.excitation.is_open(parameter)).map(|fit| fit.estimate.motor.get(parameter));
+        // Of a current that is zero in every row, the rows' equations say anything.
+        let of_rows = Some(rows[p]).filter(|value| *value <= FARTHEST * scale[p]);
         // An arbitrary fallback start: a tenth of what the voltage allows.
-        [of_points, Some(rows[p])].into_iter().flatten().find(|value| *value > 0.0 && value.is_finite()).unwrap_or(0.1 * scale[p])
+        [of_points, of_rows].into_iter().flatten().find(|value| *value > 0.0 && value.is_finite()).unwrap_or(0.1 * scale[p])
     });
     let is_open = |parameter| steady.is_some_and(|fit| fit.excitation.is_open(parameter));
     let (ld, lq) = (Parameter::Ld as usize, Parameter::Lq as usize);
@@ -116,16 +170,19 @@ pub(super) fn start(
 /// Rows over which a difference of currents stands for their slope: enough to calm noise, few enough to follow a transient.
 const DIFFERENCE: usize = 10;
 
+fn spans(rows: &Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    rows.clone().step_by(DIFFERENCE).map(|first| first..first + DIFFERENCE).filter(|span| span.end < rows.end)
+}
+
 /// The motor of equation (1), with differences of currents over some rows and means of the rest: biased by noise and delay, and
 /// good enough to start from.
 fn by_differences(log: &Log, stretches: &[Range<usize>]) -> Motor {
     let columns = log.columns();
     let mut equations = Vec::new();
     for rows in stretches {
-        for first in rows.clone().step_by(DIFFERENCE).filter(|first| first + DIFFERENCE < rows.end) {
-            let span = first..first + DIFFERENCE;
+        for span in spans(rows) {
             let mean = |value: &dyn Fn(usize) -> f64| span.clone().map(value).sum::<f64>() / DIFFERENCE as f64;
-            let slope = |current: &[f64]| (current[span.end] - current[first]) / (columns.t[span.end] - columns.t[first]);
+            let slope = |current: &[f64]| (current[span.end] - current[span.start]) / (columns.t[span.end] - columns.t[span.start]);
             let omega_i = |current: &[f64]| mean(&|row| columns.omega_e[row] * current[row]);
             let (id, iq) = (mean(&|row| columns.id[row]), mean(&|row| columns.iq[row]));
             let d = [id, slope(&columns.id), -omega_i(&columns.iq), 0.0];
