@@ -150,8 +150,6 @@ pub(super) fn found_all(heads: &[ColumnHead], stated: &Stated) -> Result<Vec<Fou
     let others: &[Quantity] = match mapped {
         _ if is_axis => &[Quantity::Speed, Quantity::Voltage, Quantity::Current],
         [_, true, true] => &[Quantity::Speed, Quantity::Torque],
-        // Torque against current; shorted terminals have a speed, and the user says which.
-        [false, false, true] if stated.maps(&[Quantity::Torque]) => &[Quantity::Speed, Quantity::Voltage],
         [true, true, false] => &[Quantity::Current, Quantity::Torque],
         [_, false, true] => &[Quantity::Voltage],
         _ => &[],

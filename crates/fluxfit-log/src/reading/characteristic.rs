@@ -396,11 +396,6 @@ mod tests {
         assert!(matches!(open.table, Characteristic::OpenCircuit(OpenCircuit { across: Some(Across::Lines), .. })));
         let torques = mapped(dyno, &[("iq", "iq (A)"), ("torque", "T (Nm)")], None).unwrap().unwrap();
         assert!(matches!(torques.table, Characteristic::TorqueOfCurrent(_)));
-        // Currents beside a speed that is not mapped are not those of shorted terminals, whatever their sign.
-        let text = "time_s,speed_rpm,motor_current [A],torque [Nm]\n2,-800,-8,-0.8\n4,-600,-6,-0.6\n6,600,6,0.6\n";
-        let torques = mapped(text, &[("current", "motor_current [A]"), ("torque", "torque [Nm]")], None).unwrap().unwrap();
-        assert!(matches!(torques.table, Characteristic::TorqueOfCurrent(_)));
-        assert!(torques.notes.iter().any(|note| note.to_string().contains("\"speed_rpm\" is not used")), "{:?}", torques.notes);
         // What no table has a place for is refused, not passed over.
         for (map, said) in [
             (&[("voltage", voltage), ("torque", "T (Nm)")][..], "make no table"),

@@ -4,7 +4,7 @@
 
 use super::{
     axis_currents::{self, OfD, OfQ, is},
-    bench_columns::{Found, INSTANT, Stated, found, is_direct, is_driven, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, Stated, is_direct, is_driven, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points, states_wave},
     bench_units::{StatedUnit, stated_unit},
     duty,
@@ -116,10 +116,6 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
             refuse_unclear([currents.clone(), torques.clone()].into_iter(), unclear)?;
             let mut notes = Vec::new();
             let factor = current.in_si * convention(current, Quantity::Current, None, &mut notes) * SQRT_2;
-            let speed = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).find(|own| own.quantity == Quantity::Speed);
-            notes.extend(speed.map(|speed| {
-                format!("the speed {} is not used; if the terminals were shorted, map it too (speed)", quote(&speed.header)).into()
-            }));
             let d = axis_currents::of_d(&heads, columns, None);
             let read =
                 torque_of_current(table, &d, Axis { index: current.index, factor, is_rms: true, tells_unit: true }, columns, torque)?;

@@ -14,11 +14,13 @@ use crate::{
     levenberg_marquardt::{MOTOR, PriorResidual},
     log::Log,
     motor::{Motor, PARAMETERS, Parameter},
+    normal_matrix::dot,
     objective::adjustable::{Adjustable, Unknown},
 };
 use std::ops::Range;
 
-/// A voltage along an axis below this part of the other's is none: a simulator leaves rounding there.
+/// A voltage along an axis below this part of the other's is none: a simulator leaves rounding there. A controller's answers to noise, of
+/// some thousandths, act: without the inductance among the unknowns R_s came out 0.8 % off at 0.2 %.
 const NO_VOLTAGE: f64 = 1e-9;
 
 /// A current without voltage is noise, and none that dies out, if it is below this part of the other axis'.
@@ -27,8 +29,8 @@ const NO_CURRENT: f64 = 0.01;
 /// Whether no row of the log depends on a parameter: at rest on the flux, nor on the inductance of an axis without voltage and current.
 pub(super) fn is_absent(log: &Log, parameter: Parameter) -> bool {
     let columns = log.columns();
-    let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let is_below = |part: f64, own: &[f64], other: &[f64]| largest(own) <= part * largest(other);
+    // Largest values would be those of the noise.
+    let is_below = |part: f64, own: &[f64], other: &[f64]| dot(own, own) <= part.powi(2) * dot(other, other);
     let is_idle = |u: [&[f64]; 2], i: [&[f64]; 2]| is_below(NO_VOLTAGE, u[0], u[1]) && is_below(NO_CURRENT, i[0], i[1]);
     log.is_at_rest()
         && match parameter {
