@@ -3,9 +3,9 @@
 //! the end of a search the one is tried in the place of the other, of both the one that is not needed goes, and what the one that is not
 //! part of the answer would do to it is in doubt. Here a lag may stand beside a filter of the voltages, which is not tried before.
 //!
-//! At one speed an angle that is off by a constant does the same as a late one. Where rows are not the drive's periods, a reading that lags
-//! by itself and such an offset stood in for the lag of a drive that does not turn its voltages on: of means of four periods inductances
-//! were 10 % off at 0.3 %. So a lag is tried in the place of the offset, too, under every reading that has none.
+//! At one speed an angle that is off by a constant does the same as a late one. Where rows are not the drive's periods, such an offset and
+//! a reading "in the frame at the row" took the place of a lag, of a drive that does not turn its voltages forward: from means of four
+//! periods, inductances were 10 % off at 0.3 %. So a lag is tried in the place of an offset, too, under every reading that allows one.
 
 use super::{
     fault_search::{FaultSearch, NOTICEABLE, WITHIN_ROWS},
@@ -36,7 +36,7 @@ impl FaultSearch<'_> {
     pub(super) fn choose_delay(&mut self, taken: &mut Vec<FaultTrial>) -> Vec<FaultTrial> {
         let here: Vec<Fault> = DELAYS.into_iter().filter(|delay| taken.iter().any(|trial| trial.fault == *delay)).collect();
         match here[..] {
-            [] if self.may_lag_by_itself() && taken.iter().any(|trial| trial.fault == Fault::AngleOffset) => {
+            [] if self.may_hide_lag() && taken.iter().any(|trial| trial.fault == Fault::AngleOffset) => {
                 self.in_its_place([Fault::AngleOffset, Fault::VoltageLag], taken).into_iter().collect()
             }
             [] => Vec::new(),
@@ -45,8 +45,8 @@ impl FaultSearch<'_> {
         }
     }
 
-    /// Whether a lag may be hidden in the reading: of rows that are the drive's periods the other readings say how late their voltages act.
-    fn may_lag_by_itself(&self) -> bool {
+    /// Whether the reading may hide a lag: where rows are the drive's periods, readings say how late voltages act, but for one that turns them.
+    fn may_hide_lag(&self) -> bool {
         !self.every_period || self.objectives[self.reading].0.is_in_frame_of_row()
     }
 
@@ -116,7 +116,7 @@ impl FaultSearch<'_> {
     /// A fit with only one of the two, which begins with the sum of both, under the reading that suits it; nothing if no drive has it so.
     fn with_only(&self, it: Fault, both: [Fault; 2]) -> Option<WithOne> {
         let of_both = || both.into_iter().flat_map(Unknown::of_fault);
-        // An angle is no time, and beside one that is off readings are those that lag themselves.
+        // An angle cannot be added to a time; and the readings that fit beside an angle offset are those that no lag may stand beside.
         let are_times = both.iter().all(|fault| DELAYS.contains(fault));
         let all: Vec<usize> = (0..self.objectives.len()).collect();
         let (sum, among) = if are_times { (of_both().map(|unknown| self.drive.get(unknown)).sum(), &self.open) } else { (0.0, &all) };
