@@ -19,7 +19,7 @@ const LEAST_ROWS: usize = 10;
 const SPAN: usize = 10;
 
 /// Part of the squares of the voltages that a resistance and inductances leave at most. Of 337 simulated motors that turn, with the speed
-/// set to zero, they left 4 % and more. Of 83 simulated tests at rest they left at most 0.5 % of 74, and 1.7 % of one whose rows were means;
+/// set to zero, they left 4 % and more. Of 83 simulated tests at rest they left at most 0.5 % of 74, and 1.7 % of one of means of rows;
 /// the others, whose idle axis had a voltage and no current, 20 %.
 const MOST_LEFT: f64 = 0.02;
 
