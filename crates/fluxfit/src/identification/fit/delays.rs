@@ -45,7 +45,7 @@ impl FaultSearch<'_> {
         }
     }
 
-    /// Whether the reading may hide a lag: where rows are the drive's periods, readings say how late voltages act, but for one that turns them.
+    /// Whether the reading may hide a lag: where rows are the drive's periods, all readings but those in the frame at the row show it.
     fn may_hide_lag(&self) -> bool {
         !self.every_period || self.objectives[self.reading].0.is_in_frame_of_row()
     }
