@@ -59,6 +59,8 @@ pub struct Estimate {
     pub(crate) loss_gains: Vec<(Part, [f64; PARAMETERS])>,
     /// Each unknown of the losses, in its unit, and its standard error.
     pub(crate) found: Vec<(f64, f64)>,
+    /// Their covariance.
+    pub(crate) found_covariance: Vec<Vec<f64>>,
     /// Sum of squares at the motor in units of the points' own covariances and accuracies, priors included.
     pub chi_squared: f64,
     /// Equations and priors, less the directions found.
@@ -92,7 +94,7 @@ impl Estimate {
             system = System::of(points, &motor, &accuracy, request, losses);
             solved = system.solve(excitation, request);
         }
-        let Solved { motor, gain, losses: found } = solved;
+        let Solved { motor, gain, losses: found, covariance: found_covariance } = solved;
         let x = motor.to_array();
         let of_points = gain.chunks_exact(2).zip(&system.whiteners);
         let gains = of_points.map(|(gain, whitener)| {
@@ -123,6 +125,7 @@ impl Estimate {
             loss: losses.iter().zip(&found).find(|(loss, _)| loss.part == Part::DeadTime).map(|(_, found)| *found),
             loss_gains: losses.iter().map(|loss| loss.part).zip(loss_gains.iter().copied()).collect(),
             found,
+            found_covariance,
             objective: VoltageError::of_equations(system.equations.into_iter().map(|equation| excitation.excited_equation(equation))),
         }
     }
@@ -156,6 +159,8 @@ struct Solved {
     gain: Vec<[f64; PARAMETERS]>,
     /// Each loss, V, and its standard error.
     losses: Vec<(f64, f64)>,
+    /// Their covariance, V².
+    covariance: Vec<Vec<f64>>,
 }
 
 impl System {
@@ -213,10 +218,12 @@ impl System {
         let (coefficients, values) = matrix(&self.with_losses);
         let of_losses = &self.losses - (&self.losses * coefficients) * &product;
         let found = &of_losses * values;
+        let covariance = &of_losses * of_losses.transpose();
         Solved {
             motor: Motor::from(<[f64; PARAMETERS]>::from(x)),
             gain: product.column_iter().map(|column| std::array::from_fn(|p| column[p])).collect(),
             losses: found.iter().zip(of_losses.row_iter()).map(|(volts, gain)| (*volts, gain.norm())).collect(),
+            covariance: covariance.row_iter().map(|row| row.iter().copied().collect()).collect(),
         }
     }
 }

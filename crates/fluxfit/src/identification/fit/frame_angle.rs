@@ -10,8 +10,18 @@
 //! ```
 //!
 //! and of an angle that stays unknown the cosine takes a part of the flux.
+//!
+//! A drive that does not turn its voltages on to the instant at which they act turns them alone. To the magnet's voltage that is the same;
+//! to those of the currents it is not: at one speed, voltages that are turned by `a` alone are those of the resistance
+//! `R_s cos a - omega_e L sin a`. So the angle that is found, or that the points leave open, may be the voltages' own to any part: the time
+//! by which they lag alone is one more unknown.
 
-use super::{super::request::Request, estimate::TOLD, part::Part, voltage_loss::Loss};
+use super::{
+    super::request::Request,
+    estimate::{Estimate, TOLD},
+    part::Part,
+    voltage_loss::Loss,
+};
 use crate::{frames::Dq, log::Log, motor::Motor, steady::OperatingPoint};
 
 /// Standard error of the angle, rad: 95 % of the drives within 6 degrees, as an alignment by current leaves it against friction and
@@ -31,8 +41,10 @@ pub(super) struct FrameAngle {
     offset: f64,
     /// s.
     delay: f64,
-    /// Standard errors of the two.
-    errors: [f64; 2],
+    /// Covariance of the two.
+    covariance: [[f64; 2]; 2],
+    /// The part of both that turns the voltages alone, s.
+    lag: f64,
 }
 
 impl FrameAngle {
@@ -40,7 +52,8 @@ impl FrameAngle {
     pub(super) const UNKNOWNS: usize = 3;
 
     /// Of a drive of which nothing else is known.
-    pub(super) const USUAL: Self = Self { offset: 0.0, delay: 0.0, errors: [USUAL_OFFSET, USUAL_DELAY] };
+    pub(super) const USUAL: Self =
+        Self { offset: 0.0, delay: 0.0, covariance: [[USUAL_OFFSET * USUAL_OFFSET, 0.0], [0.0, USUAL_DELAY * USUAL_DELAY]], lag: 0.0 };
 
     /// Where it may be unknown; not where voltages are exact, and not for whoever states the steady model: that states its equations, the
     /// angle with them.
@@ -51,7 +64,7 @@ impl FrameAngle {
 
     /// Whether the points tell the offset or, at one speed, the delay that does the same, rather than their priors.
     pub(super) fn is_told(&self) -> bool {
-        let [offset, delay] = self.errors;
+        let [offset, delay] = self.errors();
         offset < TOLD * USUAL_OFFSET || delay < TOLD * USUAL_DELAY
     }
 
@@ -61,7 +74,28 @@ impl FrameAngle {
     }
 
     pub(super) fn turned_back(&self, points: &[OperatingPoint]) -> Vec<OperatingPoint> {
-        points.iter().map(|point| point.in_frame_behind(self.offset + point.omega_e() * self.delay)).collect()
+        let turned = |point: &OperatingPoint| {
+            let alone = point.omega_e() * self.lag;
+            point.in_frame_behind(self.at(point.omega_e()) - alone).turned(alone)
+        };
+        points.iter().map(turned).collect()
+    }
+
+    /// By how much the angle is read too large at a speed, rad.
+    fn at(&self, omega_e: f64) -> f64 {
+        self.offset + omega_e * self.delay
+    }
+
+    /// Standard error of that, rad.
+    fn error_at(&self, omega_e: f64) -> f64 {
+        let [[offset, both], [_, delay]] = self.covariance;
+        (offset + 2.0 * omega_e * both + omega_e * omega_e * delay).max(0.0).sqrt()
+    }
+
+    /// Standard errors of offset and delay.
+    fn errors(&self) -> [f64; 2] {
+        let [[offset, _], [_, delay]] = self.covariance;
+        [offset.sqrt(), delay.sqrt()]
     }
 
     /// What is still unknown at points that are turned back by it, given the motor: the cosine, the offset, the delay.
@@ -74,9 +108,8 @@ impl FrameAngle {
         };
         let late = |point: &OperatingPoint| off(point).map(|part| part * point.omega_e());
         let flux = |point: &OperatingPoint| [0.0, motor.psi_f * point.omega_e()];
-        let fastest = points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max);
-        let [offset_error, delay_error] = self.errors;
-        let angle = offset_error.hypot(delay_error * fastest).min(1.0);
+        let [offset_error, delay_error] = self.errors();
+        let angle = offset_error.hypot(delay_error * fastest(points)).min(1.0);
         [
             Loss { voltages: points.iter().map(flux).collect(), expected: 0.0, standard_error: 0.5 * angle * angle, part },
             Loss { voltages: points.iter().map(off).collect(), expected: -self.offset, standard_error: USUAL_OFFSET, part },
@@ -84,11 +117,41 @@ impl FrameAngle {
         ]
     }
 
-    /// The same with what an estimate found of the [unknowns](Self::unknowns).
-    pub(super) fn with(&self, found: &[(f64, f64); Self::UNKNOWNS]) -> Self {
-        let [_, (offset, offset_error), (delay, delay_error)] = *found;
-        Self { offset: self.offset + offset, delay: self.delay + delay, errors: [offset_error, delay_error] }
+    /// By how much the voltages lag alone, which is unknown too, at points that are turned back by it: so much that it makes the angle at
+    /// the fastest of them.
+    pub(super) fn lag_of_voltages(&self, points: &[OperatingPoint], motor: &Motor) -> Loss {
+        let [_, _, late] = self.unknowns(points, motor);
+        let alone = points.iter().zip(late.voltages).map(|(point, late)| {
+            let voltages = turned(point).map(|part| part * point.omega_e());
+            std::array::from_fn(|axis| voltages[axis] - late[axis])
+        });
+        let fastest = fastest(points);
+        let angle = self.at(fastest).hypot(self.error_at(fastest));
+        let standard_error = if fastest == 0.0 { USUAL_DELAY } else { angle / fastest };
+        Loss { voltages: alone.collect(), expected: -self.lag, standard_error, part: Part::FrameLag }
     }
+
+    /// The same with what an estimate found of that.
+    pub(super) fn with_lag_of_voltages(self, missing: f64) -> Self {
+        Self { lag: self.lag + missing, ..self }
+    }
+
+    /// The same with what an estimate found of the [unknowns](Self::unknowns), the first of them in this place.
+    pub(super) fn with(&self, found: &Estimate, place: usize) -> Self {
+        let [offset, delay] = [place + 1, place + 2];
+        let covariance = [offset, delay].map(|one| [offset, delay].map(|other| found.found_covariance[one][other]));
+        Self { offset: self.offset + found.found[offset].0, delay: self.delay + found.found[delay].0, covariance, ..*self }
+    }
+}
+
+/// Speed of the fastest point, rad/s, of either sign.
+fn fastest(points: &[OperatingPoint]) -> f64 {
+    points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max)
+}
+
+/// The voltage of a point, turned backwards by a right angle: what a small angle adds to it.
+pub(super) fn turned(point: &OperatingPoint) -> [f64; 2] {
+    [point.voltage().q, -point.voltage().d]
 }
 
 #[cfg(test)]
@@ -122,7 +185,7 @@ mod tests {
 
     #[test]
     fn points_turned_back_obey_the_steady_equations() {
-        let known = FrameAngle { offset: 0.05, delay: 0.0, errors: [0.0; 2] };
+        let known = FrameAngle { offset: 0.05, ..FrameAngle::default() };
         let left = residuals(&known.turned_back(&points(0.05)));
         assert!(left.iter().all(|left| left.abs() < 1e-12), "{left:?}");
     }
@@ -138,5 +201,44 @@ mod tests {
             // The sign of a residual does not matter here.
             assert!((left.abs() - ANGLE * volts.abs()).abs() < 2.0 * ANGLE * ANGLE * 25.0, "{left} {volts}");
         }
+    }
+
+    /// A lag of the voltages alone turns them and not the currents: the unknown against the difference that a microsecond makes, beside
+    /// which the angle, of which it is a part, stays.
+    #[test]
+    fn a_lag_of_the_voltages_leaves_the_currents() {
+        const LAG: f64 = 1e-6;
+        let exact = points(0.0);
+        let lagging: Vec<OperatingPoint> = exact.iter().map(|point| point.turned(-point.omega_e() * LAG)).collect();
+        let both = FrameAngle { delay: LAG, lag: LAG, ..FrameAngle::default() };
+        let left = residuals(&both.turned_back(&lagging));
+        assert!(left.iter().all(|left| left.abs() < 1e-9), "{left:?}");
+        let angle = FrameAngle::USUAL;
+        let [_, _, late] = angle.unknowns(&exact, &MOTOR);
+        let alone = angle.lag_of_voltages(&exact, &MOTOR);
+        for (((left, late), alone), volts) in residuals(&lagging)
+            .chunks_exact(2)
+            .zip(&late.voltages)
+            .zip(&alone.voltages)
+            .zip(lagging.iter().map(|point| point.voltage().magnitude()))
+        {
+            for axis in 0..2 {
+                let predicted = LAG * (late[axis] + alone[axis]);
+                assert!((left[axis].abs() - predicted.abs()).abs() < 1e-5 * volts, "{left:?} {predicted}");
+            }
+        }
+    }
+
+    /// Of an angle that is told, the lag can be no larger than it; of one that is open, no larger than it may be.
+    #[test]
+    fn a_lag_is_as_large_as_the_angle_may_be() {
+        let exact = points(0.0);
+        let expected = |angle: FrameAngle| angle.lag_of_voltages(&exact, &MOTOR).standard_error * 2500.0;
+        assert!((expected(FrameAngle { offset: 0.1, ..FrameAngle::default() }) - 0.1).abs() < 1e-12);
+        let open = USUAL_OFFSET.hypot(USUAL_DELAY * 2500.0);
+        assert!((expected(FrameAngle::USUAL) - open).abs() < 1e-12);
+        // An offset and a delay of which only the sum is known, at the fastest point.
+        let covariance = [[1e-2, -1e-2 / 2500.0], [-1e-2 / 2500.0, 1e-2 / 2500.0_f64.powi(2)]];
+        assert!(expected(FrameAngle { covariance, ..FrameAngle::default() }) < 1e-6);
     }
 }

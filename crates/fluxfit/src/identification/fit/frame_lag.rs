@@ -15,7 +15,12 @@
 //! share may be off and late beside it: [`FrameAngle`](super::frame_angle::FrameAngle). What the magnet shows is `T` and the lateness of
 //! the angle together, so `T` here is their sum, and of the angle's only that it turns the currents too is a further unknown.
 
-use super::{super::request::Request, frame_angle::FrameAngle, part::Part, voltage_loss::Loss};
+use super::{
+    super::request::Request,
+    frame_angle::{FrameAngle, turned},
+    part::Part,
+    voltage_loss::Loss,
+};
 use crate::{
     column_check::turn_with_speed,
     log::Log,
@@ -131,11 +136,6 @@ impl FrameLag {
     pub fn is_found(&self) -> bool {
         self.seconds.abs() > FOUND * self.standard_error
     }
-}
-
-/// The voltage of a point, turned backwards by a right angle: what a small angle adds to it.
-fn turned(point: &OperatingPoint) -> [f64; 2] {
-    [point.voltage().q, -point.voltage().d]
 }
 
 /// The unknown part, in the `other` reading of the voltages by a drive that controls at a usual rate, of what it changes: none where the

@@ -340,6 +340,13 @@ pub(super) fn choose(
             || leaves_much_less(rare, usual)
             || !usual.explained && (is_disturbed(usual) || !is_disturbed(rare)) && (1.0 + UNUSUAL) * rare.mean_square < usual.mean_square
     };
+    // Beside voltages that lag, an angle that is off and a filter pass for it: they follow the noise to which the controller answers.
+    let stands_in_for_lag = |rare: &Searched, usual: &Searched| {
+        let has = |found: &Searched, fault| found.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
+        let is_turned = [Fault::AngleOffset, Fault::AngleDelay].into_iter().any(|fault| has(rare, fault));
+        let is_mean = matches!(usual.chosen.reading, VoltageTiming::Averaged { .. });
+        is_mean && has(usual, Fault::VoltageLag) && is_turned && has_filter(rare)
+    };
     let finds_loss = found.iter().any(has_loss);
     // A filter counts there only beside dead time that the usual searches miss, or if much less is left; then a small resistance may come
     // out below zero, too.
@@ -357,7 +364,8 @@ pub(super) fn choose(
         let begin = first.as_ref().filter(may_miss_loss).and_then(|_| with_loss(&rare, &[alone.best], has_inductances));
         let second = begin.and_then(|begin| search_from(begin, &rare, &mut Vec::new()));
         let is_better = |rare: &Searched| {
-            counts(rare, usual) && is_better(rare, usual) && rare.chosen.independent * (criterion(usual) - criterion(rare)) > VERY_STRONG
+            let counts = counts(rare, usual) && !stands_in_for_lag(rare, usual);
+            counts && is_better(rare, usual) && rare.chosen.independent * (criterion(usual) - criterion(rare)) > VERY_STRONG
         };
         let mut found_there: Vec<Searched> = first.into_iter().chain(second).collect();
         // That the reading is a rare one is told by either; then the better one is the answer, with or without a filter.

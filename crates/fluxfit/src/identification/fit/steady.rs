@@ -334,10 +334,10 @@ fn solve_at_lag(
         let hold = other.map(|other| frame_lag::hold_unknown(&points, &lag.turned_back(other, &angle)));
         let unknowns: Vec<Loss> = hold.into_iter().chain(frames.unknowns(&points, &lag, &angle, &motor, log)).collect();
         let solved = solve_beside(log, points, &unknowns, InDoubt { angle_and_winding: true, loss: 0.0 }, request);
-        if let Some((before, of_angle)) = solved.estimate.found.split_last_chunk()
+        if let Some((before, of_angle)) = solved.estimate.found.split_last_chunk::<{ FrameAngle::UNKNOWNS }>()
             && let Some((_, of_lag)) = before.split_last_chunk()
         {
-            (lag, angle) = (lag.with(of_lag), angle.with(of_angle));
+            (lag, angle) = (lag.with(of_lag), angle.with(&solved.estimate, solved.estimate.found.len() - of_angle.len()));
         }
         motor = solved.estimate.motor;
         solved
@@ -363,10 +363,11 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
     let mut motor = only_flux(frame_lag::rough_flux(unturned));
     let mut round = |angle: &mut FrameAngle| {
         let points = angle.turned_back(unturned);
-        let unknowns = angle.unknowns(&points, &motor);
+        let unknowns: Vec<Loss> = angle.unknowns(&points, &motor).into_iter().chain([angle.lag_of_voltages(&points, &motor)]).collect();
         let solved = solve_beside(log, points, &unknowns, in_doubt, request);
-        if let Some((_, of_angle)) = solved.estimate.found.split_last_chunk() {
-            *angle = angle.with(of_angle);
+        let found = &solved.estimate.found;
+        if let (Some((lag, _)), Some(place)) = (found.last(), found.len().checked_sub(unknowns.len())) {
+            *angle = angle.with(&solved.estimate, place).with_lag_of_voltages(*lag);
         }
         motor = solved.estimate.motor;
         solved
