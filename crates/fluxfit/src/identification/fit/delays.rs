@@ -102,7 +102,8 @@ impl FaultSearch<'_> {
         let fit = self.with_only(other, [one, other])?;
         let (lead, moves) = (self.lead(&fit), self.moves_to(&fit));
         let (least, most) = (fit.mean_square().min(self.mean_square()), fit.mean_square().max(self.mean_square()));
-        let within_rows = if other == Fault::VoltageLag && self.may_hide_lag() { OF_ANSWERS } else { WITHIN_ROWS };
+        let may_be_answers = lead >= 0.0 && other == Fault::VoltageLag && self.may_hide_lag();
+        let within_rows = if may_be_answers { OF_ANSWERS } else { WITHIN_ROWS };
         let gain = if least > (1.0 - within_rows) * most { 0.0 } else { -lead.abs() };
         let covered = |fault, moves| Some(FaultTrial { fault, gain, outcome: FaultOutcome::Covered, moves });
         if lead >= 0.0 {
