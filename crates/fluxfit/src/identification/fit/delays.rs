@@ -39,9 +39,11 @@ struct WithOne {
 impl FaultSearch<'_> {
     /// Chooses between lag and angle, if any was taken. Returns what the other, which may be there, would do.
     pub(super) fn choose_delay(&mut self, taken: &mut Vec<FaultTrial>) -> Vec<FaultTrial> {
-        let alone = if self.may_hide_lag() { self.lag_alone(taken) } else { Vec::new() };
-        let others = self.choose_between(taken);
-        alone.into_iter().chain(others).collect()
+        let mut others = self.choose_between(taken);
+        if self.may_hide_lag() {
+            others.extend(self.lag_alone(taken));
+        }
+        others
     }
 
     /// What a lag would do without the angle beside it, where that leaves not much more.
@@ -102,7 +104,8 @@ impl FaultSearch<'_> {
         let fit = self.with_only(other, [one, other])?;
         let (lead, moves) = (self.lead(&fit), self.moves_to(&fit));
         let (least, most) = (fit.mean_square().min(self.mean_square()), fit.mean_square().max(self.mean_square()));
-        let may_be_answers = lead >= 0.0 && other == Fault::VoltageLag && self.may_hide_lag();
+        let left = if lead >= 0.0 { other } else { one };
+        let may_be_answers = left == Fault::VoltageLag && self.may_hide_lag();
         let within_rows = if may_be_answers { OF_ANSWERS } else { WITHIN_ROWS };
         let gain = if least > (1.0 - within_rows) * most { 0.0 } else { -lead.abs() };
         let covered = |fault, moves| Some(FaultTrial { fault, gain, outcome: FaultOutcome::Covered, moves });
@@ -145,7 +148,8 @@ impl FaultSearch<'_> {
         let of_both = || both.into_iter().flat_map(Unknown::of_fault);
         // An angle cannot be added to a time; and the readings that fit beside an angle offset are those that no lag may stand beside.
         let are_times = both.iter().all(|fault| DELAYS.contains(fault));
-        let sum = if are_times { of_both().map(|unknown| self.drive.get(unknown)).sum() } else { 0.0 };
+        let present = |unknown: Unknown| self.drive.get(unknown);
+        let sum = if are_times { of_both().map(present).sum() } else { Unknown::of_fault(it).map(present).sum() };
         let all: Vec<usize> = (0..self.objectives.len()).collect();
         let among = if are_times && !self.objectives[self.reading].0.is_in_frame_of_row() { &self.open } else { &all };
         let goes = |unknown: &Unknown| unknown.fault().is_some_and(|fault| both.contains(&fault));

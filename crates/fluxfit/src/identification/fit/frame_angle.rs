@@ -127,7 +127,7 @@ impl FrameAngle {
         });
         let fastest = fastest(points);
         let angle = self.at(fastest).hypot(self.error_at(fastest));
-        let standard_error = if fastest == 0.0 { USUAL_DELAY } else { angle / fastest };
+        let standard_error = if fastest == 0.0 { USUAL_DELAY } else { angle / fastest.abs() };
         Loss { voltages: alone.collect(), expected: -self.lag, standard_error, part: Part::FrameLag }
     }
 
@@ -144,9 +144,10 @@ impl FrameAngle {
     }
 }
 
-/// Speed of the fastest point, rad/s, of either sign.
+/// Speed of the fastest point with its sign, rad/s.
 fn fastest(points: &[OperatingPoint]) -> f64 {
-    points.iter().map(|point| point.omega_e().abs()).fold(0.0, f64::max)
+    let speeds = points.iter().map(OperatingPoint::omega_e);
+    speeds.fold(0.0, |most: f64, omega_e| if omega_e.abs() > most.abs() { omega_e } else { most })
 }
 
 /// The voltage of a point, turned backwards by a right angle: what a small angle adds to it.
@@ -237,8 +238,13 @@ mod tests {
         assert!((expected(FrameAngle { offset: 0.1, ..FrameAngle::default() }) - 0.1).abs() < 1e-12);
         let open = USUAL_OFFSET.hypot(USUAL_DELAY * 2500.0);
         assert!((expected(FrameAngle::USUAL) - open).abs() < 1e-12);
-        // An offset and a delay of which only the sum is known, at the fastest point.
-        let covariance = [[1e-2, -1e-2 / 2500.0], [-1e-2 / 2500.0, 1e-2 / 2500.0_f64.powi(2)]];
-        assert!(expected(FrameAngle { covariance, ..FrameAngle::default() }) < 1e-6);
+        // An offset and a delay of which only what they make at the fastest point is known, whichever way it turns.
+        for speed in [2500.0, -2500.0] {
+            let both = -1e-2 / speed;
+            let angle = FrameAngle { covariance: [[1e-2, both], [both, 1e-2 / (speed * speed)]], ..FrameAngle::default() };
+            let mut turning = exact.clone();
+            turning.iter_mut().for_each(|point| point.means[6] *= speed / 2500.0);
+            assert!(angle.lag_of_voltages(&turning, &MOTOR).standard_error * speed.abs() < 1e-6);
+        }
     }
 }
