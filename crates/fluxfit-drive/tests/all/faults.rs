@@ -9,7 +9,6 @@ use fluxfit::{
     evidence::Identification,
     evidence::OutputFit,
     faults::Fault,
-    frames::Dq,
     identify,
     motor::{Motor, PARAMETERS, Parameter},
     objective::acting_voltage::{VoltageFrame, VoltageTiming},
@@ -229,6 +228,17 @@ fn a_speed_that_lags_in_an_acceleration() {
     holds("lagging speed", &found, &SCOOTER, [1.0, 0.5, 0.3, 0.1]);
 }
 
+/// Logs the commands as a drive that does not turn them on writes them: from the frame in the middle of the period in which they act, which
+/// is late by so much, s.
+fn in_frame_of_sample(recording: &mut Recording, late: f64) {
+    let columns = &mut recording.columns;
+    for (k, (d, q)) in recording.ud_ref.iter().zip(&recording.uq_ref).enumerate() {
+        let (sin, cos) = (late * columns.omega_e[k]).sin_cos();
+        columns.ud[k] = cos * d - sin * q;
+        columns.uq[k] = sin * d + cos * q;
+    }
+}
+
 /// Every eighth command of a small motor's drive at 16 kHz, written in the frame of its sample: it acts one and a half periods later,
 /// 94 us, and the log says neither how late nor how often. Voltages that are turned so contradict each other as those of a motor that
 /// saturates; beside the lag they agree.
@@ -255,14 +265,7 @@ fn every_eighth_voltage_of_a_drive_that_does_not_turn_it_on() {
         ..Scenario::paper()
     };
     let mut recording = simulate(&scenario, 1, || ()).unwrap();
-    let references: Vec<Dq> = recording.ud_ref.iter().zip(&recording.uq_ref).map(|(d, q)| Dq { d: *d, q: *q }).collect();
-    let columns = &mut recording.columns;
-    for (k, u) in references.iter().enumerate() {
-        // From the frame in the middle of the period in which it acts.
-        let angle = 1.5 * PERIOD * columns.omega_e[k];
-        columns.ud[k] = angle.cos() * u.d - angle.sin() * u.q;
-        columns.uq[k] = angle.sin() * u.d + angle.cos() * u.q;
-    }
+    in_frame_of_sample(&mut recording, 1.5 * PERIOD);
     let found = found(&recording);
     let fit = found.output.as_ref().unwrap();
     // Terms for what happens between such rows may be found beside it.
@@ -301,10 +304,7 @@ fn means_of_voltages_that_are_not_turned_on_at_one_speed() {
         ..Scenario::paper()
     };
     let mut recording = simulate(&scenario, 1, || ()).unwrap();
-    let angle = 1.5 / RATE * OMEGA_E;
-    let references = || recording.ud_ref.iter().zip(&recording.uq_ref);
-    recording.columns.ud = references().map(|(d, q)| angle.cos() * d - angle.sin() * q).collect();
-    recording.columns.uq = references().map(|(d, q)| angle.sin() * d + angle.cos() * q).collect();
+    in_frame_of_sample(&mut recording, 1.5 / RATE);
     let columns = &mut recording.columns;
     columns.theta_e = None;
     for column in [&mut columns.t, &mut columns.ud, &mut columns.uq, &mut columns.id, &mut columns.iq, &mut columns.omega_e] {

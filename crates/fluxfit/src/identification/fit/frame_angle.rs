@@ -76,13 +76,13 @@ impl FrameAngle {
     pub(super) fn turned_back(&self, points: &[OperatingPoint]) -> Vec<OperatingPoint> {
         let turned = |point: &OperatingPoint| {
             let alone = point.omega_e() * self.lag;
-            point.in_frame_behind(self.at(point.omega_e()) - alone).turned(alone)
+            point.in_frame_behind(self.angle_at(point.omega_e()) - alone).turned(alone)
         };
         points.iter().map(turned).collect()
     }
 
     /// By how much the angle is read too large at a speed, rad.
-    fn at(&self, omega_e: f64) -> f64 {
+    fn angle_at(&self, omega_e: f64) -> f64 {
         self.offset + omega_e * self.delay
     }
 
@@ -117,8 +117,8 @@ impl FrameAngle {
         ]
     }
 
-    /// By how much the voltages lag alone, which is unknown too, at points that are turned back by it: so much that it makes the angle at
-    /// the fastest of them.
+    /// What is unknown of the time by which the voltages lag alone, at points that are turned back by it, given the motor. Before they are
+    /// heard, a lag is as likely as long as it makes no more than the angle, with its error, at the fastest of them.
     pub(super) fn lag_of_voltages(&self, points: &[OperatingPoint], motor: &Motor) -> Loss {
         let [_, _, late] = self.unknowns(points, motor);
         let alone = points.iter().zip(late.voltages).map(|(point, late)| {
@@ -126,7 +126,7 @@ impl FrameAngle {
             std::array::from_fn(|axis| voltages[axis] - late[axis])
         });
         let fastest = fastest(points);
-        let angle = self.at(fastest).hypot(self.error_at(fastest));
+        let angle = self.angle_at(fastest).hypot(self.error_at(fastest));
         let standard_error = if fastest == 0.0 { USUAL_DELAY } else { angle / fastest.abs() };
         Loss { voltages: alone.collect(), expected: -self.lag, standard_error, part: Part::FrameLag }
     }
@@ -137,7 +137,7 @@ impl FrameAngle {
     }
 
     /// The same with what an estimate found of the [unknowns](Self::unknowns), the first of them in this place.
-    pub(super) fn with(&self, found: &Estimate, place: usize) -> Self {
+    pub(super) fn with_unknowns(&self, found: &Estimate, place: usize) -> Self {
         let [offset, delay] = [place + 1, place + 2];
         let covariance = [offset, delay].map(|one| [offset, delay].map(|other| found.found_covariance[one][other]));
         Self { offset: self.offset + found.found[offset].0, delay: self.delay + found.found[delay].0, covariance, ..*self }
@@ -204,8 +204,8 @@ mod tests {
         }
     }
 
-    /// A lag of the voltages alone turns them and not the currents: the unknown against the difference that a microsecond makes, beside
-    /// which the angle, of which it is a part, stays.
+    /// A lag of the voltages alone turns them and not the currents: points that lag so obey the equations when they are turned back, and
+    /// where the angle, of which it is a part, is zero, the unknown is the difference that a microsecond makes.
     #[test]
     fn a_lag_of_the_voltages_leaves_the_currents() {
         const LAG: f64 = 1e-6;
@@ -214,18 +214,17 @@ mod tests {
         let both = FrameAngle { delay: LAG, lag: LAG, ..FrameAngle::default() };
         let left = residuals(&both.turned_back(&lagging));
         assert!(left.iter().all(|left| left.abs() < 1e-9), "{left:?}");
-        let angle = FrameAngle::USUAL;
-        let [_, _, late] = angle.unknowns(&exact, &MOTOR);
-        let alone = angle.lag_of_voltages(&exact, &MOTOR);
-        for (((left, late), alone), volts) in residuals(&lagging)
-            .chunks_exact(2)
-            .zip(&late.voltages)
-            .zip(&alone.voltages)
-            .zip(lagging.iter().map(|point| point.voltage().magnitude()))
-        {
+        // An angle that is early by what the voltages lag: their sum turns nothing but the currents.
+        let early = |point: &OperatingPoint| {
+            let angle = point.omega_e() * LAG;
+            point.in_frame_behind(angle).turned(-angle)
+        };
+        let without: Vec<OperatingPoint> = exact.iter().map(early).collect();
+        let alone = FrameAngle::USUAL.lag_of_voltages(&exact, &MOTOR);
+        let voltages: Vec<f64> = exact.iter().map(|point| point.voltage().magnitude()).collect();
+        for ((left, alone), volts) in residuals(&without).chunks_exact(2).zip(&alone.voltages).zip(voltages) {
             for axis in 0..2 {
-                let predicted = LAG * (late[axis] + alone[axis]);
-                assert!((left[axis].abs() - predicted.abs()).abs() < 1e-5 * volts, "{left:?} {predicted}");
+                assert!((left[axis].abs() - LAG * alone[axis].abs()).abs() < 1e-5 * volts, "{left:?} {alone:?}");
             }
         }
     }

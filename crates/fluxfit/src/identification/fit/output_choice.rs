@@ -211,9 +211,8 @@ pub(super) fn choose(
     let is_motor = |found: &Searched| is_a_motor(&found.chosen.drive.motor);
     // A filter or a late angle in a usual log passes for a rare reading as long as it is not found. So a search that begins with a rare
     // reading counts only without a filter.
-    let has_filter = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(Fault::is_filter);
-    let is_loss = |fault: Fault| fault.family() == Fault::DeadTime.family();
-    let has_loss = |found: &Searched| found.chosen.unknowns.iter().filter_map(|unknown| unknown.fault()).any(is_loss);
+    let has_filter = |found: &Searched| found.faults().any(Fault::is_filter);
+    let has_loss = |found: &Searched| found.faults().any(|fault| fault.family() == Fault::DeadTime.family());
     let with_rare = |alone: &Alone| {
         let searched = search_from(without(alone.best), &rare, &mut Vec::new());
         searched.filter(|searched| is_motor(searched) && !has_filter(searched))
@@ -278,8 +277,7 @@ pub(super) fn choose(
     // Harmonics of the flux pass for dead time: it explains much beside them, but with values that no drive has.
     let is_hidden = |best: &Searched| {
         let hides = |trial: &FaultTrial| trial.fault == loss && trial.outcome == FaultOutcome::NotPhysical && trial.gain > VERY_STRONG;
-        let has_harmonics = best.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(Fault::FluxHarmonics));
-        has_harmonics && !has_loss(best) && best.chosen.terms.iter().any(hides)
+        best.has(Fault::FluxHarmonics) && !has_loss(best) && best.chosen.terms.iter().any(hides)
     };
     let may_have_loss = |best: &Searched| start.shows_dead_time && !is_answer(best) || is_hidden(best);
     if found.first().is_some_and(may_have_loss) {
@@ -289,8 +287,7 @@ pub(super) fn choose(
     // What a filter of the phase currents does while the rotor turns passes for much else beside an observer. A lag of the speed and
     // saturation, which leave as much, have searches of their own.
     let leaves_much = |best: &Searched| {
-        let has = |fault| best.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
-        !best.explained && ![Fault::CurrentFilter, Fault::SpeedLag, Fault::Saturation].into_iter().any(has)
+        !best.explained && ![Fault::CurrentFilter, Fault::SpeedLag, Fault::Saturation].into_iter().any(|fault| best.has(fault))
     };
     if every_period && found.first().is_some_and(leaves_much) {
         let with_filter = Begin::with_fault(&[Fault::CurrentFilter], &objectives, &start.drive, (&free, &priors), &tried, is_a_motor);
@@ -342,10 +339,9 @@ pub(super) fn choose(
     };
     // Beside voltages that lag, an angle that is off and a filter pass for it: they follow the noise to which the controller answers.
     let stands_in_for_lag = |rare: &Searched, usual: &Searched| {
-        let has = |found: &Searched, fault| found.chosen.unknowns.iter().any(|unknown| unknown.fault() == Some(fault));
-        let is_turned = [Fault::AngleOffset, Fault::AngleDelay].into_iter().any(|fault| has(rare, fault));
+        let is_turned = rare.has(Fault::AngleOffset) || rare.has(Fault::AngleDelay);
         let is_mean = matches!(usual.chosen.reading, VoltageTiming::Averaged { .. });
-        is_mean && has(usual, Fault::VoltageLag) && is_turned && has_filter(rare)
+        is_mean && usual.has(Fault::VoltageLag) && is_turned && has_filter(rare)
     };
     let finds_loss = found.iter().any(has_loss);
     // A filter counts there only beside dead time that the usual searches miss, or if much less is left; then a small resistance may come
@@ -535,6 +531,15 @@ impl Attempt {
 }
 
 impl Searched {
+    /// Faults among the unknowns, once for each of their unknowns.
+    fn faults(&self) -> impl Iterator<Item = Fault> {
+        self.chosen.unknowns.iter().filter_map(|unknown| unknown.fault())
+    }
+
+    fn has(&self, fault: Fault) -> bool {
+        self.faults().any(|there| there == fault)
+    }
+
     fn of(search: FaultSearch, terms: Vec<FaultTrial>) -> Self {
         let FaultSearch { drive, unknowns, cost, reading, compared, .. } = search;
         let (reading, objective) = &search.objectives[reading];

@@ -337,7 +337,7 @@ fn solve_at_lag(
         if let Some((before, of_angle)) = solved.estimate.found.split_last_chunk::<{ FrameAngle::UNKNOWNS }>()
             && let Some((_, of_lag)) = before.split_last_chunk()
         {
-            (lag, angle) = (lag.with(of_lag), angle.with(&solved.estimate, solved.estimate.found.len() - of_angle.len()));
+            (lag, angle) = (lag.with(of_lag), angle.with_unknowns(&solved.estimate, solved.estimate.found.len() - of_angle.len()));
         }
         motor = solved.estimate.motor;
         solved
@@ -367,7 +367,7 @@ fn solve_at_angle(log: &Log, unturned: &[OperatingPoint], angle: Option<FrameAng
         let solved = solve_beside(log, points, &unknowns, in_doubt, request);
         let found = &solved.estimate.found;
         if let (Some((lag, _)), Some(place)) = (found.last(), found.len().checked_sub(unknowns.len())) {
-            *angle = angle.with(&solved.estimate, place).with_lag_of_voltages(*lag);
+            *angle = angle.with_unknowns(&solved.estimate, place).with_lag_of_voltages(*lag);
         }
         motor = solved.estimate.motor;
         solved
