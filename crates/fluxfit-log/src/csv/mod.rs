@@ -6,8 +6,8 @@
 //!
 //! Recognized without options: comma, semicolon, tab or aligning spaces; a separator or a semicolon at the end of a line; quotes and
 //! spaces around names and values; gzip; UTF-8, UTF-16 and Windows-1252; titles above the header, `#` and `%` comments, and a header in
-//! them; a row of units below it; blank lines; a decimal comma, in quotes where the comma separates; dates and times. Only the wanted cells
-//! are converted to numbers, in blocks of rows on all cores.
+//! them; a row of units below it; blank lines; a decimal comma, in quotes where the comma separates; dates and times, those of a serial
+//! monitor, too. Only the wanted cells are converted to numbers, in blocks of rows on all cores.
 
 mod block_rows;
 mod blocks;
@@ -16,6 +16,7 @@ mod marks;
 mod padding;
 mod plain;
 mod rows;
+mod serial_monitor;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -65,6 +66,7 @@ impl TextTable {
     /// # Errors
     /// If it has no header.
     pub(crate) fn of(mut text: Text) -> Result<Self, FileError> {
+        text = serial_monitor::with_times_as_cells(text);
         let mut notes = std::mem::take(&mut text.notes);
         let mut header = header::find(&text.head, &mut notes)?;
         let is_cut = text.has_rest() && header.body >= text.head.len();

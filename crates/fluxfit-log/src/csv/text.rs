@@ -153,17 +153,22 @@ impl Text {
     }
 
     /// The text with its rows, from `body` on, as records.
-    pub(super) fn with_rows(mut self, style: RowStyle, body: usize) -> Self {
+    pub(super) fn with_rows(self, style: RowStyle, body: usize) -> Self {
+        self.changed(body, |rows| Box::new(Tidied::new(rows, style)))
+    }
+
+    /// The text changed from `body` on.
+    pub(super) fn changed(mut self, body: usize, change: impl FnOnce(Box<dyn Read>) -> Box<dyn Read>) -> Self {
         let rows = self.head.split_off(body).into_bytes();
-        let mut tidied: Box<dyn Read> = Box::new(Tidied::new(Cursor::new(rows).chain(self.rest), style));
+        let mut changed = change(Box::new(Cursor::new(rows).chain(self.rest)));
         // So much that the first rows can be looked at.
         let mut first = Vec::new();
         // An error comes again where the rest is read.
-        let _ = (&mut tidied).take(HEAD as u64).read_to_end(&mut first);
+        let _ = (&mut changed).take(HEAD as u64).read_to_end(&mut first);
         let whole = first.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         let cut = first.split_off(whole);
         self.head.push_str(&String::from_utf8_lossy(&first));
-        self.rest = Box::new(Cursor::new(cut).chain(tidied));
+        self.rest = Box::new(Cursor::new(cut).chain(changed));
         self
     }
 }

@@ -62,13 +62,18 @@ fn named_by_vector(channel: Channel, heads: &[ColumnHead]) -> Option<usize> {
         Channel::Iq => (1, &CURRENT_VECTOR),
         _ => return None,
     };
-    let mut found = (0..heads.len()).filter_map(|of_d| vector(&heads[of_d].name, heads, names).map(|of_q| [of_d, of_q]));
-    let first = found.next().filter(|_| found.next().is_none())?;
+    let one = |references: bool| {
+        let mut found = (0..heads.len()).filter_map(|of_d| vector(&heads[of_d].name, heads, names, references).map(|of_q| [of_d, of_q]));
+        found.next().filter(|_| found.next().is_none())
+    };
+    // References of voltages are known well enough, if nothing else is there.
+    let first = one(false).or_else(|| one(true).filter(|_| channel.dimension() == Dimension::Voltage))?;
     Some(first[axis])
 }
 
 /// The column with the second element of a vector, if a name is that of the first one.
-fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize> {
+fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str], references: bool) -> Option<usize> {
+    let name = without_unit(name);
     let parts = words(name);
     let (last, stem) = parts.split_last()?;
     // ST's library has q first, and so only its fields are known.
@@ -91,15 +96,26 @@ fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str]) -> Option<usize
         || name.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| ["mv", "ma", "kv", "ka", "pu"].contains(&word));
     let is_plain = name.ends_with([']', ')']) || !has_hidden_unit();
     let [_, second] = *ELEMENTS.iter().find(|[first, _]| last == first)?;
-    let is_second = |head: &ColumnHead| words(&head.name).split_last().is_some_and(|(end, other)| end == second && other == stem);
-    let is_measured = is_named && is_plain && !name.contains('*') && !says_reference(&parts);
+    let is_second =
+        |head: &ColumnHead| words(without_unit(&head.name)).split_last().is_some_and(|(end, other)| end == second && other == stem);
+    let is_measured = is_named && is_plain && (references || !name.contains('*') && !says_reference(&parts));
     is_measured.then(|| heads.iter().position(is_second)).flatten()
+}
+
+/// The name of an element without the unit in brackets behind it: `Vdq(1) [V]`.
+fn without_unit(name: &str) -> &str {
+    let has_letters = name.ends_with([']', ')']) && name.rsplit(['[', '(']).next().is_some_and(|text| text.contains(char::is_alphabetic));
+    let bare = |dimension| match split_header(name, dimension) {
+        (stem, HeaderUnit::Known(_)) if has_letters => Some(stem),
+        _ => None,
+    };
+    [Dimension::Voltage, Dimension::Current].into_iter().find_map(bare).unwrap_or(name)
 }
 
 /// Whether two names are those of the elements of one vector.
 pub(super) fn are_elements(names: [&str; 2]) -> bool {
     let heads = [ColumnHead { name: names[1].to_owned(), ..ColumnHead::default() }];
-    vector(names[0], &heads, &[VOLTAGE_VECTOR, CURRENT_VECTOR].concat()).is_some()
+    vector(names[0], &heads, &[VOLTAGE_VECTOR, CURRENT_VECTOR].concat(), true).is_some()
 }
 
 /// Whether two names, without their units, are the same but for d in one where q is in the other: `I_d` and `I_q`, not `ID` and `I_q`.
@@ -443,6 +459,9 @@ mod tests {
         assert_eq!(found(&["FOCVars.Vqd.d", "FOCVars.Vqd.q", "FOCVars.Iqd.d", "FOCVars.Iqd.q"]), all);
         assert_eq!(found(&["Vqd[0]", "Vqd[1]", "FOCVars.Iqdref.d", "FOCVars.Iqdref.q"]), [None; 4]);
         assert_eq!(found(&["Vdq:1", "Vdq:2", "Idq:1", "Idq:2"]), all);
+        assert_eq!(found(&["Vdq_cmd(1)", "Vdq_cmd(2)", "Idq(1)", "Idq(2)"]), all);
+        assert_eq!(found(&["Vdq_cmd(1) [V]", "Vdq_cmd(2) [V]", "Idq[0] (A)", "Idq[1] (A)"]), all);
+        assert_eq!(found(&["Vdq(1)", "Vdq(2)", "Vdq_cmd(1)", "Vdq_cmd(2)"]), [Some(0), Some(1), None, None]);
         assert_eq!(found(&["Voltages (dq):1", "Voltages (dq):2", "Stator currents (dq):1", "Stator currents (dq):2"]), all);
         assert_eq!(found(&["v_dq[0]", "v_dq[1]", "i_dq[0]", "i_dq[1]"]), all);
         assert_eq!(found(&["udq(:,1)", "udq(:,2)", "i_sdq_re", "i_sdq_im"]), all);

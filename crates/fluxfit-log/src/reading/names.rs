@@ -1,6 +1,6 @@
 //! The column of a channel, by the names in the header.
 
-use super::proposal::propose;
+use super::{proposal::propose, resemblance::is_reference};
 use crate::{
     block::ColumnHead,
     channel::Channel,
@@ -48,7 +48,7 @@ pub(super) fn mapped(channel: Channel, header: &str, heads: &[ColumnHead]) -> Re
 }
 
 /// The column with the canonical name; else with that name in other case; else with a unit after it; else the field of that name in
-/// a structure; else, for the time, a column called `time`.
+/// a structure, which is no reference of a current or a speed; else, for the time, a column called `time`.
 ///
 /// # Errors
 /// If several columns fit equally well.
@@ -68,7 +68,9 @@ pub(super) fn automatic(channel: Channel, heads: &[ColumnHead]) -> Result<Option
         positions(&names, |name| name == canonical),
         positions(&names, |name| name.eq_ignore_ascii_case(canonical)),
         positions(&names, with_unit),
-        positions(&names, field),
+        positions(&names, |name| field(name) && !is_reference(name)),
+        // References of voltages are known well enough.
+        positions(&names, |name| field(name) && channel.dimension() == Dimension::Voltage),
         positions(&names, is_time),
     ];
     only(channel, &names, tiers)

@@ -79,6 +79,9 @@ const NUMBERED: [&str; 16] = [
     "vehicle", "trip",
 ];
 
+/// Words of the speed of what a motor drives, which is none of its own: `vehicle_speed_kmh`.
+const DRIVEN: [&str; 9] = ["vehicle", "veh", "car", "bike", "gps", "wind", "kmh", "kph", "mph"];
+
 /// Words for a torque, whose unit in `torque_nm` is PSIM's name of a speed.
 const TORQUES: [&str; 5] = ["torque", "torq", "trq", "moment", "drehmoment"];
 
@@ -152,7 +155,8 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     if channel == Channel::T && is_in_tesla(name) || channel == Channel::OmegaE && name.contains("Nm") {
         return None;
     }
-    if channel == Channel::OmegaE && words.iter().any(|word| TORQUES.contains(&word.as_str())) {
+    let is_other = |word: &String| TORQUES.contains(&word.as_str()) || DRIVEN.contains(&word.as_str());
+    if channel == Channel::OmegaE && words.iter().any(is_other) {
         return None;
     }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();

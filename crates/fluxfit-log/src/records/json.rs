@@ -12,7 +12,7 @@ use crate::{
     problem::Problem,
 };
 use fluxfit_files::{FileError, Problem as FileProblem, csv::record::number, input::io_problem, json_fault};
-use fluxfit_units::wording::{list, shorten};
+use fluxfit_units::wording::shorten;
 use serde_json::{Map, Value};
 use std::{
     collections::HashMap,
@@ -217,30 +217,13 @@ fn of_columns(mut records: Splitter) -> Result<Opened, FileError> {
     let none = |reason: String| FileError::from(Problem::Json { reason });
     let nothing = || "it has no records".to_owned();
     let (_, bytes) = records.next()?.ok_or_else(|| none(nothing()))?;
-    let object = parse(&bytes)?;
-    let within = tables_within(&object, "");
-    let mut columns: Vec<(String, Vec<Value>)> = Vec::new();
-    match (object.get("columns"), object.get("data")) {
-        (Some(Value::Array(names)), Some(Value::Array(rows))) => {
-            for (place, name) in names.iter().enumerate() {
-                let value = |row: &Value| row.get(place).cloned().unwrap_or(Value::Null);
-                columns.push((name.as_str().unwrap_or_default().to_owned(), rows.iter().map(value).collect()));
-            }
-        }
-        _ => {
-            for (name, value) in object {
-                match value {
-                    Value::Array(values) if values.first().is_some_and(Value::is_object) => {
-                        let bytes = Value::Array(values).to_string().into_bytes();
-                        return open(Text::of(String::from_utf8_lossy(&bytes).into_owned()));
-                    }
-                    Value::Array(values) => columns.push((name, values)),
-                    Value::Object(rows) => columns.push((name, rows.into_iter().map(|(_, value)| value).collect())),
-                    _ => {}
-                }
-            }
-        }
+    let mut held = Held::default();
+    held.gather(parse(&bytes)?, &mut Vec::new());
+    if let Some(records) = held.records.into_iter().max_by_key(Vec::len) {
+        let bytes = Value::Array(records).to_string().into_bytes();
+        return open(Text::of(String::from_utf8_lossy(&bytes).into_owned()));
     }
+    let columns = named(held.columns);
     let mut table = Table::default();
     for (name, values) in columns {
         let cells: Vec<Option<String>> = values.iter().map(cell).collect();
@@ -266,24 +249,70 @@ fn of_columns(mut records: Splitter) -> Result<Opened, FileError> {
             return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
         }
     }
-    match within.is_empty() {
-        _ if !table.heads.is_empty() => Ok(Opened::Columns(table)),
-        true => Err(none(nothing())),
-        false => Err(none(format!("its lists are in {}, not at the outermost level", list(&within)))),
+    if table.heads.is_empty() { Err(none(nothing())) } else { Ok(Opened::Columns(table)) }
+}
+
+/// A list and the keys that lead to it.
+type Column = (Vec<String>, Vec<Value>);
+
+/// What an object holds at any depth.
+#[derive(Default)]
+struct Held {
+    columns: Vec<Column>,
+    /// Lists of objects.
+    records: Vec<Vec<Value>>,
+}
+
+impl Held {
+    fn gather(&mut self, object: Map<String, Value>, path: &mut Vec<String>) {
+        let rows_of = ["data", "values"].into_iter().find(|key| object.get(*key).is_some_and(Value::is_array));
+        if let (Some(Value::Array(names)), Some(rows)) = (object.get("columns"), rows_of) {
+            let rows = object[rows].as_array().into_iter().flatten();
+            for (place, name) in names.iter().enumerate() {
+                let value = |row: &Value| row.get(place).cloned().unwrap_or(Value::Null);
+                let name = name.as_str().unwrap_or_default().to_owned();
+                self.columns.push((beneath(path, name), rows.clone().map(value).collect()));
+            }
+            return;
+        }
+        for (name, value) in object {
+            match value {
+                Value::Array(mut values) if values.len() == 1 && values[0].is_object() => {
+                    if let Some(Value::Object(inner)) = values.pop() {
+                        self.within(inner, path, name);
+                    }
+                }
+                Value::Array(values) if values.first().is_some_and(Value::is_object) => self.records.push(values),
+                Value::Array(values) => self.columns.push((beneath(path, name), values)),
+                Value::Object(inner) => self.within(inner, path, name),
+                _ => {}
+            }
+        }
+    }
+
+    fn within(&mut self, inner: Map<String, Value>, path: &mut Vec<String>, name: String) {
+        // As pandas writes a column: with the number or the instant of each row.
+        let is_column = inner.keys().all(|key| key.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+        if is_column && !inner.values().any(|value| value.is_object() || value.is_array()) {
+            self.columns.push((beneath(path, name), inner.into_iter().map(|(_, value)| value).collect()));
+            return;
+        }
+        path.push(name);
+        self.gather(inner, path);
+        path.pop();
     }
 }
 
-/// The paths of objects that hold two lists or more, as the columns of a table.
-fn tables_within(object: &Map<String, Value>, path: &str) -> Vec<String> {
-    let lists = object.values().filter(|value| value.as_array().is_some_and(|values| values.len() > 1)).count();
-    if lists > 1 && !path.is_empty() {
-        return vec![format!("'{}'", shorten(path))];
-    }
-    let inner = |(key, value): (&String, &Value)| {
-        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        value.as_object().map_or(Vec::new(), |object| tables_within(object, &path))
-    };
-    object.iter().flat_map(inner).collect()
+fn beneath(path: &[String], name: String) -> Vec<String> {
+    path.iter().cloned().chain([name]).collect()
+}
+
+/// The columns by their keys joined by dots, without those that all of them share.
+fn named(columns: Vec<Column>) -> Vec<(String, Vec<Value>)> {
+    let first = columns.first().map_or(Vec::new(), |(path, _)| path.clone());
+    let is_shared = |key: &usize| columns.iter().all(|(path, _)| path.len() > key + 1 && path[*key] == first[*key]);
+    let shared = (0..first.len()).take_while(is_shared).count();
+    columns.into_iter().map(|(path, values)| (path[shared..].join("."), values)).collect()
 }
 
 /// Cuts a text into its outermost objects.

@@ -15,7 +15,7 @@ ROWS = 5
 
 
 def write(make):
-    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists, nested, unmeasured, axes, modulation, frames, traces, remarks):
+    for part in (suffixes, root_mean_squares, flux_maps, phases, several, rotation, archives, lists, nested, serial_monitor, vectors, unmeasured, axes, modulation, frames, traces, remarks):
         part(make)
 
 
@@ -138,10 +138,40 @@ def lists(make):
 
 
 def nested(make):
-    """Lists of columns, two objects deep."""
-    lists = {name: [float(value) for value in make.FAST[name][:ROWS]] for name in make.NAMES}
-    text = json.dumps({"motor": "a", "runs": {"first": {"signals": lists}}})
-    make.refuse(make.put("nested_lists.json", text), "lists of columns within objects", "'runs.first.signals'", "outermost level")
+    """Lists of columns, objects deep."""
+    lists = {name: [float(value) for value in values] for name, values in make.part(make.FAST).items()}
+    one = {"motor": {"name": "a", "pole_pairs": 4}, "runs": {"first": {"signals": lists}}}
+    make.read(make.put("nested_lists.json", json.dumps(one)), "lists of columns within objects", make.part(make.FAST))
+    axes = {"t": lists["t"], "measured": {name: lists[name] for name in ("ud", "uq", "id", "iq")}, "omega_e": lists["omega_e"],
+            "reference": {"id": lists["iq"], "iq": lists["id"]}}
+    make.read(make.put("nested_axes.json", json.dumps(axes)), "lists of columns in several objects, and references", make.part(make.FAST))
+    series = {"name": "drive", "columns": list(lists), "values": [list(row) for row in zip(*lists.values())]}
+    make.read(make.put("nested_series.json", json.dumps({"results": [{"series": [series]}]})), "names and rows, as InfluxDB answers", make.part(make.FAST))
+    two = {"first": lists, "second": {name: values[:ROWS] for name, values in lists.items()}}
+    make.refuse(make.put("nested_two.json", json.dumps(two)), "two logs in one object", "2 logs", "'first' and 'second'")
+
+
+def serial_monitor(make):
+    """The serial monitor of the Arduino IDE writes the time of each line before it."""
+    log = make.part(make.FAST)
+    stamps = [f"13:24:31.{k:03} -> " for k in range(len(log["t"]))]
+    names = [name for name in log if name != "t"]
+    rows = ["\t".join(make.plain(log[name][k]) for name in names) for k in range(len(stamps))]
+    lines = [stamp + row for stamp, row in zip(stamps, ["\t".join(names), *rows[1:]])]
+    timed = {name: values[1:] for name, values in log.items()} | {"t": 48271.0 + 1e-3 * np.arange(1, len(stamps))}
+    make.put("serial_monitor.txt", "\r\n".join(lines) + "\r\n")
+    make.read("serial_monitor.txt", "times of Arduino's serial monitor", timed, tolerances={"t": 1e-9}, notes=["serial monitor"])
+    refused = make.put("serial_monitor_bare.txt", "\r\n".join(stamp + row for stamp, row in zip(stamps, rows)) + "\r\n")
+    make.refuse(refused, "the same without names", "numbers in place of a header", line=1)
+
+
+def vectors(make):
+    """A vector of commands in place of voltages; the speed of a vehicle."""
+    log = columns(make, "t", "Vdq_cmd(1) [V]", "Vdq_cmd(2) [V]", "Idq(1) [A]", "Idq(2) [A]", "omega_e")
+    make.put("vector_of_commands.csv", make.table(log))
+    make.read("vector_of_commands.csv", "voltages as a vector of commands", make.part(make.FAST))
+    refuse(make, "vehicle_speed.csv", "no speed but the vehicle's", columns(make, "t", "ud", "uq", "id", "iq", "vehicle_speed_kmh"), "omega_e",
+           "map it if it has another name", line=1)
 
 
 def unmeasured(make):
