@@ -9,10 +9,12 @@
 //! - Simulink's structures with time have their values in `signals(k).values` and their names in `signals(k).label`.
 //! - Matrices of two columns with the same increasing first column, as Simulink's To Workspace blocks save a signal as an array with time,
 //!   are a signal each, and that column is their time.
+//! - Results of Modelica tools have the names of the model's variables.
 //! - Scalars, texts, booleans, complex and sparse arrays, cells and arrays of three dimensions are not columns.
 
 mod array;
 mod hdf5;
+mod modelica;
 mod numbers;
 mod v4;
 mod v5;

@@ -1,14 +1,16 @@
 """The corpus, continued: files as instruments, PLCs and simulation tools lay them out. make.py calls write(make), with itself.
 
 The layouts are those of the makers' manuals: Beckhoff TE13xx Scope View (Export to csv), Tektronix MDO/MSO (save waveform as csv), Siglent SDS,
-dSPACE ControlDesk (export to MAT), Simulink To Workspace (array; array of three dimensions), TI MotorControl SDK (names of vectors).
+dSPACE ControlDesk (export to MAT), Dymola and OpenModelica (result files), Simulink To Workspace (array; array of three dimensions), TI MotorControl SDK (names of vectors).
 """
+
+import struct
 
 import numpy as np
 
 
 def write(make):
-    for part in (twincat, oscilloscopes, encodings, thousandths, vectors, matlab, recordings):
+    for part in (twincat, oscilloscopes, encodings, thousandths, vectors, matlab, modelica, recordings):
         part(make)
 
 
@@ -123,6 +125,34 @@ def matlab(make):
     samples = {name: {"Time": fast["t"][:, None], "Data": fast[name][None, None, :]} for name in make.NAMES[1:]}
     make.put_mat("third_dimension.mat", samples, do_compression=True)
     make.read("third_dimension.mat", "samples along the third dimension", fast, same_as="canonical.csv")
+
+
+def modelica(make):
+    """Matrices of version 4: what changes, what never does, and where each variable of the model is, also with the other sign."""
+    fast = make.part(make.FAST)
+    variables = [("time", "Simulation time [s]", 0, 1), ("smpm.Rs", "Resistance [Ohm]", 1, 2), ("smpm.ud", "Voltage [V]", 2, 2),
+                 ("smpm.uq", "Voltage [V]", 2, 3), ("smpm.id", "Current [A]", 2, 4), ("smpm.iq", "Current [A]", 2, 5),
+                 ("inverter.iq", "Current [A]", 2, -5), ("smpm.omega_e", "Electrical speed [rad/s|rpm]", 2, 6)]
+    infos = np.array([[matrix, line, 0, -1] for *_, matrix, line in variables], dtype=np.int32)
+    constants, data = np.array([[fast["t"][0], 0.958], [fast["t"][-1], 0.958]]), np.column_stack([fast[name] for name in make.NAMES])
+
+    def letters(texts):
+        return np.array([list(text.ljust(max(map(len, texts))).encode()) for text in texts], dtype=np.uint8)
+
+    def put(file, lying):
+        parts = {"Aclass": letters(["Atrajectory", "1.1", "", "binTrans" if lying else "binNormal"])}
+        parts |= {"name": letters([name for name, *_ in variables]), "description": letters([text for _, text, *_ in variables]),
+                  "dataInfo": infos, "data_1": constants, "data_2": data}
+        content = b""
+        for name, part in parts.items():
+            part = part.T if lying and name != "Aclass" else part
+            kind = {"uint8": 51, "int32": 20, "float64": 0}[str(part.dtype)]
+            content += struct.pack("<5i", kind, *part.shape, 0, len(name) + 1) + name.encode() + b"\0" + part.tobytes(order="F")
+        make.put(file, content)
+        make.read(file, "a result of a Modelica tool" + (", lying" if lying else ""), fast, notes=[], same_as="canonical.csv")
+
+    put("modelica_lying.mat", True)
+    put("modelica.mat", False)
 
 
 def recordings(make):

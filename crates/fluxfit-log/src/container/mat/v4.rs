@@ -4,6 +4,7 @@
 
 use super::{
     array::{Array, Contents, is_column},
+    modelica,
     numbers::Place,
 };
 use crate::{
@@ -22,7 +23,20 @@ const HEADER: u64 = 20;
 /// Maximum length of the name of a variable, bytes, with its terminating zero: the limit of MATLAB is 63 letters.
 const LONGEST_NAME: u64 = 64;
 
-struct Variable {
+/// A variable.
+pub(super) struct Variable {
+    pub(super) name: String,
+    pub(super) number: Number,
+    /// It holds real numbers, no text, and no zero is left out.
+    pub(super) is_matrix: bool,
+    pub(super) rows: u64,
+    pub(super) columns: u64,
+    /// Offsets of its numbers, and of their end.
+    pub(super) from: u64,
+    pub(super) to: u64,
+}
+
+struct Header {
     number: Number,
     /// 0: full matrix, 1: text, 2: sparse matrix.
     matrix: u32,
@@ -32,7 +46,7 @@ struct Variable {
     name_length: u64,
 }
 
-impl Variable {
+impl Header {
     /// None if this is not the header of a variable.
     fn parse(header: &[u8]) -> Option<Self> {
         let words: &[[u8; 4]; 5] = header.as_chunks().0.first_chunk()?;
@@ -71,7 +85,7 @@ impl Variable {
 
 /// Whether this is a version 4 file. It has no signature, but starts with a variable that has a valid name and fits into the file.
 pub(super) fn signature(start: &[u8], length: u64) -> bool {
-    let Some(variable) = Variable::parse(start) else { return false };
+    let Some(variable) = Header::parse(start) else { return false };
     let name = start.get(HEADER as usize..(HEADER + variable.name_length) as usize);
     let named = name.is_some_and(|name| name.split_last().is_some_and(|(zero, letters)| *zero == 0 && is_identifier(letters)));
     named && HEADER.saturating_add(variable.name_length).saturating_add(variable.length()) <= length
@@ -82,30 +96,36 @@ fn is_identifier(letters: &[u8]) -> bool {
 }
 
 pub(super) fn open(source: &RandomAccess) -> Result<Contents<Place>, FileError> {
-    let mut contents = Contents::default();
+    let mut variables = Vec::new();
     let mut at = 0;
     while at < source.length() {
         let header = source.bytes_at(at, HEADER).map_err(|error| unread("MAT", &error))?;
-        let variable = Variable::parse(&header).ok_or_else(|| damaged("MAT", "a variable has no type"))?;
-        let name = source.bytes_at(at + HEADER, variable.name_length).map_err(|error| unread("MAT", &error))?;
+        let header = Header::parse(&header).ok_or_else(|| damaged("MAT", "a variable has no type"))?;
+        let name = source.bytes_at(at + HEADER, header.name_length).map_err(|error| unread("MAT", &error))?;
         let name: String = String::from_utf8_lossy(&name).trim_end_matches('\0').to_owned();
-        let data = at + HEADER + variable.name_length;
-        let end = data.saturating_add(variable.length());
-        if end > source.length() {
+        let from = at + HEADER + header.name_length;
+        let to = from.saturating_add(header.length());
+        if to > source.length() {
             return Err(damaged("MAT", "it ends too early").in_column(&name));
         }
-        if variable.matrix == 0 && !variable.complex {
-            if is_column(variable.rows, variable.columns) {
-                let place = Place::plain(data, end, variable.number, variable.rows);
-                contents.arrays.push(Array { path: name, unit: None, rows: variable.rows, columns: variable.columns, place });
-            }
-        } else {
-            contents.unreadable.push(name);
-        }
-        if contents.arrays.len() + contents.unreadable.len() > MOST_COLUMNS {
+        let Header { number, rows, columns, .. } = header;
+        variables.push(Variable { name, number, is_matrix: header.matrix == 0 && !header.complex, rows, columns, from, to });
+        if variables.len() > MOST_COLUMNS {
             return Err(Problem::ManyColumns { most: MOST_COLUMNS }.into());
         }
-        at = end;
+        at = to;
+    }
+    if let Some(contents) = modelica::contents(source, &variables)? {
+        return Ok(contents);
+    }
+    let mut contents = Contents::default();
+    for Variable { name, number, is_matrix, rows, columns, from, to } in variables {
+        if !is_matrix {
+            contents.unreadable.push(name);
+        } else if is_column(rows, columns) {
+            let place = Place::plain(from, to, number, rows);
+            contents.arrays.push(Array { path: name, unit: None, rows, columns, place });
+        }
     }
     Ok(contents)
 }
