@@ -30,6 +30,8 @@ pub(crate) enum Problem {
     NoRows,
     #[error("the cell is empty or NaN; write a number or remove the row")]
     EmptyCell,
+    #[error("the column has no number in any row; log it, or map another one in its place")]
+    EmptyColumn,
     #[error("{} has a comma and a point, so its decimal mark is ambiguous; write numbers without thousands separators", quote(.text))]
     Thousands { text: String },
     #[error(
@@ -321,7 +323,9 @@ impl Problem {
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::Lists { .. } | Self::ManyColumns { .. } => {
                 FileErrorKind::Format
             }
-            Self::EmptyCell | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => FileErrorKind::Value,
+            Self::EmptyCell | Self::EmptyColumn | Self::Thousands { .. } | Self::ClockTime { .. } | Self::Instant { .. } => {
+                FileErrorKind::Value
+            }
             Self::DecimalMarks { .. } | Self::OtherMark { .. } | Self::UnclearComma => FileErrorKind::Value,
             Self::Missing { .. }
             | Self::ARowPerValue { .. }

@@ -29,8 +29,9 @@ pub(super) fn align(channels: &mut Channels, lines: &Lines) -> Result<Option<Str
     let can_align =
         counts.iter().all(|(_, count)| *count >= FEWEST) && counts.iter().any(|(channel, count)| *channel == T && *count == rows);
     if complete as f64 > COMPLETE * rows as f64 || !can_align {
-        let (channel, _) = channels.iter().find(|(_, values)| values[first].is_nan()).unwrap_or((T, &[]));
-        return Err(channels.refuse(Problem::EmptyCell, channel, lines, first));
+        let without = counts.iter().find(|(_, count)| *count == 0).map(|(channel, _)| *channel);
+        let of_row = || channels.iter().find(|(_, values)| values[first].is_nan()).map(|(channel, _)| channel);
+        return Err(channels.refuse_missing(without.or_else(of_row).unwrap_or(T), lines, first));
     }
     let t = channels.get(T).map(<[f64]>::to_vec).unwrap_or_default();
     let base = [Id, IA].into_iter().find(|channel| channels.get(*channel).is_some()).unwrap_or(Channel::IAlpha);

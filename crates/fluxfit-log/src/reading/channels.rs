@@ -104,6 +104,16 @@ impl Channels {
         header.map_or(refused.clone(), |(_, header)| refused.in_column(header))
     }
 
+    /// The refusal of a channel that lacks the value of a row, and of one that lacks all of them.
+    pub(super) fn refuse_missing(&self, channel: Channel, lines: &Lines, row: usize) -> FileError {
+        let is_empty = self.get(channel).is_some_and(|values| values.iter().all(|value| value.is_nan()));
+        if !is_empty {
+            return self.refuse(Problem::EmptyCell, channel, lines, row);
+        }
+        let header = self.headers.iter().find(|(other, _)| *other == channel);
+        header.map_or(Problem::EmptyColumn.into(), |(_, header)| FileError::from(Problem::EmptyColumn).in_column(header))
+    }
+
     /// What locates errors of rows and columns in the file.
     pub(super) fn locator(&self, lines: &Lines) -> Locator {
         Locator { origins: self.origins.clone(), headers: self.headers.clone(), lines: lines.clone() }

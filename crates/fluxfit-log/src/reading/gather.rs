@@ -251,7 +251,7 @@ fn drop_unreadable(
         let missing = values.iter().position(|value| value.is_nan());
         let is_empty = values.iter().all(|value| value.is_nan());
         let missing = missing.filter(|_| !has_missing || is_empty);
-        if let Some(error) = refused.or_else(|| missing.map(|row| channels.refuse(Problem::EmptyCell, column.channel, lines, row))) {
+        if let Some(error) = refused.or_else(|| missing.map(|row| channels.refuse_missing(column.channel, lines, row))) {
             notes.push(left_out(column.channel, &error.in_column(&column.header)).into());
             channels.take(column.channel);
         }

@@ -156,6 +156,10 @@ fn rows_are_refused_in_one_sentence() {
             below("0,1,2,3,4,5\n1,1,\"two\nlines, and more than forty characters of them\",3,4,5\n"),
             "drive.csv, line 3, column 'uq': \"two\\nlines, and more than forty character…\" is not a number; correct it or remove the row",
         ),
+        (
+            below("0,1, ,3,4,5\n1,1, ,3,4,5\n"),
+            "drive.csv, column 'uq': the column has no number in any row; log it, or map another one in its place",
+        ),
         (below("0,1,2,3,4,5\n1,1, ,3,4,5\n"), "drive.csv, line 3, column 'uq': the cell is empty or NaN; write a number or remove the row"),
         (
             below("11:04 h,1,2,3,4,5\n"),

@@ -72,6 +72,7 @@ fn an_unreadable_optional_column_refuses_the_log_only_if_it_was_mapped() {
         ("u_dc", ["310", "abc"], "line 3, column 'u_dc': \"abc\" is not a number; correct it or remove the row"),
         ("u_dc", ["", "310"], "line 2, column 'u_dc': the cell is empty or NaN; write a number or remove the row"),
         ("u_dc", ["nan", "310"], "line 2, column 'u_dc': the cell is empty or NaN; write a number or remove the row"),
+        ("u_dc", ["", ""], "column 'u_dc': the column has no number in any row; log it, or map another one in its place"),
         ("u_dc", ["310", "1e999"], "line 3, column 'u_dc': u_dc is inf; remove the row or write a finite number"),
         (
             "u_dc",
