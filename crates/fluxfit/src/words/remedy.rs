@@ -53,8 +53,8 @@ impl Display for Remedy {
                 "check the prior of {} (temperature, cable, line to line or per phase) and the columns, or identify without it",
                 parameter.symbol()
             ),
-            Self::StepCurrent { parameter: Parameter::Ld } => write!(f, "log steps of i_d, too"),
-            Self::StepCurrent { .. } => write!(f, "log steps of i_q, too"),
+            Self::StepCurrent { parameter: Parameter::Ld } => write!(f, "log larger steps of i_d, and more of them"),
+            Self::StepCurrent { .. } => write!(f, "log larger steps of i_q, and more of them"),
             Self::StateVoltageTiming => write!(f, "state the timing of the voltage columns"),
             Self::CompensateDeadTime { or_resistance } => {
                 write!(f, "log with the drive's dead-time compensation on")?;

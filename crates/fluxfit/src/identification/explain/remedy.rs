@@ -50,7 +50,7 @@ pub enum Remedy {
     Turn,
     /// Check the unit of the speed and the number of pole pairs, or state the [model](crate::Request::model).
     CheckSpeed,
-    /// Log steps of the current along the axis of this inductance, as long as the rotor stands.
+    /// Log larger steps of the current along the axis of this inductance, and more of them, as long as the rotor stands.
     StepCurrent {
         /// Which inductance.
         parameter: Parameter,
@@ -149,6 +149,10 @@ pub(super) fn of(
 ) -> Option<Remedy> {
     let Beside { knows_rs, saturation } = beside;
     let measure = || measure().map(Remedy::Measure);
+    // At rest no operating point tells an inductance.
+    if finding.bench.is_at_rest && matches!(parameter, Parameter::Ld | Parameter::Lq) && asks_for_points(reason) {
+        return Some(Remedy::StepCurrent { parameter });
+    }
     let or_stretch = |also: Option<Also>| Remedy::AddStretch { id: step(finding), also };
     Some(match reason {
         Reason::Given => return None,
@@ -180,6 +184,15 @@ pub(super) fn of(
         Reason::Saturates => Remedy::SmallSteps,
         Reason::Wide { part, .. } => narrower(*part, parameter, finding, knows_rs, measure),
     })
+}
+
+/// Whether more of what the operating points or the currents show would help.
+fn asks_for_points(reason: &Reason) -> bool {
+    match reason {
+        Reason::Wide { part, .. } => matches!(part, Part::Noise | Part::Accuracy | Part::Excitation | Part::FaultsInDoubt),
+        Reason::IdZero { .. } | Reason::IdConstant | Reason::OnePoint | Reason::TooSimilar { .. } | Reason::SharperThanNoise => true,
+        _ => false,
+    }
 }
 
 /// The surest incremental inductance of each axis; none where either axis has none.
@@ -315,6 +328,21 @@ mod tests {
                 let sentence = of(reason, Parameter::PsiF, &finding, Beside { knows_rs, ..NOTHING }, || None).unwrap().to_string();
                 assert_eq!(sentence.contains("give R_s"), !knows_rs, "{sentence}");
             }
+        }
+    }
+
+    /// A stretch at another i_d or a higher speed is none of a test at rest.
+    #[test]
+    fn at_rest_inductances_take_steps() {
+        let mut finding = finding(Motor { rs: 0.03, ld: 1e-4, lq: 1e-4, psi_f: 9e-3 }, 1e-4);
+        let noise = Reason::Wide { part: Part::Noise, beside: Vec::new(), half_width: 0.3 };
+        let remedy = |reason: &Reason, finding: &Finding| of(reason, Parameter::Lq, finding, NOTHING, || None).unwrap();
+        for reason in [&noise, &Reason::IdConstant, &Reason::OnePoint] {
+            assert_ne!(remedy(reason, &finding), Remedy::StepCurrent { parameter: Parameter::Lq });
+        }
+        finding.bench.is_at_rest = true;
+        for reason in [&noise, &Reason::IdConstant, &Reason::OnePoint] {
+            assert_eq!(remedy(reason, &finding), Remedy::StepCurrent { parameter: Parameter::Lq });
         }
     }
 }

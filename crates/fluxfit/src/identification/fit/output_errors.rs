@@ -92,6 +92,10 @@ fn larger(one: DMatrix<f64>, other: DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(one.nrows(), one.ncols(), |p, q| one[(p, q)] * scale[p] * scale[q])
 }
 
+/// A parameter of which white noise leaves a standard error of this part is told by a few rows, if at all: too few for the scatter of
+/// their scores to say how well.
+const BARELY: f64 = 0.3;
+
 /// Errors of everything that was fitted.
 pub(super) struct Errors {
     /// Of the unknowns, from noise.
@@ -138,6 +142,11 @@ impl Errors {
             degrees_of_freedom = degrees_of_freedom.min(blocks.degrees_of_freedom);
             covariance = larger(covariance, &inverse * blocks.covariance * &inverse);
         }
+        let white = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64 * &inverse;
+        let is_barely_told =
+            |k: usize| matches!(unknowns[k], Unknown::Motor(_)) && white[(k, k)] > (BARELY * drive.get(unknowns[k])).powi(2);
+        let of_few = DMatrix::from_fn(white.nrows(), white.ncols(), |p, q| if p == q && is_barely_told(p) { white[(p, p)] } else { 0.0 });
+        covariance = larger(covariance, of_few);
         let [accuracy, loss_shape] = voltage_accuracy::covariances(objective, drive, &inverse, &slopes, accuracies);
         Self {
             covariance,

@@ -26,12 +26,23 @@ const NO_VOLTAGE: f64 = 1e-9;
 /// A current without voltage is noise, and none that dies out, if it is below this part of the other axis'.
 const NO_CURRENT: f64 = 0.01;
 
+/// The same of a current whose first tenth has at most twice its share of the squares: what dies out within the log has more.
+const NOISY_CURRENT: f64 = 0.3;
+const FIRST: usize = 10;
+const SHARE: f64 = 2.0;
+
 /// Whether no row of the log depends on a parameter: at rest on the flux, nor on the inductance of an axis without voltage and current.
 pub(super) fn is_absent(log: &Log, parameter: Parameter) -> bool {
     let columns = log.columns();
     // Largest values would be those of the noise.
     let is_below = |part: f64, own: &[f64], other: &[f64]| dot(own, own) <= part.powi(2) * dot(other, other);
-    let is_idle = |u: [&[f64]; 2], i: [&[f64]; 2]| is_below(NO_VOLTAGE, u[0], u[1]) && is_below(NO_CURRENT, i[0], i[1]);
+    let dies_out = |own: &[f64]| {
+        let first = &own[..own.len() / FIRST];
+        FIRST as f64 * dot(first, first) > SHARE * dot(own, own)
+    };
+    let is_idle = |u: [&[f64]; 2], [own, other]: [&[f64]; 2]| {
+        is_below(NO_VOLTAGE, u[0], u[1]) && (is_below(NO_CURRENT, own, other) || is_below(NOISY_CURRENT, own, other) && !dies_out(own))
+    };
     log.is_at_rest()
         && match parameter {
             Parameter::PsiF => true,
